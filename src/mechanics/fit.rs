@@ -69,25 +69,8 @@ pub fn fit_unless(
     cancel: Option<&AtomicBool>,
 ) -> Result<ForceCurve, String> {
     let scale = force_scale(table);
-    let largest = largest(&table.force);
-    let allowed = tolerance * scale + 8.0 * f64::EPSILON * largest;
-    let samples = Samples { cancel, ..Samples::new(table, allowed) };
-    let mut best: Option<(f64, Vec<Piece>, Vec<usize>)> = None;
-    for degree in DEGREES {
-        let Some((pieces, ends)) = samples.chain(degree) else { continue };
-        let cost = running_cost(&samples, &pieces, &ends);
-        if best.as_ref().is_none_or(|(least, ..)| cost < *least) {
-            best = Some((cost, pieces, ends));
-        }
-    }
-    let curve = best
-        .map(|(_, pieces, ends)| samples.assemble(pieces, &ends))
-        .filter(|curve| curve.pieces().iter().all(|p| p.potential_at_origin.is_finite()))
-        .ok_or_else(|| {
-            "has numbers so large or small, or positions so close together, that no curve through them can \
-             be computed in double precision"
-                .to_owned()
-        })?;
+    let allowed = vec![within(table, tolerance); table.x.len()];
+    let curve = fit_within(table, &allowed, &DEGREES, cancel)?;
     let mut warnings = table.warnings();
     if curve.pieces().len() > MANY_PIECES {
         warnings.push(format!(
@@ -99,6 +82,38 @@ pub fn fit_unless(
     let (worst_n, worst_at_m) = worst(&curve, table);
     let report = FitReport { worst_n, worst_at_m, scale_n: scale, samples: table.x.len(), warnings };
     Ok(curve.with_fit(report))
+}
+
+/// How far in N a curve may be from the samples of a table with this tolerance: it times [`force_scale`], or
+/// some roundings.
+pub(super) fn within(table: &ForceTable, tolerance: f64) -> f64 {
+    tolerance * force_scale(table) + 8.0 * f64::EPSILON * largest(&table.force)
+}
+
+/// The curve, without a report, that is no farther from each sample of a table than what is `allowed` there,
+/// in N, with the cheapest of these limits of the degree. Fails as [`fit_unless`] does.
+pub(super) fn fit_within(
+    table: &ForceTable,
+    allowed: &[f64],
+    degrees: &[usize],
+    cancel: Option<&AtomicBool>,
+) -> Result<ForceCurve, String> {
+    let samples = Samples { cancel, ..Samples::new(table, allowed) };
+    let mut best: Option<(f64, Vec<Piece>, Vec<usize>)> = None;
+    for degree in degrees.iter().copied() {
+        let Some((pieces, ends)) = samples.chain(degree) else { continue };
+        let cost = running_cost(&samples, &pieces, &ends);
+        if best.as_ref().is_none_or(|(least, ..)| cost < *least) {
+            best = Some((cost, pieces, ends));
+        }
+    }
+    best.map(|(_, pieces, ends)| samples.assemble(pieces, &ends))
+        .filter(|curve| curve.pieces().iter().all(|p| p.potential_at_origin.is_finite()))
+        .ok_or_else(|| {
+            "has numbers so large or small, or positions so close together, that no curve through them can \
+             be computed in double precision"
+                .to_owned()
+        })
 }
 
 /// The force in N that the tolerance is relative to.
@@ -172,13 +187,13 @@ struct Samples<'a> {
 }
 
 impl Samples<'_> {
-    fn new(table: &ForceTable, allowed: f64) -> Self {
+    fn new(table: &ForceTable, allowed: &[f64]) -> Self {
         let n = table.x.len();
         let mirror = |i: usize| n - 1 - i;
         let reach = largest(&table.x);
         let odd = (0..n).all(|i| {
             (table.x[i] + table.x[mirror(i)]).abs() <= 1e-12 * reach
-                && (table.force[i] + table.force[mirror(i)]).abs() <= 2.0 * ODD_SHARE * allowed
+                && (table.force[i] + table.force[mirror(i)]).abs() <= 2.0 * ODD_SHARE * allowed[i]
         });
         let mut corner = corners(&table.x, &table.force, allowed);
         if odd {
@@ -188,7 +203,7 @@ impl Samples<'_> {
         let between = between(&table.x, &table.force, &corner, allowed);
         if !odd {
             let (x, force) = (table.x.clone(), table.force.clone());
-            return Self { cancel: None, x, force, allowed: vec![allowed; n], corner, slope, between, odd };
+            return Self { cancel: None, x, force, allowed: allowed.to_vec(), corner, slope, between, odd };
         }
         // The right half, from 0 on whether or not there is a sample.
         let mut half = Self {
@@ -207,7 +222,7 @@ impl Samples<'_> {
             let j = mirror(i);
             half.x.push(table.x[i]);
             half.force.push(0.5 * (table.force[i] - table.force[j]));
-            half.allowed.push(allowed - 0.5 * (table.force[i] + table.force[j]).abs());
+            half.allowed.push(allowed[i] - 0.5 * (table.force[i] + table.force[j]).abs());
             half.corner.push(corner[i]);
             half.slope.push(0.5 * (slope[i] + slope[j]));
             if i + 1 < n {

@@ -7,6 +7,7 @@
 
 use super::curve::{ForceCurve, Piece};
 use crate::numeric::real_roots::{derivative, real_roots, rounding, value_and_magnitude};
+use crate::numeric::{Turn, turns};
 
 /// A jump of the slope counts as a kink from this part of the slope's own terms on. Pieces that were made to
 /// meet smoothly do so to some 1e-12.
@@ -89,7 +90,8 @@ pub struct Landscape {
     /// The barrier between the wells: with more than two wells the one nearest to x = 0, of two as near the
     /// left one.
     pub barrier: Option<Barrier>,
-    /// Local extrema of the force inside the domain, smooth or corners.
+    /// Local extrema of the force inside the domain, smooth or corners; of a fitted curve those that stand
+    /// out from the error of the fit.
     pub extrema: Vec<ForceExtremum>,
     /// Corners of the force: breaks at which the slope jumps by more than a millionth.
     pub kinks: Vec<Kink>,
@@ -101,17 +103,22 @@ impl Landscape {
     /// Guarantee: complete (the root finder misses none); positions to rounding as far as their conditioning
     /// allows; a pair of roots that rounding cannot tell from a touching counts as one.
     pub fn of(curve: &ForceCurve) -> Self {
-        let mut own = Self {
+        Self::within(curve, curve.fit().map_or(0.0, |fit| fit.worst_n))
+    }
+
+    /// As [`of`](Self::of), for a curve that may be off by `error` in N.
+    pub(super) fn within(curve: &ForceCurve, error: f64) -> Self {
+        let mut landscape = Self {
             equilibria: equilibria(curve),
             barrier: None,
-            extrema: extrema(curve),
+            extrema: clear_of(curve, extrema(curve), 2.0 * error),
             kinks: kinks(curve),
         };
         if curve.is_odd() {
-            own.mirror();
+            landscape.mirror();
         }
-        own.barrier = barrier(curve, &own.equilibria);
-        own
+        landscape.barrier = barrier(curve, &landscape.equilibria);
+        landscape
     }
 
     /// The right-most stable equilibrium.
@@ -330,6 +337,22 @@ fn extrema(curve: &ForceCurve) -> Vec<ForceExtremum> {
         .filter(|(_, (before, after))| before * after < 0.0)
         .map(|(x, _)| ForceExtremum { x, force: curve.force(x) })
         .collect()
+}
+
+/// The extrema from which the force goes back by more than `least` in N, before the next one or the end of
+/// the domain: an error of half of that may have made the others.
+fn clear_of(curve: &ForceCurve, extrema: Vec<ForceExtremum>, least: f64) -> Vec<ForceExtremum> {
+    if least == 0.0 {
+        return extrema;
+    }
+    let (low, high) = curve.domain();
+    let between = extrema.iter().map(|extremum| extremum.force);
+    let forces: Vec<f64> = [curve.force(low)].into_iter().chain(between).chain([curve.force(high)]).collect();
+    // the first turning point is where the force begins, or no farther from it than that
+    let clear = |turn: &&Turn| (forces[turn.at] - forces[0]).abs() > least;
+    let all = turns(&forces, least);
+    let first = all.first().filter(clear);
+    first.into_iter().chain(all.iter().skip(1)).map(|turn| extrema[turn.at - 1]).collect()
 }
 
 fn kinks(curve: &ForceCurve) -> Vec<Kink> {

@@ -40,7 +40,7 @@ pub(super) fn roughness(table: &ForceTable) -> f64 {
 /// and is large enough to matter: over half the nearest interval it makes more force than twice what is
 /// `allowed`. A corner between two samples is not placed here; the chain then breaks on both sides of it by
 /// itself.
-pub(super) fn corners(x: &[f64], force: &[f64], allowed: f64) -> Vec<bool> {
+pub(super) fn corners(x: &[f64], force: &[f64], allowed: &[f64]) -> Vec<bool> {
     let chord = |i: usize, j: usize| (force[j] - force[i]) / (x[j] - x[i]);
     let one_sided = |at: usize, near: usize, far: usize| {
         let first = chord(at, near);
@@ -54,7 +54,7 @@ pub(super) fn corners(x: &[f64], force: &[f64], allowed: f64) -> Vec<bool> {
         let jump = (right - left).abs();
         let nearest = (x[i + 1] - x[i]).min(x[i] - x[i - 1]);
         corner[i] = jump > CORNER_OVER_UNCERTAINTY * (unsure_left + unsure_right)
-            && 0.5 * jump * nearest > 2.0 * allowed;
+            && 0.5 * jump * nearest > 2.0 * allowed[i];
     }
     corner
 }
@@ -91,7 +91,7 @@ pub(super) fn slopes(x: &[f64], force: &[f64], corner: &[bool]) -> Vec<f64> {
 
 /// The force half-way between each sample and the next, and how far a curve may be from it: the tolerance a
 /// few times, and the difference between the interpolants through six and through four neighbours.
-pub(super) fn between(x: &[f64], force: &[f64], corner: &[bool], allowed: f64) -> Vec<(f64, f64)> {
+pub(super) fn between(x: &[f64], force: &[f64], corner: &[bool], allowed: &[f64]) -> Vec<(f64, f64)> {
     let interpolant = |near: Range<usize>, at: f64| {
         let mut sum = 0.0;
         for a in near.clone() {
@@ -108,7 +108,7 @@ pub(super) fn between(x: &[f64], force: &[f64], corner: &[bool], allowed: f64) -
             let at = 0.5 * (x[i] + x[i + 1]);
             let six = interpolant(neighbours(i, i + 1, 2, corner), at);
             let four = interpolant(neighbours(i, i + 1, 1, corner), at);
-            (six, BETWEEN_SAMPLES * allowed + (six - four).abs())
+            (six, BETWEEN_SAMPLES * allowed[i].min(allowed[i + 1]) + (six - four).abs())
         })
         .collect()
 }

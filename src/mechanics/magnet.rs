@@ -12,14 +12,23 @@
 use std::sync::OnceLock;
 
 use super::curve::{FitReport, ForceCurve, Piece};
-use super::fit::fit;
+use super::fit::{fit_within, within};
 use super::table::ForceTable;
 
-/// How far the pieces reach, in gaps: the force beyond is a hundred millionth of its maximum.
+/// How far the pieces reach, in gaps: the force beyond is a hundred millionth of its maximum, or less.
 const REACH: f64 = 100.0;
 
-/// Error allowed to the pieces, relative to the largest force.
+/// Error allowed to the pieces, relative to the largest force, up to the last extremum of the force. Beyond
+/// it the error allowed falls as the force does, so that the far field keeps its digits: 2e-6 of itself.
 const TOLERANCE: f64 = 1e-8;
+
+/// The limit of the degree: the cheapest one where the mass is near the other magnet.
+const DEGREE: usize = 9;
+
+/// The square of the last extremum of the force in gaps, a root of 4 s^2 - 27 s + 4.
+fn last_extremum_squared() -> f64 {
+    (27.0 + 665_f64.sqrt()) / 8.0
+}
 
 /// Samples that the pieces are made from: enough for a local interpolant to know the force between them
 /// better than the tolerance.
@@ -64,7 +73,11 @@ fn unit_curve() -> Result<&'static ForceCurve, String> {
         };
         let x: Vec<f64> = (0..SAMPLES).map(|i| place(i as f64)).collect();
         let force = x.iter().map(|u| unit_force(*u)).collect();
-        let curve = fit(&ForceTable { x, force }, TOLERANCE)?;
+        let table = ForceTable { x, force };
+        let (near, last) = (within(&table, TOLERANCE), last_extremum_squared().sqrt());
+        let far = |u: &f64| if u.abs() > last { unit_force(*u) / unit_force(last) } else { 1.0 };
+        let allowed: Vec<f64> = table.x.iter().map(|u| near * far(u).abs()).collect();
+        let curve = fit_within(&table, &allowed, &[DEGREE], None)?;
         let places = BETWEEN * (SAMPLES - 1);
         let reach = curve.domain().1;
         let (mut worst_n, mut worst_at_m, mut scale_n) = (0.0_f64, 0.0, 0.0_f64);
@@ -96,9 +109,9 @@ pub fn magnet(strength: f64, gap: f64) -> Result<ForceCurve, String> {
     let scaled = |piece: &Piece| {
         let mut factor = scale;
         let coefficients = piece.coefficients.iter().map(|c| {
-            let own = c * factor;
+            let scaled = c * factor;
             factor /= gap;
-            own
+            scaled
         });
         Piece { origin: piece.origin * gap, coefficients: coefficients.collect(), potential_at_origin: 0.0 }
     };

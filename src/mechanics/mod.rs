@@ -227,7 +227,7 @@ impl Mechanism {
     fn sum(parts: Vec<Self>) -> Result<Self, BuildError> {
         let curves: Vec<&ForceCurve> = parts.iter().map(|part| &part.curve).collect();
         let curve = sum::sum(&curves)
-            .filter(|own| own.pieces().iter().all(|piece| piece.coefficients.iter().all(|c| c.is_finite())));
+            .filter(|sum| sum.pieces().iter().all(|piece| piece.coefficients.iter().all(|c| c.is_finite())));
         let curve = curve.ok_or_else(|| Fault {
             field: "mechanism".into(),
             value: "Sum([..])".into(),
@@ -238,7 +238,9 @@ impl Mechanism {
         })?;
         let mut flexures = parts.iter().filter_map(|part| part.flexures.clone());
         let only = flexures.next().filter(|_| flexures.next().is_none());
-        Ok(Self { flexures: only, parts, ..Self::new(curve) })
+        let error = parts.iter().filter_map(|part| part.curve.fit()).map(|fit| fit.worst_n).sum();
+        let landscape = Landscape::within(&curve, error);
+        Ok(Self { curve, landscape, flexures: only, element: None, parts })
     }
 
     /// The parts of a sum; of any other mechanism itself.

@@ -29,15 +29,16 @@ pub struct Periodogram {
 /// The periodogram of `values`, `step` apart.
 ///
 /// The mean is taken out before the values are weighted, so that it does not leak, and stands in line 0
-/// alone. With weights w the amplitude is 2 |X|/sum w (the coherent gain corrected) and the density
-/// 2 step |X|^2/sum w^2 (the noise bandwidth corrected); lines 0 and n/2 have no mirror image and no factor 2
-/// (G. Heinzel, A. Ruediger and R. Schilling 2002, "Spectrum and spectral density estimation by the discrete
-/// Fourier transform"). Without a taper the density times 1/(n step), summed over all lines, is the mean
-/// square of the values (Parseval); with one it is the mean square of the weighted values.
+/// alone. With weights w the amplitude is 2 |X|/sum w (the coherent gain corrected) and the density 2 step
+/// |X|^2/sum w^2 (the noise bandwidth corrected); line n/2 has no mirror image and no factor 2, and line 0 is
+/// the mean and its density (G. Heinzel, A. Ruediger and R. Schilling 2002, "Spectrum and spectral density
+/// estimation by the discrete Fourier transform"). Without a taper the density times 1/(n step), summed over
+/// all lines, is the mean square of the values (Parseval); with one, summed over all lines but line 0, it is
+/// the mean square of the weighted values less what they have in line 0.
 ///
 /// A sine of k whole periods is line k alone without a taper. With that of von Hann it has its amplitude in
-/// line k, half of it in both neighbours, and 0 elsewhere. The error is some rounding units of the largest
-/// value. No values give no lines.
+/// line k, half of it in both neighbours (but for line 0, which is the mean), and 0 elsewhere. The error is
+/// some rounding units of the largest value. No values give no lines.
 pub fn periodogram(mut values: Vec<f64>, step: f64, taper: Taper) -> Periodogram {
     let n = values.len();
     if n == 0 {
@@ -55,7 +56,7 @@ pub fn periodogram(mut values: Vec<f64>, step: f64, taper: Taper) -> Periodogram
     };
     let weights = total(&weight);
     let squared_weights = total(&|k| weight(k).powi(2));
-    let mean = total(&|k| weight(k) * values[k]) / weights;
+    let mean = total(&|k| values[k]) / n as f64;
     values.iter_mut().enumerate().for_each(|(k, value)| *value = weight(k) * (*value - mean));
 
     let transform = RealFftPlanner::<f64>::new().plan_fft_forward(n);
@@ -105,10 +106,27 @@ mod tests {
                 let weight = |k: usize| 0.5 - 0.5 * (TAU * k as f64 / n as f64).cos();
                 let total: f64 = (0..n).map(weight).sum();
                 near(total, 0.5 * n as f64, 1e-12 * n as f64);
-                let mean = (0..n).map(|k| weight(k) * values[k]).sum::<f64>() / total;
-                let squares = (0..n).map(|k| (weight(k) * (values[k] - mean)).powi(2)).sum::<f64>();
+                let mean = values.iter().sum::<f64>() / n as f64;
+                let tapered = |k: usize| weight(k) * (values[k] - mean);
+                let squares = (0..n).map(|k| tapered(k).powi(2)).sum::<f64>();
+                let in_line_0 = (0..n).map(tapered).sum::<f64>().powi(2) / n as f64;
                 let weights = (0..n).map(|k| weight(k).powi(2)).sum::<f64>();
-                near(power(Taper::Hann) * resolution, squares / weights + mean * mean, 1e-14);
+                let exact = (squares - in_line_0) / weights + mean * mean;
+                near(power(Taper::Hann) * resolution, exact, 1e-14);
+            }
+        }
+    }
+
+    #[test]
+    fn line_0_is_the_mean_also_beside_the_first_line() {
+        // the window of von Hann weighs a sine of one period so that its weighted mean is half its amplitude
+        for (n, phase) in [(64, 0.0), (1000, 0.7), (1001, 2.0)] {
+            let value = |k: usize| 0.5 + 3.0 * (TAU * k as f64 / n as f64 + phase).cos();
+            for taper in [Taper::None, Taper::Hann] {
+                let lines = periodogram((0..n).map(value).collect(), 0.1, taper);
+                near(lines.amplitude[0], 0.5, 1e-13);
+                near(lines.density[0] / (0.1 * n as f64), 0.25, 1e-13);
+                near(lines.amplitude[1], 3.0, 1e-13);
             }
         }
     }
@@ -122,9 +140,9 @@ mod tests {
                 - 0.25 * (120.0 * turns).cos()
         };
         let values: Vec<f64> = (0..n).map(value).collect();
-        let own = periodogram(values.clone(), step, Taper::None);
-        assert_eq!((own.amplitude.len(), own.density.len()), (121, 121));
-        for (k, amplitude) in own.amplitude.iter().enumerate() {
+        let lines = periodogram(values.clone(), step, Taper::None);
+        assert_eq!((lines.amplitude.len(), lines.density.len()), (121, 121));
+        for (k, amplitude) in lines.amplitude.iter().enumerate() {
             let exact = match k {
                 0 => 7.0,
                 3 => 2.0,
@@ -134,7 +152,7 @@ mod tests {
             };
             near(*amplitude, exact, 1e-14);
         }
-        near(own.density[3] / (n as f64 * step), 2.0, 1e-13);
+        near(lines.density[3] / (n as f64 * step), 2.0, 1e-13);
         let tapered = periodogram(values, step, Taper::Hann).amplitude;
         for (k, exact) in
             [(0, 7.0), (1, 0.0), (2, 1.0), (3, 2.0), (4, 1.0), (5, 0.0), (99, 5e-7), (100, 1e-6)]

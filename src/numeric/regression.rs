@@ -10,6 +10,10 @@ pub struct Fit<const N: usize> {
     pub coefficients: SVector<f64, N>,
     /// Their covariance: the inverse of the normal matrix times the variance of the residuals.
     pub covariance: SMatrix<f64, N, N>,
+    /// The inverse of the normal matrix: the covariance of values with errors of variance 1.
+    pub inverse: SMatrix<f64, N, N>,
+    /// The variance of the residuals.
+    pub variance: f64,
     /// Degrees of freedom of that variance: values less coefficients.
     pub freedom: usize,
 }
@@ -24,13 +28,12 @@ impl<const N: usize> Fit<N> {
 /// The coefficients c that minimise sum (row . c - value)^2 over `rows`, each with its value.
 ///
 /// Method: normal equations by Cholesky; with columns of one size their condition is that of the rows
-/// squared,
-/// so polynomials want a variable within \[-1, 1]. The covariance takes the errors of the values as
+/// squared, so polynomials want a variable within \[-1, 1]. The covariance takes the errors of the values as
 /// independent and of one size, which is estimated from the residuals.
 ///
 /// `None` where there are no more values than coefficients, or where they do not determine them.
 pub fn least_squares<const N: usize>(rows: &[([f64; N], f64)]) -> Option<Fit<N>> {
-    let freedom = rows.len().checked_sub(N).filter(|own| *own > 0)?;
+    let freedom = rows.len().checked_sub(N).filter(|freedom| *freedom > 0)?;
     let mut normal = SMatrix::<f64, N, N>::zeros();
     let mut right = SVector::<f64, N>::zeros();
     for (row, value) in rows {
@@ -44,12 +47,13 @@ pub fn least_squares<const N: usize>(rows: &[([f64; N], f64)]) -> Option<Fit<N>>
         |c: &SVector<f64, N>, (row, value): &([f64; N], f64)| value - SVector::<f64, N>::from(*row).dot(c);
     // one step of refinement, after which the residuals are those of the rounded coefficients
     let mut rest = SVector::<f64, N>::zeros();
-    rows.iter().for_each(|own| rest += SVector::<f64, N>::from(own.0) * residual(&coefficients, own));
+    rows.iter().for_each(|row| rest += SVector::<f64, N>::from(row.0) * residual(&coefficients, row));
     coefficients += factors.solve(&rest);
-    let square: f64 = rows.iter().map(|own| residual(&coefficients, own).powi(2)).sum();
-    let covariance = factors.inverse() * (square / freedom as f64);
-    let finite = coefficients.iter().chain(covariance.iter()).all(|own| own.is_finite());
-    finite.then_some(Fit { coefficients, covariance, freedom })
+    let square: f64 = rows.iter().map(|row| residual(&coefficients, row).powi(2)).sum();
+    let (inverse, variance) = (factors.inverse(), square / freedom as f64);
+    let covariance = inverse * variance;
+    let finite = coefficients.iter().chain(covariance.iter()).all(|number| number.is_finite());
+    finite.then_some(Fit { coefficients, covariance, inverse, variance, freedom })
 }
 
 /// The powers 1, u, u^2, .. of a row of a polynomial.
@@ -60,7 +64,7 @@ pub fn powers<const N: usize>(u: f64) -> [f64; N] {
 /// The factor on a standard error with which an interval holds the true value in 95 of 100 cases, where the
 /// error was estimated with so many degrees of freedom: the quantile 0.975 of Student's distribution.
 pub fn student(freedom: usize) -> f64 {
-    StudentsT::new(0.0, 1.0, freedom.max(1) as f64).map_or(f64::NAN, |own| own.inverse_cdf(0.975))
+    StudentsT::new(0.0, 1.0, freedom.max(1) as f64).map_or(f64::NAN, |law| law.inverse_cdf(0.975))
 }
 
 /// The most steps of Gauss and Newton.

@@ -61,7 +61,7 @@ pub struct Column {
 }
 
 /// Endings of names with their units, the longest first: `_m_per_s2` also ends like a name in seconds.
-const UNITS: [(&str, &str); 27] = [
+const UNITS: [(&str, &str); 28] = [
     ("_m_per_s2", "m/s\u{b2}"),
     ("_m_per_s", "m/s"),
     ("_n_per_m3", "N/m\u{b3}"),
@@ -72,6 +72,7 @@ const UNITS: [(&str, &str); 27] = [
     ("_s_per_m", "s/m"),
     ("_n_per_v", "N/V"),
     ("_n_mm4", "N mm\u{2074}"),
+    ("_per_s", "1/s"),
     ("_kohm", "kohm"),
     ("_ohm", "ohm"),
     ("_mh", "mH"),

@@ -1,16 +1,15 @@
-//! Damping ratio from a free decay, by the logarithmic decrement.
+//! Damping ratio, decay and frequency from a free decay, over the whole record and over its amplitude.
 
 use std::f64::consts::PI;
 
+use super::clipped::{Clipped, clipped};
+use super::peaks::{Peak, peaks};
 use super::turns::{noise, reach, turns};
 use super::{Identified, Identity, Unidentified};
-use crate::numeric::regression::{Fit, geometric, least_squares, powers, student};
-use crate::numeric::short;
+use crate::numeric::regression::{least_squares, student};
+use crate::numeric::{Envelope, FEWEST_TURNS, TurningPoint, short};
 use crate::scene::Channel;
 use crate::study::table::{Table, Values};
-
-/// The fewest turning points of a decay: three numbers are fitted to them.
-const FEWEST: usize = 6;
 
 /// Pieces of the line that is drawn as an envelope.
 const ENVELOPE: u32 = 400;
@@ -18,200 +17,119 @@ const ENVELOPE: u32 = 400;
 /// Turning points in a row of the table.
 const GROUP: usize = 8;
 
-/// The part of a period on either side of a turning point over which it is fitted.
-const REACH: f64 = 0.125;
+/// The part of a number by which it may change without a word.
+const NEGLIGIBLE: f64 = 1e-3;
 
 /// Swings count down to this many times the reach of the noise.
 const CLEAR: f64 = 1.5;
 
-/// Turning points on either side from which the time of one follows.
-const AROUND: usize = 8;
-
-/// The fewest samples of such a fit, and of one of degree 4.
-const FEWEST_SAMPLES: usize = 5;
-const FEWEST_OF_DEGREE_4: usize = 9;
-
-/// A turning point, fitted.
-struct Peak {
-    t: f64,
-    value: f64,
-    /// Its distance from the rest position: the error of its time is in inverse proportion to it.
-    size: f64,
-}
-
-/// Damping ratio and frequency of a free decay, over the whole record and as they change with the amplitude.
+/// Damping ratio, decay and frequency of a free decay, over the whole record and as they change with the
+/// amplitude.
 ///
-/// Each turning point is the extreme of a polynomial of degree 4 (of degree 2 where samples are few) that is
-/// fitted by least squares over an eighth of a period on either side. The turning points follow
-/// c + a q^k, where -ln(-q) is half the logarithmic decrement: the damping ratio is d/sqrt(pi^2 + d^2) with
-/// d = -ln(-q). The law is fitted by least squares to the turning points themselves, so that those lost in
-/// noise count for little, and the rest position c need not be known. Intervals are 95 %, from the scatter
-/// of the turning points about the law.
+/// Turning points are fitted each on its own (see [`peaks`]) and an exponential envelope through them by
+/// weighted least squares (see [`Envelope`]), whose rate r is the decay of the amplitude a second. Over half
+/// a period of T/2 the amplitude falls by d = r T/2, half the logarithmic decrement, and the damping ratio is
+/// d/sqrt(pi^2 + d^2). Of an oscillator with mass m and damping coefficient c in a well that is straight, or
+/// straight on either side of a kink at its bottom, r is c/(2 m). The rest position need not be known, and
+/// the two sides may have unlike amplitudes. The period is the slope of a weighted straight line through the
+/// times of the turning points, with what sets maxima apart from minima. Intervals are 95 %, from the scatter
+/// of the turning points about envelope and line.
 ///
-/// Begins at the largest swing of the record. Rows: `turns,from_s,to_s,amplitude,damping_ratio,
-/// damping_ratio_low,damping_ratio_high,frequency_hz,frequency_low_hz,frequency_high_hz`, each of some eight
+/// Begins after the last flat top where the record is clipped, at the largest swing otherwise. Rows:
+/// `turns,from_s,to_s,amplitude,damping_ratio,damping_ratio_low,damping_ratio_high,frequency_hz,
+/// frequency_low_hz,frequency_high_hz,decay_per_s,decay_low_per_s,decay_high_per_s`, each of some eight
 /// turning points in order of time; the amplitude has the ending of the channel's unit.
 pub fn damping(times: &[f64], channel: &Channel) -> Result<Identified, Unidentified> {
-    let values = &channel.values;
+    let flat = clipped(&channel.values);
+    let begin = flat.map_or(0, |flat| flat.last + 1);
+    let (times, values) = (&times[begin..], &channel.values[begin..]);
     let noise = noise(values);
     let back = reach(values, noise);
     let all = turns(values, back);
-    let few = |found: usize| Unidentified::FewSwings { found, least: FEWEST, noise: short(noise) };
+    let few = |found: usize| match flat {
+        None => Unidentified::FewSwings { found, least: FEWEST_TURNS, noise: short(noise) },
+        Some(Clipped { tops, limit, .. }) => {
+            Unidentified::Clipped { tops, limit: short(limit), found, least: FEWEST_TURNS }
+        }
+    };
     let swing = |k: usize| (values[all[k + 1].at] - values[all[k].at]).abs();
     let swings = all.len().saturating_sub(1);
-    let largest = (0..swings).max_by(|a, b| swing(*a).total_cmp(&swing(*b))).unwrap_or(0);
+    let largest = (0..swings).rev().max_by(|a, b| swing(*a).total_cmp(&swing(*b))).unwrap_or(0);
     // a swing near the reach of the noise may be missed, and would be counted as half of a long one
     let clear = (largest..swings).take_while(|k| swing(*k) > CLEAR * back).count();
-    let raw: Vec<f64> = all.iter().skip(largest).take(clear + 1).map(|turn| times[turn.at]).collect();
-    if raw.len() < FEWEST {
-        return Err(few(raw.len()));
+    let turns = &all[largest.min(all.len())..(largest + clear + 1).min(all.len())];
+    if turns.len() < FEWEST_TURNS {
+        return Err(few(turns.len()));
     }
-    let period = even_period(&raw)?;
-    let reach = REACH * period;
-    let mut peaks = Vec::with_capacity(raw.len());
-    for near in raw {
-        peaks.extend(turn_near(times, values, near, reach)?);
-    }
-    if peaks.len() < FEWEST {
-        return Err(few(peaks.len()));
-    }
-    let law =
-        geometric(&peaks.iter().map(|own| own.value).collect::<Vec<_>>()).ok_or(Unidentified::NoDecay)?;
-    for (k, peak) in peaks.iter_mut().enumerate() {
-        peak.size = (law.coefficients[1] * law.coefficients[2].powi(k as i32)).abs();
-    }
-    at_smooth_times(times, values, &mut peaks, reach)?;
-    let whole = Decay::of(&peaks).ok_or(Unidentified::NoDecay)?;
+    let (peaks, sparse) = peaks(times, values, turns, noise).map_err(|problem| match problem {
+        Unidentified::FewSwings { found, .. } => few(found),
+        other => other,
+    })?;
+    let whole = Decay::of(&peaks).filter(|decay| decay.rate.interval.1 > 0.0).ok_or(Unidentified::NoDecay)?;
     let groups = (peaks.len() / GROUP).max(1);
     let group = |i: usize| {
         let end = if i + 1 == groups { peaks.len() } else { (i + 1) * GROUP };
         Decay::of(&peaks[i * GROUP..end])
     };
     let rows: Vec<Decay> = (0..groups).filter_map(group).collect();
-    let mut remarks = Vec::new();
-    let amplitudes = rows.first().zip(rows.last()).map(|(first, last)| (first.amplitude, last.amplitude));
-    if let Some((first, last)) = amplitudes {
-        let (unit, of) = (channel.quantity.ending().replace("_per_", "/"), channel.quantity.name());
-        remarks.push(format!(
-            "the rows go from an amplitude of {} to one of {} {} ({of})",
-            short(first),
-            short(last),
-            unit.trim_start_matches('_')
-        ));
-    }
-    if differ(&rows, whole.ratio.value) {
-        remarks.push(
-            "the ratio changes with the amplitude by more than its intervals: the number for all is a mean"
-                .to_owned(),
-        );
-    }
-    let natural = (1.0 - whole.ratio.value.powi(2)).sqrt();
-    let scaled = |own: f64| own / natural;
-    let (low, high) = whole.frequency.interval;
-    let natural = Identity {
-        name: "natural_frequency_hz",
-        value: scaled(whole.frequency.value),
-        interval: (scaled(low), scaled(high)),
-    };
-    let table = table(&rows, &format!("amplitude{}", channel.quantity.ending()));
     Ok(Identified {
-        rows: table,
-        fitted: whole.envelope(),
-        summary: vec![whole.ratio, whole.frequency, natural],
-        remarks,
+        rows: table(&rows, &format!("amplitude{}", channel.quantity.ending())),
+        fitted: whole.lines(),
+        summary: whole.summary(),
+        remarks: remarks(&rows, &whole, channel, times, (flat, sparse)),
     })
 }
 
-/// The period of turning points, which are half of one apart.
-fn even_period(turns: &[f64]) -> Result<f64, Unidentified> {
-    let mut lengths: Vec<f64> = turns.windows(3).map(|own| own[2] - own[0]).collect();
-    let uneven = lengths.clone();
-    let middle = lengths.len() / 2;
-    let usual = *lengths.select_nth_unstable_by(middle, f64::total_cmp).1;
-    match uneven.iter().position(|own| !(0.6 * usual..=1.6 * usual).contains(own)) {
-        None => Ok(usual),
-        Some(k) => {
-            Err(Unidentified::Uneven { at: short(turns[k]), own: short(uneven[k]), usual: short(usual) })
-        }
-    }
-}
-
-/// The polynomial in (t - `centre`)/`reach` through the samples up to `reach` away; none where the record
-/// does not reach so far on both sides.
-fn polynomial(
+/// What to know of the answer: where the record is cut, and what changes with the amplitude.
+fn remarks(
+    rows: &[Decay],
+    whole: &Decay,
+    channel: &Channel,
     times: &[f64],
-    values: &[f64],
-    centre: f64,
-    reach: f64,
-) -> Result<Option<Vec<f64>>, Unidentified> {
-    if centre - reach < times[0] || centre + reach > times[times.len() - 1] {
-        return Ok(None);
+    (flat, sparse): (Option<Clipped>, Option<f64>),
+) -> Vec<String> {
+    let (ending, quantity) = (channel.quantity.ending().replace("_per_", "/"), channel.quantity.name());
+    let unit = ending.trim_start_matches('_');
+    let mut remarks = Vec::new();
+    if let Some(Clipped { tops, limit, .. }) = flat {
+        remarks.push(format!(
+            "clipped: {tops} swings have flat tops, at the limit of the sensor or its converter (the last at \
+             {} {unit}); what was recorded before {} s is left out",
+            short(limit),
+            short(times[0])
+        ));
     }
-    let range =
-        times.partition_point(|t| *t < centre - reach)..times.partition_point(|t| *t <= centre + reach);
-    let samples = range.len();
-    let u = |i: usize| (times[i] - centre) / reach;
-    let found: Option<Vec<f64>> = if samples >= FEWEST_OF_DEGREE_4 {
-        let rows: Vec<([f64; 5], f64)> = range.map(|i| (powers(u(i)), values[i])).collect();
-        least_squares(&rows).map(|fit| fit.coefficients.iter().copied().collect())
-    } else if samples >= FEWEST_SAMPLES {
-        let rows: Vec<([f64; 3], f64)> = range.map(|i| (powers(u(i)), values[i])).collect();
-        least_squares(&rows).map(|fit| fit.coefficients.iter().copied().collect())
-    } else {
-        None
-    };
-    let sparse = Unidentified::Sparse { at: short(centre), samples, least: FEWEST_SAMPLES };
-    found.map(Some).ok_or(sparse)
-}
-
-/// The turning point near a time, where the record reaches far enough on both sides.
-fn turn_near(times: &[f64], values: &[f64], near: f64, reach: f64) -> Result<Option<Peak>, Unidentified> {
-    let mut centre = near;
-    let mut value = f64::NAN;
-    for _ in 0..3 {
-        let Some(fit) = polynomial(times, values, centre, reach)? else { return Ok(None) };
-        let sum = |of: &dyn Fn(i32, f64) -> f64| (0..).zip(&fit).map(|(k, c)| of(k, *c)).sum::<f64>();
-        let mut u = 0.0_f64;
-        for _ in 0..20 {
-            let slope = sum(&|k, c| f64::from(k) * c * u.powi((k - 1).max(0)));
-            let bend = sum(&|k, c| f64::from(k * (k - 1)) * c * u.powi((k - 2).max(0)));
-            let step = slope / bend;
-            u = if step.is_finite() { (u - step).clamp(-1.0, 1.0) } else { 0.0 };
-        }
-        centre += u * reach;
-        value = sum(&|k, c| c * u.powi(k));
+    if let Some(at) = sparse {
+        remarks.push(format!("from {} s on the swings have too few samples and are left out", short(at)));
     }
-    Ok(Some(Peak { t: centre, value, size: 0.0 }))
-}
-
-/// Reads the values anew at times that follow from the turning points around each: a straight line in their
-/// number, and what sets maxima apart from minima. The extreme of a noisy curve lies too far out; the value
-/// at a time that hardly depends on its own noise does not.
-fn at_smooth_times(
-    times: &[f64],
-    values: &[f64],
-    peaks: &mut [Peak],
-    reach: f64,
-) -> Result<(), Unidentified> {
-    let parity = |j: usize| if j.is_multiple_of(2) { 1.0 } else { -1.0 };
-    let smooth = |k: usize| -> Option<f64> {
-        let around = k.saturating_sub(AROUND)..(k + AROUND + 1).min(peaks.len());
-        let row = |j: usize| {
-            let (size, t) = (peaks[j].size, peaks[j].t - peaks[k].t);
-            ([size, size * (j as f64 - k as f64), size * parity(j)], size * t)
+    if let Some((first, last)) = rows.first().zip(rows.last()) {
+        remarks.push(format!(
+            "the rows go from an amplitude of {} to one of {} {unit} ({quantity})",
+            short(first.amplitude),
+            short(last.amplitude),
+        ));
+    }
+    let changes = |of: fn(&Decay) -> Identity| differ(rows.iter().map(of), of(whole).value);
+    let changing: Vec<&str> = [
+        ("the damping ratio", changes(|decay| decay.ratio)),
+        ("the frequency", changes(|decay| decay.frequency)),
+        ("the decay", changes(|decay| decay.rate)),
+    ]
+    .into_iter()
+    .filter_map(|(name, changes)| changes.then_some(name))
+    .collect();
+    if let [others @ .., last] = &changing[..] {
+        let (names, change, is) = match others {
+            [] => ((*last).to_owned(), "changes", "the number for all is a mean over the amplitudes"),
+            _ => (
+                format!("{} and {last}", others.join(", ")),
+                "change",
+                "the numbers for all are means over the amplitudes",
+            ),
         };
-        let fit = least_squares(&around.map(row).collect::<Vec<_>>())?;
-        Some(peaks[k].t + fit.coefficients[0] + parity(k) * fit.coefficients[2])
-    };
-    let smooth: Vec<Option<f64>> = (0..peaks.len()).map(smooth).collect();
-    for (peak, t) in peaks.iter_mut().zip(smooth) {
-        if let Some(t) = t
-            && let Some(fit) = polynomial(times, values, t, reach)?
-        {
-            peak.value = fit[0];
-        }
+        remarks.push(format!("{names} {change} with the amplitude by more than the intervals: {is}"));
     }
-    Ok(())
+    remarks
 }
 
 /// A decay through some turning points.
@@ -222,80 +140,120 @@ struct Decay {
     amplitude: f64,
     ratio: Identity,
     frequency: Identity,
-    /// The turning points are c + a q^k, at the times t + k times a step.
-    law: [f64; 3],
-    line: [f64; 2],
+    natural: Identity,
+    rate: Identity,
+    envelope: Envelope,
 }
 
 impl Decay {
     fn of(peaks: &[Peak]) -> Option<Self> {
-        let law = geometric(&peaks.iter().map(|own| own.value).collect::<Vec<_>>())?;
-        let [_, size, q] = law.coefficients.into();
-        let rows: Vec<([f64; 2], f64)> = peaks
-            .iter()
-            .enumerate()
-            .map(|(k, own)| ([own.size, own.size * k as f64], own.size * own.t))
-            .collect();
-        let line: Fit<2> = least_squares(&rows)?;
-        let half = |fit_error: f64, freedom: usize| student(freedom) * fit_error;
-        let of_q = |q: f64| {
-            let decrement = -(-q).ln();
-            decrement / PI.hypot(decrement)
+        let points: Vec<TurningPoint> = peaks.iter().map(|peak| peak.point).collect();
+        let envelope = Envelope::fit(&points)?;
+        let (slowest, fastest) = envelope.interval(&points);
+        let first = &peaks[0];
+        let row = |peak: &Peak| {
+            let weight = peak.found.1.sqrt();
+            let side = if peak.point.maximum { weight } else { -weight };
+            ([weight, weight * (peak.number - first.number), side], weight * (peak.found.0 - first.point.t))
         };
-        let spread = half(law.covariance[(2, 2)].sqrt(), law.freedom);
+        let line = least_squares(&peaks.iter().map(row).collect::<Vec<_>>())?;
         let step = line.coefficients[1];
-        let late = half(line.covariance[(1, 1)].sqrt(), line.freedom);
-        let decays = q < 0.0 && step > 0.0;
-        decays.then(|| Self {
-            turns: peaks.len(),
-            span: (peaks[0].t, peaks[peaks.len() - 1].t),
-            amplitude: (size * (-q).powf(0.5 * (peaks.len() - 1) as f64)).abs(),
-            ratio: Identity {
-                name: "damping_ratio",
-                value: of_q(q),
-                interval: (of_q(q - spread), of_q((q + spread).min(0.0))),
-            },
-            frequency: Identity {
-                name: "frequency_hz",
-                value: 0.5 / step,
-                interval: (0.5 / (step + late), 0.5 / (step - late)),
-            },
-            law: law.coefficients.into(),
-            line: line.coefficients.into(),
+        if !(step > 0.0) {
+            return None;
+        }
+        let late = student(line.freedom) * line.covariance[(1, 1)].sqrt();
+        let of_rate = |rate: f64| if rate.is_finite() { ratio(rate * step) } else { rate.signum() };
+        let damping = Identity {
+            name: "damping_ratio",
+            value: of_rate(envelope.rate),
+            interval: (of_rate(slowest), of_rate(fastest)),
+        };
+        // without an upper end where the step may be 0
+        let highest = if late < step { 0.5 / (step - late) } else { f64::INFINITY };
+        let frequency =
+            Identity { name: "frequency_hz", value: 0.5 / step, interval: (0.5 / (step + late), highest) };
+        let last = points.len() - 1;
+        let logarithms: f64 = points.iter().map(|point| envelope.at(point.t).1.ln()).sum();
+        Some(Self {
+            turns: points.len(),
+            span: (points[0].t, points[last].t),
+            amplitude: (logarithms / points.len() as f64).exp(),
+            ratio: damping,
+            natural: natural(frequency, damping),
+            frequency,
+            rate: Identity { name: "decay_per_s", value: envelope.rate, interval: (slowest, fastest) },
+            envelope,
         })
     }
 
+    fn summary(&self) -> Vec<Identity> {
+        vec![self.ratio, self.frequency, self.natural, self.rate]
+    }
+
     /// The lines on which the maxima and the minima lie.
-    fn envelope(&self) -> Table {
-        let ([centre, size, q], [begin, step]) = (self.law, self.line);
-        let last = self.turns.saturating_sub(1) as f64;
-        let places: Vec<f64> = (0..=ENVELOPE).map(|i| last * f64::from(i) / f64::from(ENVELOPE)).collect();
-        let away = |k: &f64| (size * (-q).powf(*k)).abs();
-        Table::new()
-            .each("t_s", &places, |k| begin + step * k)
-            .each("upper", &places, |k| centre + away(k))
-            .each("lower", &places, |k| centre - away(k))
+    fn lines(&self) -> Table {
+        let (from, to) = self.span;
+        let place = |i: u32| from + (to - from) * f64::from(i) / f64::from(ENVELOPE);
+        let places: Vec<f64> = (0..=ENVELOPE).map(place).collect();
+        let line = |side: f64| {
+            move |t: &f64| {
+                let (centre, swing) = self.envelope.at(*t);
+                centre + side * swing
+            }
+        };
+        Table::new().each("t_s", &places, |t| *t).each("upper", &places, line(1.0)).each(
+            "lower",
+            &places,
+            line(-1.0),
+        )
     }
 }
 
-/// Whether the ratios of the rows differ from that of the whole by more than their intervals explain.
-fn differ(rows: &[Decay], whole: f64) -> bool {
-    let outside = |own: &&Decay| !(own.ratio.interval.0..=own.ratio.interval.1).contains(&whole);
+/// The damping ratio of an oscillation whose amplitude falls by a factor e^-d in half a period.
+fn ratio(d: f64) -> f64 {
+    d / PI.hypot(d)
+}
+
+/// The frequency without the damping, f/sqrt(1 - z^2) of a frequency f and a damping ratio z; its interval is
+/// that of independent errors.
+fn natural(frequency: Identity, damping: Identity) -> Identity {
+    let slower = (1.0 - damping.value.powi(2)).sqrt();
+    let value = frequency.value / slower;
+    // of one end of both intervals
+    let error = |f: f64, z: f64| {
+        let of_ratio = damping.value / slower.powi(2) * (z - damping.value);
+        value * (f / frequency.value - 1.0).hypot(of_ratio)
+    };
+    let low = error(frequency.interval.0, damping.interval.0);
+    let high = error(frequency.interval.1, damping.interval.1);
+    Identity { name: "natural_frequency_hz", value, interval: (value - low, value + high) }
+}
+
+/// Whether the numbers of the rows differ from that of the whole by more than their intervals explain, and by
+/// more than counts.
+fn differ(rows: impl ExactSizeIterator<Item = Identity>, whole: f64) -> bool {
+    let most = 1 + rows.len() / 5;
+    let apart = |row: &Identity| (row.value - whole).abs() > NEGLIGIBLE * whole.abs();
     // of rows that agree one in twenty lies outside
-    rows.iter().filter(outside).count() > 1 + rows.len() / 5
+    rows.filter(|row| !(row.interval.0..=row.interval.1).contains(&whole) && apart(row)).count() > most
 }
 
 fn table(rows: &[Decay], amplitude: &str) -> Table {
-    let turns = rows.iter().map(|own| Some(own.turns as u64)).collect();
-    Table::new()
+    let turns = rows.iter().map(|row| Some(row.turns as u64)).collect();
+    let with = |table: Table, of: fn(&Decay) -> Identity, names: [&str; 3]| {
+        table.each(names[0], rows, |row| of(row).value).each(names[1], rows, |row| of(row).interval.0).each(
+            names[2],
+            rows,
+            |row| of(row).interval.1,
+        )
+    };
+    let table = Table::new()
         .with("turns", Values::Counts(turns))
-        .each("from_s", rows, |own| own.span.0)
-        .each("to_s", rows, |own| own.span.1)
-        .each(amplitude, rows, |own| own.amplitude)
-        .each("damping_ratio", rows, |own| own.ratio.value)
-        .each("damping_ratio_low", rows, |own| own.ratio.interval.0)
-        .each("damping_ratio_high", rows, |own| own.ratio.interval.1)
-        .each("frequency_hz", rows, |own| own.frequency.value)
-        .each("frequency_low_hz", rows, |own| own.frequency.interval.0)
-        .each("frequency_high_hz", rows, |own| own.frequency.interval.1)
+        .each("from_s", rows, |row| row.span.0)
+        .each("to_s", rows, |row| row.span.1)
+        .each(amplitude, rows, |row| row.amplitude);
+    let ratios = ["damping_ratio", "damping_ratio_low", "damping_ratio_high"];
+    let table = with(table, |row| row.ratio, ratios);
+    let table = with(table, |row| row.frequency, ["frequency_hz", "frequency_low_hz", "frequency_high_hz"]);
+    with(table, |row| row.rate, ["decay_per_s", "decay_low_per_s", "decay_high_per_s"])
 }

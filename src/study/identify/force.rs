@@ -1,6 +1,7 @@
 //! Force curve from a slow pull, with its hysteresis, equilibria and barrier.
 
-use super::turns::{Turn, turns};
+use super::rests::Rest;
+use super::turns::{noise, turns};
 use super::{Identified, Identity, Unidentified};
 use crate::numeric::regression::{Fit, least_squares, powers, student};
 use crate::numeric::{extent, short};
@@ -12,30 +13,33 @@ pub const FORCE_POINTS: usize = 101;
 /// The part of the range of positions by which a pull goes back where it turns.
 const TURN: f64 = 0.1;
 
-/// The part of the range next to a turn that is left out: friction and backlash turn there.
-const LEFT_OUT: f64 = 0.01;
+/// Standard deviations of the position next to a turn that are left out: there its noise has one sign.
+const TURNING: f64 = 6.0;
 
-/// The part of the range on either side over which the curve is fitted at an equilibrium.
-const REACH: f64 = 0.04;
+/// The part of the range after a turn that is left out where the two directions differ there, in its
+/// outermost quarter, by less than half of what they do in a few times that part further in: where friction
+/// and backlash turn.
+const LEFT_OUT: f64 = 0.01;
+const FURTHER_IN: f64 = 5.0;
 
 /// Standard errors by which the force differs from 0 on both sides of an equilibrium.
 const CLEAR: f64 = 3.0;
 
 /// A number with its standard error and the degrees of freedom of that.
 #[derive(Debug, Clone, Copy)]
-struct Known {
-    value: f64,
-    error: f64,
-    freedom: usize,
+pub struct Known {
+    pub value: f64,
+    pub error: f64,
+    pub freedom: usize,
 }
 
 impl Known {
-    fn half(self) -> f64 {
+    pub fn half(self) -> f64 {
         student(self.freedom) * self.error
     }
 
     /// The mean of this and another.
-    fn and(self, other: Self) -> Self {
+    pub fn and(self, other: Self) -> Self {
         Self {
             value: 0.5 * (self.value + other.value),
             error: 0.5 * self.error.hypot(other.error),
@@ -45,114 +49,224 @@ impl Known {
 }
 
 /// Samples of one direction, by position. SI.
-type Pull = Vec<(f64, f64)>;
+pub type Pull = Vec<(f64, f64)>;
 
-/// An equilibrium of the measured curve.
-struct Rest {
-    x: Known,
-    stiffness: Known,
+/// The force curve at even positions: force with its error, and slope.
+struct Curve {
+    positions: Vec<f64>,
+    step: f64,
+    /// Of each direction.
+    directions: Vec<Vec<(Known, f64)>>,
+    mean: Vec<(Known, f64)>,
 }
 
 /// The force curve of a slow pull: force `force` in N over position `x` in m, in the order in which they were
 /// measured, in one direction or in both, any number of times.
 ///
-/// The curve has `points` even positions over the range that all directions cover. At each of them a cubic
-/// is fitted by least squares to the samples of one direction up to the neighbouring points. The force of the
-/// curve is the mean of both directions, and half their difference the friction. At the equilibria a cubic is
-/// fitted over 4 % of the range on either side. Intervals are 95 %, from the residuals of the fits.
+/// The curve has `points` even positions over the range that all directions cover. At each of them a cubic is
+/// fitted by least squares to the samples of one direction up to the neighbouring points, or up to a kink
+/// beside an equilibrium. The force of the curve is the mean of both directions, and half their difference
+/// the friction. The equilibria are fitted for themselves (see [`Rest::near`]). Intervals are 95 %, from the
+/// residuals of the fits.
 ///
 /// Rows: `x_m,force_n,force_low_n,force_high_n,force_rising_n,force_falling_n`, as a table mechanism reads
 /// them.
 pub fn force(x: &[f64], force: &[f64], points: usize) -> Result<Identified, Unidentified> {
     let [rising, falling] = directions(x, force);
-    let pulls: Vec<&Pull> = [&rising, &falling].into_iter().filter(|own| !own.is_empty()).collect();
-    let ends = pulls.iter().filter_map(|own| Some((own.first()?.0, own.last()?.0)));
+    let pulls: Vec<&Pull> = [&rising, &falling].into_iter().filter(|pull| !pull.is_empty()).collect();
+    let ends = pulls.iter().filter_map(|pull| Some((pull.first()?.0, pull.last()?.0)));
     let (low, high) =
-        ends.fold((f64::NEG_INFINITY, f64::INFINITY), |all, own| (all.0.max(own.0), all.1.min(own.1)));
+        ends.fold((f64::NEG_INFINITY, f64::INFINITY), |all, ends| (all.0.max(ends.0), all.1.min(ends.1)));
     if !(low < high && high - low < f64::INFINITY) {
         return Err(Unidentified::Still);
     }
     let points = points.max(4);
-    let step = (high - low) / (points - 1) as f64;
-    let grid: Vec<f64> = (0..points).map(|i| low + (high - low) * i as f64 / (points - 1) as f64).collect();
     let few = || Unidentified::FewSamples { samples: x.len(), points };
-    let along = |pull: &Pull| -> Option<Vec<(Known, f64)>> {
-        let at = |x: &f64| {
-            let fit: Fit<4> = near(pull, *x, step)?;
-            Some((known(&fit, 0, 1.0), fit.coefficients[1] / step))
-        };
-        grid.iter().map(at).collect()
-    };
-    let curves = pulls.iter().map(|pull| along(pull)).collect::<Option<Vec<_>>>().ok_or_else(few)?;
-    let mean: Vec<(Known, f64)> = (0..points)
-        .map(|i| match &curves[..] {
-            [one, other] => (one[i].0.and(other[i].0), 0.5 * (one[i].1 + other[i].1)),
-            all => all[0][i],
-        })
-        .collect();
-
-    let column = |pull: &Pull, which: usize| -> Values {
+    let rough = Curve::of(&pulls, (low, high), points, &[]).ok_or_else(few)?;
+    let rests = rough.equilibria(&pulls, high - low);
+    let kinks: Vec<f64> = rests.iter().filter_map(|rest| rest.kink).map(|kink| kink[0]).collect();
+    let curve = if kinks.is_empty() { Some(rough) } else { Curve::of(&pulls, (low, high), points, &kinks) };
+    let curve = curve.ok_or_else(few)?;
+    let which = |pull: &Pull, which: usize| -> Values {
         match pull.is_empty() {
-            true => grid.iter().map(|_| f64::NAN).collect(),
-            false => curves[which].iter().map(|own| own.0.value).collect(),
+            true => curve.positions.iter().map(|_| f64::NAN).collect(),
+            false => curve.directions[which].iter().map(|row| row.0.value).collect(),
         }
     };
     let rows = Table::new()
-        .with("x_m", Values::Numbers(grid.clone()))
-        .each("force_n", &mean, |own| own.0.value)
-        .each("force_low_n", &mean, |own| own.0.value - own.0.half())
-        .each("force_high_n", &mean, |own| own.0.value + own.0.half())
-        .with("force_rising_n", column(&rising, 0))
-        .with("force_falling_n", column(&falling, pulls.len() - 1));
-
-    let rests = equilibria(&grid, &mean, &pulls, REACH * (high - low));
-    let mut summary = names(&rests);
-    if let [left, top, right] = &rests[..]
-        && top.stiffness.value < 0.0
-    {
-        let height = |well: &Rest| {
-            let work = work(&grid, &mean, step, (well, top));
-            Identity { value: work.value.abs(), ..Identity::new("", work.value.abs(), work.half()) }
-        };
-        summary.push(Identity { name: "barrier_from_left_j", ..height(left) });
-        summary.push(Identity { name: "barrier_from_right_j", ..height(right) });
-    }
-    let mut remarks = Vec::new();
-    if let [one, other] = &curves[..] {
-        let apart = |i: usize| one[i].0.value - other[i].0.value;
-        // each sample counts in two of the fits
-        let errors: f64 = (0..points).map(|i| one[i].0.error.powi(2) + other[i].0.error.powi(2)).sum();
-        let error = (8.0 / 9.0 * errors).sqrt();
-        let freedom = one.iter().chain(other).map(|own| own.0.freedom).sum();
-        let value = (0..points).map(apart).sum::<f64>() / points as f64;
-        let mean = Known { value, error: error / points as f64, freedom };
-        let length = high - low;
-        summary.push(Identity::new("hysteresis_n", value, mean.half()));
-        summary.push(Identity::new("hysteresis_j", value * length, mean.half() * length));
+        .with("x_m", Values::Numbers(curve.positions.clone()))
+        .each("force_n", &curve.mean, |row| row.0.value)
+        .each("force_low_n", &curve.mean, |row| row.0.value - row.0.half())
+        .each("force_high_n", &curve.mean, |row| row.0.value + row.0.half())
+        .with("force_rising_n", which(&rising, 0))
+        .with("force_falling_n", which(&falling, pulls.len() - 1));
+    let (mut summary, mut remarks) = curve.landscape(&rests);
+    if let [one, other] = &curve.directions[..] {
+        summary.extend(hysteresis(one, other, high - low));
     } else {
         remarks.push("pulled in one direction alone: what of the force is friction is not known".to_owned());
     }
-    // what the tolerance of a table is relative to
-    let between = |i: &usize| match (rests.first(), rests.last()) {
-        (Some(first), Some(last)) if rests.len() > 1 => (first.x.value..last.x.value).contains(&grid[*i]),
-        _ => true,
-    };
-    let largest = (0..points).filter(between).map(|i| mean[i].0.value.abs()).fold(0.0, f64::max);
-    let mut halves: Vec<f64> = mean.iter().map(|own| own.0.half()).collect();
-    halves.sort_by(f64::total_cmp);
-    let share = halves[points / 2] / largest;
-    remarks.push(format!(
-        "the curve is known to {} % of its force{}; as a mechanism: Table(path: \"FILE\", tolerance: {})",
-        short(100.0 * share),
-        if rests.len() > 1 { " between the wells" } else { "" },
-        short(share.clamp(1e-4, 0.1))
-    ));
-    let curve: Vec<f64> = mean.iter().map(|own| own.0.value).collect();
-    let inside = x.iter().zip(force).filter(|own| (low..=high).contains(own.0));
+    remarks.push(curve.tolerance(&rests));
+    let forces: Vec<f64> = curve.mean.iter().map(|row| row.0.value).collect();
+    let inside = x.iter().zip(force).filter(|sample| (low..=high).contains(sample.0));
     let left: Vec<(f64, f64)> =
-        inside.map(|(x, own)| (*x, own - through_four((x - low) / step, &curve))).collect();
-    let fitted = Table::new().each("x_m", &left, |own| own.0).each("residual_n", &left, |own| own.1);
+        inside.map(|(x, force)| (*x, force - through_four((x - low) / curve.step, &forces))).collect();
+    let fitted =
+        Table::new().each("x_m", &left, |sample| sample.0).each("residual_n", &left, |sample| sample.1);
     Ok(Identified { rows, fitted, summary, remarks })
+}
+
+impl Curve {
+    /// The curve of these pulls, which breaks at `kinks`; none where the samples are too few.
+    fn of(pulls: &[&Pull], (low, high): (f64, f64), points: usize, kinks: &[f64]) -> Option<Self> {
+        let step = (high - low) / (points - 1) as f64;
+        let position = |i: usize| low + (high - low) * i as f64 / (points - 1) as f64;
+        let positions: Vec<f64> = (0..points).map(position).collect();
+        let at = |pull: &Pull, x: f64| -> Option<(Known, f64)> {
+            let between = |from: f64, to: f64| near(pull, x, (from, to), step);
+            let from = kinks.iter().copied().filter(|kink| *kink < x).fold(x - step, f64::max);
+            let to = kinks.iter().copied().filter(|kink| *kink >= x).fold(x + step, f64::min);
+            let fit = between(from, to).or_else(|| between(x - step, x + step))?;
+            let error = fit.covariance[(0, 0)].sqrt();
+            let force = Known { value: fit.coefficients[0], error, freedom: fit.freedom };
+            Some((force, fit.coefficients[1] / step))
+        };
+        let along = |pull: &&Pull| positions.iter().map(|x| at(pull, *x)).collect::<Option<Vec<_>>>();
+        let directions = pulls.iter().map(along).collect::<Option<Vec<_>>>()?;
+        let mean = |i: usize| match &directions[..] {
+            [one, other] => (one[i].0.and(other[i].0), 0.5 * (one[i].1 + other[i].1)),
+            all => all[0][i],
+        };
+        let mean = (0..points).map(mean).collect();
+        Some(Self { positions, step, directions, mean })
+    }
+
+    /// Where the force passes 0.
+    fn equilibria(&self, pulls: &[&Pull], range: f64) -> Vec<Rest> {
+        let clear = |i: &usize| self.mean[*i].0.value.abs() > CLEAR * self.mean[*i].0.error;
+        let signs: Vec<usize> = (0..self.positions.len()).filter(clear).collect();
+        let crossing = |pair: &[usize]| {
+            let (a, b) = (self.mean[pair[0]].0.value, self.mean[pair[1]].0.value);
+            let (from, to) = (self.positions[pair[0]], self.positions[pair[1]]);
+            (a * b < 0.0).then(|| from - a * (to - from) / (b - a))
+        };
+        signs.windows(2).filter_map(crossing).filter_map(|x| Rest::near(x, pulls, range)).collect()
+    }
+
+    /// Equilibria and barrier by name, and what to know of them.
+    fn landscape(&self, rests: &[Rest]) -> (Vec<Identity>, Vec<String>) {
+        const WELL: [&str; 2] = ["well_m", "well_stiffness_n_per_m"];
+        const LEFT: [&str; 2] = ["left_well_m", "left_well_stiffness_n_per_m"];
+        const RIGHT: [&str; 2] = ["right_well_m", "right_well_stiffness_n_per_m"];
+        const TOP: [&str; 2] = ["barrier_m", "barrier_stiffness_n_per_m"];
+        let stable: Vec<bool> = rests.iter().map(Rest::is_stable).collect();
+        let names: &[[&'static str; 2]] = match stable[..] {
+            [true] => &[WELL],
+            [false] => &[TOP],
+            [true, false] => &[LEFT, TOP],
+            [false, true] => &[TOP, RIGHT],
+            [true, false, true] => &[LEFT, TOP, RIGHT],
+            _ => &[],
+        };
+        let mut summary: Vec<Identity> =
+            rests.iter().zip(names).flat_map(|(rest, names)| rest.identities(*names)).collect();
+        let top = names.iter().position(|name| *name == TOP);
+        for (well, name) in [(LEFT, "barrier_from_left_j"), (RIGHT, "barrier_from_right_j")] {
+            if let (Some(well), Some(top)) = (names.iter().position(|name| *name == well), top)
+                && let Some(work) = self.work(&rests[well], &rests[top])
+            {
+                summary.push(Identity::new(name, work.value.abs(), work.half()));
+            }
+        }
+        let mut remarks = Vec::new();
+        if names.is_empty() {
+            let at: Vec<String> = rests.iter().map(|rest| short(1e3 * rest.x.0)).collect();
+            remarks.push(match at.is_empty() {
+                true => {
+                    "the force passes 0 nowhere that stands out from its noise: no equilibrium".to_owned()
+                }
+                false => format!("the force passes 0 at {} mm: no wells with one barrier", at.join(", ")),
+            });
+        }
+        for rest in rests {
+            if let Some([x, left, right]) = rest.kink {
+                remarks.push(format!(
+                    "kink at {} mm, {} um from an equilibrium: the slope of the force jumps from {} to {} \
+                     N/m, and a swing over both sides has neither stiffness",
+                    short(1e3 * x),
+                    short(1e6 * (x - rest.x.0).abs()),
+                    short(left),
+                    short(right)
+                ));
+            }
+        }
+        (summary, remarks)
+    }
+
+    /// Integral of the force from one equilibrium to another: near them that of their fits, and by cubics
+    /// between the points of the curve (the trapezoidal rule with its end correction) from one to the other.
+    fn work(&self, one: &Rest, other: &Rest) -> Option<Known> {
+        let (low, high) = if one.x.0 < other.x.0 { (one, other) } else { (other, one) };
+        let apart = high.x.0 - low.x.0;
+        let (from, to) = (low.x.0 + low.reach().min(0.3 * apart), high.x.0 - high.reach().min(0.3 * apart));
+        let ([first, from_force, from_slope], [last, to_force, to_slope]) =
+            (low.work_to(from)?, high.work_to(to)?);
+        let inside: Vec<usize> = (0..self.positions.len())
+            .filter(|i| self.positions[*i] > from && self.positions[*i] < to)
+            .collect();
+        let points: Vec<(f64, f64, f64)> = std::iter::once((from, from_force.value, from_slope.value))
+            .chain(inside.iter().map(|i| (self.positions[*i], self.mean[*i].0.value, self.mean[*i].1)))
+            .chain([(to, to_force.value, to_slope.value)])
+            .collect();
+        let piece = |pair: &[(f64, f64, f64)]| {
+            let (a, b) = (pair[0], pair[1]);
+            let h = b.0 - a.0;
+            0.5 * h * (a.1 + b.1) + h * h / 12.0 * (a.2 - b.2)
+        };
+        // each sample counts in two of the fits, whose errors are 3/2 of those of a mean
+        let errors: f64 = inside.iter().map(|i| self.mean[*i].0.error.powi(2)).sum();
+        let middle = self.step * (8.0 / 9.0 * errors).sqrt();
+        let freedom: usize = inside.iter().map(|i| self.mean[*i].0.freedom).sum();
+        Some(Known {
+            value: first.value + points.windows(2).map(piece).sum::<f64>() - last.value,
+            error: first.error.hypot(last.error).hypot(middle),
+            freedom: freedom + first.freedom + last.freedom,
+        })
+    }
+
+    /// How well the curve is known, and the tolerance of a table that is made of it.
+    fn tolerance(&self, rests: &[Rest]) -> String {
+        let between = |x: &f64| match (rests.first(), rests.last()) {
+            (Some(first), Some(last)) if rests.len() > 1 => (first.x.0..last.x.0).contains(x),
+            _ => true,
+        };
+        let inside = self.positions.iter().zip(&self.mean).filter(|point| between(point.0));
+        let largest = inside.map(|point| point.1.0.value.abs()).fold(0.0, f64::max);
+        let mut halves: Vec<f64> = self.mean.iter().map(|row| row.0.half()).collect();
+        halves.sort_by(f64::total_cmp);
+        let share = halves[halves.len() / 2] / largest;
+        format!(
+            "the curve is known to {} % of its force{}; as a mechanism: Table(path: \"FILE\", tolerance: {})",
+            short(100.0 * share),
+            if rests.len() > 1 { " between the wells" } else { "" },
+            short(share.clamp(1e-4, 0.1))
+        )
+    }
+}
+
+/// The mean difference of two directions, and the energy of the loop over a range of this length.
+fn hysteresis(one: &[(Known, f64)], other: &[(Known, f64)], length: f64) -> [Identity; 2] {
+    let points = one.len() as f64;
+    // each sample counts in two of the fits
+    let errors: f64 = one.iter().chain(other).map(|row| row.0.error.powi(2)).sum();
+    let apart = one.iter().zip(other).map(|(one, other)| one.0.value - other.0.value);
+    let mean = Known {
+        value: apart.sum::<f64>() / points,
+        error: (8.0 / 9.0 * errors).sqrt() / points,
+        freedom: one.iter().chain(other).map(|row| row.0.freedom).sum(),
+    };
+    [("hysteresis_n", 1.0), ("hysteresis_j", length)]
+        .map(|(name, unit)| Identity::new(name, mean.value * unit, mean.half() * unit))
 }
 
 /// The cubic through the four of `values` nearest to the place `u`, of which 0 is the first and 1 the next.
@@ -169,100 +283,51 @@ fn through_four(u: f64, values: &[f64]) -> f64 {
 /// The samples of rising and of falling position, each sorted by position.
 fn directions(x: &[f64], force: &[f64]) -> [Pull; 2] {
     let (low, high) = extent(x.iter().copied());
-    let turns = turns(x, TURN * (high - low));
+    let range = high - low;
+    let turns = turns(x, TURN * range);
     let mut pulls = [Pull::new(), Pull::new()];
-    let margin = LEFT_OUT * (high - low);
+    let margin = TURNING * noise(x);
     for (k, turn) in turns.iter().enumerate() {
-        let next = turns.get(k + 1);
-        let apart = |i: usize, turn: &Turn| (x[i] - x[turn.at]).abs() > margin;
-        let inside = |i: &usize| apart(*i, turn) && next.is_none_or(|next| apart(*i, next));
-        let along = (turn.at..next.map_or(x.len(), |next| next.at)).filter(inside);
-        pulls[usize::from(turn.maximum)].extend(along.map(|i| (x[i], force[i])));
+        let next = turns.get(k + 1).map_or(x.len(), |next| next.at);
+        let inside = |i: &usize| x[*i] > low + margin && x[*i] < high - margin || margin == 0.0;
+        pulls[usize::from(turn.maximum)].extend((turn.at..next).filter(inside).map(|i| (x[i], force[i])));
     }
     pulls.iter_mut().for_each(|pull| pull.sort_by(|a, b| a.0.total_cmp(&b.0)));
+    let [rising, falling] = &pulls;
+    let (after_low, after_high) =
+        (turning(falling, rising, (low, range)), turning(rising, falling, (high, -range)));
+    if after_low {
+        pulls[0].retain(|sample| sample.0 > low + LEFT_OUT * range);
+    }
+    if after_high {
+        pulls[1].retain(|sample| sample.0 < high - LEFT_OUT * range);
+    }
     pulls
 }
 
-/// The polynomial in (x - `at`)/`reach` through the samples up to `reach` away.
-fn near<const N: usize>(pull: &Pull, at: f64, reach: f64) -> Option<Fit<N>> {
+/// Whether the two directions are still near each other after the turn at `end`, from which the range extends
+/// by `range`.
+fn turning(before: &Pull, after: &Pull, (end, range): (f64, f64)) -> bool {
+    let apart = |(x, force): &(f64, f64)| -> Option<f64> {
+        let next = before.partition_point(|sample| sample.0 < *x);
+        let ((left, at_left), (right, at_right)) = (*before.get(next.checked_sub(1)?)?, *before.get(next)?);
+        Some(at_left + (at_right - at_left) * (x - left) / (right - left).max(f64::MIN_POSITIVE) - force)
+    };
+    let mean = |from: f64, to: f64| {
+        let inside = |sample: &&(f64, f64)| (from..to).contains(&((sample.0 - end) / range));
+        let found: Vec<f64> = after.iter().filter(inside).filter_map(apart).collect();
+        (found.iter().sum::<f64>() / found.len() as f64, found.len())
+    };
+    let (near, count) = mean(0.0, 0.25 * LEFT_OUT);
+    let (usual, _) = mean(LEFT_OUT, FURTHER_IN * LEFT_OUT);
+    count > 0 && near.abs() < 0.5 * usual.abs()
+}
+
+/// The cubic in (x - `at`)/`unit` through the samples between two places.
+fn near(pull: &Pull, at: f64, (from, to): (f64, f64), unit: f64) -> Option<Fit<4>> {
     let inside =
-        pull.partition_point(|own| own.0 < at - reach)..pull.partition_point(|own| own.0 <= at + reach);
-    let rows: Vec<([f64; N], f64)> =
-        pull[inside].iter().map(|(x, force)| (powers((x - at) / reach), *force)).collect();
+        pull.partition_point(|sample| sample.0 < from)..pull.partition_point(|sample| sample.0 <= to);
+    let rows: Vec<([f64; 4], f64)> =
+        pull[inside].iter().map(|(x, force)| (powers((x - at) / unit), *force)).collect();
     least_squares(&rows)
-}
-
-/// A coefficient in a unit of this size.
-fn known<const N: usize>(fit: &Fit<N>, which: usize, unit: f64) -> Known {
-    let error = fit.covariance[(which, which)].sqrt();
-    Known { value: fit.coefficients[which] * unit, error: error * unit, freedom: fit.freedom }
-}
-
-/// Where the force passes 0, by cubics over `reach` on either side.
-fn equilibria(grid: &[f64], mean: &[(Known, f64)], pulls: &[&Pull], reach: f64) -> Vec<Rest> {
-    let clear = |i: &usize| mean[*i].0.value.abs() > CLEAR * mean[*i].0.error;
-    let signs: Vec<usize> = (0..grid.len()).filter(clear).collect();
-    let crossing = |pair: &[usize]| {
-        let (a, b) = (mean[pair[0]].0.value, mean[pair[1]].0.value);
-        (a * b < 0.0).then(|| grid[pair[0]] - a * (grid[pair[1]] - grid[pair[0]]) / (b - a))
-    };
-    let rest = |mut x: f64| {
-        let mut found = None;
-        for _ in 0..4 {
-            let fits = pulls.iter().map(|pull| near(pull, x, reach)).collect::<Option<Vec<Fit<4>>>>()?;
-            let of =
-                |which: usize, unit: f64| fits.iter().map(|fit| known(fit, which, unit)).reduce(Known::and);
-            let (force, stiffness) = (of(0, 1.0)?, of(1, 1.0 / reach)?);
-            let step = -force.value / stiffness.value;
-            if !(step.abs() < reach) {
-                return None;
-            }
-            let error = (force.error / stiffness.value).abs();
-            found = Some(Rest { x: Known { value: x, error, freedom: force.freedom }, stiffness });
-            x += step;
-        }
-        found
-    };
-    signs.windows(2).filter_map(crossing).filter_map(rest).collect()
-}
-
-/// The equilibria by name, where they are one well or two with a barrier.
-fn names(rests: &[Rest]) -> Vec<Identity> {
-    let stable = |own: &Rest| own.stiffness.value > 0.0;
-    let names: &[[&'static str; 2]] = match rests {
-        [well] if stable(well) => &[["well_m", "well_stiffness_n_per_m"]],
-        [left, top, right] if stable(left) && !stable(top) && stable(right) => &[
-            ["left_well_m", "left_well_stiffness_n_per_m"],
-            ["barrier_m", "barrier_stiffness_n_per_m"],
-            ["right_well_m", "right_well_stiffness_n_per_m"],
-        ],
-        _ => &[],
-    };
-    let each = |(rest, [x, stiffness]): (&Rest, &[&'static str; 2])| {
-        let Rest { x: at, stiffness: slope } = rest;
-        [Identity::new(x, at.value, at.half()), Identity::new(stiffness, slope.value, slope.half())]
-    };
-    rests.iter().zip(names).flat_map(each).collect()
-}
-
-/// Integral of the force from one equilibrium to another: by cubics between the points of the curve (the
-/// trapezoidal rule with its end correction), whose ends have no force and the stiffness found there.
-fn work(grid: &[f64], mean: &[(Known, f64)], step: f64, (from, to): (&Rest, &Rest)) -> Known {
-    let (low, high) = if from.x.value < to.x.value { (from, to) } else { (to, from) };
-    let inside = (0..grid.len()).filter(|i| (low.x.value..high.x.value).contains(&grid[*i]));
-    let inside: Vec<usize> = inside.filter(|i| grid[*i] > low.x.value).collect();
-    let end = |own: &Rest| (own.x.value, 0.0, own.stiffness.value);
-    let points: Vec<(f64, f64, f64)> = std::iter::once(end(low))
-        .chain(inside.iter().map(|i| (grid[*i], mean[*i].0.value, mean[*i].1)))
-        .chain([end(high)])
-        .collect();
-    let piece = |pair: &[(f64, f64, f64)]| {
-        let (a, b) = (pair[0], pair[1]);
-        let h = b.0 - a.0;
-        0.5 * h * (a.1 + b.1) + h * h / 12.0 * (a.2 - b.2)
-    };
-    // each sample counts in two of the fits, whose errors are 3/2 of those of a mean
-    let errors: f64 = inside.iter().map(|i| mean[*i].0.error.powi(2)).sum();
-    let freedom = inside.iter().map(|i| mean[*i].0.freedom).sum();
-    Known { value: points.windows(2).map(piece).sum(), error: step * (8.0 / 9.0 * errors).sqrt(), freedom }
 }

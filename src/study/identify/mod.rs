@@ -1,8 +1,11 @@
 //! Parameters identified from measured records: damping, restitution, force curve.
 
+mod clipped;
 mod damping;
 mod force;
+mod peaks;
 mod restitution;
+mod rests;
 mod turns;
 
 pub use damping::damping;
@@ -88,16 +91,41 @@ pub enum Unidentified {
     },
     /// Swings of unequal length.
     #[error(
-        "the swing at {at} s takes {own} s where the usual one takes {usual} s: the record has a gap there \
-         or is no free decay in one well; cut it by --from and --to"
+        "the swing at {at} s takes {length} s where those around it take {usual} s: the record has a gap \
+         there or is no free decay in one well; cut it by --from and --to"
     )]
     Uneven {
         /// When, in s.
         at: String,
         /// Its length in s.
-        own: String,
-        /// The median length in s.
+        length: String,
+        /// The median length in s of those around it.
         usual: String,
+    },
+    /// Swings about places that differ.
+    #[error(
+        "the middle of the swings moves at {at} s by more than a quarter of a swing: the motion changes \
+         wells there, or the sensor moved; cut the record by --from and --to"
+    )]
+    Moved {
+        /// When, in s.
+        at: String,
+    },
+    /// Too few swings are left beside those with flat tops.
+    #[error(
+        "{tops} swings have flat tops, at the limit {limit} of the sensor or its converter, and after them \
+         {found} turning points stand out from the noise; the damping ratio needs {least}: pluck less, widen \
+         the range, or record longer"
+    )]
+    Clipped {
+        /// How many are cut off.
+        tops: usize,
+        /// Where, in SI.
+        limit: String,
+        /// How many turning points are left.
+        found: usize,
+        /// The least that is needed.
+        least: usize,
     },
     /// The turning points follow no decay.
     #[error("the turning points follow no decaying oscillation: cut the record by --from and --to")]

@@ -76,6 +76,9 @@ const MOST: f64 = (1_u64 << 18) as f64;
 /// Steps of Gauss and Newton by which a shift is made more accurate.
 const STEPS: usize = 8;
 
+/// Roundings of a time that was scaled and shifted.
+const ROUNDINGS: f64 = 4.0;
+
 /// Which measured samples lie within the run, their times there, and the run at them.
 type Laid = (Range<usize>, Vec<f64>, Vec<Sample>);
 
@@ -87,11 +90,11 @@ type Laid = (Range<usize>, Vec<f64>, Vec<Sample>);
 pub fn compare(
     scene: &Scene,
     model: &Model,
-    own: &MeasuredMotion,
+    motion: &MeasuredMotion,
     cancel: &AtomicBool,
 ) -> Result<Comparison, NoComparison> {
-    let scaled: Vec<f64> = own.times.iter().map(|t| t * own.time_scale).collect();
-    let values: Vec<f64> = own.channel.values.iter().map(|value| value + own.offset).collect();
+    let scaled: Vec<f64> = motion.times.iter().map(|t| t * motion.time_scale).collect();
+    let values: Vec<f64> = motion.channel.values.iter().map(|value| value + motion.offset).collect();
     let timing = Timing::of(&scaled);
     let run = |times: &[f64]| {
         let run = model.run(&Request { sample_times: times, cancel: Some(cancel), ..Request::default() });
@@ -100,14 +103,14 @@ pub fn compare(
             _ => Ok(run.samples),
         }
     };
-    let of = |sample: &Sample| match own.channel.quantity {
+    let of = |sample: &Sample| match motion.channel.quantity {
         Quantity::Velocity => sample.v,
         Quantity::Acceleration => sample.base_accel,
         _ => sample.x,
     };
     let mut remarks = vec![timing.describe()];
-    let mut shift = own.shift.unwrap_or(0.0);
-    if own.shift.is_none() {
+    let mut shift = motion.shift.unwrap_or(0.0);
+    if motion.shift.is_none() {
         let length = timing.span.1 - timing.span.0;
         let step = timing.step.max(model.duration().max(length) / MOST);
         let even = |length: f64| (0..=(length / step) as u32).map(move |k| f64::from(k) * step);
@@ -122,9 +125,14 @@ pub fn compare(
         }
     }
     let at = |shift: f64| -> Result<Laid, NoComparison> {
-        let from = scaled.partition_point(|t| t + shift < 0.0);
-        let to = scaled.partition_point(|t| t + shift <= model.duration());
-        let times: Vec<f64> = scaled[from..to.max(from)].iter().map(|t| t + shift).collect();
+        // a sample at the begin or the end of the run is within it, however its time was rounded
+        let (first, last) = timing.span;
+        let end = model.duration();
+        let rounding = ROUNDINGS * f64::EPSILON * end.max(first.abs()).max(last.abs()).max(shift.abs());
+        let from = scaled.partition_point(|t| t + shift < -rounding);
+        let to = scaled.partition_point(|t| t + shift <= end + rounding);
+        let times: Vec<f64> =
+            scaled[from..to.max(from)].iter().map(|t| (t + shift).clamp(0.0, end)).collect();
         let samples = run(&times)?;
         Ok((from..from + samples.len(), times, samples))
     };
@@ -134,7 +142,7 @@ pub fn compare(
     };
     let mut laid = at(shift)?;
     for _ in 0..STEPS {
-        if own.shift.is_some() || own.channel.quantity != Quantity::Displacement || laid.2.is_empty() {
+        if motion.shift.is_some() || motion.channel.quantity != Quantity::Displacement || laid.2.is_empty() {
             break;
         }
         let pairs = || values[laid.0.clone()].iter().zip(&laid.2);
@@ -159,19 +167,19 @@ pub fn compare(
     let measured = values[range.clone()].to_vec();
     let rms = square(&range, &samples).sqrt();
     let of_measured = (measured.iter().map(|m| m * m).sum::<f64>() / measured.len() as f64).sqrt();
-    if samples.len() < own.times.len() {
-        let outside = own.times.len() - samples.len();
-        remarks.push(format!("{outside} of {} samples lie outside the run", own.times.len()));
+    if samples.len() < motion.times.len() {
+        let outside = motion.times.len() - samples.len();
+        remarks.push(format!("{outside} of {} samples lie outside the run", motion.times.len()));
     }
     let computed: Vec<f64> = samples.iter().map(of).collect();
-    let table = numbers::table(scene, model, own.channel.quantity, (&times, &measured, &computed));
+    let table = numbers::table(scene, model, motion.channel.quantity, (&times, &measured, &computed));
     let rms = (rms, 100.0 * rms / of_measured);
     Ok(Comparison { table, times, measured, computed, shift, rms, remarks })
 }
 
 /// The value of a record at a time: linear between its samples, that of the end beyond it.
 fn between(times: &[f64], values: &[f64], t: f64) -> f64 {
-    let after = times.partition_point(|own| *own <= t).clamp(1, times.len() - 1);
+    let after = times.partition_point(|time| *time <= t).clamp(1, times.len() - 1);
     let share = ((t - times[after - 1]) / (times[after] - times[after - 1])).clamp(0.0, 1.0);
     values[after - 1] + share * (values[after] - values[after - 1])
 }

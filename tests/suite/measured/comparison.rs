@@ -130,3 +130,28 @@ fn the_commands_say_what_is_wrong() {
         refused(missing, &["--measured nothere.csv", "no such file", "give the path"]);
     }
 }
+
+#[test]
+fn a_last_sample_at_the_end_of_the_run_is_within_it() {
+    // a tenth seven times over is a rounding more than 0.7
+    let mut times = vec![0.0];
+    (0..7).for_each(|k| times.push(times[k] + 0.1));
+    let counted: Vec<f64> = (0..8).map(|k| f64::from(k) * 0.1).collect();
+    for (times, shift) in
+        [(times, 0.0), (counted.clone(), 0.0), (counted.iter().map(|t| t + 0.3).collect(), -0.3)]
+    {
+        let (document, model) = model(&["run.duration_s=0.7", "run.settle_s=0"]);
+        let values = vec![0.0; times.len()];
+        let channel = Channel { quantity: Quantity::Displacement, column: "x_m".into(), values };
+        let motion = MeasuredMotion {
+            times: &times,
+            channel: &channel,
+            offset: 0.0,
+            time_scale: 1.0,
+            shift: Some(shift),
+        };
+        let found = compare(&document.scene, &model, &motion, &AtomicBool::new(false)).unwrap();
+        assert_eq!(found.times.len(), 8, "{:?}", found.remarks);
+        assert!(!found.remarks.iter().any(|remark| remark.contains("outside")), "{:?}", found.remarks);
+    }
+}

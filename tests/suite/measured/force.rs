@@ -4,7 +4,8 @@ use interwell::mechanics::Mechanism;
 use interwell::output::{header, rows};
 use interwell::study::{FORCE_POINTS, Unidentified, force};
 
-use super::{Noise, SEEDS, covered, holds, number};
+use super::{Noise, SEEDS, covered, hold_95_of_100, holds, number};
+use crate::properties::harness::multiplied;
 
 const LINEAR: f64 = -40.0;
 const CUBIC: f64 = 8e5;
@@ -77,6 +78,81 @@ fn with_noise_the_intervals_hold_the_numbers_in_95_of_100_records() {
         for (hits, (name, _)) in hits.into_iter().zip(exact) {
             covered(hits, name);
         }
+    }
+}
+
+#[test]
+fn wells_are_found_where_the_range_ends_shortly_beyond_them() {
+    // by 0.3 % of the range, with and without friction, and with a turn over which the friction changes
+    // slowly
+    let end = WELL * 1.006;
+    for (friction, over) in [(0.0, 0.0), (FRICTION, 0.0), (FRICTION, 1e-5)] {
+        let along = |i: u32| -end + 2.0 * end * f64::from(i) / 4000.0;
+        let slowly = |since: f64| if over > 0.0 { 1.0 - 2.0 * (-since / over).exp() } else { 1.0 };
+        let there = (0..=4000).map(|i| (along(i), of(along(i)) + friction * slowly(along(i) + end)));
+        let back = (0..4000).rev().map(|i| (along(i), of(along(i)) - friction * slowly(end - along(i))));
+        let (x, measured): (Vec<f64>, Vec<f64>) = there.chain(back).unzip();
+        let found = force(&x, &measured, FORCE_POINTS).unwrap();
+        for (name, exact) in [("left_well_m", -WELL), ("barrier_m", 0.0), ("right_well_m", WELL)] {
+            let bound = if over > 0.0 { 5e-6 } else { 1e-12 };
+            assert!((number(&found, name).value - exact).abs() < bound, "{name} {friction} {over}");
+        }
+        let barrier = LINEAR.powi(2) / (4.0 * CUBIC);
+        assert!((number(&found, "barrier_from_left_j").value / barrier - 1.0).abs() < 1e-4);
+        if friction == 0.0 {
+            let found = force(&x[..4001], &measured[..4001], FORCE_POINTS).unwrap();
+            assert!((number(&found, "left_well_m").value + WELL).abs() < 1e-12);
+        }
+    }
+}
+
+/// A force with kinks near its wells, which lie 2 um beyond them: stiffness -71 N/m at 0, 139 N/m inside the
+/// kinks and 4000 N/m beyond.
+fn kinked(x: f64) -> f64 {
+    let kink = 7.179e-3;
+    let inside = |x: f64| -71.0 * x + 1.3592e6 * x.powi(3);
+    let beyond = (x.abs() - kink).max(0.0);
+    inside(x) + (x.signum()) * (3860.0 * beyond + 4e6 * beyond * beyond)
+}
+
+#[test]
+fn wells_beside_a_kink_are_held_by_their_intervals() {
+    // the zero beyond the kink, by bisection
+    let (mut low, mut high) = (7.0e-3, 7.4e-3);
+    for _ in 0..80 {
+        let middle = 0.5 * (low + high);
+        if kinked(middle) < 0.0 { low = middle } else { high = middle }
+    }
+    let barrier = {
+        let steps = 200_000;
+        let h = low / f64::from(steps);
+        -(0..steps).map(|i| kinked((f64::from(i) + 0.5) * h)).sum::<f64>() * h
+    };
+    let slope = (kinked(low + 1e-9) - kinked(low - 1e-9)) / 2e-9;
+    let records = multiplied(40) as usize;
+    let mut hits = [0; 3];
+    let mut random = Noise::new(4);
+    for _ in 0..records {
+        let noise = random.of_any_size(1e-5, 2e-3);
+        let end = random.between(7.3e-3, 7.6e-3);
+        let along = |i: u32| -end + 2.0 * end * f64::from(i) / 4000.0;
+        let there = (0..=4000).map(|i| (along(i), kinked(along(i)) + FRICTION));
+        let back = (0..4000).rev().map(|i| (along(i), kinked(along(i)) - FRICTION));
+        let (x, measured): (Vec<f64>, Vec<f64>) =
+            there.chain(back).map(|(x, force)| (x, force + noise * random.next())).unzip();
+        let found = force(&x, &measured, FORCE_POINTS).unwrap();
+        let exact = [
+            ("right_well_m", low),
+            ("right_well_stiffness_n_per_m", slope),
+            ("barrier_from_right_j", barrier),
+        ];
+        for (hits, (name, exact)) in hits.iter_mut().zip(exact) {
+            *hits += usize::from(holds(number(&found, name), exact));
+        }
+        assert!(found.remarks.iter().any(|remark| remark.contains("kink at 7.1")), "{:?}", found.remarks);
+    }
+    for (hits, what) in hits.into_iter().zip(["well", "stiffness", "barrier"]) {
+        hold_95_of_100(hits, records, what);
     }
 }
 

@@ -166,6 +166,35 @@ fn the_pieces_of_a_magnet_are_as_near_to_its_formula_as_is_said() {
 }
 
 #[test]
+fn the_far_field_of_a_magnet_keeps_its_digits_and_has_no_extrema() {
+    for (strength_n_mm4, gap_mm) in [(7.0, 4.0), (-2e3, 11.0)] {
+        let mechanism = build(magnet(strength_n_mm4, gap_mm));
+        let (strength, gap) = (strength_n_mm4 * 1e-12, gap_mm / 1e3);
+        // the roots of 4 s^2 - 27 s + 4, s = (x/g)^2
+        let places = [-1.0, 1.0].map(|side| ((27.0 + side * 665_f64.sqrt()) / 8.0).sqrt() * gap);
+        let exact = [-places[1], -places[0], places[0], places[1]];
+        let found: Vec<f64> = mechanism.landscape.extrema.iter().map(|extremum| extremum.x).collect();
+        assert_eq!(found.len(), 4, "{found:?}");
+        for (found, exact) in found.iter().zip(exact) {
+            close(*found, exact, 1e-3);
+        }
+        for i in 0..=5000 {
+            let x = places[1]
+                * 1.001
+                * (mechanism.curve.domain().1 / places[1] / 1.001).powf(f64::from(i) / 5000.0);
+            close(
+                mechanism.curve.force(x.min(mechanism.curve.domain().1)),
+                magnet_force(strength, gap, x),
+                1e-5,
+            );
+        }
+        // nor has a sum with a spring others than its own
+        let sum = build(sum(vec![magnet(strength_n_mm4, gap_mm), linear(0.0)]));
+        assert_eq!(sum.landscape.extrema.len(), 4);
+    }
+}
+
+#[test]
 fn what_no_sum_or_magnet_can_be_is_said_with_its_field() {
     let fault = fault_of(&magnet(1e-300, 1e15));
     assert_eq!(fault.field, "mechanism.strength_n_mm4");

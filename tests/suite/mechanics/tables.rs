@@ -36,6 +36,23 @@ fn data_that_are_odd_but_for_noise_below_the_tolerance_are_odd() {
 }
 
 #[test]
+fn extrema_below_the_error_of_a_fit_are_none() {
+    // a plateau with ripple of 1e-5 in it, between two walls, and a hump of its own
+    for hump in [0.0, 2e-2] {
+        let force =
+            |x: f64| x.powi(9) + 0.2 * x - hump * (20.0 * x).sin() + 1e-5 * (1e3 * x * x + 400.0 * x).sin();
+        let table = sampled(-1.0, 1.2, 401, |x| if hump == 0.0 { force(x) - 0.2 * x } else { force(x) });
+        let curve = keeps_its_promises(&table, 1e-4);
+        let error = curve.fit().unwrap().worst_n;
+        let extrema = Landscape::of(&curve).extrema;
+        for pair in extrema.windows(2) {
+            assert!((pair[0].force - pair[1].force).abs() > 2.0 * error, "{pair:?} {error}");
+        }
+        assert_eq!(extrema.is_empty(), hump == 0.0, "{extrema:?}");
+    }
+}
+
+#[test]
 fn a_corner_on_a_sample_is_found_and_one_between_samples_is_bracketed() {
     let bent =
         |at: f64| move |x: f64| if x > at { 5.0 * (x - at) + (x - at).powi(2) } else { 0.5 * (x - at) };

@@ -18,7 +18,8 @@ const SEED: &str = "INTERWELL_PROPERTY_SEED";
 /// What a check of one scene says.
 pub type Verdict = Result<(), TestCaseError>;
 
-fn multiplied(cases: u32) -> u32 {
+/// As many cases times the number that the environment asks for.
+pub fn multiplied(cases: u32) -> u32 {
     let by: f64 = std::env::var(CASES).map_or(1.0, |by| by.parse().expect(CASES));
     (f64::from(cases) * by).ceil() as u32
 }

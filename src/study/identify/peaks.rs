@@ -1,0 +1,368 @@
+//! Turning points of a free decay, each fitted to the samples around it, with their weights.
+
+use std::f64::consts::{FRAC_PI_4, TAU};
+
+use nalgebra::SVector;
+
+use super::Unidentified;
+use super::turns::Turn;
+use crate::numeric::regression::{Fit, least_squares};
+use crate::numeric::{Envelope, FEWEST_TURNS, TurningPoint, short};
+
+/// The part of a period on either side of a turning point over which it is fitted.
+const REACH: f64 = 0.125;
+
+/// The part of a swing by which a cosine falls within that reach of its turning point.
+const DEPTH: f64 = 0.1464;
+
+/// A turning point is fitted over less where its swing falls by [`DEPTH`] within this part of the reach.
+const NARROW: f64 = 0.75;
+
+/// Noise, in standard deviations, that this fall must exceed for its width to be measured.
+const CLEAR: f64 = 6.0;
+
+/// Widths around a turning point whose median counts, and periods and curvatures on either side of one.
+const WIDTHS: usize = 5;
+const NEIGHBOURS: usize = 3;
+
+/// Standard errors of one curvature by which the median of those around must differ from that of a cosine.
+const DIFFERENT: f64 = 2.0;
+
+/// Turning points on either side from which the time of one follows.
+const AROUND: usize = 8;
+
+/// How much shorter or longer a swing may be than those around it, and by how much of a swing the middle may
+/// move within a period.
+const EVEN: std::ops::RangeInclusive<f64> = 0.6..=1.6;
+const MOVED: f64 = 0.25;
+
+/// The fewest samples of a fit, and of one with the second harmonic.
+const FEWEST_SAMPLES: usize = 5;
+const FEWEST_OF_HARMONICS: usize = 9;
+
+/// How often all is fitted: each time follows from the fits before, and with it the decay.
+const PASSES: usize = 4;
+
+/// A turning point, fitted.
+#[derive(Debug, Clone)]
+pub struct Peak {
+    /// Which one of the record: neighbours have numbers that follow each other.
+    pub number: f64,
+    /// Its value at its time, which follows from those around it, and its weight.
+    pub point: TurningPoint,
+    /// Its time as it follows from itself, and the weight of that: one over the variance, in any unit.
+    pub found: (f64, f64),
+    /// Length of the period about it.
+    period: f64,
+    /// The part of the usual reach over which it is fitted.
+    narrow: f64,
+}
+
+/// What the samples around a turning point say.
+struct Local {
+    value: f64,
+    slope: f64,
+    curvature: f64,
+    /// Variances of the three where the samples have errors of variance 1.
+    value_variance: f64,
+    slope_variance: f64,
+    curvature_variance: f64,
+    /// Variance of the samples about the fit, and its degrees of freedom.
+    variance: f64,
+    freedom: usize,
+}
+
+/// The turning points `turns` of a decay, fitted, and the time from which on they have too few samples, where
+/// they have. `noise` is the standard deviation of the values.
+///
+/// Each is the extreme of a decaying oscillation and, where samples are enough, its second harmonic, about a
+/// centre of its own: by least squares over an eighth of the period on either side, or less where the swing
+/// has turned sooner than a cosine would, as beyond a kink of the force. So the time of each is found, a
+/// straight line through some sixteen of them makes a better one of it, and the value is read there: the
+/// extreme of a noisy curve lies too far out, the value at a time that hardly depends on its own noise does
+/// not.
+///
+/// The variance of each value follows from that of the samples, which is one part for all and one that grows
+/// with the square of the amplitude, as errors of the times make it; both from the residuals of the fits.
+pub fn peaks(
+    times: &[f64],
+    values: &[f64],
+    turns: &[Turn],
+    noise: f64,
+) -> Result<(Vec<Peak>, Option<f64>), Unidentified> {
+    let rough: Vec<f64> = turns.iter().map(|turn| times[turn.at]).collect();
+    let periods = periods(&rough)?;
+    stays(&rough, &turns.iter().map(|turn| values[turn.at]).collect::<Vec<_>>())?;
+    let narrow = narrow(times, values, turns, &periods, noise);
+    let peak = |k: usize| Peak {
+        number: k as f64,
+        point: TurningPoint { t: rough[k], value: f64::NAN, maximum: turns[k].maximum, weight: 1.0 },
+        found: (rough[k], 1.0),
+        period: periods[k],
+        narrow: narrow[k],
+    };
+    let mut peaks: Vec<Peak> = (0..turns.len()).map(peak).collect();
+    let (mut rate, mut sparse) = (0.0, None);
+    for pass in 0..PASSES {
+        let mut fits = Vec::with_capacity(peaks.len());
+        let mut kept = Vec::with_capacity(peaks.len());
+        for peak in peaks {
+            match local(times, values, &peak, rate) {
+                Ok(Some(fit)) => {
+                    fits.push(fit);
+                    kept.push(peak);
+                }
+                // the times move a little from pass to pass, which must not cut off what follows
+                Err(samples) if pass == 0 => {
+                    sparse = Some((peak.point.t, samples));
+                    break;
+                }
+                _ => {}
+            }
+        }
+        peaks = kept;
+        if peaks.len() < FEWEST_TURNS {
+            let few =
+                Unidentified::FewSwings { found: peaks.len(), least: FEWEST_TURNS, noise: short(noise) };
+            let too_few =
+                |(at, samples)| Unidentified::Sparse { at: short(at), samples, least: FEWEST_SAMPLES };
+            return Err(sparse.map_or(few, too_few));
+        }
+        peaks.iter_mut().zip(&fits).for_each(|(peak, fit)| peak.point.value = fit.value);
+        rate = weigh(&mut peaks, &fits)?;
+        smooth(&mut peaks);
+    }
+    Ok((peaks, sparse.map(|(at, _)| at)))
+}
+
+/// The period about each of the times of turning points, which are half of one apart: the median of those
+/// around it.
+fn periods(times: &[f64]) -> Result<Vec<f64>, Unidentified> {
+    let lengths: Vec<f64> = times.windows(3).map(|turns| turns[2] - turns[0]).collect();
+    let usual: Vec<f64> = (0..lengths.len()).map(|k| around(&lengths, k)).collect();
+    let even = |k: &usize| EVEN.contains(&(lengths[*k] / usual[*k]));
+    match (0..lengths.len()).find(|k| !even(k)) {
+        None => Ok((0..times.len()).map(|k| usual[k.saturating_sub(1).min(usual.len() - 1)]).collect()),
+        Some(k) => Err(Unidentified::Uneven {
+            at: short(times[k]),
+            length: short(lengths[k]),
+            usual: short(usual[k]),
+        }),
+    }
+}
+
+/// The median of the values around one.
+fn around(values: &[f64], k: usize) -> f64 {
+    median(values[k.saturating_sub(NEIGHBOURS)..(k + NEIGHBOURS + 1).min(values.len())].to_vec())
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+/// That the swings stay about one place, as they do in one well.
+fn stays(times: &[f64], values: &[f64]) -> Result<(), Unidentified> {
+    let middles: Vec<f64> =
+        values.windows(3).map(|turns| 0.25 * (turns[0] + turns[2]) + 0.5 * turns[1]).collect();
+    let moved =
+        |k: &usize| (middles[*k + 2] - middles[*k]).abs() > MOVED * (values[*k + 1] - values[*k]).abs();
+    match (0..middles.len().saturating_sub(2)).find(moved) {
+        None => Ok(()),
+        Some(k) => Err(Unidentified::Moved { at: short(times[k]) }),
+    }
+}
+
+/// The part of the usual reach over which each turning point is fitted.
+fn narrow(times: &[f64], values: &[f64], turns: &[Turn], periods: &[f64], noise: f64) -> Vec<f64> {
+    let swing = |k: usize| (values[turns[k + 1].at] - values[turns[k].at]).abs();
+    let width = |k: usize| -> Option<f64> {
+        let last = turns.len() - 1;
+        let depth = DEPTH * swing(k.saturating_sub(1)).min(swing(k.min(last - 1)));
+        let (value, t, reach) = (values[turns[k].at], times[turns[k].at], 2.0 * REACH * periods[k]);
+        let range =
+            times.partition_point(|time| *time < t - reach)..times.partition_point(|time| *time <= t + reach);
+        let inside = t - reach >= times[0] && t + reach <= times[times.len() - 1];
+        if !inside || range.len() < 2 || depth < CLEAR * noise {
+            return None;
+        }
+        let step = (times[range.end - 1] - times[range.start]) / (range.len() - 1) as f64;
+        let near = values[range].iter().filter(|other| (value - **other).abs() <= depth).count();
+        Some(near as f64 * step / reach)
+    };
+    let widths: Vec<Option<f64>> = (0..turns.len()).map(width).collect();
+    let mut narrow = vec![1.0; turns.len()];
+    for first in [0, 1] {
+        let known: Vec<(usize, f64)> =
+            (first..turns.len()).step_by(2).filter_map(|k| Some((k, widths[k]?))).collect();
+        if known.is_empty() {
+            continue;
+        }
+        for k in (first..turns.len()).step_by(2) {
+            let at = known.partition_point(|width| width.0 < k);
+            let begin = at.saturating_sub(WIDTHS / 2).min(known.len().saturating_sub(WIDTHS));
+            let near = &known[begin..(begin + WIDTHS).min(known.len())];
+            let usual = median(near.iter().map(|width| width.1).collect());
+            narrow[k] = if usual > NARROW { 1.0 } else { usual };
+        }
+    }
+    narrow
+}
+
+/// What the samples around a turning point say; nothing where the record does not reach far enough on both
+/// sides, their number where they are too few.
+fn local(times: &[f64], values: &[f64], peak: &Peak, rate: f64) -> Result<Option<Local>, usize> {
+    let (centre, usual) = (peak.point.t, peak.narrow * REACH * peak.period);
+    let frequency = FRAC_PI_4 / usual;
+    let mut samples = 0;
+    // twice as far where samples are few
+    for reach in [usual, 2.0 * usual] {
+        if !(centre - reach >= times[0] && centre + reach <= times[times.len() - 1]) {
+            return Ok(None);
+        }
+        let range =
+            times.partition_point(|t| *t < centre - reach)..times.partition_point(|t| *t <= centre + reach);
+        samples = range.len();
+        let near = times[range.clone()].iter().map(|t| t - centre).zip(values[range].iter().copied());
+        if samples >= FEWEST_OF_HARMONICS {
+            return Ok(swing::<5>(near, frequency, rate));
+        }
+        if samples >= FEWEST_SAMPLES {
+            return Ok(swing::<3>(near, frequency, rate));
+        }
+    }
+    Err(samples)
+}
+
+/// The oscillation of a circular frequency and a rate of decay, and with five terms its second harmonic as
+/// well, that fits values over times, as seen at time 0.
+///
+/// With z = e^((-r + iw)t) the terms are 1, s = Im z, c = Re (1 - z), and of (1 - z)^2 what is of a higher
+/// order in t: c s and s^2 - c^2 - 2 c + (2 r/w) s. So they are about as independent as powers of t.
+fn swing<const N: usize>(
+    samples: impl Iterator<Item = (f64, f64)>,
+    frequency: f64,
+    rate: f64,
+) -> Option<Local> {
+    let (w, r) = (frequency, rate);
+    let terms = |t: f64| {
+        let (left, (sine, cosine)) = ((-r * t).exp(), (w * t).sin_cos());
+        let (s, c) = (left * sine, 1.0 - left * cosine);
+        [1.0, s, c, c * s, s * s - c * c - 2.0 * c + 2.0 * r / w * s]
+    };
+    let rows: Vec<([f64; N], f64)> =
+        samples.map(|(t, value)| (std::array::from_fn(|k| terms(t)[k]), value)).collect();
+    let fit: Fit<N> = least_squares(&rows)?;
+    let [slopes, curvatures] =
+        [[0.0, w, r, 0.0, 0.0], [0.0, -2.0 * r * w, w * w - r * r, 2.0 * r * w, -4.0 * r * r]]
+            .map(|of_terms| SVector::<f64, N>::from_fn(|k, _| of_terms[k]));
+    Some(Local {
+        value: fit.coefficients[0],
+        slope: slopes.dot(&fit.coefficients),
+        curvature: curvatures.dot(&fit.coefficients),
+        value_variance: fit.inverse[(0, 0)],
+        slope_variance: (slopes.transpose() * fit.inverse * slopes)[0],
+        curvature_variance: (curvatures.transpose() * fit.inverse * curvatures)[0],
+        variance: fit.variance,
+        freedom: fit.freedom,
+    })
+}
+
+/// Gives the turning points their weights and the times that follow from themselves; the rate of decay.
+fn weigh(peaks: &mut [Peak], fits: &[Local]) -> Result<f64, Unidentified> {
+    let envelope = |peaks: &[Peak]| {
+        Envelope::fit(&peaks.iter().map(|peak| peak.point).collect::<Vec<_>>()).ok_or(Unidentified::NoDecay)
+    };
+    let sizes = |envelope: &Envelope, peaks: &[Peak]| -> Vec<f64> {
+        peaks.iter().map(|peak| envelope.at(peak.point.t).1).collect()
+    };
+    let first = envelope(peaks)?;
+    let variances = variances(fits, &sizes(&first, peaks));
+    let weights: Vec<f64> =
+        fits.iter().zip(&variances).map(|(fit, variance)| 1.0 / (fit.value_variance * variance)).collect();
+    let mean = weights.iter().sum::<f64>() / weights.len() as f64;
+    peaks.iter_mut().zip(&weights).for_each(|(peak, weight)| peak.point.weight = weight / mean);
+    let envelope = envelope(peaks)?;
+    let sizes = sizes(&envelope, peaks);
+    // the curvature over the amplitude is that of a cosine, or what those around tell where it clearly
+    // differs: a noisy one would make the scatter of the times too small or too large
+    let side = |k: usize| if peaks[k].point.maximum { 1.0 } else { -1.0 };
+    let bend = |k: usize| -side(k) * fits[k].curvature / sizes[k];
+    let mut curvatures = vec![0.0; peaks.len()];
+    for maximum in [false, true] {
+        let same: Vec<usize> = (0..peaks.len()).filter(|k| peaks[*k].point.maximum == maximum).collect();
+        let bends: Vec<f64> = same.iter().map(|k| bend(*k)).collect();
+        for (i, k) in same.iter().copied().enumerate() {
+            let (usual, cosine) = (around(&bends, i), (TAU / peaks[k].period).powi(2));
+            let error = (fits[k].curvature_variance * variances[k]).sqrt() / sizes[k];
+            let differs = (usual - cosine).abs() > DIFFERENT * error;
+            curvatures[k] = sizes[k] * if differs { usual } else { cosine };
+        }
+    }
+    let late = |k: usize| side(k) * fits[k].slope / curvatures[k];
+    let found: Vec<(f64, f64)> = (0..peaks.len())
+        .map(|k| {
+            (peaks[k].point.t + late(k), curvatures[k].powi(2) / (fits[k].slope_variance * variances[k]))
+        })
+        .collect();
+    let mean = found.iter().map(|found| found.1).sum::<f64>() / found.len() as f64;
+    if !mean.is_finite() {
+        return Err(Unidentified::NoDecay);
+    }
+    peaks.iter_mut().zip(found).for_each(|(peak, (t, weight))| peak.found = (t, weight / mean));
+    Ok(envelope.rate)
+}
+
+/// The variance of a sample near each turning point: a + b size^2 with a and b of 0 or more, which follow the
+/// residuals of the fits best, each counted by its degrees of freedom.
+fn variances(fits: &[Local], sizes: &[f64]) -> Vec<f64> {
+    let largest = sizes.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+    let squares: Vec<f64> = sizes.iter().map(|size| (size / largest).powi(2)).collect();
+    let far = fits.iter().map(|fit| fit.value.abs()).fold(0.0, f64::max);
+    // below this a residual is rounding
+    let rounding = (1e-13 * far).powi(2).max(f64::MIN_POSITIVE);
+    let mut variances = vec![1.0; fits.len()];
+    for _ in 0..PASSES {
+        let mut sums = [0.0; 5];
+        let scale = variances.iter().copied().fold(0.0, f64::max);
+        for ((fit, square), variance) in fits.iter().zip(&squares).zip(&variances) {
+            let count = fit.freedom as f64 * (scale / variance).powi(2);
+            let terms = [1.0, *square, square * square, fit.variance, fit.variance * square];
+            sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += count * term);
+        }
+        let [n, x, xx, y, xy] = sums;
+        let slope = (n * xy - x * y) / (n * xx - x * x);
+        let (constant, slope) = match (y - slope * x) / n {
+            _ if !(slope > 0.0) => (y / n, 0.0),
+            constant if constant > 0.0 => (constant, slope),
+            _ => (0.0, xy / xx),
+        };
+        let floor = rounding.max(1e-12 * (constant + slope));
+        variances = squares.iter().map(|square| (constant + slope * square).max(floor)).collect();
+    }
+    variances
+}
+
+/// Puts each turning point where those around it say: on a straight line in their number, and what sets
+/// maxima apart from minima.
+fn smooth(peaks: &mut [Peak]) {
+    let line = |k: usize| {
+        let here = &peaks[k];
+        let around = &peaks[k.saturating_sub(AROUND)..(k + AROUND + 1).min(peaks.len())];
+        let row = |peak: &Peak| {
+            let weight = peak.found.1.sqrt();
+            let side = if peak.point.maximum == here.point.maximum { 0.0 } else { weight };
+            ([weight, weight * (peak.number - here.number), side], weight * (peak.found.0 - here.point.t))
+        };
+        least_squares(&around.iter().map(row).collect::<Vec<_>>())
+    };
+    let lines: Vec<Option<Fit<3>>> = (0..peaks.len()).map(line).collect();
+    for (peak, line) in peaks.iter_mut().zip(lines) {
+        if let Some(line) = line
+            && line.coefficients[1] > 0.0
+        {
+            peak.point.t += line.coefficients[0];
+            peak.period = 2.0 * line.coefficients[1];
+        }
+    }
+}

@@ -1,0 +1,271 @@
+//! Equilibria of a measured force curve: where they are and how stiff, also beside a kink.
+
+use nalgebra::SVector;
+
+use super::Identity;
+use super::force::{Known, Pull};
+use crate::numeric::regression::{Fit, least_squares};
+use crate::numeric::{bisect, golden_section};
+
+/// The parts of the range, on either side of an equilibrium, over which the force is fitted, and those over
+/// which it is where samples are too few.
+const REACHES: [f64; 6] = [0.04, 0.02, 0.01, 0.005, 0.0025, 0.001];
+const WIDE: [f64; 2] = [0.08, 0.16];
+
+/// A smaller reach, or a kink, is taken where it makes the interval of the force shorter than this part.
+const BETTER: f64 = 0.5;
+
+/// The fewest degrees of freedom of a fit.
+const FEWEST: usize = 4;
+
+/// Places of a kink that are tried, the samples that are looked at for it, and the fewest on either side.
+const TRIED: usize = 40;
+const LOOKED_AT: usize = 1000;
+const BESIDE: usize = 4;
+
+/// Places at which the sign of the force is looked at, and halvings.
+const PLACES: u32 = 64;
+const HALVINGS: u32 = 60;
+
+/// An equilibrium of a measured curve.
+pub struct Rest {
+    /// Where it is, in m, with its interval.
+    pub x: (f64, [f64; 2]),
+    /// The slope of the force there in N/m, with its interval; of a kink that may be on either side of it,
+    /// that of both slopes.
+    pub stiffness: (f64, [f64; 2]),
+    /// A kink near it: its place in m, and the slopes on its left and right in N/m.
+    pub kink: Option<[f64; 3]>,
+    /// Half of the interval of the force there, in N.
+    half: f64,
+    fits: Vec<Near>,
+}
+
+impl Rest {
+    /// The equilibrium of the mean of these pulls near a place where their mean changes sign; `range` is the
+    /// length of the whole curve.
+    ///
+    /// Over some part of the range on either side, of each direction: a cubic, or a cubic with another added
+    /// from a kink on, whose place is found by least squares. The largest part and no kink, unless others
+    /// make the interval of the force there half as long: where the force is known well, as it is without
+    /// noise, less of it is described better.
+    pub fn near(place: f64, pulls: &[&Pull], range: f64) -> Option<Self> {
+        let mut best: Option<Self> = None;
+        let fitted = |reach: f64, kinked: bool| {
+            let reach = reach * range;
+            let samples: Vec<Vec<(f64, f64)>> =
+                pulls.iter().map(|pull| samples(pull, place, reach)).collect();
+            let kink = if kinked { Some(kink_of(&samples)?) } else { None };
+            let fit = |samples: &Vec<(f64, f64)>| Near::fit(samples, place, reach, kink);
+            Self::of(place, reach, samples.iter().map(fit).collect::<Option<Vec<_>>>()?)
+        };
+        for reach in REACHES {
+            for rest in [false, true].into_iter().filter_map(|kinked| fitted(reach, kinked)) {
+                if best.as_ref().is_none_or(|best| rest.half < BETTER * best.half) {
+                    best = Some(rest);
+                }
+            }
+        }
+        best.or_else(|| WIDE.into_iter().find_map(|reach| fitted(reach, false)))
+    }
+
+    /// The equilibrium of the mean of these fits.
+    fn of(place: f64, reach: f64, fits: Vec<Near>) -> Option<Self> {
+        let at = |x: f64, order: usize| {
+            fits.iter().map(|fit| fit.known(&fit.terms(x, order), order)).reduce(Known::and)
+        };
+        let force = |x: f64| at(x, 0).map_or(f64::NAN, |known| known.value);
+        let (low, high) = (place - reach, place + reach);
+        let step = (high - low) / f64::from(PLACES);
+        let changes = (0..PLACES).map(|i| low + step * f64::from(i));
+        let left = changes
+            .filter(|x| force(*x) * force(x + step) <= 0.0)
+            .min_by(|a, b| (a - place).abs().total_cmp(&(b - place).abs()))?;
+        let sign = force(left).signum();
+        let x = bisect(left, left + step, HALVINGS, |x| force(x) * sign > 0.0).1;
+        // where the force is no longer told from 0
+        let half = at(x, 0)?.half();
+        let end = |side: f64| {
+            let inside = |away: f64| force(x + side * away).abs() <= half;
+            let most = if side < 0.0 { x - low } else { high - x };
+            let mut away = 1e-9 * reach;
+            while away < most && inside(away) {
+                away *= 2.0;
+            }
+            if away < most { x + side * bisect(0.0, away, HALVINGS, inside).1 } else { x + side * most }
+        };
+        let ends = [end(-1.0), end(1.0)];
+        let slope = at(x, 1)?;
+        let mut stiffness = (slope.value, [slope.value - slope.half(), slope.value + slope.half()]);
+        // just beside it
+        let beside = |kink: f64, side: f64| at(kink + side * 1e-9 * reach, 1);
+        let kink = fits.first().and_then(|fit| fit.kink);
+        let sides = kink.and_then(|kink| Some([beside(kink, -1.0)?, beside(kink, 1.0)?]));
+        if let (Some(kink), Some(sides)) = (kink, &sides)
+            // the kink has an error as well
+            && (2.0 * ends[0] - x..=2.0 * ends[1] - x).contains(&kink)
+        {
+            let low = sides.iter().map(|slope| slope.value - slope.half());
+            let high = sides.iter().map(|slope| slope.value + slope.half());
+            stiffness.1 = [low.fold(stiffness.1[0], f64::min), high.fold(stiffness.1[1], f64::max)];
+        }
+        let kink = kink.zip(sides).map(|(kink, [left, right])| [kink, left.value, right.value]);
+        Some(Self { x: (x, ends), stiffness, kink, half, fits })
+    }
+
+    /// Whether the force drives back to it.
+    pub fn is_stable(&self) -> bool {
+        self.stiffness.0 > 0.0
+    }
+
+    /// Place and stiffness under these names.
+    pub fn identities(&self, [place, stiffness]: [&'static str; 2]) -> [Identity; 2] {
+        let identity =
+            |name, (value, [low, high]): (f64, [f64; 2])| Identity { name, value, interval: (low, high) };
+        [identity(place, self.x), identity(stiffness, self.stiffness)]
+    }
+
+    /// Integral of the force from this equilibrium to a place within the reach of its fits, in J, and force
+    /// and slope there.
+    pub fn work_to(&self, x: f64) -> Option<[Known; 3]> {
+        let work = self.fits.iter().map(|fit| fit.work(self.x.0, x)).reduce(Known::and)?;
+        let at =
+            |order| self.fits.iter().map(|fit| fit.known(&fit.terms(x, order), order)).reduce(Known::and);
+        Some([work, at(0)?, at(1)?])
+    }
+
+    /// How far the fits reach to either side, in m.
+    pub fn reach(&self) -> f64 {
+        self.fits.first().map_or(0.0, |fit| fit.reach - (self.x.0 - fit.centre).abs())
+    }
+}
+
+/// Terms of a fit: four of a cubic, three of another beyond the kink, and what moves the kink.
+type Terms = SVector<f64, 8>;
+
+/// The force of one direction near a place: polynomials in u = (x - centre)/reach.
+struct Near {
+    centre: f64,
+    reach: f64,
+    /// Where the slope jumps, in m.
+    kink: Option<f64>,
+    /// The coefficients of the second cubic.
+    beyond: [f64; 3],
+    fit: Polynomial,
+}
+
+enum Polynomial {
+    Smooth(Box<Fit<4>>),
+    Kinked(Box<Fit<8>>),
+}
+
+impl Near {
+    /// The fit to samples over u, with a kink there; none where they are too few.
+    fn fit(samples: &[(f64, f64)], centre: f64, reach: f64, kink: Option<f64>) -> Option<Self> {
+        let Some(kink) = kink else {
+            let smooth = |(u, force): &(f64, f64)| (std::array::from_fn(|k| u.powi(k as i32)), *force);
+            let fit = least_squares(&samples.iter().map(smooth).collect::<Vec<_>>())?;
+            let enough = fit.freedom >= FEWEST;
+            let fit = Polynomial::Smooth(Box::new(fit));
+            return enough.then_some(Self { centre, reach, kink: None, beyond: [0.0; 3], fit });
+        };
+        if samples.len() < FEWEST + 8 {
+            return None;
+        }
+        let joined = |kink: f64| {
+            let rows: Vec<([f64; 7], f64)> =
+                samples.iter().map(|(u, force)| (joined_terms(*u, kink), *force)).collect();
+            least_squares(&rows)
+        };
+        let cubics = joined(kink)?.coefficients;
+        let beyond = [cubics[4], cubics[5], cubics[6]];
+        let row = |(u, force): &(f64, f64)| (terms(*u, kink, &beyond, 0).into(), *force);
+        // the place of the kink is that of least squares: its own term is for the errors
+        let moved: Fit<8> = least_squares(&samples.iter().map(row).collect::<Vec<_>>())?;
+        let coefficients = SVector::<f64, 8>::from_fn(|k, _| if k < 7 { cubics[k] } else { 0.0 });
+        let fit = Polynomial::Kinked(Box::new(Fit { coefficients, ..moved }));
+        Some(Self { centre, reach, kink: Some(centre + kink * reach), beyond, fit })
+    }
+
+    /// What each coefficient adds to the force at `x` in m, or with an order of 1 to its slope in u.
+    fn terms(&self, x: f64, order: usize) -> Terms {
+        let local = |x: f64| (x - self.centre) / self.reach;
+        terms(local(x), self.kink.map_or(f64::INFINITY, local), &self.beyond, order)
+    }
+
+    /// What a sum of terms, a derivative of this order, makes of the coefficients; per m.
+    fn known(&self, terms: &Terms, order: usize) -> Known {
+        let ((value, error), freedom) = match &self.fit {
+            Polynomial::Smooth(fit) => (fit.form(&terms.fixed_rows::<4>(0).into_owned()), fit.freedom),
+            Polynomial::Kinked(fit) => (fit.form(terms), fit.freedom),
+        };
+        let unit = self.reach.powi(order as i32);
+        Known { value: value / unit, error: error / unit, freedom }
+    }
+
+    /// Integral of the force in J: by Gauss's rule with two points, which is exact for cubics, on either side
+    /// of the kink.
+    fn work(&self, from: f64, to: f64) -> Known {
+        let inner = self.kink.filter(|kink| (*kink - from) * (*kink - to) < 0.0);
+        let ends: Vec<f64> = [Some(from), inner, Some(to)].into_iter().flatten().collect();
+        let mut sum = Terms::zeros();
+        for pair in ends.windows(2) {
+            let (middle, half) = (0.5 * (pair[0] + pair[1]), 0.5 * (pair[1] - pair[0]));
+            for side in [-1.0, 1.0] {
+                sum += half * self.terms(middle + side * half / 3_f64.sqrt(), 0);
+            }
+        }
+        self.known(&sum, 0)
+    }
+}
+
+fn terms(u: f64, kink: f64, [a, b, c]: &[f64; 3], order: usize) -> Terms {
+    let v = (u - kink).max(0.0);
+    let beyond = if u > kink { 1.0 } else { 0.0 };
+    Terms::from(match order {
+        0 => {
+            let moving = -beyond * (a + v * (2.0 * b + 3.0 * c * v));
+            [1.0, u, u * u, u.powi(3), v, v * v, v.powi(3), moving]
+        }
+        _ => {
+            let moving = -beyond * (2.0 * b + 6.0 * c * v);
+            [0.0, 1.0, 2.0 * u, 3.0 * u * u, beyond, 2.0 * v, 3.0 * v * v, moving]
+        }
+    })
+}
+
+/// The terms of a cubic with another from a kink on.
+fn joined_terms(u: f64, kink: f64) -> [f64; 7] {
+    let all = terms(u, kink, &[0.0; 3], 0);
+    std::array::from_fn(|k| all[k])
+}
+
+/// The samples of a pull up to `reach` away from a place, over u.
+fn samples(pull: &Pull, centre: f64, reach: f64) -> Vec<(f64, f64)> {
+    let inside = pull.partition_point(|sample| sample.0 < centre - reach)
+        ..pull.partition_point(|sample| sample.0 <= centre + reach);
+    pull[inside].iter().map(|(x, force)| ((x - centre) / reach, *force)).collect()
+}
+
+/// The place of a kink that all directions have, which leaves the least squares.
+fn kink_of(directions: &[Vec<(f64, f64)>]) -> Option<f64> {
+    let most = directions.iter().map(Vec::len).max()?;
+    let stride = most.div_ceil(LOOKED_AT).max(1);
+    let square = |kink: f64| -> f64 {
+        let left = |samples: &Vec<(f64, f64)>| {
+            let rows: Vec<([f64; 7], f64)> =
+                samples.iter().step_by(stride).map(|(u, force)| (joined_terms(*u, kink), *force)).collect();
+            least_squares(&rows).map_or(f64::INFINITY, |fit| fit.variance * fit.freedom as f64)
+        };
+        directions.iter().map(left).sum()
+    };
+    let ends =
+        |samples: &Vec<(f64, f64)>| Some((samples.get(BESIDE)?.0, samples.iter().rev().nth(BESIDE)?.0));
+    let ends = directions.iter().map(ends).collect::<Option<Vec<_>>>()?;
+    let (first, last) = ends.into_iter().reduce(|all, ends| (all.0.max(ends.0), all.1.min(ends.1)))?;
+    let step = (last - first) / TRIED as f64;
+    let tried = (0..=TRIED).map(|i| first + step * i as f64);
+    let tried = tried.map(|kink| (kink, square(kink)));
+    let best = tried.filter(|tried| tried.1.is_finite()).min_by(|a, b| a.1.total_cmp(&b.1))?.0;
+    Some(golden_section((best - step).max(first), (best + step).min(last), HALVINGS, square))
+}
