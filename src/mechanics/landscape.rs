@@ -87,8 +87,10 @@ pub struct Landscape {
     /// Every place where the force vanishes; an interval on which it does, ends and all, counts for none.
     pub equilibria: Vec<Equilibrium>,
     /// The barrier between the wells: with more than two wells the one nearest to x = 0, of two as near the
-    /// left one.
+    /// right one.
     pub barrier: Option<Barrier>,
+    /// Position in m of the left one of two barriers that are as near to x = 0.
+    pub left_barrier: Option<f64>,
     /// Local extrema of the force inside the domain, smooth or corners.
     pub extrema: Vec<ForceExtremum>,
     /// Corners of the force: breaks at which the slope jumps by more than a millionth.
@@ -101,17 +103,22 @@ impl Landscape {
     /// Guarantee: complete (the root finder misses none); positions to rounding as far as their conditioning
     /// allows; a pair of roots that rounding cannot tell from a touching counts as one.
     pub fn of(curve: &ForceCurve) -> Self {
-        let mut own = Self {
+        let mut landscape = Self {
             equilibria: equilibria(curve),
             barrier: None,
+            left_barrier: None,
             extrema: extrema(curve),
             kinks: kinks(curve),
         };
         if curve.is_odd() {
-            own.mirror();
+            landscape.mirror();
         }
-        own.barrier = barrier(curve, &own.equilibria);
-        own
+        let tops = barriers(curve, &landscape.equilibria);
+        let nearest = tops.iter().rev().min_by(|a, b| a.x.abs().total_cmp(&b.x.abs())).copied();
+        let mirrored = |top: &&Barrier| nearest.is_some_and(|barrier| top.x != 0.0 && top.x == -barrier.x);
+        landscape.left_barrier = tops.iter().find(mirrored).map(|top| top.x);
+        landscape.barrier = nearest;
+        landscape
     }
 
     /// The right-most stable equilibrium.
@@ -302,7 +309,8 @@ fn equilibria(curve: &ForceCurve) -> Vec<Equilibrium> {
     found
 }
 
-fn barrier(curve: &ForceCurve, equilibria: &[Equilibrium]) -> Option<Barrier> {
+/// The barriers between neighbouring wells, from left to right.
+fn barriers(curve: &ForceCurve, equilibria: &[Equilibrium]) -> Vec<Barrier> {
     let stable: Vec<usize> = (0..equilibria.len()).filter(|i| equilibria[*i].stable).collect();
     let tops = stable.windows(2).filter_map(|pair| {
         let (left_well, right_well) = (equilibria[pair[0]].x, equilibria[pair[1]].x);
@@ -318,7 +326,7 @@ fn barrier(curve: &ForceCurve, equilibria: &[Equilibrium]) -> Option<Barrier> {
             from_right_j: height(top.x, right_well),
         })
     });
-    tops.min_by(|a, b| a.x.abs().total_cmp(&b.x.abs()))
+    tops.collect()
 }
 
 fn extrema(curve: &ForceCurve) -> Vec<ForceExtremum> {
