@@ -48,9 +48,9 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if let Some(scene) = &options.scene {
         return scene_accuracy::run(scene, options, common);
     }
-    if let Some(option) = common.given(true) {
+    if let Some(option) = common.given(&["set", "tolerance"]) {
         return Err(Failure::argument(format!(
-            "{option} needs a SCENE, such as interwell --headless accuracy paper {option} .."
+            "--{option} needs a SCENE, such as interwell --headless accuracy paper --{option} .."
         )));
     }
     let picture = Picture::asked(&options.plot, common)?;

@@ -4,6 +4,7 @@ use std::convert::Infallible;
 use std::path::PathBuf;
 
 use clap::Args;
+use interwell::numeric::short;
 use interwell::output::{basins_figure, basins_manifest, can_show_starts, rows};
 use interwell::study::{Answer, Basins, EvenRange, NoBasins, Starts, StartsError, Task};
 use interwell::system::threads::Pool;
@@ -11,6 +12,7 @@ use interwell::system::threads::Pool;
 use super::failure::Failure;
 use super::options::{Common, PlotOptions};
 use super::picture::{Picture, caption};
+use super::progress::duration;
 use super::support::{MANIFEST, Watch, finish, inputs, load, mechanism, open, warn, write_table, write_text};
 use super::sweep::{bar, manifest_path, pool};
 use super::{interrupt, say};
@@ -83,13 +85,11 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let outputs = [Some(("--out", common.out())), plot, data, attractors, beside];
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
 
-    let bar = bar(count, "starts", common.quiet, common.out());
-    let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
     let watch = Watch::start();
-    while !basins.is_whole() && basins.run_level(&pool, &task) {}
-    let answer = basins.answer(&task).filter(|_| basins.is_whole());
-    bar.finish_and_clear();
-    let answer = answer.ok_or_else(Failure::interrupted)?;
+    if !common.quiet {
+        forecast(&basins).iter().for_each(|line| say(line));
+    }
+    let answer = answer(&mut basins, &pool, common).ok_or_else(Failure::interrupted)?;
     write_rows(&mut sinks[0], &basins, &answer, &pool)?;
     write_table(&mut sinks[3], &answer.attractors_table())?;
     if let Some(picture) = picture {
@@ -104,9 +104,42 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     }
     finish(sinks)?;
     if !common.quiet {
-        say(&told(&answer, count, watch.wall_s()));
+        say(&outcome(&answer, count, watch.wall_s()));
     }
     Ok(())
+}
+
+/// Follows the starts, and once more those whose answers may not be sure; none where it was cancelled.
+fn answer(basins: &mut Basins, pool: &Pool, common: &Common) -> Option<Answer> {
+    let shown = |parts: usize, unit: &str| bar(parts as u64, unit, common.quiet, common.out());
+    let cancel = interrupt::listen();
+    let bar = shown(basins.starts().count(), "starts");
+    let task = Task { tick: &|| bar.inc(1), cancel };
+    while !basins.is_whole() && basins.run_level(pool, &task) {}
+    let answer = basins.answer(&task).filter(|_| basins.is_whole());
+    bar.finish_and_clear();
+    let mut answer = answer?;
+    let bar = shown(basins.rows_to_check(&answer).len(), "starts once more");
+    let whole = basins.check(&mut answer, pool, &Task { tick: &|| bar.inc(1), cancel });
+    bar.finish_and_clear();
+    whole.then_some(answer)
+}
+
+/// A start that may take so many steps, half a second of a core, is worth a word before it is followed.
+const MANY_STEPS: f64 = 1e6;
+
+/// What the starts may cost, where that is much.
+fn forecast(basins: &Basins) -> Option<String> {
+    let (steps, seconds) = basins.cost_of_a_period();
+    let most = Basins::PATIENCE as f64;
+    (steps * most > MANY_STEPS).then(|| {
+        format!(
+            "a forcing period takes some {} steps: a start that is followed for {most} of them, the most, \
+             takes some {} of a core; one that takes far more than others ends early",
+            short(steps),
+            duration(seconds * most)
+        )
+    })
 }
 
 /// Rows that a thread turns into text at a time.
@@ -136,7 +169,7 @@ fn write_rows(
 }
 
 /// What came of it, in a line.
-fn told(answer: &Answer, count: u64, seconds: f64) -> String {
+fn outcome(answer: &Answer, count: u64, seconds: f64) -> String {
     let number = |count: u64, one: &str| match count {
         1 => format!("1 {one}"),
         n => format!("{n} {one}s"),
@@ -144,8 +177,10 @@ fn told(answer: &Answer, count: u64, seconds: f64) -> String {
     let mut text = number(count, "start");
     text += &format!(" in {seconds:.2} s, {}", number(answer.attractors.len() as u64, "attractor"));
     for (count, what) in [
+        (answer.unsure(), "not sure"),
         (answer.outside, "outside the room of the mass"),
-        (answer.lost, "ended early"),
+        (answer.lost - answer.spent, "ended early"),
+        (answer.spent, "out of work: a motion far faster than its drive; raise the frequency or the damping"),
         (answer.undecided, "not settled after 1000 periods"),
     ] {
         if count > 0 {

@@ -104,7 +104,7 @@ impl Arguments {
 
 /// Reads the record, identifies, and writes rows and summary.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    fits(options, common)?;
+    fits(options)?;
     let summary = options.summary.as_deref().map(|path| ("--summary", path));
     let watch = Watch::start();
     let picture = Picture::asked(&options.chart.plot, common)?;
@@ -137,7 +137,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
 }
 
 /// Refuses what has no meaning for what is asked.
-fn fits(options: &Arguments, common: &Common) -> Result<(), Failure> {
+fn fits(options: &Arguments) -> Result<(), Failure> {
     if options.file.is_none() || options.of.is_none() {
         return Err(Failure::argument(
             "identify needs a record and what to identify: identify FILE --of damping, restitution or force",
@@ -163,9 +163,6 @@ fn fits(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let timed = [("--from", options.from.is_some()), ("--to", options.to.is_some())];
     if let Some((option, _)) = timed.into_iter().find(|option| option.1 && of == "force") {
         return Err(Failure::argument(format!("{option} cuts a record over time; --of force has none")));
-    }
-    if let Some(option) = common.given(true).filter(|option| *option != "--jobs") {
-        return Err(Failure::argument(format!("{option} changes a scene, and `identify` has none")));
     }
     if let (Some(from), Some(to)) = (options.from, options.to)
         && !(from < to)

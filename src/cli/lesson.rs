@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use interwell::output::Sink;
 use interwell::scene::Fault;
 use interwell::scene::lesson::{LESSONS, LessonDocument, LessonError, Step, TEMPLATE};
 use interwell::study::{LessonFinding, LessonReport, Task, Unjudged, check_lesson, result_fields};
@@ -42,11 +41,8 @@ pub struct Arguments {
 
 /// Lists, prints, checks or begins lessons.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let changes = !common.set.is_empty() || common.tolerance.is_some();
-    if let Some(option) = common.given(true).filter(|_| changes || !options.check) {
-        return Err(Failure::argument(format!(
-            "{option}: a lesson has its own scenes and changes; leave it out"
-        )));
+    if common.jobs.is_some() && !options.check {
+        return Err(Failure::argument("--jobs: nothing runs without --check; leave it out"));
     }
     if let Some(path) = &options.new {
         return begin(path);
@@ -155,8 +151,7 @@ fn begin(path: &Path) -> Result<(), Failure> {
     if files::exists(path) {
         return Err(Failure::argument(format!("--new {shown}: the file is there already; name another")));
     }
-    let mut sink = Sink::open(path)?;
-    sink.put(TEMPLATE)
-        .and_then(|()| sink.finish())
-        .map_err(|error| Failure::writing(&shown.to_string(), error))
+    let mut sinks = open(&[], [Some(("--new", path))])?;
+    write_text(&mut sinks[0], TEMPLATE)?;
+    finish(sinks)
 }

@@ -35,11 +35,6 @@ struct Part {
 
 /// Puts the shards together.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    if let Some(option) = common.given(true) {
-        return Err(Failure::argument(format!(
-            "{option} changes a run, and merge runs nothing: leave it out"
-        )));
-    }
     let watch = Watch::start();
     let mut parts = all(&options.parts)?;
     let beside = manifest_path(common.out());

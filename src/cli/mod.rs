@@ -32,7 +32,7 @@ mod threshold;
 use std::io::Write;
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::FromArgMatches;
 use clap::error::ErrorKind;
 
 pub use failure::Failure;
@@ -40,13 +40,15 @@ pub use options::{Options, command_names};
 
 /// Reads the arguments; an `Err` is the exit status after help or an error has been printed.
 pub fn parse() -> Result<Options, ExitCode> {
-    Options::try_parse().map_err(|error| match error.kind() {
+    let matches = options::command_line().try_get_matches();
+    let read = matches.and_then(|matches| Options::from_arg_matches(&matches));
+    read.map_err(|error| match error.kind() {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
             let _ = error.print();
             ExitCode::SUCCESS
         }
         ErrorKind::InvalidUtf8 => {
-            let wrong = std::env::args_os().find(|own| own.to_str().is_none()).unwrap_or_default();
+            let wrong = std::env::args_os().find(|text| text.to_str().is_none()).unwrap_or_default();
             let wrong = wrong.to_string_lossy();
             say(&format!(
                 "error: `{wrong}` is not valid UTF-8: rename the file, or go to its folder and name it from \
@@ -87,7 +89,13 @@ pub fn run(
             command.common().put_before(common).map_err(|option| {
                 Failure::argument(format!("{option} is given before and after the command: give it once"))
             })?;
-            command.run()
+            let (name, refused) = (command.name(), command.refused());
+            match command.common().given(refused) {
+                Some(option) => Err(Failure::argument(format!(
+                    "--{option} changes a scene or its run, and `{name}` takes no scene: leave it out"
+                ))),
+                None => command.run(),
+            }
         }
         (None, true, None) => Err(Failure::argument(format!(
             "--headless needs a command: {commands}, such as interwell --headless simulate paper; see \
@@ -96,9 +104,9 @@ pub fn run(
         (None, true, Some(word)) => Err(Failure::argument(format!(
             "--headless needs a command before `{word}`: {commands}; see interwell --help"
         ))),
-        (None, false, scene) => match common.given(false) {
+        (None, false, scene) => match common.given(&["set", "tolerance", "jobs", "out", "quiet"]) {
             Some(option) => Err(Failure::argument(format!(
-                "{option} belongs to a command: {commands}, such as interwell --headless simulate; the \
+                "--{option} belongs to a command: {commands}, such as interwell --headless simulate; the \
                  window takes a scene alone"
             ))),
             None => window(scene.as_deref()),

@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
-use clap::{ArgGroup, Args, Parser, Subcommand};
+use clap::{ArgGroup, Args, CommandFactory, Parser, Subcommand};
 
 use super::Failure;
 
@@ -58,9 +58,11 @@ pub struct Options {
     pub common: Common,
 }
 
-/// The commands: word, variant, what stands where the scene does, options, and help.
+/// The commands: help, word, variant, what stands where the scene does; the common options that a command
+/// refuses, and those that it takes and makes nothing of. Its help lists neither.
 macro_rules! commands {
-    ($($(#[doc = $help:literal])+ $word:ident $variant:ident $scene:literal;)*) => {
+    ($($(#[doc = $help:literal])+ $word:ident $variant:ident $scene:literal
+        $(refuses $($refused:literal)+)? $(ignores $($ignored:literal)+)?;)*) => {
         /// A command of `--headless`.
         #[derive(Debug, Subcommand)]
         pub enum Command {
@@ -81,12 +83,21 @@ macro_rules! commands {
         /// The words that select the commands.
         pub const COMMANDS: &[&str] = &[$(stringify!($word)),*];
 
+        /// For each command the common options that it refuses, and those that it makes nothing of.
+        const UNUSED: &[(&[&str], &[&str])] = &[$((&[$($($refused),+)?], &[$($($ignored),+)?])),*];
+
         impl Command {
             /// The word that selects it.
             pub fn name(&self) -> &'static str {
                 match self {
                     $(Self::$variant { .. } => stringify!($word),)*
                 }
+            }
+
+            /// The common options that it refuses.
+            pub fn refused(&self) -> &'static [&'static str] {
+                let place = COMMANDS.iter().position(|word| *word == self.name());
+                place.map_or(&[], |place| UNUSED[place].0)
             }
 
             /// Its common options.
@@ -108,17 +119,17 @@ macro_rules! commands {
 
 commands! {
     /// List the built-in scenes, or copy them out
-    presets Presets "";
+    presets Presets "" refuses "set" "tolerance" "jobs";
     /// Validate scenes; print what each models, and how accurate its force curve is
-    check Check " [SCENE]...";
+    check Check " [SCENE]..." ignores "jobs";
     /// Force, potential and stiffness of the mechanism as CSV
-    curve Curve " [SCENE]";
+    curve Curve " [SCENE]" ignores "jobs";
     /// Run a scene once: samples as CSV
-    simulate Simulate " [SCENE]";
+    simulate Simulate " [SCENE]" ignores "jobs";
     /// Run a grid of scenes: CSV with a row for each cell
     sweep Sweep " [SCENE]";
     /// Put the parts of a sweep together that `sweep --shard` computed
-    merge Merge " PART...";
+    merge Merge " PART..." refuses "set" "tolerance" "jobs";
     /// The state once a forcing period or at every impact; over a field the bifurcation diagram
     section Section " [SCENE]";
     /// The least value of a field from which on a motion from rest is released, crosses or is interwell
@@ -128,20 +139,29 @@ commands! {
     /// The place in some fields where a result is largest, for one environment or several, with its margins
     best Best " [SCENE] --over FIELD=A:B";
     /// Amplitude and power spectral density of the settled motion over frequency: CSV
-    spectrum Spectrum " [SCENE]";
+    spectrum Spectrum " [SCENE]" ignores "jobs";
     /// The attractor that each of many starts goes to: CSV with a row for each start
     basins Basins " [SCENE] --x-mm A:B:N --v A:B:N";
     /// The periodic motion near a run's own, with its multipliers; or a branch of them over a field
-    orbit Orbit " [SCENE]";
+    orbit Orbit " [SCENE]" ignores "jobs";
     /// Lyapunov exponents of the settled motion, with their standard errors, sum and dimension
     exponents Exponents " [SCENE]";
     /// Damping ratio, restitution or force curve from a measured record, each number with its interval
-    identify Identify " FILE --of damping|restitution|force";
+    identify Identify " FILE --of damping|restitution|force" refuses "set" "tolerance" ignores "jobs";
     /// List the lessons; print, check or begin one
-    lesson Lesson " [LESSON]";
+    lesson Lesson " [LESSON]" refuses "set" "tolerance";
     /// Of a scene: the error of its run, what digits cost, what a fixed step makes of it. Without one: speed
     /// against error beside other methods, and the hard cases with the digits that they allow and reach
-    accuracy Accuracy " [SCENE]";
+    accuracy Accuracy " [SCENE]" ignores "jobs";
+}
+
+/// The command line as clap takes it, each command's help without what it does not use.
+pub fn command_line() -> clap::Command {
+    COMMANDS.iter().zip(UNUSED).fold(Options::command(), |command, (word, (refused, ignored))| {
+        let unused = refused.iter().chain(*ignored);
+        command
+            .mut_subcommand(word, |sub| unused.fold(sub, |sub, name| sub.mut_arg(name, |arg| arg.hide(true))))
+    })
 }
 
 /// The words of all commands as a sentence lists them.
@@ -215,17 +235,16 @@ impl Common {
         one(&mut self.jobs, before.jobs, "--jobs")
     }
 
-    /// The first of these that was given, for where it has no meaning: all of them, or those alone that
-    /// change a scene or how it is run.
-    pub fn given(&self, of_a_scene: bool) -> Option<&'static str> {
-        let given = [
-            (!self.set.is_empty(), "--set"),
-            (self.tolerance.is_some(), "--tolerance"),
-            (self.jobs.is_some(), "--jobs"),
-            (!of_a_scene && self.out.is_some(), "--out"),
-            (!of_a_scene && self.quiet, "--quiet"),
-        ];
-        given.into_iter().find(|own| own.0).map(|own| own.1)
+    /// The first of these that was given, for where it has no meaning.
+    pub fn given(&self, names: &[&'static str]) -> Option<&'static str> {
+        let is_given = |name: &&&str| match **name {
+            "set" => !self.set.is_empty(),
+            "tolerance" => self.tolerance.is_some(),
+            "jobs" => self.jobs.is_some(),
+            "out" => self.out.is_some(),
+            _ => self.quiet,
+        };
+        names.iter().find(is_given).copied()
     }
 }
 

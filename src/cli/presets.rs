@@ -24,11 +24,6 @@ pub struct Arguments {
 
 /// Lists the built-in scenes, a line each, or writes them into a folder and lists the files.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    if let Some(option) = common.given(true) {
-        return Err(Failure::argument(format!(
-            "{option} changes a run, and presets runs nothing: leave it out"
-        )));
-    }
     let mut sinks = open(&[], [Some(("--out", common.out()))])?;
     let text = match &options.write {
         Some(folder) => write(folder, options.force)?,

@@ -322,7 +322,7 @@ mod tests {
     #[test]
     fn a_geometry_without_a_solution_is_a_failed_run_and_no_wrong_scene() {
         let document = Document::load("paper").unwrap();
-        let error = FlexureError::NotConverged { x: 1.5e-3, residual: 0.25 };
+        let error = FlexureError::NotConverged { x: 1.5e-3, residual: 0.25, is_preloaded: true };
         let failure = unbuilt(&document, error.into());
         assert!(matches!(failure, Failure::Failed(_)));
         let text = failure.to_string();

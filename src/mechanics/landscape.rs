@@ -88,8 +88,10 @@ pub struct Landscape {
     /// Every place where the force vanishes; an interval on which it does, ends and all, counts for none.
     pub equilibria: Vec<Equilibrium>,
     /// The barrier between the wells: with more than two wells the one nearest to x = 0, of two as near the
-    /// left one.
+    /// right one.
     pub barrier: Option<Barrier>,
+    /// Position in m of the left one of two barriers that are as near to x = 0.
+    pub left_barrier: Option<f64>,
     /// Local extrema of the force inside the domain, smooth or corners; of a fitted curve those that stand
     /// out from the error of the fit.
     pub extrema: Vec<ForceExtremum>,
@@ -111,13 +113,18 @@ impl Landscape {
         let mut landscape = Self {
             equilibria: equilibria(curve),
             barrier: None,
+            left_barrier: None,
             extrema: clear_of(curve, extrema(curve), 2.0 * error),
             kinks: kinks(curve),
         };
         if curve.is_odd() {
             landscape.mirror();
         }
-        landscape.barrier = barrier(curve, &landscape.equilibria);
+        let tops = barriers(curve, &landscape.equilibria);
+        let nearest = tops.iter().rev().min_by(|a, b| a.x.abs().total_cmp(&b.x.abs())).copied();
+        let mirrored = |top: &&Barrier| nearest.is_some_and(|barrier| top.x != 0.0 && top.x == -barrier.x);
+        landscape.left_barrier = tops.iter().find(mirrored).map(|top| top.x);
+        landscape.barrier = nearest;
         landscape
     }
 
@@ -309,7 +316,8 @@ fn equilibria(curve: &ForceCurve) -> Vec<Equilibrium> {
     found
 }
 
-fn barrier(curve: &ForceCurve, equilibria: &[Equilibrium]) -> Option<Barrier> {
+/// The barriers between neighbouring wells, from left to right.
+fn barriers(curve: &ForceCurve, equilibria: &[Equilibrium]) -> Vec<Barrier> {
     let stable: Vec<usize> = (0..equilibria.len()).filter(|i| equilibria[*i].stable).collect();
     let tops = stable.windows(2).filter_map(|pair| {
         let (left_well, right_well) = (equilibria[pair[0]].x, equilibria[pair[1]].x);
@@ -325,7 +333,7 @@ fn barrier(curve: &ForceCurve, equilibria: &[Equilibrium]) -> Option<Barrier> {
             from_right_j: height(top.x, right_well),
         })
     });
-    tops.min_by(|a, b| a.x.abs().total_cmp(&b.x.abs()))
+    tops.collect()
 }
 
 fn extrema(curve: &ForceCurve) -> Vec<ForceExtremum> {

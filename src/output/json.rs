@@ -37,7 +37,8 @@ pub fn summary(summary: &Summary, scene: &Scene, origin: &Provenance) -> String 
 /// of the ledger, which stand together elsewhere.
 fn entry(field: &SummaryField, summary: &Summary) -> Option<(String, Value)> {
     let value = match field.read {
-        Read::Number(of) => json!(of(summary)),
+        // Adding 0 makes -0 a plain 0.
+        Read::Number(of) => json!(of(summary).map(|number| number + 0.0)),
         Read::Count(of) => json!(of(summary)),
         Read::Word(of) => Some(of(summary)).filter(|word| !word.is_empty()).into(),
         Read::Flag(of) => json!(of(summary)),
@@ -63,12 +64,12 @@ fn ledger(ledger: &Ledger) -> Value {
         ("stored_j", Some(ledger.stored_j)),
         ("residual_j", Some(ledger.residual_j)),
     ];
-    terms.into_iter().filter_map(|(name, own)| Some((name.to_owned(), json!(own?)))).collect()
+    terms.into_iter().filter_map(|(name, joules)| Some((name.to_owned(), json!(joules? + 0.0)))).collect()
 }
 
 /// The landscape of a mechanism that carries `mass` in kg, as text.
 pub fn landscape(mechanism: &Mechanism, mass: f64) -> String {
-    let Landscape { equilibria, barrier, extrema, kinks } = &mechanism.landscape;
+    let Landscape { equilibria, barrier, extrema, kinks, .. } = &mechanism.landscape;
     let equilibria: Vec<Value> = equilibria
         .iter()
         .map(|equilibrium| {

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 /// Appends `value` in its shortest form: plain (`0.58`) or with an exponent (`1e-9`), whichever has
-/// fewer characters, plain where they tie. Minus infinity, the logarithm of nothing, is `-inf`, plus
-/// infinity, an open circuit, `inf`; NaN appends nothing.
+/// fewer characters, plain where they tie. Zero of either sign is `0`. Minus infinity, the logarithm of
+/// nothing, is `-inf`, plus infinity, an open circuit, `inf`; NaN appends nothing.
 ///
 /// The digits are the fewest that parse back to the same double (the standard library's `{:e}`,
 /// after Grisu, Loitsch 2010); only their layout is chosen here, so that one conversion serves both.
@@ -16,7 +16,8 @@ pub fn push_number(text: &mut String, value: f64) {
         return;
     }
     let begin = text.len();
-    let _ = write!(text, "{value:e}");
+    // Adding 0 makes -0 a plain 0.
+    let _ = write!(text, "{:e}", value + 0.0);
     // sign, digits and exponent of `-d.dddde-x`
     let written = &text[begin..];
     let (mantissa, exponent) = written.split_once('e').unwrap_or((written, "0"));
@@ -68,7 +69,7 @@ mod tests {
 
     #[test]
     fn the_shorter_of_two_forms_that_parse_back() {
-        let mut values = vec![0.0, -0.0, 1.0, -1.0, 0.58, 0.1 * 3.0, 100.0, 1e3, 12345.678, 1e-2, 1e-3, 1e21];
+        let mut values = vec![0.0, 1.0, -1.0, 0.58, 0.1 * 3.0, 100.0, 1e3, 12345.678, 1e-2, 1e-3, 1e21];
         values.extend([5e-324, f64::MAX, f64::MIN_POSITIVE, 1e22, 123456789012345680.0, -1.5e-9, 9.80665]);
         let mut bits = 0x9e37_79b9_7f4a_7c15_u64;
         for _ in 0..20_000 {
@@ -86,6 +87,11 @@ mod tests {
             assert_eq!(written, right);
             assert_eq!(written.parse::<f64>().unwrap().to_bits(), value.to_bits());
         }
+    }
+
+    #[test]
+    fn zero_has_no_sign() {
+        assert_eq!((short(-0.0), short(0.0)), ("0".to_owned(), "0".to_owned()));
     }
 
     #[test]

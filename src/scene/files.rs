@@ -13,7 +13,7 @@ pub const LARGEST_TABLE: usize = 64 << 20;
 
 /// Where the files that a scene names are read from: the folder of the scene file, or, for a preset
 /// or a pasted scene, the embedded names (and absolute paths).
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Files {
     /// Folder that relative paths start from; none for a preset or a pasted scene.
     pub folder: Option<PathBuf>,

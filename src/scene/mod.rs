@@ -62,6 +62,7 @@ pub use measured::{
 };
 pub use mechanism::{FlexureGroup, Mechanism};
 pub use presets::{EmbeddedTable, PRESETS, Preset, TABLES, export};
+pub(crate) use ranges::number_text;
 pub use ranges::{MAX_COEFFICIENTS, TOLERANCES};
 pub use record::{Record, RecordError, read_record};
 pub use scanner::has_comments;

@@ -37,7 +37,7 @@ impl fmt::Display for Range {
 
 /// A number as a person would write it: plain digits where they are few, else with an exponent; it
 /// parses back to the same double.
-pub(super) fn number_text(value: f64) -> String {
+pub(crate) fn number_text(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 || !size.is_finite() || (1e-4..1e6).contains(&size) {
         format!("{value}")

@@ -86,7 +86,8 @@ pub(super) fn beyond(text: &str) -> Option<Refusal> {
     let line = 1 + before.matches('\n').count();
     let column = 1 + before.rsplit('\n').next().unwrap_or_default().chars().count();
     let place = Place { line, column };
-    let field = Places::of(text).last_before(place).map_or(String::new(), |own| format!("{}: ", clip(&own)));
+    let field = Places::of(text).last_before(place);
+    let field = field.map_or(String::new(), |field| format!("{}: ", clip(&field)));
     let number = clip(&text[bytes]);
     let problem = format!("{field}{number} {BEYOND}; write a smaller one, or inf where a field takes that");
     Some(Refusal { place, problem, unknown: None })
@@ -110,6 +111,10 @@ pub(super) fn refusal(text: &str, error: &SpannedError) -> Refusal {
         (Ron::ExpectedComma, _) if is_unit(text, place) => {
             format!("{}; a unit stands in the name of its field, not behind the number", explain(error))
         }
+        (Ron::ExpectedFloat, _) => match unnamed(text, place) {
+            Some(choice) => format!("{}; this one has no name, write {choice}", explain(error)),
+            None => explain(error),
+        },
         _ => explain(error),
     };
     let unknown = match &error.code {
@@ -120,11 +125,28 @@ pub(super) fn refusal(text: &str, error: &SpannedError) -> Refusal {
     Refusal { unknown, place, problem }
 }
 
+/// A choice of one number without the name that stands before that at a place: `Ratio(0.1)` of
+/// `Ratio(xi: 0.1)`.
+fn unnamed(text: &str, place: Place) -> Option<String> {
+    let (before, named) = split_at(text, place);
+    let (_, number) = named.split_once([':', '='])?;
+    let number = number.split([')', ',']).next()?.trim();
+    number.parse::<f64>().ok()?;
+    let outer = before.trim_end().strip_suffix('(')?.trim_end();
+    let from = outer.rfind(|c: char| !c.is_alphanumeric()).map_or(0, |end| end + 1);
+    (from < outer.len()).then(|| format!("{}({})", clip(&outer[from..]), clip(number)))
+}
+
+/// The line of a place before it and from it on.
+fn split_at(text: &str, place: Place) -> (&str, &str) {
+    let line = text.lines().nth(place.line - 1).unwrap_or_default();
+    let at = line.char_indices().nth(place.column - 1).map_or(line.len(), |(at, _)| at);
+    line.split_at(at)
+}
+
 /// Whether a word stands at a place, behind a number, that is no name of a field.
 fn is_unit(text: &str, place: Place) -> bool {
-    let line = text.lines().nth(place.line - 1).unwrap_or_default();
-    let at = line.char_indices().nth(place.column - 1).map_or(line.len(), |own| own.0);
-    let (before, word) = line.split_at(at);
+    let (before, word) = split_at(text, place);
     let after = word.trim_start_matches(|c: char| c.is_alphanumeric() || c == '_');
     before.trim_end().ends_with(|c: char| c.is_ascii_digit() || c == '.')
         && word.starts_with(|c: char| c.is_alphabetic() || c == '%')

@@ -12,29 +12,41 @@ const SHORT: f64 = 100.0;
 pub fn ended_remedy(model: &Model, outcome: Outcome) -> Option<String> {
     let tolerance = model.tolerance();
     match outcome {
-        Outcome::StepBudget { .. } => {
-            Some(model.fast_circuit().or_else(|| short_contact(model)).unwrap_or_else(|| {
-                match tolerance < TOLERANCES.1 {
-                    true => "a larger tolerance or a shorter run takes fewer".to_owned(),
-                    false => format!("a shorter run takes fewer; {tolerance} is the largest tolerance"),
-                }
-            }))
-        }
+        Outcome::StepBudget { at, .. } => Some(
+            model.fast_circuit().or_else(|| short_contact(model)).unwrap_or_else(|| fewer_steps(model, at)),
+        ),
         Outcome::Inaccurate { .. } => {
             Some(model.fast_circuit().unwrap_or_else(|| match tolerance > TOLERANCES.0 {
                 true => "use a smaller tolerance".to_owned(),
                 false => format!("{tolerance:e} is the smallest tolerance, so the cause lies elsewhere"),
             }))
         }
-        Outcome::NotFinite { .. } => Some(match model.stops() {
+        Outcome::NotFinite { .. } => Some(model.fast_circuit().unwrap_or_else(|| match model.stops() {
             None => "stops, or a force that holds the mass, keep the motion within bounds".to_owned(),
             Some(_) => "smaller numbers in the scene (stiffness, amplitude, speed) keep it finite".to_owned(),
-        }),
+        })),
         Outcome::Done
         | Outcome::LeftTable { .. }
         | Outcome::ImpactBudget { .. }
         | Outcome::Cancelled { .. } => None,
     }
+}
+
+/// What keeps a run within its work that had done it at a time in s, a clause: a shorter run always, a larger
+/// tolerance where its cheaper steps would do, fewer lines where most of the work is theirs.
+fn fewer_steps(model: &Model, at: f64) -> String {
+    let (step, of_drive) = model.cost_of_a_step(model.tolerance());
+    let (coarse, _) = model.cost_of_a_step(TOLERANCES.1);
+    let mut ways = vec![format!("a run of some {} s", short(at))];
+    if at * step as f64 / coarse as f64 >= model.duration() {
+        ways.push("a larger tolerance".to_owned());
+    }
+    if 2 * of_drive > step {
+        ways.push("an excitation of fewer lines".to_owned());
+    }
+    let last = ways.pop().unwrap_or_default();
+    let others = if ways.is_empty() { String::new() } else { format!("{} or ", ways.join(", ")) };
+    format!("{others}{last} would do")
 }
 
 /// Why steps are short with stops so stiff that a contact is far shorter than the motion.

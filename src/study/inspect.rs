@@ -190,11 +190,11 @@ fn landscape(landscape: &Landscape, mass: f64) -> Vec<String> {
             format!("{left} mJ above the well left of it, {right} mJ above that right of it")
         };
         lines.push(format!("barrier at {} mm, {height}", short(barrier.x * 1e3)));
-        let wells = landscape.equilibria.iter().filter(|own| own.stable).count();
+        let wells = landscape.equilibria.iter().filter(|place| place.stable).count();
         if wells > 2 {
             lines.push(format!(
-                "{wells} wells: of the barriers between them this is the nearest to x = 0 (of two as near \
-                 the left one); crossings, regime and side are about it alone"
+                "{wells} wells: of the barriers between them this is the nearest to x = 0; crossings, regime \
+                 and side are about it alone, of two as near about the one on the side of the start"
             ));
         }
     }

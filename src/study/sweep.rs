@@ -244,7 +244,7 @@ mod tests {
         let over = ["mechanism.linear_n_per_m=-40,-30", "excitation.amplitude_g=0.5,1,1.5"];
         let grid = Grid::new(document.axes(&over).unwrap()).unwrap();
         let sweep = Sweep::new(&document.scene, &document.files, grid);
-        let error = FlexureError::NotConverged { x: 1e-3, residual: 1.0 };
+        let error = FlexureError::NotConverged { x: 1e-3, residual: 1.0, is_preloaded: true };
         *sweep.cells.mechanisms[1].lock().unwrap() = Some(Err(error.into()));
         let pool = Pool::new(2).unwrap();
         let cancel = AtomicBool::new(false);

@@ -3,12 +3,14 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use interwell::dynamics::{Arrival, EventKind, Model, Pursuit, Request};
+use interwell::dynamics::{Arrival, EventKind, Model, Outcome, Pursued, Pursuit, Request};
 use interwell::scene::{Document, Files};
 use interwell::study::*;
 use interwell::system::threads::Pool;
 
 use super::support::*;
+
+mod sure;
 
 fn range((from, to, count): (f64, f64, u64)) -> EvenRange {
     EvenRange { from, to, count }
@@ -33,7 +35,9 @@ fn whole(basins: &mut Basins) -> Answer {
     while !basins.is_whole() {
         assert!(basins.run_level(&pool, &task));
     }
-    basins.answer(&task).unwrap()
+    let mut answer = basins.answer(&task).unwrap();
+    assert!(basins.check(&mut answer, &pool, &task));
+    answer
 }
 
 /// The unit double well, m = 1, F = x^3 - x, with the other fields in `rest`.
@@ -236,15 +240,15 @@ fn a_pursuit_has_the_same_bits_in_any_number_of_lanes() {
                 repeats_from: 0,
                 most_periods: 60,
                 releases: own as u32 % 3,
+                most_work: u64::MAX,
             })
             .collect();
-        let texts = |all: Vec<Arrival>| {
-            let bare = |own: Arrival| match own {
-                Arrival::Unsettled(mut end) => {
+        let texts = |all: Vec<Pursued>| {
+            let bare = |mut pursued: Pursued| {
+                if let Arrival::Unsettled(end) = &mut pursued.arrival {
                     end.cpu_s = 0.0;
-                    format!("{end:?}")
                 }
-                other => format!("{other:?}"),
+                format!("{pursued:?}")
             };
             all.into_iter().map(bare).collect::<Vec<_>>()
         };
@@ -254,7 +258,7 @@ fn a_pursuit_has_the_same_bits_in_any_number_of_lanes() {
                 assert_eq!(texts(own), alone, "{width}");
             }
         }
-        let released = alone.iter().any(|own| own.starts_with("Released"));
+        let released = alone.iter().any(|text| text.contains("Released"));
         assert_eq!(released, model.stop_positions().1.is_some());
     }
 }
@@ -271,12 +275,14 @@ fn a_pursuit_comes_to_the_first_release_of_the_run() {
         for own in 0..60_u32 {
             let start = (1.5e-3 * (f64::from(own) / 30.0 - 1.0), f64::from(own % 11) / 10.0 - 0.5);
             let (known, regions, repeats_from, releases) = (&[], &[], u64::MAX, own % 2);
-            let pursuit = Pursuit { start, known, regions, repeats_from, most_periods: 60, releases };
+            let most_work = u64::MAX;
+            let pursuit =
+                Pursuit { start, known, regions, repeats_from, most_periods: 60, releases, most_work };
             let run = model.with_start(start).with_duration(10.0 * period, 0.0);
             let events = run.run(&Request { events: true, ..Request::default() }).events;
             let release =
                 events.iter().filter(|event| event.kind == EventKind::Release).nth(releases as usize);
-            let arrival = &model.pursue_in_lanes(&[pursuit], 1).unwrap()[0];
+            let arrival = &model.pursue_in_lanes(&[pursuit], 1).unwrap()[0].arrival;
             if let (Some(release), Arrival::Released { identity, periods }) = (release, arrival) {
                 assert_eq!(identity.side, release.side, "{own}");
                 assert_eq!(*periods, (release.t / period).ceil() as u64, "{own}");
@@ -284,6 +290,28 @@ fn a_pursuit_comes_to_the_first_release_of_the_run() {
             }
         }
         assert!(released > 50, "{released}");
+    }
+}
+
+#[test]
+fn a_pursuit_ends_where_its_work_is_done() {
+    let model = preset("paper-unconstrained", &[]);
+    let pursuit = Pursuit {
+        start: (1e-3, 0.1),
+        known: &[],
+        regions: &[],
+        repeats_from: u64::MAX,
+        most_periods: 1000,
+        releases: 0,
+        most_work: 1_000_000,
+    };
+    for width in [1, 4, 8, 16] {
+        for pursued in model.pursue_in_lanes(&[pursuit; 20], width).unwrap_or_default() {
+            let Arrival::Unsettled(end) = &pursued.arrival else { panic!("{:?}", pursued.arrival) };
+            assert!(matches!(end.outcome, Outcome::StepBudget { .. }), "{:?}", end.outcome);
+            // between two looks at the budget lie some 10 000 units
+            assert!((1_000_000..1_030_000).contains(&pursued.work), "{}", pursued.work);
+        }
     }
 }
 
@@ -302,7 +330,7 @@ fn levels_come_coarse_first_and_end_in_the_same_map() {
         known.push(own.rows.iter().flatten().count());
     }
     assert_eq!(known, [3 * 2, 5 * 3, 9 * 5, 17 * 9]);
-    assert_eq!(basins.answer(&task).unwrap(), answer);
+    assert_eq!(basins.answer(&task).unwrap(), Answer { sure: Vec::new(), ..answer });
     cancel.store(true, std::sync::atomic::Ordering::Relaxed);
     let mut told = refused(&document, (-1500.0, 1500.0, 17), (-1.0, 1.0, 9)).unwrap();
     assert!(!told.run_level(&pool, &task));

@@ -147,9 +147,9 @@ fn check_says_what_is_modelled() {
     for word in ["paper", "left out", "force curve", "k = ", "c = ", "equilibrium", "barrier"] {
         assert!(text.contains(word), "`{word}` is not in: {text}");
     }
-    // of two barriers as near to x = 0 the left one is meant
+    // of two barriers as near to x = 0 the right one is listed
     let text = stdout("check --set mechanism=Polynomial(coefficients_si:[0,4,0,-5,0,1]) --set stops=None");
-    for words in ["barrier at -1000 mm, 2250 mJ above the well left of it", "3 wells: of the barriers"] {
+    for words in ["barrier at 1000 mm, ", "2250 mJ above that right of it", "3 wells: of the barriers"] {
         assert!(text.contains(words), "`{words}` is not in: {text}");
     }
     // All are reported, and one that is wrong makes it fail.

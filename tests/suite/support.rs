@@ -65,3 +65,20 @@ pub fn same_bits(a: &Run, b: &Run) {
     assert_eq!(a, b);
     assert_eq!(format!("{a:?}"), format!("{b:?}"));
 }
+
+/// Numbers in [0, 1) that are the same everywhere (Steele and others 2014, splitmix64).
+pub struct Draw(pub u64);
+
+impl Draw {
+    pub fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+}

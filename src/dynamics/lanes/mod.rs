@@ -24,7 +24,7 @@ use crate::dynamics::drive::form::{Form, clock, form};
 use crate::dynamics::drive::tone::Sine;
 use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
-use crate::dynamics::result::{Arrival, Outcome, Pursuit, Request, Run};
+use crate::dynamics::result::{Outcome, Pursued, Pursuit, Request, Run};
 use crate::dynamics::run::ending::Begun;
 use crate::dynamics::run::pursue::pursue_alone;
 use crate::system::clock::ThreadClock;
@@ -74,7 +74,7 @@ impl Model {
         pursuits: &[Pursuit],
         cancel: Option<&AtomicBool>,
         next: &mut dyn FnMut(UnderWay) -> Option<usize>,
-        ended: &mut dyn FnMut(usize, Arrival),
+        ended: &mut dyn FnMut(usize, Pursued),
     ) {
         pursue(self, pursuits, &Request { cancel, ..Request::default() }, usize::MAX, (next, ended));
     }
@@ -82,16 +82,16 @@ impl Model {
     /// [`pursue`](Self::pursue) one by one or in 4, 8 or 16 lanes, for tests; none where the processor has
     /// not so many.
     #[doc(hidden)]
-    pub fn pursue_in_lanes(&self, pursuits: &[Pursuit], width: usize) -> Option<Vec<Arrival>> {
+    pub fn pursue_in_lanes(&self, pursuits: &[Pursuit], width: usize) -> Option<Vec<Pursued>> {
         let request = Request::default();
         if width == 1 {
-            return Some(pursuits.iter().map(|own| pursue_alone(self, own, &request)).collect());
+            return Some(pursuits.iter().map(|pursuit| pursue_alone(self, pursuit, &request)).collect());
         }
-        let (mut all, mut arrivals) = (0..pursuits.len(), vec![None; pursuits.len()]);
-        let mut ended = |place: usize, own| arrivals[place] = Some(own);
+        let (mut all, mut pursued) = (0..pursuits.len(), vec![None; pursuits.len()]);
+        let mut ended = |place: usize, end| pursued[place] = Some(end);
         has_lanes(width)
             .then(|| pursue(self, pursuits, &request, width, (&mut |_| all.next(), &mut ended)))?;
-        arrivals.into_iter().collect()
+        pursued.into_iter().collect()
     }
 
     /// [`run_all`](Self::run_all) in 4, 8 or 16 lanes, for tests; none where the processor has not so many.
@@ -170,7 +170,7 @@ impl<'a> Source<'a> for Runs<'a, '_, '_> {
 }
 
 /// What gives the places of pursuits, and what gets what they have come to.
-type Through<'r> = (&'r mut dyn FnMut(UnderWay) -> Option<usize>, &'r mut dyn FnMut(usize, Arrival));
+type Through<'r> = (&'r mut dyn FnMut(UnderWay) -> Option<usize>, &'r mut dyn FnMut(usize, Pursued));
 
 /// Pursues motions of one model.
 fn pursue(model: &Model, pursuits: &[Pursuit], request: &Request, most: usize, (next, ended): Through) {
@@ -200,7 +200,7 @@ fn pursue(model: &Model, pursuits: &[Pursuit], request: &Request, most: usize, (
 struct Pursuits<'r, P> {
     prepared: P,
     next: &'r mut dyn FnMut(UnderWay) -> Option<usize>,
-    ended: &'r mut dyn FnMut(usize, Arrival),
+    ended: &'r mut dyn FnMut(usize, Pursued),
 }
 
 impl<'a, P: Fn(usize) -> Prepared<'a>> Source<'a> for Pursuits<'_, P> {

@@ -3,6 +3,7 @@
 use crate::dynamics::model::{Model, StopAt};
 use crate::mechanics::Hertz;
 use crate::numeric::short;
+use crate::scene::number_text;
 
 impl Model {
     /// The model in words: a line for each thing that is modelled, then what is left out. The force curve and
@@ -22,7 +23,8 @@ impl Model {
             Some(pair) => {
                 let stop = |side: &str, at: Option<StopAt>| match at {
                     Some(s) => {
-                        format!("{side} at {} mm with restitution {}", short(s.x * 1e3), s.restitution)
+                        let restitution = number_text(s.restitution);
+                        format!("{side} at {} mm with restitution {restitution}", short(s.x * 1e3))
                     }
                     None => format!("{side} open"),
                 };
@@ -42,7 +44,7 @@ impl Model {
         for tone in drive.tones.iter().filter(|t| !t.noise) {
             let size = match tone.ramp {
                 Some((from, over)) => {
-                    format!("{} to {} m/s^2 over {over} s", short(from), short(tone.amplitude))
+                    format!("{} to {} m/s^2 over {} s", short(from), short(tone.amplitude), short(over))
                 }
                 None => format!("{} m/s^2", short(tone.amplitude.abs())),
             };
@@ -156,13 +158,17 @@ fn compliant(model: &Model, stop: &Hertz) -> Vec<String> {
         let depth = stop.static_depth(pressed);
         let stiffness = 1.5 * stop.stiffness * depth.sqrt();
         let frequency = (stiffness / model.mass).sqrt() / std::f64::consts::TAU;
+        let steps = |of_a_period: f64| match frequency * of_a_period {
+            many if many >= 1.0 => many.round(),
+            few => few,
+        };
         lines.push(format!(
             "resting on one is an oscillation of {} Hz about a depth of {} um, and it is followed: each \
              second of it takes some {} steps where it is quiet and up to {} where it trembles",
             short(frequency),
             short(depth * 1e6),
-            short((frequency * STEPS_PER_PERIOD.0).round()),
-            short((frequency * STEPS_PER_PERIOD.1).round())
+            short(steps(STEPS_PER_PERIOD.0)),
+            short(steps(STEPS_PER_PERIOD.1))
         ));
     }
     lines

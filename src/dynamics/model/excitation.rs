@@ -190,6 +190,24 @@ impl ExcitationParts {
             && self.records.iter().all(|r| r.peak() == 0.0)
     }
 
+    /// Acceleration in m/s^2 at a time in s from the start on, without a record; odd in the amplitudes.
+    pub(crate) fn at(&self, t: f64) -> f64 {
+        let tones = self.tones.iter().map(|tone| {
+            let amplitude = match tone.ramp {
+                Some((from, over)) => from + (tone.amplitude - from) * (t / over).min(1.0),
+                None => tone.amplitude,
+            };
+            let quarter = if tone.quarter { 0.25 } else { 0.0 };
+            amplitude * (TAU * (tone.frequency * t + tone.phase + quarter)).sin()
+        });
+        let chirps = self.chirps.iter().map(|chirp| {
+            let swept = t.min(chirp.over);
+            let turns = chirp.from * swept + (chirp.to - chirp.from) * swept * swept / (2.0 * chirp.over);
+            chirp.amplitude * (TAU * (turns + chirp.to * (t - swept))).sin()
+        });
+        self.constant + tones.chain(chirps).sum::<f64>()
+    }
+
     /// Whether nothing of it changes.
     pub(crate) fn is_constant(&self) -> bool {
         Self { constant: 0.0, ..self.clone() }.is_still()

@@ -22,6 +22,10 @@ use transducer::Transducer;
 /// The most periods of the fastest tone that the clock counts exactly, about 2^53.
 const MOST_PERIODS: f64 = 9e15;
 
+/// The first push of an excitation that begins with nothing is looked for from the duration over two to this
+/// power on.
+const PROBES: i32 = 60;
+
 /// A scene as run.
 #[derive(Debug, Clone)]
 pub struct Model {
@@ -57,7 +61,8 @@ pub struct Model {
 
 impl Model {
     /// Converts a scene that has passed its check; faults that only show here (no equilibrium to rest
-    /// at, a ratio without a stable equilibrium, a start beyond a stop or the curve) are all reported.
+    /// at, a ratio without a stable equilibrium, a start beyond a stop or the curve) are all reported, and of
+    /// a scene with a number that is none or out of all bounds those of its check.
     pub fn build(scene: &Scene, mechanism: Arc<Mechanism>) -> Result<Self, Vec<Fault>> {
         let mut faults = Vec::new();
         let mass = scene.mass_g / 1e3;
@@ -89,7 +94,7 @@ impl Model {
             },
         };
         let transducer = Transducer::of(&scene.transducer, mass);
-        if transducer.is_some_and(|own| !own.is_finite()) {
+        if transducer.is_some_and(|transducer| !transducer.is_finite()) {
             let value = match scene.transducer {
                 scene::Transducer::Piezoelectric { .. } => "Piezoelectric(..)",
                 _ => "Electromagnetic(..)",
@@ -123,24 +128,25 @@ impl Model {
             ));
         }
         if !faults.is_empty() {
-            return Err(faults);
+            let of_the_scene = scene::check(scene).faults;
+            return Err(if of_the_scene.is_empty() { faults } else { of_the_scene });
         }
         let common = drive.common_cycles();
         let forcing_period = drive.fastest().and_then(|f| common.map(|cycles| cycles as f64 / f));
         let barrier = landscape.barrier.as_ref();
-        let crossing_level = landscape.crossing_position();
         let start_electrical = match scene.start {
             Start::At { electrical, .. } => electrical,
             Start::Rest => 0.0,
         };
-        let charged = transducer.and_then(|own| own.circuit).map_or(0.0, |own| own.state(start_electrical));
+        let circuit = transducer.and_then(|transducer| transducer.circuit);
+        let charged = circuit.map_or(0.0, |circuit| circuit.state(start_electrical));
         // A charge can give the mass as much energy as a speed.
         let fastest = (start.0, start.1.abs().max(charged.abs()));
         let scales = scales(scene, mass, &mechanism, &drive, fastest, (stops, compliant));
         let (left, right) = (stops.and_then(|s| s.left), stops.and_then(|s| s.right));
         let on_a_stop = left.is_some_and(|s| s.x == start.0) || right.is_some_and(|s| s.x == start.0);
         let motionless = scene.start == Start::Rest && !on_a_stop && drive.is_still();
-        Ok(Self {
+        let mut model = Self {
             mass,
             damping,
             transducer,
@@ -157,7 +163,7 @@ impl Model {
             start,
             start_electrical,
             motionless,
-            crossing_level,
+            crossing_level: landscape.crossing_position(),
             one_well: barrier.is_none(),
             cycles_per_period: common.map_or(0, |c| c as i64),
             start_phase: match scene.excitation {
@@ -165,7 +171,50 @@ impl Model {
                 _ => 0.0,
             },
             mechanism,
-        })
+        };
+        model.choose_barrier();
+        // A scene that has passed its check is not looked at once more: a sweep builds a model for each cell.
+        let faults = if model.is_sound() { Vec::new() } else { scene::check(scene).faults };
+        if faults.is_empty() { Ok(model) } else { Err(faults) }
+    }
+
+    /// Whether its numbers can be those of a scene that has passed its check.
+    fn is_sound(&self) -> bool {
+        let Self { mass, damping, duration, settle, scales, excitation, start, .. } = self;
+        let stops = self.stops.iter().flat_map(|pair| [pair.left, pair.right]).flatten();
+        let stops = stops.map(|stop| stop.x * stop.restitution);
+        let compliant = self.compliant.iter().map(|own| own.stiffness * own.loss);
+        let tones = excitation.tones.iter().filter(|tone| !tone.noise).map(|tone| {
+            let ramp = tone.ramp.map_or(0.0, |(from, over)| from + over);
+            tone.amplitude + tone.frequency + tone.phase + ramp
+        });
+        let noises = excitation.noises.iter().map(|noise| noise.rms + noise.low + noise.high);
+        let chirps = excitation.chirps.iter().map(|own| own.amplitude + own.from + own.to + own.over);
+        let others = [*damping, start.0, start.1, self.start_electrical, excitation.constant];
+        let others = others.into_iter().chain([scales.length, scales.speed, scales.time]);
+        let all = others.chain(stops).chain(compliant).chain(tones).chain(noises).chain(chirps);
+        *mass > 0.0
+            && *duration > 0.0
+            && (0.0..=*duration).contains(settle)
+            && (scene::TOLERANCES.0..=scene::TOLERANCES.1).contains(&self.tolerance)
+            && all.chain([*mass, *duration]).all(f64::is_finite)
+    }
+
+    /// Of two barriers as near to x = 0, counts crossings at the one on the side of the start; of a start
+    /// between them without speed, at the one towards which the base first pushes the mass. Nothing crosses
+    /// where it stands there and nothing pushes it.
+    fn choose_barrier(&mut self) {
+        let Some(left) = self.mechanism.landscape.left_barrier else { return };
+        let pushes = || {
+            let times = (0..=PROBES).rev().map(|halvings| self.duration * 0.5_f64.powi(halvings));
+            std::iter::once(0.0).chain(times).map(|t| -self.excitation.at(t))
+        };
+        let towards = [self.start.0, self.start.1].into_iter().chain(pushes()).find(|side| *side != 0.0);
+        self.crossing_level = match towards {
+            Some(side) if side < 0.0 => Some(left),
+            None if self.excitation.is_still() => None,
+            _ => self.crossing_level,
+        };
     }
 
     /// Positions of the left and the right stop in m, where there are any.

@@ -158,10 +158,12 @@ pub(crate) fn scales(
     if !(stiffness > 0.0 && stiffness.is_finite()) {
         stiffness = curve.stiffness(start.0).abs();
     }
+    // Of two barriers as near to x = 0, the one on its side.
+    let start_x = if landscape.left_barrier.is_some() { start.0.abs() } else { start.0 };
     let landmarks = Landmarks {
         stiffness_over_mass: stiffness / mass,
         half_distance,
-        start_distance: (start.0 - reference).abs(),
+        start_distance: (start_x - reference).abs(),
         start_speed: start.1.abs(),
         start_acceleration: curve.force(start.0).abs() / mass,
         drive: drive.parts(),

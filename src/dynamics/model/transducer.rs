@@ -63,6 +63,9 @@ const FAST: f64 = 100.0;
 /// The share of the motion up to which a fast circuit may be left out.
 const NEARLY: f64 = 1e-2;
 
+/// A coil that damps the motion by less than this share while that changes lets no current through.
+const OPEN: f64 = 1e-9;
+
 /// What a transducer gives at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -187,6 +190,8 @@ impl Transducer {
                 short(force * load),
                 short(load)
             )
+        } else if coupling * coupling / decay * time < OPEN {
+            "load_ohm: inf is the open circuit that this is".to_owned()
         } else {
             "without inductance_mh the coil is a damping".to_owned()
         };

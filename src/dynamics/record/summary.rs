@@ -125,10 +125,12 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             self.clock.seconds(&Instant { cycle, phase: origin.phase })
         };
         let (low, high) = (self.low.to_f64(), self.high.to_f64());
-        let side = self.model.crossing_level.filter(|_| seen && !self.model.one_well).map(|top| match () {
-            () if low >= top => Place::Right,
-            () if high <= top => Place::Left,
-            () => Place::Both,
+        let level = self.model.crossing_level.filter(|_| seen && !self.model.one_well);
+        let side = level.and_then(|top| match () {
+            () if low == top && high == top => None,
+            () if low >= top => Some(Place::Right),
+            () if high <= top => Some(Place::Left),
+            () => Some(Place::Both),
         });
         let (crossing_periods, release_periods) = self.judge.periods_with();
         let ramped = |t: f64| self.model.excitation.ramped_amplitude(t);

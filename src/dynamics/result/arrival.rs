@@ -84,6 +84,19 @@ pub struct Pursuit<'a> {
     pub most_periods: u64,
     /// Releases with an identity that are passed over.
     pub releases: u32,
+    /// Work after which it is given up, in units of some ten nanoseconds; at most that of a run counts.
+    pub most_work: u64,
+}
+
+/// What a pursuit has come to, and its way there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pursued {
+    /// What ended it.
+    pub arrival: Arrival,
+    /// Crossings of the barrier up to then.
+    pub crossings: u64,
+    /// Work done, in units of some ten nanoseconds.
+    pub work: u64,
 }
 
 /// What ended a pursuit; `periods` is the number of the first stroboscopic state after it, that of the start

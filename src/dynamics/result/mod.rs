@@ -6,7 +6,7 @@ mod outcome;
 mod request;
 mod summary;
 
-pub use arrival::{Arrival, Capture, Pursuit, Region, ReleaseIdentity};
+pub use arrival::{Arrival, Capture, Pursued, Pursuit, Region, ReleaseIdentity};
 pub use event::{Event, EventKind, Phase, Sample, SectionPoint, Side};
 pub use outcome::{Outcome, Place, Regime};
 pub use request::Request;

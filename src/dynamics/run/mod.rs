@@ -15,7 +15,8 @@ use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::result::{Outcome, Request, Run};
 use crate::dynamics::state::{Contact, Flow};
-use crate::dynamics::step::work::{IMPACT_BUDGET, WORK_BUDGET};
+use crate::dynamics::step::settings::Settings;
+use crate::dynamics::step::work::{Costs, IMPACT_BUDGET};
 use crate::numeric::{DoubleDouble, Scalar};
 use crate::system::clock::ThreadClock;
 use event_free::FastPath;
@@ -27,6 +28,22 @@ impl Model {
     /// outcome. The result does not depend on what is asked for or on threads.
     pub fn run(&self, request: &Request) -> Run {
         run::<f64>(self, request, self.tolerance, self.recurrence)
+    }
+
+    /// What a step of free flight costs at a tolerance, and what of it the excitation does, in units of work.
+    pub fn cost_of_a_step(&self, tolerance: f64) -> (u64, u64) {
+        let unit = self.scales.unit();
+        let order = Settings::<f64>::new(self, unit, tolerance).order;
+        let degree = Equation::<f64>::new(self, unit).degree();
+        fn of<D: Drive<f64>>(order: usize, degree: usize, drive: &D) -> (u64, u64) {
+            (Costs::new(order, degree, drive).step, drive.cost(order))
+        }
+        match form(self, &clock(self, unit)) {
+            Form::Still(drive) => of(order, degree, &drive),
+            Form::Sine(drive) => of(order, degree, &drive),
+            Form::Composite(drive) => of(order, degree, &drive),
+            Form::Coupled(drive) => of(order, degree, &drive),
+        }
     }
 
     /// Runs the model once in double-double arithmetic, some 31 digits, with its own `tolerance` (1e-28 is
@@ -150,7 +167,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         if self.stepper.work.impacts() >= IMPACT_BUDGET {
             return Some(Outcome::ImpactBudget { at: at(), count: self.stepper.work.impacts() });
         }
-        if self.stepper.work.done() >= WORK_BUDGET {
+        if self.stepper.work.is_done() {
             return Some(Outcome::StepBudget { at: at(), count: self.steps });
         }
         None

@@ -9,7 +9,7 @@ use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::record::barrier::side_of;
 use crate::dynamics::record::goal::Goal;
-use crate::dynamics::result::{Arrival, Outcome, Pursuit, Request};
+use crate::dynamics::result::{Arrival, Outcome, Pursued, Pursuit, Request};
 use crate::dynamics::state::{Contact, MotionState};
 use crate::numeric::Scalar;
 
@@ -22,20 +22,23 @@ impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D, false> {
         let mode = stepper.equation.mode_at(x, model.mechanism.curve.piece_index(pursuit.start.0));
         *state = MotionState::new((x, v), mode, Contact::Free);
         record.barrier_side = record.barrier.map_or(0, |barrier| side_of(x, barrier));
+        stepper.work.limit(pursuit.most_work);
         stepper.end = record.pursue(Goal::new(*pursuit), pursuit.most_periods);
         (self.recurs, self.until_settled) = (true, None);
         self
     }
 
     /// What it has come to.
-    pub fn arrived(mut self, model: &Model, begun: &Begun<T>, outcome: Outcome) -> Arrival {
+    pub fn arrived(mut self, model: &Model, begun: &Begun<T>, outcome: Outcome) -> Pursued {
+        let (crossings, work) = (self.record.counts.total_crossings, self.stepper.work.done());
         let arrival = self.record.arrival().filter(|_| outcome == Outcome::Done);
-        arrival.unwrap_or_else(|| Arrival::Unsettled(Box::new(self.finish(model, begun, outcome).summary)))
+        let unsettled = || Arrival::Unsettled(Box::new(self.finish(model, begun, outcome).summary));
+        Pursued { arrival: arrival.unwrap_or_else(unsettled), crossings, work }
     }
 }
 
 /// Pursues a motion alone.
-pub(crate) fn pursue_alone(model: &Model, pursuit: &Pursuit, request: &Request) -> Arrival {
+pub(crate) fn pursue_alone(model: &Model, pursuit: &Pursuit, request: &Request) -> Pursued {
     let unit = model.scales.unit();
     let (equation, clock) = (Equation::new(model, unit), clock(model, unit));
     match form(model, &clock) {
@@ -53,7 +56,7 @@ fn with_drive<D: Drive<f64>>(
     equation: &Equation<f64>,
     clock: Clock<f64>,
     drive: &D,
-) -> Arrival {
+) -> Pursued {
     let motion = Motion::<f64, D, false>::new(model, request, model.tolerance, equation, clock, drive);
     let mut motion = motion.pursuing(pursuit, model);
     let begun = motion.begin(model);

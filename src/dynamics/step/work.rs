@@ -12,8 +12,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::dynamics::drive::Drive;
 use crate::numeric::Scalar;
 
-/// Units that one run may take: about ten seconds of one core, and at least 2e7 steps of a cubic force under
-/// one sine at any tolerance.
+/// Units that one run may take: five to twenty seconds of one core, as the pieces of the scene cost, and at
+/// least 2e7 steps of a cubic force under one sine at any tolerance.
 pub(crate) const WORK_BUDGET: u64 = 1_000_000_000;
 
 /// Impacts that one run may make one by one, those that laps add by multiplication not among them.
@@ -68,6 +68,7 @@ impl Costs {
 #[derive(Debug, Clone)]
 pub(crate) struct Work<'a> {
     done: u64,
+    most: u64,
     impacts: u64,
     next_look: u64,
     cancel: Option<&'a AtomicBool>,
@@ -75,7 +76,12 @@ pub(crate) struct Work<'a> {
 
 impl<'a> Work<'a> {
     pub fn new(cancel: Option<&'a AtomicBool>) -> Self {
-        Self { done: 0, impacts: 0, next_look: LOOK, cancel }
+        Self { done: 0, most: WORK_BUDGET, impacts: 0, next_look: LOOK, cancel }
+    }
+
+    /// Allows so many units at most.
+    pub fn limit(&mut self, most: u64) {
+        self.most = self.most.min(most);
     }
 
     /// Units done.
@@ -100,7 +106,12 @@ impl<'a> Work<'a> {
 
     /// Whether this much more is within the budgets.
     pub fn has_room_for(&self, units: u64) -> bool {
-        self.done + units < WORK_BUDGET && self.impacts < IMPACT_BUDGET
+        self.done + units < self.most && self.impacts < IMPACT_BUDGET
+    }
+
+    /// Whether all units are done.
+    pub fn is_done(&self) -> bool {
+        self.done >= self.most
     }
 
     /// Whether a budget is spent.

@@ -91,36 +91,47 @@ impl Accuracy {
 pub enum FlexureError {
     /// Newton's iteration came to no end.
     #[error(
-        "the equilibrium of the flexures at x = {} mm was not found (residual {residual:.1e}): try a smaller \
-         preload or other proportions",
-        crate::numeric::short(x * 1e3)
+        "the equilibrium of the flexures at x = {} mm was not found (residual {residual:.1e}): {}",
+        crate::numeric::short(x * 1e3),
+        remedy(*is_preloaded)
     )]
     NotConverged {
         /// Position in m.
         x: f64,
         /// Size of the last step, relative to the unknowns.
         residual: f64,
+        /// Whether there is a preload.
+        is_preloaded: bool,
     },
     /// It takes too long.
     #[error(
-        "the flexures take more work than can be meant, at x = {} mm: try a smaller preload or other \
-         proportions",
-        crate::numeric::short(x * 1e3)
+        "the flexures take more work than can be meant, at x = {} mm: {}",
+        crate::numeric::short(x * 1e3),
+        remedy(*is_preloaded)
     )]
     Endless {
         /// Position in m.
         x: f64,
+        /// Whether there is a preload.
+        is_preloaded: bool,
     },
     /// No stable equilibrium could be followed.
     #[error(
-        "the flexures have no stable shape of this kind at x = {} mm: try a smaller preload or other \
-         proportions",
-        crate::numeric::short(x * 1e3)
+        "the flexures have no stable shape of this kind at x = {} mm: {}",
+        crate::numeric::short(x * 1e3),
+        remedy(*is_preloaded)
     )]
     Unstable {
         /// Position in m.
         x: f64,
+        /// Whether there is a preload.
+        is_preloaded: bool,
     },
+}
+
+/// What may be solved in place of a geometry.
+fn remedy(is_preloaded: bool) -> &'static str {
+    if is_preloaded { "try a smaller preload or other proportions" } else { "try other proportions" }
 }
 
 /// The centre line of one flexure of a group; all of a group are alike.
@@ -206,12 +217,13 @@ impl Flexures {
         cancel: Option<&AtomicBool>,
     ) -> Result<(ForceCurve, Self), FlexureError> {
         let (mut solver, units) = scaled(geometry, TAIL * tolerance.sqrt(), cancel);
+        let is_preloaded = geometry.preload > 0.0;
         let lost = |lost: Lost| match lost {
             Lost::NotConverged { x, residual } => {
-                FlexureError::NotConverged { x: x * units.length, residual }
+                FlexureError::NotConverged { x: x * units.length, residual, is_preloaded }
             }
-            Lost::Unstable { x } => FlexureError::Unstable { x: x * units.length },
-            Lost::Endless { x } => FlexureError::Endless { x: x * units.length },
+            Lost::Unstable { x } => FlexureError::Unstable { x: x * units.length, is_preloaded },
+            Lost::Endless { x } => FlexureError::Endless { x: x * units.length, is_preloaded },
         };
         let mut segments = branch::trace(&mut solver).map_err(lost)?;
         // Potentials are differences from this state, and wells may be shallow beside the energy of the
@@ -247,9 +259,12 @@ impl Flexures {
         // In metres, as the curve has its breaks: x/length may round to the other side of a kink.
         let beyond = |segment: &Segment| segment.to * self.units.length < x.abs();
         let segment = &self.segments[self.segments.partition_point(beyond).min(last)];
-        let mut point = segment
-            .afresh(&mut solver, distance)
-            .map_err(|_| FlexureError::NotConverged { x, residual: f64::NAN })?;
+        let is_preloaded = self.geometry.preload > 0.0;
+        let mut point = segment.afresh(&mut solver, distance).map_err(|_| FlexureError::NotConverged {
+            x,
+            residual: f64::NAN,
+            is_preloaded,
+        })?;
         if x < 0.0 {
             point.x = -point.x;
             point.force = -point.force;
@@ -324,9 +339,9 @@ fn curve(stretches: &[Stretch], units: Units) -> ForceCurve {
     let piece = |stretch: &Stretch| {
         let mut power = 1.0;
         let coefficients = stretch.coefficients.iter().map(|c| {
-            let own = c * units.force / power;
+            let scaled = c * units.force / power;
             power *= units.length;
-            own
+            scaled
         });
         Piece {
             origin: stretch.origin * units.length,

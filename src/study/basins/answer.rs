@@ -1,6 +1,7 @@
 //! Answer of a map of basins: its attractors, numbered by the first start that goes to each, and the rows.
 
 use super::Basins;
+use super::item::Way;
 use super::rounds::{Fate, Kind};
 use crate::dynamics::{Model, Outcome, Place, Regime, Request, Side, Summary};
 use crate::study::Task;
@@ -84,21 +85,35 @@ pub struct Answer {
     pub rows: Vec<Option<(u32, u32)>>,
     /// Starts outside the room of the mass.
     pub outside: u64,
+    /// Whether the answer of each row is sure, see [`Basins::check`]; empty where it was not asked for.
+    pub sure: Vec<bool>,
     /// Starts whose run ended early.
     pub lost: u64,
+    /// Those of them that had taken all the work that one start may take.
+    pub spent: u64,
     /// Starts of which it is not known where they go.
     pub undecided: u64,
 }
 
 impl Answer {
-    /// `x_mm,v_m_per_s,attractor,periods` of the rows from `begin` to before `end`.
+    /// `x_mm,v_m_per_s,attractor,periods,sure` of the rows from `begin` to before `end`.
     pub fn table(&self, basins: &Basins, begin: usize, end: usize) -> Table {
         let rows: Vec<usize> = (begin..end.min(self.rows.len())).collect();
         Table::new()
             .each("x_mm", &rows, |row| basins.starts().at(*row).0)
             .each("v_m_per_s", &rows, |row| basins.starts().at(*row).1)
-            .each("attractor", &rows, |row| self.rows[*row].map(|own| u64::from(own.0)))
-            .each("periods", &rows, |row| self.rows[*row].map(|own| u64::from(own.1)))
+            .each("attractor", &rows, |row| self.rows[*row].map(|(number, _)| u64::from(number)))
+            .each("periods", &rows, |row| self.rows[*row].map(|(_, periods)| u64::from(periods)))
+            .each("sure", &rows, |row| match self.rows[*row].and_then(|_| self.sure.get(*row)) {
+                Some(true) => "true",
+                Some(false) => "false",
+                None => "",
+            })
+    }
+
+    /// How many rows have an answer that is not sure.
+    pub fn unsure(&self) -> u64 {
+        self.rows.iter().zip(&self.sure).filter(|(row, sure)| row.is_some() && !**sure).count() as u64
     }
 
     /// The attractors, a row each.
@@ -106,17 +121,17 @@ impl Answer {
         let all = &self.attractors;
         let numbers: Vec<u64> = (1..=all.len() as u64).collect();
         Table::new()
-            .each("attractor", &numbers, |own| Some(*own))
-            .each("regime", all, |own| own.regime.name())
-            .each("period", all, |own| own.period.map(u64::from))
-            .each("side", all, |own| own.side.map_or("", Place::name))
-            .each("rms_velocity_m_per_s", all, |own| own.rms_velocity.unwrap_or(f64::NAN))
-            .each("x_m", all, |own| own.states[0].0)
-            .each("v_m_per_s", all, |own| own.states[0].1)
-            .each("starts", all, |own| Some(own.starts))
-            .each("share", all, |own| own.share.share)
-            .each("share_low", all, |own| own.share.low)
-            .each("share_high", all, |own| own.share.high)
+            .each("attractor", &numbers, |number| Some(*number))
+            .each("regime", all, |attractor| attractor.regime.name())
+            .each("period", all, |attractor| attractor.period.map(u64::from))
+            .each("side", all, |attractor| attractor.side.map_or("", Place::name))
+            .each("rms_velocity_m_per_s", all, |attractor| attractor.rms_velocity.unwrap_or(f64::NAN))
+            .each("x_m", all, |attractor| attractor.states[0].0)
+            .each("v_m_per_s", all, |attractor| attractor.states[0].1)
+            .each("starts", all, |attractor| Some(attractor.starts))
+            .each("share", all, |attractor| attractor.share.share)
+            .each("share_low", all, |attractor| attractor.share.low)
+            .each("share_high", all, |attractor| attractor.share.high)
     }
 }
 
@@ -131,46 +146,41 @@ enum Key {
 impl Basins {
     /// What is known so far; none where it was cancelled.
     pub fn answer(&self, task: &Task) -> Option<Answer> {
-        let after: Vec<Option<(Key, u32)>> =
+        let after: Vec<Option<(Key, Way)>> =
             (0..self.rounds.releases.len()).map(|place| self.after(place as u32)).collect();
         let (mut keys, mut counts): (Vec<(Key, usize)>, Vec<u64>) = (Vec::new(), Vec::new());
-        let (mut outside, mut lost, mut undecided) = (0, 0, 0);
+        let (mut outside, mut lost, mut spent, mut undecided) = (0, 0, 0, 0);
         let mut rows = Vec::with_capacity(self.rounds.fates.len());
         for (row, fate) in self.rounds.fates.iter().enumerate() {
             let key = match *fate {
-                Fate::Kind(kind, periods) => Some((Key::Kind(kind), periods)),
-                Fate::Release(place, periods) => {
-                    after[place as usize].map(|(key, more)| (key, periods + more))
-                }
-                Fate::NotRun | Fate::Outside | Fate::Lost | Fate::Undecided => None,
+                Fate::Kind(kind, way) => Some((Key::Kind(kind), way)),
+                Fate::Release(place, way) => after[place as usize].map(|(key, more)| (key, way.and(more))),
+                Fate::NotRun | Fate::Outside | Fate::Lost { .. } | Fate::Undecided => None,
             };
-            outside += u64::from(*fate == Fate::Outside);
-            undecided += u64::from(*fate == Fate::Undecided);
-            lost += u64::from(*fate == Fate::Lost);
-            if let Fate::Release(place, _) = *fate
-                && key.is_none()
-            {
-                match self.end_after(place) {
-                    Fate::Lost => lost += 1,
-                    _ => undecided += 1,
-                }
-            }
-            rows.push(key.map(|(key, periods)| {
-                let known = keys.iter().position(|own| own.0 == key);
+            let end = match *fate {
+                Fate::Release(place, _) if key.is_none() => self.chain(place).1,
+                other => other,
+            };
+            outside += u64::from(end == Fate::Outside);
+            lost += u64::from(matches!(end, Fate::Lost { .. }));
+            spent += u64::from(end == Fate::Lost { spent: true });
+            undecided += u64::from(end == Fate::Undecided);
+            rows.push(key.map(|(key, way)| {
+                let known = keys.iter().position(|(known, _)| *known == key);
                 let place = known.unwrap_or_else(|| {
                     keys.push((key, row));
                     counts.push(0);
                     keys.len() - 1
                 });
                 counts[place] += 1;
-                (place as u32 + 1, periods)
+                (place as u32 + 1, way.periods)
             }));
         }
         let run = self.rounds.fates.iter().filter(|fate| **fate != Fate::NotRun).count() as u64;
         let inside = (run - outside).max(1);
         let mut attractors = Vec::with_capacity(keys.len());
         for ((key, row), starts) in keys.into_iter().zip(counts) {
-            let settled = rows[row].map_or(0, |own| own.1);
+            let settled = rows[row].map_or(0, |(_, periods)| periods);
             let (summary, states) = self.describe(key, (row, settled), task)?;
             attractors.push(Attractor {
                 regime: summary.regime,
@@ -182,42 +192,37 @@ impl Basins {
                 share: Shares::of(starts, inside),
             });
         }
-        Some(Answer { attractors, rows, outside, lost, undecided })
+        Some(Answer { attractors, rows, sure: Vec::new(), outside, lost, spent, undecided })
     }
 
     /// The fates that follow each other from a release on, its own first, up to one that is no release or has
     /// been passed.
-    fn chain(&self, release: u32) -> (Vec<(u32, u32)>, Fate) {
-        let (mut passed, mut at, mut periods) = (Vec::new(), release, 0);
+    pub(super) fn chain(&self, release: u32) -> (Vec<(u32, Way)>, Fate) {
+        let (mut passed, mut at, mut way) = (Vec::new(), release, Way::default());
         loop {
-            if passed.iter().any(|own: &(u32, u32)| own.0 == at) {
-                return (passed, Fate::Release(at, periods));
+            if passed.iter().any(|(known, _): &(u32, Way)| *known == at) {
+                return (passed, Fate::Release(at, way));
             }
-            passed.push((at, periods));
+            passed.push((at, way));
             match self.rounds.releases[at as usize].next {
-                Fate::Release(next, more) => (at, periods) = (next, periods + more),
+                Fate::Release(next, more) => (at, way) = (next, way.and(more)),
                 other => return (passed, other),
             }
         }
     }
 
-    /// What follows a release, and after how many periods.
-    fn after(&self, release: u32) -> Option<(Key, u32)> {
+    /// What follows a release, and after what way.
+    fn after(&self, release: u32) -> Option<(Key, Way)> {
         let (passed, end) = self.chain(release);
         match end {
-            Fate::Kind(kind, more) => Some((Key::Kind(kind), passed.last().map_or(0, |last| last.1) + more)),
+            Fate::Kind(kind, more) => Some((Key::Kind(kind), passed.last()?.1.and(more))),
             Fate::Release(again, _) => {
-                let begin = passed.iter().position(|own| own.0 == again)?;
-                let least = passed[begin..].iter().map(|own| own.0).min()?;
+                let begin = passed.iter().position(|(known, _)| *known == again)?;
+                let least = passed[begin..].iter().map(|(known, _)| *known).min()?;
                 Some((Key::Cycle(least), passed[begin].1))
             }
             _ => None,
         }
-    }
-
-    /// How the motion ends that follows a release and goes to no attractor.
-    fn end_after(&self, release: u32) -> Fate {
-        self.chain(release).1
     }
 
     /// The summary of an attractor, and its states: of an orbit from one of them, else from the start `row`,
@@ -234,7 +239,7 @@ impl Basins {
         match key {
             Key::Kind(kind) => match &self.rounds.kinds[kind as usize] {
                 Kind::Orbit(orbit) => {
-                    let first = self.rounds.of.iter().position(|own| own == orbit)?;
+                    let first = self.rounds.of.iter().position(|of| of == orbit)?;
                     start = self.rounds.captures[first].state;
                 }
                 Kind::Rest(side) => {
@@ -263,7 +268,7 @@ impl Basins {
 /// The state of a settled motion after each of `count` forcing periods, that with the largest displacement
 /// first.
 fn states(model: &Model, state: (f64, f64), count: u32, period: f64) -> Vec<(f64, f64)> {
-    let times: Vec<f64> = (0..count).map(|own| f64::from(own) * period).collect();
+    let times: Vec<f64> = (0..count).map(|number| f64::from(number) * period).collect();
     let request = Request { sample_times: &times, ..Request::default() };
     let run = model.with_start(state).with_duration(f64::from(count) * period, 0.0).run(&request);
     if run.summary.outcome != Outcome::Done || run.samples.len() != times.len() {
@@ -283,8 +288,8 @@ mod tests {
     #[test]
     fn the_interval_of_a_share_is_wilsons() {
         // Wilson 1927, with the 0.975 quantile: 81 of 263, as in Newcombe (1998), Table I
-        let own = Shares::of(81, 263);
-        assert!((own.low - 0.2553).abs() < 5e-5 && (own.high - 0.3662).abs() < 5e-5, "{own:?}");
+        let share = Shares::of(81, 263);
+        assert!((share.low - 0.2553).abs() < 5e-5 && (share.high - 0.3662).abs() < 5e-5, "{share:?}");
         let none = Shares::of(0, 20);
         assert_eq!((none.share, none.low), (0.0, 0.0));
         assert!((none.high - 0.1611).abs() < 5e-5, "{none:?}");

@@ -17,21 +17,25 @@
 //! rounds of starts alone, so neither batches nor threads change a bit.
 
 mod answer;
+mod effort;
+mod item;
 mod orbit;
 mod region;
 mod rounds;
 mod starts;
 mod stroboscopic;
+mod sure;
 mod verdict;
 
 use std::sync::Arc;
 
-use crate::dynamics::Model;
+use crate::dynamics::{Model, Request};
 use crate::mechanics::Mechanism;
 use crate::scene::{Damping, Excitation, Fault, Scene, Start, Stops};
 use crate::study::levels::{Levels, STRIDES};
 pub use answer::{Answer, Attractor, Shares};
-use rounds::Rounds;
+use effort::Effort;
+use rounds::{PATIENCE, Rounds};
 pub use starts::{EvenRange, MAX_STARTS, Starts, StartsError};
 
 /// Why a scene has no basins.
@@ -69,6 +73,9 @@ pub enum NoBasins {
     },
 }
 
+/// Small oscillations over which the cost of a forcing period is measured: some thousand steps.
+const MEASURED: f64 = 300.0;
+
 /// A map of basins, coarse first.
 #[derive(Debug)]
 pub struct Basins {
@@ -79,9 +86,13 @@ pub struct Basins {
     done: usize,
     room: (f64, f64),
     rounds: Rounds,
+    effort: Effort,
 }
 
 impl Basins {
+    /// Forcing periods after which a motion that goes to nothing known is judged.
+    pub const PATIENCE: u64 = PATIENCE;
+
     /// The map of a scene from these starts, of which none has been run; the scene's own start does not
     /// matter. Its mass rests or swings once a period of its excitation; without one, once a period of small
     /// oscillations.
@@ -120,11 +131,12 @@ impl Basins {
             (stops.0.map_or(left, |stop| stop.max(left)), stops.1.map_or(right, |stop| stop.min(right)));
         let levels = starts.levels();
         let rounds = Rounds::new(starts.count());
-        let own = Self { model, starts, levels, done: 0, room, rounds };
-        if (0..own.starts.count()).all(|row| own.start(row).is_none()) {
-            return Err(own.beyond());
+        let effort = Effort::of_starts(starts.count());
+        let basins = Self { model, starts, levels, done: 0, room, rounds, effort };
+        if (0..basins.starts.count()).all(|row| basins.start(row).is_none()) {
+            return Err(basins.beyond());
         }
-        Ok(own)
+        Ok(basins)
     }
 
     /// What all starts lie beyond.
@@ -161,6 +173,15 @@ impl Basins {
         (&self.levels, self.done)
     }
 
+    /// Steps, and seconds of a core, that a forcing period takes some, by a run of the model's own.
+    pub fn cost_of_a_period(&self) -> (f64, f64) {
+        let period = self.model.forcing_period().unwrap_or(1.0);
+        let time = period.min(MEASURED * self.model.natural_time());
+        let summary = self.model.with_duration(time, 0.0).run(&Request::default()).summary;
+        let periods = summary.outcome.ended_at().unwrap_or(time) / period;
+        (summary.steps as f64 / periods, summary.cpu_s / periods)
+    }
+
     /// Whether every start has been run.
     pub fn is_whole(&self) -> bool {
         self.done == STRIDES.len()
@@ -181,7 +202,7 @@ fn loses_energy(scene: &Scene) -> bool {
         Damping::Ratio(xi) => xi > 0.0,
         Damping::Coefficient { c_n_s_per_m } => c_n_s_per_m > 0.0,
     };
-    let loses = |restitution: Option<f64>| restitution.is_some_and(|own| own < 1.0);
+    let loses = |restitution: Option<f64>| restitution.is_some_and(|value| value < 1.0);
     damped
         || match &scene.stops {
             Stops::None => false,

@@ -1,12 +1,13 @@
 //! Rounds of a map of basins: starts are followed in rounds, and what is known grows between them.
 
 use super::Basins;
+use super::item::{Item, Way};
 use super::orbit::{Found, find};
 use super::region::absorbing;
 use super::starts::Starts;
 use super::stroboscopic::Stroboscope;
 use super::verdict::{Verdict, verdict};
-use crate::dynamics::{Arrival, Capture, Outcome, Pursuit, Region, ReleaseIdentity, Side, Summary};
+use crate::dynamics::{Arrival, Capture, Outcome, Pursued, Pursuit, Region, ReleaseIdentity, Side, Summary};
 use crate::study::Task;
 use crate::system::threads::Pool;
 
@@ -16,7 +17,7 @@ pub(super) const PATIENCE: u64 = 1000;
 
 /// Starts of the first round of a map, and the most of any: while little is known, rounds are short.
 const FIRST_ROUND: usize = 64;
-const LONGEST_ROUND: usize = 8192;
+pub(super) const LONGEST_ROUND: usize = 8192;
 
 /// Regions that are looked for around motions of one kind.
 const MOST_SEARCHES: usize = 4;
@@ -33,12 +34,15 @@ const ON_ORBIT: f64 = 1e-6;
 pub(super) enum Fate {
     NotRun,
     Outside,
-    Lost,
+    /// Its run ended early; by its budget where `spent`.
+    Lost {
+        spent: bool,
+    },
     Undecided,
-    /// Goes to this kind of motion, after so many periods.
-    Kind(u32, u32),
-    /// Comes to this release, after so many periods.
-    Release(u32, u32),
+    /// Goes to this kind of motion.
+    Kind(u32, Way),
+    /// Comes to this release.
+    Release(u32, Way),
 }
 
 /// A kind of motion that a start goes to, other than by a release.
@@ -52,22 +56,11 @@ pub(super) enum Kind {
     Judged(Verdict, Box<Summary>),
 }
 
-/// A release, what follows it, and after how many periods more.
+/// A release, and what follows it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Release {
     identity: ReleaseIdentity,
     pub next: Fate,
-}
-
-/// Something to follow: a start, or what comes after a release, as the continuation of a start with some
-/// releases passed over.
-#[derive(Debug, Clone, Copy)]
-struct Item {
-    row: usize,
-    releases: u32,
-    /// The release that it continues, and its number of periods up to there.
-    after: Option<(u32, u64)>,
-    repeats_from: u64,
 }
 
 /// What is known of a map.
@@ -83,12 +76,14 @@ pub(super) struct Rounds {
     rejected: Vec<(f64, f64)>,
     unstable: Vec<(f64, f64)>,
     /// Regions around irregular motions, which kind each is of, and the kind of each that was looked for.
-    regions: Vec<Region>,
+    pub regions: Vec<Region>,
     region_of: Vec<u32>,
     searches: Vec<u32>,
     /// Verdicts on motions without a period whose exponent does not bear them out.
     doubted: Vec<Verdict>,
     next_round: usize,
+    /// Starts that have not been followed.
+    remaining: usize,
 }
 
 impl Rounds {
@@ -106,6 +101,7 @@ impl Rounds {
             searches: Vec::new(),
             doubted: Vec::new(),
             next_round: FIRST_ROUND,
+            remaining: starts,
         }
     }
 
@@ -119,74 +115,102 @@ impl Rounds {
 
     /// The place of a release, and whether it is new.
     fn release(&mut self, identity: ReleaseIdentity) -> (u32, bool) {
-        let place = self.releases.iter().position(|own| own.identity == identity);
-        let new = place.is_none();
-        if new {
+        let place = self.known_release(identity);
+        if place.is_none() {
             self.releases.push(Release { identity, next: Fate::NotRun });
         }
-        (place.unwrap_or(self.releases.len() - 1) as u32, new)
+        (place.unwrap_or(self.releases.len() as u32 - 1), place.is_none())
+    }
+
+    /// The place of a release that is known.
+    fn known_release(&self, identity: ReleaseIdentity) -> Option<u32> {
+        self.releases.iter().position(|release| release.identity == identity).map(|place| place as u32)
     }
 
     /// Notes what an item has come to; what is to be followed for that.
-    fn note(&mut self, item: Item, arrival: Arrival, scope: &Stroboscope) -> Option<Item> {
-        let (fate, periods) = match arrival {
+    fn note(&mut self, item: Item, pursued: Pursued, scope: &Stroboscope) -> Option<Item> {
+        let crossings = pursued.crossings;
+        let fate = match pursued.arrival {
             Arrival::Captured { which, periods } => {
-                let orbit = self.of[which];
-                (Fate::Kind(self.kind(|own| *own == Kind::Orbit(orbit), || Kind::Orbit(orbit)), 0), periods)
+                let orbit = Kind::Orbit(self.of[which]);
+                Fate::Kind(self.kind(|kind| *kind == orbit, || orbit.clone()), item.way(periods, crossings))
             }
-            Arrival::Entered { which, periods } => (Fate::Kind(self.region_of[which], 0), periods),
+            Arrival::Entered { which, periods } => {
+                Fate::Kind(self.region_of[which], item.way(periods, crossings))
+            }
             Arrival::Rests { side, periods } => {
-                (Fate::Kind(self.kind(|own| *own == Kind::Rest(side), || Kind::Rest(side)), 0), periods)
+                let rest = Kind::Rest(side);
+                Fate::Kind(self.kind(|kind| *kind == rest, || rest.clone()), item.way(periods, crossings))
             }
             Arrival::Released { identity, periods } => {
                 let (place, new) = self.release(identity);
-                self.put(item, Fate::Release(place, 0), periods);
-                let after = Some((place, periods));
+                let way = item.way(periods, crossings);
+                self.put(item, Fate::Release(place, way));
+                let after = Some((place, item.after.map_or(way, |(_, before)| before.and(way))));
                 return new.then_some(Item { releases: item.releases + 1, after, repeats_from: 0, ..item });
             }
             Arrival::Repeats { periods, .. } => {
                 return Some(Item { repeats_from: 2 * periods, ..item });
             }
-            Arrival::Unsettled(summary) => {
-                let end = (summary.final_x, summary.final_v);
-                let on_unstable = self.unstable.iter().any(|own| is_near(scope, *own, end, ON_ORBIT));
-                let fate = match verdict(&summary, on_unstable) {
-                    Verdict::Lost => Fate::Lost,
-                    Verdict::Undecided => Fate::Undecided,
-                    own @ Verdict::Settled { .. } => self.judged(own, summary, scope),
-                };
-                (fate, PATIENCE)
-            }
+            Arrival::Unsettled(summary) => match self.verdict(&summary, scope) {
+                Verdict::Lost => Fate::Lost { spent: matches!(summary.outcome, Outcome::StepBudget { .. }) },
+                Verdict::Undecided => Fate::Undecided,
+                settled @ Verdict::Settled { .. } => {
+                    self.judged(settled, summary, scope, item.way(PATIENCE, crossings))
+                }
+            },
         };
-        self.put(item, fate, periods);
+        self.put(item, fate);
         None
+    }
+
+    /// What an item has come to that was followed once more, as far as that is known already.
+    pub fn known_fate(&self, item: &Item, pursued: &Pursued, scope: &Stroboscope) -> Option<Fate> {
+        let kind = |same: &dyn Fn(&Kind) -> bool| self.kinds.iter().position(same).map(|place| place as u32);
+        let (found, periods) = match &pursued.arrival {
+            Arrival::Captured { which, periods } => {
+                (kind(&|kind| *kind == Kind::Orbit(self.of[*which])), *periods)
+            }
+            Arrival::Entered { which, periods } => (Some(self.region_of[*which]), *periods),
+            Arrival::Rests { side, periods } => (kind(&|kind| *kind == Kind::Rest(*side)), *periods),
+            Arrival::Unsettled(summary) => {
+                let verdict = self.verdict(summary, scope);
+                (kind(&|kind| matches!(kind, Kind::Judged(known, _) if *known == verdict)), PATIENCE)
+            }
+            Arrival::Released { identity, periods } => {
+                let place = self.known_release(*identity)?;
+                return Some(Fate::Release(place, item.way(*periods, pursued.crossings)));
+            }
+            Arrival::Repeats { .. } => return None,
+        };
+        Some(Fate::Kind(found?, item.way(periods, pursued.crossings)))
+    }
+
+    /// The verdict on a motion that has settled to nothing known.
+    fn verdict(&self, summary: &Summary, scope: &Stroboscope) -> Verdict {
+        let end = (summary.final_x, summary.final_v);
+        verdict(summary, self.unstable.iter().any(|state| is_near(scope, *state, end, ON_ORBIT)))
     }
 
     /// The kind of a motion that was judged. Of those without a period the first one must be irregular by its
     /// exponent, else one of the next few: it may be a motion that is slow to settle.
-    fn judged(&mut self, own: Verdict, summary: Box<Summary>, scope: &Stroboscope) -> Fate {
-        let same = |kind: &Kind| matches!(kind, Kind::Judged(other, _) if *other == own);
-        let repeats = matches!(own, Verdict::Settled { period: Some(_), .. });
+    fn judged(&mut self, verdict: Verdict, summary: Box<Summary>, scope: &Stroboscope, way: Way) -> Fate {
+        let same = |kind: &Kind| matches!(kind, Kind::Judged(other, _) if *other == verdict);
+        let repeats = matches!(verdict, Verdict::Settled { period: Some(_), .. });
         if !repeats && !self.kinds.iter().any(same) {
-            let doubts = self.doubted.iter().filter(|other| **other == own).count();
+            let doubts = self.doubted.iter().filter(|other| **other == verdict).count();
             if doubts >= MOST_DOUBTS || !scope.is_irregular((summary.final_x, summary.final_v)) {
-                self.doubted.push(own);
+                self.doubted.push(verdict);
                 return Fate::Undecided;
             }
         }
-        Fate::Kind(self.kind(same, || Kind::Judged(own, summary)), 0)
+        Fate::Kind(self.kind(same, || Kind::Judged(verdict, summary)), way)
     }
 
-    fn put(&mut self, item: Item, fate: Fate, periods: u64) {
-        let count = |before: u64| (periods - before.min(periods)) as u32;
-        let with = |count: u32| match fate {
-            Fate::Kind(place, _) => Fate::Kind(place, count),
-            Fate::Release(place, _) => Fate::Release(place, count),
-            other => other,
-        };
+    fn put(&mut self, item: Item, fate: Fate) {
         match item.after {
-            Some((release, before)) => self.releases[release as usize].next = with(count(before)),
-            None => self.fates[item.row] = with(count(0)),
+            Some((release, _)) => self.releases[release as usize].next = fate,
+            None => self.fates[item.row] = fate,
         }
     }
 
@@ -257,35 +281,26 @@ fn round(
     task: &Task,
 ) -> Option<Vec<Item>> {
     let (known, regions) = (rounds.captures.clone(), rounds.regions.clone());
-    let pursuit = |item: &Item| {
-        let (x_mm, v) = starts.at(item.row);
-        Pursuit {
-            start: (x_mm / 1e3, v),
-            known: &known,
-            regions: &regions,
-            repeats_from: item.repeats_from,
-            most_periods: PATIENCE,
-            releases: item.releases,
-        }
-    };
+    let most_work = scope.effort.of_one(rounds.remaining);
+    let pursuit = |item: &Item| item.pursuit(starts, (&known, &regions), most_work);
     let pursuits: Vec<Pursuit> = items.iter().map(pursuit).collect();
-    let tick = |own: &Pursuit| {
-        if own.repeats_from == 0 && own.releases == 0 {
+    let tick = |pursuit: &Pursuit| {
+        if pursuit.repeats_from == 0 && pursuit.releases == 0 {
             (task.tick)();
         }
     };
-    let arrivals = scope.pursue(&pursuits, &tick)?;
+    let pursued = scope.pursue(&pursuits, &tick)?;
     let (mut next, mut proposals, mut unsettled) = (Vec::new(), Vec::new(), Vec::new());
-    for (item, arrival) in items.into_iter().zip(arrivals) {
-        if let Arrival::Repeats { period, state, .. } = arrival {
+    for (item, pursued) in items.into_iter().zip(pursued) {
+        if let Arrival::Repeats { period, state, .. } = pursued.arrival {
             proposals.push((period, state));
         }
-        if let Arrival::Unsettled(end) = &arrival
+        if let Arrival::Unsettled(end) = &pursued.arrival
             && end.outcome == Outcome::Done
         {
             unsettled.push((item, (end.final_x, end.final_v)));
         }
-        next.extend(rounds.note(item, arrival, scope));
+        next.extend(rounds.note(item, pursued, scope));
     }
     for (period, state) in proposals {
         rounds.propose(scope, period, state)?;
@@ -294,7 +309,9 @@ fn round(
         rounds.surround(scope, *item, *state)?;
     }
     // Followed again, they enter the region at their own time.
-    next.extend(unsettled.into_iter().filter(|own| rounds.is_surrounded(own.1)).map(|own| own.0));
+    next.extend(
+        unsettled.into_iter().filter(|(_, state)| rounds.is_surrounded(*state)).map(|(item, _)| item),
+    );
     (!task.is_cancelled()).then_some(next)
 }
 
@@ -302,8 +319,8 @@ impl Basins {
     /// Runs the starts of the next level; whether it was not cancelled, after which the map is of no use. The
     /// task's tick is called for each start.
     pub fn run_level(&mut self, pool: &Pool, task: &Task) -> bool {
-        let Self { model, starts, levels, done, room, rounds } = self;
-        let scope = Stroboscope { model, room: *room, pool, cancel: task.cancel };
+        let Self { model, starts, levels, done, room, rounds, effort } = self;
+        let scope = Stroboscope { model, room: *room, pool, cancel: task.cancel, effort };
         let mut begin = done.checked_sub(1).map_or(0, |before| levels.ends[before]);
         let Some(end) = levels.ends.get(*done).copied() else { return true };
         while begin < end {
@@ -313,7 +330,7 @@ impl Basins {
             for row in levels.order[begin..last].iter().map(|row| *row as usize) {
                 let x = starts.at(row).0 / 1e3;
                 if x >= room.0 && x <= room.1 {
-                    items.push(Item { row, releases: 0, after: None, repeats_from: 0 });
+                    items.push(Item::of_start(row));
                 } else {
                     rounds.fates[row] = Fate::Outside;
                     (task.tick)();
@@ -323,6 +340,7 @@ impl Basins {
                 let Some(next) = round(rounds, &scope, starts, items, task) else { return false };
                 items = next;
             }
+            rounds.remaining -= last - begin;
             begin = last;
         }
         *done += 1;

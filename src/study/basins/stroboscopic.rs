@@ -2,12 +2,16 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::dynamics::{Arrival, Model, Outcome, Pursuit, Request};
+use super::effort::Effort;
+use crate::dynamics::{Arrival, Model, Outcome, Pursued, Pursuit, Request};
 use crate::study::exponents::{ExponentOptions, average_exponents};
 use crate::system::threads::{Pool, UnderWay, share};
 
 /// A displacement and a velocity in units of the scene's scales.
 type Point = [f64; 2];
+
+/// A forcing period with its derivatives costs so many without.
+const WITH_DERIVATIVES: u64 = 4;
 
 /// A model, its range, and the threads that run it.
 pub(super) struct Stroboscope<'a> {
@@ -16,6 +20,7 @@ pub(super) struct Stroboscope<'a> {
     pub room: (f64, f64),
     pub pool: &'a Pool,
     pub cancel: &'a AtomicBool,
+    pub effort: &'a Effort,
 }
 
 impl Stroboscope<'_> {
@@ -44,24 +49,28 @@ impl Stroboscope<'_> {
     }
 
     /// Where motions from points are after so many forcing periods each; none of those that begin outside the
-    /// room, end early, or come to rest on the way, after which the map has no inverse. None at all where it
-    /// was cancelled.
+    /// room, end early, or come to rest on the way, after which the map has no inverse; none of any where
+    /// they are more work than is left. None at all where it was cancelled.
     pub fn map(&self, starts: &[(Point, u32)]) -> Option<Vec<Option<Point>>> {
-        let valid: Vec<usize> = (0..starts.len()).filter(|own| self.has(starts[*own].0)).collect();
+        let mut images = vec![None; starts.len()];
+        if !self.effort.has_room_for(starts.iter().map(|(_, periods)| u64::from(*periods)).sum()) {
+            return Some(images);
+        }
+        let valid: Vec<usize> = (0..starts.len()).filter(|place| self.has(starts[*place].0)).collect();
         let pursuits: Vec<Pursuit> = valid
             .iter()
-            .map(|own| Pursuit {
-                start: self.state(starts[*own].0),
+            .map(|place| Pursuit {
+                start: self.state(starts[*place].0),
                 known: &[],
                 regions: &[],
                 repeats_from: u64::MAX,
-                most_periods: starts[*own].1.into(),
+                most_periods: starts[*place].1.into(),
                 releases: 0,
+                most_work: u64::MAX,
             })
             .collect();
-        let mut images = vec![None; starts.len()];
-        for (place, arrival) in valid.into_iter().zip(self.pursue(&pursuits, &|_| ())?) {
-            images[place] = match arrival {
+        for (place, pursued) in valid.into_iter().zip(self.pursue(&pursuits, &|_| ())?) {
+            images[place] = match pursued.arrival {
                 Arrival::Unsettled(end) if end.outcome == Outcome::Done => {
                     Some(self.point((end.final_x, end.final_v)))
                 }
@@ -72,18 +81,21 @@ impl Stroboscope<'_> {
     }
 
     /// States of motions, once a period for so many `periods` without the first ones; none where one of them
-    /// ends early. None at all where it was cancelled.
+    /// ends early, or they are more work than is left. None at all where it was cancelled.
     pub fn paths(
         &self,
         starts: &[(f64, f64)],
         periods: u32,
         skipped: usize,
     ) -> Option<Option<Vec<(f64, f64)>>> {
-        let period = self.model.forcing_period().unwrap_or(1.0);
-        let times: Vec<f64> = (1..=periods).map(|own| f64::from(own) * period).collect();
+        if !self.effort.has_room_for(starts.len() as u64 * u64::from(periods)) {
+            return Some(None);
+        }
+        let period = self.period();
+        let times: Vec<f64> = (1..=periods).map(|number| f64::from(number) * period).collect();
         let last = f64::from(periods) * period;
-        let path = |(): &mut (), own: usize| {
-            let model = self.model.with_start(starts[own]).with_duration(last, last);
+        let path = |(): &mut (), number: usize| {
+            let model = self.model.with_start(starts[number]).with_duration(last, last);
             let kept = &times[skipped.min(times.len())..];
             let request = Request { sample_times: kept, cancel: Some(self.cancel), ..Request::default() };
             let run = model.run(&request);
@@ -95,29 +107,40 @@ impl Stroboscope<'_> {
         };
         let all = self.pool.map(starts.len(), || (), path).ok()?;
         let all: Option<Vec<_>> = all.into_iter().collect();
-        Some(all.map(|all| all.iter().flatten().map(|sample| (sample.x, sample.v)).collect()))
+        Some(all.map(|paths| paths.iter().flatten().map(|sample| (sample.x, sample.v)).collect()))
     }
 
-    /// Whether the motion that has a state in m and m/s once a period is irregular by its exponent.
+    /// Whether the motion that has a state in m and m/s once a period is irregular by its exponent, where
+    /// there is work left to tell.
     pub fn is_irregular(&self, state: (f64, f64)) -> bool {
+        if !self.effort.has_room_for(WITH_DERIVATIVES * u64::from(ExponentOptions::PERIODS)) {
+            return false;
+        }
         let phase = self.model.drive_phase(0.0).unwrap_or(0.0);
         let found = average_exponents(self.model, (state, phase), ExponentOptions::PERIODS, self.cancel);
-        found.is_ok_and(|own| own.is_irregular())
+        found.is_ok_and(|exponents| exponents.is_irregular())
     }
 
     /// What pursuits come to, in their order; `tick` is called for each. None where it was cancelled.
-    pub fn pursue(&self, pursuits: &[Pursuit], tick: &(dyn Fn(&Pursuit) + Sync)) -> Option<Vec<Arrival>> {
+    pub fn pursue(&self, pursuits: &[Pursuit], tick: &(dyn Fn(&Pursuit) + Sync)) -> Option<Vec<Pursued>> {
+        let period = self.period();
         let work = |next: &dyn Fn(UnderWay) -> Option<usize>| {
-            let mut arrivals = Vec::new();
-            let mut ended = |place: usize, arrival| {
+            let mut all = Vec::new();
+            let mut ended = |place: usize, pursued| {
+                self.effort.add(&pursuits[place], &pursued, period);
                 tick(&pursuits[place]);
-                arrivals.push((place, arrival));
+                all.push((place, pursued));
             };
-            let mut next = |held: UnderWay| next(held).filter(|_| !self.is_cancelled());
+            let mut next = |under_way: UnderWay| next(under_way).filter(|_| !self.is_cancelled());
             self.model.pursue(pursuits, Some(self.cancel), &mut next, &mut ended);
-            if self.is_cancelled() { Err(()) } else { Ok(arrivals) }
+            if self.is_cancelled() { Err(()) } else { Ok(all) }
         };
         share(Some(self.pool), pursuits.len(), work).ok()
+    }
+
+    /// The forcing period in s.
+    fn period(&self) -> f64 {
+        self.model.forcing_period().unwrap_or(1.0)
     }
 
     fn is_cancelled(&self) -> bool {

@@ -49,9 +49,9 @@ pub fn check_lesson(
     let mut last: Option<Rc<Subject>> = None;
     for number in 0..document.lesson.steps.len() {
         // a step begins with the scene with which the one before ended, unless it changes that
-        let [begin, end] = [document.begin(number), document.end(number)].map(|own| {
-            let same = last.take().filter(|last| *last.scene() == own.scene);
-            let new = || Rc::new(Subject::new(&own.scene, &own.files, &document.lesson, task).on(pool));
+        let [begin, end] = [document.begin(number), document.end(number)].map(|stage| {
+            let same = last.take().filter(|last| last.is_of(&stage.scene, &stage.files));
+            let new = || Rc::new(Subject::new(&stage.scene, &stage.files, &document.lesson, task).on(pool));
             Rc::clone(last.insert(same.unwrap_or_else(new)))
         });
         check_step(&mut report, document, number, (&begin, &end))?;

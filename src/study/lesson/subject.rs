@@ -71,6 +71,11 @@ impl<'a> Subject<'a> {
         self.scene
     }
 
+    /// Whether it is of this scene with these files.
+    pub(super) fn is_of(&self, scene: &Scene, files: &Files) -> bool {
+        *self.scene == *scene && *self.files == *files
+    }
+
     /// The run of the scene.
     pub(super) fn run(&self) -> Result<&Summary, Unjudged> {
         once(&self.run, || {

@@ -10,7 +10,7 @@ const PAPER: &str = "basins paper --set excitation.amplitude_g=0 --quiet";
 fn rows_number_the_attractors_by_the_first_start_and_are_the_same_for_any_number_of_jobs() {
     let line = "basins duffing --set excitation.amplitude_g=0.02 --x-mm -1500:1500:9 --v -1:1:5 --quiet";
     let text = stdout(line);
-    assert_eq!(text.lines().next().unwrap(), "x_mm,v_m_per_s,attractor,periods");
+    assert_eq!(text.lines().next().unwrap(), "x_mm,v_m_per_s,attractor,periods,sure");
     assert_eq!(column(&text, "x_mm")[..6], ["-1500", "-1500", "-1500", "-1500", "-1500", "-1125"]);
     assert_eq!(column(&text, "v_m_per_s")[..5], ["-1", "-0.5", "0", "0.5", "1"]);
     let mut seen = 0;
@@ -79,6 +79,7 @@ fn what_stands_beside_the_rows() {
         serde_json::from_str(&fs::read_to_string(place("rows.csv.json")).unwrap()).unwrap();
     assert_eq!((&manifest["command"], &manifest["starts"]), (&"basins".into(), &27.into()));
     assert_eq!((&manifest["attractors"], &manifest["outside"]), (&2.into(), &6.into()));
+    assert_eq!((&manifest["not_sure"], &manifest["out_of_work"]), (&0.into(), &0.into()));
     let svg = fs::read_to_string(place("map.svg")).unwrap();
     for words in
         ["rest left", "rest right", "displacement at the start, mm", "none found", "9 \u{d7} 3 starts"]
@@ -128,9 +129,40 @@ fn starts_that_cannot_be_are_refused() {
 #[test]
 fn one_start_is_a_map() {
     let text = stdout(&format!("{PAPER} --x-mm 1:1:1 --v 0:0:1"));
-    assert_eq!(text.lines().nth(1).unwrap(), "1,0,1,1");
+    assert_eq!(text.lines().nth(1).unwrap(), "1,0,1,1,true");
     let folder = tempfile::tempdir().unwrap();
     let plot = folder.path().join("one.png");
     headless(&format!("{PAPER} --x-mm 1:1:1 --v 0:0:1 --out /dev/null --plot")).arg(&plot).assert().success();
     assert!(fs::metadata(plot).unwrap().len() > 1000);
+}
+
+#[test]
+fn what_is_not_sure_is_marked_and_counted() {
+    let line = "basins paper-unconstrained --set excitation.amplitude_g=1.13 --x-mm -8:8:9 --v -0.8:0.8:9";
+    let assert = headless(line).assert().success();
+    let output = assert.get_output();
+    let rows = String::from_utf8(output.stdout.clone()).unwrap();
+    let sure = column(&rows, "sure");
+    let unsure = sure.iter().filter(|word| **word == "false").count();
+    assert!(unsure > 0 && sure.iter().filter(|word| **word == "true").count() > 40, "{unsure}");
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains(&format!(", {unsure} not sure")), "{said}");
+    // the same for any number of threads
+    assert_eq!(stdout(&format!("{line} --jobs 1")), stdout(&format!("{line} --jobs 3")));
+}
+
+/// A well of 700 Hz under a drive of 1.4 Hz.
+#[test]
+fn a_map_that_may_take_long_says_so_first() {
+    let well = "mass_g: 1, mechanism: DoubleWell(equilibrium_mm: 1, barrier_mj: 2.4), damping: Ratio(1e-6)";
+    let drive = "excitation: Sine(frequency_hz: 1.4, amplitude_g: 1), run: (duration_s: 10)";
+    let scene = format!("(title: \"fast\", {well}, {drive})");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("fast.ron");
+    fs::write(&path, scene).unwrap();
+    let mut command = headless("basins --x-mm 1:1:1 --v 0.1:0.1:1");
+    let output = command.arg(&path).assert().success().get_output().clone();
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.starts_with("a forcing period takes some "), "{said}");
+    assert!(said.contains("1000") && said.lines().count() == 2, "{said}");
 }

@@ -67,3 +67,39 @@ fn a_table_that_a_scene_reads_is_not_overwritten() {
     assert!(String::from_utf8_lossy(&out.stderr).contains("would overwrite"));
     assert!(std::fs::read_to_string(folder.path().join("t.csv")).unwrap().ends_with("2,6\n"));
 }
+
+#[test]
+fn help_lists_no_option_that_a_command_does_not_use() {
+    for (command, unused) in [
+        ("presets", &["--set", "--tolerance", "--jobs"][..]),
+        ("merge", &["--set", "--tolerance", "--jobs"]),
+        ("identify", &["--set", "--tolerance", "--jobs"]),
+        ("lesson", &["--set", "--tolerance"]),
+        ("simulate", &["--jobs"]),
+        ("check", &["--jobs"]),
+        ("sweep", &[]),
+        ("basins", &[]),
+    ] {
+        let text = stdout(&format!("{command} --help"));
+        for option in ["--set", "--tolerance", "--jobs"] {
+            let line = text.lines().any(|line| line.trim_start().starts_with(&format!("{option} ")));
+            assert_eq!(line, !unused.contains(&option), "{command} {option}");
+        }
+    }
+    refused(headless("merge a.csv --set mass_g=1 --out b.csv"), &["--set", "`merge` takes no scene"]);
+    refused(headless("identify a.csv --of force --tolerance 1e-6"), &["--tolerance", "`identify`"]);
+    refused(headless("lesson --jobs 2"), &["--jobs", "--check"]);
+}
+
+#[test]
+fn zero_has_no_sign_in_any_output() {
+    let folder = tempfile::tempdir().unwrap();
+    let summary = folder.path().join("summary.json");
+    let mut command =
+        headless("simulate elastic-box --set start.v_m_per_s=-0 --set start.x_mm=-0 --at 0,0.1");
+    let output = command.arg("--summary").arg(&summary).assert().success().get_output().stdout.clone();
+    let samples = String::from_utf8(output).unwrap();
+    assert!(samples.contains("\n0,0,0,"), "{samples}");
+    let summary = std::fs::read_to_string(&summary).unwrap();
+    assert!(!samples.contains("-0,") && !summary.contains("-0.0,"), "{samples}{summary}");
+}

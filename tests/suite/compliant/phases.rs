@@ -231,10 +231,15 @@ fn a_budget_spent_on_contacts_is_said_to_be() {
         "{said}"
     );
     assert!(said.contains("rigid ones (`Rigid`)") && !said.contains("tolerance"), "{said}");
-    // of other scenes, a larger tolerance where there is one
+    // of other scenes, a shorter run, and a larger tolerance where its cheaper steps reach the end
+    let late = Outcome::StepBudget { at: 9.0, count: 1 };
     let said = |tolerance: &str, outcome| ended_remedy(&model("1e3", tolerance), outcome).unwrap();
-    assert_eq!(said("1e-9", spent), "a larger tolerance or a shorter run takes fewer");
-    assert_eq!(said("1e-3", spent), "a shorter run takes fewer; 0.001 is the largest tolerance");
+    assert_eq!(said("1e-9", spent), "a run of some 1 s would do");
+    assert_eq!(said("1e-9", late), "a run of some 9 s or a larger tolerance would do");
+    assert_eq!(said("1e-3", late), "a run of some 9 s would do");
+    let noise = "excitation=Noise(rms_g: 0.3, low_hz: 1, high_hz: 20, seed: 7, lines: 4096)";
+    let lines = "a run of some 1 s or an excitation of fewer lines would do";
+    assert_eq!(ended_remedy(&preset("paper", &[noise]), spent).unwrap(), lines);
     let inaccurate = Outcome::Inaccurate { residual: 1.0 };
     assert_eq!(said("1e-9", inaccurate), "use a smaller tolerance");
     assert!(said("1e-14", inaccurate).starts_with("1e-14 is the smallest tolerance"));

@@ -4,23 +4,6 @@ use interwell::dynamics::{EventKind, Outcome, Phase, Run, Side};
 
 use crate::support::*;
 
-/// Numbers in [0, 1) that are the same everywhere (Steele and others 2014, splitmix64).
-struct Draw(u64);
-
-impl Draw {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-}
-
 struct Limits {
     left: f64,
     right: f64,

@@ -142,3 +142,48 @@ fn an_odd_polynomial_of_high_degree_is_mirrored_to_the_last_bit() {
         assert!(run.summary.total_impacts > 20);
     }
 }
+
+/// Three wells between two barriers that are equally near to x = 0: crossings are counted at the one on the
+/// side of the start, or of the first push.
+#[test]
+fn of_two_equal_barriers_the_one_that_mirrors_is_taken() {
+    let (near, far) = (2e-3_f64.powi(2), 5e-3_f64.powi(2));
+    let stiffness = 100.0 / (near * far);
+    let coefficients = [0.0, 100.0, 0.0, -stiffness * (near + far), 0.0, stiffness];
+    let mut draw = Draw(3);
+    let (mut sides, mut crossings) = ([0, 0], 0);
+    for number in 0..60 {
+        let x_mm = if number % 3 == 0 { 0.0 } else { draw.between(-6.0, 6.0) };
+        let v = if number % 2 == 0 { 0.0 } else { draw.between(-0.1, 0.1) };
+        let (amplitude, phase) = (draw.between(-1.5, 1.5), [0.0, 90.0, 37.0][number % 3]);
+        let scene = |sign: f64| {
+            model(&format!(
+                "mass_g: 15, mechanism: Polynomial(coefficients_si: {coefficients:?}),
+                 damping: Coefficient(c_n_s_per_m: 0.05), run: (duration_s: 3),
+                 excitation: Sine(frequency_hz: 3, amplitude_g: {:?}, phase_deg: {phase}),
+                 start: At(x_mm: {:?}, v_m_per_s: {:?})",
+                amplitude * sign,
+                x_mm * sign,
+                v * sign
+            ))
+        };
+        let level = scene(1.0).crossing_level().unwrap();
+        sides[usize::from(level > 0.0)] += 1;
+        assert!(x_mm == 0.0 || level.signum() == x_mm.signum());
+        crossings += mirror(&scene(1.0), &scene(-1.0)).summary.total_crossings;
+    }
+    assert!(sides.iter().all(|count| *count > 15) && crossings > 100, "{sides:?} {crossings}");
+}
+
+/// A mass that stands on the barrier, or between two equal ones, is on neither side.
+#[test]
+fn a_mass_that_nothing_moves_off_the_middle_has_no_side() {
+    for coefficients in ["[0, -40, 0, 5e5]", "[0, 40, 0, -5e6, 0, 1e11]"] {
+        let scene = model(&format!(
+            "mass_g: 15, mechanism: Polynomial(coefficients_si: {coefficients}), run: (duration_s: 1),
+             start: At(x_mm: 0, v_m_per_s: 0)"
+        ));
+        let summary = run(&scene).summary;
+        assert_eq!((summary.side, summary.regime.name(), summary.final_x), (None, "rest", 0.0));
+    }
+}

@@ -45,12 +45,6 @@ fn a_mirrored_scene_has_the_mirrored_run() {
     hold("a_mirrored_scene_has_the_mirrored_run", 1000, 0.5, scene(), |scene| {
         let Some(image) = image(scene) else { return Ok(false) };
         let (Some(own), Some(other)) = (model(scene), model(&image)) else { return Ok(false) };
-        // of two equal barriers, between three wells, the left one is taken, in a mirror too
-        let barrier =
-            |model: &interwell::dynamics::Model| model.mechanism().landscape.barrier.map(|barrier| barrier.x);
-        if barrier(&own) != barrier(&other).map(|x| -x) {
-            return Ok(false);
-        }
         let times = times(scene, 100);
         let request = Request { sample_times: &times, events: true, ledger: true, ..Request::default() };
         same_in_a_mirror(&own.run(&request), &other.run(&request))?;

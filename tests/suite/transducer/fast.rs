@@ -1,6 +1,7 @@
 //! Circuits far faster than the motion: what is said of them, and what is given in their place.
 
 use interwell::dynamics::Outcome;
+use interwell::study::ended_remedy;
 
 use crate::support::*;
 
@@ -51,6 +52,20 @@ fn a_strong_coupling_is_named_and_a_real_one_is_not() {
     assert_eq!(preset("paper", &[&coil("5")]).fast_circuit(), None);
     assert_eq!(preset("harvester", &[]).fast_circuit(), None);
     assert_eq!(preset("paper", &[]).fast_circuit(), None);
+}
+
+/// A load of 1e30 ohm is an open circuit, and a run with it ends with that remedy.
+#[test]
+fn an_open_circuit_is_given_in_place_of_a_load_without_bounds() {
+    let load = ["transducer.inductance_mh=10", "transducer.load_ohm=1e30"];
+    let model = preset("harvester", &load);
+    let words = model.fast_circuit().unwrap();
+    assert!(words.contains("load_ohm: inf is the open circuit that this is"), "{words}");
+    for outcome in [Outcome::NotFinite { at: 0.04 }, Outcome::StepBudget { at: 0.04, count: 1 }] {
+        assert_eq!(ended_remedy(&model, outcome), Some(words.clone()));
+    }
+    let open = preset("harvester", &[load[0], "transducer.load_ohm=inf"]);
+    assert_eq!((open.fast_circuit(), run(&open).summary.outcome), (None, Outcome::Done));
 }
 
 /// A mass that is held fast moves by less than the rounding of its place: that no power of it is right is

@@ -15,10 +15,12 @@ fn holds_or_says(own: &Geometry) -> Option<FlexureError> {
         }
         Err(e) => {
             let (FlexureError::NotConverged { x, .. }
-            | FlexureError::Unstable { x }
-            | FlexureError::Endless { x }) = e;
+            | FlexureError::Unstable { x, .. }
+            | FlexureError::Endless { x, .. }) = e;
             assert!(x.is_finite() && x >= 0.0, "{e:?}");
-            assert!(e.to_string().contains("try a smaller preload"));
+            let preloaded = own.preload > 0.0;
+            assert_eq!(e.to_string().contains("try a smaller preload or other proportions"), preloaded);
+            assert_eq!(e.to_string().contains("try other proportions"), !preloaded);
             Some(e)
         }
     }

@@ -1,0 +1,153 @@
+//! Which answers of a map of basins are sure: those that stay where the error of the integration is ten times
+//! as large.
+//!
+//! A start near the border of a basin, or in a long irregular transient, goes where the last digits of the
+//! integration send it. Such a start is followed once more at another tolerance. By chance it may come to the
+//! same attractor, but hardly after as many crossings of the barrier and as many periods.
+
+use std::collections::BTreeMap;
+
+use super::Basins;
+use super::answer::Answer;
+use super::item::{Item, Way};
+use super::rounds::{Fate, Kind, LONGEST_ROUND, PATIENCE};
+use super::stroboscopic::Stroboscope;
+use crate::dynamics::{Place, Pursuit};
+use crate::scene::TOLERANCES;
+use crate::study::Task;
+use crate::system::threads::Pool;
+
+/// The tolerance at which starts are followed once more, in that of the map; its inverse where that would be
+/// larger than any scene may have.
+const FACTOR: f64 = 10.0;
+
+impl Basins {
+    /// The rows that [`check`](Self::check) follows once more: those whose neighbours in the grid, up to
+    /// eight, do not all go to the same attractor in as many periods; of a grid of one line, and of random
+    /// starts, all. Precondition: the map is whole.
+    pub fn rows_to_check(&self, answer: &Answer) -> Vec<usize> {
+        let rows = &answer.rows;
+        let settled = (0..rows.len()).filter(|row| rows[*row].is_some());
+        let Some((x_mm, v)) = self.starts.axes() else { return settled.collect() };
+        let around = |place: usize, count: usize| place.saturating_sub(1)..(place + 2).min(count);
+        let alike = |row: &usize| {
+            let (across, up) = (row / v.len(), row % v.len());
+            let mut near = around(across, x_mm.len())
+                .flat_map(|column| around(up, v.len()).map(move |place| column * v.len() + place));
+            near.all(|neighbour| rows[neighbour] == rows[*row])
+        };
+        let is_line = x_mm.len() == 1 || v.len() == 1;
+        settled.filter(|row| is_line || !alike(row)).collect()
+    }
+
+    /// Says which answers are sure, in `answer`; whether it was not cancelled. The task's tick is called for
+    /// each start that is followed once more.
+    ///
+    /// Sure is a start that goes to the same attractor at ten times the tolerance, after as many crossings of
+    /// the barrier and, where it is not the only attractor in one of two wells, after as many periods; and a
+    /// start of which [`rows_to_check`](Self::rows_to_check) has found that its neighbours all do as it does.
+    /// Where it comes to a release, all that follows that must be sure as well.
+    pub fn check(&self, answer: &mut Answer, pool: &Pool, task: &Task) -> bool {
+        let finer = FACTOR * self.model.tolerance() > TOLERANCES.1;
+        let factor = if finer { 1.0 / FACTOR } else { FACTOR };
+        let model = self.model.with_tolerance(factor * self.model.tolerance());
+        let Self { room, effort, .. } = self;
+        let scope = Stroboscope { model: &model, room: *room, pool, cancel: task.cancel, effort };
+        let mut sure = vec![true; answer.rows.len()];
+        let items: Vec<Item> = self.rows_to_check(answer).into_iter().map(Item::of_start).collect();
+        for part in items.chunks(LONGEST_ROUND) {
+            let Some(fates) = self.follow_again(&scope, part, &|| (task.tick)()) else { return false };
+            for (item, again) in part.iter().zip(fates) {
+                let first = (self.rounds.fates[item.row], Way::default());
+                sure[item.row] = self.is_same(first, again, self.is_alone(answer, item.row));
+            }
+        }
+        let Some(releases) = self.sure_releases(&scope, answer, &sure) else { return false };
+        let chains: Vec<bool> = (0..releases.len())
+            .map(|place| self.chain(place as u32).0.iter().all(|(passed, _)| releases[*passed as usize]))
+            .collect();
+        for (row, sure) in sure.iter_mut().enumerate() {
+            if let Fate::Release(place, _) = self.rounds.fates[row] {
+                *sure &= chains[place as usize];
+            }
+        }
+        answer.sure = sure;
+        true
+    }
+
+    /// For each release whether what follows it is sure, as the continuation of a start that is. None where
+    /// it was cancelled.
+    fn sure_releases(&self, scope: &Stroboscope, answer: &Answer, sure: &[bool]) -> Option<Vec<bool>> {
+        let mut known = vec![false; self.rounds.releases.len()];
+        // By their places: a start that comes to the release, the number of releases up to it, and the way.
+        let mut next: BTreeMap<u32, Item> = BTreeMap::new();
+        for (row, fate) in self.rounds.fates.iter().enumerate().filter(|(row, _)| sure[*row]) {
+            if let Fate::Release(place, way) = *fate {
+                let item = || Item { releases: 1, after: Some((place, way)), ..Item::of_start(row) };
+                next.entry(place).or_insert_with(item);
+            }
+        }
+        let mut tried = vec![false; known.len()];
+        while !next.is_empty() {
+            let items: Vec<Item> = std::mem::take(&mut next).into_values().collect();
+            for part in items.chunks(LONGEST_ROUND) {
+                for (item, again) in part.iter().zip(self.follow_again(scope, part, &|| ())?) {
+                    let Some((place, before)) = item.after else { continue };
+                    tried[place as usize] = true;
+                    let first = self.rounds.releases[place as usize].next;
+                    let same = self.is_same((first, before), again, self.is_alone(answer, item.row));
+                    known[place as usize] = same;
+                    if let Fate::Release(following, way) = first
+                        && same
+                        && !tried[following as usize]
+                    {
+                        let after = Some((following, before.and(way)));
+                        next.insert(following, Item { releases: item.releases + 1, after, ..*item });
+                    }
+                }
+            }
+            next.retain(|place, _| !tried[*place as usize]);
+        }
+        Some(known)
+    }
+
+    /// What items come to in a scope, as far as it is known. None where it was cancelled.
+    fn follow_again(
+        &self,
+        scope: &Stroboscope,
+        items: &[Item],
+        tick: &(dyn Fn() + Sync),
+    ) -> Option<Vec<Option<Fate>>> {
+        let known = (&self.rounds.captures[..], &self.rounds.regions[..]);
+        let most_work = scope.effort.of_one(items.len());
+        let endless = |item: &Item| Item { repeats_from: u64::MAX, ..*item };
+        let pursuits: Vec<Pursuit> =
+            items.iter().map(|item| endless(item).pursuit(&self.starts, known, most_work)).collect();
+        let all = scope.pursue(&pursuits, &|_| tick())?;
+        Some(items.iter().zip(&all).map(|(item, end)| self.rounds.known_fate(item, end, scope)).collect())
+    }
+
+    /// Whether a motion does the same again after the way `before`; where its attractor is the only one in
+    /// its well, so many crossings say it all.
+    fn is_same(&self, (first, before): (Fate, Way), again: Option<Fate>, alone: bool) -> bool {
+        match (first, again) {
+            (Fate::Kind(kind, way), Some(Fate::Kind(other, now))) if kind == other => {
+                let judged = matches!(self.rounds.kinds[kind as usize], Kind::Judged(..));
+                let longest = way.periods.max(now.periods).saturating_add(before.periods);
+                // Of an irregular motion that was followed to the end the counts mean nothing.
+                let ended = judged && u64::from(longest) >= PATIENCE;
+                ended || way.crossings == now.crossings && (alone || way.periods == now.periods)
+            }
+            (Fate::Release(place, way), Some(Fate::Release(other, now))) => place == other && way == now,
+            _ => false,
+        }
+    }
+
+    /// Whether the attractor of a row is the only one on its side of the barrier between two wells.
+    fn is_alone(&self, answer: &Answer, row: usize) -> bool {
+        let wells = self.model.mechanism().landscape.equilibria.iter().filter(|place| place.stable).count();
+        let side = answer.rows[row].and_then(|(number, _)| answer.attractors[number as usize - 1].side);
+        let beside = || answer.attractors.iter().filter(|other| other.side == side).count();
+        wells == 2 && matches!(side, Some(Place::Left | Place::Right)) && beside() == 1
+    }
+}
