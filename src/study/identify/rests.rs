@@ -18,6 +18,9 @@ const BETTER: f64 = 0.5;
 /// The fewest degrees of freedom of a fit.
 const FEWEST: usize = 4;
 
+/// The part of the slope by which it jumps at a kink.
+const JUMP: f64 = 0.01;
+
 /// Places of a kink that are tried, the samples that are looked at for it, and the fewest on either side.
 const TRIED: usize = 40;
 const LOOKED_AT: usize = 1000;
@@ -110,6 +113,9 @@ impl Rest {
             stiffness.1 = [low.fold(stiffness.1[0], f64::min), high.fold(stiffness.1[1], f64::max)];
         }
         let kink = kink.zip(sides).map(|(kink, [left, right])| [kink, left.value, right.value]);
+        // the second cubic may serve a smooth force as well
+        let jumps = |[_, left, right]: &[f64; 3]| (left - right).abs() > JUMP * left.abs().max(right.abs());
+        let kink = kink.filter(jumps);
         Some(Self { x: (x, ends), stiffness, kink, half, fits })
     }
 
