@@ -128,8 +128,7 @@ impl Model {
             ));
         }
         if !faults.is_empty() {
-            let of_the_scene = scene::check(scene).faults;
-            return Err(if of_the_scene.is_empty() { faults } else { of_the_scene });
+            return Err(faults);
         }
         let common = drive.common_cycles();
         let forcing_period = drive.fastest().and_then(|f| common.map(|cycles| cycles as f64 / f));
@@ -174,7 +173,8 @@ impl Model {
         };
         model.choose_barrier();
         // A scene that has passed its check is not looked at once more: a sweep builds a model for each cell.
-        let faults = if model.is_sound() { Vec::new() } else { scene::check(scene).faults };
+        let mut faults = if model.is_sound() { Vec::new() } else { scene::check(scene).faults };
+        faults.retain(|fault| !fault.field.starts_with("sweep"));
         if faults.is_empty() { Ok(model) } else { Err(faults) }
     }
 
@@ -195,9 +195,9 @@ impl Model {
         let all = others.chain(stops).chain(compliant).chain(tones).chain(noises).chain(chirps);
         *mass > 0.0
             && *duration > 0.0
-            && (0.0..=*duration).contains(settle)
+            && *settle >= 0.0
             && (scene::TOLERANCES.0..=scene::TOLERANCES.1).contains(&self.tolerance)
-            && all.chain([*mass, *duration]).all(f64::is_finite)
+            && all.chain([*mass, *duration, *settle]).all(f64::is_finite)
     }
 
     /// Of two barriers as near to x = 0, counts crossings at the one on the side of the start; of a start

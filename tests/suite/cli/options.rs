@@ -101,5 +101,6 @@ fn zero_has_no_sign_in_any_output() {
     let samples = String::from_utf8(output).unwrap();
     assert!(samples.contains("\n0,0,0,"), "{samples}");
     let summary = std::fs::read_to_string(&summary).unwrap();
-    assert!(!samples.contains("-0,") && !summary.contains("-0.0,"), "{samples}{summary}");
+    let no_sign = !samples.contains("-0,") && !summary.contains("-0.0,");
+    assert!(no_sign, "{samples}{summary}");
 }
