@@ -59,6 +59,13 @@ pub struct Model {
     pub(in crate::dynamics) start_phase: f64,
 }
 
+/// The faults of a scene as written, but for those of its sweep, which no model has.
+fn faults_of_check(scene: &Scene) -> Vec<Fault> {
+    let mut faults = scene::check(scene).faults;
+    faults.retain(|fault| !fault.field.starts_with("sweep"));
+    faults
+}
+
 impl Model {
     /// Converts a scene that has passed its check; faults that only show here (no equilibrium to rest
     /// at, a ratio without a stable equilibrium, a start beyond a stop or the curve) are all reported, and of
@@ -128,7 +135,8 @@ impl Model {
             ));
         }
         if !faults.is_empty() {
-            return Err(faults);
+            // a number that is none is behind what it leads to
+            return Err(faults_of_check(scene).into_iter().chain(faults).collect());
         }
         let common = drive.common_cycles();
         let forcing_period = drive.fastest().and_then(|f| common.map(|cycles| cycles as f64 / f));
@@ -173,8 +181,7 @@ impl Model {
         };
         model.choose_barrier();
         // A scene that has passed its check is not looked at once more: a sweep builds a model for each cell.
-        let mut faults = if model.is_sound() { Vec::new() } else { scene::check(scene).faults };
-        faults.retain(|fault| !fault.field.starts_with("sweep"));
+        let faults = if model.is_sound() { Vec::new() } else { faults_of_check(scene) };
         if faults.is_empty() { Ok(model) } else { Err(faults) }
     }
 

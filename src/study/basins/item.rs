@@ -1,8 +1,11 @@
 //! Something that a map of basins follows, and the way that it takes.
 
-use super::rounds::PATIENCE;
 use super::starts::Starts;
 use crate::dynamics::{Capture, Pursuit, Region};
+
+/// Forcing periods after which a motion that goes to nothing known is judged: five times the longest
+/// transients of the prototype.
+pub(super) const PATIENCE: u64 = 1000;
 
 /// How long a motion is followed until it is known where it goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -35,7 +35,8 @@ use crate::scene::{Damping, Excitation, Fault, Scene, Start, Stops};
 use crate::study::levels::{Levels, STRIDES};
 pub use answer::{Answer, Attractor, Shares};
 use effort::Effort;
-use rounds::{PATIENCE, Rounds};
+use item::PATIENCE;
+use rounds::Rounds;
 pub use starts::{EvenRange, MAX_STARTS, Starts, StartsError};
 
 /// Why a scene has no basins.

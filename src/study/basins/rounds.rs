@@ -1,7 +1,7 @@
 //! Rounds of a map of basins: starts are followed in rounds, and what is known grows between them.
 
 use super::Basins;
-use super::item::{Item, Way};
+use super::item::{Item, PATIENCE, Way};
 use super::orbit::{Found, find};
 use super::region::absorbing;
 use super::starts::Starts;
@@ -10,10 +10,6 @@ use super::verdict::{Verdict, verdict};
 use crate::dynamics::{Arrival, Capture, Outcome, Pursued, Pursuit, Region, ReleaseIdentity, Side, Summary};
 use crate::study::Task;
 use crate::system::threads::Pool;
-
-/// Forcing periods after which a motion that goes to nothing known is judged: five times the longest
-/// transients of the prototype.
-pub(super) const PATIENCE: u64 = 1000;
 
 /// Starts of the first round of a map, and the most of any: while little is known, rounds are short.
 const FIRST_ROUND: usize = 64;

@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 
 use super::Basins;
 use super::answer::Answer;
-use super::item::{Item, Way};
-use super::rounds::{Fate, Kind, LONGEST_ROUND, PATIENCE};
+use super::item::{Item, PATIENCE, Way};
+use super::rounds::{Fate, Kind, LONGEST_ROUND};
 use super::stroboscopic::Stroboscope;
 use crate::dynamics::{Place, Pursuit};
 use crate::scene::TOLERANCES;

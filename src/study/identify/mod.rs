@@ -145,8 +145,8 @@ pub enum Unidentified {
     },
     /// The rebounds are too short.
     #[error(
-        "the rebounds hold at most {longest} samples at {rate} a second, and {enough} are needed: take {needed} \
-         samples a second or more"
+        "the rebounds hold at most {longest} samples at {rate} a second, and {enough} are needed: take \
+         {needed} samples a second or more"
     )]
     Slow {
         /// Samples of the longest rebound.

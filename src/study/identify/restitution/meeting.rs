@@ -32,8 +32,8 @@ const MOST_STEPS: usize = 10;
 impl Sides {
     /// Where the polynomials with so many coefficients meet, next to a time; `right`: the stop is above.
     ///
-    /// This is the joint least squares fit of two polynomials in t - t_0 with one constant x_s, where t_0 and x_s
-    /// are unknown: it has as many unknowns as the two polynomials, and where these meet displacement is
+    /// This is the joint least squares fit of two polynomials in t - t_0 with one constant x_s, where t_0 and
+    /// x_s are unknown: it has as many unknowns as the two polynomials, and where these meet displacement is
     /// continuous. Errors are carried from the samples to first order, that of t_0 included.
     pub fn meet(&self, motion: &Motion, terms: usize, near: f64, right: bool) -> Option<Meeting> {
         self.before.square(terms).and(self.after.square(terms))?;

@@ -149,8 +149,8 @@ fn above_one(number: &Identity) -> Option<String> {
         _ => "",
     };
     let text = if number.interval.0 > 1.0 {
-        "is above 1, which a stop at rest cannot make: the stop moves, the acceleration jumps at the impacts, \
-         or these are no impacts"
+        "is above 1, which a stop at rest cannot make: the stop moves, the acceleration jumps at the \
+         impacts, or these are no impacts"
     } else if number.value > 1.0 {
         "is above 1 by less than its error"
     } else {
