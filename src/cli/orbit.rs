@@ -7,7 +7,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use interwell::dynamics::Model;
 use interwell::output::branch_figure;
-use interwell::scene::{Axis, Document};
+use interwell::scene::{Axis, Document, is_whole};
 use interwell::study::{Branch, BranchEnd, Family, NoOrbit, Table, Task, branch, orbit, orbit_table};
 
 use super::failure::Failure;
@@ -148,6 +148,13 @@ fn range(text: &str, document: &Document) -> Result<(String, f64, f64), Failure>
     // both ends are values that the field may have
     let axis = Axis::parse(&format!("{}={},{}", field.trim(), from.trim(), to.trim()), &document.scene);
     let axis = axis.map_err(wrong)?;
+    if is_whole(&document.scene, &axis.field) {
+        return Err(wrong(format!(
+            "{} holds whole numbers, and a branch takes all values between A and B; follow the motion with \
+             `sweep --carry` over it",
+            axis.field
+        )));
+    }
     match axis.values[..] {
         [from, to] if from != to => Ok((axis.field, from, to)),
         [from, _] => Err(wrong(format!("A and B are both {from}; give a range, such as 0.5:2"))),

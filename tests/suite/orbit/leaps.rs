@@ -96,3 +96,9 @@ fn a_branch_begins_at_its_own_value_of_the_field() {
     let wrong = headless("orbit paper --set stops.travel_limit_mm=-1 --branch excitation.amplitude_g=1:0.5");
     refused(wrong, &["stops.travel_limit_mm", "-1"]);
 }
+
+#[test]
+fn a_branch_over_a_field_of_whole_numbers_is_refused() {
+    let count = headless("orbit paper --branch mechanism.buckling.count=1:3");
+    refused(count, &["mechanism.buckling.count", "whole numbers", "sweep --carry"]);
+}
