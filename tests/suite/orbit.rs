@@ -1,5 +1,6 @@
 //! Periodic motions, their multipliers and branches against closed forms.
 
+mod events;
 mod leaps;
 mod one_stop;
 

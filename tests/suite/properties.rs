@@ -19,7 +19,7 @@
 mod bound;
 mod determinant;
 mod extremes;
-mod harness;
+pub mod harness;
 mod mechanisms;
 pub mod mirror;
 mod runs;
