@@ -139,8 +139,8 @@ impl Corrector<'_> {
         (passage.outcome == Outcome::Done).then(|| Orbit { state: passage.state, ..orbit.clone() })
     }
 
-    /// How much later in forcing periods states should be taken, where an event at a stop, or one of the times
-    /// `also` in forcing periods, is near to where they are: as far from all of them as can be.
+    /// How much later in forcing periods states should be taken, where an event at a stop, or one of the
+    /// times `also` in forcing periods, is near to where they are: as far from all of them as can be.
     pub fn clear_phase(&self, point: &Point, also: &[f64]) -> Option<f64> {
         let map = self.map(point.value)?;
         let whole = f64::from(self.periods);
@@ -268,8 +268,8 @@ impl Corrector<'_> {
     }
 }
 
-/// Whether two motions from one state strike the stops in the same order and all but as hard; those that rest,
-/// of whose impacts the number that is listed means nothing, count as alike.
+/// Whether two motions from one state strike the stops in the same order and all but as hard; those that
+/// rest, of whose impacts the number that is listed means nothing, count as alike.
 fn strike_alike(a: &Passage, b: &Passage) -> bool {
     fn impacts(passage: &Passage) -> impl Iterator<Item = (Side, f64)> {
         let hits = |event: &&Event| event.kind == EventKind::Impact;

@@ -36,7 +36,7 @@ impl BranchEvent {
 const LOCATED: f64 = 1e-12;
 const CHECKED: f64 = 1e-9;
 
-/// The distance of a multiplier from 1 or -1 that is left there: where it changes fast, it is known no better.
+/// The distance of a multiplier from 1 or -1 that is left there: where it changes fast, no less is known.
 const AT_UNIT: f64 = 1e-6;
 
 /// The most points for it.

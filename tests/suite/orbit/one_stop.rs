@@ -13,8 +13,8 @@ use crate::support::{changed, near, near_relative};
 /// The damping of the built-in scene.
 const DAMPING: f64 = 0.2;
 
-/// A unit mass on a unit spring with a stop at 1 m, driven at `w` rad/s (Shaw and Holmes 1983); or with two at
-/// 1 m on both sides, of which half a period and the mirror image are taken in place of a period.
+/// A unit mass on a unit spring with a stop at 1 m, driven at `w` rad/s (Shaw and Holmes 1983); or with two
+/// at 1 m on both sides, of which half a period and the mirror image are taken in place of a period.
 ///
 /// With p and q for displacement and velocity of the swing without a stop at the instant of the impact, what
 /// is left of the motion is free: from (1 - p, -e u - q) just after an impact of speed u to (1 - p, u - q)
