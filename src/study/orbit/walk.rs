@@ -28,8 +28,9 @@ const CHANGE: f64 = 0.1;
 
 const MOST_POINTS: usize = 5000;
 
-/// Distances from a grazing at which the branch goes on, the ones to try first before others; and the least of
-/// motions that miss and that touch the stop. Nearer to it, what is left of the map's derivatives is rounding.
+/// Distances from a grazing at which the branch goes on, in the order in which they are tried; and the least
+/// of motions that miss and that touch the stop. Nearer to it, what is left of the map's derivatives is
+/// rounding.
 const PAST_A_GRAZING: [f64; 6] = [1e-4, 3e-4, 1e-3, 3e-3, 3e-5, 1e-5];
 const LEAST_MISSING: f64 = 1e-6;
 const LEAST_TOUCHING: f64 = 1e-5;

@@ -177,7 +177,7 @@ impl Drawn {
                 (a - speed) * (b - speed) < 0.0
             };
             let passed = speeds.windows(2).filter(passes).count();
-            // nearer to a grazing than motions are looked at, which are farther from it with two impacts at once
+            // nearer to a grazing than motions are looked at, which are farther with two impacts at once
             let hidden = (speed < 1e-3 || self.closed.mirrored) && located.len() < passed;
             let all = passed == located.len() || hidden;
             prop_assert!(all, "{event:?}: {passed} passed, {} located", located.len());
