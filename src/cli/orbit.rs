@@ -7,7 +7,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use interwell::dynamics::Model;
 use interwell::output::branch_figure;
-use interwell::scene::{Axis, Document};
+use interwell::scene::{Axis, Document, is_whole};
 use interwell::study::{Branch, BranchEnd, Family, NoOrbit, Table, Task, branch, orbit, orbit_table};
 
 use super::failure::Failure;
@@ -88,25 +88,28 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let outputs = [Some(("--out", common.out())), plot, data];
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
     let phase = phase_deg / 360.0;
-    let failed = |own: NoOrbit, at: &str| match own {
+    let failed = |error: NoOrbit, at: &str| match error {
         NoOrbit::Cancelled => Failure::interrupted(),
-        _ => Failure::Failed(anyhow::anyhow!("{}: {at}{own}", document.name)),
+        _ => Failure::Failed(anyhow::anyhow!("{}: {at}{error}", document.name)),
     };
     let table: Table = match branch_range {
-        None => orbit_table(&[orbit(&model, phase, options.period, cancel).map_err(|own| failed(own, ""))?]),
+        None => {
+            let found = orbit(&model, phase, options.period, cancel);
+            orbit_table(&[found.map_err(|error| failed(error, ""))?])
+        }
         Some((field, from, to)) => {
             let family = Family::new(&document.scene, &document.files, &mechanism, &field);
             let bar = count(common.quiet);
             let task = Task { tick: &|| bar.inc(1), cancel };
             let found = branch(&family, &field, (from, to), (phase, options.period), &task);
             bar.finish_and_clear();
-            let found = found.map_err(|own| failed(own, &format!("at {field} = {from}: ")))?;
+            let found = found.map_err(|error| failed(error, &format!("at {field} = {from}: ")))?;
             if let Some(picture) = picture {
                 let figure = branch_figure(&found, phase_deg, axes, &caption(&document), &picture.theme);
                 picture.write(&mut sinks[1..3], figure)?;
             }
             if !common.quiet {
-                told(&found, (from, to)).inspect(|own| say(own));
+                remarks(&found, (from, to)).iter().for_each(|line| say(line));
             }
             found.table()
         }
@@ -124,19 +127,32 @@ fn count(quiet: bool) -> ProgressBar {
     ProgressBar::no_length().with_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()))
 }
 
-/// Where and why a branch ended, unless at the value that it was to be followed to.
-fn told(branch: &Branch, (from, to): (f64, f64)) -> Option<String> {
+/// What a table of a branch does not say: what was not located, and where and why the branch ended, unless at
+/// the value that it was to be followed to.
+fn remarks(branch: &Branch, (from, to): (f64, f64)) -> Vec<String> {
+    let field = &branch.field;
+    let mut lines: Vec<String> = branch
+        .unlocated
+        .iter()
+        .map(|(before, after)| {
+            format!(
+                "between {field} = {before} and {after} the motion changes how it touches the stops, or its \
+                 stability; no event was located there, and the table has none"
+            )
+        })
+        .collect();
     let at = branch.values.last().copied().unwrap_or(f64::NAN);
     let why = match branch.end {
-        BranchEnd::Range if (at - to).abs() < (at - from).abs() => return None,
+        BranchEnd::Range if (at - to).abs() < (at - from).abs() => return lines,
         BranchEnd::Range => "it came back to the value at which it began".to_owned(),
         other => other.to_string(),
     };
-    Some(format!("the branch ends at {} = {at}: {why}", branch.field))
+    lines.push(format!("the branch ends at {field} = {at}: {why}"));
+    lines
 }
 
 fn phase(text: &str) -> Result<f64, Failure> {
-    number("--phase-deg", text, |own: &f64| own.is_finite(), "give a phase in degrees, such as 90")
+    number("--phase-deg", text, |degrees: &f64| degrees.is_finite(), "give a phase in degrees, such as 90")
 }
 
 /// The field of `--branch FIELD=A:B` and the ends of its range.
@@ -148,6 +164,13 @@ fn range(text: &str, document: &Document) -> Result<(String, f64, f64), Failure>
     // both ends are values that the field may have
     let axis = Axis::parse(&format!("{}={},{}", field.trim(), from.trim(), to.trim()), &document.scene);
     let axis = axis.map_err(wrong)?;
+    if is_whole(&document.scene, &axis.field) {
+        return Err(wrong(format!(
+            "{} holds whole numbers, and a branch takes all values between A and B; follow the motion with \
+             `sweep --carry` over it",
+            axis.field
+        )));
+    }
     match axis.values[..] {
         [from, to] if from != to => Ok((axis.field, from, to)),
         [from, _] => Err(wrong(format!("A and B are both {from}; give a range, such as 0.5:2"))),

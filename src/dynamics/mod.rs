@@ -37,6 +37,7 @@ mod state;
 mod step;
 
 pub use live::{Live, LiveLedger, LiveOutput};
+pub(crate) use map::Miss;
 pub use map::{Jacobian, Multiplier, Passage, StroboscopicMap};
 pub use model::Model;
 pub use model::excitation::{ChirpPart, ExcitationParts, NoisePart, STANDARD_GRAVITY, TonePart};

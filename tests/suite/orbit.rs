@@ -1,5 +1,6 @@
 //! Periodic motions, their multipliers and branches against closed forms.
 
+mod events;
 mod leaps;
 mod one_stop;
 
@@ -75,6 +76,7 @@ fn the_steady_motion_of_a_linear_oscillator() {
 /// speed of the table at the impact is w = g T/2 (1 - e)/(1 + e); its acceleration there, q, gives the
 /// multipliers: their sum is 1 + e^2 + (1 + e)^2 q/g, their product e^2 (Guckenheimer and Holmes 1983,
 /// section 2.4).
+#[derive(Debug, Clone)]
 struct Ball {
     e: f64,
     frequency: f64,
@@ -156,12 +158,17 @@ fn a_linear_oscillator_grazes_its_stop_where_its_amplitude_is_the_distance() {
     near_relative(at(&back, BranchEvent::Grazing)[0], grazing[0], 1e-8);
     near_relative(at(&back, BranchEvent::Flip)[0], flips[0], 1e-10);
     // near the grazing the multiplier goes like the inverse of the root of the distance (Nordmark 1991), so
-    // like the inverse of the impact speed
-    let speeds = back.orbits.iter().filter_map(|own| Some((own.gentlest_impact()?, own.multipliers()[0].re)));
-    let near_it = speeds.filter(|(speed, _)| (5e-5..2e-3).contains(speed));
-    let scaled: Vec<f64> = near_it.map(|(speed, multiplier)| speed * multiplier).collect();
-    assert!(scaled.len() >= 6, "{scaled:?}");
-    scaled.iter().for_each(|own| near_relative(*own, scaled[0], 0.01));
+    // like the inverse of the impact speed: their product has a limit, to which it goes in proportion
+    let rows =
+        back.orbits.iter().filter_map(|orbit| Some((orbit.gentlest_impact()?, orbit.multipliers()[0].re)));
+    let near_it: Vec<(f64, f64)> = rows.filter(|(speed, _)| (1e-3..0.03).contains(speed)).collect();
+    let limit = |pair: &[(f64, f64)]| {
+        let [(a, b), (c, d)] = [pair[0], pair[1]].map(|(speed, multiplier)| (speed, speed * multiplier));
+        (b * c - d * a) / (c - a)
+    };
+    let limits: Vec<f64> = near_it.windows(2).map(limit).collect();
+    assert!(limits.len() >= 4, "{near_it:?}");
+    limits.iter().for_each(|other| near_relative(*other, limits[0], 0.01));
 }
 
 #[test]

@@ -130,12 +130,12 @@ fn the_nearest_miss_is_that_of_the_amplitude() {
         StroboscopicMap::over(&own, TAU * 1.25).pass((0.5, 0.0), 1)
     };
     let passage = swing("Uneven(left_mm: 500.5, right_mm: 510, restitution_right: 0.5)");
-    near(passage.nearest_miss.unwrap(), 0.5e-3, 1e-12);
+    near(passage.nearest_miss().unwrap(), 0.5e-3, 1e-12);
     assert_eq!(passage.impacts(), 0);
     let passage = swing("Uneven(left_mm: 400, right_mm: 510, restitution_right: 0.5)");
     let impact = passage.events.iter().find(|event| event.kind == EventKind::Impact).unwrap();
     near(impact.v_in, -0.3, 1e-12);
-    assert_eq!(swing("None").nearest_miss, None);
+    assert_eq!(swing("None").nearest_miss(), None);
 }
 
 #[test]
@@ -148,7 +148,7 @@ fn a_motion_that_begins_at_rest_has_missed_no_stop() {
         let own = oscillator(&format!("{stops}, start: At(x_mm: {}, v_m_per_s: 0)", 1e3 * x));
         let passage = StroboscopicMap::over(&own, time).pass((x, 0.0), 1);
         assert_eq!((passage.outcome, passage.impacts()), (Outcome::Done, 0));
-        passage.nearest_miss
+        passage.nearest_miss()
     };
     for near in [10.0, 0.5, 1e-6, 0.0] {
         assert_eq!(own(0.5, &stops(520.0, 500.0 + near), 3.0), None);
@@ -163,16 +163,16 @@ fn a_motion_that_begins_at_rest_has_missed_no_stop() {
     );
     let at = (0.7_f64 / 1.3).sqrt();
     for x in [at, -at, at.next_up(), 0.0] {
-        assert_eq!(StroboscopicMap::over(&well, 40.0).pass((x, 0.0), 1).nearest_miss, None);
+        assert_eq!(StroboscopicMap::over(&well, 40.0).pass((x, 0.0), 1).nearest_miss(), None);
     }
     // at rest on a stop up to its release
     for amplitude in 2..15 {
         let own = preset("paper", &[&format!("excitation.amplitude_g={}", f64::from(amplitude) * 0.1)]);
         let passage = own.stroboscopic_map(0.0).unwrap().pass((1.5e-3, 0.0), 2);
         assert!(
-            passage.nearest_miss.is_none_or(|miss| miss > 1e-6),
+            passage.nearest_miss().is_none_or(|miss| miss > 1e-6),
             "{amplitude}: {:?}",
-            passage.nearest_miss
+            passage.nearest_miss()
         );
     }
 }

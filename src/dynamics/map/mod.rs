@@ -18,6 +18,7 @@ use super::model::Model;
 use crate::numeric::{Dual, Scalar};
 
 pub use jacobian::{Jacobian, Multiplier};
+pub(crate) use passage::Miss;
 pub use passage::Passage;
 use passage::Traced;
 
@@ -108,15 +109,19 @@ impl StroboscopicMap {
     /// What becomes of a displacement in m and a velocity in m/s over so many forcing periods.
     ///
     /// A displacement beyond a stop or the curve is the caller's error: the motion then begins there.
-    pub fn pass(&self, (x, v): (f64, f64), periods: u32) -> Passage {
-        let unit = self.model.scales.unit();
-        self.trace(&self.plain, (x, v * unit), (0.0, f64::from(periods))).passage
+    pub fn pass(&self, state: (f64, f64), periods: u32) -> Passage {
+        self.pass_between(state, (0.0, f64::from(periods)))
     }
 
     /// The same over a part of the forcing period, from 0 to 1.
-    pub fn pass_part(&self, (x, v): (f64, f64), part: f64) -> Passage {
+    pub fn pass_part(&self, state: (f64, f64), part: f64) -> Passage {
+        self.pass_between(state, (0.0, part))
+    }
+
+    /// The same from the one to the other of two times after a strobe, in forcing periods.
+    pub(crate) fn pass_between(&self, (x, v): (f64, f64), span: (f64, f64)) -> Passage {
         let unit = self.model.scales.unit();
-        self.trace(&self.plain, (x, v * unit), (0.0, part)).passage
+        self.trace(&self.plain, (x, v * unit), span).passage
     }
 
     /// The same with the derivatives of the state at the end by that at the start. All are 0 where the mass

@@ -24,14 +24,31 @@ pub struct Passage {
     /// restitution of each impact, 0 where the mass has rested. None with compliant stops, whose loss depends
     /// on the motion.
     pub determinant: Option<f64>,
-    /// Smallest distance in m between a stop and a place where the mass turned back without touching it; none
-    /// where it never did. A mass that begins at rest has not turned back there.
-    pub nearest_miss: Option<f64>,
+    /// Where the mass turned back before a stop without touching it, in order of time. A mass that begins at
+    /// rest has not turned back there.
+    pub(crate) misses: Vec<Miss>,
     /// `Done`, or how the motion ended before.
     pub outcome: Outcome,
 }
 
+/// A place where the mass turned back before a stop without touching it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Miss {
+    /// Time in s from the start of the drive.
+    pub t: f64,
+    /// Side of the stop.
+    pub side: Side,
+    /// Distance from the stop in m.
+    pub gap: f64,
+}
+
 impl Passage {
+    /// Smallest distance in m between a stop and a place where the mass turned back without touching it; none
+    /// where it never did.
+    pub fn nearest_miss(&self) -> Option<f64> {
+        self.misses.iter().map(|miss| miss.gap).reduce(f64::min)
+    }
+
     fn count(&self, kinds: [EventKind; 2]) -> u64 {
         self.events.iter().filter(|event| kinds.contains(&event.kind)).count() as u64
     }
@@ -80,7 +97,7 @@ pub(super) fn trace<T: Scalar, D: Drive<T>>(
         motion.record.events = Some(Vec::new());
         motion.state.v = T::zero();
     }
-    let mut nearest_miss: Option<f64> = None;
+    let mut misses = Vec::new();
     let outcome = loop {
         let left = motion.stepper.left(&motion.state);
         if !(left > T::zero()) {
@@ -92,8 +109,8 @@ pub(super) fn trace<T: Scalar, D: Drive<T>>(
             && motion.steps > steps
             && motion.record.counts.sums == sums
             && flow.is_none();
-        if flown && let Some(miss) = miss(&motion, &before) {
-            nearest_miss = Some(nearest_miss.map_or(miss, |least| least.min(miss)));
+        if flown {
+            add_misses(&motion, &before, &mut misses);
         }
         if let Some(outcome) = flow.or_else(|| motion.spent()) {
             break outcome;
@@ -109,7 +126,7 @@ pub(super) fn trace<T: Scalar, D: Drive<T>>(
         false => (-model.total_damping() * time / model.mass).exp() * squared_restitutions(model, &events),
     });
     let state = (x.to_f64(), v.to_f64() / equation.unit);
-    Traced { passage: Passage { state, events, determinant, nearest_miss, outcome }, end: (x, v), rested }
+    Traced { passage: Passage { state, events, determinant, misses, outcome }, end: (x, v), rested }
 }
 
 /// The product of the squared restitution of each impact.
@@ -122,16 +139,21 @@ fn squared_restitutions(model: &Model, events: &[Event]) -> f64 {
     impacts.map(|event| restitution(event.side).powi(2)).product()
 }
 
-/// The smallest distance in m from a stop at which the mass turned back on the step that was just taken from
-/// the state `before`.
-fn miss<T: Scalar, D: Drive<T>>(motion: &Motion<'_, T, D, false>, before: &MotionState<T>) -> Option<f64> {
+/// Adds the places before a stop at which the mass turned back on the step that was just taken from the state
+/// `before`.
+fn add_misses<T: Scalar, D: Drive<T>>(
+    motion: &Motion<'_, T, D, false>,
+    before: &MotionState<T>,
+    misses: &mut Vec<Miss>,
+) {
     let mode = motion.stepper.mode(before);
     let is_stop = |end: End| matches!(mode.end(end).1, EndKind::Stop | EndKind::Compliant);
     if !is_stop(End::Low) && !is_stop(End::High) {
-        return None;
+        return;
     }
     let series = &motion.stepper.series;
-    let length = motion.stepper.clock.between(&before.at, &motion.state.at).to_f64();
+    let clock = &motion.stepper.clock;
+    let length = clock.between(&before.at, &motion.state.at).to_f64();
     // where it leaves a surface, what is 0 by definition is so but for rounding
     let multiplicity =
         before.touch.map_or(1, |touch| if touch.multiplicity == HELD { 1 } else { touch.multiplicity });
@@ -141,21 +163,21 @@ fn miss<T: Scalar, D: Drive<T>>(motion: &Motion<'_, T, D, false>, before: &Motio
         power *= length;
     }
     // A mass that begins at rest has not turned there, and one that stands still to rounding turns nowhere.
-    let mut rises = *velocity.iter().find(|own| **own != 0.0)? > 0.0;
+    let Some(first) = velocity.iter().find(|coefficient| **coefficient != 0.0) else { return };
+    let mut rises = *first > 0.0;
     let place = |t: f64| series.y[..series.known].iter().rev().fold(0.0, |sum, c| sum * t + c.to_f64());
     let (first, last) = (place(0.0), place(length));
     let rounding = ROUNDINGS * f64::EPSILON * before.x.to_f64().abs();
-    let mut least: Option<f64> = None;
     PolynomialRoots::new(&velocity).each_sign_change(|s| {
-        let end = if rises { End::High } else { End::Low };
+        let (end, side) = if rises { (End::High, Side::Right) } else { (End::Low, Side::Left) };
         rises = !rises;
         let y = place(s * length);
         let gap = (mode.end(end).0.to_f64() - (mode.origin.to_f64() + y)).abs();
         let moves = (y - first).abs().max((y - last).abs()) > rounding;
         if s < 1.0 && moves && gap > 0.0 && is_stop(end) {
-            least = Some(least.map_or(gap, |own| own.min(gap)));
+            let t = clock.seconds(&clock.advance(&before.at, T::of(s * length)));
+            misses.push(Miss { t, side, gap });
         }
         true
     });
-    least
 }

@@ -157,6 +157,11 @@ impl Model {
         Self { start, motionless: false, ..self.clone() }
     }
 
+    /// The same model, where nothing holds the mass within its curve.
+    pub(crate) fn without_stops(&self) -> Self {
+        Self { stops: None, compliant: None, ..self.clone() }
+    }
+
     /// The same model with recurrence on or off.
     pub fn with_recurrence(&self, recurrence: bool) -> Self {
         Self { recurrence, ..self.clone() }

@@ -11,6 +11,8 @@
 mod branch;
 mod corrector;
 mod events;
+mod grazing;
+mod walk;
 
 use std::fmt;
 use std::sync::atomic::AtomicBool;
@@ -82,7 +84,9 @@ pub enum NoOrbit {
 impl fmt::Display for NoOrbit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NotConverged => f.write_str("Newton's method finds no periodic motion near the run's own"),
+            Self::NotConverged => {
+                f.write_str("Newton's method finds no periodic motion near that of the run")
+            }
             Self::Grazing => f.write_str(
                 "the motion touches a stop without speed, where it has no derivative; change the scene a \
                  little",
@@ -91,7 +95,7 @@ impl fmt::Display for NoOrbit {
                 write!(f, "the motion ends early ({})", outcome.name())?;
                 outcome.ended_at().map_or(Ok(()), |at| write!(f, ", {at} s after the drive's phase 0"))
             }
-            Self::Shorter(period) => write!(f, "near the run's own motion is only one of period {period}"),
+            Self::Shorter(period) => write!(f, "near the motion of the run is only one of period {period}"),
             Self::NotSettled => f.write_str(
                 "the run comes to no motion that repeats after at most 12 forcing periods; name a period, or \
                  start elsewhere",
@@ -124,7 +128,7 @@ impl Orbit {
         }
         let mut kept: Vec<Event> = Vec::new();
         for event in all {
-            let hits = |own: &Event| (own.kind, own.side) == (EventKind::Impact, event.side);
+            let hits = |other: &Event| (other.kind, other.side) == (EventKind::Impact, event.side);
             if event.kind == EventKind::Rest {
                 while kept.len() > 1 && kept[kept.len() - 2..].iter().all(hits) {
                     kept.pop();
@@ -172,7 +176,7 @@ pub fn orbit_near(map: &StroboscopicMap, guess: (f64, f64), periods: u32) -> Res
             return Err(NoOrbit::Ended(passage.outcome));
         }
         let [[a, b], [c, d]] = jacobian.rows;
-        if ![a, b, c, d].iter().all(|own| own.is_finite()) {
+        if ![a, b, c, d].iter().all(|entry| entry.is_finite()) {
             return Err(NoOrbit::Grazing);
         }
         let off = (passage.state.0 - state.0, passage.state.1 - state.1);
@@ -197,7 +201,7 @@ pub fn orbit_near(map: &StroboscopicMap, guess: (f64, f64), periods: u32) -> Res
 /// The same motion with its smallest period.
 fn shortest(map: &StroboscopicMap, orbit: Orbit) -> Orbit {
     let scales = map.model().scales();
-    let divisors = (1..orbit.period).filter(|own| orbit.period.is_multiple_of(*own));
+    let divisors = (1..orbit.period).filter(|period| orbit.period.is_multiple_of(*period));
     for period in divisors {
         let (passage, jacobian) = map.pass_with_jacobian(orbit.state, period);
         let back = passage.state;
@@ -234,7 +238,7 @@ pub fn orbit(model: &Model, phase: f64, period: Option<u32>, cancel: &AtomicBool
         if summary.period.or(still).is_some() { run.state } else { closest_return(&map, run.state, periods) };
     let orbit = orbit_near(&map, guess, periods)?;
     match period {
-        Some(asked) if orbit.period != asked => Err(NoOrbit::Shorter(orbit.period)),
+        Some(period) if orbit.period != period => Err(NoOrbit::Shorter(orbit.period)),
         _ => Ok(orbit),
     }
 }
@@ -259,18 +263,19 @@ pub fn orbit_table(orbits: &[Orbit]) -> Table {
 }
 
 fn with_orbits(table: Table, orbits: &[Orbit]) -> Table {
-    let part = |number: usize, of: fn(Multiplier) -> f64| move |own: &Orbit| of(own.multipliers()[number]);
+    let part =
+        |number: usize, of: fn(Multiplier) -> f64| move |orbit: &Orbit| of(orbit.multipliers()[number]);
     table
-        .each("period", orbits, |own| Some(u64::from(own.period)))
-        .each("x_m", orbits, |own| own.state.0)
-        .each("v_m_per_s", orbits, |own| own.state.1)
-        .each("multiplier_1_re", orbits, part(0, |own| own.re))
-        .each("multiplier_1_im", orbits, part(0, |own| own.im))
-        .each("multiplier_2_re", orbits, part(1, |own| own.re))
-        .each("multiplier_2_im", orbits, part(1, |own| own.im))
-        .each("stable", orbits, |own| if own.is_stable() { "true" } else { "false" })
-        .each("impacts", orbits, |own| Some(own.passage.impacts()))
-        .each("rests", orbits, |own| Some(own.passage.rests()))
-        .each("gentlest_impact_m_per_s", orbits, |own| own.gentlest_impact().unwrap_or(f64::NAN))
-        .each("nearest_miss_m", orbits, |own| own.passage.nearest_miss.unwrap_or(f64::NAN))
+        .each("period", orbits, |orbit| Some(u64::from(orbit.period)))
+        .each("x_m", orbits, |orbit| orbit.state.0)
+        .each("v_m_per_s", orbits, |orbit| orbit.state.1)
+        .each("multiplier_1_re", orbits, part(0, |multiplier| multiplier.re))
+        .each("multiplier_1_im", orbits, part(0, |multiplier| multiplier.im))
+        .each("multiplier_2_re", orbits, part(1, |multiplier| multiplier.re))
+        .each("multiplier_2_im", orbits, part(1, |multiplier| multiplier.im))
+        .each("stable", orbits, |orbit| if orbit.is_stable() { "true" } else { "false" })
+        .each("impacts", orbits, |orbit| Some(orbit.passage.impacts()))
+        .each("rests", orbits, |orbit| Some(orbit.passage.rests()))
+        .each("gentlest_impact_m_per_s", orbits, |orbit| orbit.gentlest_impact().unwrap_or(f64::NAN))
+        .each("nearest_miss_m", orbits, |orbit| orbit.passage.nearest_miss().unwrap_or(f64::NAN))
 }

@@ -1,5 +1,5 @@
-//! Motions with one impact a period of a linear oscillator with one stop, in closed form, and where a branch
-//! of them folds and doubles its period.
+//! Motions of a linear oscillator with one impact a period on one stop, or one in each half of it on two, in
+//! closed form, and where a branch of them folds, doubles its period or breaks its symmetry.
 
 use std::f64::consts::TAU;
 
@@ -10,31 +10,45 @@ use interwell::study::{BranchEnd, BranchEvent};
 use super::{at, over_amplitude, response};
 use crate::support::{changed, near, near_relative};
 
+/// The damping of the built-in scene.
 const DAMPING: f64 = 0.2;
 
-/// A unit mass on a unit spring with a stop at 1 m, driven at `w` rad/s (Shaw and Holmes 1983).
+/// A unit mass on a unit spring with a stop at 1 m, driven at `w` rad/s (Shaw and Holmes 1983); or with two
+/// at 1 m on both sides, of which half a period and the mirror image are taken in place of a period.
 ///
 /// With p and q for displacement and velocity of the swing without a stop at the instant of the impact, what
 /// is left of the motion is free: from (1 - p, -e u - q) just after an impact of speed u to (1 - p, u - q)
 /// just before the next. That makes p and q linear in u. The map from impact to impact is that of the free
 /// motion, then of the impact, [[-e, 0], [(1 + e)(f - 1)/u, -e]], where f is the drive's acceleration; so its
 /// trace gives u, and the size of the swing the drive.
-struct OneStop {
-    w: f64,
-    e: f64,
+#[derive(Debug, Clone)]
+pub struct OneStop {
+    pub w: f64,
+    pub e: f64,
+    pub damping: f64,
+    pub mirrored: bool,
 }
 
 impl OneStop {
+    fn time(&self) -> f64 {
+        TAU / self.w * if self.mirrored { 0.5 } else { 1.0 }
+    }
+
+    /// Amplitude in g at which the swing without impacts reaches the stop.
+    pub fn grazing(&self) -> f64 {
+        1.0 / response(self.w, self.damping).0 / STANDARD_GRAVITY
+    }
+
     /// What the free motion makes of a state in a period.
     fn free(&self) -> [[f64; 2]; 2] {
-        let decay = 0.5 * DAMPING;
-        let own = (1.0 - decay * decay).sqrt();
-        let time = TAU / self.w;
-        let kept = (-decay * time).exp();
-        let (sine, cosine) = (own * time).sin_cos();
+        let decay = 0.5 * self.damping;
+        let turn = (1.0 - decay * decay).sqrt();
+        let time = self.time();
+        let kept = (-decay * time).exp() * if self.mirrored { -1.0 } else { 1.0 };
+        let (sine, cosine) = (turn * time).sin_cos();
         [
-            [kept * (cosine + decay / own * sine), kept * sine / own],
-            [-kept * sine / own, kept * (cosine - decay / own * sine)],
+            [kept * (cosine + decay / turn * sine), kept * sine / turn],
+            [-kept * sine / turn, kept * (cosine - decay / turn * sine)],
         ]
     }
 
@@ -49,11 +63,11 @@ impl OneStop {
     /// (f - 1)/u less -w^2/u.
     fn push(&self) -> f64 {
         let (p, q) = self.share();
-        DAMPING * q - (1.0 - self.w * self.w) * p
+        self.damping * q - (1.0 - self.w * self.w) * p
     }
 
     fn determinant(&self) -> f64 {
-        self.e * self.e * (-DAMPING * TAU / self.w).exp()
+        self.e * self.e * (-self.damping * self.time()).exp()
     }
 
     /// The sum of the multipliers at an impact of this speed.
@@ -63,17 +77,17 @@ impl OneStop {
     }
 
     /// Speed of the impact and amplitude in g where a multiplier is this, 1 or -1.
-    fn critical(&self, multiplier: f64) -> (f64, f64) {
+    pub fn critical(&self, multiplier: f64) -> (f64, f64) {
         let [[a, b], [_, d]] = self.free();
         let needed = (multiplier * (1.0 + self.determinant()) + self.e * (a + d)) / b / (1.0 + self.e);
         let speed = self.w * self.w / (self.push() - needed);
         let (p, q) = self.share();
         let size = (1.0 - p * speed).hypot(q * speed / self.w);
-        (speed, size / response(self.w, DAMPING).0 / STANDARD_GRAVITY)
+        (speed, size * self.grazing())
     }
 
     fn document(&self) -> Document {
-        let (w, e) = (self.w, self.e);
+        let Self { w, e, .. } = self;
         changed(
             "impact-oscillator",
             &[&format!("excitation.frequency_hz={:?}", w / TAU), &format!("stops.restitution_right={e:?}")],
@@ -100,7 +114,7 @@ fn it_doubles_its_period_where_the_formula_says() {
     for (w, e, range) in
         [(0.7, 0.8, (0.056, 0.0545)), (0.7, 0.6, (0.056, 0.0545)), (0.8, 0.8, (0.053, 0.0515))]
     {
-        let own = OneStop { w, e };
+        let own = OneStop { w, e, damping: DAMPING, mirrored: false };
         let found = own.branch(range);
         let (speed, amplitude) = own.critical(-1.0);
         let place = found.events.iter().position(|event| *event == Some(BranchEvent::Flip)).unwrap();
@@ -112,7 +126,7 @@ fn it_doubles_its_period_where_the_formula_says() {
 
 #[test]
 fn it_folds_where_the_formula_says_and_grazes_where_the_swing_reaches_the_stop() {
-    let own = OneStop { w: 1.5, e: 0.8 };
+    let own = OneStop { w: 1.5, e: 0.8, damping: DAMPING, mirrored: false };
     let found = own.branch((0.2, 0.05));
     let (speed, amplitude) = own.critical(1.0);
     let place = found.events.iter().position(|event| *event == Some(BranchEvent::Fold)).unwrap();
@@ -122,5 +136,5 @@ fn it_folds_where_the_formula_says_and_grazes_where_the_swing_reaches_the_stop()
     // the unstable motions end where the swing that misses the stop begins
     let grazing = at(&found, BranchEvent::Grazing);
     assert_eq!((grazing.len(), found.orbits.last().unwrap().passage.impacts()), (1, 0));
-    near_relative(grazing[0], 1.0 / response(own.w, DAMPING).0 / STANDARD_GRAVITY, 1e-9);
+    near_relative(grazing[0], own.grazing(), 1e-11);
 }

@@ -1,0 +1,343 @@
+//! Periodic motions that touch a stop without speed, and those beside them on both sides.
+//!
+//! A motion that turns back at the time t, a gap g before a stop at s, leaves (s - g, 0) then and comes back
+//! to it a period later. One that strikes the stop with a speed u leaves (s, -e u) and comes to (s, u). Made
+//! as if the stop were not there near t, both flights are smooth functions of t, of g or u, and of the field,
+//! and where g or u is 0 they are the same motion: the one that grazes the stop. So Newton's method finds it
+//! from either side, and the two stretches of the branch that meet in it begin there, although the
+//! stroboscopic map changes as the root of the distance from it (Nordmark 1991). Of a motion that is its own
+//! mirror image half a period is flown, so that it touches both stops at once.
+
+use nalgebra::Vector3;
+
+use super::corrector::{Accuracy, Corrector, Equations, Point, newton};
+use super::{Orbit, SAME, map_of};
+use crate::dynamics::{EventKind, Jacobian, Miss, Model, Outcome, Passage, Side, StroboscopicMap};
+
+/// The share of the length scale that a gap is below where its stop may be touched near by.
+const SMALL_GAP: f64 = 0.1;
+
+/// The most turns and impacts of a motion that are looked at, the smallest gaps and speeds first.
+const MOST_LOOKED_AT: usize = 4;
+
+/// Half the distance over which a flight is differenced, in the units: its third derivatives are large, and
+/// Newton's method needs but few digits.
+const DIFFERENCE: f64 = 1e-7;
+
+/// The gap or speed in the units at which the rate is measured at which motions depart from the grazing one.
+const FIRST: f64 = 1e-7;
+
+/// The largest gap or speed in the units of a motion beside it.
+const LARGEST: f64 = 0.3;
+
+/// To rounding.
+const FINEST: Accuracy = Accuracy { change: 0.0, step: 1e-15 };
+
+/// How exact the grazing motion is: what it is off in the units where it meets the stop and after its period,
+/// and the last step to it.
+pub(super) const EXACT: f64 = 1e-9;
+
+/// On which side of a grazing a motion is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Beside {
+    /// It misses the stop.
+    Missing,
+    /// It touches it.
+    Touching,
+}
+
+impl Beside {
+    pub fn other(self) -> Self {
+        match self {
+            Self::Missing => Self::Touching,
+            Self::Touching => Self::Missing,
+        }
+    }
+}
+
+/// A motion that touches a stop without speed.
+pub(super) struct Grazing<'a> {
+    corrector: &'a Corrector<'a>,
+    /// The side of the stop.
+    side: Side,
+    /// Forcing periods that are flown, and whether the motion is then where its mirror image was.
+    flight: f64,
+    mirrored: bool,
+    /// Times in forcing periods after a strobe about which there are no stops, and for how long before and
+    /// after; they come again with each flight.
+    open: Vec<(f64, f64)>,
+    /// Time in forcing periods after a strobe, 0, and field in its unit.
+    solution: Vector3<f64>,
+    /// The motion, with the derivatives of the side that misses the stop.
+    pub point: Point,
+}
+
+/// The maps with stops and without them.
+struct Maps {
+    with: StroboscopicMap,
+    without: StroboscopicMap,
+}
+
+/// The motions that graze a stop where a motion near to them turns back or strikes it gently, and on which
+/// side of them that is.
+pub(super) fn grazings<'a>(corrector: &'a Corrector<'a>, near: &Point) -> Vec<(Grazing<'a>, Beside)> {
+    let contacts = near.orbit.contacts();
+    if near.orbit.passage.misses.is_empty() && contacts.is_empty() {
+        return Vec::new();
+    }
+    let Some(map) = corrector.map(near.value) else { return Vec::new() };
+    let units = &corrector.units;
+    let whole = f64::from(corrector.periods);
+    let time = |t: f64| ((t - map.first_strobe()) / map.period()).rem_euclid(whole);
+    let misses: Vec<(f64, Side, f64)> = near
+        .orbit
+        .passage
+        .misses
+        .iter()
+        .map(|miss| (time(miss.t), miss.side, miss.gap / units.length))
+        .filter(|miss| miss.2 < SMALL_GAP)
+        .collect();
+    let impacts = contacts.iter().filter(|event| event.kind == EventKind::Impact);
+    let impacts = impacts.map(|event| (time(event.t), event.side, event.v_in.abs() / units.speed));
+    let mut turns: Vec<_> = misses
+        .iter()
+        .map(|miss| (*miss, Beside::Missing))
+        .chain(impacts.map(|impact| (impact, Beside::Touching)))
+        .collect();
+    // a gap goes as the square of a speed
+    let depth = |((_, _, size), beside): &((f64, Side, f64), Beside)| match beside {
+        Beside::Missing => *size,
+        Beside::Touching => size * size,
+    };
+    turns.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
+    turns.truncate(MOST_LOOKED_AT);
+    let mirrored = is_mirrored(corrector, map.model(), near.orbit.state, |state, span| {
+        let passage = map.pass_between(state, span);
+        (passage.outcome == Outcome::Done).then_some(passage.state)
+    });
+    let flight = if mirrored { 0.5 * whole } else { whole };
+    let apart = |a: f64, b: f64| {
+        let far = (a - b).rem_euclid(flight);
+        far.min(flight - far)
+    };
+    let grazing = |((t, side, _), beside): ((f64, Side, f64), Beside)| {
+        let others = near.orbit.passage.events.iter().filter(|event| event.kind != EventKind::Crossing);
+        let others: Vec<f64> =
+            others.map(|event| time(event.t)).filter(|other| apart(*other, t) > 1e-9).collect();
+        let room = |at: f64| others.iter().map(|other| 0.5 * apart(at, *other)).fold(0.25 * flight, f64::min);
+        let open = misses.iter().map(|miss| miss.0).chain([t]).map(|at| (at, room(at))).collect();
+        let guess = Vector3::new(t, 0.0, near.at.z);
+        let point = near.clone();
+        let unsolved = Grazing { corrector, side, flight, mirrored, open, solution: guess, point };
+        Some((unsolved.solved()?, beside))
+    };
+    turns.into_iter().filter_map(grazing).collect()
+}
+
+/// Whether a motion is its own mirror image half a period later.
+fn is_mirrored(
+    corrector: &Corrector,
+    model: &Model,
+    state: (f64, f64),
+    fly: impl Fn((f64, f64), (f64, f64)) -> Option<(f64, f64)>,
+) -> bool {
+    if !model.is_symmetric() {
+        return false;
+    }
+    let half = fly(state, (0.0, 0.5 * f64::from(corrector.periods)));
+    let far = half.map(|half| corrector.change((-state.0, -state.1), half));
+    far.is_some_and(|far| far.iter().all(|part| part.abs() <= SAME))
+}
+
+impl Maps {
+    fn of(corrector: &Corrector, value: f64) -> Option<Self> {
+        let model = corrector.family.model(value).ok()?;
+        let without = map_of(&model.without_stops(), corrector.phase)?;
+        Some(Self { with: map_of(&model, corrector.phase)?, without })
+    }
+}
+
+impl Grazing<'_> {
+    /// The same at the motion that grazes; none where Newton's method does not find it near by.
+    fn solved(mut self) -> Option<Self> {
+        let guess = self.solution;
+        let (solution, left) = self.solve(guess, Beside::Missing)?;
+        let range = self.corrector.units.range;
+        let (_, room) = *self.open.last()?;
+        if left > EXACT || (solution.x - guess.x).abs() > room {
+            return None;
+        }
+        self.solution = solution;
+        let maps = Maps::of(self.corrector, solution.z * range)?;
+        let state = self.fly(&maps, (self.stop(&maps)?.0, 0.0), (solution.x, solution.x.ceil()))?;
+        let orbit = self.orbit(&maps, state)?;
+        let value = solution.z * range;
+        self.point = Point { at: self.corrector.at(state, value), value, orbit, by_field: [0.0; 2] };
+        Some(self)
+    }
+
+    /// The same for motions that are their own mirror images, where it is one.
+    pub fn mirrored(mut self) -> Option<Self> {
+        let maps = Maps::of(self.corrector, self.point.value)?;
+        let fly = |state, span| self.fly(&maps, state, span);
+        if !self.mirrored && is_mirrored(self.corrector, maps.with.model(), self.point.orbit.state, fly) {
+            (self.mirrored, self.flight) = (true, 0.5 * self.flight);
+        }
+        Some(self)
+    }
+
+    /// Its times in forcing periods after a strobe.
+    pub fn times(&self) -> [f64; 2] {
+        [self.solution.x, self.solution.x + self.flight]
+    }
+
+    /// Place in m and restitution of the stop.
+    fn stop(&self, maps: &Maps) -> Option<(f64, f64)> {
+        let pair = maps.with.model().stops()?;
+        let stop = if self.side == Side::Left { pair.left } else { pair.right }?;
+        Some((stop.x, stop.restitution))
+    }
+
+    /// Parts of a time, each with whether there are stops.
+    fn parts(&self, (from, to): (f64, f64)) -> Vec<(bool, (f64, f64))> {
+        const ROUNDING: f64 = 1e-9;
+        let mut parts = Vec::new();
+        let mut at = from;
+        while at < to {
+            let (mut opens, mut closes) = (to, None::<f64>);
+            for (middle, room) in &self.open {
+                let since = (at - (middle - room) + ROUNDING).rem_euclid(self.flight) - ROUNDING;
+                if since < 2.0 * room - ROUNDING {
+                    let end = at + 2.0 * room - since;
+                    closes = Some(closes.map_or(end, |other| other.max(end)));
+                } else {
+                    opens = opens.min(at + self.flight - since);
+                }
+            }
+            let until = closes.map_or(opens, |closes| closes.min(to));
+            parts.push((closes.is_none(), (at, until)));
+            at = until;
+        }
+        parts
+    }
+
+    /// The state in m and m/s to which a motion comes over a time without stops near the grazing.
+    fn fly(&self, maps: &Maps, state: (f64, f64), span: (f64, f64)) -> Option<(f64, f64)> {
+        self.parts(span).into_iter().try_fold(state, |state, (stops, span)| {
+            let map = if stops { &maps.with } else { &maps.without };
+            let passage = map.pass_between(state, span);
+            (passage.outcome == Outcome::Done).then_some(passage.state)
+        })
+    }
+
+    /// Displacement and velocity at the grazing, and those to which they must come after the flight.
+    fn ends(&self, maps: &Maps, size: f64, beside: Beside) -> Option<[(f64, f64); 2]> {
+        let (stop, restitution) = self.stop(maps)?;
+        let units = &self.corrector.units;
+        let toward = if self.side == Side::Left { -size } else { size };
+        Some(match beside {
+            Beside::Missing => [(stop - toward * units.length, 0.0); 2],
+            Beside::Touching => {
+                let speed = toward * units.speed;
+                [(stop, -restitution * speed), (stop, speed)]
+            }
+        })
+    }
+
+    /// What is off after a flight from a time with a gap or speed, in the units.
+    fn off(&self, maps: &Maps, at: &Vector3<f64>, beside: Beside) -> Option<[f64; 2]> {
+        let [start, back] = self.ends(maps, at.y, beside)?;
+        let (x, v) = self.fly(maps, start, (at.x, at.x + self.flight))?;
+        let end = if self.mirrored { (-x, -v) } else { (x, v) };
+        Some(self.corrector.change(back, end))
+    }
+
+    /// The motion with a gap or speed in the units, from a guess, and the step that was left.
+    fn solve(&self, guess: Vector3<f64>, beside: Beside) -> Option<(Vector3<f64>, f64)> {
+        let look = |at: &Vector3<f64>| {
+            let maps = |z: f64| Maps::of(self.corrector, z * self.corrector.units.range);
+            let here = maps(at.z)?;
+            let off = self.off(&here, at, beside)?;
+            let side = |step: Vector3<f64>| {
+                let to = at + step;
+                let other = if step.z == 0.0 { None } else { Some(maps(to.z)?) };
+                Some((self.off(other.as_ref().unwrap_or(&here), &to, beside)?, step.sum()))
+            };
+            let slope = |step: Vector3<f64>| {
+                let (above, below) = match (side(step), side(-step)) {
+                    (None, None) => return None,
+                    (above, below) => (above.unwrap_or((off, 0.0)), below.unwrap_or((off, 0.0))),
+                };
+                Some([0, 1].map(|i| (above.0[i] - below.0[i]) / (above.1 - below.1)))
+            };
+            let by_time = slope(Vector3::x() * DIFFERENCE)?;
+            let by_field = slope(Vector3::z() * DIFFERENCE)?;
+            // the gap or speed stays as it is
+            let slopes = [0, 1].map(|i| Vector3::new(by_time[i], 0.0, by_field[i]));
+            Some(Equations { at: *at, off, slopes, of: () })
+        };
+        newton(guess, &Vector3::y(), FINEST, look).map(|((), at, left)| (at, left))
+    }
+
+    /// The grazing motion over its period from its state at a strobe; none where it does not touch the stop
+    /// or does not come back.
+    fn orbit(&self, maps: &Maps, state: (f64, f64)) -> Option<Orbit> {
+        let whole = f64::from(self.corrector.periods);
+        let (mut at, mut jacobian) = (state, Jacobian::IDENTITY);
+        let (mut events, mut misses, mut determinant) = (Vec::new(), Vec::new(), Some(1.0));
+        let mut outcome = Outcome::Done;
+        for (stops, span) in self.parts((0.0, whole)) {
+            let map = if stops { &maps.with } else { &maps.without };
+            let (passage, part) = map.pass_part_with_jacobian(at, span);
+            at = passage.state;
+            jacobian = part.after(&jacobian);
+            events.extend(passage.events);
+            misses.extend(passage.misses);
+            determinant = determinant.zip(passage.determinant).map(|(before, part)| before * part);
+            if outcome == Outcome::Done {
+                outcome = passage.outcome;
+            }
+        }
+        let time = self.solution.x.rem_euclid(whole);
+        let (x, v) = self.fly(maps, state, (0.0, time))?;
+        let gap = (x - self.stop(maps)?.0).abs();
+        let t = maps.with.first_strobe() + time * maps.with.period();
+        misses.push(Miss { t, side: self.side, gap });
+        let off = self.corrector.change(state, at);
+        let units = &self.corrector.units;
+        let most = [off[0], off[1], gap / units.length, v / units.speed].map(f64::abs);
+        let holds = outcome == Outcome::Done && most.iter().all(|part| *part <= EXACT);
+        let passage = Passage { state: at, events, determinant, misses, outcome };
+        holds.then_some(Orbit { period: self.corrector.periods, state, passage, jacobian })
+    }
+
+    /// Its state in m and m/s at another phase of the drive.
+    pub fn at_phase(&self, phase: f64) -> Option<(f64, f64)> {
+        let maps = Maps::of(self.corrector, self.point.value)?;
+        self.fly(&maps, self.point.orbit.state, (0.0, (phase - self.corrector.phase).rem_euclid(1.0)))
+    }
+
+    /// The motion on one side of it at about a distance in the units.
+    pub fn beside(&self, beside: Beside, distance: f64) -> Option<Point> {
+        let (first, _) = self.solve(self.solution + Vector3::y() * FIRST, beside)?;
+        let rate = (self.strobe(&first, beside)? - self.point.at).norm() / FIRST;
+        let size = distance / rate;
+        if !(size < LARGEST) {
+            return None;
+        }
+        let (there, _) = self.solve(self.solution + (first - self.solution) * (size / FIRST), beside)?;
+        let at = self.strobe(&there, beside)?;
+        let away = (at - self.point.at).try_normalize(0.0)?;
+        let point = self.corrector.correct(at, &away)?;
+        ((point.at - at).norm() <= 0.1 * distance).then_some(point)
+    }
+
+    /// The coordinates at a strobe of a motion beside it.
+    fn strobe(&self, at: &Vector3<f64>, beside: Beside) -> Option<Vector3<f64>> {
+        let value = at.z * self.corrector.units.range;
+        let maps = Maps::of(self.corrector, value)?;
+        let [start, _] = self.ends(&maps, at.y, beside)?;
+        let passage = maps.with.pass_between(start, (at.x, at.x.ceil()));
+        (passage.outcome == Outcome::Done).then(|| self.corrector.at(passage.state, value))
+    }
+}

@@ -1,0 +1,395 @@
+//! Walk along a branch of periodic motions, through folds by pseudo-arclength (Keller 1977) and over
+//! grazings.
+
+use nalgebra::Vector3;
+
+use super::branch::{Branch, BranchEnd};
+use super::corrector::{Corrector, Point};
+use super::events::{BranchEvent, between, differ};
+use super::grazing::{Beside, Grazing, grazings};
+use super::{NoOrbit, Orbit, SAME};
+use crate::dynamics::Model;
+use crate::study::Task;
+
+/// Steps of the walk in the units of the branch: the first, the longest, and the one below which it does not
+/// go on.
+const FIRST: f64 = 2e-3;
+const LONGEST: f64 = 1e-2;
+const SHORTEST: f64 = 1e-9;
+
+/// The step below which a change of the motion whose place is not found is passed over.
+const UNLOCATED: f64 = 1e-6;
+
+/// Cosine of the angle by which the direction may turn in a step, and by which a step may lie beside it.
+const STRAIGHT: f64 = 0.9;
+
+/// The change in a step of where a mass is that rests on its way, as a share of its room.
+const CHANGE: f64 = 0.1;
+
+const MOST_POINTS: usize = 5000;
+
+/// Distances from a grazing at which the branch goes on, in the order in which they are tried; and the least
+/// of motions that miss and that touch the stop. Nearer to it, what is left of the map's derivatives is
+/// rounding.
+const PAST_A_GRAZING: [f64; 6] = [1e-4, 3e-4, 1e-3, 3e-3, 3e-5, 1e-5];
+const LEAST_MISSING: f64 = 1e-6;
+const LEAST_TOUCHING: f64 = 1e-5;
+
+/// How near to an end of the range, as a share of it, a value is at the end.
+const AT_AN_END: f64 = 1e-12;
+
+/// A point and the direction of the branch there.
+pub(super) type Directed = (Point, Vector3<f64>);
+
+/// Events in order, each with its point and the state at the phase of the rows where that is known.
+type Events = Vec<(BranchEvent, Point, Option<(f64, f64)>)>;
+
+/// A stretch of the branch from the last point on.
+struct Stretch {
+    events: Events,
+    /// The point at its end; none where the branch ends at the last event.
+    next: Option<Directed>,
+    is_last: bool,
+}
+
+/// A walk along a branch.
+pub(super) struct Walk<'a> {
+    /// At a phase of the drive away from impacts, where a state has no derivative by the field.
+    corrector: Corrector<'a>,
+    pub branch: Branch,
+    /// The range, and its ends in its unit.
+    range: [f64; 2],
+    ends: [f64; 2],
+    /// A length in m that is a share of the room that the mass has.
+    room: f64,
+    /// Whether the stops are compliant: then the map is smooth where the motion grazes one.
+    compliant: bool,
+    /// The phase of the rows, in forcing periods.
+    phase: f64,
+    /// The coordinates of the rows, with their distance along the branch from the first.
+    rows: Vec<(Vector3<f64>, f64)>,
+    /// Whether the branch has come to a motion that it had left behind.
+    meets: bool,
+    at: Directed,
+}
+
+impl<'a> Walk<'a> {
+    /// A walk over a range from the motion of `model` at its first value.
+    pub fn new(
+        corrector: Corrector<'a>,
+        branch: Branch,
+        (from, to): (f64, f64),
+        model: &Model,
+        first: Directed,
+    ) -> Self {
+        let range = [from.min(to), from.max(to)];
+        let length = corrector.units.length;
+        let room = match model.stop_positions() {
+            (Some(left), Some(right)) => length.min(0.5 * (right - left)),
+            _ => length,
+        };
+        let mut walk = Self {
+            branch,
+            range,
+            ends: range.map(|end| end / corrector.units.range),
+            room,
+            compliant: model.compliant().is_some(),
+            phase: corrector.phase,
+            rows: Vec::new(),
+            meets: false,
+            at: first.clone(),
+            corrector,
+        };
+        walk.add(None, &first.0, None);
+        walk
+    }
+
+    /// Goes on until the branch ends.
+    pub fn run_out(&mut self, task: &Task) -> Result<BranchEnd, NoOrbit> {
+        let mut step = FIRST;
+        while self.branch.values.len() < MOST_POINTS {
+            if task.is_cancelled() {
+                return Err(NoOrbit::Cancelled);
+            }
+            (task.tick)();
+            self.keep_clear(&[]);
+            let (found, beyond) = self.predicted(step);
+            let leaps = found.is_some() && self.at.0.forgets();
+            let next = found.filter(|next| self.follows(next));
+            let stretch = match &next {
+                Some(next) if !self.touches_otherwise(&next.0) => self.smooth(next, beyond.is_some()),
+                _ => self.over_a_grazing(next.as_ref(), beyond),
+            };
+            let stretch = stretch.or_else(|| {
+                let next = next.filter(|_| step < UNLOCATED)?;
+                match self.branch.unlocated.last_mut() {
+                    Some(last) if last.1 == self.at.0.value => last.1 = next.0.value,
+                    _ => self.branch.unlocated.push((self.at.0.value, next.0.value)),
+                }
+                Some(Stretch { events: Vec::new(), next: Some(next), is_last: beyond.is_some() })
+            });
+            if let Some(stretch) = stretch {
+                let grazes = stretch.events.iter().any(|event| event.0 == BranchEvent::Grazing);
+                let is_last = stretch.is_last;
+                let goes_on = self.go_along(stretch);
+                if self.meets {
+                    return Ok(BranchEnd::Closed);
+                }
+                if is_last {
+                    return Ok(BranchEnd::Range);
+                }
+                if !goes_on {
+                    return Ok(BranchEnd::Grazing);
+                }
+                if self.is_closed(step) {
+                    return Ok(BranchEnd::Closed);
+                }
+                step = if grazes && !self.compliant { PAST_A_GRAZING[0] } else { (step * 1.3).min(LONGEST) };
+                continue;
+            }
+            step *= 0.5;
+            if step < SHORTEST {
+                let leaves = beyond.is_some_and(|end| (self.at.0.at.z - end).abs() < SHORTEST);
+                return Ok(match leaves {
+                    true => BranchEnd::Range,
+                    false if leaps => BranchEnd::Leap,
+                    false => BranchEnd::Lost,
+                });
+            }
+        }
+        Ok(BranchEnd::Points)
+    }
+
+    /// The point after a step, or at the end of the range where that lies before it: then with that end.
+    fn predicted(&self, step: f64) -> (Option<Directed>, Option<f64>) {
+        let (point, along) = &self.at;
+        let guess = point.at + along * step;
+        if let Some(end) = self.end_before(guess.z) {
+            return (self.last(end), Some(end));
+        }
+        let Some(next) = self.corrector.correct(guess, along) else { return (None, None) };
+        if let Some(end) = self.end_before(next.at.z) {
+            return (self.last(end), Some(end));
+        }
+        let onward = self.corrector.tangent(&next, along);
+        (onward.map(|onward| (next, onward)), None)
+    }
+
+    /// The end of the range beyond which a value of the field lies.
+    fn end_before(&self, to: f64) -> Option<f64> {
+        let [low, high] = self.ends;
+        if to < low { Some(low) } else { (to > high).then_some(high) }
+    }
+
+    /// The point at an end of the range.
+    fn last(&self, end: f64) -> Option<Directed> {
+        let (point, along) = &self.at;
+        let across = Vector3::new(0.0, 0.0, 1.0);
+        let share = (end - point.at.z) / along.z;
+        let next = self.corrector.correct(point.at + along * share, &across)?;
+        let onward = self.corrector.tangent(&next, along)?;
+        // at an end already, the branch first goes round the fold just before it
+        (SHORTEST..=2.0 * LONGEST).contains(&(next.at - point.at).norm()).then_some((next, onward))
+    }
+
+    /// Whether a point continues the branch: it lies in its direction, and so does its own direction.
+    fn follows(&self, (next, onward): &Directed) -> bool {
+        let (point, along) = &self.at;
+        // a motion that is a function of the field does not turn back
+        let turns = point.forgets() && next.forgets() && onward.z * along.z < 0.0;
+        !turns && onward.dot(along) > STRAIGHT && self.is_ahead(next) && self.is_near(next)
+    }
+
+    /// Whether a point lies in the direction of the branch.
+    fn is_ahead(&self, next: &Point) -> bool {
+        let (point, along) = &self.at;
+        let step = next.at - point.at;
+        step.dot(along) > STRAIGHT * step.norm()
+    }
+
+    /// Whether a motion that rests on its way, which begins anew at each release whatever it was before, is
+    /// where the last one was all the time.
+    fn is_near(&self, next: &Point) -> bool {
+        let point = &self.at.0;
+        if !point.forgets() && !next.forgets() {
+            return true;
+        }
+        let all = |point: &Point| self.corrector.displacements(point);
+        let Some((before, after)) = all(point).zip(all(next)) else { return false };
+        let far = before.iter().zip(&after).map(|(a, b)| (a - b).abs());
+        far.fold(0.0, f64::max) <= CHANGE * self.room
+    }
+
+    /// Whether a motion touches the stops otherwise than the last one; what a mass does between two rests
+    /// changes without a bifurcation.
+    fn touches_otherwise(&self, next: &Point) -> bool {
+        let point = &self.at.0;
+        differ(point, next) && !(point.forgets() && next.forgets())
+    }
+
+    /// The stretch to a point up to which the map is smooth.
+    fn smooth(&self, next: &Directed, is_last: bool) -> Option<Stretch> {
+        let (point, along) = &self.at;
+        let events = between(&self.corrector, (point, along), (&next.0, &next.1))?;
+        let events = events.into_iter().map(|(event, point)| (event, point, None)).collect();
+        Some(Stretch { events, next: Some(next.clone()), is_last })
+    }
+
+    /// The stretch over the nearest grazing ahead, to a motion on its other side; to `next` with compliant
+    /// stops. `beyond` is an end of the range that the step would pass.
+    fn over_a_grazing(&mut self, next: Option<&Directed>, beyond: Option<f64>) -> Option<Stretch> {
+        let (point, _) = &self.at;
+        if point.forgets() {
+            return None;
+        }
+        let mut ahead = grazings(&self.corrector, point);
+        if self.compliant {
+            ahead.extend(grazings(&self.corrector, &next?.0));
+        }
+        let distance = |grazing: &Grazing| (grazing.point.at - point.at).norm();
+        ahead.retain(|(grazing, _)| {
+            let within = self.end_before(grazing.point.at.z).is_none();
+            within && distance(grazing) <= LONGEST && self.is_ahead(&grazing.point)
+        });
+        let nearest = ahead.into_iter().min_by(|a, b| distance(&a.0).total_cmp(&distance(&b.0)));
+        let (grazing, beside) = nearest?;
+        let times = grazing.times();
+        let row = grazing.at_phase(self.phase);
+        let event = (BranchEvent::Grazing, grazing.point.clone(), row);
+        if self.compliant {
+            let mut stretch = self.smooth(next?, beyond.is_some())?;
+            let along = &self.at.1;
+            let before = stretch.events.iter().filter(|other| (other.1.at - event.1.at).dot(along) < 0.0);
+            let place = before.count();
+            stretch.events.insert(place, event);
+            return Some(stretch);
+        }
+        if self.corrector.clear_phase(point, &times).is_some() {
+            drop(grazing);
+            self.keep_clear(&times);
+            return None;
+        }
+        let mut events = self.up_to(&grazing, beside)?;
+        events.push(event);
+        let grazing = grazing.mirrored()?;
+        let (after, next) = self.on_from(&grazing, beside.other());
+        events.extend(after);
+        let is_last = next.is_none()
+            && self.ends.iter().any(|end| (grazing.point.at.z - end).abs() <= PAST_A_GRAZING[0]);
+        Some(Stretch { events, next, is_last })
+    }
+
+    /// The events up to a grazing; none where the branch does not lead to it.
+    fn up_to(&self, grazing: &Grazing, beside: Beside) -> Option<Events> {
+        let (point, along) = &self.at;
+        let least = least(beside);
+        let distance = (grazing.point.at - point.at).norm();
+        if distance <= 2.0 * least {
+            return Some(Vec::new());
+        }
+        let near = grazing.beside(beside, least)?;
+        let onward = self.corrector.tangent(&near, along)?;
+        let near = (near, onward);
+        if differ(point, &near.0) || !self.follows(&near) {
+            return None;
+        }
+        Some(self.smooth(&near, false)?.events)
+    }
+
+    /// The events after a grazing, and a point on the branch beyond it.
+    fn on_from(&self, grazing: &Grazing, beside: Beside) -> (Events, Option<Directed>) {
+        let directed = |distance: f64| {
+            let point = grazing.beside(beside, distance)?;
+            let within = self.end_before(point.at.z).is_none();
+            let onward = self.corrector.tangent(&point, &(point.at - grazing.point.at))?;
+            within.then_some((point, onward))
+        };
+        let nearest = directed(least(beside));
+        for distance in PAST_A_GRAZING {
+            let Some(far) = directed(distance) else { continue };
+            // of two impacts that are hardly any, the derivatives are lost in rounding
+            let near = nearest.clone().or_else(|| directed(0.1 * distance)).unwrap_or_else(|| far.clone());
+            if differ(&near.0, &far.0) {
+                continue;
+            }
+            if let Some(events) = between(&self.corrector, (&near.0, &near.1), (&far.0, &far.1)) {
+                let events = events.into_iter().map(|(event, point)| (event, point, None)).collect();
+                return (events, Some(far));
+            }
+        }
+        (Vec::new(), nearest)
+    }
+
+    /// Adds the rows of a stretch and goes to its end; false where the branch ends at its last event.
+    fn go_along(&mut self, stretch: Stretch) -> bool {
+        for (event, point, row) in &stretch.events {
+            if !self.meets {
+                self.add(Some(*event), point, *row);
+            }
+        }
+        let Some(next) = stretch.next else { return false };
+        if !self.meets {
+            self.add(None, &next.0, None);
+        }
+        self.at = next;
+        true
+    }
+
+    /// Adds a row, with its state at the phase of the rows where it is known; without its event where the
+    /// branch had been at this motion before.
+    fn add(&mut self, event: Option<BranchEvent>, point: &Point, state: Option<(f64, f64)>) {
+        let orbit = match state {
+            Some(state) => Orbit { state, ..point.orbit.clone() },
+            None => {
+                let orbit = self.corrector.at_phase(&point.orbit, point.value, self.phase);
+                orbit.unwrap_or_else(|| point.orbit.clone())
+            }
+        };
+        let at = self.corrector.at(orbit.state, point.value);
+        let far = self.rows.last().map_or(0.0, |(last, far)| far + (at - last).norm());
+        // only where something happens does it come to the same motion again, and not beside it
+        let left = self.rows.iter().take_while(|(_, along)| far - along > LONGEST);
+        self.meets |= left.into_iter().any(|(row, _)| (at - row).amax() <= SAME);
+        let event = event.filter(|_| !self.meets);
+        self.rows.push((at, far));
+        // a motion at an end is so but for the rounding of its unit
+        let far = |end: f64| (point.value - end).abs();
+        let is_at = |end: &f64| far(*end) <= AT_AN_END * (self.corrector.units.range + end.abs() * 1e-3);
+        let end = self.range.into_iter().find(|end| event.is_none() && is_at(end));
+        self.branch.values.push(end.unwrap_or(point.value));
+        self.branch.orbits.push(orbit);
+        self.branch.events.push(event);
+    }
+
+    /// Takes states at another phase of the drive where an impact, or one of the times `also` in forcing
+    /// periods after a strobe, comes near to the present one.
+    fn keep_clear(&mut self, also: &[f64]) {
+        let (point, along) = &self.at;
+        let Some(later) = self.corrector.clear_phase(point, also) else { return };
+        let phase = (self.corrector.phase + later).rem_euclid(1.0);
+        let Some(orbit) = self.corrector.at_phase(&point.orbit, point.value, phase) else { return };
+        let upwards = Vector3::new(0.0, 0.0, along.z.signum());
+        let corrector = Corrector { phase, ..self.corrector };
+        let next = corrector.correct(corrector.at(orbit.state, point.value), &upwards);
+        if let Some(next) = next
+            && let Some(onward) = corrector.tangent(&next, &upwards)
+        {
+            (self.corrector, self.at) = (corrector, (next, onward));
+        }
+    }
+
+    /// Whether the last motion is the first one, but for the length of a step.
+    fn is_closed(&self, step: f64) -> bool {
+        let Some(((last, _), (first, _))) = self.rows.last().zip(self.rows.first()) else { return false };
+        let farthest = self.rows.iter().map(|(row, _)| (row - first).norm()).fold(0.0, f64::max);
+        (last - first).norm() < 0.5 * step && farthest > 10.0 * step
+    }
+}
+
+/// The least distance from a grazing of a motion beside it.
+fn least(beside: Beside) -> f64 {
+    match beside {
+        Beside::Missing => LEAST_MISSING,
+        Beside::Touching => LEAST_TOUCHING,
+    }
+}
