@@ -181,12 +181,18 @@ impl Model {
         };
         model.choose_barrier();
         // A scene that has passed its check is not looked at once more: a sweep builds a model for each cell.
-        let faults = if model.is_sound() { Vec::new() } else { faults_of_check(scene) };
+        let faults = if model.is_sound(&scene.transducer) { Vec::new() } else { faults_of_check(scene) };
         if faults.is_empty() { Ok(model) } else { Err(faults) }
     }
 
     /// Whether its numbers can be those of a scene that has passed its check.
-    fn is_sound(&self) -> bool {
+    fn is_sound(&self, transducer: &scene::Transducer) -> bool {
+        // the one number that may be infinite
+        let load = match *transducer {
+            scene::Transducer::None => 0.0,
+            scene::Transducer::Electromagnetic { load_ohm, .. } => load_ohm,
+            scene::Transducer::Piezoelectric { load_kohm, .. } => load_kohm,
+        };
         let Self { mass, damping, duration, settle, scales, excitation, start, .. } = self;
         let stops = self.stops.iter().flat_map(|pair| [pair.left, pair.right]).flatten();
         let stops = stops.map(|stop| stop.x * stop.restitution);
@@ -201,6 +207,7 @@ impl Model {
         let others = others.into_iter().chain([scales.length, scales.speed, scales.time]);
         let all = others.chain(stops).chain(compliant).chain(tones).chain(noises).chain(chirps);
         *mass > 0.0
+            && load >= 0.0
             && *duration > 0.0
             && *settle >= 0.0
             && (scene::TOLERANCES.0..=scene::TOLERANCES.1).contains(&self.tolerance)
