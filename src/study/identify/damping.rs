@@ -26,7 +26,7 @@ const CLEAR: f64 = 1.5;
 /// Damping ratio, decay and frequency of a free decay, over the whole record and as they change with the
 /// amplitude.
 ///
-/// Turning points are fitted each on its own (see [`peaks`]) and an exponential envelope through them by
+/// Turning points are fitted each on its own (see `peaks`) and an exponential envelope through them by
 /// weighted least squares (see [`Envelope`]), whose rate r is the decay of the amplitude a second. Over half
 /// a period of T/2 the amplitude falls by d = r T/2, half the logarithmic decrement, and the damping ratio is
 /// d/sqrt(pi^2 + d^2). Of an oscillator with mass m and damping coefficient c in a well that is straight, or

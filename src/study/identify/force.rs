@@ -66,7 +66,7 @@ struct Curve {
 /// The curve has `points` even positions over the range that all directions cover. At each of them a cubic is
 /// fitted by least squares to the samples of one direction up to the neighbouring points, or up to a kink
 /// beside an equilibrium. The force of the curve is the mean of both directions, and half their difference
-/// the friction. The equilibria are fitted for themselves (see [`Rest::near`]). Intervals are 95 %, from the
+/// the friction. The equilibria are fitted for themselves (see `Rest::near`). Intervals are 95 %, from the
 /// residuals of the fits.
 ///
 /// Rows: `x_m,force_n,force_low_n,force_high_n,force_rising_n,force_falling_n`, as a table mechanism reads
