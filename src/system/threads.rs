@@ -14,8 +14,8 @@ pub fn processors() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// Stack of a thread that studies run on: five times what the integrator takes where it is compiled without
-/// optimisation, 3 MB. Of what is not used the system gives nothing.
+/// Stack of a thread that studies run on: compiled without optimisation, the integrator takes more than the
+/// 2 MB that a thread has by default. The system provides memory only for what is used.
 const STACK: usize = 16 << 20;
 
 /// Does `work` on a thread of its own. Whether the system has one to give.
