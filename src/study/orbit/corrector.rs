@@ -252,9 +252,9 @@ impl Corrector<'_> {
             return None;
         }
         let orbit = Orbit { period: self.periods, state, passage, jacobian };
-        let stretch = match orbit.passage.impacts() {
-            0 => self.matrix(&orbit, [0.0; 2], &Vector3::zeros()).amax(),
-            _ => 0.0,
+        let stretch = match orbit.passage.strikes() {
+            false => self.matrix(&orbit, [0.0; 2], &Vector3::zeros()).amax(),
+            true => 0.0,
         };
         let by_field = self.by_field(state, value, stretch)?;
         Some(Point { at: self.at(state, value), value, orbit, by_field })
