@@ -12,7 +12,7 @@ use crate::numeric::Scalar;
 /// A rebound slower than this share of the speed scale may be part of a closed-form sum.
 const CHATTER_SPEED: f64 = 1e-6;
 
-impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
+impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// The mass reaches the stop of `end` with outward speed `speed` > 0.
     pub fn strike(&mut self, end: End, speed: T) {
         let sign = end.sign::<T>();
@@ -52,7 +52,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             + damping * damping
             + stop.stiffness.abs()
             + snap.abs() / acceleration;
-        let squares = self.stepper.circuit_stiffness().map_or(squares, |own| squares + own);
+        let squares = self.stepper.circuit_stiffness().map_or(squares, |stiffness| squares + stiffness);
         let change = whole * whole * squares;
         if change > T::of(2.5e-3) || whole * change > T::of(0.1 * self.stepper.settings.tolerance) {
             return false;

@@ -12,7 +12,9 @@ mod jacobian;
 mod passage;
 
 use super::clock::{Clock, Instant};
-use super::drive::form::{Form, clock, form};
+use super::drive::Drive;
+use super::drive::form::{Form, clock, form, general, with_drive};
+use super::drive::general::General;
 use super::equation::Equation;
 use super::model::Model;
 use crate::numeric::{Dual, Scalar};
@@ -23,17 +25,17 @@ use passage::Traced;
 
 /// Equation, clock and drive of a model in numbers of one type.
 #[derive(Debug)]
-struct Kernel<T> {
+struct Kernel<T, D> {
     equation: Equation<T>,
     clock: Clock<T>,
-    drive: Form<T>,
+    drive: D,
 }
 
-impl<T: Scalar> Kernel<T> {
-    fn new(model: &Model) -> Self {
+impl<T: Scalar, D> Kernel<T, D> {
+    fn new(model: &Model, drive: impl Fn(&Model, &Clock<T>) -> D) -> Self {
         let unit = model.scales.unit();
         let clock = clock(model, unit);
-        Self { equation: Equation::new(model, unit), drive: form(model, &clock), clock }
+        Self { equation: Equation::new(model, unit), drive: drive(model, &clock), clock }
     }
 }
 
@@ -50,8 +52,8 @@ enum Length {
 #[derive(Debug)]
 pub struct StroboscopicMap {
     model: Model,
-    plain: Kernel<f64>,
-    dual: Kernel<Dual>,
+    plain: Kernel<f64, Form>,
+    dual: Kernel<Dual, General<Dual>>,
     /// Cycles of the clock up to the strobe, whole and not.
     phase: (i64, f64),
     length: Length,
@@ -79,8 +81,8 @@ impl StroboscopicMap {
     /// The map of the state at time 0 to that after `seconds`, whatever the drive.
     pub fn over(model: &Model, seconds: f64) -> Self {
         Self {
-            plain: Kernel::new(model),
-            dual: Kernel::new(model),
+            plain: Kernel::new(model, form),
+            dual: Kernel::new(model, general),
             // nothing is judged, so that the settled window is empty
             model: model.with_duration(seconds, seconds),
             phase: (0, 0.0),
@@ -110,13 +112,13 @@ impl StroboscopicMap {
     /// A displacement beyond a stop or the curve is the caller's error: the motion then begins there.
     pub fn pass(&self, (x, v): (f64, f64), periods: u32) -> Passage {
         let unit = self.model.scales.unit();
-        self.trace(&self.plain, (x, v * unit), (0.0, f64::from(periods))).passage
+        self.trace_plain((x, v * unit), (0.0, f64::from(periods))).passage
     }
 
     /// The same over a part of the forcing period, from 0 to 1.
     pub fn pass_part(&self, (x, v): (f64, f64), part: f64) -> Passage {
         let unit = self.model.scales.unit();
-        self.trace(&self.plain, (x, v * unit), (0.0, part)).passage
+        self.trace_plain((x, v * unit), (0.0, part)).passage
     }
 
     /// The same with the derivatives of the state at the end by that at the start. All are 0 where the mass
@@ -137,7 +139,8 @@ impl StroboscopicMap {
         let scales = [self.model.scales.length, self.model.scales.speed * unit];
         let start =
             (Dual { value: x, slopes: [scales[0], 0.0] }, Dual { value: v * unit, slopes: [0.0, scales[1]] });
-        let Traced { passage, end, rested } = self.trace(&self.dual, start, span);
+        let Kernel { equation, clock, drive } = &self.dual;
+        let Traced { passage, end, rested } = self.trace((equation, *clock, drive), start, span);
         if rested {
             return (passage, Jacobian { rows: [[0.0; 2]; 2] });
         }
@@ -146,8 +149,19 @@ impl StroboscopicMap {
         (passage, Jacobian { rows: [row(end.0, 1.0), row(end.1, unit)] })
     }
 
-    fn trace<T: Scalar>(&self, kernel: &Kernel<T>, start: (T, T), (from, to): (f64, f64)) -> Traced<T> {
-        let Kernel { equation, clock, drive } = kernel;
+    /// The motion in doubles between two times after a strobe, in forcing periods.
+    fn trace_plain(&self, start: (f64, f64), span: (f64, f64)) -> Traced<f64> {
+        let Kernel { equation, clock, drive } = &self.plain;
+        with_drive!(drive, drive => self.trace((equation, *clock, drive), start, span))
+    }
+
+    /// The same in numbers of any type.
+    fn trace<T: Scalar, D: Drive<T>>(
+        &self,
+        (equation, clock, drive): (&Equation<T>, Clock<T>, &D),
+        start: (T, T),
+        (from, to): (f64, f64),
+    ) -> Traced<T> {
         let strobe = Instant { cycle: self.phase.0, phase: T::of(self.phase.1) * clock.period() };
         let after = |periods: f64| match self.length {
             Length::Cycles(cycles) => {
@@ -157,12 +171,6 @@ impl StroboscopicMap {
             }
             Length::Seconds(seconds) => clock.at(seconds * periods),
         };
-        let span = (after(from), after(to));
-        match drive {
-            Form::Still(drive) => passage::trace(&self.model, equation, *clock, drive, start, span),
-            Form::Sine(drive) => passage::trace(&self.model, equation, *clock, drive, start, span),
-            Form::Composite(drive) => passage::trace(&self.model, equation, *clock, drive, start, span),
-            Form::Coupled(drive) => passage::trace(&self.model, equation, *clock, drive, start, span),
-        }
+        passage::trace(&self.model, equation, clock, drive, start, (after(from), after(to)))
     }
 }

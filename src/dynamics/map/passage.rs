@@ -69,7 +69,7 @@ pub(super) fn trace<T: Scalar, D: Drive<T>>(
     (from, to): (Instant<T>, Instant<T>),
 ) -> Traced<T> {
     let request = Request { events: true, ..Request::default() };
-    let mut motion = Motion::<T, D, false>::new(model, &request, model.tolerance, equation, clock, drive);
+    let mut motion = Motion::new(model, &request, model.tolerance, equation, clock, drive);
     motion.stepper.end = to;
     motion.record.next_strobe = None;
     let mode = equation.mode_at(x, model.mechanism.curve.piece_index(x.to_f64()));
@@ -124,7 +124,7 @@ fn squared_restitutions(model: &Model, events: &[Event]) -> f64 {
 
 /// The smallest distance in m from a stop at which the mass turned back on the step that was just taken from
 /// the state `before`.
-fn miss<T: Scalar, D: Drive<T>>(motion: &Motion<'_, T, D, false>, before: &MotionState<T>) -> Option<f64> {
+fn miss<T: Scalar, D: Drive<T>>(motion: &Motion<'_, T, D>, before: &MotionState<T>) -> Option<f64> {
     let mode = motion.stepper.mode(before);
     let is_stop = |end: End| matches!(mode.end(end).1, EndKind::Stop | EndKind::Compliant);
     if !is_stop(End::Low) && !is_stop(End::High) {
@@ -136,24 +136,24 @@ fn miss<T: Scalar, D: Drive<T>>(motion: &Motion<'_, T, D, false>, before: &Motio
     let multiplicity =
         before.touch.map_or(1, |touch| if touch.multiplicity == HELD { 1 } else { touch.multiplicity });
     let (mut velocity, mut power) = (Vec::with_capacity(series.known), 1.0);
-    for (k, c) in series.y[..series.known].iter().enumerate().skip(1) {
+    for (k, c) in series.coefficients().iter().enumerate().skip(1) {
         velocity.push(if k < multiplicity { 0.0 } else { k as f64 * c.to_f64() * power });
         power *= length;
     }
     // A mass that begins at rest has not turned there, and one that stands still to rounding turns nowhere.
-    let mut rises = *velocity.iter().find(|own| **own != 0.0)? > 0.0;
-    let place = |t: f64| series.y[..series.known].iter().rev().fold(0.0, |sum, c| sum * t + c.to_f64());
+    let mut rises = *velocity.iter().find(|c| **c != 0.0)? > 0.0;
+    let place = |t: f64| series.coefficients().iter().rev().fold(0.0, |sum, c| sum * t + c.to_f64());
     let (first, last) = (place(0.0), place(length));
     let rounding = ROUNDINGS * f64::EPSILON * before.x.to_f64().abs();
     let mut least: Option<f64> = None;
-    PolynomialRoots::new(&velocity).each_sign_change(|s| {
+    PolynomialRoots::new(&velocity).each_sign_change(&mut |s| {
         let end = if rises { End::High } else { End::Low };
         rises = !rises;
         let y = place(s * length);
         let gap = (mode.end(end).0.to_f64() - (mode.origin.to_f64() + y)).abs();
         let moves = (y - first).abs().max((y - last).abs()) > rounding;
         if s < 1.0 && moves && gap > 0.0 && is_stop(end) {
-            least = Some(least.map_or(gap, |own| own.min(gap)));
+            least = Some(least.map_or(gap, |least| least.min(gap)));
         }
         true
     });

@@ -53,7 +53,7 @@ struct Lap<T> {
     like: Option<Like<T>>,
 }
 
-impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
+impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// The mass has just been released with this label: completes the run where a release had the same label
     /// before. Where it is pursued, it has arrived.
     pub fn let_go(&mut self, label: Label<T>) {
@@ -72,7 +72,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             self.complete(&log, Lap { first, cycles, like });
             self.record.judge.end_tape();
         } else if let Some((first, before)) = log.find(|known| known.end == label.end.other())
-            && D::ODD
+            && self.stepper.drive.is_odd()
             && self.symmetric
             && let Some(cycles) = self.half_cycles_since(&log.at(first))
         {
@@ -213,8 +213,9 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     }
 
     fn replay(&mut self, log: &Log<T>, marks: (usize, Option<usize>), later: Later) {
-        let told = log.play(&mut self.record, marks, later, self.stepper.base(self.state.segment));
-        self.stepper.work.add(TOLD * told as u64);
+        let replayed =
+            log.play((&mut self.record, &mut self.stepper.series), marks, later, self.state.segment);
+        self.stepper.work.add(TOLD * replayed as u64);
     }
 
     /// Laps from here on that are wholly inside (or outside) the settled window, as the last one was.
