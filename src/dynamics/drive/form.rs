@@ -38,12 +38,12 @@ impl Model {
     }
 }
 
-/// A drive in doubles, in the type that is fastest for it.
+/// A drive in the type that is fastest for it.
 #[derive(Debug)]
-pub(crate) enum Form {
-    Still(Still<f64>),
-    Sine(Sine<f64>),
-    General(General<f64>),
+pub(crate) enum Form<T> {
+    Still(Still<T>),
+    Sine(Sine<T>),
+    General(General<T>),
 }
 
 /// Evaluates an expression with the drive of a form in its own type.
@@ -78,17 +78,17 @@ impl Kind {
     }
 }
 
-/// This model's drive in doubles.
-pub(crate) fn form(model: &Model, clock: &Clock<f64>) -> Form {
+/// This model's drive in the type that is fastest for it.
+pub(crate) fn form<T: Scalar>(model: &Model, clock: &Clock<T>) -> Form<T> {
     let unit = clock.unit();
     match Kind::of(model) {
-        Kind::Still => Form::Still(Still { acceleration: model.excitation.constant * (unit * unit) }),
+        Kind::Still => Form::Still(Still { acceleration: T::of(model.excitation.constant * (unit * unit)) }),
         Kind::Sine => Form::Sine(sine(model, unit)),
         Kind::General => Form::General(general(model, clock)),
     }
 }
 
-/// This model's drive in numbers of any type.
+/// This model's drive in the one type that any drive has.
 pub(crate) fn general<T: Scalar>(model: &Model, clock: &Clock<T>) -> General<T> {
     let (kind, unit) = (Kind::of(model), clock.unit());
     General {

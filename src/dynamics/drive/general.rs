@@ -1,9 +1,9 @@
 //! Any drive: a constant and any number of tones, chirps and records; beside it the circuit of a transducer
 //! whose state goes on with the motion.
 //!
-//! In doubles a constant and a sine alone are types of their own, [`Still`](super::Still) and [`Sine`]. In
-//! other numbers every drive is of this one; a constant or a sine alone has the same arithmetic here as
-//! there, so that the value of a motion with derivatives has the bits of one without.
+//! A constant and a sine alone are also types of their own, [`Still`](super::Still) and [`Sine`], which are
+//! faster. In some 31 digits every drive is of this type; a constant or a sine alone has the same arithmetic
+//! here as there.
 
 use super::chirp::{Chirp, ChirpState, next_chirp};
 use super::circuit::Circuit;
@@ -74,10 +74,12 @@ impl<T: Scalar> Default for Cursor<T> {
 impl<T: Scalar> Tail<T> for General<T> {
     type Cursor = Cursor<T>;
 
+    #[inline(always)]
     fn zero_from(&self) -> usize {
         if self.still { 1 } else { usize::MAX }
     }
 
+    #[inline(always)]
     fn couple(&self, k: usize, y: &[T; ROOM], cursor: &mut Self::Cursor) -> Option<T> {
         let Circuit { coupling, rates, .. } = self.circuit.as_ref()?;
         let w = &mut cursor.state;

@@ -42,7 +42,7 @@ impl Sums {
 pub(crate) struct Kernel {
     equation: Equation<f64>,
     clock: Clock<f64>,
-    drive: std::sync::Arc<Form>,
+    drive: std::sync::Arc<Form<f64>>,
 }
 
 /// What came of stepping on.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Jacobian, Kernel, StroboscopicMap, general};
+use super::{Jacobian, Kernel, StroboscopicMap};
 use crate::dynamics::model::Model;
 use crate::dynamics::result::EventKind;
 use crate::mechanics::{ForceCurve, Mechanism, Piece};
@@ -21,14 +21,14 @@ fn model(fields: &str) -> Model {
 /// The derivatives by central differences.
 fn differences(model: &Model, seconds: f64, (x, v): (f64, f64)) -> Jacobian {
     let map = StroboscopicMap::over(&model.with_tolerance(1e-29), seconds);
-    let Kernel { equation, clock, drive } = Kernel::<DoubleDouble, _>::new(&map.model, general);
+    let kernel = Kernel::<DoubleDouble>::new(&map.model);
     let unit = model.scales.unit();
     let dd = DoubleDouble::of;
     // The error of a central difference is of the order of its square.
     let step = dd(1e-9);
     let end = |dx: DoubleDouble, dv: DoubleDouble| {
         let start = (dd(x) + dx, (dd(v) + dv) * dd(unit));
-        let (x, v) = map.trace((&equation, clock, &drive), start, (0.0, 1.0)).end;
+        let (x, v) = map.trace(&kernel, start, (0.0, 1.0)).end;
         (x, v / dd(unit))
     };
     let zero = dd(0.0);

@@ -12,9 +12,7 @@ mod jacobian;
 mod passage;
 
 use super::clock::{Clock, Instant};
-use super::drive::Drive;
-use super::drive::form::{Form, clock, form, general, with_drive};
-use super::drive::general::General;
+use super::drive::form::{Form, clock, form, with_drive};
 use super::equation::Equation;
 use super::model::Model;
 use crate::numeric::{Dual, Scalar};
@@ -25,17 +23,17 @@ use passage::Traced;
 
 /// Equation, clock and drive of a model in numbers of one type.
 #[derive(Debug)]
-struct Kernel<T, D> {
+struct Kernel<T> {
     equation: Equation<T>,
     clock: Clock<T>,
-    drive: D,
+    drive: Form<T>,
 }
 
-impl<T: Scalar, D> Kernel<T, D> {
-    fn new(model: &Model, drive: impl Fn(&Model, &Clock<T>) -> D) -> Self {
+impl<T: Scalar> Kernel<T> {
+    fn new(model: &Model) -> Self {
         let unit = model.scales.unit();
         let clock = clock(model, unit);
-        Self { equation: Equation::new(model, unit), drive: drive(model, &clock), clock }
+        Self { equation: Equation::new(model, unit), drive: form(model, &clock), clock }
     }
 }
 
@@ -52,8 +50,8 @@ enum Length {
 #[derive(Debug)]
 pub struct StroboscopicMap {
     model: Model,
-    plain: Kernel<f64, Form>,
-    dual: Kernel<Dual, General<Dual>>,
+    plain: Kernel<f64>,
+    dual: Kernel<Dual>,
     /// Cycles of the clock up to the strobe, whole and not.
     phase: (i64, f64),
     length: Length,
@@ -81,8 +79,8 @@ impl StroboscopicMap {
     /// The map of the state at time 0 to that after `seconds`, whatever the drive.
     pub fn over(model: &Model, seconds: f64) -> Self {
         Self {
-            plain: Kernel::new(model, form),
-            dual: Kernel::new(model, general),
+            plain: Kernel::new(model),
+            dual: Kernel::new(model),
             // nothing is judged, so that the settled window is empty
             model: model.with_duration(seconds, seconds),
             phase: (0, 0.0),
@@ -112,13 +110,13 @@ impl StroboscopicMap {
     /// A displacement beyond a stop or the curve is the caller's error: the motion then begins there.
     pub fn pass(&self, (x, v): (f64, f64), periods: u32) -> Passage {
         let unit = self.model.scales.unit();
-        self.trace_plain((x, v * unit), (0.0, f64::from(periods))).passage
+        self.trace(&self.plain, (x, v * unit), (0.0, f64::from(periods))).passage
     }
 
     /// The same over a part of the forcing period, from 0 to 1.
     pub fn pass_part(&self, (x, v): (f64, f64), part: f64) -> Passage {
         let unit = self.model.scales.unit();
-        self.trace_plain((x, v * unit), (0.0, part)).passage
+        self.trace(&self.plain, (x, v * unit), (0.0, part)).passage
     }
 
     /// The same with the derivatives of the state at the end by that at the start. All are 0 where the mass
@@ -139,29 +137,17 @@ impl StroboscopicMap {
         let scales = [self.model.scales.length, self.model.scales.speed * unit];
         let start =
             (Dual { value: x, slopes: [scales[0], 0.0] }, Dual { value: v * unit, slopes: [0.0, scales[1]] });
-        let Kernel { equation, clock, drive } = &self.dual;
-        let Traced { passage, end, rested } = self.trace((equation, *clock, drive), start, span);
+        let Traced { passage, end, rested } = self.trace(&self.dual, start, span);
         if rested {
             return (passage, Jacobian { rows: [[0.0; 2]; 2] });
         }
         let in_si = [1.0, unit];
-        let row = |own: Dual, out: f64| std::array::from_fn(|j| own.slopes[j] / scales[j] * in_si[j] / out);
+        let row = |end: Dual, out: f64| std::array::from_fn(|j| end.slopes[j] / scales[j] * in_si[j] / out);
         (passage, Jacobian { rows: [row(end.0, 1.0), row(end.1, unit)] })
     }
 
-    /// The motion in doubles between two times after a strobe, in forcing periods.
-    fn trace_plain(&self, start: (f64, f64), span: (f64, f64)) -> Traced<f64> {
-        let Kernel { equation, clock, drive } = &self.plain;
-        with_drive!(drive, drive => self.trace((equation, *clock, drive), start, span))
-    }
-
-    /// The same in numbers of any type.
-    fn trace<T: Scalar, D: Drive<T>>(
-        &self,
-        (equation, clock, drive): (&Equation<T>, Clock<T>, &D),
-        start: (T, T),
-        (from, to): (f64, f64),
-    ) -> Traced<T> {
+    fn trace<T: Scalar>(&self, kernel: &Kernel<T>, start: (T, T), (from, to): (f64, f64)) -> Traced<T> {
+        let Kernel { equation, clock, drive } = kernel;
         let strobe = Instant { cycle: self.phase.0, phase: T::of(self.phase.1) * clock.period() };
         let after = |periods: f64| match self.length {
             Length::Cycles(cycles) => {
@@ -171,6 +157,7 @@ impl StroboscopicMap {
             }
             Length::Seconds(seconds) => clock.at(seconds * periods),
         };
-        passage::trace(&self.model, equation, clock, drive, start, (after(from), after(to)))
+        let span = (after(from), after(to));
+        with_drive!(drive, drive => passage::trace(&self.model, equation, *clock, drive, start, span))
     }
 }

@@ -27,7 +27,7 @@ impl Model {
     pub fn run(&self, request: &Request) -> Run {
         let watch = ThreadClock::start();
         let unit = self.scales.unit();
-        let (equation, clock) = (Equation::new(self, unit), clock(self, unit));
+        let (equation, clock) = (Equation::<f64>::new(self, unit), clock(self, unit));
         let mut run = with_drive!(&form(self, &clock), drive => {
             Motion::new(self, request, self.tolerance, &equation, clock, drive)
                 .with_recurrence(self.recurrence, self)

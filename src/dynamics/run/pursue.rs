@@ -36,7 +36,7 @@ impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
 /// Pursues a motion alone.
 pub(crate) fn pursue_alone(model: &Model, pursuit: &Pursuit, request: &Request) -> Arrival {
     let unit = model.scales.unit();
-    let (equation, clock) = (Equation::new(model, unit), clock(model, unit));
+    let (equation, clock) = (Equation::<f64>::new(model, unit), clock(model, unit));
     with_drive!(&form(model, &clock), drive => {
         let motion = Motion::new(model, request, model.tolerance, &equation, clock, drive);
         let mut motion = motion.pursuing(pursuit, model);
