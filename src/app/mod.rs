@@ -8,7 +8,7 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`task`] | background jobs as values |
+//! | [`task`] | background questions as values |
 //! | [`words`] | names and units of fields, number formats, explanations, the sentence about the motion |
 //! | [`session`] | the open scene with undo and files, the player, the map, the accuracy, without a window |
 //! | [`export`] | files and command lines that leave the window |

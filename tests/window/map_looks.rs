@@ -64,7 +64,7 @@ fn a_click_on_the_surface_takes_the_scene_there() {
     let rect = harness.get_by_role_and_label(Role::Image, "map as a surface").rect();
     let [left, top, right, bottom] = [rect.left(), rect.top(), rect.right(), rect.bottom()].map(f64::from);
     let projection = Projection { left, top, right, bottom };
-    let most = map(harness.state()).own_cells().map(rms).fold(0.0, f64::max);
+    let most = map(harness.state()).known_cells().map(rms).fold(0.0, f64::max);
     // 2.5 mm and 1.25 g, whose height is its share of the largest velocity: no face hides it
     let (column, row) = (6, 3);
     let own = rms(map(harness.state()).cell(column, row).unwrap().0);
@@ -121,10 +121,10 @@ fn a_cut_through_a_coarse_map_says_what_is_its_own() {
     session.map.choose(Some(axes((0.005, 0.005))));
     session.want_map(0.0);
     crate::support::wait_until("a coarse map", || {
-        session.map.take();
+        session.map.cells.poll();
         session.map.map().is_some_and(Map::is_covered)
     });
-    session.map.stop();
+    session.map.cells.stop();
     let map = session.map.map().unwrap();
     assert!(!map.is_whole());
     let [columns, rows] = map.size();
@@ -133,7 +133,7 @@ fn a_cut_through_a_coarse_map_says_what_is_its_own() {
         assert!(cut.len() > 3 && cut.len() < rows, "{}", cut.len());
         assert!(cut.windows(2).all(|pair| pair[0].place < pair[1].place));
         for own in cut {
-            assert_eq!(map.cell(column, own.place).unwrap().1, own.own);
+            assert_eq!(map.cell(column, own.place).unwrap().1, own.on_line);
             assert_eq!(map.cell(column, own.place).unwrap().0, own.cell);
         }
     }

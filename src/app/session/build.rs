@@ -5,14 +5,14 @@ use std::sync::Arc;
 use crate::app::words::fields::{in_words, name_and_unit};
 use crate::dynamics::Model;
 use crate::mechanics::{BuildError, FlexureError, Mechanism};
-use crate::scene::{Document, Excitation, Fault, Scene, SceneError};
+use crate::scene::{Document, Fault, Scene, SceneError};
 
 /// Why a scene cannot be run.
 #[derive(Debug, thiserror::Error)]
 pub enum CannotRun {
     #[error(transparent)]
     Wrong(#[from] SceneError),
-    /// It is right, and its flexures were not solved.
+    /// It has no fault, but its flexures were not solved.
     #[error(transparent)]
     Unsolved(#[from] FlexureError),
 }
@@ -35,8 +35,8 @@ pub(super) fn solved(document: &Document, tolerance: f64) -> Result<(Arc<Mechani
     Ok((mechanism, model))
 }
 
-/// The first thing that is wrong, with the names that stand on the screen and without the place in a file,
-/// which a hand on a slider does not look at.
+/// The first thing that is wrong, with the names on the screen and without the place in a file, which does not
+/// help at a slider.
 pub(super) fn why(error: &CannotRun, scene: &Scene) -> String {
     match error {
         CannotRun::Wrong(SceneError::Faults { faults, .. }) => faults.first().map_or_else(
@@ -50,16 +50,4 @@ pub(super) fn why(error: &CannotRun, scene: &Scene) -> String {
         ),
         _ => error.to_string(),
     }
-}
-
-/// Whether all thresholds of one scene are those of the other.
-pub(super) fn differ_in_amplitude_alone(a: &Scene, b: &Scene) -> bool {
-    let mut other = a.clone();
-    match (&mut other.excitation, &b.excitation) {
-        (Excitation::Sine { amplitude_g: own, .. }, Excitation::Sine { amplitude_g, .. }) => {
-            *own = *amplitude_g
-        }
-        _ => return false,
-    }
-    other == *b
 }

@@ -13,9 +13,9 @@ use super::editor::Editor;
 use super::player::fitting_speed;
 use super::stops::first_stops;
 
-/// Error of the force of flexures while a hand still changes them: the curve is there within a frame, and
-/// what it is off by is not seen. At the end of the gesture they are solved as every study solves them.
-const HANDLED_TOLERANCE: f64 = 1e-6;
+/// Tolerance of the force of flexures during a gesture: the curve is solved within a frame, and its error is
+/// too small to be seen. At the end of the gesture they are solved as every study solves them.
+const COARSE_TOLERANCE: f64 = 1e-6;
 
 /// Time in s within which another press of an arrow key belongs to the same gesture.
 const PRESSES: f64 = 1.0;
@@ -32,7 +32,7 @@ impl Session {
     }
 
     /// Changes the mechanism as part of a gesture, if the changed one can be solved and run; if not,
-    /// everything stays as it is and [`refused`](Self::refused) says why. Whether it changed.
+    /// nothing changes and [`refused`](Self::refused) says why. Whether it changed.
     pub fn edit_mechanism(&mut self, change: impl FnOnce(&mut Mechanism)) -> bool {
         let mut document = self.editor.runnable();
         change(&mut document.scene.mechanism);
@@ -40,9 +40,9 @@ impl Session {
             return false;
         }
         let wanted = document.scene.mechanism.clone();
-        match solved(&document, HANDLED_TOLERANCE) {
+        match solved(&document, COARSE_TOLERANCE) {
             Ok((mechanism, _)) => {
-                (self.mechanism, self.mechanism_of, self.hurried) = (mechanism, wanted.clone(), true);
+                (self.mechanism, self.mechanism_of, self.is_coarse) = (mechanism, wanted.clone(), true);
                 self.refused = None;
                 self.edit(|scene| scene.mechanism = wanted)
             }
@@ -53,7 +53,7 @@ impl Session {
         }
     }
 
-    /// Why the last change that a hand wanted of the mechanism was not made.
+    /// Why the last change of the mechanism by hand was not made.
     pub fn refused(&self) -> Option<&str> {
         self.refused.as_deref()
     }
@@ -63,14 +63,14 @@ impl Session {
         if self.editor.in_gesture() {
             self.apply();
             self.editor.end_gesture();
-            self.solve_in_earnest();
+            self.solve_finely();
             self.ask_thresholds();
         }
     }
 
-    /// Solves a mechanism anew that was solved in a hurry; where that fails, the hurried one stays.
-    fn solve_in_earnest(&mut self) {
-        if !std::mem::take(&mut self.hurried) {
+    /// Solves a mechanism finely that was solved coarsely; where that fails, the coarse one stays.
+    fn solve_finely(&mut self) {
+        if !std::mem::take(&mut self.is_coarse) {
             return;
         }
         let Ok((mechanism, model)) = solved(&self.editor.runnable(), FLEXURE_TOLERANCE) else { return };
@@ -87,12 +87,12 @@ impl Session {
         changed
     }
 
-    /// A step back. Whether there was one.
+    /// Goes a step back. Whether there was one.
     pub fn undo(&mut self) -> bool {
         self.travel(Editor::undo)
     }
 
-    /// A step forward again. Whether there was one.
+    /// Goes a step forward again. Whether there was one.
     pub fn redo(&mut self) -> bool {
         self.travel(Editor::redo)
     }
@@ -110,7 +110,7 @@ impl Session {
         moved
     }
 
-    /// The number at a path; that of the stops is, while they are off, of those that come.
+    /// The number at a path; while the stops are off, their numbers are those of the remembered stops.
     pub fn number(&self, path: &str) -> Option<f64> {
         FieldPath::new(path).get(&self.with_stops_for(path))
     }
@@ -127,8 +127,7 @@ impl Session {
             wanted.run.settle_s = wanted.run.settle_s.filter(|settle| *settle < value);
         }
         let section = |path: &str| path.split('.').next().map(str::to_owned);
-        let own = |field: &str| section(field) == section(path);
-        let fault = check(&wanted).faults.into_iter().find(|fault| own(&fault.field));
+        let fault = check(&wanted).faults.into_iter().find(|fault| section(&fault.field) == section(path));
         if let (Some(fault), None) = (fault, self.fault()) {
             let problem = in_words(&fault.problem, &wanted);
             return Err(match fault.field == path {
@@ -154,24 +153,23 @@ impl Session {
         scene
     }
 
-    /// A key is pressed on a field at the time `now` in s: presses on one field within a second are one
-    /// gesture.
+    /// To be called when a key is pressed on a field at the time `now` in s: presses on one field within a
+    /// second of each other are one gesture.
     pub fn press(&mut self, field: &str, now: f64) {
-        if self.presses.as_ref().is_none_or(|(own, last)| own != field || now - last > PRESSES) {
+        if self.presses.as_ref().is_none_or(|(pressed, last)| pressed != field || now - last > PRESSES) {
             self.end_gesture();
         }
         self.presses = Some((field.to_owned(), now));
     }
 
-    /// Ends presses that something else follows.
+    /// Ends the gesture of presses before another one.
     pub fn end_presses(&mut self) {
         if self.presses.is_some() {
             self.end_gesture();
         }
     }
 
-    /// Ends presses that no other one has followed for a second. How long in s others are waited for from
-    /// `now` on.
+    /// Ends the gesture of presses a second after the last one. The time in s that is left until then.
     pub fn follow_presses(&mut self, now: f64) -> Option<f64> {
         let last = self.presses.as_ref()?.1;
         let left = last + PRESSES - now;
@@ -193,7 +191,7 @@ impl Session {
         Excitation::Sine { frequency_hz, amplitude_g, phase_deg: 0.0 }
     }
 
-    /// Switches the stops; the ones that were there are remembered.
+    /// Switches the stops on or off; those that are switched off are remembered.
     pub fn switch_stops(&mut self, on: bool) {
         let stops = if on { self.remembered_stops } else { Stops::None };
         if !on && self.scene().stops != Stops::None {
@@ -202,12 +200,12 @@ impl Session {
         self.edit_once(|scene| scene.stops = stops);
     }
 
-    /// The stops that come when they are switched on.
+    /// The stops that are set when they are switched on.
     pub fn remembered_stops(&self) -> Stops {
         self.remembered_stops
     }
 
-    /// The scene and the time as they were opened, playing.
+    /// Back to the scene and the time as they were opened, playing.
     pub fn back_to_start(&mut self) {
         self.travel(Editor::back_to_start);
         self.before = None;

@@ -10,10 +10,10 @@ use crate::scene::{Document, Files, Scene, SceneError, Source, Start, numeric_fi
 
 use super::companions::{bring, follow};
 
-/// The most steps back that are kept.
-const MOST_STEPS: usize = 500;
+/// Largest number of steps back that are kept.
+const MAX_STEPS: usize = 500;
 
-/// How messages call a scene that came as text.
+/// Name in messages of a scene that came as text.
 const PASTED: &str = "the pasted scene";
 
 #[derive(Debug, Clone)]
@@ -26,7 +26,7 @@ pub struct Editor {
     named: Scene,
     undo: Vec<Scene>,
     redo: Vec<Scene>,
-    /// The scene at the begin of the gesture under way.
+    /// The scene at the beginning of the gesture under way.
     gesture: Option<Scene>,
 }
 
@@ -36,8 +36,8 @@ impl Editor {
         Self { document, saved, named, undo: Vec::new(), redo: Vec::new(), gesture: None }
     }
 
-    /// An editor on the scene of a lesson, which is changed from the one that its source names: that one
-    /// stays as it is, and a scene file is not written over.
+    /// An editor on the scene of a lesson, which differs from the one that its source names: that one stays
+    /// as it is, and a scene file is not written over.
     pub fn in_lesson(mut document: Document) -> Self {
         let named = match document.source {
             Source::BuiltIn(name) => Document::load(name).ok(),
@@ -46,8 +46,8 @@ impl Editor {
         if named.is_none() {
             document.source = Source::Text;
         }
-        let own = Self::new(document);
-        Self { named: named.map_or_else(|| own.saved.clone(), |named| named.scene), ..own }
+        let editor = Self::new(document);
+        Self { named: named.map_or_else(|| editor.saved.clone(), |named| named.scene), ..editor }
     }
 
     pub fn open(spec: &str) -> Result<Self, SceneError> {
@@ -59,8 +59,7 @@ impl Editor {
         Document::from_text(PASTED, text, Files::default()).map(Self::new)
     }
 
-    /// What the command line calls the scene that was opened or last saved; none for one that has no such
-    /// name.
+    /// Name for the command line of the scene that was opened or last saved; none for one that came as text.
     pub fn origin(&self) -> Option<String> {
         match &self.document.source {
             Source::File(path) => Some(path.to_string_lossy().into_owned()),
@@ -69,9 +68,8 @@ impl Editor {
         }
     }
 
-    /// The document as it can be run and written: without axes of its sweep that name a field which the scene
-    /// does not have at the moment, such as the travel limit while the stops are off. The scene keeps them
-    /// for when it has.
+    /// The document as it can be run and written: without those axes of its sweep that name a field which the
+    /// scene lacks at the moment, such as the travel limit while the stops are off. The scene keeps them.
     pub fn runnable(&self) -> Document {
         runnable(&self.document)
     }
@@ -100,7 +98,7 @@ impl Editor {
         &self.named
     }
 
-    /// The document, for what needs its files and its places.
+    /// The document with its files and the places of its fields.
     pub fn document(&self) -> &Document {
         &self.document
     }
@@ -142,11 +140,11 @@ impl Editor {
         };
         self.undo.push(before);
         self.redo.clear();
-        let spare = self.undo.len().saturating_sub(MOST_STEPS);
-        self.undo.drain(..spare);
+        let excess = self.undo.len().saturating_sub(MAX_STEPS);
+        self.undo.drain(..excess);
     }
 
-    /// Changes the scene by one gesture of its own. Whether it changed.
+    /// Changes the scene by a separate gesture. Whether it changed.
     pub fn edit_once(&mut self, change: impl FnOnce(&mut Scene)) -> bool {
         self.end_gesture();
         let changed = self.edit(change);
@@ -180,14 +178,14 @@ impl Editor {
         true
     }
 
-    /// Back to the scene as it was opened or last saved; that, too, can be undone. Whether anything changed.
+    /// Back to the scene as it was opened or last saved, which can be undone. Whether anything changed.
     pub fn back_to_start(&mut self) -> bool {
         let saved = self.saved.clone();
         self.edit_once(|scene| *scene = saved)
     }
 
-    /// Writes the scene to a file, which is then its own, and the files that it names beside it. Returns
-    /// the names of those that were written.
+    /// Writes the scene to a file, from then on the one that it is saved to, and the files that it names
+    /// beside it. Returns the names of the latter that were written.
     pub fn save_to(&mut self, path: &Path) -> Result<Vec<String>, String> {
         self.end_gesture();
         let mut document = self.document.clone();
@@ -220,16 +218,13 @@ fn text_of(scene: &Scene) -> Result<String, String> {
     write(scene).map_err(|error| format!("the scene cannot be written as text: {error}"))
 }
 
-/// A start beyond a stop is no start: a stop that is moved over it carries it along.
+/// Moves a start that lies beyond a stop to the stop.
 pub(in crate::app) fn keep_start_inside(scene: &mut Scene) {
     let [left, right] = scene.stops.limits_mm();
-    let (left, right) = (left.map_or(f64::NEG_INFINITY, |mm| -mm), right.unwrap_or(f64::INFINITY));
     if let Start::At { x_mm, .. } = &mut scene.start {
-        if *x_mm > right {
-            *x_mm = right;
-        } else if *x_mm < left {
-            *x_mm = left;
-        }
+        let beyond_left = left.map(|limit| -limit).filter(|left| *x_mm < *left);
+        let beyond_right = right.filter(|right| *x_mm > *right);
+        *x_mm = beyond_right.or(beyond_left).unwrap_or(*x_mm);
     }
 }
 
@@ -269,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gesture_that_comes_back_is_none() {
+    fn a_gesture_that_changes_nothing_is_no_step() {
         let mut editor = editor();
         editor.edit(|scene| scene.mass_g = 16.0);
         editor.edit(|scene| scene.mass_g = 15.2);
@@ -299,7 +294,7 @@ mod tests {
     #[test]
     fn saved_and_opened_it_is_the_same() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("own.ron");
+        let path = folder.path().join("scene.ron");
         let mut editor = editor();
         editor.edit_once(|scene| scene.mass_g = 16.5);
         editor.save_to(&path).unwrap();
@@ -313,7 +308,7 @@ mod tests {
     #[test]
     fn tables_go_where_the_scene_goes() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("own.ron");
+        let path = folder.path().join("scene.ron");
         Editor::open("paper-table").unwrap().save_to(&path).unwrap();
         let again = Editor::open(path.to_str().unwrap()).unwrap();
         assert!(

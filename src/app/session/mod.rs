@@ -1,4 +1,4 @@
-//! The open scene with its model, its motion and what is known of it.
+//! The open scene with its model, its motion and what is known about it.
 //!
 //! Everything here works without a window; the views look at it and change it through its methods.
 
@@ -23,7 +23,7 @@ mod stops;
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::app::task::{Latest, Wake};
+use crate::app::task::{Background, Wake};
 use crate::dynamics::Model;
 use crate::mechanics::{FLEXURE_TOLERANCE, Mechanism};
 use crate::study;
@@ -31,7 +31,7 @@ use crate::study;
 use accuracy::Accuracy;
 use best::BestStops;
 pub use build::CannotRun;
-use build::{differ_in_amplitude_alone, solved, unbuilt, why};
+use build::{solved, unbuilt, why};
 use editor::Editor;
 use explore::Explore;
 use map::Mapping;
@@ -41,13 +41,14 @@ use player::{Player, fitting_speed};
 pub use state::{Card, OpenedScales, Session};
 use stops::first_stops;
 
-/// For how long the background works before it is offered to stop it.
+/// Time that the background works before the window offers to stop it.
 pub const OFFER_TO_STOP: Duration = Duration::from_secs(2);
 
-/// Share of a period for which a motion has to go on to be worth going on with.
+/// Share of the characteristic time for which a motion that has ended must be able to go on; else it begins
+/// again.
 const MOMENT: f64 = 0.02;
 
-/// Share of the length scale by which a change has to carry the mass to be worth a word.
+/// Share of the length scale by which a change has to carry the mass to be mentioned.
 const CARRIED: f64 = 0.02;
 
 impl Session {
@@ -66,9 +67,9 @@ impl Session {
             model: Arc::new(model),
             fault: None,
             player,
-            settled: Latest::default(),
-            thresholds: Latest::default(),
-            stops_that_cross: Latest::default(),
+            settled: Background::default(),
+            thresholds: Background::default(),
+            stops_that_cross: Background::default(),
             accuracy: Accuracy::default(),
             map: Mapping::default(),
             explore: Explore::default(),
@@ -76,7 +77,7 @@ impl Session {
             measured: MeasuredData::default(),
             before: None,
             mechanism_of: scene.mechanism.clone(),
-            hurried: false,
+            is_coarse: false,
             refused: None,
             built: scene,
             mechanism,
@@ -84,7 +85,6 @@ impl Session {
             by_hand: false,
             carried: false,
             opened,
-            asked_from: 0.0,
             continued: false,
             remembered_stops,
             presses: None,
@@ -103,7 +103,7 @@ impl Session {
         self.settled.poll();
         self.thresholds.poll();
         self.stops_that_cross.poll();
-        self.map.take();
+        self.map.cells.poll();
         self.explore.poll();
         self.pins.poll();
         self.measured.poll();
@@ -111,7 +111,16 @@ impl Session {
         self.follow_accuracy();
     }
 
-    /// The motion from its start again.
+    /// Pauses what no view has wanted in this frame. To be called once a frame.
+    pub fn end_frame(&mut self) {
+        self.map.cells.end_frame();
+        self.explore.end_frame();
+        self.measured.found.end_frame();
+        self.accuracy.end_frame();
+        self.player.end_frame();
+    }
+
+    /// Begins the motion from its start again.
     pub fn restart(&mut self) {
         self.player.restart(&self.model);
         self.pins.restart(&self.wake);
@@ -129,42 +138,37 @@ impl Session {
         self.player.set_playing(!playing);
     }
 
-    /// The mass has been moved by hand: what it settles to is asked anew.
+    /// To be called when the mass has been moved by hand: asks again what it settles to.
     pub fn moved_by_hand(&mut self) {
         (self.changed_at, self.continued, self.by_hand) = (self.player.watch().time(), true, true);
         self.carried = false;
         self.ask_settled();
     }
 
-    /// Lets the mass go on as the scene now says, where that has changed.
+    /// Takes over the edited scene: the motion goes on by it from where it is.
     pub(super) fn apply(&mut self) {
         if *self.editor.scene() == self.built {
             return;
         }
-        let before = std::mem::replace(&mut self.built, self.editor.scene().clone());
+        self.built = self.editor.scene().clone();
         match self.build() {
             Ok(model) => {
                 self.fault = None;
                 self.model = Arc::new(model);
                 self.map.trail.note(&self.built);
                 self.go_on();
-                if !differ_in_amplitude_alone(&before, &self.built) {
-                    self.thresholds.clear();
-                }
-                self.stops_that_cross.clear();
             }
             Err(error) => {
                 self.fault = Some(why(&error, self.editor.scene()));
                 self.settled.clear();
                 self.accuracy.begin(None);
-                self.thresholds.clear();
-                self.stops_that_cross.clear();
             }
         }
+        self.forget_ways();
     }
 
-    /// Lets the motion go on from its present state by the model; one that has ended, and could not go on
-    /// from there, begins again.
+    /// Lets the motion go on from its present state by the model; a motion that has ended and cannot go on
+    /// from there begins again.
     fn go_on(&mut self) {
         let (ended, before) = (self.player.ended().is_some(), self.player.watch().now().x);
         self.player.change(&self.model);
@@ -179,7 +183,7 @@ impl Session {
         self.ask_settled();
     }
 
-    /// Whether the motion goes on for a moment at least from its present state.
+    /// Whether the motion can go on from its present state for a moment at least.
     fn can_go_on(&self) -> bool {
         let Some(model) = self.player.watch().from_here() else { return false };
         study::lasts(&model, MOMENT * model.characteristic_time())
@@ -187,17 +191,17 @@ impl Session {
 
     /// Whether the last change carried the mass to a stop, and it has not moved on for long.
     pub fn was_set_on_stop(&self) -> bool {
-        let gone = self.player.watch().time() - self.changed_at;
-        self.carried && (self.settling().is_some() || gone < self.model.characteristic_time())
+        let since = self.player.watch().time() - self.changed_at;
+        self.carried && (self.settling().is_some() || since < self.model.characteristic_time())
     }
 
-    /// How far the motion has come, after a change, towards what the sentence tells of: seconds gone, and of
-    /// how many.
+    /// How far the motion has come, after a change, towards the one that the sentence describes: seconds
+    /// passed, and of how many.
     pub fn settling(&self) -> Option<(f64, f64)> {
-        let goes = self.model.is_shaken() && self.player.ended().is_none();
-        let told = self.told().filter(|_| goes && self.changed_at > 0.0)?;
-        let (gone, of) = (told.now - told.origin, told.seen_from() - told.origin);
-        (gone < of).then_some((gone, of))
+        let moves = self.model.is_shaken() && self.player.ended().is_none();
+        let facts = self.facts().filter(|_| moves && self.changed_at > 0.0)?;
+        let (passed, of) = (facts.now - facts.origin, facts.seen_from() - facts.origin);
+        (passed < of).then_some((passed, of))
     }
 
     /// The model of the scene as it stands.
@@ -214,18 +218,18 @@ impl Session {
         Ok(Model::build(scene, Arc::clone(&self.mechanism)).map_err(|faults| document.error_from(faults))?)
     }
 
-    /// Waits until it is known what the motion settles to, at most so long.
-    pub fn wait_settled(&mut self, most: Duration) {
+    /// Waits until it is known what the motion settles to, for `limit` at the longest.
+    pub fn wait_settled(&mut self, limit: Duration) {
         self.apply();
-        self.settled.wait(most);
+        self.settled.wait(limit);
     }
 
-    /// Waits for what is being computed, at most so long.
-    pub fn wait(&mut self, most: Duration) {
-        self.wait_settled(most);
-        self.thresholds.wait(most);
-        self.stops_that_cross.wait(most);
+    /// Waits for each sentence about the scene that is being worked out, for `limit` at the longest.
+    pub fn wait(&mut self, limit: Duration) {
+        self.wait_settled(limit);
+        self.thresholds.wait(limit);
+        self.stops_that_cross.wait(limit);
         self.follow_accuracy();
-        self.accuracy.wait(most);
+        self.accuracy.wait(limit);
     }
 }

@@ -21,23 +21,23 @@ impl Session {
         if !self.model.is_shaken() {
             return status::unshaken(&self.model, &state);
         }
-        match self.told() {
-            Some(told) if self.keeps_remedy => Sentence { remedy: String::new(), ..status::driven(&told) },
-            Some(told) => status::driven(&told),
+        match self.facts() {
+            Some(facts) if self.keeps_remedy => Sentence { remedy: String::new(), ..status::driven(&facts) },
+            Some(facts) => status::driven(&facts),
             None if self.settled.is_running() => Sentence::waiting(),
             None => stopped(),
         }
     }
 
-    /// What the sentence tells of, once it is known.
-    pub(super) fn told(&self) -> Option<Told<'_>> {
-        let settled = self.settled.current()?;
+    /// What the sentence about a driven motion is made from, once it is known.
+    pub(super) fn facts(&self) -> Option<Told<'_>> {
+        let settled = self.settled.answer()?;
         Some(Told {
             scene: self.scene(),
             model: &self.model,
             summary: settled,
-            thresholds: self.thresholds.current(),
-            origin: self.asked_from,
+            thresholds: self.thresholds.answer(),
+            origin: self.settled.question()?.from,
             now: self.player.watch().time(),
         })
     }

@@ -8,14 +8,14 @@ use crate::scene::{FieldPath, Mechanism, Stops};
 use super::Session;
 
 impl FieldInfo {
-    /// How far the slider goes in a scene: as in the prototype's, where that suits its scales, else by its
-    /// own.
+    /// How far the slider goes in a scene: as for the prototype where that suits the scales of the scene,
+    /// else by these scales.
     pub fn reach(&self, session: &Session) -> Reach {
         let (low, high, step) = self.slider;
         let saved = FieldPath::new(self.path).get(session.editor.saved());
         let scales = session.opened();
-        // of the prototype these are 2 g and 20 Hz
-        let own = match self.scale {
+        // for the prototype these are 2 g and 20 Hz
+        let scaled = match self.scale {
             Scale::Fixed => None,
             Scale::Value => saved.map(|value| 2.5 * value.abs()),
             Scale::Push => Some(0.15 * high * scales.length / scales.time.powi(2) / STANDARD_GRAVITY),
@@ -28,17 +28,17 @@ impl FieldInfo {
         };
         let fits = saved.is_none_or(|value| (low..=high).contains(&value))
             && match self.scale {
-                Scale::Push | Scale::Rate => own.is_none_or(|own| (0.25..=4.0).contains(&(own / high))),
+                Scale::Push | Scale::Rate => scaled.is_none_or(|end| (0.25..=4.0).contains(&(end / high))),
                 Scale::Value => saved.is_none_or(|value| value == 0.0 || value.abs() > high / 200.0),
                 _ => true,
             };
-        let Some(own) = own.filter(|own| !fits && *own > 0.0 && own.is_finite()) else {
+        let Some(end) = scaled.filter(|end| !fits && *end > 0.0 && end.is_finite()) else {
             return Reach::even(low, high, step);
         };
-        let high_own = round_up(own.max(1.25 * saved.map_or(0.0, f64::abs)));
-        let low_own = if low < 0.0 { -high_own } else { low / high * high_own };
-        let step = below(high_own / 200.0);
-        Reach::even((low_own / step).round() * step, high_own, step)
+        let end = round_up(end.max(1.25 * saved.map_or(0.0, f64::abs)));
+        let begin = if low < 0.0 { -end } else { low / high * end };
+        let step = below(end / 200.0);
+        Reach::even((begin / step).round() * step, end, step)
     }
 }
 
@@ -62,16 +62,16 @@ fn decades(value: Option<f64>) -> Option<Reach> {
         .then(|| Reach { ratios: true, ..Reach::even(power(size - 2), power(size + 3), power(size - 2)) })
 }
 
-/// The preload that the slider reaches, as a share of the shorter flexure.
-const MOST_PRELOAD: f64 = 0.2;
+/// The largest preload of the slider, as a share of the length of the shorter flexure.
+const MAX_PRELOAD: f64 = 0.2;
 
 fn preload(session: &Session) -> Option<Reach> {
     let Mechanism::Flexures { parallel, buckling, .. } = &session.editor.saved().mechanism else {
         return None;
     };
-    let most = MOST_PRELOAD * parallel.length_mm.min(buckling.length_mm);
-    let step = below(most / 80.0);
-    Some(Reach::even(0.0, (most / step).round() * step, step))
+    let end = MAX_PRELOAD * parallel.length_mm.min(buckling.length_mm);
+    let step = below(end / 80.0);
+    Some(Reach::even(0.0, (end / step).round() * step, step))
 }
 
 #[cfg(test)]
@@ -96,20 +96,20 @@ mod tests {
         assert_eq!(reach("duffing", "stops.travel_limit_mm"), Reach::even(10.0, 1200.0, 5.0));
         assert_eq!(reach("duffing", "mass_g").high, 3000.0);
         assert_eq!(reach("duffing", "run.duration_s").high, 4000.0);
-        // on its slider every number is at a place that a hand can reach
+        // every number lies on its slider
         for preset in crate::scene::PRESETS {
             let session = session(preset.name);
             for field in FIELDS {
-                let (own, value) = (field.reach(&session), FieldPath::new(field.path).get(session.scene()));
-                assert!(own.low < own.high && own.step > 0.0, "{}: {own:?}", field.path);
+                let (reach, value) = (field.reach(&session), FieldPath::new(field.path).get(session.scene()));
+                assert!(reach.low < reach.high && reach.step > 0.0, "{}: {reach:?}", field.path);
                 let Some(value) = value else { continue };
-                if own.ratios {
-                    assert!((own.low..=own.high).contains(&value), "{} {}", preset.name, field.path);
+                if reach.ratios {
+                    assert!((reach.low..=reach.high).contains(&value), "{} {}", preset.name, field.path);
                     continue;
                 }
                 assert!(
-                    value <= 1.3 * own.high && (value == 0.0 || value.abs() > own.high / 250.0),
-                    "{} {}: {value} {own:?}",
+                    value <= 1.3 * reach.high && (value == 0.0 || value.abs() > reach.high / 250.0),
+                    "{} {}: {value} {reach:?}",
                     preset.name,
                     field.path
                 );

@@ -1,14 +1,15 @@
-//! State of the open scene, and what can be read of it.
+//! State of the open scene, and what can be read from it.
 
 use std::sync::Arc;
 
-use crate::app::task::{Latest, Wake};
+use crate::app::task::{Background, Wake};
 use crate::dynamics::{Model, Outcome, Summary};
 use crate::mechanics::Mechanism;
 use crate::scene::{self, Excitation, Scene, Stops};
 use crate::study::Thresholds;
 
 use super::accuracy::Accuracy;
+use super::ask::LiveRun;
 use super::best::BestStops;
 use super::editor::Editor;
 use super::explore::Explore;
@@ -47,22 +48,24 @@ pub struct Card {
 }
 
 pub struct Session {
-    /// The scene and the way back.
+    /// The scene with its undo stack.
     pub editor: Editor,
-    /// The model that moves: of the scene, or of the last one that could be run.
+    /// The model that moves: that of the scene, or of the last scene that could be run.
     pub(super) model: Arc<Model>,
     /// Why the scene as it stands cannot be run.
     pub(super) fault: Option<String>,
     pub player: Player,
-    pub(super) settled: Latest<Summary>,
-    pub(super) thresholds: Latest<Thresholds>,
-    /// The travel limit in mm with which it would cross; searched for only when somebody asks.
-    pub(super) stops_that_cross: Latest<Option<f64>>,
+    /// What the motion settles to.
+    pub(super) settled: Background<LiveRun, Summary>,
+    /// How much shaking it takes: the same for all amplitudes, so that the question is a scene without one.
+    pub(super) thresholds: Background<Scene, Thresholds>,
+    /// The travel limit in mm with which a scene would cross, where there is one; searched for on request.
+    pub(super) stops_that_cross: Background<Scene, Option<f64>>,
     pub accuracy: Accuracy,
     pub map: Mapping,
     /// What the views of the layout Explore show.
     pub explore: Explore,
-    /// The motions that go on beside it.
+    /// The motions that are pinned beside it.
     pub pins: Pins,
     /// The measured data that lie over it.
     pub measured: MeasuredData,
@@ -72,27 +75,26 @@ pub struct Session {
     pub(super) mechanism: Arc<Mechanism>,
     /// What the mechanism was built from: a table is fitted once, not for every move of a slider.
     pub(super) mechanism_of: scene::Mechanism,
-    /// Whether the mechanism was solved in a hurry, in the midst of a gesture.
-    pub(super) hurried: bool,
-    /// What a hand asked of the mechanism and did not get, and why.
+    /// Whether the mechanism was solved coarsely, during a gesture.
+    pub(super) is_coarse: bool,
+    /// Why the last change of the mechanism by hand was not made.
     pub(super) refused: Option<String>,
     /// Live time in s of the last change.
     pub(super) changed_at: f64,
-    /// Whether that was a hand on the mass.
+    /// Whether the last change moved the mass by hand.
     pub(super) by_hand: bool,
     /// Whether the last change carried the mass to a stop.
     pub(super) carried: bool,
     /// The scales that the sliders keep while the scene is open.
     pub(super) opened: OpenedScales,
-    /// Live time in s at which the run begins that is asked what the motion settles to.
-    pub(super) asked_from: f64,
-    /// The motion is no longer the run of the scene from its start: something was changed on its way.
+    /// Whether something was changed on the way, so that the motion is not the run of the scene from its
+    /// start.
     pub(super) continued: bool,
-    /// The stops that come back when they are switched on.
+    /// The stops that are set when they are switched on.
     pub(super) remembered_stops: Stops,
-    /// The field whose presses of arrow keys are one gesture, and the time in s of the last one.
+    /// The field whose presses of arrow keys are one gesture, and the time in s of the last press.
     pub(super) presses: Option<(String, f64)>,
-    /// What it would take to cross is not to be said: it is the answer of a lesson.
+    /// Whether it is not said what it would take to cross, because that is the answer of a lesson.
     pub keeps_remedy: bool,
     pub best: BestStops,
     pub(super) wake: Wake,
@@ -109,22 +111,22 @@ impl Session {
         &self.model
     }
 
-    /// The model of what is shown: the one that held then, where the past is looked at.
+    /// The model of the motion that is shown, which in the past may have been another one.
     pub fn shown(&self) -> &Model {
         if self.player.is_past() { self.player.shown_model() } else { &self.model }
     }
 
-    /// Why the scene as it stands cannot be run; the motion is that of the last one that could.
+    /// Why the scene as it stands cannot be run; the motion is that of the last scene that could.
     pub fn fault(&self) -> Option<&str> {
         self.fault.as_deref()
     }
 
-    /// Calls back when something that was asked for has come.
+    /// Wakes the window when something has come from the background.
     pub fn wake(&self) -> &Wake {
         &self.wake
     }
 
-    /// Whether the last change was a hand on the mass.
+    /// Whether the last change moved the mass by hand.
     pub fn is_by_hand(&self) -> bool {
         self.by_hand
     }
@@ -136,26 +138,26 @@ impl Session {
 
     /// Whether what the motion settles to crosses the barrier; none while that is not known.
     pub fn crosses(&self) -> Option<bool> {
-        let summary = self.settled.current()?;
+        let summary = self.settled.answer()?;
         (self.fault.is_none() && summary.outcome == Outcome::Done).then_some(summary.crossings > 0)
     }
 
     /// What the present scene settles to, once that is known.
     pub fn settled_now(&self) -> Option<&Summary> {
-        self.settled.current().filter(|_| self.fault.is_none())
+        self.settled.answer().filter(|_| self.fault.is_none())
     }
 
-    /// What the motion settles to; of an earlier scene while the answer is still to come.
+    /// What the motion settles to, or while that is not known what it settled to before the last change.
     pub fn settled(&self) -> Option<&Summary> {
-        self.settled.newest()
+        self.settled.newest().map(|(summary, _)| summary)
     }
 
     /// The scene as it stands, for the card.
     pub fn now_card(&self) -> Card {
         Card {
             scene: self.scene().clone(),
-            settled: self.settled.current().copied(),
-            thresholds: self.thresholds.current().copied().filter(|_| !self.keeps_remedy),
+            settled: self.settled.answer().copied(),
+            thresholds: self.thresholds.answer().copied().filter(|_| !self.keeps_remedy),
         }
     }
 
@@ -171,7 +173,8 @@ impl Session {
         self.model.duration() + if begins_here { self.changed_at } else { 0.0 }
     }
 
-    /// Whether something was changed on the motion's way, so that it is no run of the scene from its start.
+    /// Whether something was changed on the way, so that the motion is not the run of the scene from its
+    /// start.
     pub fn is_continued(&self) -> bool {
         self.continued
     }

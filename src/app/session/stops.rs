@@ -3,10 +3,10 @@
 use crate::dynamics::Model;
 use crate::scene::{Scene, Stops};
 
-/// The share of speed that stops keep where a scene does not say which stops come.
+/// Restitution of stops that a scene does not describe.
 const RESTITUTION: f64 = 0.36;
 
-/// The stops that come when they are switched on, before a hand has moved any.
+/// The stops that are set when they are switched on for the first time.
 pub(super) fn first_stops(scene: &Scene, model: &Model) -> Stops {
     let hinted = || scene.app.as_ref().and_then(|hints| hints.stops_when_on);
     let suiting = || {
@@ -19,8 +19,8 @@ pub(super) fn first_stops(scene: &Scene, model: &Model) -> Stops {
     }
 }
 
-/// Stops that suit a scene that does not say which: where the prototype has them, in parts of the well's
-/// distance.
+/// The travel limit in mm of stops that a scene does not describe: the share of the well's distance at which
+/// the prototype has them.
 pub fn suiting_limit(well_mm: Option<f64>) -> f64 {
     match well_mm.filter(|mm| *mm > 0.0 && mm.is_finite()) {
         Some(mm) => format!("{:.1e}", 0.215 * mm).parse().unwrap_or(mm),

@@ -39,9 +39,10 @@ pub fn basins_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let chart = Chart::new(area, span, low, high);
     hand(ui, context.memory, View::Basins, &response, (area, chart.rect));
     chart.axes(ui, context, 1e-3);
-    let (parts, current) = context.session.explore.basins.parts();
-    let level = parts.last().cloned();
-    let whole = context.session.explore.basins.is_whole() && current;
+    let basins = &context.session.explore.basins;
+    let (level, current) =
+        basins.newest().map_or((None, false), |(level, current)| (Some(level.clone()), current));
+    let whole = basins.is_whole() && current;
     let mut legend: Vec<(Sign, String)> = Vec::new();
     match &level {
         Some(Ok(level)) => {

@@ -151,11 +151,10 @@ fn zero_ui(ui: &mut Ui, session: &mut Session, over: &Overlay) {
 fn found_ui(ui: &mut Ui, context: &ViewContext<'_>, over: &Overlay) {
     let (style, session) = (context.style, &context.session);
     let faint = |text: String| egui::Label::new(RichText::new(text).color(style.faint())).wrap();
-    let (parts, current) = session.measured.found.parts();
-    match parts.last() {
+    match session.measured.found.newest() {
         None => _ = ui.label("Working it out."),
-        Some(Err(problem)) => _ = ui.label(problem),
-        Some(Ok(found)) => {
+        Some((Err(problem), _)) => _ = ui.label(problem),
+        Some((Ok(found), current)) => {
             let (table, remarks) = match found {
                 Differences::Motion(own) => (&own.table, &own.remarks),
                 Differences::Force(own) => (&own.table, &own.remarks),

@@ -47,13 +47,12 @@ pub fn spectrum_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     });
     context.session.want_spectrum();
     let below = area.with_min_y(tools.bottom());
-    let (parts, current) = context.session.explore.spectra.found.parts();
-    match parts.last() {
-        Some(Ok(spectrum)) => {
+    match context.session.explore.spectra.found.newest() {
+        Some((Ok(spectrum), current)) => {
             let forcing = context.session.model().forcing_period().map(|period| 1.0 / period);
             picture_ui(ui, context.memory, &style, below, (spectrum, current, forcing));
         }
-        Some(Err(problem)) => said_ui(ui, &style, below, problem),
+        Some((Err(problem), _)) => said_ui(ui, &style, below, problem),
         None => said_ui(ui, &style, below, "Working it out."),
     }
 }

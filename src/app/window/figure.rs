@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::app::export::figure::{FigureOrder, Place, Subject, round_times};
 use crate::app::session::Session;
-use crate::app::task::Latest;
+use crate::app::task::Background;
 use crate::app::views::{Memory, View, stretch};
 use crate::output::{Format, Panel, Sheet, SheetText};
 use crate::system::files;
@@ -35,7 +35,7 @@ pub struct Figures {
     pub(super) problem: Option<String>,
     /// The path has had the keyboard.
     pub(super) begun: bool,
-    pub(super) job: Latest<Written>,
+    pub(super) job: Background<(), Written>,
 }
 
 impl Default for Figures {
@@ -52,7 +52,7 @@ impl Default for Figures {
             panels: [false; 4],
             problem: None,
             begun: false,
-            job: Latest::default(),
+            job: Background::default(),
         }
     }
 }

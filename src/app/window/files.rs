@@ -272,7 +272,7 @@ impl Window {
         // what a path would begin with where there is no dialog
         let begin = folder.clone().unwrap_or_else(files::working_folder);
         let begin = if wanted.is_read() { begin.join("") } else { begin.join(format!("{stem}.{ending}")) };
-        self.dialog.ask(&self.wake, move |_| {
+        self.dialog.ask((), &self.wake, move |(), _, _| {
             let endings = if wanted == Wanted::Measured { &ENDINGS[..] } else { &[ending][..] };
             let mut dialog = rfd::FileDialog::new().add_filter(kind, endings);
             if let Some(folder) = folder.filter(|folder| files::is_folder(folder)) {

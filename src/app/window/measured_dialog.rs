@@ -6,7 +6,7 @@ use std::sync::Arc;
 use eframe::egui::{self, Button, ComboBox, Grid, RichText, Ui};
 
 use crate::app::session::measured::{MeasuredRecord, sentence};
-use crate::app::task::{Latest, Wake};
+use crate::app::task::{Background, Wake};
 use crate::app::ui::widgets::{dialog, dialog_width};
 use crate::scene::{ChosenColumn, MeasuredText, Quantity, Unit};
 
@@ -34,11 +34,10 @@ pub(super) fn is_measured(path: &Path) -> bool {
 pub struct MeasuredDialog {
     path: PathBuf,
     name: String,
-    text: Latest<Result<Arc<MeasuredText>, String>>,
+    text: Background<(), Result<Arc<MeasuredText>, String>>,
     chosen: Option<[ChosenColumn; 2]>,
-    /// The columns that are read.
-    asked: Option<[(usize, Unit); 2]>,
-    record: Latest<Result<MeasuredRecord, String>>,
+    /// The record of two columns, or why there is none.
+    record: Background<[(usize, Unit); 2], Result<MeasuredRecord, String>>,
     /// Why the base is not shaken with it.
     refused: Option<String>,
 }
@@ -55,14 +54,13 @@ impl MeasuredDialog {
     /// Begins to read the file.
     pub fn new(path: &Path, wake: &Wake) -> Self {
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
-        let mut text = Latest::default();
-        let own = path.to_owned();
-        text.ask(wake, move |_| {
-            let read = MeasuredText::read(&own).map(Arc::new);
+        let (mut text, file) = (Background::default(), path.to_owned());
+        text.ask((), wake, move |(), _, _| {
+            let read = MeasuredText::read(&file).map(Arc::new);
             Some(read.map_err(|problem| sentence(&format!("the file {problem}"))))
         });
-        let record = Latest::default();
-        Self { path: path.to_owned(), name, text, chosen: None, asked: None, record, refused: None }
+        let record = Background::default();
+        Self { path: path.to_owned(), name, text, chosen: None, record, refused: None }
     }
 
     /// Says why the base is not shaken with it.
@@ -80,7 +78,7 @@ impl MeasuredDialog {
 
     /// What is known: the record once it is read, or what keeps it from being read as a sentence.
     pub fn known(&self) -> Option<Result<&MeasuredRecord, String>> {
-        let names = match self.text.current()? {
+        let names = match self.text.answer()? {
             Ok(text) => &text.names,
             Err(problem) => return Some(Err(problem.clone())),
         };
@@ -89,24 +87,21 @@ impl MeasuredDialog {
             let name = names.get(at).map_or("", String::as_str);
             return Some(Err(format!("Choose the unit of `{name}`: its name does not end with one.")));
         }
-        Some(self.record.current()?.as_ref().map_err(Clone::clone))
+        Some(self.record.answer()?.as_ref().map_err(Clone::clone))
     }
 
     /// Takes in what was read, and has the chosen columns read.
     pub fn poll(&mut self, wake: &Wake) {
         self.text.poll();
         self.record.poll();
-        let Some(Ok(text)) = self.text.current() else { return };
+        let Some(Ok(text)) = self.text.answer() else { return };
         let [across, values] = *self.chosen.get_or_insert_with(|| text.guess());
         let Some(wanted) = across.1.zip(values.1).map(|own| [(across.0, own.0), (values.0, own.1)]) else {
-            self.asked = None;
             return self.record.clear();
         };
-        if self.asked != Some(wanted) {
-            self.asked = Some(wanted);
-            let (text, name) = (Arc::clone(text), self.name.clone());
-            self.record.ask(wake, move |_| Some(MeasuredRecord::of(&name, &text, wanted)));
-        }
+        let (text, name) = (Arc::clone(text), self.name.clone());
+        self.record
+            .want(wanted, true, wake, move |columns, _, _| Some(MeasuredRecord::of(&name, &text, *columns)));
     }
 
     /// Draws the question; the answer once there is one.
@@ -116,7 +111,7 @@ impl MeasuredDialog {
             ui.set_width(dialog_width(ui, WIDTH));
             ui.heading(format!("Measured data: {}", self.name));
             ui.add_space(4.0);
-            if let Some(Ok(text)) = self.text.current().cloned() {
+            if let Some(Ok(text)) = self.text.answer().cloned() {
                 self.columns_ui(ui, &text);
             }
             self.known_ui(ui);
@@ -222,7 +217,7 @@ impl MeasuredDialog {
             if shaken {
                 return self
                     .record
-                    .current()
+                    .answer()
                     .and_then(|own| own.clone().ok())
                     .map(|own| Ended::Shaken(self.path.clone(), Box::new(own)));
             }

@@ -204,11 +204,7 @@ impl Window {
         asked.extend(self.memory.pin.take().map(Command::Pin));
         asked.extend(self.memory.figure.take().map(|view| Command::Figure(Some(view))));
         asked.extend(std::mem::take(&mut self.memory.open_measured).then_some(Command::OpenMeasured));
-        self.session.map.end_frame();
-        self.session.measured.found.end_frame();
-        self.session.explore.end_frame();
-        self.session.accuracy.end_frame();
-        self.session.player.end_frame();
+        self.session.end_frame();
         for command in asked {
             self.carry_out(&ctx, command);
         }

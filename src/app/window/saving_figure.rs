@@ -37,7 +37,7 @@ impl Window {
             return self.messages.tell("Copied: the command line of this figure");
         }
         self.figures.problem = None;
-        self.figures.job.ask(&self.wake, move |cancel| order.save(cancel));
+        self.figures.job.ask((), &self.wake, move |(), cancel, _| order.save(cancel));
     }
 
     /// Takes in a figure that was saved, or why it was not: the question then stands as it was.

@@ -9,7 +9,7 @@ use egui_tiles::Tree;
 use crate::app::panels::hint;
 use crate::app::session::editor::Editor;
 use crate::app::session::{CannotRun, Session};
-use crate::app::task::{Latest, Wake};
+use crate::app::task::{Background, Wake};
 use crate::app::ui::settings::Settings;
 use crate::app::views::{Memory, View};
 use crate::app::words::announce::Announcer;
@@ -62,10 +62,10 @@ pub struct Window {
     /// What became of what is written elsewhere than in this thread: what was written, or the error.
     pub(super) written: (Sender<Written>, Receiver<Written>),
     /// A whole run that is computed and written.
-    pub(super) run: Latest<Written>,
+    pub(super) run: Background<(), Written>,
     pub(super) place: WindowSize,
     pub(super) titled: String,
-    pub(super) dialog: Latest<Chosen>,
+    pub(super) dialog: Background<(), Chosen>,
     /// Whether files are asked for.
     pub(super) dialogs: bool,
     /// A path that is typed where there is no dialog.
@@ -141,10 +141,10 @@ impl Window {
             ways: false,
             announcer: Announcer::default(),
             written: channel(),
-            run: Latest::default(),
+            run: Background::default(),
             place: WindowSize::default(),
             titled: String::new(),
-            dialog: Latest::default(),
+            dialog: Background::default(),
             dialogs: true,
             typed: None,
             figures: Figures::default(),

@@ -67,16 +67,16 @@ impl Window {
         if let Some(fault) = self.session.fault() {
             return self.messages.say("The run was not written", fault);
         }
-        self.run.ask(&self.wake, move |cancel| {
+        self.run.ask((), &self.wake, move |(), cancel, _| {
             let text = export::run_csv(&scene, &model, cancel)?;
             Some(text.and_then(|text| put(&path, &text)))
         });
         self.messages.tell("Computing the run");
     }
 
-    /// Waits until a run is written, at most so long.
-    pub fn wait_for_run(&mut self, most: std::time::Duration) {
-        self.run.wait(most);
+    /// Waits until a run is written, for `limit` at the longest.
+    pub fn wait_for_run(&mut self, limit: std::time::Duration) {
+        self.run.wait(limit);
         self.tell_written();
     }
 

@@ -4,17 +4,16 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use crate::app::session::Session;
-use crate::app::task::pool;
+use crate::app::session::map::ground;
+use crate::app::task::{Background, pool};
 use crate::mechanics::Mechanism;
 use crate::scene::{Scene, Start};
 use crate::study::{Answer, Basins, EvenRange, NoBasins, Starts, Task};
 
-use super::Explored;
-
 /// Starts across and up.
 pub const STARTS: u64 = 81;
 
-/// A scene without its own start, and the starts in mm and m/s.
+/// A scene without its start, and the ends of the grid of starts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BasinsQuestion {
     pub scene: Scene,
@@ -29,40 +28,32 @@ pub struct BasinsQuestion {
 pub struct Level {
     /// The attractors, and what each start goes to.
     pub answer: Answer,
-    /// For each start the one whose answer is shown: its own, or a neighbour's.
+    /// For each start the one whose answer is shown: itself, or a neighbour.
     pub shown: Vec<usize>,
     /// Displacements in mm and velocities in m/s of the starts.
     pub axes: (Vec<f64>, Vec<f64>),
-    /// Displacements in m that the mass may have.
+    /// Least and greatest displacement in m that the mass can have.
     pub room: (f64, f64),
 }
 
 /// The basins as they become known, level by level, or why there are none.
-pub type BasinsFound = Explored<BasinsQuestion, Result<Level, String>>;
+pub type BasinsFound = Background<BasinsQuestion, Result<Level, String>>;
 
 impl Session {
     /// Asks for the basins of the scene as it stands, in a frame that shows them over these displacements in
     /// m and velocities `v` in m/s.
     pub fn want_basins(&mut self, (low, high): (f64, f64), v: (f64, f64)) {
         let still = self.stands_still();
-        let scene = Scene {
-            start: Start::Rest,
-            title: String::new(),
-            notes: String::new(),
-            sweep: Vec::new(),
-            app: None,
-            ..self.scene().clone()
-        };
+        let scene = ground(self.scene(), self.remembered_stops(), &[]);
         let question = BasinsQuestion { scene, x_mm: (low * 1e3, high * 1e3), v };
-        let (mechanism, wake) = (Arc::clone(&self.mechanism), Arc::clone(&self.wake));
-        self.explore.basins.want(&question, still, &wake, move |question, cancel, each| {
-            if let Err(problem) = find(question, mechanism, cancel, &|level| each(Ok(level))) {
-                each(Err(problem));
-            }
+        let mechanism = Arc::clone(&self.mechanism);
+        self.explore.basins.want(question, still, &self.wake, move |question, cancel, each| {
+            find(question, mechanism, cancel, &|level| each(Ok(level))).err().map(Err)
         });
     }
 
-    /// Has the scene begin at a displacement in m and a velocity in m/s, from now on; one step of undo.
+    /// Sets the start of the scene to a displacement in m and a velocity in m/s and begins there; one step of
+    /// undo.
     pub fn start_at(&mut self, x: f64, v: f64) {
         let rounded = |value: f64, unit: f64| (value / unit).round() * unit;
         let x_mm = crate::app::words::numbers::decimal(rounded(x * 1e3, 1e-3));
@@ -82,12 +73,13 @@ fn find(
     each: &dyn Fn(Level),
 ) -> Result<(), String> {
     let range = |(from, to): (f64, f64)| EvenRange { from, to, count: STARTS };
-    let starts = Starts::grid(&range(question.x_mm), &range(question.v)).map_err(|own| own.to_string())?;
-    let said = |own: NoBasins| match own {
+    let starts =
+        Starts::grid(&range(question.x_mm), &range(question.v)).map_err(|error| error.to_string())?;
+    let why = |error: NoBasins| match error {
         NoBasins::Faults(faults) => faults.first().map_or(String::new(), |fault| fault.problem.clone()),
         other => other.to_string(),
     };
-    let mut basins = Basins::new(&question.scene, mechanism, starts).map_err(said)?;
+    let mut basins = Basins::new(&question.scene, mechanism, starts).map_err(why)?;
     let task = Task { tick: &|| (), cancel };
     let Some(pool) = pool() else { return Ok(()) };
     while !basins.is_whole() {

@@ -1,8 +1,8 @@
-//! An open lesson: its step, what was chosen and done, and what the runs say of it.
+//! An open lesson: its step, what was chosen and done, and what the runs say about it.
 //!
-//! It holds no scene of its own: it says which one is to be shown, and looks at the one that a hand has
-//! changed. A prediction is covered until an option is chosen; which one holds is worked out meanwhile. A
-//! task is judged on a full run of the scene once that has stood still.
+//! It contains no scene: it says which one is to be shown, and looks at the one that a person has changed. The
+//! motion is covered until an option of a prediction is chosen; which option is right is worked out meanwhile.
+//! A task is judged on a full run of the scene once that has stood still.
 
 mod progress;
 mod verdict;
@@ -10,7 +10,7 @@ mod verdict;
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::app::task::{Latest, Wake};
+use crate::app::task::{Background, Wake};
 use crate::scene::lesson::{Choice, LESSONS, Lesson, LessonDocument, Step};
 use crate::scene::{Document, Scene, Source, arguments};
 use crate::study::{Lack, Subject, goal_lack, options_that_hold};
@@ -21,20 +21,20 @@ pub use progress::{Answer, Progress, Records, answers_text};
 pub use verdict::{Outcome, TaskState};
 use verdict::{Verdict, judge, only};
 
-/// For how long in s a scene stands still before a task is done by it.
+/// Time in s for which a scene has to stand still before it can meet a task.
 const STILL: f64 = 0.5;
 
-/// After how long in s a hint comes by itself.
+/// Time in s after which a hint comes by itself.
 const HINT_AFTER: f64 = 45.0;
 
-/// What is to be on the screen now.
+/// What is to be shown after a choice.
 #[derive(Debug)]
 pub enum Turn {
-    /// What is there; nothing has changed.
+    /// The same scene in the same step.
     Stay,
-    /// What is there, in another step.
+    /// The same scene in another step.
     Same,
-    /// This scene from its start, playing or standing.
+    /// This scene from its start, and whether it plays.
     Show(Box<Document>, bool),
     Leave,
 }
@@ -45,32 +45,34 @@ pub struct OpenLesson {
     /// When the step began, in s of the window.
     begun: Option<f64>,
     hinted: bool,
-    options: Latest<Verdict<Vec<bool>>>,
-    goal: Latest<Verdict<Option<Lack>>>,
-    /// The scene that is judged, and since when in s it stands still.
-    judged: Option<(Scene, f64)>,
+    /// Which options of the prediction in a step are right.
+    options: Background<usize, Verdict<Vec<bool>>>,
+    /// What a scene lacks to meet the task; nothing where it meets it.
+    goal: Background<Scene, Verdict<Option<Lack>>>,
+    /// Time in s of the window since which the scene that is judged stands still.
+    still_since: f64,
     wake: Wake,
 }
 
 impl OpenLesson {
-    /// Opens a lesson where it was left; the scene to begin with.
+    /// Opens a lesson where it was left; returns it with the scene to begin with.
     pub fn open(document: LessonDocument, kept: Option<&Progress>, wake: Wake) -> (Self, Box<Document>) {
         let progress = Progress::of(&document.lesson, kept);
-        let mut own = Self {
+        let mut open = Self {
             document: Arc::new(document),
             progress,
             begun: None,
             hinted: false,
-            options: Latest::default(),
-            goal: Latest::default(),
-            judged: None,
+            options: Background::default(),
+            goal: Background::default(),
+            still_since: 0.0,
             wake,
         };
-        let scene = match own.enter(own.progress.step) {
+        let scene = match open.enter(open.progress.step) {
             Turn::Show(scene, _) => scene,
-            _ => Box::new(own.behind()),
+            _ => Box::new(open.behind()),
         };
-        (own, scene)
+        (open, scene)
     }
 
     pub fn lesson(&self) -> &Lesson {
@@ -113,7 +115,7 @@ impl OpenLesson {
         &mut self.progress.answers[self.progress.step]
     }
 
-    /// The word of the student's own in a prediction.
+    /// The reason that the student gives for a prediction.
     pub fn why_mut(&mut self) -> &mut String {
         &mut self.answer_mut().why
     }
@@ -131,14 +133,14 @@ impl OpenLesson {
         matches!(self.step(), Step::Predict { .. }) && !self.answer().shown
     }
 
-    /// Whether what other settings would come to is covered: until the first prediction is shown.
+    /// Whether the results of other settings are covered: until the first prediction is shown.
     pub fn hides_surveys(&self) -> bool {
         let is_prediction = |step: &Step| matches!(step, Step::Predict { .. });
         let first = self.lesson().steps.iter().position(is_prediction);
         first.is_some_and(|number| !self.is_settled(number))
     }
 
-    /// Whether a step has been answered or done; one that only tells something has.
+    /// Whether a step has been answered or done; one without a question or task always has.
     pub fn is_settled(&self, number: usize) -> bool {
         match (&self.lesson().steps[number], &self.progress.answers[number]) {
             (Step::Say(_) | Step::Explain(_), _) => true,
@@ -147,12 +149,12 @@ impl OpenLesson {
         }
     }
 
-    /// Whether a student goes on from here.
+    /// Whether the step is done, so that the next one may follow.
     pub fn may_go_on(&self) -> bool {
         self.is_settled(self.progress.step)
     }
 
-    /// Whether what it would take to cross may be said: once nothing is left to be found out.
+    /// Whether it may be said what it would take to cross: once all steps are done.
     pub fn tells_remedy(&self) -> bool {
         (0..self.lesson().steps.len()).all(|number| self.is_settled(number))
     }
@@ -163,14 +165,16 @@ impl OpenLesson {
 
     /// The name of the built-in lesson that comes after this one.
     pub fn following(&self) -> Option<&'static str> {
-        let Source::BuiltIn(own) = self.document.source else { return None };
-        let number = LESSONS.iter().position(|lesson| lesson.name == own)?;
+        let Source::BuiltIn(name) = self.document.source else { return None };
+        let number = LESSONS.iter().position(|lesson| lesson.name == name)?;
         LESSONS.get(number + 1).map(|lesson| lesson.name)
     }
 
     /// Chooses an option of a prediction that is covered.
     pub fn choose(&mut self, option: usize) -> Turn {
-        let Some(text) = self.options().get(option).map(|own| own.text.clone()) else { return Turn::Stay };
+        let Some(text) = self.options().get(option).map(|choice| choice.text.clone()) else {
+            return Turn::Stay;
+        };
         if !self.is_covering() {
             return Turn::Stay;
         }
@@ -184,7 +188,7 @@ impl OpenLesson {
         Turn::Show(Box::new(self.document.end(self.progress.step).clone()), true)
     }
 
-    /// Goes on, whatever is still open in the step: a prediction is shown first, without a choice.
+    /// Goes on to the next step, also from one that is not done; the answer of a prediction is shown first.
     pub fn go_on(&mut self) -> Turn {
         if self.is_covering() {
             return self.reveal();
@@ -198,7 +202,7 @@ impl OpenLesson {
     pub fn go_back(&mut self) -> Turn {
         let Some(number) = self.progress.step.checked_sub(1) else { return Turn::Stay };
         match self.enter(number) {
-            // what is there belongs to a later step
+            // the scene that is shown belongs to a later step
             Turn::Same => Turn::Show(Box::new(self.behind()), true),
             turn => turn,
         }
@@ -213,19 +217,19 @@ impl OpenLesson {
 
     fn enter(&mut self, number: usize) -> Turn {
         self.progress.step = number;
-        (self.begun, self.hinted, self.judged) = (None, false, None);
+        (self.begun, self.hinted) = (None, false);
         self.options.clear();
         self.goal.clear();
         let document = Arc::clone(&self.document);
         let (begin, end) = (document.begin(number), document.end(number));
         match self.step() {
             Step::Predict { .. } => {
-                let own = Arc::clone(&document);
-                self.options.ask(&self.wake, move |cancel| {
+                let document = Arc::clone(&document);
+                self.options.ask(number, &self.wake, move |number, cancel, _| {
                     let verdict = |step: &Step, subject: Subject<'_>, before: &Subject<'_>| {
                         options_that_hold(step, &subject, before)
                     };
-                    judge(&own, number, own.end(number), cancel, verdict)
+                    judge(&document, *number, document.end(*number), cancel, verdict)
                 });
                 match self.answer().shown {
                     true => Turn::Show(Box::new(end.clone()), true),
@@ -238,8 +242,8 @@ impl OpenLesson {
         }
     }
 
-    /// The scene that a step which only tells something comes after: the answer of the prediction before, or
-    /// the task, solved where it was done.
+    /// The scene that is shown in a step without a question or task: that of the last prediction or task before
+    /// it, with its answer where it is a prediction or is done.
     fn behind(&self) -> Document {
         let step = self.progress.step;
         for number in (0..step).rev() {
@@ -252,8 +256,8 @@ impl OpenLesson {
         self.document.begin(step).clone()
     }
 
-    /// Takes in verdicts, and has the scene judged once it stands still; to be called once a frame, at `now`
-    /// in s. Seconds until it should be called again.
+    /// Takes in verdicts, and has the scene judged; to be called once a frame, at `now` in s of the window. The
+    /// time in s after which it should be called again.
     pub fn follow(&mut self, session: &Session, now: f64) -> Option<f64> {
         self.options.poll();
         self.goal.poll();
@@ -281,38 +285,36 @@ impl OpenLesson {
         next
     }
 
-    /// Has the scene of a task judged. Seconds until it has stood still for long enough.
+    /// Has the scene of a task judged. The time in s until it has stood still for long enough.
     fn judge_task(&mut self, session: &Session, now: f64) -> Option<f64> {
         if self.answer().met {
             return None;
         }
         if session.editor.in_gesture() || session.fault().is_some() {
-            self.judged = None;
             self.goal.clear();
             return None;
         }
         let scene = session.scene();
-        let since = self.judged.as_ref().filter(|own| own.0 == *scene).map(|own| own.1);
-        let Some(since) = since else {
-            self.judged = Some((scene.clone(), now));
+        if self.goal.question() != Some(scene) {
+            self.still_since = now;
             let (document, number) = (Arc::clone(&self.document), self.progress.step);
-            let (own, mechanism) = (session.editor.runnable(), Arc::clone(session.model().mechanism()));
-            let built = session.mechanism_of == own.scene.mechanism;
-            self.goal.ask(&self.wake, move |cancel| {
-                let verdict = |step: &Step, subject: Subject<'_>, before: &Subject<'_>| match built {
+            let (tried, mechanism) = (session.editor.runnable(), Arc::clone(session.model().mechanism()));
+            let is_built = session.mechanism_of == tried.scene.mechanism;
+            self.goal.ask(scene.clone(), &self.wake, move |_, cancel, _| {
+                let verdict = |step: &Step, subject: Subject<'_>, before: &Subject<'_>| match is_built {
                     true => goal_lack(step, &subject.with_mechanism(mechanism), before),
                     false => goal_lack(step, &subject, before),
                 };
-                judge(&document, number, &own, cancel, verdict)
+                judge(&document, number, &tried, cancel, verdict)
             });
             return Some(STILL);
-        };
-        let stands = now - since;
-        if self.goal.current() != Some(&Ok(None)) {
+        }
+        if self.goal.answer() != Some(&Ok(None)) {
             return None;
         }
-        if stands < STILL {
-            return Some(STILL - stands);
+        let still_for = now - self.still_since;
+        if still_for < STILL {
+            return Some(STILL - still_for);
         }
         let with = arguments(&self.document.begin(self.progress.step).scene, scene).join(", ");
         let answer = self.answer_mut();
@@ -327,7 +329,7 @@ impl OpenLesson {
         if let Some(fault) = session.fault() {
             return TaskState::Unjudged(fault.to_owned());
         }
-        match (&self.judged, self.goal.current()) {
+        match (self.goal.question(), self.goal.answer()) {
             (None, _) => TaskState::Moving,
             (_, None) | (_, Some(Ok(None))) => TaskState::Judging,
             (_, Some(Ok(Some(lack)))) => TaskState::NotYet(lack.clone()),
@@ -335,12 +337,12 @@ impl OpenLesson {
         }
     }
 
-    /// Which option of the prediction holds.
+    /// Which option of the prediction is right.
     pub fn outcome(&self) -> Outcome {
-        only(self.options.current())
+        only(self.options.answer())
     }
 
-    /// The hint of a task, once it was asked for or the task has taken long.
+    /// The hint of a task, once it was wanted or the task has taken long.
     pub fn hint(&self) -> Option<&str> {
         self.offered_hint().filter(|_| self.hinted)
     }
@@ -365,9 +367,9 @@ impl OpenLesson {
         }
     }
 
-    /// Waits for the verdict that is being worked out, at most so long.
-    pub fn wait(&mut self, most: Duration) {
-        self.options.wait(most);
-        self.goal.wait(most);
+    /// Waits for the verdict that is being worked out, for `limit` at the longest.
+    pub fn wait(&mut self, limit: Duration) {
+        self.options.wait(limit);
+        self.goal.wait(limit);
     }
 }

@@ -15,9 +15,9 @@ pub struct Answer {
     pub choice: Option<String>,
     /// The answer of the prediction has been shown, with or without a choice.
     pub shown: bool,
-    /// The option that holds, once that is known.
+    /// The option that is right, once that is known.
     pub outcome: Option<String>,
-    /// Why, in a word of the student's own.
+    /// Why, in words of the student.
     pub why: String,
     pub met: bool,
     /// The settings with which it was done, as the command line takes them.
@@ -30,7 +30,7 @@ pub struct Progress {
     pub title: String,
     /// The step that was open last.
     pub step: usize,
-    /// A part for every step.
+    /// One for every step.
     pub answers: Vec<Answer>,
     /// The lesson was gone through to its end.
     pub done: bool,
@@ -40,13 +40,13 @@ pub struct Progress {
 pub type Records = BTreeMap<String, Progress>;
 
 impl Progress {
-    /// Goes on with what was kept of a lesson: answers to what it asks still. A lesson that was done begins
-    /// anew, and stays done.
+    /// The progress at the opening of a lesson: kept answers to questions that it still asks. A lesson that was
+    /// done begins again, and stays done.
     pub(super) fn of(lesson: &Lesson, kept: Option<&Self>) -> Self {
         let old = kept.filter(|kept| !kept.done);
         let answer = |(number, step): (usize, &Step)| {
-            let own = old.and_then(|old| old.answers.get(number)).filter(|own| own.ask == step.text());
-            own.cloned().unwrap_or_else(|| Answer { ask: step.text().to_owned(), ..Answer::default() })
+            let kept = old.and_then(|old| old.answers.get(number)).filter(|kept| kept.ask == step.text());
+            kept.cloned().unwrap_or_else(|| Answer { ask: step.text().to_owned(), ..Answer::default() })
         };
         Self {
             title: lesson.title.clone(),
@@ -61,26 +61,26 @@ impl Progress {
 pub fn answers_text(records: &Records) -> Option<String> {
     let mut text = String::new();
     for progress in records.values() {
-        let answered = |own: &&Answer| own.choice.is_some() || own.shown || own.met;
+        let answered = |answer: &&Answer| answer.choice.is_some() || answer.shown || answer.met;
         let mut answers = progress.answers.iter().filter(answered).peekable();
         if answers.peek().is_none() {
             continue;
         }
         let done = if progress.done { " (done)" } else { "" };
         let _ = writeln!(text, "{}{done}", progress.title);
-        for own in answers {
-            let _ = writeln!(text, "- {}", own.ask.replace("**", ""));
-            if own.met {
-                let with = if own.with.is_empty() { String::new() } else { format!(" with {}", own.with) };
-                let _ = writeln!(text, "  Done{with}");
+        for answer in answers {
+            let _ = writeln!(text, "- {}", answer.ask.replace("**", ""));
+            if answer.met {
+                let with = if answer.with.is_empty() { "" } else { " with " };
+                let _ = writeln!(text, "  Done{with}{}", answer.with);
                 continue;
             }
-            let _ = writeln!(text, "  I expected: {}", own.choice.as_deref().unwrap_or("nothing"));
-            if let Some(outcome) = &own.outcome {
+            let _ = writeln!(text, "  I expected: {}", answer.choice.as_deref().unwrap_or("nothing"));
+            if let Some(outcome) = &answer.outcome {
                 let _ = writeln!(text, "  It did: {outcome}");
             }
-            if !own.why.trim().is_empty() {
-                let _ = writeln!(text, "  Why: {}", own.why.trim());
+            if !answer.why.trim().is_empty() {
+                let _ = writeln!(text, "  Why: {}", answer.why.trim());
             }
         }
         text.push('\n');

@@ -4,7 +4,7 @@ use crate::app::words::numbers::{below, decimal, round_up};
 use crate::scene::{FieldPath, Scene, Start, Stops, SweepAxis, numeric_fields};
 use crate::study::{Column, Values};
 
-/// The fields that make a map worth looking at, by the ends of their paths.
+/// The fields that are offered as axes, by the ends of their paths, the most useful first.
 const FIELDS: [&str; 41] = [
     "travel_limit_mm",
     "amplitude_g",
@@ -56,8 +56,8 @@ const AMPLITUDES_G: (f64, f64, f64) = (0.0, 2.0, 0.02);
 /// Steps of an axis whose range follows from the present value.
 const STEPS: f64 = 40.0;
 
-/// The scene that a map is made of, with the axes' fields in it: from rest, and between the stops that would
-/// come if they were switched on, where an axis moves stops.
+/// The scene of which a map is made: from rest, and where an axis moves stops, with those that would be set if
+/// they were switched on.
 pub fn ground(scene: &Scene, when_on: Stops, axes: &[SweepAxis]) -> Scene {
     let mut ground = Scene {
         start: Start::Rest,
@@ -91,8 +91,8 @@ pub fn fields(scene: &Scene, when_on: Stops) -> Vec<String> {
     FIELDS.iter().flat_map(of).collect()
 }
 
-/// The axes of a scene's map: its own two where both have even steps, else travel limit and amplitude, else
-/// the first two that it has.
+/// The axes of a scene's map: those of its sweep where there are two with even steps, else travel limit and
+/// amplitude, else the first two fields.
 pub fn default_axes(scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> Option<[SweepAxis; 2]> {
     let known = fields(scene, when_on);
     if let [a, b] = scene.sweep.as_slice()
@@ -158,7 +158,7 @@ pub fn part(axis: &SweepAxis, from: f64, to: f64) -> SweepAxis {
     let width = (to - from).max(1e-3 * (axis.to - axis.from));
     let step = below(width / cells).min(axis.step);
     let on_step = |value: f64| decimal((value / step).round() * step);
-    // at least a step, and never below what the axis begins with
+    // at least a step, and never below the beginning of the axis
     let from = on_step(from).max(axis.from);
     SweepAxis {
         field: axis.field.clone(),
@@ -169,8 +169,8 @@ pub fn part(axis: &SweepAxis, from: f64, to: f64) -> SweepAxis {
     }
 }
 
-/// What a person calls a field, and its unit, where it has one: `travel limit` and `mm`. `column` is its name
-/// in a table.
+/// Name of a field in words, and its unit, where it has one: `travel limit` and `mm`. `column` is its name in
+/// a table.
 pub fn name_and_unit(column: &str) -> (String, Option<String>) {
     let label = Column { name: column.to_owned(), values: Values::Words(Vec::new()) }.label();
     match label.split_once(", ") {
@@ -179,7 +179,7 @@ pub fn name_and_unit(column: &str) -> (String, Option<String>) {
     }
 }
 
-/// The same as the name of an axis: `travel limit (mm)`.
+/// Name of an axis over a field: `travel limit (mm)`.
 pub fn label(column: &str) -> String {
     match name_and_unit(column) {
         (name, Some(unit)) => format!("{name} ({unit})"),
@@ -187,6 +187,7 @@ pub fn label(column: &str) -> String {
     }
 }
 
+/// An axis as an argument of the command line.
 pub fn over(axis: &SweepAxis) -> String {
     format!("{}={}:{}:{}", axis.field, axis.from, axis.to, axis.step)
 }
@@ -205,9 +206,9 @@ mod tests {
     }
 
     #[test]
-    fn the_scenes_own_axes_come_first() {
-        let own = "stops.travel_limit_mm=0.5:7:0.25 excitation.amplitude_g=0:2:0.02";
-        assert_eq!(defaults("paper").as_deref(), Some(own));
+    fn the_axes_of_a_sweep_come_first() {
+        let swept = "stops.travel_limit_mm=0.5:7:0.25 excitation.amplitude_g=0:2:0.02";
+        assert_eq!(defaults("paper").as_deref(), Some(swept));
         let prototype = "stops.travel_limit_mm=0.5:7:0.125 excitation.amplitude_g=0:2:0.02";
         assert_eq!(defaults("first-look").as_deref(), Some(prototype));
         assert!(defaults("random-shaking").is_some_and(|axes| axes.contains("rms_g")));
@@ -217,8 +218,8 @@ mod tests {
     fn a_part_of_an_axis_has_as_many_cells() {
         let axis =
             SweepAxis { field: "a".to_owned(), from: 0.5, to: 7.0, step: 0.125, ..SweepAxis::default() };
-        let own = part(&axis, 2.51, 1.23);
-        assert_eq!((own.from, own.to, own.step), (1.24, 2.5, 0.02));
+        let enlarged = part(&axis, 2.51, 1.23);
+        assert_eq!((enlarged.from, enlarged.to, enlarged.step), (1.24, 2.5, 0.02));
         let tiny = part(&axis, 6.9999, 6.9999);
         assert!(tiny.step > 0.0 && tiny.to > tiny.from);
     }

@@ -4,24 +4,26 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::app::session::editor::Editor;
+use crate::app::task::Answer;
 use crate::app::words::fields::in_words;
+use crate::mechanics::Mechanism;
 use crate::numeric::short;
 use crate::output::{header, rows};
-use crate::scene::SceneError;
+use crate::scene::{Scene, SceneError};
 use crate::study::{
     Cell, Edges, Grid, Levels, STRIDES, SummaryField, Sweep, SweepOptions, Table, first_crossing,
-    first_crossing_edge,
+    first_crossing_edge, release_line,
 };
 
 use super::{Question, over};
 
-/// The most cells of a map in the window.
-const MOST_CELLS: u64 = 200_000;
+/// Largest number of cells of a map in the window.
+const MAX_CELLS: u64 = 200_000;
 
-/// Why a map of so many cells is not made; none where it is.
+/// Why a map of this many cells is not made; none where it is.
 pub(super) fn too_many(cells: u64) -> Option<String> {
-    let words = || format!("{cells} cells are more than the window makes ({MOST_CELLS}): take longer steps");
-    (cells > MOST_CELLS).then(words)
+    let words = || format!("{cells} cells are more than the window makes ({MAX_CELLS}): take longer steps");
+    (cells > MAX_CELLS).then(words)
 }
 
 /// A cell on a line through a map.
@@ -31,7 +33,7 @@ pub struct CutCell<'a> {
     /// What it came to.
     pub cell: &'a Cell,
     /// Whether it lies on the line; if not it is the nearest one that is known so far.
-    pub own: bool,
+    pub on_line: bool,
 }
 
 /// A map as far as it is known.
@@ -45,20 +47,20 @@ pub struct Map {
     /// Where the first crossing cells begin, as far as is known.
     pub crossing: Vec<Vec<(f64, f64)>>,
     pub(super) sweep: Arc<Sweep>,
-    pub(super) levels: Arc<Levels>,
-    pub(super) cells: Vec<Option<Cell>>,
-    pub(super) known: usize,
-    /// After how much work its lines were last drawn.
+    levels: Levels,
+    cells: Vec<Option<Cell>>,
+    /// Number of cells that are known.
+    known: usize,
+    /// The work after which its lines were last drawn.
     lines_after: Option<Duration>,
-    /// Time that has been worked on it.
-    pub took: Duration,
-    /// When it had every cell of its coarsest level, after so much work.
+    /// The work after which it had every cell of its coarsest level.
     pub coarse_after: Option<Duration>,
 }
 
 impl Map {
-    /// The map of a question before its first cell, or why there is none.
-    pub(super) fn new(question: &Question, editor: &Editor) -> Result<Self, String> {
+    /// The map of a question before its first cell, or why there is none. `mechanism` is that of the open
+    /// scene.
+    pub(super) fn new(question: &Question, editor: &Editor, mechanism: &Mechanism) -> Result<Self, String> {
         let mut document = editor.document().clone();
         document.scene = question.scene.clone();
         let words = |error: SceneError| in_words(&error.to_string(), &question.scene);
@@ -72,21 +74,20 @@ impl Map {
         let [across, up] = grid.axes() else { return Err("a map has two axes".to_owned()) };
         let edges = [across, up].map(|axis| Edges::new(&axis.values));
         let cells = vec![None; grid.cells() as usize];
-        let levels = Arc::new(Levels::of(&grid));
+        let (levels, release) = (Levels::of(&grid), release(&question.scene, mechanism, &grid));
         let columns = question.ledger.and_then(SummaryField::find).into_iter().collect();
         let options = SweepOptions { columns, ..SweepOptions::default() };
         let sweep = Arc::new(Sweep::new(&document.scene, &document.files, grid).with(options));
         Ok(Self {
             question: question.clone(),
             edges,
-            release: Vec::new(),
+            release,
             crossing: Vec::new(),
             sweep,
             levels,
             cells,
             known: 0,
             lines_after: None,
-            took: Duration::ZERO,
             coarse_after: None,
         })
     }
@@ -110,7 +111,7 @@ impl Map {
         self.known == self.cells.len()
     }
 
-    /// Whether every part of it shows something, be it coarse.
+    /// Whether every cell of its coarsest level is known.
     pub fn is_covered(&self) -> bool {
         self.levels.whole(self.known).is_some()
     }
@@ -124,21 +125,31 @@ impl Map {
         [self.edges[0].values.len(), self.edges[1].values.len()]
     }
 
-    /// The cell in a column and row, or the one that stands for it meanwhile, and whether it is its own.
+    /// The cell in a column and row, or the one that stands for it meanwhile, and whether it is the cell
+    /// itself.
     pub fn cell(&self, column: usize, row: usize) -> Option<(&Cell, bool)> {
         let index = (column * self.size()[1] + row) as u64;
-        let own = self.cells.get(index as usize)?.as_ref();
-        if let Some(own) = own {
-            return Some((own, true));
+        if let Some(cell) = self.cells.get(index as usize)? {
+            return Some((cell, true));
         }
         let levels = (0..STRIDES.len() - 1).rev();
         let stand_in = |level| self.cells[self.levels.stand_in(index, level) as usize].as_ref();
         levels.filter_map(stand_in).next().map(|cell| (cell, false))
     }
 
-    /// The cells that have been run.
-    pub fn own_cells(&self) -> impl Iterator<Item = &Cell> {
+    pub fn known_cells(&self) -> impl Iterator<Item = &Cell> {
         self.cells.iter().flatten()
+    }
+
+    /// The cells that are still to be run, level by level.
+    pub(super) fn missing(&self) -> Vec<Vec<u64>> {
+        let mut begin = 0;
+        let level = |end: usize| {
+            let cells = &self.levels.order[begin..end];
+            begin = end;
+            cells.iter().copied().filter(|index| self.cells[*index as usize].is_none()).collect()
+        };
+        self.levels.ends.into_iter().map(level).collect()
     }
 
     /// Length of the settled window in s.
@@ -155,8 +166,8 @@ impl Map {
         self.sweep.table(0, &cells)
     }
 
-    /// The cells along a line through the map: up in a column (`upright`), or across in a row. Those that are
-    /// not known yet are left out, but for the nearest ones of the coarse levels.
+    /// The cells along a line through the map: up in a column (`upright`), or across in a row. A cell that is
+    /// not known is replaced by the nearest one of the coarse levels, and left out where there is none.
     pub fn cut(&self, upright: bool, at: usize) -> Vec<CutCell<'_>> {
         let [columns, rows] = self.size();
         let index = |place: usize| if upright { at * rows + place } else { place * rows + at };
@@ -164,12 +175,12 @@ impl Map {
         let cell = |place: usize| {
             let index = index(place) as u64;
             if let Some(cell) = self.cells[index as usize].as_ref() {
-                return Some(CutCell { place, cell, own: true });
+                return Some(CutCell { place, cell, on_line: true });
             }
             let stand_ins = (0..STRIDES.len() - 1).rev().map(|level| self.levels.stand_in(index, level));
             let beside = |other: &u64| along(*other) == place;
             let cell = stand_ins.filter(beside).find_map(|other| self.cells[other as usize].as_ref())?;
-            Some(CutCell { place, cell, own: false })
+            Some(CutCell { place, cell, on_line: false })
         };
         (0..if upright { rows } else { columns }).filter_map(cell).collect()
     }
@@ -189,9 +200,8 @@ impl Map {
         header(&table) + &rows(&table, 0..usize::MAX)
     }
 
-    /// Draws the line of first crossings anew, `worked` into the work; not for every part of a map that is
-    /// large.
-    pub(super) fn draw_lines(&mut self, worked: Duration) {
+    /// Draws the line of first crossings again after `worked` of work; in a large map not for every part.
+    fn draw_lines(&mut self, worked: Duration) {
         let every = Duration::from_micros(10 * self.len() as u64);
         if !self.is_whole() && self.lines_after.is_some_and(|last| worked < last + every) {
             return;
@@ -204,4 +214,33 @@ impl Map {
             .map(|line| first_crossing_edge(&line, names, &self.edges[0], &self.edges[1]))
             .unwrap_or_default();
     }
+}
+
+impl Answer<(u64, Cell)> for Map {
+    fn add(&mut self, cells: Vec<(u64, Cell)>, worked: Duration) {
+        for (index, cell) in cells {
+            self.known += usize::from(self.cells[index as usize].replace(cell).is_none());
+        }
+        if self.is_covered() {
+            self.coarse_after.get_or_insert(worked);
+            self.draw_lines(worked);
+        }
+    }
+
+    /// Meanwhile a map is shown that is covered, over the same fields, and has the column of this one.
+    fn replaces(&self, before: &Self) -> bool {
+        let fields = |map: &Self| map.question.axes.clone().map(|axis| axis.field);
+        let has_column = before.question.ledger.is_some() || self.question.ledger.is_none();
+        self.is_covered() || !before.is_covered() || fields(before) != fields(self) || !has_column
+    }
+}
+
+/// The points of the line of least amplitudes that free the mass; none where the mechanism changes over the
+/// map.
+fn release(scene: &Scene, mechanism: &Mechanism, grid: &Grid) -> Vec<(f64, f64)> {
+    let line = || release_line(scene, mechanism, grid);
+    let Some(line) = (!grid.changes_mechanism()).then(line).flatten() else { return Vec::new() };
+    let columns = grid.columns();
+    let (x, y) = (line.numbers(&columns[0]), line.numbers(&columns[1]));
+    x.into_iter().flatten().copied().zip(y.into_iter().flatten().copied()).collect()
 }

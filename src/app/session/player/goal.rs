@@ -1,7 +1,7 @@
 //! Fast forward to the end of the run or to the next release or crossing.
 //!
-//! It takes as many frames as it takes. In each the motion is advanced in short stretches until the frame's
-//! share of time is used up, so that the window answers meanwhile.
+//! It takes any number of frames. In each the motion is advanced in short stretches until the frame's share of
+//! time is used up, so that the window responds meanwhile.
 
 use std::time::Duration;
 
@@ -10,9 +10,10 @@ use crate::system::clock::WallClock;
 
 use super::Player;
 
-/// Time on the screen that one frame computes, and the stretch of the motion between two looks at the clock,
-/// in multiples of its characteristic time.
+/// Time on the screen for which one frame computes.
 const SHARE: Duration = Duration::from_millis(12);
+
+/// Stretch of the motion between two looks at the clock, in multiples of its characteristic time.
 const STRETCH: f64 = 2.0;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,9 +36,9 @@ impl Goal {
 pub enum Reached {
     Time,
     Event(Event),
-    /// Without an event of that kind, up to the time that was set.
+    /// There was no event of that kind up to the time that was set.
     Nothing(EventKind),
-    /// The run has ended on the way.
+    /// The run ended on the way.
     Ended,
 }
 
@@ -52,16 +53,16 @@ impl Player {
             self.reached = Some(Reached::Event(event));
             return;
         }
-        (self.past, self.held, self.reached) = (None, false, None);
+        (self.past, self.is_held, self.reached) = (None, false, None);
         self.goal = Some(goal);
     }
 
-    /// Where the motion is going as fast as it can.
+    /// The goal to which the motion goes as fast as it can.
     pub fn goal(&self) -> Option<Goal> {
         self.goal
     }
 
-    /// Stays where it is on the way to a goal.
+    /// Ends the way to a goal.
     pub fn give_up(&mut self) {
         self.goal = None;
     }
@@ -78,7 +79,7 @@ impl Player {
         events.range(begin..).find(|event| is_kind(event, kind)).copied()
     }
 
-    /// One frame's share of the way.
+    /// Goes one frame's share of the way.
     pub(super) fn follow(&mut self, goal: Goal) {
         let (begun, until) = (WallClock::start(), goal.until());
         let stretch = STRETCH * self.watch.model_at(self.watch.time()).characteristic_time();
@@ -94,7 +95,7 @@ impl Player {
             if self.watch.ended().is_some() {
                 return self.arrive(Reached::Ended);
             }
-            // also where the stretch is nothing beside the time
+            // the stretch may be too short to change the time
             if self.watch.time() >= until || arrived && self.watch.time() <= before {
                 let reached = match goal {
                     Goal::Time(_) => Reached::Time,

@@ -1,7 +1,7 @@
 //! The player: time, speed and remembered past of the live motion.
 //!
 //! The motion is live: playing advances it, and a change acts from its present state. Its past is remembered
-//! and can be looked at; playing from there goes through it once more and then on.
+//! and can be shown; playing from there repeats it up to the present and goes on.
 
 mod goal;
 
@@ -12,7 +12,7 @@ use crate::study::Watch;
 
 pub use goal::{Goal, Reached};
 
-/// Speeds relative to real time, and how they are called; the keys 1 to 7.
+/// Speeds relative to real time with their names; the keys 1 to 7.
 pub const SPEEDS: [(f64, &str); 7] = [
     (1e-3, "1/1000"),
     (1e-2, "1/100"),
@@ -26,15 +26,15 @@ pub const SPEEDS: [(f64, &str); 7] = [
 /// Time on the screen in s that a period of the motion should take.
 const PERIOD_ON_SCREEN: f64 = 3.0;
 
-/// The speed up to real time that suits a motion whose characteristic time is so many seconds.
-pub fn fitting_speed(pace: f64) -> f64 {
-    let off = |speed: f64| (pace / speed / PERIOD_ON_SCREEN).ln().abs();
-    let speeds = SPEEDS.iter().map(|own| own.0).filter(|speed| *speed <= 1.0);
+/// The speed up to real time that suits a motion with this characteristic time in s.
+pub fn fitting_speed(characteristic_time: f64) -> f64 {
+    let off = |speed: f64| (characteristic_time / speed / PERIOD_ON_SCREEN).ln().abs();
+    let speeds = SPEEDS.iter().map(|(speed, _)| *speed).filter(|speed| *speed <= 1.0);
     speeds.min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or(1.0)
 }
 
-/// Longest stretch of real time in s that one frame plays: after a pause of the window it goes on where it
-/// was.
+/// Longest stretch of real time in s that one frame plays: after a pause of the window the motion goes on
+/// where it was.
 const LONGEST_FRAME: f64 = 0.1;
 
 /// Time on the screen in s that a single step takes.
@@ -46,26 +46,27 @@ pub struct Player {
     /// Speed relative to real time.
     pub speed: f64,
     playing: bool,
-    /// The time that is looked at, where it is not the present.
+    /// The time in s that is shown, where it is not the present.
     past: Option<f64>,
-    /// Whether the mass is held by hand, which holds the clock.
-    held: bool,
-    /// Where it goes as fast as it can, and how the last such way ended.
+    /// Whether a hand holds the mass, which stops the clock.
+    is_held: bool,
+    /// Where it goes as fast as it can.
     goal: Option<Goal>,
+    /// How the way to the last goal ended.
     reached: Option<Reached>,
     /// Whether a view of this frame shows where the energy went.
     wants_ledgers: bool,
 }
 
 impl Player {
-    /// Begins at the model's own start, playing.
+    /// Begins at the start of the model, playing.
     pub fn new(model: &Model, speed: f64) -> Self {
         Self {
             watch: Watch::new(model),
             speed,
             playing: true,
             past: None,
-            held: false,
+            is_held: false,
             goal: None,
             reached: None,
             wants_ledgers: false,
@@ -75,10 +76,10 @@ impl Player {
     /// Whether time goes on.
     pub fn is_playing(&self) -> bool {
         let plays = self.playing && (self.past.is_some() || self.watch.ended().is_none());
-        !self.held && (plays || self.goal.is_some())
+        !self.is_held && (plays || self.goal.is_some())
     }
 
-    /// Plays or pauses; a goal is given up.
+    /// Plays or pauses; the way to a goal ends.
     pub fn set_playing(&mut self, playing: bool) {
         (self.playing, self.goal) = (playing, None);
     }
@@ -92,7 +93,7 @@ impl Player {
         }
     }
 
-    /// A single step, paused.
+    /// Plays a single step and pauses.
     pub fn step(&mut self) {
         self.set_playing(false);
         self.go(STEP * self.speed);
@@ -112,56 +113,56 @@ impl Player {
         let keeps_ledgers = self.watch.keeps_ledgers();
         self.watch = Watch::new(model);
         self.watch.keep_ledgers(keeps_ledgers);
-        (self.past, self.held, self.goal) = (None, false, None);
+        (self.past, self.is_held, self.goal) = (None, false, None);
     }
 
-    /// Asks that ledgers be kept at the ends of forcing periods; to be asked anew in every frame.
+    /// Has ledgers kept at the ends of forcing periods; to be called in every frame that shows them.
     pub fn want_ledgers(&mut self) {
         self.wants_ledgers = true;
     }
 
-    /// To be called once a frame: ledgers that no view has asked for are not kept.
+    /// To be called once a frame: ledgers that no view has wanted are not kept.
     pub fn end_frame(&mut self) {
         self.watch.keep_ledgers(std::mem::take(&mut self.wants_ledgers));
     }
 
-    /// From now on the mass moves as `model` says.
+    /// From now on the mass moves by `model`.
     pub fn change(&mut self, model: &Model) {
         (self.past, self.goal) = (None, None);
         self.watch.change(model);
     }
 
-    /// Holds the mass at `x` in m; the clock stands.
+    /// Holds the mass at `x` in m; the clock stops.
     pub fn hold(&mut self, x: f64) {
-        (self.past, self.held, self.goal) = (None, true, None);
+        (self.past, self.is_held, self.goal) = (None, true, None);
         self.watch.place(x, 0.0);
     }
 
     /// Puts the mass to `x` in m with velocity `v` in m/s, from where the motion goes on.
     pub fn place(&mut self, x: f64, v: f64) {
-        (self.past, self.held, self.goal) = (None, false, None);
+        (self.past, self.is_held, self.goal) = (None, false, None);
         self.watch.place(x, v);
     }
 
     pub fn let_go(&mut self) {
-        self.held = false;
+        self.is_held = false;
     }
 
-    /// Whether the mass is held by hand.
+    /// Whether a hand holds the mass.
     pub fn is_held(&self) -> bool {
-        self.held
+        self.is_held
     }
 
-    /// Looks at the time `t` in s, as far as it is remembered.
+    /// Shows the time `t` in s, as far as it is remembered.
     pub fn seek(&mut self, t: f64) {
         self.goal = None;
         let t = t.max(self.watch.begin());
         self.past = (t < self.watch.time()).then_some(t);
     }
 
-    /// Goes to the next or the previous event and pauses there; what has not happened yet is played up to it,
-    /// as far as `most` seconds ahead.
-    pub fn seek_event(&mut self, later: bool, most: f64) {
+    /// Goes to the next or the previous event and pauses there; an event to come is computed, for `limit`
+    /// seconds ahead at the most.
+    pub fn seek_event(&mut self, later: bool, limit: f64) {
         self.set_playing(false);
         let t = self.time();
         if let Some(event) = self.watch.neighbour(t, later) {
@@ -171,30 +172,30 @@ impl Player {
             return;
         }
         self.past = None;
-        let until = self.watch.time() + most;
+        let until = self.watch.time() + limit;
         while self.watch.time() < until {
             let before = self.watch.time();
-            let arrived = self.watch.advance((before + most / 50.0).min(until));
+            let arrived = self.watch.advance((before + limit / 50.0).min(until));
             if let Some(event) = self.watch.neighbour(t, true) {
                 return self.seek(event.t);
             }
-            // where the work of one call does not get there the window must not wait for more of it
+            // what one call does not reach would take too long for the window to wait
             if !arrived || self.watch.time() <= before {
                 break;
             }
         }
     }
 
-    /// The event at which the motion stands: what a step between events has come to.
+    /// The event at which a motion that was stepped from event to event stands.
     pub fn event(&self) -> Option<&Event> {
         let t = self.time();
-        if self.is_playing() || self.held {
+        if self.is_playing() || self.is_held {
             return None;
         }
         let events = self.watch.events();
         let first = events.partition_point(|event| event.t < t);
         let here = events.range(first..).take_while(|event| event.t == t);
-        // a rebound that comes to rest at once is an impact
+        // a rebound that comes to rest at once is shown as an impact
         here.min_by_key(|event| event.kind == EventKind::Rest)
     }
 
@@ -208,7 +209,7 @@ impl Player {
         self.past = None;
     }
 
-    /// The model that held at the time that is shown.
+    /// The model by which the mass moved at the time that is shown.
     pub fn shown_model(&self) -> &Arc<Model> {
         self.watch.model_at(self.time())
     }

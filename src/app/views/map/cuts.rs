@@ -93,30 +93,30 @@ impl Strip<'_> {
         self.thresholds(&inside, style);
         let values = &self.map.edges[usize::from(self.upright)].values;
         let cells = self.map.cut(self.upright, self.at.0);
-        let point = |own: &CutCell<'_>| Some(self.place(values[own.place], self.scale.height(own.cell)?));
+        let point = |cut: &CutCell<'_>| Some(self.place(values[cut.place], self.scale.height(cut.cell)?));
         // a line goes through what lies side by side and has numbers
         let mut line: Vec<Pos2> = Vec::new();
         let mut last = None;
-        for own in cells.iter().filter(|own| own.own) {
-            let at = point(own).filter(|_| !self.scale.is_of_words());
-            if at.is_none() || last.is_some_and(|last| own.place != last + 1) {
+        for cut in cells.iter().filter(|cut| cut.on_line) {
+            let at = point(cut).filter(|_| !self.scale.is_of_words());
+            if at.is_none() || last.is_some_and(|last| cut.place != last + 1) {
                 inside.add(Shape::line(std::mem::take(&mut line), style.ghost_stroke()));
             }
             line.extend(at);
-            last = Some(own.place);
+            last = Some(cut.place);
         }
         inside.add(Shape::line(line, style.ghost_stroke()));
         let mut before: Option<(Pos2, Kind)> = None;
-        for own in &cells {
-            let Some(at) = point(own) else { continue };
-            let kind = own.cell.settled().map_or(Kind::Fault, |own| Kind::from(own.regime));
-            let is_scene = own.place == scene && own.own;
+        for cut in &cells {
+            let Some(at) = point(cut) else { continue };
+            let kind = cut.cell.settled().map_or(Kind::Fault, |summary| Kind::from(summary.regime));
+            let is_scene = cut.place == scene && cut.on_line;
             if !is_scene && before.is_some_and(|(last, alike)| alike == kind && last.distance(at) < APART) {
                 continue;
             }
             before = Some((at, kind));
             let colour = style.kind(kind);
-            let colour = if own.own { colour } else { colour.gamma_multiply(FAINT) };
+            let colour = if cut.on_line { colour } else { colour.gamma_multiply(FAINT) };
             inside.extend(kind_shapes(kind, at, MARK, colour));
             if is_scene {
                 for stroke in style.marker_strokes() {

@@ -172,10 +172,10 @@ fn progress_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     }
     let Some(map) = mapping.map() else { return };
     let (known, all) = (map.known(), map.len());
-    let took = map.took.as_secs_f64();
+    let worked = mapping.cells.worked();
     if mapping.is_running() {
         if ui.button("Stop").on_hover_text("Leave the map as it is now.").clicked() {
-            mapping.stop();
+            mapping.cells.stop();
         }
         let share = known as f32 / all as f32;
         let bar = egui::ProgressBar::new(share).desired_width(50.0).desired_height(12.0);
@@ -183,8 +183,9 @@ fn progress_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         return;
     }
     let (text, hover) = if known == all {
-        let coarse = map.coarse_after.unwrap_or(map.took).as_secs_f64();
-        let hover = format!("Coarse after {coarse:.2} s, all {all} runs after {took:.1} s. Runs them again.");
+        let [coarse, whole] = [map.coarse_after.unwrap_or(worked), worked].map(|time| time.as_secs_f64());
+        let hover =
+            format!("Coarse after {coarse:.2} s, all {all} runs after {whole:.1} s. Runs them again.");
         ("Recompute", hover)
     } else {
         ("Continue", format!("{known} of {all} runs are done. Runs the others."))
