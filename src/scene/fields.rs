@@ -147,6 +147,12 @@ pub fn numeric_fields(scene: &Scene) -> Vec<String> {
     paths
 }
 
+/// Whether the number at this path is a whole one, such as a count or a seed; false where the scene has none.
+pub fn is_whole(scene: &Scene, path: &str) -> bool {
+    let whole = |field: Field<'_>| matches!(field, Field::Number(spec, _) if spec.range.whole);
+    FieldPath::new(path).follow(&mut scene.clone(), whole).unwrap_or(false)
+}
+
 /// The paths of all fields that this scene has, numbers and whole values: what `--set` takes.
 pub fn all_fields(scene: &Scene) -> Vec<String> {
     let mut paths = Vec::new();

@@ -52,7 +52,7 @@ pub use columns::{Columns, ColumnsError, MOST_ROWS, read_columns};
 pub use data::*;
 pub use document::{Document, Source, is_scene_file, named_paths};
 pub use error::{ArgumentError, Fault, Origin, PlacedFault, SceneError};
-pub use fields::{FieldPath, all_fields, numeric_fields};
+pub use fields::{FieldPath, all_fields, is_whole, numeric_fields};
 pub use files::{FileError, Files, LARGEST_TABLE};
 pub use locate::{Place, Places};
 pub use manifest::{PROGRAM, Swept, is_manifest};

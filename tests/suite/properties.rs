@@ -9,7 +9,8 @@
 //! - a stop that is never reached, samples, events, a ledger and threads change no bit (`runs`, `sweep`);
 //! - the determinant of its stroboscopic map is that of damping and impacts (`determinant`);
 //! - its error is at most a constant times its conditioning times its tolerance, plus rounding (`bound`);
-//! - nothing panics or goes on without end, and no number is silently not finite (`extremes`).
+//! - nothing panics or goes on without end, and no number is silently not finite (`extremes`);
+//! - a threshold is what closed forms say, and what it names is what runs of their own do (`thresholds`).
 //!
 //! The scenes are the same on every day, so that a test that was green does not turn red without a change.
 //! `INTERWELL_PROPERTY_SEED=7` draws others, `INTERWELL_PROPERTY_SEED=new` new ones each time, and
@@ -26,4 +27,5 @@ mod runs;
 mod scenes;
 pub mod sound;
 mod sweep;
+mod thresholds;
 mod units;

@@ -249,7 +249,7 @@ fn the_best_stops_are_found_and_taken() {
     let words = session.best.words();
     assert!(words.starts_with("Best stops: ±2."), "{words}");
     for part in
-        ["the RMS velocity is largest", "from rest, in runs of 4.00 s", "further in and", "further out"]
+        ["the RMS velocity is largest", "until its motion repeats", "further in and", "further out"]
     {
         assert!(words.contains(part), "{part}: {words}");
     }

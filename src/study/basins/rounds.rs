@@ -8,11 +8,8 @@ use super::stroboscopic::Stroboscope;
 use super::verdict::{Verdict, verdict};
 use crate::dynamics::{Arrival, Capture, Outcome, Pursuit, Region, ReleaseIdentity, Side, Summary};
 use crate::study::Task;
+use crate::study::settled::PATIENCE;
 use crate::system::threads::Pool;
-
-/// Forcing periods after which a motion that goes to nothing known is judged: five times the longest
-/// transients of the prototype.
-pub(super) const PATIENCE: u64 = 1000;
 
 /// Starts of the first round of a map, and the most of any: while little is known, rounds are short.
 const FIRST_ROUND: usize = 64;
@@ -155,7 +152,7 @@ impl Rounds {
                     Verdict::Undecided => Fate::Undecided,
                     own @ Verdict::Settled { .. } => self.judged(own, summary, scope),
                 };
-                (fate, PATIENCE)
+                (fate, PATIENCE.into())
             }
         };
         self.put(item, fate, periods);
@@ -264,7 +261,7 @@ fn round(
             known: &known,
             regions: &regions,
             repeats_from: item.repeats_from,
-            most_periods: PATIENCE,
+            most_periods: PATIENCE.into(),
             releases: item.releases,
         }
     };
