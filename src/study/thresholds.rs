@@ -138,7 +138,9 @@ pub fn threshold_table(
     // of several cells each has a thread of its own
     let ahead = if cells == 1 { pool.count() } else { 1 };
     let cell = |scene: &mut Scene, index: usize| match prepared(scene, index) {
-        Ok(mechanism) => threshold_on((Some(pool), ahead), scene, &mechanism, files, (scan, onset), task).ok_or(()),
+        Ok(mechanism) => {
+            threshold_on((Some(pool), ahead), scene, &mechanism, files, (scan, onset), task).ok_or(())
+        }
         Err(_) => {
             scan.values.iter().for_each(|_| (task.tick)());
             Ok(Found { undecided: true, ..Found::default() })
