@@ -43,7 +43,9 @@ pub(crate) struct Motion<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> {
     pub steps: u64,
     /// The segment of the drive and the instant since which a search has found no release.
     pub searched: Option<(usize, Instant<T>)>,
-    /// Whether the run may be completed from a recurrence, and whether the mirror image of a motion is one.
+    /// Whether windows may be completed from a recurrence, whether this one may yet be, and whether the mirror
+    /// image of a motion is one.
+    pub may_recur: bool,
     pub recurs: bool,
     pub symmetric: bool,
     /// The identity of the release that has just happened.
@@ -80,6 +82,7 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
             log: None,
             steps: 0,
             searched: None,
+            may_recur: false,
             recurs: false,
             symmetric: false,
             label: None,
@@ -89,7 +92,8 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
 
     /// Where `recurs`, lets the run be completed from a recurrence.
     pub fn with_recurrence(mut self, recurs: bool, model: &Model) -> Self {
-        self.recurs = recurs && self.stepper.drive.circuit().is_none();
+        self.may_recur = recurs && self.stepper.drive.circuit().is_none();
+        self.recurs = self.may_recur;
         self.symmetric = self.recurs && model.is_symmetric();
         self
     }

@@ -50,6 +50,18 @@ pub struct Barrier {
     pub from_right_j: f64,
 }
 
+/// A well of the potential: a stable equilibrium and what lies around it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Well {
+    /// Position of the equilibrium in m.
+    pub x: f64,
+    /// Top of the barrier to the well on its left in m; none where there is no such well.
+    pub left_top: Option<f64>,
+    /// The same to the right.
+    pub right_top: Option<f64>,
+}
+
 /// A local extremum of the force.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ForceExtremum {
@@ -126,6 +138,24 @@ impl Landscape {
         landscape.left_barrier = tops.iter().find(mirrored).map(|top| top.x);
         landscape.barrier = nearest;
         landscape
+    }
+
+    /// The wells from left to right.
+    pub fn wells(&self) -> Vec<Well> {
+        let mut wells: Vec<Well> = Vec::new();
+        let mut top = None;
+        for equilibrium in &self.equilibria {
+            if !equilibrium.stable {
+                top = Some(equilibrium.x);
+                continue;
+            }
+            let between = top.take().filter(|_| !wells.is_empty());
+            if let Some(before) = wells.last_mut() {
+                before.right_top = between;
+            }
+            wells.push(Well { x: equilibrium.x, left_top: between, right_top: None });
+        }
+        wells
     }
 
     /// The right-most stable equilibrium.

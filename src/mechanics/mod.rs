@@ -14,7 +14,7 @@ pub use curve::{FitReport, ForceCurve, Piece};
 pub use fit::{fit, force_scale};
 pub use flexure::{FlexureError, Flexures};
 pub use hertz::{ContactMaterial, Hertz};
-pub use landscape::{Barrier, Equilibrium, ForceExtremum, Kink, KinkAtWell, Landscape};
+pub use landscape::{Barrier, Equilibrium, ForceExtremum, Kink, KinkAtWell, Landscape, Well};
 pub use magnet::{magnet_force, magnet_potential};
 pub use table::{FEWEST_POINTS, ForceTable, MOST_POINTS, TableError};
 

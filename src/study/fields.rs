@@ -56,6 +56,7 @@ pub const SUMMARY_FIELDS: &[SummaryField] = &[
     of_ledger("impact_share", Read::Number(|s| s.impact_share)),
     plain("rested_share", Read::Number(|s| s.rested_share)),
     plain("settled", Read::Flag(|s| s.settled)),
+    plain("steady", Read::Flag(|s| s.steady)),
     plain("settles_at_s", Read::Number(|s| s.settles_at)),
     plain("window_from_s", Read::Number(|s| Some(s.window.0))),
     plain("window_to_s", Read::Number(|s| Some(s.window.1))),

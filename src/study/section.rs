@@ -32,7 +32,7 @@ pub enum SectionAt {
     /// At this phase of the drive in degrees: the argument of its sine; of a sum, the share of the common
     /// period since the start.
     Phase(f64),
-    /// At every impact, contacts with a compliant stop among them.
+    /// At every impact that counts, contacts with a compliant stop among them.
     Impacts,
 }
 
@@ -130,14 +130,17 @@ impl Question for SectionOptions {
             return Points::States(run.section);
         }
         let (from, to) = run.summary.window;
-        let strikes = run.events.iter().filter(|own| {
-            matches!(own.kind, EventKind::Impact | EventKind::Contact) && own.t >= from && own.t < to
+        let strikes = run.events.iter().filter(|event| {
+            matches!(event.kind, EventKind::Impact | EventKind::Contact)
+                && event.v_in.abs() > model.least_impact_speed()
+                && event.t >= from
+                && event.t < to
         });
-        let struck = strikes.map(|own| Struck {
-            t: own.t,
-            side: own.side,
-            phase: model.drive_phase(own.t).map_or(f64::NAN, |turns| 360.0 * turns),
-            v_in: own.v_in,
+        let struck = strikes.map(|event| Struck {
+            t: event.t,
+            side: event.side,
+            phase: model.drive_phase(event.t).map_or(f64::NAN, |turns| 360.0 * turns),
+            v_in: event.v_in,
         });
         Points::Impacts(struck.collect())
     }

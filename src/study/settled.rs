@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use crate::dynamics::{Model, Outcome, Phase, Request, Sample, Side, Summary};
+use crate::dynamics::{Model, Outcome, Phase, Request, Sample, Summary};
 
 /// Forcing periods beyond the scene's own run for which a motion is followed until it repeats: five times
 /// what the longest transients of the prototype take.
@@ -29,31 +29,30 @@ pub fn lasts(model: &Model, seconds: f64) -> bool {
 /// Where a mass stands, or swings, that nothing shakes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Standing {
-    /// The well it is in.
-    pub side: Side,
+    /// The number of the well that it is in, from the left and from 0.
+    pub well: usize,
     /// Force in N that presses it on its stop, where it rests on one.
     pub pressed_n: Option<f64>,
     /// Mechanical energy in J above the lowest place that it can reach there.
     pub energy_j: f64,
-    /// Energy in J that lifts it from that place over the barrier.
+    /// Energy in J that lifts it from that place over the lower barrier beside it.
     pub needed_j: f64,
 }
 
 /// Where the mass is in the landscape, in words' numbers; none where there is no barrier.
 pub fn standing(model: &Model, state: &Sample) -> Option<Standing> {
     let curve = &model.mechanism().curve;
-    let barrier = model.mechanism().landscape.barrier?;
-    let side = if state.x >= barrier.x { Side::Right } else { Side::Left };
+    let wells = model.mechanism().landscape.wells();
+    let well = wells.iter().position(|well| well.right_top.is_none_or(|top| state.x < top))?;
     let (left, right) = model.stop_positions();
-    let lowest = match side {
-        Side::Right => right.map_or(barrier.right_well, |stop| stop.min(barrier.right_well)),
-        Side::Left => left.map_or(barrier.left_well, |stop| stop.max(barrier.left_well)),
-    };
-    let floor = curve.potential(lowest);
+    let lowest = left.map_or(wells[well].x, |stop| stop.max(wells[well].x));
+    let floor = curve.potential(right.map_or(lowest, |stop| stop.min(lowest)));
+    let tops = [wells[well].left_top, wells[well].right_top];
+    let top = tops.into_iter().flatten().map(|top| curve.potential(top)).reduce(f64::min)?;
     Some(Standing {
-        side,
+        well,
         pressed_n: (state.phase != Phase::Free).then(|| curve.force(state.x).abs()),
         energy_j: 0.5 * model.mass() * state.v * state.v + curve.potential(state.x) - floor,
-        needed_j: curve.potential(barrier.x) - floor,
+        needed_j: top - floor,
     })
 }

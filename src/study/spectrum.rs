@@ -152,7 +152,7 @@ pub fn spectrum(model: &Model, options: &SpectrumOptions, task: &Task) -> Result
     let summary = model.run(&request).summary;
     ended(summary.outcome)?;
     (task.tick)();
-    let period = summary.period.filter(|_| summary.settled == Some(true));
+    let period = summary.period;
     let taper = options.taper.unwrap_or(if period.is_some() { Taper::None } else { Taper::Hann });
     let plan = Plan::new(model, summary.window, (summary.periods, period), options.rate_hz)?;
     let times: Vec<f64> = (0..plan.samples).map(|k| plan.time(k)).collect();

@@ -25,10 +25,10 @@ pub struct Trace {
     pub shown_from: f64,
     /// Time in s up to which motion and phase portrait are shown.
     pub shown_to: f64,
+    /// Whether that is a window that was asked for.
+    pub is_section: bool,
     /// Positions of the left and the right stop in m; NaN where there is none.
     pub stops: (f64, f64),
-    /// Begin of the settled window in s.
-    pub settle: f64,
     /// Time in s at which the run ended.
     pub end: f64,
 }
@@ -102,8 +102,8 @@ pub fn simulate_with_trace(
         portrait_from,
         shown_from,
         shown_to,
+        is_section: window.is_some(),
         stops,
-        settle: span.0,
         end,
     };
     let samples = samples_table(&in_order(&keep.times, &run.samples), |own| model.output(own));

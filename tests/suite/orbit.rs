@@ -130,7 +130,7 @@ fn a_bouncing_ball_doubles_its_period_where_the_formula_says() {
             let [first, second] = own.multipliers();
             near(first.re + second.re, ball.sum(*value), 1e-7);
             near(own.determinant(), ball.e * ball.e, 1e-15);
-            assert_eq!(own.passage.impacts(), 1);
+            assert_eq!(own.passage.impacts, 1);
         }
         // and back, to where the motion ends: the speed of the table is no longer enough
         let found = over_amplitude(&ball.document(a), (a, 0.5 * ball.pace()), Some(1));
@@ -151,8 +151,8 @@ fn a_linear_oscillator_grazes_its_stop_where_its_amplitude_is_the_distance() {
     // it turns back there: an unstable motion that touches the stop begins, and ends in a stable one
     let flips = at(&found, BranchEvent::Flip);
     assert_eq!((flips.len(), found.end), (1, BranchEnd::Range));
-    assert_eq!(found.orbits.first().unwrap().passage.impacts(), 0);
-    assert_eq!(found.orbits.last().unwrap().passage.impacts(), 1);
+    assert_eq!(found.orbits.first().unwrap().passage.impacts, 0);
+    assert_eq!(found.orbits.last().unwrap().passage.impacts, 1);
     // the other way round the same
     let back = over_amplitude(&own, (0.056, 0.05), Some(1));
     near_relative(at(&back, BranchEvent::Grazing)[0], grazing[0], 1e-8);
@@ -211,7 +211,7 @@ fn a_motion_that_rests_has_multipliers_of_zero_and_a_table_says_so() {
     assert_eq!((found.period, found.determinant(), found.is_stable()), (1, 0.0, true));
     assert!(found.multipliers().iter().all(|own| own.magnitude() == 0.0));
     let still = find(&preset("paper", &["excitation.amplitude_g=0.5"]), 0.0, None).unwrap();
-    assert_eq!((still.period, still.state, still.passage.impacts()), (1, (1.5e-3, 0.0), 0));
+    assert_eq!((still.period, still.state, still.passage.impacts), (1, (1.5e-3, 0.0), 0));
     let table = orbit_table(&[found]);
     assert_eq!(table.numbers("multiplier_1_re").unwrap(), [0.0]);
     assert!(table.numbers("gentlest_impact_m_per_s").unwrap()[0] > 0.1);

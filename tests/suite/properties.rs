@@ -8,6 +8,8 @@
 //! - its mirror image runs as its mirror image does, bit for bit (`mirror`, `runs`);
 //! - a stop that is never reached, samples, events, a ledger and threads change no bit (`runs`, `sweep`);
 //! - the determinant of its stroboscopic map is that of damping and impacts (`determinant`);
+//! - it has settled where its states come back or it rests, and impacts are counted alike by every command
+//!   and at every tolerance (`settled`, `counts`);
 //! - its error is at most a constant times its conditioning times its tolerance, plus rounding (`bound`);
 //! - nothing panics or goes on without end, and no number is silently not finite (`extremes`).
 //!
@@ -17,6 +19,7 @@
 //! and printed as a scene file, with the files that it names and with the seed.
 
 mod bound;
+mod counts;
 mod determinant;
 mod extremes;
 pub mod harness;
@@ -24,6 +27,7 @@ pub mod mechanisms;
 pub mod mirror;
 mod runs;
 pub mod scenes;
+mod settled;
 pub mod sound;
 mod sweep;
 mod units;

@@ -131,7 +131,7 @@ fn the_nearest_miss_is_that_of_the_amplitude() {
     };
     let passage = swing("Uneven(left_mm: 500.5, right_mm: 510, restitution_right: 0.5)");
     near(passage.nearest_miss().unwrap(), 0.5e-3, 1e-12);
-    assert_eq!(passage.impacts(), 0);
+    assert_eq!(passage.impacts, 0);
     let passage = swing("Uneven(left_mm: 400, right_mm: 510, restitution_right: 0.5)");
     let impact = passage.events.iter().find(|event| event.kind == EventKind::Impact).unwrap();
     near(impact.v_in, -0.3, 1e-12);
@@ -147,7 +147,7 @@ fn a_motion_that_begins_at_rest_has_missed_no_stop() {
     let own = |x: f64, stops: &str, time: f64| {
         let own = oscillator(&format!("{stops}, start: At(x_mm: {}, v_m_per_s: 0)", 1e3 * x));
         let passage = StroboscopicMap::over(&own, time).pass((x, 0.0), 1);
-        assert_eq!((passage.outcome, passage.impacts()), (Outcome::Done, 0));
+        assert_eq!((passage.outcome, passage.impacts), (Outcome::Done, 0));
         passage.nearest_miss()
     };
     for near in [10.0, 0.5, 1e-6, 0.0] {

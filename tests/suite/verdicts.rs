@@ -52,20 +52,38 @@ fn it_is_known_since_when_a_motion_repeats() {
 }
 
 #[test]
-fn irregular_for_good_is_said_after_two_hundred_periods() {
+fn no_age_makes_an_irregular_motion_a_settled_one() {
     let model = unconstrained(1.5, &[]);
     let early = model.run(&Request::default()).summary;
     assert_eq!((early.regime, early.settled, early.settles_at), (Regime::Irregular, Some(false), None));
     // the halves of a window of ten seconds agree mostly, not always
-    let mut stationary = 0;
+    let mut steady = 0;
     for hundredths in 140..=150 {
         let late = settled(&unconstrained(f64::from(hundredths) / 100.0, &[]));
         assert_eq!((late.regime, late.period), (Regime::Irregular, None), "{hundredths}");
+        assert_eq!((late.settled, late.settles_at), (Some(false), None), "{hundredths}");
         near(late.window.1, 300.0, 10.0);
         near(late.window.1 - late.window.0, 10.0, 1e-9);
-        stationary += usize::from(late.settled == Some(true));
+        steady += usize::from(late.steady == Some(true));
     }
-    assert!(stationary >= 7, "{stationary}");
+    assert!(steady >= 7, "{steady}");
+}
+
+#[test]
+fn a_long_transient_in_one_well_is_not_settled() {
+    // for minutes the mass moves in one well, without a period, and looks steady; then it crosses
+    let own = |amplitude: f64, until: f64| {
+        let request = Request { until_settled: Some(until), ..Request::default() };
+        unconstrained(amplitude, &[]).run(&request).summary
+    };
+    for (amplitude, at) in [(1.152, 402.0), (1.1525, 567.0)] {
+        let early = own(amplitude, 113.0);
+        assert_eq!((early.regime, early.settled, early.steady), (Regime::Intrawell, Some(false), Some(true)));
+        near(early.window.1, 110.0, 1e-9);
+        let late = own(amplitude, 1000.0);
+        assert_eq!((late.regime, late.settled), (Regime::Interwell, Some(true)));
+        near(late.settles_at.unwrap(), at, 1.0);
+    }
 }
 
 #[test]

@@ -13,7 +13,7 @@ use crate::support::{LONG, WIDE, press, press_with_ctrl, says, window};
 fn it_opens_and_plays() {
     let mut harness = window("first-look", WIDE);
     harness.get_by_label("Well");
-    says(&harness, "Intrawell: will settle in the right-hand well");
+    says(&harness, "Intrawell: will swing in the right-hand well");
     harness.get_by_label_contains("Make it cross");
     let before = harness.state().session.player.time();
     harness.run_steps(10);

@@ -104,7 +104,7 @@ fn what_it_would_take_is_there_on_request() {
     // it gives the answer away
     press(&mut harness, Key::C);
     assert!(harness.query_by_label_contains("or with stops at ±").is_none());
-    assert!(harness.query_by_label_contains("Intrawell: will settle").is_none());
+    assert!(harness.query_by_label_contains("Intrawell: will swing").is_none());
     harness.get_by_label("Covered: what do you expect? C shows it again.");
     harness.key_press(Key::C);
     press(&mut harness, Key::H);
@@ -119,7 +119,7 @@ fn a_screen_reader_is_told_by_a_new_node() {
         (node.accesskit_node().id(), node.accesskit_node().label().unwrap_or_default())
     };
     let (first, text) = spoken(&harness);
-    assert!(text.starts_with("Intrawell: will settle"), "{text}");
+    assert!(text.starts_with("Intrawell: will swing"), "{text}");
     harness.run_steps(3);
     assert_eq!(spoken(&harness).0, first);
     harness.state_mut().session.switch_stops(true);

@@ -161,10 +161,11 @@ fn means_of_a_motion_that_has_not_settled_are_called_so() {
         *amplitude_g = 1.4;
     });
     session.wait_settled(LONG);
-    let says = match session.settled_now().unwrap().settled {
-        Some(true) => "of settled motion.",
-        Some(false) => "Not settled: means over the last",
-        None => panic!("a sine has a period"),
+    let summary = session.settled_now().unwrap();
+    let says = match (summary.settled, summary.steady) {
+        (Some(false), Some(true)) => "which are steady, of a motion without a period.",
+        (Some(false), Some(false)) => "Not settled: means over the last",
+        other => panic!("irregular, under a sine: {other:?}"),
     };
     harness.run_steps(3);
     assert!(is_painted(&harness, says));

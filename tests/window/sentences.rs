@@ -29,7 +29,10 @@ fn shaken() {
     let likely = ["5.6", "5.7"].into_iter().flat_map(|low| ["17", "18"].map(|speed| (low, speed)));
     let mut likely = likely.map(|(low, speed)| {
         let between = format!("between {low} and 7.3 mm");
-        format!("Intrawell: will settle in the right-hand well, {between}; RMS velocity about {speed} mm/s.")
+        format!(
+            "Intrawell: will swing in the right-hand well, {between}; RMS velocity about {speed} mm/s. No period \
+             up to "
+        )
     });
     assert!(likely.any(|own| text.starts_with(&own)), "{text}");
     assert!(text.contains("g short of crossing at about 1.1"), "{text}");
@@ -91,10 +94,30 @@ fn a_transient_is_told_as_one() {
         }
         assert!(says(&own).1.starts_with("Interwell: crosses "), "{:?}", says(&own));
     }
-    // irregular for good, from some 200 periods on that were followed
+    // irregular for as long as it was followed
     let (kind, text) = says(&settled("first-look", &["excitation.amplitude_g=1.5"]));
     assert!(kind == Kind::Irregular && text.starts_with("Irregular: will cross in "), "{text}");
-    assert!(!text.contains("Not settled"), "{text}");
+    assert!(text.contains(" Its averages are steady.") || text.contains(" Its averages drift."), "{text}");
+}
+
+#[test]
+fn each_of_three_wells_has_its_name() {
+    // wells at -1.7, 0 and 1.7 mm
+    let curve = "mechanism=Polynomial(coefficients_si: [0, 320, 0, -4e8, 0, 1e14])";
+    let mut named = Vec::new();
+    for x in [-1.75, 0.05, 1.75] {
+        let start = format!("start=At(x_mm: {x}, v_m_per_s: 0)");
+        for shaking in ["excitation=None", "excitation=Sine(frequency_hz: 3, amplitude_g: 0.01)"] {
+            let (_, text) =
+                of("nominal-cubic", &[curve, "stops=None", "damping=Ratio(0.05)", &start, shaking]);
+            let names = ["left-hand well", "middle well", "right-hand well"];
+            let said: Vec<&str> = names.into_iter().filter(|name| text.contains(name)).collect();
+            assert_eq!(said.len(), 1, "{text}");
+            named.push(said[0]);
+        }
+    }
+    let all = ["left-hand well", "middle well", "right-hand well"];
+    assert_eq!(named, all.map(|name| [name; 2]).concat());
 }
 
 #[test]

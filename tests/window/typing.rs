@@ -210,7 +210,7 @@ fn what_takes_long_can_be_stopped_and_a_newer_change_takes_its_place() {
     harness.run_steps(2);
     let text = harness.state().session.sentence().text;
     assert!(
-        text.contains("settle in the right-hand well") || text.contains("stays in the right-hand well"),
+        text.contains("swing in the right-hand well") || text.contains("swings in the right-hand well"),
         "{text}"
     );
 }

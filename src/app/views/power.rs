@@ -98,6 +98,9 @@ fn what_of(summary: &Summary) -> String {
     let length = three(to - from);
     match (summary.outcome, summary.settled) {
         (Outcome::Done, Some(true)) => format!("Means over {length} s of settled motion."),
+        (Outcome::Done, Some(false)) if summary.steady == Some(true) => {
+            format!("Means over {length} s, which are steady, of a motion without a period.")
+        }
         (Outcome::Done, Some(false)) => {
             format!("Not settled: means over the last {length} s, which may still change.")
         }

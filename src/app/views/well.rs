@@ -8,6 +8,7 @@
 use eframe::egui::{self, Align2, Pos2, Rangef, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use crate::app::ui::style::BALL;
+use crate::app::words::wells::well_name;
 
 use super::chart::{CURVE_STEP, x_axis};
 use super::ghosts::{dashed, ghosts};
@@ -100,16 +101,13 @@ fn landmarks(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect) {
     };
     let mut taken: Vec<Rangef> =
         left.map(|x| wall(x, -1.0)).into_iter().chain(right.map(|x| wall(x, 1.0))).collect();
-    let names = [
-        (barrier.x, "barrier"),
-        (barrier.left_well, "left-hand well"),
-        (barrier.right_well, "right-hand well"),
-    ];
-    for (x, name) in names {
-        let width = painter.layout_no_wrap(name.to_owned(), style.small(), style.faint()).size().x;
+    let wells = model.mechanism().landscape.wells();
+    let names = wells.iter().enumerate().map(|(number, well)| (well.x, well_name(number, wells.len())));
+    for (x, name) in std::iter::once((barrier.x, "barrier".to_owned())).chain(names) {
+        let width = painter.layout_no_wrap(name.clone(), style.small(), style.faint()).size().x;
         let Some(place) = free_place(screen(x), width, rect.x_range(), &taken) else { continue };
         let at = (pos2(place, rect.bottom() - 3.0), Align2::LEFT_BOTTOM);
-        haloed(painter, &style, at, name, (style.small(), style.faint()));
+        haloed(painter, &style, at, &name, (style.small(), style.faint()));
         taken.push(Rangef::new(place, place + width));
     }
 }

@@ -32,7 +32,10 @@ pub static COLUMNS: [(&str, &[ColumnInfo]); 7] = [
         own("mean_x_m", "mean displacement", "The mean over the settled window."),
         own("side", "side", "On which side of the barrier the mass stays."),
         own("period", "period", "Forcing periods after which the motion repeats, up to 12."),
-        own("settled", "settled", "Whether the motion repeated, or the averages stood still."),
+        own("settled", "settled", "Whether the motion repeats, or the mass rests."),
+        own("steady", "averages steady",
+            "Whether the averages over both halves of the settled window agree, though the motion may be \
+             irregular."),
         own("settles_at_s", "settles at", "The time since when the motion repeats."),
     ]),
     ("Events", &[
@@ -138,6 +141,8 @@ pub fn said(column: &str, word: &str) -> String {
     match (column, word) {
         ("settled", "true") => "settled".to_owned(),
         ("settled", _) => "not settled".to_owned(),
+        ("steady", "true") => "averages steady".to_owned(),
+        ("steady", _) => "averages drift".to_owned(),
         ("side", "both") => "both sides".to_owned(),
         ("side", side) => format!("{side}-hand side"),
         (_, "done") => "lasted to its end".to_owned(),

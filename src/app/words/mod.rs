@@ -9,3 +9,4 @@ pub mod lesson;
 pub mod meanings;
 pub mod numbers;
 pub mod status;
+pub mod wells;

@@ -3,14 +3,12 @@
 use crate::dynamics::clock::Instant;
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::End;
+use crate::dynamics::model::scales::LEAST_IMPACT;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::record::events::Call;
 use crate::dynamics::result::Phase;
 use crate::dynamics::state::{BY_SPEED, Touch};
 use crate::numeric::Scalar;
-
-/// A rebound slower than this share of the speed scale may be part of a closed-form sum.
-const CHATTER_SPEED: f64 = 1e-6;
 
 impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     /// The mass reaches the stop of `end` with outward speed `speed` > 0.
@@ -42,7 +40,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         let [acceleration, jerk, snap] = rates;
         if !(acceleration > T::zero()
             && stop.restitution < one
-            && speed < self.stepper.settings.speed * T::of(CHATTER_SPEED))
+            && speed < self.stepper.settings.speed * T::of(LEAST_IMPACT))
         {
             return false;
         }

@@ -29,6 +29,9 @@ pub struct Passage {
     pub(crate) misses: Vec<Miss>,
     /// `Done`, or how the motion ended before.
     pub outcome: Outcome,
+    /// Impacts faster than [`least_impact_speed`](Model::least_impact_speed), the contacts of compliant stops
+    /// among them.
+    pub impacts: u64,
 }
 
 /// A place where the mass turned back before a stop without touching it.
@@ -53,9 +56,9 @@ impl Passage {
         self.events.iter().filter(|event| kinds.contains(&event.kind)).count() as u64
     }
 
-    /// Impacts, the contacts of compliant stops among them.
-    pub fn impacts(&self) -> u64 {
-        self.count([EventKind::Impact, EventKind::Contact])
+    /// Whether the mass has met a stop with a speed, however small.
+    pub fn strikes(&self) -> bool {
+        self.count([EventKind::Impact, EventKind::Contact]) > 0
     }
 
     /// Times the mass came to rest on a stop.
@@ -95,6 +98,7 @@ pub(super) fn trace<T: Scalar, D: Drive<T>>(
     motion.place_at_start();
     if matches!(motion.state.contact, Contact::Resting(_)) {
         motion.record.events = Some(Vec::new());
+        motion.record.counts.total_impacts = 0;
         motion.state.v = T::zero();
     }
     let mut misses = Vec::new();
@@ -118,6 +122,7 @@ pub(super) fn trace<T: Scalar, D: Drive<T>>(
     };
     let MotionState { at, x, v, .. } = motion.state;
     let rested = motion.record.counts.rests > 0;
+    let impacts = motion.record.counts.total_impacts;
     let events = motion.record.events.take().unwrap_or_default();
     let time = clock.between(&from, &at).to_f64() * equation.unit;
     let known = equation.compliant.is_none() && model.circuit().is_none();
@@ -126,7 +131,8 @@ pub(super) fn trace<T: Scalar, D: Drive<T>>(
         false => (-model.total_damping() * time / model.mass).exp() * squared_restitutions(model, &events),
     });
     let state = (x.to_f64(), v.to_f64() / equation.unit);
-    Traced { passage: Passage { state, events, determinant, misses, outcome }, end: (x, v), rested }
+    let passage = Passage { state, events, determinant, misses, outcome, impacts };
+    Traced { passage, end: (x, v), rested }
 }
 
 /// The product of the squared restitution of each impact.

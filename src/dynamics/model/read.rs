@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::Model;
 use super::excitation::ExcitationParts;
-use super::scales::Scales;
+use super::scales::{LEAST_IMPACT, Scales};
 use super::stops::StopPair;
 use super::transducer::{Circuit, Output};
 use crate::dynamics::result::Sample;
@@ -134,6 +134,12 @@ impl Model {
     /// Length, speed and time that the tolerance is relative to.
     pub fn scales(&self) -> Scales {
         self.scales
+    }
+
+    /// The speed in m/s above which an impact counts. A chatter has impacts without end, and how many of the
+    /// slower ones are computed one by one depends on the tolerance.
+    pub fn least_impact_speed(&self) -> f64 {
+        LEAST_IMPACT * self.scales.speed
     }
 
     /// Local error allowed, relative to the scales.

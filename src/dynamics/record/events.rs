@@ -116,7 +116,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             told += 1;
             if told == STILL {
                 told = 0;
-                self.skip_strobes(until);
+                self.skip_strobes(x, until);
             }
         }
         self.list_still(x, until);
@@ -134,27 +134,33 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
     fn impact(&mut self, at: &Instant<T>, side: Side, v_in: T, v_out: T) {
         let taken = (v_in * v_in - v_out * v_out) * T::of(0.5);
         self.whole.impact.add(taken);
-        self.counts.total_impacts += 1;
         if LEDGER {
             self.peak_kinetic = self.peak_kinetic.max(0.5 * (v_in * v_in).to_f64());
         }
         if self.in_window(at) {
             self.settled.impact.add(taken);
-            self.counts.impacts += 1;
-            self.impact_speed = self.impact_speed.larger(v_in.abs());
         }
+        self.count_impact(at, v_in);
         self.event(at, EventKind::Impact, side, v_in.to_f64() / self.unit, v_out.to_f64() / self.unit);
+    }
+
+    /// Counts an impact at this signed velocity, where it is fast enough.
+    fn count_impact(&mut self, at: &Instant<T>, v: T) {
+        if v.to_f64().abs() / self.unit <= self.model.least_impact_speed() {
+            return;
+        }
+        self.counts.total_impacts += 1;
+        if self.in_window(at) {
+            self.counts.impacts += 1;
+            self.impact_speed = self.impact_speed.larger(v.abs());
+        }
     }
 
     /// The mass touches a compliant stop with this signed velocity in kernel units. `strikes`: it came from
     /// outside, and does not stand there from the start.
     pub fn touch(&mut self, at: &Instant<T>, side: Side, v: T, strikes: bool) {
         if strikes {
-            self.counts.total_impacts += 1;
-            if self.in_window(at) {
-                self.counts.impacts += 1;
-                self.impact_speed = self.impact_speed.larger(v.abs());
-            }
+            self.count_impact(at, v);
         }
         if LEDGER {
             self.peak_kinetic = self.peak_kinetic.max(0.5 * (v * v).to_f64());

@@ -89,7 +89,10 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         self.work_moved += (after.work_moved - before.work_moved) * laps as f64;
         self.counts.repeat(&before.counts, &after.counts, laps as u64);
         let periods = cycles / self.period_cycles.max(1);
-        self.judge.repeat(before.taped, after.taped, laps as u64, periods as u64);
+        let squared =
+            (after.settled.squared_velocity.value() - before.settled.squared_velocity.value()).to_f64();
+        let gained = (squared, after.counts.crossings - before.counts.crossings);
+        self.judge.repeat((before.taped, after.taped), laps as u64, periods as u64, gained);
         if let Some(strobe) = &mut self.next_strobe {
             strobe.cycle += laps * cycles;
         }

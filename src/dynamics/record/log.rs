@@ -186,14 +186,16 @@ impl<T: Scalar> Log<T> {
         Checkpoint { state, barrier_side }
     }
 
-    /// Replays the recorder calls between two marks (to the end without a second), `later`; their number.
+    /// Replays the recorder calls between two marks (to the end without a second), `later`; their number, and
+    /// that of the impacts among them.
     pub fn play<const LEDGER: bool>(
         &self,
         record: &mut Recorder<T, LEDGER>,
         (from, to): (usize, Option<usize>),
         later: Later,
         mut base: impl FnMut(&Instant<T>) -> f64,
-    ) -> usize {
+    ) -> (usize, u64) {
+        let mut impacts = 0;
         let end = to.map_or(self.entries.len(), |mark| self.marks[mark].entries);
         let entries = &self.entries[self.marks[from].entries..end];
         for entry in entries {
@@ -220,10 +222,13 @@ impl<T: Scalar> Log<T> {
                     };
                     record.step(&view, &mut base);
                 }
-                Entry::Call(told) => record.tell(&told.when(|at| later.instant(at)), &mut base),
+                Entry::Call(call) => {
+                    impacts += u64::from(matches!(call, Call::Impact { .. }));
+                    record.tell(&call.when(|at| later.instant(at)), &mut base);
+                }
             }
         }
-        entries.len()
+        (entries.len(), impacts)
     }
 
     /// Appends the mirror image of everything from mark `first` on, later by half a cycle of the clock and

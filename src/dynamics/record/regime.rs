@@ -1,13 +1,9 @@
-//! Judgement of a run: regime, period, whether the motion has settled, and what happened first.
+//! Judgement of a run: period, whether the motion has settled, whether its averages are steady, and what
+//! happened first.
 
 use super::repeats::{Crossings, Strobe, Strobes};
 use crate::dynamics::model::excitation::Rhythm;
 use crate::dynamics::result::{First, Firsts, Side};
-
-/// Forcing periods of a run before irregular motion may be called settled. Without stops the prototype moves
-/// without a period for up to 180 of them before it finds one, and nothing in such a transient tells that it
-/// will end.
-const OLD_ENOUGH: u64 = 200;
 
 /// Forcing periods of a window whose halves can be compared.
 const ENOUGH_TO_COMPARE: u64 = 8;
@@ -18,10 +14,13 @@ const STANDARD_ERRORS: f64 = 3.0;
 /// An observation of the judge, kept for replay.
 #[derive(Debug, Clone, Copy)]
 enum Observation {
-    Strobe(Strobe),
+    Strobe(Strobe, Gain),
     Crossing { time: f64, side: Side, seconds: f64 },
     Release { time: f64, seconds: f64 },
 }
+
+/// Integral of the squared velocity, and crossings, over a stretch of time.
+pub(crate) type Gain = (f64, u64);
 
 /// One quantity over the forcing periods of half a window.
 #[derive(Debug, Clone, Copy, Default)]
@@ -32,10 +31,11 @@ struct Half {
 }
 
 impl Half {
-    fn add(&mut self, value: f64) {
-        self.count += 1.0;
-        self.sum += value;
-        self.squares += value * value;
+    fn add(&mut self, value: f64, times: u64) {
+        let times = times as f64;
+        self.count += times;
+        self.sum += value * times;
+        self.squares += value * value * times;
     }
 
     fn mean(&self) -> f64 {
@@ -83,9 +83,7 @@ pub(crate) struct Judge {
     /// Integral of the squared velocity, and crossings, over each period of either half of the window.
     speed: [Half; 2],
     crossed: [Half; 2],
-    last: (f64, u64),
-    /// Time in s since when the motion has come back exactly, where it has.
-    recurs_since: Option<f64>,
+    last: Gain,
     firsts: Firsts,
     /// Forcing period of the last crossing of the whole run.
     last_crossing: Option<i64>,
@@ -107,7 +105,6 @@ impl Judge {
             speed: [Half::default(); 2],
             crossed: [Half::default(); 2],
             last: (0.0, 0),
-            recurs_since: None,
             firsts: Firsts::default(),
             last_crossing: None,
             tape: None,
@@ -140,16 +137,31 @@ impl Judge {
 
     /// A stroboscopic state; the integral of the squared velocity and the number of crossings since the
     /// window's begin.
-    pub fn strobe(&mut self, state: Strobe, squared_velocity: f64, crossings: u64) {
-        self.keep(Observation::Strobe(state));
-        let number = self.strobes.seen();
+    pub fn strobe(&mut self, state: Strobe, total: Gain) {
+        let gain = (total.0 - self.last.0, total.1 - self.last.1);
+        self.last = total;
+        self.keep(Observation::Strobe(state, gain));
+        self.gain(self.strobes.seen(), gain);
         self.strobes.tell(state);
+    }
+
+    /// Adds what was gained over the period before the stroboscopic state of this number.
+    fn gain(&mut self, number: u64, gain: Gain) {
         if number > self.from && number <= self.from + self.periods {
             let half = usize::from(2 * (number - self.from) > self.periods);
-            self.speed[half].add(squared_velocity - self.last.0);
-            self.crossed[half].add((crossings - self.last.1) as f64);
+            self.speed[half].add(gain.0, 1);
+            self.crossed[half].add(gain.1 as f64, 1);
         }
-        self.last = (squared_velocity, crossings);
+    }
+
+    /// The same of so many states, `lap` periods apart.
+    fn gain_often(&mut self, number: u64, times: u64, lap: u64, gain: Gain) {
+        let up_to = |end: u64| (end + 1).saturating_sub(number).div_ceil(lap).min(times);
+        let ends = [self.from, self.from + self.periods / 2, self.from + self.periods].map(up_to);
+        for (half, pair) in ends.windows(2).enumerate() {
+            self.speed[half].add(gain.0, pair[1] - pair[0]);
+            self.crossed[half].add(gain.1 as f64, pair[1] - pair[0]);
+        }
     }
 
     /// A crossing into the well on `side`; `seconds` since the run's begin.
@@ -206,23 +218,36 @@ impl Judge {
         self.tape.as_ref().map_or(0, Vec::len)
     }
 
-    /// The motion has come back to where it was at this time in s, exactly.
-    pub fn comes_back(&mut self, since: f64) {
-        self.recurs_since.get_or_insert(since);
-    }
-
-    /// Adds `laps` more laps like the one kept between these two indices, each of so many forcing periods.
-    pub fn repeat(&mut self, from: usize, to: usize, laps: u64, periods: u64) {
+    /// Adds `laps` more laps like the one kept between these two indices, each of so many forcing periods and
+    /// with so much gained in it.
+    pub fn repeat(&mut self, (from, to): (usize, usize), laps: u64, periods: u64, total: Gain) {
         let Some(tape) = self.tape.take() else { return };
+        let lap = tape.get(from..to).unwrap_or_default();
+        let strobe = |entry: &Observation| match entry {
+            Observation::Strobe(state, gain) => Some((*state, *gain)),
+            _ => None,
+        };
+        let mut strobes: Vec<(Strobe, Gain)> = lap.iter().filter_map(strobe).collect();
+        // what is gained up to the first of them begins in the lap before, which may have been another one
+        if let Some(((_, first), others)) = strobes.split_first_mut() {
+            let rest =
+                |rest: Gain, other: &(Strobe, Gain)| (rest.0 - other.1.0, rest.1.saturating_sub(other.1.1));
+            *first = others.iter().fold(total, rest);
+        }
+        self.last = (self.last.0 + total.0 * laps as f64, self.last.1 + total.1.saturating_mul(laps));
         // As many laps as any judgement looks back, and one more to see what each of them adds.
         let told = laps.min(2 * self.strobes.longest() as u64 / periods.max(1) + 4);
         let mut before = (0, 0);
-        for lap in 1..=told {
+        for number in 1..=told {
             before = (self.crossing_periods.count, self.release_periods.count);
-            let later = (lap * periods) as f64;
-            for entry in tape.get(from..to).unwrap_or_default() {
+            let (later, mut next) = ((number * periods) as f64, strobes.iter());
+            for entry in lap {
                 match *entry {
-                    Observation::Strobe(state) => self.strobe(state, self.last.0, self.last.1),
+                    Observation::Strobe(..) => {
+                        let Some((state, gain)) = next.next() else { continue };
+                        self.gain(self.strobes.seen(), *gain);
+                        self.strobes.tell(*state);
+                    }
                     Observation::Crossing { time, side, seconds } => {
                         self.crossing(time + later, side, seconds)
                     }
@@ -233,23 +258,29 @@ impl Judge {
         let left = laps - told;
         if left > 0 {
             let later = left * periods;
-            let more = |own: &mut PeriodsWith, before: u64| {
-                own.count += left * (own.count - before);
-                own.last = own.last.map(|last| last + later as i64);
+            let more = |count: &mut PeriodsWith, before: u64| {
+                count.count += left * (count.count - before);
+                count.last = count.last.map(|last| last + later as i64);
             };
             more(&mut self.crossing_periods, before.0);
             more(&mut self.release_periods, before.1);
-            self.strobes.skip(later, periods);
+            if strobes.len() as u64 == periods {
+                for (number, (_, gain)) in (self.strobes.seen()..).zip(&strobes) {
+                    self.gain_often(number, left, periods, *gain);
+                }
+                self.strobes.skip(later, periods, |place| strobes[place as usize].0);
+            }
             self.crossings.skip(later as f64);
             self.last_crossing = self.last_crossing.map(|last| last + later as i64);
         }
         self.tape = Some(tape);
     }
 
-    /// Adds `more` stroboscopic states equal to the last one, none of them beyond the next border of the
-    /// window.
-    pub fn skip_still(&mut self, more: u64) {
-        self.strobes.skip(more, 1);
+    /// Adds `more` stroboscopic states equal to `state`, the last one, none of them beyond the next border of
+    /// the window.
+    pub fn skip_still(&mut self, more: u64, state: Strobe) {
+        self.gain_often(self.strobes.seen(), more, 1, (0.0, 0));
+        self.strobes.skip(more, 1, |_| state);
     }
 
     /// Whether the crossings of the window repeat, by themselves or with the motion.
@@ -257,46 +288,40 @@ impl Judge {
         self.period().is_some() || self.crossings.repeat()
     }
 
-    /// The smallest number of forcing periods, at most 12 and half the window, after which all stroboscopic
-    /// states of the window repeat, and the number of the state since which they have.
+    /// The smallest number of forcing periods, at most 12, after which the motion repeats over the whole window,
+    /// which must hold it twice, and the number of the state since which it has.
     fn repeats(&self) -> Option<(u32, u64)> {
         self.strobes.period().filter(|_| self.rhythm == Rhythm::Periodic)
     }
 
-    /// The period in forcing periods.
+    /// The period of the motion in forcing periods.
     pub fn period(&self) -> Option<u32> {
         self.repeats().map(|(period, _)| period)
     }
 
-    /// Whether the motion repeats: it has come back exactly, or its states do and stand still.
-    pub fn has_settled(&self) -> bool {
-        let steady = |period| self.strobes.is_steady(period);
-        self.recurs_since.is_some() || self.period().is_some_and(steady)
-    }
-
-    /// Whether the motion has settled, where the drive is such that this can be said; `moved` in the window
-    /// at all.
-    pub fn settled(&self, moved: bool) -> Option<bool> {
+    /// Whether the motion has settled, where the drive is such that this can be said: it repeats, or `rests`
+    /// throughout the window.
+    pub fn settled(&self, rests: bool) -> Option<bool> {
         match self.rhythm {
             Rhythm::Changing => None,
-            Rhythm::Absent => Some(!moved),
-            Rhythm::Periodic => Some(self.has_settled() || self.is_stationary()),
+            Rhythm::Absent => Some(rests),
+            Rhythm::Periodic => Some(self.period().is_some() || (rests && self.periods > 0)),
         }
     }
 
-    /// Whether it is irregular and stationary: old enough, and both halves of the window agree.
-    fn is_stationary(&self) -> bool {
-        self.strobes.seen() >= OLD_ENOUGH
-            && self.period().is_none()
-            && self.periods >= ENOUGH_TO_COMPARE
-            && self.speed[0].agrees(&self.speed[1])
-            && self.crossed[0].agrees(&self.crossed[1])
+    /// Whether the averages of the window's halves agree, where this can be judged. Those of a motion that has
+    /// settled do.
+    pub fn steady(&self, rests: bool) -> Option<bool> {
+        match self.settled(rests)? {
+            true => Some(true),
+            false if self.periods < ENOUGH_TO_COMPARE => None,
+            false => Some([self.speed, self.crossed].iter().all(|[first, second]| first.agrees(second))),
+        }
     }
 
     /// Time in s since when the motion has repeated; `at` gives the time of a stroboscopic state.
     pub fn settles_at(&self, at: impl Fn(u64) -> f64) -> Option<f64> {
-        let since = self.repeats().map(|(_, since)| at(since));
-        since.or(self.recurs_since).filter(|_| self.has_settled())
+        self.repeats().map(|(_, since)| at(since))
     }
 
     /// Forcing periods of the window with a crossing, and with a release.
@@ -336,46 +361,74 @@ mod tests {
 
     /// One lap of `period` periods with a crossing in each but the last, and a state at each.
     fn lap(judge: &mut Judge, first: u64, period: u64) {
-        for own in 0..period {
-            judge.strobe(Strobe { x: own as f64, v: 0.0 }, 0.0, 0);
-            if own + 1 < period {
-                judge.crossing((first + own) as f64 + 0.5, Side::Right, 0.0);
+        for place in 0..period {
+            judge.strobe(Strobe { x: place as f64, v: 0.0 }, total(first + place, period));
+            if place + 1 < period {
+                judge.crossing((first + place) as f64 + 0.5, Side::Right, 0.0);
             }
         }
+    }
+
+    /// What has been gained up to a stroboscopic state, each lap alike.
+    fn total(number: u64, period: u64) -> Gain {
+        let (laps, place) = (number / period, number % period);
+        ((laps * 3 * period + place * place) as f64, laps * (period - 1) + place)
     }
 
     #[test]
     fn laps_that_are_not_told_count() {
         for period in [1, 2, 5, 13] {
-            let (laps, mut long, mut short) = (200, judge(200 * period), judge(200 * period));
-            long.begin_tape();
-            lap(&mut long, 0, period);
-            long.repeat(0, long.taped(), laps - 1, period);
-            (0..laps).for_each(|own| lap(&mut short, own * period, period));
-            assert_eq!(long.period(), short.period(), "{period}");
-            assert_eq!(long.period(), (period <= 12).then_some(period as u32));
-            assert_eq!(long.periods_with(), short.periods_with());
-            assert_eq!(long.crossings_repeat(), short.crossings_repeat());
-            assert_eq!(long.strobes.seen(), short.strobes.seen());
-            assert_eq!(long.settles_at(|own| own as f64), short.settles_at(|own| own as f64));
+            let laps = 200;
+            for more in [0, 1, 250] {
+                let periods = laps * period + more;
+                let (mut long, mut short) = (judge(periods), judge(periods));
+                // before the laps the motion may have been another
+                let transient = |judge: &mut Judge| {
+                    (1..=more)
+                        .for_each(|i| judge.strobe(Strobe { x: -((i * i) as f64), v: 0.0 }, (i as f64, 0)));
+                    judge.last = (0.0, 0);
+                };
+                transient(&mut long);
+                transient(&mut short);
+                long.begin_tape();
+                lap(&mut long, 0, period);
+                let gained = total(period, period);
+                long.repeat((0, long.taped()), laps - 1, period, gained);
+                (0..laps).for_each(|number| lap(&mut short, number * period, period));
+                for judge in [&mut long, &mut short] {
+                    judge.strobe(Strobe { x: 0.0, v: 0.0 }, total(laps * period, period));
+                }
+                let case = format!("{period} {more}");
+                assert_eq!(long.period(), short.period(), "{case}");
+                let all = more == 0 && period <= 12;
+                assert_eq!(long.period(), all.then_some(period as u32), "{case}");
+                assert_eq!(long.periods_with(), short.periods_with());
+                assert_eq!(long.crossings_repeat(), short.crossings_repeat());
+                assert_eq!(long.strobes.seen(), short.strobes.seen());
+                assert_eq!(long.settles_at(|at| at as f64), short.settles_at(|at| at as f64));
+                // whole numbers, whose sums are exact
+                let halves = |judge: &Judge| format!("{:?} {:?}", judge.speed, judge.crossed);
+                assert_eq!(halves(&long), halves(&short), "{case}");
+            }
         }
     }
 
     #[test]
-    fn irregular_motion_is_settled_once_it_is_old_and_its_halves_agree() {
+    fn irregular_motion_never_settles_and_is_steady_where_its_halves_agree() {
         let noise = |i: u64| f64::from((i * 7919 % 1009) as u32) / 1009.0;
         let run = |periods: u64, drift: f64| {
             let (mut judge, mut sum) = (judge(periods), 0.0);
             for i in 0..=periods {
-                judge.strobe(Strobe { x: noise(i), v: 0.0 }, sum, 0);
+                judge.strobe(Strobe { x: noise(i), v: 0.0 }, (sum, 0));
                 sum += 1.0 + noise(i) + drift * i as f64;
             }
-            judge
+            assert_eq!((judge.period(), judge.settled(false)), (None, Some(false)));
+            judge.steady(false)
         };
-        assert_eq!(run(300, 0.0).settled(true), Some(true));
-        assert_eq!(run(300, 0.01).settled(true), Some(false));
-        assert_eq!(run(100, 0.0).settled(true), Some(false));
-        assert_eq!(run(300, 0.0).period(), None);
+        assert_eq!(run(300, 0.0), Some(true));
+        assert_eq!(run(300, 0.01), Some(false));
+        assert_eq!(run(100, 0.0), Some(true));
+        assert_eq!(run(7, 0.0), None);
     }
 
     #[test]
@@ -390,7 +443,7 @@ mod tests {
         assert_eq!(firsts.crossing.unwrap().t, 3.5);
         assert_eq!(firsts.crossing_in_every_period, Some(First { t: 6.5, amplitude: Some(0.1 * 6.5) }));
         assert_eq!(judge.firsts(12.0, |_| None).unwrap().crossing_in_every_period, None);
-        assert_eq!((judge.settled(true), judge.period()), (None, None));
+        assert_eq!((judge.settled(false), judge.steady(false), judge.period()), (None, None, None));
         assert!(super::tests::judge(4).firsts(1.0, |_| None).is_none());
     }
 }

@@ -1,7 +1,7 @@
 //! Repetition of a motion: of its stroboscopic states and of its crossings, judged as they come.
 //!
-//! Nothing of the past is kept beyond the last twelve forcing periods, so a window may be as long as it
-//! likes.
+//! Of the past only the last twelve forcing periods and some states at the window's begin and middle are
+//! kept, so a window may be as long as it likes.
 
 use std::collections::VecDeque;
 
@@ -18,6 +18,10 @@ const CROSSING_MATCH: f64 = 1e-2;
 /// a period doubling soon after its onset, coarse enough for a transient that has died to a thousandth.
 const STATE_MATCH: f64 = 1e-3;
 
+/// A motion that moves by no more than this share of the scales over half a window stands still: well above
+/// rounding and the errors of the usual tolerances, and a hundredth of [`STATE_MATCH`].
+const STILL: f64 = 1e-5;
+
 /// The state at a whole number of forcing periods after the window's start. SI.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Strobe {
@@ -28,6 +32,11 @@ pub(crate) struct Strobe {
 impl Strobe {
     fn is_near(&self, other: &Self, (length, speed): (f64, f64)) -> bool {
         (self.x - other.x).abs() <= STATE_MATCH * length && (self.v - other.v).abs() <= STATE_MATCH * speed
+    }
+
+    /// The change to `later`, as shares of the scales.
+    fn change(&self, later: &Self, (length, speed): (f64, f64)) -> (f64, f64) {
+        ((later.x - self.x) / length, (later.v - self.v) / speed)
     }
 }
 
@@ -43,17 +52,29 @@ pub(crate) struct Strobes {
     recent: [Strobe; LONGEST],
     /// For each number of periods up to [`LONGEST`] the state from which on each has come back after so many.
     since: [u64; LONGEST],
-    /// The first states of the settled window, at most [`LONGEST`], and the number of the very first.
-    opening: Vec<Strobe>,
+    /// Forcing periods in the settled window, and the number of its first state.
+    periods: u64,
     from: u64,
+    /// The first states of the window, and those around its middle.
+    opening: [Strobe; 2 * LONGEST],
+    middle: [Strobe; 2 * LONGEST],
 }
 
 impl Strobes {
     /// Of a settled window of so many `periods` that begins with the state number `from`. A period is only
     /// accepted if the window holds it twice.
     pub fn new(scales: (f64, f64), periods: u64, from: u64) -> Self {
-        let (recent, longest) = ([Strobe::default(); LONGEST], LONGEST.min((periods / 2) as usize));
-        Self { scales, longest, seen: 0, recent, since: [0; LONGEST], opening: Vec::new(), from }
+        Self {
+            scales,
+            longest: LONGEST.min((periods / 2) as usize),
+            seen: 0,
+            recent: Default::default(),
+            since: [0; LONGEST],
+            periods,
+            from,
+            opening: Default::default(),
+            middle: Default::default(),
+        }
     }
 
     /// Of another window, before the first state. All periods are looked for, however short it is.
@@ -75,7 +96,11 @@ impl Strobes {
         self.seen
     }
 
+    /// Adds a state; those after the window are not judged.
     pub fn tell(&mut self, state: Strobe) {
+        if self.is_complete() {
+            return;
+        }
         let number = self.seen;
         for (own, since) in self.since.iter_mut().enumerate().take(self.longest) {
             let Some(before) = number.checked_sub(own as u64 + 1) else { break };
@@ -84,16 +109,45 @@ impl Strobes {
             }
         }
         self.recent[number as usize % LONGEST] = state;
-        if number >= self.from && self.opening.len() < LONGEST {
-            self.opening.reserve(LONGEST - self.opening.len());
-            self.opening.push(state);
-        }
+        self.keep(number, state);
         self.seen += 1;
     }
 
+    /// Whether all states of the window have been seen.
+    fn is_complete(&self) -> bool {
+        self.seen > self.from + self.periods
+    }
+
+    /// Keeps the state of this number where it is one at the window's begin or middle.
+    fn keep(&mut self, number: u64, state: Strobe) {
+        let Some(inside) = number.checked_sub(self.from) else { return };
+        if let Some(kept) = self.opening.get_mut(inside as usize) {
+            *kept = state;
+        }
+        let around = inside.checked_sub(self.before_middle());
+        if let Some(kept) = around.and_then(|place| self.middle.get_mut(place as usize)) {
+            *kept = state;
+        }
+    }
+
+    /// Forcing periods from the window's begin to the first of the states around its middle that are kept.
+    fn before_middle(&self) -> u64 {
+        self.periods.div_ceil(2).saturating_sub(LONGEST as u64 - 1)
+    }
+
     /// Adds `more` states of a motion that repeats exactly after every `lap` states, which divides `more`,
-    /// and has done so for twice as many states as are looked back at and four laps.
-    pub fn skip(&mut self, more: u64, lap: u64) {
+    /// and has done so for twice as many states as are looked back at and four laps; `state` gives those of a
+    /// lap.
+    pub fn skip(&mut self, more: u64, lap: u64, state: impl Fn(u64) -> Strobe) {
+        if self.is_complete() {
+            return;
+        }
+        let kept = |first: u64| first..first + 2 * LONGEST as u64;
+        for number in kept(self.from).chain(kept(self.from + self.before_middle())) {
+            if let Some(place) = number.checked_sub(self.seen).filter(|place| *place < more) {
+                self.keep(number, state(place % lap));
+            }
+        }
         for since in &mut self.since {
             // one that has not come back lately will not either
             if *since + self.longest as u64 + lap >= self.seen {
@@ -109,30 +163,50 @@ impl Strobes {
         self.longest
     }
 
-    /// The smallest number of states after which all states of the window have come back, and the number of
-    /// the state since which they have.
+    /// The smallest number of states after which all states of the window have come back, where they stand
+    /// still over the window, and the number of the state since which they have come back.
     pub fn period(&self) -> Option<(u32, u64)> {
-        (1..=self.longest as u64).find_map(|q| {
-            let since = self.since[q as usize - 1];
-            (since <= self.from && self.seen > self.from + q).then_some((q as u32, since))
-        })
+        let back = |q: &u64| self.since[*q as usize - 1] <= self.from;
+        let q =
+            (1..=self.longest as u64).find(back).filter(|q| self.is_complete() && self.stands_still(*q))?;
+        Some((q as u32, self.since[q as usize - 1]))
     }
 
-    /// Whether the last states of the window are still where its first ones were, which a slow drift leaves
-    /// although neighbours agree.
-    pub fn is_steady(&self, period: u32) -> bool {
-        let q = u64::from(period);
-        (self.seen.saturating_sub(q)..self.seen).all(|number| {
-            let first = self.opening.get(((number - self.from) % q) as usize);
-            first.is_some_and(|first| first.is_near(&self.recent[number as usize % LONGEST], self.scales))
-        })
+    /// Whether a motion whose states come back after `q` of them stays where it is. A slow drift leaves
+    /// neighbours alike, so the last states of the window are compared with those half a window and a window
+    /// before, as nearly as laps allow.
+    fn stands_still(&self, q: u64) -> bool {
+        let apart = self.periods / (2 * q) * q;
+        let whole = 2 * apart;
+        apart > 0
+            && (0..q.min(self.periods - whole + 1)).all(|back| {
+                let end = self.periods - back;
+                let first = &self.opening[(end - whole) as usize];
+                let middle = &self.middle[(end - apart - self.before_middle()) as usize];
+                let last = &self.recent[(self.from + end) as usize % LONGEST];
+                self.has_arrived([first, middle, last])
+            })
+    }
+
+    /// Whether three states, the same time apart, agree with each other and with what they go to: where the
+    /// second change is `r` times the first one (of their directions, the part that they share), those that
+    /// follow add up to r / (1 - r) of it.
+    fn has_arrived(&self, [first, middle, last]: [&Strobe; 3]) -> bool {
+        let near = |a: &Strobe, b: &Strobe| a.is_near(b, self.scales);
+        if !(near(first, middle) && near(middle, last) && near(first, last)) {
+            return false;
+        }
+        let product = |a: (f64, f64), b: (f64, f64)| a.0 * b.0 + a.1 * b.1;
+        let (before, after) = (first.change(middle, self.scales), middle.change(last, self.scales));
+        let moved = product(after, after).sqrt();
+        let ratio = product(before, after) / product(before, before);
+        moved <= STILL || (ratio < 1.0 && moved * ratio / (1.0 - ratio) <= STATE_MATCH)
     }
 
     /// The settled window begins anew with the last state.
     pub fn open_window(&mut self) {
         self.from = self.seen.saturating_sub(1);
-        self.opening.clear();
-        self.opening.push(self.recent[self.from as usize % LONGEST]);
+        self.keep(self.from, self.recent[self.from as usize % LONGEST]);
     }
 }
 
@@ -266,40 +340,72 @@ mod tests {
         assert!(!crossings.repeat());
     }
 
-    fn strobes(periods: u64, states: impl Iterator<Item = i32>) -> Strobes {
+    fn strobes(periods: u64, x: impl Fn(u64) -> f64) -> Strobes {
         let mut strobes = Strobes::new((1.0, 1.0), periods, 0);
-        states.for_each(|x| strobes.tell(Strobe { x: f64::from(x), v: 0.0 }));
+        (0..=periods).for_each(|i| strobes.tell(Strobe { x: x(i), v: 0.0 }));
         strobes
     }
 
     #[test]
     fn the_period_of_stroboscopic_states() {
-        let five = strobes(40, (0..41).map(|i| i % 5));
+        let five = strobes(40, |i| (i % 5) as f64);
         assert_eq!(five.period(), Some((5, 0)));
-        assert!(five.is_steady(5));
-        assert_eq!(strobes(9, (0..10).map(|i| i % 5)).period(), None); // the window holds it once
-        assert_eq!(strobes(40, (0..41).map(|i| i * i % 37)).period(), None);
+        assert_eq!(strobes(9, |i| (i % 5) as f64).period(), None); // the window holds it once
+        assert_eq!(strobes(10, |i| (i % 5) as f64).period(), Some((5, 0)));
+        assert_eq!(strobes(40, |i| (i * i % 37) as f64).period(), None);
         // three states of their own, then two in turn
-        assert_eq!(strobes(40, (0..41).map(|i| if i < 3 { 7 + i } else { i % 2 })).since[1], 3);
+        assert_eq!(strobes(40, |i| if i < 3 { 7 + i } else { i % 2 } as f64).since[1], 3);
     }
 
     #[test]
-    fn a_slow_drift_repeats_and_is_not_steady() {
-        let mut drifting = Strobes::new((1.0, 1.0), 40, 0);
-        (0..41).for_each(|i| drifting.tell(Strobe { x: 5e-4 * f64::from(i), v: 0.0 }));
-        assert_eq!(drifting.period(), Some((1, 0)));
-        assert!(!drifting.is_steady(1));
+    fn an_approach_repeats_once_what_remains_of_it_is_small() {
+        // Towards 0 at this rate a period, from one side or from both in turn, or away from it: neighbours
+        // may have agreed for long.
+        for rate in [0.5, 0.9, 0.99, 0.999, 0.9999, 1.0001, 1.01, -0.5, -0.9, -0.99, -0.9999, -1.01_f64] {
+            for window in [2, 3, 7, 30, 101] {
+                for remains in [2e-2, 2e-3, 5e-4, 1e-6, 1e-12] {
+                    let x = |i: u64| remains * rate.powi(i as i32 - window as i32);
+                    let found = strobes(window, x).period();
+                    let (first, last) = (x(0).abs(), x(window).abs());
+                    let case = format!("{rate} {window} {remains}: {found:?}");
+                    if let Some((period, _)) = found {
+                        assert!(period == 1 || (period == 2 && rate < 0.0), "{case}");
+                        // it stays where it is, or has moved by no more than can be told
+                        let moves = (first - last).abs() > 2.0 * STILL;
+                        assert!(!moves || (last <= 2.0 * STATE_MATCH && rate.abs() < 1.0), "{case}");
+                    } else if first.max(last) <= 0.5 * STATE_MATCH && window >= 4 {
+                        assert!(rate.abs() > 1.0, "{case}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_slow_drift_does_not_repeat() {
+        for step in [5e-4, 1e-4, 3e-5, 1e-5, 2e-6] {
+            assert_eq!(strobes(40, |i| step * i as f64).period(), None, "{step}");
+        }
     }
 
     #[test]
     fn states_that_are_skipped_are_as_if_told() {
-        let mut own = strobes(1000, (0..40).map(|i| i % 5));
-        own.skip(1000, 5);
-        assert_eq!((own.seen(), own.period()), (1040, Some((5, 0))));
-        (1040..1050).for_each(|i| own.tell(Strobe { x: f64::from(i % 5), v: 0.0 }));
-        assert_eq!(own.period(), Some((5, 0)));
-        assert!(own.is_steady(5));
-        own.tell(Strobe { x: 9.0, v: 0.0 });
-        assert_eq!(own.period(), None);
+        for lap in [1, 2, 5, 12, 13, 30] {
+            for (from, periods) in [(0, 1200), (7, 41), (100, 23), (3, 1090), (600, 500)] {
+                let state = |i: u64| Strobe { x: (i % lap) as f64, v: 0.0 };
+                let mut skipped = Strobes::new((1.0, 1.0), periods, from);
+                let mut told = skipped.clone();
+                let enough = 2 * LONGEST as u64 + 4 * lap;
+                let more = (from + periods + 1).saturating_sub(enough) / lap * lap;
+                (0..enough).for_each(|i| skipped.tell(state(i)));
+                skipped.skip(more, lap, |place| state(enough + place));
+                (enough + more..=from + periods).for_each(|i| skipped.tell(state(i)));
+                (0..=from + periods).for_each(|i| told.tell(state(i)));
+                assert_eq!(skipped.seen(), told.seen());
+                assert_eq!(skipped.period(), told.period(), "{lap} {from} {periods}");
+                let expected = (lap <= 12 && 2 * lap <= periods).then_some(lap as u32);
+                assert_eq!(told.period().map(|own| own.0), expected, "{lap} {from} {periods}");
+            }
+        }
     }
 }

@@ -99,6 +99,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         // Pressed on a compliant stop throughout, it trembles there and has not left it.
         let pressed = compliant.is_some() && value(&self.settled.rested) == covered;
         let moved = seen && (left || (travel > STILL * scales.length && !pressed));
+        let rests = seen && !moved;
         let pressed_by = |force: f64| compliant.and_then(|own| own.pressure(force));
         let force = compliant.map(|_| self.peak_contact.to_f64() * m / (self.unit * self.unit));
         let pressure = force.and_then(pressed_by);
@@ -156,10 +157,8 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
                 periods: self.periods(),
                 crossing_periods,
                 release_periods,
-                settled: match done {
-                    true => self.judge.settled(moved),
-                    false => self.judge.settled(moved).map(|_| false),
-                },
+                settled: self.judge.settled(rests).map(|settled| settled && done),
+                steady: self.judge.steady(rests).filter(|_| done),
                 settles_at: self.judge.settles_at(strobed).filter(|_| done),
                 firsts: self.judge.firsts(self.in_periods(&end), ramped),
                 impact_share,

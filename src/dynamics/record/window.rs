@@ -36,15 +36,16 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             self.next_strobe = None;
         }
         let state = Strobe { x: x.to_f64(), v: v.to_f64() / self.unit };
-        self.judge.strobe(state, self.settled.squared_velocity.value().to_f64(), self.counts.crossings);
+        let squared = self.settled.squared_velocity.value().to_f64();
+        self.judge.strobe(state, (squared, self.counts.crossings));
         if let Some(goal) = &mut self.goal {
             goal.strobe(&self.judge, (state.x, state.v));
         }
     }
 
-    /// Passes over stroboscopic states of a mass that stands still up to `until`, all like the last ones, but
-    /// for some before the next border of the window.
-    pub(crate) fn skip_strobes(&mut self, until: &Instant<T>) {
+    /// Passes over stroboscopic states of a mass that stands still at `x` up to `until`, all like the last
+    /// ones, but for some before the next border of the window.
+    pub(crate) fn skip_strobes(&mut self, x: T, until: &Instant<T>) {
         let Some(strobe) = &mut self.next_strobe else { return };
         let left = |border: &Instant<T>| {
             let periods = (self.clock.between(strobe, border) / self.period).to_f64();
@@ -55,7 +56,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         let more = (fewest - f64::from(STILL)).floor() as i64;
         if more > 0 && fewest.is_finite() {
             strobe.cycle += more * self.period_cycles;
-            self.judge.skip_still(more as u64);
+            self.judge.skip_still(more as u64, Strobe { x: x.to_f64(), v: 0.0 });
         }
     }
 

@@ -76,7 +76,9 @@ pub struct Summary {
     pub regime: Regime,
     /// Crossings in the settled window.
     pub crossings: u64,
-    /// Impacts in the settled window; the contacts of a compliant stop are impacts too.
+    /// Impacts in the settled window that are faster than
+    /// [`least_impact_speed`](crate::dynamics::Model::least_impact_speed); the contacts of a compliant stop
+    /// are impacts too.
     pub impacts: u64,
     /// Speed in m/s of the fastest impact in the settled window; none without one.
     pub impact_speed_max: Option<f64>,
@@ -99,10 +101,13 @@ pub struct Summary {
     pub crossing_periods: u64,
     /// Forcing periods of the settled window with a release in them.
     pub release_periods: u64,
-    /// Whether the motion has settled: it repeats, or it is irregular, at least 200 forcing periods old, and
-    /// RMS velocity and crossings in both halves of the window agree within three standard errors. Without a
-    /// drive, whether it is at rest. None under a drive that changes.
+    /// Whether the motion has settled: it has a [period](Self::period), or the mass rests. None under a drive
+    /// that changes.
     pub settled: Option<bool>,
+    /// Whether averages over the window are steady: the motion has settled, or RMS velocity and crossings in
+    /// both halves of the window agree within three standard errors. None under a drive that changes, where
+    /// the run ended early, and where a motion that has not settled has fewer than 8 forcing periods.
+    pub steady: Option<bool>,
     /// Since when in s the motion repeats; none where it does not.
     pub settles_at: Option<f64>,
     /// What happened first, under a drive that changes.
@@ -113,13 +118,14 @@ pub struct Summary {
     pub rested_share: Option<f64>,
     /// Crossings over the whole run.
     pub total_crossings: u64,
-    /// Impacts over the whole run, those inside closed-form sums not counted.
+    /// The same over the whole run.
     pub total_impacts: u64,
     /// Chatters that were summed in closed form.
     pub chatter_sums: u64,
     /// Times the mass came to rest on a stop.
     pub rests: u64,
-    /// Period of the response in forcing periods; none where it has none up to 12.
+    /// Period of the motion in forcing periods; none where it does not repeat after at most 12 of them, or the
+    /// mass rests.
     pub period: Option<u32>,
     /// Largest force in N of a compliant stop on the mass over the whole run; none where the stops are not
     /// compliant.
@@ -144,6 +150,13 @@ pub struct Summary {
 }
 
 impl Summary {
+    /// Whether its words and averages may be those of a transient: the motion has not settled, and is not
+    /// irregular with steady averages.
+    pub fn is_transient(&self) -> bool {
+        let chaotic = self.regime == Regime::Irregular && self.steady == Some(true);
+        self.settled == Some(false) && !chaotic
+    }
+
     /// Peak to peak displacement in the settled window in m; none where the run ended before it.
     pub fn travel(&self) -> Option<f64> {
         self.range.map(|(low, high)| high - low)

@@ -148,12 +148,13 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     fn goes_on(&mut self) -> bool {
         let Some(until) = self.until_settled else { return false };
         self.record.last_strobe(&self.state.at, (self.state.x, self.state.v));
-        let next = match self.record.judge.has_settled() {
-            true => None,
-            false => self.record.next_window(until),
-        };
-        self.stepper.end = next.unwrap_or(self.stepper.end);
-        next.is_some()
+        if self.record.judge.period().is_some() {
+            return false;
+        }
+        let Some(end) = self.record.next_window(until) else { return false };
+        self.stepper.end = end;
+        self.recurs = self.may_recur;
+        true
     }
 
     /// How the run ends where a budget is spent or it is cancelled.

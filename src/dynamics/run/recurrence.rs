@@ -142,7 +142,6 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     /// Completes the run from here, where a lap has just ended.
     fn complete(&mut self, log: &Log<T>, mut lap: Lap<T>) {
         self.recurs = false;
-        self.record.judge.comes_back(self.stepper.clock.seconds(&log.at(lap.first)));
         let mut later = 0;
         loop {
             let next = Instant { cycle: self.state.at.cycle + lap.cycles, phase: self.state.at.phase };
@@ -201,9 +200,8 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
                 return told;
             }
             if self.stepper.clock.between(&next, &begin(number)) >= T::zero() {
-                let before = self.record.counts.total_impacts;
-                self.replay(log, (lap.first, None), Later(later + number * lap.cycles));
-                self.stepper.work.add_impacts(self.record.counts.total_impacts - before);
+                let impacts = self.replay(log, (lap.first, None), Later(later + number * lap.cycles));
+                self.stepper.work.add_impacts(impacts);
             }
             told = number;
         }
@@ -212,9 +210,12 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         laps
     }
 
-    fn replay(&mut self, log: &Log<T>, marks: (usize, Option<usize>), later: Later) {
-        let told = log.play(&mut self.record, marks, later, self.stepper.base(self.state.segment));
-        self.stepper.work.add(TOLD * told as u64);
+    /// Replays a part of the log; the number of impacts in it.
+    fn replay(&mut self, log: &Log<T>, marks: (usize, Option<usize>), later: Later) -> u64 {
+        let base = self.stepper.base(self.state.segment);
+        let (calls, impacts) = log.play(&mut self.record, marks, later, base);
+        self.stepper.work.add(TOLD * calls as u64);
+        impacts
     }
 
     /// Laps from here on that are wholly inside (or outside) the settled window, as the last one was.

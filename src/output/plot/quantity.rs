@@ -8,10 +8,11 @@ use crate::study::{Grid, Table, Values};
 pub const RMS: &str = "rms_velocity_m_per_s";
 
 /// The columns of words, with all words that they can have, in the order of their colours.
-const WORDS: [(&str, &[&str]); 4] = [
+const WORDS: [(&str, &[&str]); 5] = [
     ("regime", &["rest", "intrawell", "irregular", "interwell"]),
     ("side", &["left", "right", "both"]),
     ("settled", &["true", "false"]),
+    ("steady", &["true", "false"]),
     (
         "outcome",
         &[

@@ -65,10 +65,15 @@ pub fn run_figure(
         seen.portrait(&mut figure, area);
     }
     figure.data = seen.drawn();
-    if let Some(at) = places.account {
+    let judged = is_judged(summary, trace);
+    if let Some(at) = places.account.filter(|_| judged) {
         account(&mut figure, at, (summary, trace), seen.speed, theme);
     }
-    caption.draw(&mut figure, theme, &subtitle(summary), LEFT);
+    let about = match judged || summary.outcome != Outcome::Done {
+        true => subtitle(summary),
+        false => format!("from {} to {} s", short(trace.shown_from), short(trace.shown_to)),
+    };
+    caption.draw(&mut figure, theme, &about, LEFT);
     figure
 }
 
@@ -305,6 +310,19 @@ fn reason(outcome: Outcome) -> &'static str {
     }
 }
 
+/// Whether the picture is one of the settled window, which the summary is about. A section of the run may
+/// show other times.
+fn shows_window(summary: &Summary, trace: &Trace) -> bool {
+    let (from, to) = summary.window;
+    !trace.is_section || (trace.shown_from <= from && trace.shown_to >= to)
+}
+
+/// Whether regime and averages are those of the times that are shown: of the settled window, or of a settled
+/// motion at any time from its begin on.
+fn is_judged(summary: &Summary, trace: &Trace) -> bool {
+    shows_window(summary, trace) || (summary.settled == Some(true) && trace.shown_from >= summary.window.0)
+}
+
 fn subtitle(summary: &Summary) -> String {
     match summary.outcome.ended_at() {
         Some(at) => format!("ended early at {} s: {}", short(at), reason(summary.outcome)),
@@ -338,13 +356,20 @@ fn account(
     }
     let mut lines = Vec::new();
     if let Some(rms) = summary.rms_velocity {
-        lines.push(format!("settled, from {} s on:", short(trace.settle)));
+        let (from, to) = (short(summary.window.0), short(summary.window.1));
+        lines.push(match (summary.settled, summary.is_transient()) {
+            (Some(true), _) => format!("settled, from {from} s on:"),
+            (_, true) => format!("not settled, {from} to {to} s:"),
+            (Some(false), false) => format!("averages steady, {from} to {to} s:"),
+            (None, _) => format!("from {from} to {to} s:"),
+        });
         lines.push(format!("RMS velocity {} {unit}", short(rms * scale)));
     }
     if summary.rms_velocity.is_some() {
         let share = summary.rested_share.filter(|share| *share > 0.0);
         let impacts = format!("{} impacts", summary.impacts);
         match name {
+            _ if !shows_window(summary, trace) => {}
             "" => lines.push(impacts),
             _ if figure.is_narrow() => lines.extend([format!("{} crossings", summary.crossings), impacts]),
             _ => lines.push(format!("{} crossings, {impacts}", summary.crossings)),

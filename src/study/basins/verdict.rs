@@ -30,7 +30,7 @@ pub(super) enum Verdict {
 /// irregular only after a thousand periods in which it found no other.
 pub(super) fn verdict(summary: &Summary, on_unstable: bool) -> Verdict {
     match summary.outcome {
-        Outcome::Done if on_unstable || summary.settled != Some(true) => Verdict::Undecided,
+        Outcome::Done if on_unstable || summary.steady != Some(true) => Verdict::Undecided,
         Outcome::Done => {
             Verdict::Settled { regime: summary.regime, side: summary.side, period: summary.period }
         }

@@ -46,8 +46,10 @@ pub fn exponents(
     let state = (summary.final_x, summary.final_v);
     let phase = model.drive_phase(summary.window.1).unwrap_or(0.0);
     let tangent = Tangent::of(model, phase)?;
-    match of_orbit(&tangent, state, summary.period.unwrap_or(1))? {
-        Some(found) => Ok(found),
-        None => average(&tangent, state, options.periods, cancel),
-    }
+    // a motion that has not settled may pass near a periodic one that it does not go to
+    let found = match model.repeats() && summary.settled != Some(true) {
+        true => None,
+        false => of_orbit(&tangent, state, summary.period.unwrap_or(1))?,
+    };
+    found.map_or_else(|| average(&tangent, state, options.periods, cancel), Ok)
 }

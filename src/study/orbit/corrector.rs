@@ -193,9 +193,9 @@ impl Corrector<'_> {
     /// The derivative of the map by the field at a motion from a state, in the units; from one side where the
     /// other is no scene.
     fn by_field(&self, orbit: &Orbit, value: f64) -> Option<[f64; 2]> {
-        let stretch = match orbit.passage.impacts() {
-            0 => self.slopes(orbit, [0.0; 2]).iter().map(|row| row.amax()).fold(0.0, f64::max),
-            _ => 0.0,
+        let stretch = match orbit.passage.strikes() {
+            false => self.slopes(orbit, [0.0; 2]).iter().map(|row| row.amax()).fold(0.0, f64::max),
+            true => 0.0,
         };
         let mut step = DIFFERENCE * (STRETCHED / stretch).min(1.0) * self.units.range;
         let map = |value: f64| {

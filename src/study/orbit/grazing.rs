@@ -284,7 +284,7 @@ impl Grazing<'_> {
     fn orbit(&self, maps: &Maps, state: (f64, f64)) -> Option<Orbit> {
         let whole = f64::from(self.corrector.periods);
         let (mut at, mut jacobian) = (state, Jacobian::IDENTITY);
-        let (mut events, mut misses, mut determinant) = (Vec::new(), Vec::new(), Some(1.0));
+        let (mut events, mut misses, mut impacts, mut determinant) = (Vec::new(), Vec::new(), 0, Some(1.0));
         let mut outcome = Outcome::Done;
         for (stops, span) in self.parts((0.0, whole)) {
             let map = if stops { &maps.with } else { &maps.without };
@@ -293,6 +293,7 @@ impl Grazing<'_> {
             jacobian = part.after(&jacobian);
             events.extend(passage.events);
             misses.extend(passage.misses);
+            impacts += passage.impacts;
             determinant = determinant.zip(passage.determinant).map(|(before, part)| before * part);
             if outcome == Outcome::Done {
                 outcome = passage.outcome;
@@ -307,7 +308,7 @@ impl Grazing<'_> {
         let units = &self.corrector.units;
         let most = [off[0], off[1], gap / units.length, v / units.speed].map(f64::abs);
         let holds = outcome == Outcome::Done && most.iter().all(|part| *part <= EXACT);
-        let passage = Passage { state: at, events, determinant, misses, outcome };
+        let passage = Passage { state: at, events, determinant, misses, outcome, impacts };
         holds.then_some(Orbit { period: self.corrector.periods, state, passage, jacobian })
     }
 

@@ -274,7 +274,7 @@ fn with_orbits(table: Table, orbits: &[Orbit]) -> Table {
         .each("multiplier_2_re", orbits, part(1, |multiplier| multiplier.re))
         .each("multiplier_2_im", orbits, part(1, |multiplier| multiplier.im))
         .each("stable", orbits, |orbit| if orbit.is_stable() { "true" } else { "false" })
-        .each("impacts", orbits, |orbit| Some(orbit.passage.impacts()))
+        .each("impacts", orbits, |orbit| Some(orbit.passage.impacts))
         .each("rests", orbits, |orbit| Some(orbit.passage.rests()))
         .each("gentlest_impact_m_per_s", orbits, |orbit| orbit.gentlest_impact().unwrap_or(f64::NAN))
         .each("nearest_miss_m", orbits, |orbit| orbit.passage.nearest_miss().unwrap_or(f64::NAN))

@@ -43,7 +43,7 @@ fn simulate_events_and_summary() {
     let keys: Vec<&str> = value.as_object().unwrap().keys().map(String::as_str).collect();
     let expected = "final_x_m final_v_m_per_s rms_velocity_m_per_s regime crossings impacts releases \
         impact_speed_max_m_per_s max_abs_x_m min_x_m max_x_m travel_m mean_x_m side impact_share \
-        rested_share settled settles_at_s window_from_s window_to_s periods crossing_periods \
+        rested_share settled steady settles_at_s window_from_s window_to_s periods crossing_periods \
         release_periods total_crossings total_impacts chatter_sums rests period outcome steps \
         evaluations energy_residual cpu_s ledger scene version arguments seed wall_s";
     assert_eq!(keys.join(" "), expected);

@@ -1,6 +1,6 @@
 //! Samples at events, and counts of the settled window.
 
-use interwell::dynamics::{EventKind, Phase, Run};
+use interwell::dynamics::{Event, EventKind, Phase, Run};
 
 use super::scenes::*;
 
@@ -70,9 +70,13 @@ fn samples_at_0_during_rests_and_at_the_end() {
     }
 }
 
-/// Counts over [settle, settle + n T) from the list of events, with the share of the time at rest.
-fn counted(r: &Run, from: f64, to: f64) -> (u64, u64, u64, f64) {
-    let within = |kind| r.events.iter().filter(|e| e.kind == kind && e.t >= from && e.t < to).count() as u64;
+/// Counts over [settle, settle + n T) from the list of events, with the share of the time at rest. Impacts
+/// count from a speed on.
+fn counted(r: &Run, least: f64, from: f64, to: f64) -> (u64, u64, u64, f64) {
+    let counts = |e: &&Event| e.kind != EventKind::Impact || e.v_in.abs() > least;
+    let inside = |e: &&Event| e.t >= from && e.t < to;
+    let within =
+        |kind| r.events.iter().filter(|e| e.kind == kind).filter(counts).filter(inside).count() as u64;
     let mut rested = 0.0;
     let mut since: Option<f64> = None;
     for e in &r.events {
@@ -93,7 +97,8 @@ fn the_windows_counts_are_those_of_the_events() {
         s.run.settle_s = Some(settle);
         let r = run(&s);
         let to = if n > 0.0 { settle + n / 3.0 } else { 10.0 };
-        let (impacts, crossings, releases, rested) = counted(&r, settle, to);
+        let least = 1e-6 * model(&s).scales().speed;
+        let (impacts, crossings, releases, rested) = counted(&r, least, settle, to);
         let u = &r.summary;
         assert_eq!((u.impacts, u.crossings, u.releases), (impacts, crossings, releases), "{settle}");
         assert!((u.rested_share.unwrap() - rested).abs() < 1e-12, "{settle}: {:?} {rested}", u.rested_share);

@@ -24,7 +24,7 @@ fn the_bouncing_ball_rests_at_the_sum_of_its_flights() {
             let rests = times(&r, EventKind::Rest);
             assert_eq!(rests.len(), 1);
             // each flight adds a rounding of the clock
-            let n = r.summary.total_impacts as f64;
+            let n = times(&r, EventKind::Impact).len() as f64;
             assert!((rests[0] / rest - 1.0).abs() < 2e-15 + 2e-16 * n, "{restitution} {}", rests[0] / rest);
             assert_eq!(r.summary.final_x, -1.0);
         }
@@ -49,7 +49,10 @@ fn a_chatter_on_a_curve_rests_when_the_reference_does() {
             // an error of speed v in the first flights is one of 2 v/(a (1 - e)) in the end
             let allowed = 1e-15 / (1.0 - restitution) + tolerance * speed / (12.0 * (1.0 - restitution));
             assert!(error <= allowed, "{restitution} {tolerance:e}: {error:e} of {allowed:e}");
-            assert!(r.summary.chatter_sums == 1 && r.summary.total_impacts < truth.summary.total_impacts);
+            let listed = [&r, &truth].map(|run| times(run, EventKind::Impact).len());
+            assert!(r.summary.chatter_sums == 1 && listed[0] < listed[1]);
+            // what is counted does not depend on where the sum begins
+            assert_eq!(r.summary.total_impacts, truth.summary.total_impacts);
         }
     }
 }
@@ -80,7 +83,7 @@ fn an_elastic_chatter_under_damping_ends_by_the_impact_budget() {
         let r = m.run(&interwell::dynamics::Request { ledger: true, ..Default::default() });
         let Outcome::ImpactBudget { at, count } = r.summary.outcome else { panic!("{:?}", r.summary) };
         assert!(
-            count >= 2_000_000 && count == r.summary.total_impacts && at > 1.0 && at < 100.0,
+            count >= 2_000_000 && count >= r.summary.total_impacts && at > 1.0 && at < 100.0,
             "{at} {count}"
         );
         assert!(r.summary.final_x.abs() <= 4e-3 && r.summary.final_v.abs() < 1e-3, "{:?}", r.summary);

@@ -135,9 +135,9 @@ impl Drawn {
         holds(&found, &family.model(range.0).unwrap(), range)?;
         let unit = (range.1 - range.0).abs();
         let grazing = at(&found, BranchEvent::Grazing);
-        let missing = found.orbits.iter().any(|orbit| orbit.passage.impacts() == 0);
+        let missing = found.orbits.iter().any(|orbit| orbit.passage.impacts == 0);
         for (i, value) in found.values.iter().enumerate() {
-            if found.events[i] == Some(BranchEvent::Grazing) && found.orbits[i].passage.impacts() == 0 {
+            if found.events[i] == Some(BranchEvent::Grazing) && found.orbits[i].passage.impacts == 0 {
                 prop_assert!((value - self.closed.grazing()).abs() <= 1e-9 * unit, "grazing at {value}");
             }
         }
@@ -205,7 +205,7 @@ fn bouncing_balls_have_their_events_where_formulas_say() {
             let mechanism = Mechanism::build(&document.scene.mechanism, &document.files).unwrap();
             holds(&found, &Model::build(&document.scene, Arc::new(mechanism)).unwrap(), range)?;
             let rows = (0..found.values.len()).filter(|i| found.events[*i] == Some(event));
-            let simple = rows.filter(|i| found.orbits[*i].passage.impacts() == 1);
+            let simple = rows.filter(|i| found.orbits[*i].passage.impacts == 1);
             let values: Vec<f64> = simple.map(|i| found.values[i]).collect();
             prop_assert!(values.len() == 1, "{event:?}: {values:?} for {amplitude}");
             let off = (values[0] - amplitude).abs() / (range.1 - range.0).abs();
@@ -225,7 +225,7 @@ fn turns_at_the_stop(scene: &Scene, found: &Branch) -> Verdict {
     let farther = FARTHER * *travel_limit_mm / 1e3;
     *travel_limit_mm *= 1.0 + FARTHER;
     for (i, orbit) in found.orbits.iter().enumerate() {
-        if found.events[i] != Some(BranchEvent::Grazing) || orbit.passage.impacts() > 0 {
+        if found.events[i] != Some(BranchEvent::Grazing) || orbit.passage.impacts > 0 {
             continue;
         }
         if let Excitation::Sine { amplitude_g, .. } = &mut scene.excitation {
@@ -236,7 +236,7 @@ fn turns_at_the_stop(scene: &Scene, found: &Branch) -> Verdict {
         let gap = passage.nearest_miss().unwrap_or(f64::INFINITY);
         let off = [(gap - farther) / model.scales().length, (passage.state.0 - orbit.state.0) / farther];
         let exact = off[0].abs() <= 1e-8 && off[1].abs() <= 1e-4;
-        prop_assert!(exact && passage.impacts() == 0, "at {}: {off:?}", found.values[i]);
+        prop_assert!(exact && passage.impacts == 0, "at {}: {off:?}", found.values[i]);
     }
     Ok(())
 }
@@ -304,7 +304,7 @@ fn a_symmetric_motion_grazes_both_stops_once() {
         let place = |i: &usize| found.events[*i] == Some(BranchEvent::Grazing);
         let grazing = (0..found.values.len()).filter(place);
         // from 7 mm a branch comes back, to another motion that grazes
-        let free = |i: &usize| found.orbits[*i].passage.impacts() == 0 && found.values[*i] < 7.85;
+        let free = |i: &usize| found.orbits[*i].passage.impacts == 0 && found.values[*i] < 7.85;
         let free: Vec<usize> = grazing.filter(free).collect();
         assert_eq!(free.len(), 1, "{range:?}");
         near(found.values[free[0]], 7.845_018_451_532_7, 1e-11);

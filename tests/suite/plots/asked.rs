@@ -167,3 +167,28 @@ fn a_run_is_drawn_over_the_times_that_were_asked_for() {
     let early = "simulate --set stops=None --set start=At(x_mm:7,v_m_per_s:900) --plot-time 1:2";
     says(early, &["ended early"]);
 }
+
+#[test]
+fn a_picture_of_a_run_has_the_numbers_of_the_times_that_it_shows() {
+    let account = |line: &str, words: &[&str]| {
+        let texts = says(line, words);
+        let number = |text: &String| text.contains("RMS velocity") || text.ends_with("impacts");
+        let settled = texts.iter().any(|text| text.starts_with("settled"));
+        (settled, texts.iter().filter(|text| number(text)).count())
+    };
+    // a motion that repeats: its averages hold at any time from then on, its counts are those of the window
+    let paper = "simulate paper";
+    let all = ["settled, from 5 s on:", "RMS velocity 49.49 mm/s", "30 crossings, 390 impacts", "interwell"];
+    assert_eq!(account(paper, &all), (true, 2));
+    assert_eq!(account(&format!("{paper} --plot-time 4:10"), &all), (true, 2));
+    let some = ["settled, from 5 s on:", "RMS velocity 49.49 mm/s", "interwell"];
+    assert_eq!(account(&format!("{paper} --plot-time 6:7"), &some), (true, 1));
+    assert_eq!(account(&format!("{paper} --plot-time 3:7"), &["from 3 to 7 s"]), (false, 0));
+    // under an excitation that changes nothing settles
+    assert_eq!(account("simulate paper-ramp", &["from 120 to 300 s:", "RMS velocity"]), (false, 2));
+    assert_eq!(account("simulate paper-ramp --plot-time 106:109", &["from 106 to 109 s"]), (false, 0));
+    assert_eq!(account("simulate paper-ramp --plot-time 200:300", &["from 200 to 300 s"]), (false, 0));
+    // and what does not repeat has not settled
+    let free = "simulate paper-unconstrained --set excitation.amplitude_g=1.5";
+    assert_eq!(account(free, &["irregular: crosses without a period", " s:"]), (false, 2));
+}

@@ -34,7 +34,7 @@ fn the_determinant_is_that_of_damping_and_impacts() {
         }
         let error = (jacobian.determinant() - exact).abs();
         worst.set(worst.get().max(error / size));
-        impacts.set(impacts.get() + passage.impacts());
+        impacts.set(impacts.get() + passage.impacts);
         prop_assert!(error <= 1e-8 * size, "{} is not {exact}, of {size:e}", jacobian.determinant());
         Ok(true)
     });

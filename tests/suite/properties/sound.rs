@@ -177,7 +177,12 @@ fn events_follow(scene: &Scene, model: &Model, run: &Run) -> Verdict {
 /// What is counted is what is listed, and it is the same count where nothing is listed.
 fn counted(model: &Model, run: &Run) -> Verdict {
     let summary = &run.summary;
-    let events = |kind| run.events.iter().filter(move |e: &&Event| e.kind == kind);
+    // Impacts count from a speed on.
+    let counts = |e: &&Event| {
+        !matches!(e.kind, EventKind::Impact | EventKind::Contact)
+            || e.v_in.abs() > 1e-6 * model.scales().speed
+    };
+    let events = |kind| run.events.iter().filter(move |e: &&Event| e.kind == kind).filter(counts);
     let count = |kind| events(kind).count() as u64;
     // A start on a compliant stop is a contact and no impact.
     let stood = events(EventKind::Contact).filter(|e| e.t == 0.0).count() as u64;

@@ -232,8 +232,12 @@ fn reading(map: &Map, scale: &ColourScale, column: usize, row: usize) -> String 
                     let plural = if period == 1 { "" } else { "s" };
                     lines.push(format!("repeats after {period} forcing period{plural}"));
                 }
-                if settled.settled == Some(false) {
-                    lines.push("not settled in this time".to_owned());
+                match settled.settled {
+                    Some(false) if settled.is_transient() => {
+                        lines.push("not settled in this time".to_owned())
+                    }
+                    Some(false) => lines.push("averages steady".to_owned()),
+                    _ => {}
                 }
             }
             lines.extend(scale.reading(cell).filter(|_| !IN_EVERY_READING.contains(&scale.column())));

@@ -13,6 +13,7 @@ use crate::app::ui::style::Style;
 use crate::app::ui::widgets::kind_shapes;
 use crate::app::words::columns::ColumnInfo;
 use crate::app::words::kind::Kind;
+use crate::dynamics::Summary;
 
 use super::coordinates::{Coordinates, upright};
 use super::quantity::{ColourScale, Look};
@@ -36,7 +37,7 @@ pub struct Picture {
     looks: Arc<[Look]>,
     /// Which cells show a motion at rest.
     resting: Arc<[bool]>,
-    /// Which cells show a motion that had not settled.
+    /// Which cells show a motion that may be a transient.
     unsettled: Arc<[bool]>,
     size: [usize; 2],
     key: Key,
@@ -74,7 +75,7 @@ impl Picture {
         let cell = |i: usize| map.cell(i % columns, rows - 1 - i / columns);
         let look = |i: usize| cell(i).map_or((Look::Unknown, false), |c| scale.look(c.0));
         let (looks, resting): (Vec<Look>, Vec<bool>) = (0..columns * rows).map(look).unzip();
-        let transient = |i: usize| cell(i).and_then(|c| c.0.settled()?.settled) == Some(false);
+        let transient = |i: usize| cell(i).and_then(|c| c.0.settled()).is_some_and(Summary::is_transient);
         let unsettled = (0..columns * rows).map(transient).collect();
         let image = ColorImage::new(size, looks.iter().map(|look| colour(&key.2, *look)).collect());
         let texture = match old {

@@ -4,6 +4,7 @@ use crate::dynamics::{First, Firsts, Model, Outcome, Place, Regime, STANDARD_GRA
 use crate::scene::{Excitation, Scene, Stops};
 use crate::study::Thresholds;
 
+use super::super::wells::wells_between;
 use super::numbers::{between, grams, limit_mm, mm_beside, seconds, speed, times};
 use super::remedy::{amplitude, remedy};
 use super::{Kind, Sentence, ended};
@@ -58,10 +59,15 @@ impl Told<'_> {
         }
     }
 
-    /// What is not known of a motion that has not settled.
+    /// What is known and not known of a motion that has not settled.
     fn unsettled(&self) -> String {
-        match self.summary.settled {
-            Some(false) => format!(" Not settled after {}.", seconds(self.summary.window.1)),
+        let Summary { settled, regime, steady, window, .. } = self.summary;
+        let after = seconds(window.1);
+        match (settled, regime, steady) {
+            (Some(false), Regime::Irregular, Some(true)) => " Its averages are steady.".to_owned(),
+            (Some(false), Regime::Irregular, Some(false)) => " Its averages drift.".to_owned(),
+            (Some(false), _, Some(true)) => format!(" No period up to {after}; its averages are steady."),
+            (Some(false), ..) => format!(" Not settled after {after}."),
             _ => String::new(),
         }
     }
@@ -127,6 +133,9 @@ pub fn driven(told: &Told) -> Sentence {
         Some(Place::Left) => "left-hand",
         _ => "right-hand",
     };
+    let well = wells_between(&model.mechanism().landscape, low, high);
+    let settles = if summary.is_transient() { words.swings } else { words.settles };
+    let never = if summary.is_transient() { "without" } else { "never" };
     let periods = summary.periods as f64;
     let per_period = |count: u64| count as f64 / periods.max(1.0);
     let from = told.from();
@@ -150,7 +159,7 @@ pub fn driven(told: &Told) -> Sentence {
             (Kind::Resting, text)
         }
         Regime::Crossing | Regime::Intrawell if !model.repeats() => {
-            return unrepeated(told, &rms, &range, side);
+            return unrepeated(told, &rms, &range, &well);
         }
         Regime::Intrawell if summary.releases > 0 => {
             let every = match summary.release_periods {
@@ -158,8 +167,8 @@ pub fn driven(told: &Told) -> Sentence {
                 some => format!("in {some} of {periods:.0} periods"),
             };
             let text = format!(
-                "Hopping{from}: {} the {side} stop {every} and {} back, never crossing; {rms}, {:.0} impacts \
-                 a period.",
+                "Hopping{from}: {} the {side} stop {every} and {} back, {never} crossing; {rms}, {:.0} \
+                 impacts a period.",
                 words.leaves,
                 words.falls,
                 per_period(summary.impacts)
@@ -169,15 +178,14 @@ pub fn driven(told: &Told) -> Sentence {
         Regime::Intrawell if summary.impacts > 0 => {
             let impacts = times(per_period(summary.impacts));
             let text = format!(
-                "Intrawell{from}: {} in the {side} well and {} its stop {impacts}; {rms}.",
-                words.settles, words.hits
+                "Intrawell{from}: {settles} in the {well} and {} its stop {impacts}; {rms}.",
+                words.hits
             );
             (Kind::Intrawell, text)
         }
-        Regime::Intrawell => (
-            Kind::Intrawell,
-            format!("Intrawell{from}: {} in the {side} well, {range}; {rms}.", words.settles),
-        ),
+        Regime::Intrawell => {
+            (Kind::Intrawell, format!("Intrawell{from}: {settles} in the {well}, {range}; {rms}."))
+        }
         Regime::Irregular if summary.crossing_periods >= summary.periods => {
             let text = format!("Irregular: {} in every period, never twice alike; {rms}.", words.crosses);
             (Kind::Irregular, text)
@@ -236,13 +244,13 @@ fn interwell(told: &Told, words: &Words, rms: &str, range: &str) -> String {
 }
 
 /// A motion under a drive that has no period: what it does in the settled window.
-fn unrepeated(told: &Told, rms: &str, range: &str, side: &str) -> Sentence {
+fn unrepeated(told: &Told, rms: &str, range: &str, well: &str) -> Sentence {
     let summary = told.summary;
     let (from, to) = (told.origin + summary.window.0, told.origin + summary.window.1);
     let (seen, when) = (told.is_seen(), format!("from {} to {}", seconds(from), seconds(to)));
     let (kind, text) = if summary.crossings == 0 {
         let stays = if seen { "stayed" } else { "will stay" };
-        (Kind::Intrawell, format!("Intrawell: {stays} in the {side} well {when}, {range}; {rms}."))
+        (Kind::Intrawell, format!("Intrawell: {stays} in the {well} {when}, {range}; {rms}."))
     } else {
         let crosses = if seen { "Crossed" } else { "Will cross" };
         let count = match summary.crossings {

@@ -7,10 +7,11 @@ mod driven;
 mod numbers;
 mod remedy;
 
-use crate::dynamics::{Model, Outcome, Phase, Sample, Side};
+use crate::dynamics::{Model, Outcome, Phase, Sample};
 use crate::study::{Standing, ended_remedy, standing};
 
 pub use super::kind::Kind;
+use super::wells::well_name;
 pub use driven::{Told, driven};
 use numbers::{energy, mm, newtons};
 pub use numbers::{grams, mm_beside, seconds, speed};
@@ -46,8 +47,8 @@ impl Sentence {
     }
 }
 
-fn hand(side: Side) -> &'static str {
-    if side == Side::Left { "left-hand" } else { "right-hand" }
+fn hand(phase: Phase) -> &'static str {
+    if phase == Phase::LeftStop { "left-hand" } else { "right-hand" }
 }
 
 /// Share of the scene's accelerations below which a mass without speed is at rest.
@@ -113,7 +114,7 @@ pub fn unshaken(model: &Model, state: &Sample) -> Sentence {
     let pull = model.acceleration(state.x, state.v, base).abs() * model.scales().time / model.scales().speed;
     let rests = state.phase != Phase::Free || pull < STILL_PULL;
     let still = state.v.abs() < 1e-4 * model.scales().speed && rests;
-    let Some(Standing { side, pressed_n, energy_j, needed_j }) = standing(model, state) else {
+    let Some(Standing { well, pressed_n, energy_j, needed_j }) = standing(model, state) else {
         let text = if still {
             "At rest; nothing shakes it.".to_owned()
         } else {
@@ -121,26 +122,28 @@ pub fn unshaken(model: &Model, state: &Sample) -> Sentence {
         };
         return Sentence::new(if still { Kind::Resting } else { Kind::Other }, text);
     };
-    let (hand, needed) = (hand(side), energy(needed_j));
+    let wells = model.mechanism().landscape.wells().len();
+    let (well, needed) = (well_name(well, wells), energy(needed_j));
     let lift = format!("nothing shakes it. {needed} would lift it over the barrier.");
     match pressed_n {
         Some(force) => Sentence::new(
             Kind::Resting,
-            format!("Pressed on the {hand} stop with {}; {lift}", newtons(force)),
+            format!("Pressed on the {} stop with {}; {lift}", hand(state.phase), newtons(force)),
         ),
         None if still && energy_j < 1e-3 * needed_j => {
-            Sentence::new(Kind::Resting, format!("At rest in the {hand} well; {lift}"))
+            Sentence::new(Kind::Resting, format!("At rest in the {well}; {lift}"))
         }
         None if energy_j < needed_j => {
             let left = energy(energy_j);
             let text =
-                format!("Ringing down in the {hand} well: {left} of energy left, {needed} needed to cross.");
+                format!("Ringing down in the {well}: {left} of energy left, {needed} needed to cross.");
             Sentence::new(Kind::Intrawell, text)
         }
         None => {
             let left = energy(energy_j);
+            let all = if wells == 2 { "both" } else { "several" };
             let text = format!(
-                "Ringing down over both wells: {left} of energy left, below {needed} it stays in one."
+                "Ringing down over {all} wells: {left} of energy left, below {needed} it stays in one."
             );
             Sentence::new(Kind::Other, text)
         }

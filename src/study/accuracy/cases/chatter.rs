@@ -124,7 +124,7 @@ fn ends_with_the_press(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
         let (gap, _) = pressed.flight((dd(0.0), dd(0.0)), leaves, dd(end));
         let exact = (dd(1.0) - gap).to_f64();
         let scales = model.scales();
-        let rebounds = run.summary.total_impacts as f64;
+        let rebounds = times(&run, EventKind::Impact).len() as f64;
         let allowed = (rebounds + 2.0) * STEP_ERROR * (scales.speed * AFTER / scales.length)
             + run.summary.steps as f64 * STEP_ERROR;
         variants.push(

@@ -1,0 +1,45 @@
+//! Names of wells.
+
+use crate::mechanics::Landscape;
+
+/// The name of a well by its number from the left, from 0, among so many: "right-hand well".
+pub fn well_name(number: usize, count: usize) -> String {
+    match (number, count) {
+        (0, 2..=3) => "left-hand well".to_owned(),
+        (1, 3) => "middle well".to_owned(),
+        (_, 2..=3) => "right-hand well".to_owned(),
+        _ => {
+            let ending = match number % 10 {
+                0 if number != 10 => "st",
+                1 if number != 11 => "nd",
+                2 if number != 12 => "rd",
+                _ => "th",
+            };
+            format!("{}{ending} of {count} wells", number + 1)
+        }
+    }
+}
+
+/// The name of the well in which a motion between two places is, or of the outer two that it goes between.
+pub fn wells_between(landscape: &Landscape, low: f64, high: f64) -> String {
+    let wells = landscape.wells();
+    let at = |x: f64| wells.iter().take_while(|well| well.right_top.is_some_and(|top| x >= top)).count();
+    let name = |x: f64| well_name(at(x), wells.len());
+    if at(low) == at(high) { name(low) } else { format!("{} and the {}", name(low), name(high)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanics::Mechanism;
+    use crate::scene::Scene;
+
+    #[test]
+    fn each_well_has_a_name_of_its_own() {
+        for (count, last) in [(2, "right-hand well"), (3, "right-hand well"), (4, "4th of 4 wells")] {
+            let names: std::collections::HashSet<String> = (0..count).map(|i| well_name(i, count)).collect();
+            assert_eq!(names.len(), count);
+            assert_eq!(well_name(count - 1, count), last);
+        }
+    }
+}
