@@ -89,11 +89,17 @@ fn thresholds() {
         });
     };
     let even = |from: f64, step: f64| (0..=200).map(|i| from + step * f64::from(i)).collect::<Vec<f64>>();
-    let scan = Scan { field: "excitation.amplitude_g".into(), values: even(0.0, 0.01), resolution: 1e-5 };
+    let scan = Scan {
+        field: "excitation.amplitude_g".into(),
+        values: even(0.0, 0.01),
+        resolution: 1e-5,
+        until_settled: None,
+    };
     let exact = press / document.scene.mass_g * 1e3 / STANDARD_GRAVITY;
     found("release over the amplitude, a formula", "force over weight", scan, exact);
     // over the mass it is searched for
-    let scan = Scan { field: "mass_g".into(), values: even(10.0, 0.05), resolution: 1e-9 };
+    let scan =
+        Scan { field: "mass_g".into(), values: even(10.0, 0.05), resolution: 1e-9, until_settled: None };
     found(
         "release over the mass, 200 steps to 1e-9 g",
         "force over acceleration",
@@ -233,7 +239,7 @@ fn sweep(name: &str, changes: &[&str], axes: &[&str], carry: Option<Carry>, pool
 fn threshold_of(pool: &Pool) {
     let document = shared::changed("paper-unconstrained", &[]);
     let values = (1..=200).map(|i| 0.01 * f64::from(i)).collect();
-    let scan = Scan { field: "excitation.amplitude_g".into(), values, resolution: 1e-5 };
+    let scan = Scan { field: "excitation.amplitude_g".into(), values, resolution: 1e-5, until_settled: None };
     let asked = (&scan, Onset::Interwell);
     let never = AtomicBool::new(false);
     let task = Task { tick: &|| (), cancel: &never };

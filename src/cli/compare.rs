@@ -1,13 +1,10 @@
 //! `compare`: scenes side by side under one sine, a row each.
 
-use std::sync::Arc;
-
 use clap::Args;
-use interwell::dynamics::{Model, Regime};
-use interwell::mechanics::Mechanism;
+use interwell::dynamics::Regime;
 use interwell::numeric::short;
 use interwell::output::{ComparisonPicture, comparison_figure};
-use interwell::scene::{Document, Excitation, RunSettings, Scene, Start, Stops, Transducer};
+use interwell::scene::{Document, Excitation, RunSettings, Stops, Transducer};
 use interwell::study::{Alternative, Rated, Task, alternatives, comparison_parts, comparison_table};
 
 use super::failure::Failure;
@@ -15,7 +12,9 @@ use super::interrupt;
 use super::options::{Common, PlotOptions};
 use super::picture::{Picture, caption};
 use super::say;
-use super::support::{finish, inputs, load, mechanism, open, read, warn, write_table};
+use super::support::{
+    finish, inputs, load, mechanism, model_from_rest, open, read, until_settled, warn, write_table,
+};
 use super::sweep::{bar, pool};
 
 const EXAMPLES: &str = "\
@@ -37,6 +36,11 @@ pub struct Arguments {
     #[arg(long, value_name = "SCENE")]
     pub environment: Option<String>,
 
+    /// Follow each run, window after window, until its motion repeats, or up to this time in s: longer is surer
+    /// where the motion is irregular [default: 1000 forcing periods after the run]
+    #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
+    pub until_settled: Option<String>,
+
     /// The picture: a row a scene, a panel a quantity.
     #[command(flatten)]
     pub plot: PlotOptions,
@@ -54,7 +58,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             environment.name
         )));
     };
-    let (mut all, mut files, mut shaken) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut all, mut files, mut shaken, mut until) = (Vec::new(), Vec::new(), Vec::new(), None);
     for spec in &options.scenes {
         let (mut document, warnings) = load(spec, common, None)?;
         let (own, lent) = (&document.scene, &environment.scene);
@@ -70,7 +74,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         document.scene.sweep.clear(); // its fields may not be those of another excitation
         document.check()?;
         let mechanism = mechanism(&document)?;
-        valid(&document, &mechanism)?;
+        let model = model_from_rest(&document, &mechanism)?;
+        until = until_settled(options.until_settled.as_deref(), &document, &model)?;
         warn(&document, common, &warnings, Some(&mechanism));
         files.extend(inputs(spec, &document));
         let Document { scene, files, .. } = document;
@@ -87,7 +92,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let mut sinks = open(&files, [Some(("--out", common.out())), plot, data])?;
     let bar = bar(comparison_parts(&all), "parts", common.quiet, common.out());
     let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
-    let rated = alternatives(&all, &pool, &task);
+    let rated = alternatives(&all, until, &pool, &task);
     bar.finish_and_clear();
     let rated = rated.ok_or_else(Failure::interrupted)?;
     write_table(&mut sinks[0], &comparison_table(&rated))?;
@@ -126,11 +131,10 @@ fn grouped(said: Vec<(String, String)>) -> Vec<String> {
     lines.into_iter().map(|(names, words)| format!("{}: {words}", names.join(", "))).collect()
 }
 
-/// What empty or infinite cells of a row mean, and a speed of 0.
-fn remarks(own: &Alternative, rated: &Rated, amplitude_g: f64) -> Vec<String> {
+/// What empty and infinite cells of a row mean, and what else a reader of it should know.
+fn remarks(scene: &Alternative, rated: &Rated, amplitude_g: f64) -> Vec<String> {
+    let (summary, given) = (&rated.summary, short(amplitude_g));
     let mut all = Vec::new();
-    let (summary, barrier) = (&rated.summary, own.mechanism.landscape.barrier.is_some());
-    let given = short(amplitude_g);
     if let Some(at) = summary.outcome.ended_at() {
         let outcome = summary.outcome.name();
         all.push(format!(
@@ -139,46 +143,58 @@ fn remarks(own: &Alternative, rated: &Rated, amplitude_g: f64) -> Vec<String> {
         ));
     } else if summary.regime == Regime::Rest {
         all.push(format!("{given} g does not move it"));
-    } else if summary.impact_speed_max.is_none() && own.scene.stops != Stops::None {
-        all.push("strikes no stop".to_owned());
     }
-    if rated.release_g.is_none() {
-        all.push("rests on no stop, so nothing to release".to_owned());
+    if let Some(crossing) = rated.crossing.filter(|crossing| crossing.undecided) {
+        let low = crossing.low.map_or_else(String::new, |low| format!(" above {} g", short(low)));
+        let high = crossing.high.map_or_else(String::new, |high| format!(" below {} g", short(high)));
+        all.push(format!(
+            "its threshold is undecided: of some amplitudes{low}{high} it is not known whether they cross, since \
+             the motion does not repeat up to the end of the time for which it is followed"
+        ));
     }
-    if !barrier {
-        all.push("no barrier between two wells, so nothing to cross".to_owned());
-    } else if rated.crossing_g.is_none() {
-        all.push("no amplitude that was tried makes its settled motion cross".to_owned());
+    if let Some((_, size)) = rated.sensitivity.as_ref().filter(|(change, _)| change.is_infinite()) {
+        all.push(format!("with {size} changed by 1 % nothing is left to cross, or nothing crosses"));
     }
-    if barrier && rated.crosses_hz.is_none() {
-        all.push(format!("no frequency that was tried makes its settled motion cross at {given} g"));
-    }
-    match &rated.sensitivity {
-        Some((change, size)) if change.is_infinite() => {
-            all.push(format!("with {size} changed by 1 % nothing is left to cross, or nothing crosses"));
+    let table = comparison_table(std::slice::from_ref(rated));
+    let mut empty: Vec<(String, Vec<&str>)> = Vec::new();
+    for column in table.columns().iter().filter(|column| column.values.is_missing(0)) {
+        let why = why_empty(&column.name, scene, rated, &given);
+        match empty.iter_mut().find(|(other, _)| *other == why) {
+            Some((_, names)) => names.push(&column.name),
+            None => empty.push((why, vec![&column.name])),
         }
-        None if rated.crossing_g.is_some() => {
-            all.push("its mechanism has no length, thickness or gap to change".to_owned());
-        }
-        _ => {}
     }
-    if own.scene.transducer == Transducer::None {
-        all.push("no transducer, so no power".to_owned());
-    }
-    if own.scene.stops == Stops::None {
-        all.push("no stops, so no impacts".to_owned());
-    }
+    all.extend(empty.into_iter().map(|(why, names)| format!("no {}: {why}", names.join(", "))));
     all
+}
+
+/// Why the cell of a column is empty.
+fn why_empty(column: &str, scene: &Alternative, rated: &Rated, given: &str) -> String {
+    let (summary, crossing) = (&rated.summary, rated.crossing_g());
+    let transducer = scene.scene.transducer != Transducer::None;
+    match column {
+        "release_g" => "it rests on no stop",
+        "mean_load_power_w" if !transducer => "it has no transducer",
+        "impact_speed_max_m_per_s" if scene.scene.stops == Stops::None => "it has no stops",
+        "impact_speed_max_m_per_s" if summary.outcome.ended_at().is_none() => "it strikes no stop",
+        "rms_velocity_m_per_s" | "mean_load_power_w" | "max_abs_x_m" | "impact_speed_max_m_per_s" => {
+            "its run ended early"
+        }
+        _ if scene.mechanism.landscape.barrier.is_none() => {
+            "no barrier between two wells, so nothing to cross"
+        }
+        "crosses_from_hz" | "crosses_to_hz" => {
+            return format!("no frequency that was tried makes its settled motion cross at {given} g");
+        }
+        _ if crossing.is_none() => "no amplitude that was tried makes its settled motion cross",
+        "crossing_low_g" => "no smaller amplitude that was tried is known not to cross",
+        "crossing_high_g" => "no amplitude that was tried is known to cross for good",
+        _ => "its mechanism has no length, thickness or gap to change",
+    }
+    .to_owned()
 }
 
 /// A name without what would end a cell of CSV.
 fn plain(name: &str) -> String {
     name.replace([',', '"', '\n', '\r'], "_")
-}
-
-/// The faults of a model from rest, such as of a mechanism with no place to rest.
-fn valid(document: &Document, mechanism: &Arc<Mechanism>) -> Result<(), Failure> {
-    let trial = Scene { start: Start::Rest, ..document.scene.clone() };
-    let built = Model::build(&trial, Arc::clone(mechanism));
-    built.map(|_| ()).map_err(|faults| document.error_from(faults).into())
 }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use interwell::dynamics::Model;
 use interwell::mechanics::{BuildError, Mechanism};
 use interwell::output::{Provenance, Sink, header, is_regular, rows, same_target};
-use interwell::scene::{Axis, Document, SceneError, Transducer, is_manifest, is_scene_file};
+use interwell::scene::{Axis, Document, Scene, SceneError, Start, Transducer, is_manifest, is_scene_file};
 use interwell::study::{CellFaults, ELECTRICAL_STATE, Table};
 use interwell::system::clock::{ProcessClock, WallClock};
 use interwell::system::files::{canonical, is_file};
@@ -99,6 +99,12 @@ pub fn inputs(spec: &str, document: &Document) -> Vec<PathBuf> {
 pub fn mechanism(document: &Document) -> Result<Arc<Mechanism>, Failure> {
     let built = Mechanism::build(&document.scene.mechanism, &document.files);
     built.map(Arc::new).map_err(|error| unbuilt(document, error))
+}
+
+/// The model of a scene from rest, whatever its start is.
+pub fn model_from_rest(document: &Document, mechanism: &Arc<Mechanism>) -> Result<Model, Failure> {
+    let trial = Scene { start: Start::Rest, ..document.scene.clone() };
+    Model::build(&trial, Arc::clone(mechanism)).map_err(|faults| document.error_from(faults).into())
 }
 
 /// What is said where the mechanism of `document` cannot be built: a wrong scene is the writer's to mend,

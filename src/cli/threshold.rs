@@ -2,13 +2,15 @@
 
 use clap::Args;
 use interwell::output::{ThresholdPicture, can_show_thresholds, threshold_figure};
-use interwell::scene::{Axis, Document};
+use interwell::scene::{Axis, Document, is_whole};
 use interwell::study::{CellFaults, Grid, Onset, Scan, Table, Task, threshold_table};
 
 use super::failure::Failure;
 use super::options::{ChartOptions, Common};
 use super::picture::{Picture, caption, ranges};
-use super::support::{finish, inputs, load, mechanism, open, warn, write_table};
+use super::support::{
+    finish, inputs, load, mechanism, model_from_rest, number, open, until_settled, warn, write_table,
+};
 use super::sweep::{bar, located, pool};
 use super::{interrupt, say};
 
@@ -43,9 +45,15 @@ pub struct Arguments {
           value_parser = ["release", "crossing", "interwell"])]
     pub of: String,
 
-    /// How closely the threshold is located, in the field's unit [default: a 1000th of the step]
+    /// How closely the threshold is located, in the field's unit [default: a 1000th of the step; of a field of
+    /// whole numbers 1]
     #[arg(long, value_name = "R", allow_hyphen_values = true)]
     pub resolution: Option<String>,
+
+    /// Follow each run, window after window, until its motion repeats, or up to this time in s: longer is surer
+    /// where the motion is irregular [default: 1000 forcing periods after the scene's run]
+    #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
+    pub until_settled: Option<String>,
 
     /// One row for each value of another field (repeatable, the first is the slowest)
     #[arg(long, value_name = "FIELD=FROM:TO:STEP|a,b,c", allow_hyphen_values = true)]
@@ -73,7 +81,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     // without --over no cell of the scene's own sweep is run
     let over = Some(options.over.as_slice()).filter(|over| !over.is_empty());
     let (document, warnings) = load(&options.scene, common, over)?;
-    let scan = scan(options, &document)?;
+    let mut scan = scan(options, &document)?;
     let grid = match over {
         None => None,
         Some(over) => Some(Grid::new(document.axes(over)?)?),
@@ -89,8 +97,13 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         can_show_thresholds(grid.as_ref())?;
     }
     let same = grid.as_ref().is_none_or(|grid| !grid.changes_mechanism());
-    let own = same.then(|| mechanism(&document)).transpose()?;
-    warn(&document, common, &warnings, own.as_deref());
+    let text = options.until_settled.as_deref();
+    let mechanism = (same || text.is_some()).then(|| mechanism(&document)).transpose()?;
+    warn(&document, common, &warnings, mechanism.as_deref());
+    if let Some((text, mechanism)) = text.zip(mechanism) {
+        let model = model_from_rest(&document, &mechanism)?;
+        scan.until_settled = until_settled(Some(text), &document, &model)?;
+    }
     let pool = pool(common)?;
     let [plot, data] = Picture::outputs(picture);
     let outputs = [Some(("--out", common.out())), plot, data];
@@ -103,8 +116,9 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     bar.finish_and_clear();
     let table = found.ok_or_else(Failure::interrupted)?.map_err(|cells| wrong(&document, cells))?;
     write_table(&mut sinks[0], &table)?;
-    if let Some(words) = missing(&table, (&scan, onset), grid.as_ref()).filter(|_| !common.quiet) {
-        say(&format!("{}: {words}", document.name));
+    if !common.quiet {
+        let remarks = [missing(&table, (&scan, onset), grid.as_ref()), undecided(&table)];
+        remarks.iter().flatten().for_each(|words| say(&format!("{}: {words}", document.name)));
     }
     if let Some((picture, grid)) = picture.zip(grid.as_ref()) {
         let scene = &document.scene;
@@ -114,15 +128,33 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     finish(sinks)
 }
 
+/// So many of all rows, as the subject of a sentence whose verb depends on whether there is only one row; none
+/// where it is none of them.
+fn of_rows(count: usize, all: usize, verbs: [&str; 2]) -> Option<String> {
+    match (count, all) {
+        (0, _) => None,
+        (1, 1) => Some(format!("the row {}", verbs[0])),
+        (count, all) => Some(format!("{count} of {all} rows {}", verbs[1])),
+    }
+}
+
+/// What `undecided` means, where it is true.
+fn undecided(table: &Table) -> Option<String> {
+    let words = table.words("undecided");
+    let count = words.iter().filter(|word| **word == "true").count();
+    let rows = of_rows(count, words.len(), ["is undecided", "are undecided"])?;
+    Some(format!(
+        "{rows}: beside the value the motion does not repeat up to the end of the time for which it is followed, \
+         and may be a transient; the threshold is known between low and high, and --until-settled with a longer \
+         time may bring them together"
+    ))
+}
+
 /// What an empty `value` means, where there are some.
 fn missing(table: &Table, (scan, onset): (&Scan, Onset), grid: Option<&Grid>) -> Option<String> {
     let values = table.numbers("value")?;
-    let count = values.iter().filter(|own| own.is_nan()).count();
-    let rows = match (count, values.len()) {
-        (0, _) => return None,
-        (1, 1) => "the row has no value".to_owned(),
-        (count, all) => format!("{count} of {all} rows have no value"),
-    };
+    let count = values.iter().filter(|value| value.is_nan()).count();
+    let rows = of_rows(count, values.len(), ["has no value", "have no value"])?;
     let what = match onset {
         Onset::Release => "releases the mass from a stop",
         Onset::Crossing => "makes the settled motion cross",
@@ -175,7 +207,10 @@ fn scan(options: &Arguments, document: &Document) -> Result<Scan, Failure> {
             if low > high {
                 return Err(wrong(format!("TO must be above FROM; write {high}:{low}")));
             }
-            format!("{argument}:{}", (high - low) / STEPS)
+            let step = (high - low) / STEPS;
+            let field = from.split('=').next().unwrap_or_default().trim();
+            let step = if is_whole(&document.scene, field) { step.ceil() } else { step };
+            format!("{argument}:{step}")
         }
         _ => argument.to_owned(),
     };
@@ -190,15 +225,15 @@ fn scan(options: &Arguments, document: &Document) -> Result<Scan, Failure> {
     }
     let span = values.last().copied().unwrap_or(0.0) - values.first().copied().unwrap_or(0.0);
     let step = span / (values.len() - 1) as f64;
+    let whole = is_whole(&document.scene, &axis.field);
     let resolution = match &options.resolution {
+        None if whole => 1.0,
         None => 1e-3 * step,
         Some(text) => {
-            text.trim().parse().ok().filter(|own: &f64| *own > 0.0 && own.is_finite()).ok_or_else(|| {
-                Failure::argument(format!(
-                    "--resolution {text}: give a number above 0, in the unit of the field"
-                ))
-            })?
+            let fits = |own: &f64| *own > 0.0 && own.is_finite() && (!whole || own.fract() == 0.0);
+            let kind = if whole { "whole number" } else { "number" };
+            number("--resolution", text, fits, &format!("give a {kind} above 0, in the unit of the field"))?
         }
     };
-    Ok(Scan { field: axis.field, values, resolution })
+    Ok(Scan { field: axis.field, values, resolution, until_settled: None })
 }

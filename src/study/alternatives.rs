@@ -4,16 +4,17 @@
 use std::sync::Arc;
 
 use super::Task;
-use super::amplitudes::thresholds_on;
+use super::amplitudes::{Gaps, crossing};
 use super::bisection::multiple;
 use super::family::Family;
 use super::fields::{Read, SummaryField};
+use super::onset::Onset;
 use super::push::frees_at;
-use super::settled::settled;
+use super::settled::{followed, settled_within};
 use super::shared_runs::shared_runs;
 use super::table::{Table, Values};
-use super::thresholds::{Onset, longest};
-use crate::dynamics::{Model, Request, Run, Summary};
+use super::thresholds::Found;
+use crate::dynamics::{Model, Run, Summary};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::numeric::round::decade;
 use crate::scene::{Excitation, FieldPath, Files, Scene, Start, numeric_fields};
@@ -56,8 +57,8 @@ pub struct Rated {
     pub name: String,
     /// The least amplitude in g that frees the mass from the stop it rests on; none where it rests on none.
     pub release_g: Option<f64>,
-    /// The least amplitude in g whose settled motion from rest crosses.
-    pub crossing_g: Option<f64>,
+    /// The least amplitude in g whose settled motion from rest crosses; none where nothing is to be crossed.
+    pub crossing: Option<Found>,
     /// The settled motion of the scene itself.
     pub summary: Summary,
     /// Ends of the band of frequencies in Hz, at the scene's amplitude, whose settled motion from rest
@@ -102,14 +103,21 @@ fn sizes(scene: &Scene) -> Vec<String> {
     numeric_fields(scene).into_iter().filter(is_size).collect()
 }
 
-/// Rates the scenes, on `pool`; each run from rest. None where it was cancelled. The same for any number of
-/// threads.
-pub fn alternatives(scenes: &[Alternative], pool: &Pool, task: &Task) -> Option<Vec<Rated>> {
+/// Rates the scenes, on `pool`; each run from rest, and followed until its motion repeats or up to a time in s
+/// (1000 forcing periods beyond the run where there is none). None where it was cancelled. The same for any
+/// number of threads.
+pub fn alternatives(
+    scenes: &[Alternative],
+    until_settled: Option<f64>,
+    pool: &Pool,
+    task: &Task,
+) -> Option<Vec<Rated>> {
     let parts = parts(scenes);
+    let rating = Rating { until_settled, pool, task };
     let work = |_: &mut (), index: usize| {
         let done = match &parts[index] {
-            Part::Own(i) => rate(&scenes[*i], pool, task).map(|own| Done::Own(Box::new(own))),
-            Part::Changed(i, field, by) => changed(&scenes[*i], (field, *by), pool, task).map(Done::Changed),
+            Part::Own(i) => rating.rate(&scenes[*i]).map(|rated| Done::Own(Box::new(rated))),
+            Part::Changed(i, field, by) => rating.changed(&scenes[*i], (field, *by)).map(Done::Changed),
         };
         (task.tick)();
         done.filter(|_| !task.is_cancelled()).ok_or(())
@@ -119,97 +127,117 @@ pub fn alternatives(scenes: &[Alternative], pool: &Pool, task: &Task) -> Option<
     for (part, done) in parts.iter().zip(done) {
         match (part, done) {
             (Part::Changed(i, field, _), Done::Changed(threshold)) => {
-                let Some(before) = rated[*i].crossing_g else { continue };
-                let change = threshold.map_or(f64::INFINITY, |own| (own - before).abs() / before);
-                let own = &mut rated[*i].sensitivity;
-                if own.as_ref().is_none_or(|(most, _)| change > *most) {
-                    *own = Some((change, field.clone()));
+                let Some(before) = rated[*i].crossing_g() else { continue };
+                let change = threshold.map_or(f64::INFINITY, |after| (after - before).abs() / before);
+                let sensitivity = &mut rated[*i].sensitivity;
+                if sensitivity.as_ref().is_none_or(|(most, _)| change > *most) {
+                    *sensitivity = Some((change, field.clone()));
                 }
             }
-            (_, Done::Own(own)) => rated.push(*own),
+            (_, Done::Own(scene)) => rated.push(*scene),
             _ => {}
         }
     }
     Some(rated)
 }
 
-fn rate(own: &Alternative, pool: &Pool, task: &Task) -> Option<Rated> {
-    let trial = Scene { start: Start::Rest, ..own.scene.clone() };
-    let found = thresholds_on(Some(pool), &trial, &own.mechanism, task);
-    if task.is_cancelled() {
-        return None;
-    }
-    let model = Model::build(&trial, Arc::clone(&own.mechanism)).ok()?;
-    Some(Rated {
-        name: own.name.clone(),
-        release_g: frees_at(&trial, &own.mechanism),
-        crossing_g: found.and_then(|own| own.crosses_from),
-        summary: settled(&model, task.cancel)?,
-        crosses_hz: band(own, &trial, pool, task)?,
-        sensitivity: None,
-    })
+/// How scenes are rated.
+struct Rating<'a> {
+    until_settled: Option<f64>,
+    pool: &'a Pool,
+    task: &'a Task<'a>,
 }
 
-/// The crossing threshold with one size changed.
-fn changed(own: &Alternative, (field, by): (&str, f64), pool: &Pool, task: &Task) -> Option<Option<f64>> {
-    let mut trial = Scene { start: Start::Rest, ..own.scene.clone() };
-    let path = FieldPath::new(field);
-    let value = path.get(&trial)?;
-    if !path.set(&mut trial, value * (1.0 + by)) {
-        return None;
+impl Rated {
+    /// The least amplitude in g whose settled motion crosses; none where none does.
+    pub fn crossing_g(&self) -> Option<f64> {
+        self.crossing?.value
     }
-    let mechanism = match Mechanism::build_unless(&trial.mechanism, &own.files, task.cancel)? {
-        Ok(mechanism) => Arc::new(mechanism),
-        Err(BuildError::Wrong(_) | BuildError::Unsolved(_)) => return Some(None),
-    };
-    let found = thresholds_on(Some(pool), &trial, &mechanism, task);
-    (!task.is_cancelled()).then(|| found.and_then(|own| own.crosses_from))
 }
 
-/// The band of frequencies that cross. The steps of a scan are all run, and only the ends of the band are
-/// bisected: what is narrower than a step, a gap or a band, may be missed.
-fn band(own: &Alternative, trial: &Scene, pool: &Pool, task: &Task) -> Option<Option<(f64, f64)>> {
-    let Excitation::Sine { frequency_hz, .. } = trial.excitation else { return Some(None) };
-    let family = Family::new(trial, &own.files, &own.mechanism, FREQUENCY);
-    let ask = |values: &[f64]| -> Option<Vec<bool>> {
-        let model = |number: usize| {
-            let model = family.model(values[number]).map_err(|_| false)?;
-            let until_settled = Some(longest(&model));
-            Ok((model, Request { until_settled, ..Request::default() }))
-        };
-        let crosses = |run: &Run| Onset::Crossing.is_in(&run.summary);
-        shared_runs(Some(pool), task, values.len(), model, crosses)
-    };
-    let values: Vec<f64> = (-STEPS..=STEPS)
-        .map(|i| decimal(frequency_hz * SEARCHED_SPAN.powf(f64::from(i) / f64::from(STEPS))))
-        .collect();
-    let does = ask(&values)?;
-    let mut bands: Vec<(usize, usize)> = Vec::new();
-    for i in (0..does.len()).filter(|i| does[*i]) {
-        match bands.last_mut() {
-            Some((_, last)) if *last + 1 == i => *last = i,
-            _ => bands.push((i, i)),
+impl Rating<'_> {
+    fn rate(&self, scene: &Alternative) -> Option<Rated> {
+        let trial = Scene { start: Start::Rest, ..scene.scene.clone() };
+        let crossing = self.crossing(&trial, &scene.mechanism)?;
+        let model = Model::build(&trial, Arc::clone(&scene.mechanism)).ok()?;
+        Some(Rated {
+            name: scene.name.clone(),
+            release_g: frees_at(&trial, &scene.mechanism),
+            crossing,
+            summary: settled_within(&model, self.until_settled, self.task.cancel)?,
+            crosses_hz: self.band(scene, &trial)?,
+            sensitivity: None,
+        })
+    }
+
+    /// The crossing threshold; none inside where there is none, none where it was cancelled.
+    fn crossing(&self, trial: &Scene, mechanism: &Arc<Mechanism>) -> Option<Option<Found>> {
+        let how = (Some(self.pool), self.until_settled);
+        let found = crossing(trial, mechanism, how, Gaps::NotCounted, self.task);
+        (!self.task.is_cancelled()).then(|| found.map(|(found, _)| found))
+    }
+
+    /// The crossing threshold with one size changed.
+    fn changed(&self, scene: &Alternative, (field, by): (&str, f64)) -> Option<Option<f64>> {
+        let mut trial = Scene { start: Start::Rest, ..scene.scene.clone() };
+        let path = FieldPath::new(field);
+        let value = path.get(&trial)?;
+        if !path.set(&mut trial, value * (1.0 + by)) {
+            return None;
         }
+        let mechanism = match Mechanism::build_unless(&trial.mechanism, &scene.files, self.task.cancel)? {
+            Ok(mechanism) => Arc::new(mechanism),
+            Err(BuildError::Wrong(_) | BuildError::Unsolved(_)) => return Some(None),
+        };
+        Some(self.crossing(&trial, &mechanism)?.and_then(|found| found.value))
     }
-    let middle = STEPS as usize;
-    let holds = |own: &&(usize, usize)| (own.0..=own.1).contains(&middle);
-    let widest = || bands.iter().rev().max_by_key(|own| own.1 - own.0);
-    let Some((first, last)) = bands.iter().find(holds).or_else(widest).copied() else { return Some(None) };
-    let edge = |inside: usize, outside: Option<usize>| -> Option<f64> {
-        let (mut inside, Some(outside)) = (values[inside], outside) else { return Some(values[inside]) };
-        let mut outside = values[outside];
-        while (outside / inside - 1.0).abs() > BAND_RESOLUTION {
-            let middle = decimal((inside * outside).sqrt());
-            match ask(&[middle])?[0] {
-                true => inside = middle,
-                false => outside = middle,
+
+    /// The band of frequencies that cross. The steps of a scan are all run, and only the ends of the band are
+    /// bisected: what is narrower than a step, a gap or a band, may be missed.
+    fn band(&self, scene: &Alternative, trial: &Scene) -> Option<Option<(f64, f64)>> {
+        let Excitation::Sine { frequency_hz, .. } = trial.excitation else { return Some(None) };
+        let family = Family::new(trial, &scene.files, &scene.mechanism, FREQUENCY);
+        let ask = |values: &[f64]| -> Option<Vec<bool>> {
+            let model = |number: usize| {
+                let model = family.model(values[number]).map_err(|_| false)?;
+                Ok(followed(model, self.until_settled))
+            };
+            let crosses = |run: &Run| Onset::Crossing.verdict(&run.summary).does;
+            shared_runs(Some(self.pool), self.task, values.len(), model, crosses)
+        };
+        let values: Vec<f64> = (-STEPS..=STEPS)
+            .map(|i| decimal(frequency_hz * SEARCHED_SPAN.powf(f64::from(i) / f64::from(STEPS))))
+            .collect();
+        let does = ask(&values)?;
+        let mut bands: Vec<(usize, usize)> = Vec::new();
+        for i in (0..does.len()).filter(|i| does[*i]) {
+            match bands.last_mut() {
+                Some((_, last)) if *last + 1 == i => *last = i,
+                _ => bands.push((i, i)),
             }
         }
-        Some(inside)
-    };
-    let low = edge(first, first.checked_sub(1))?;
-    let high = edge(last, Some(last + 1).filter(|i| *i < values.len()))?;
-    Some(Some((low, high)))
+        let middle = STEPS as usize;
+        let holds = |band: &&(usize, usize)| (band.0..=band.1).contains(&middle);
+        let widest = || bands.iter().rev().max_by_key(|band| band.1 - band.0);
+        let Some((first, last)) = bands.iter().find(holds).or_else(widest).copied() else {
+            return Some(None);
+        };
+        let edge = |inside: usize, outside: Option<usize>| -> Option<f64> {
+            let (mut inside, Some(outside)) = (values[inside], outside) else { return Some(values[inside]) };
+            let mut outside = values[outside];
+            while (outside / inside - 1.0).abs() > BAND_RESOLUTION {
+                let middle = decimal((inside * outside).sqrt());
+                match ask(&[middle])?[0] {
+                    true => inside = middle,
+                    false => outside = middle,
+                }
+            }
+            Some(inside)
+        };
+        let low = edge(first, first.checked_sub(1))?;
+        let high = edge(last, Some(last + 1).filter(|i| *i < values.len()))?;
+        Some(Some((low, high)))
+    }
 }
 
 /// A number to five digits, above 0.
@@ -217,33 +245,35 @@ fn decimal(value: f64) -> f64 {
     multiple(value, 10_f64.powi(decade(value) - 4))
 }
 
-/// A row a scene: `scene,release_g,crossing_g,rms_velocity_m_per_s,mean_load_power_w,max_abs_x_m,`
-/// `impact_speed_max_m_per_s,crosses_from_hz,crosses_to_hz,threshold_sensitivity,most_sensitive_to`.
+/// A row a scene: its name, the thresholds, what its settled motion is like, the band of frequencies, and how
+/// much the threshold hangs on its sizes.
 pub fn comparison_table(rated: &[Rated]) -> Table {
     let number =
-        |of: fn(&Rated) -> Option<f64>| rated.iter().map(|own| of(own).unwrap_or(f64::NAN)).collect();
+        |of: fn(&Rated) -> Option<f64>| rated.iter().map(|row| of(row).unwrap_or(f64::NAN)).collect();
     let summary = |name: &str| -> Values {
         let read = SummaryField::find(name).map(|field| field.read);
-        let of = |own: &Rated| match read {
-            Some(Read::Number(of)) => of(&own.summary).unwrap_or(f64::NAN),
+        let of = |row: &Rated| match read {
+            Some(Read::Number(of)) => of(&row.summary).unwrap_or(f64::NAN),
             _ => f64::NAN,
         };
         rated.iter().map(of).collect()
     };
     let names = |of: fn(&Rated) -> String| Values::Names(rated.iter().map(of).collect());
     let mut table = Table::new()
-        .with("scene", names(|own| own.name.clone()))
-        .with("release_g", number(|own| own.release_g))
-        .with("crossing_g", number(|own| own.crossing_g));
+        .with("scene", names(|row| row.name.clone()))
+        .with("release_g", number(|row| row.release_g))
+        .with("crossing_g", number(Rated::crossing_g))
+        .with("crossing_low_g", number(|rated| rated.crossing?.low))
+        .with("crossing_high_g", number(|rated| rated.crossing?.high));
     for name in ["rms_velocity_m_per_s", "mean_load_power_w", "max_abs_x_m", "impact_speed_max_m_per_s"] {
         table = table.with(name, summary(name));
     }
     table
-        .with("crosses_from_hz", number(|own| own.crosses_hz.map(|band| band.0)))
-        .with("crosses_to_hz", number(|own| own.crosses_hz.map(|band| band.1)))
-        .with("threshold_sensitivity", number(|own| own.sensitivity.as_ref().map(|own| own.0)))
+        .with("crosses_from_hz", number(|row| row.crosses_hz.map(|band| band.0)))
+        .with("crosses_to_hz", number(|row| row.crosses_hz.map(|band| band.1)))
+        .with("threshold_sensitivity", number(|row| row.sensitivity.as_ref().map(|(change, _)| *change)))
         .with(
             "most_sensitive_to",
-            names(|own| own.sensitivity.as_ref().map_or(String::new(), |own| own.1.clone())),
+            names(|row| row.sensitivity.as_ref().map_or(String::new(), |(_, size)| size.clone())),
         )
 }

@@ -4,9 +4,12 @@ use std::sync::Arc;
 
 use super::Task;
 use super::bisection::multiple;
+use super::family::Family;
+use super::onset::{Onset, Verdict};
 use super::push::{AMPLITUDE, frees_at, holding_push};
-use super::thresholds::{Onset, Scan, longest, threshold_on};
-use crate::dynamics::{Model, Regime, Request};
+use super::settled::followed;
+use super::thresholds::{Answers, Found, Search};
+use crate::dynamics::{Model, Request};
 use crate::mechanics::Mechanism;
 use crate::numeric::round::{ONE_TWO_FIVE, decade, round_down};
 use crate::scene::{Excitation, Files, Scene, Start, Stops};
@@ -24,10 +27,8 @@ pub struct Thresholds {
     /// The least amplitude that frees the mass from the stop it rests on, in closed form.
     pub frees_at: Option<f64>,
     /// The least amplitude whose settled motion crosses; none where none does up to
-    /// [`searched_to`](Self::searched_to).
-    pub crosses_from: Option<f64>,
-    /// From this amplitude on every one that was tried crosses; none where the greatest does not.
-    pub without_gap: Option<f64>,
+    /// [`searched_to`](Self::searched_to). Windows and gaps are those up to one and a half times it.
+    pub crossing: Found,
     /// Up to where was searched.
     pub searched_to: f64,
 }
@@ -50,16 +51,27 @@ const GAP_STEP: f64 = 0.01;
 /// Searches the amplitudes of a sine. None where the drive is no sine, nothing is to be crossed, or the
 /// search was cancelled.
 pub fn thresholds(scene: &Scene, mechanism: &Arc<Mechanism>, task: &Task) -> Option<Thresholds> {
-    thresholds_on(None, scene, mechanism, task)
+    let (crossing, searched_to) = crossing(scene, mechanism, (None, None), Gaps::Counted, task)?;
+    Some(Thresholds { frees_at: frees_at(scene, mechanism), crossing, searched_to })
 }
 
-/// The same, by the threads of a pool.
-pub(super) fn thresholds_on(
-    pool: Option<&Pool>,
+/// Whether the windows and gaps above a threshold are looked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Gaps {
+    Counted,
+    NotCounted,
+}
+
+/// The least amplitude of a sine whose settled motion from rest crosses, and up to where was searched; by the
+/// threads of a pool where there is one, each run followed up to a time in s where there is one. None as for
+/// [`thresholds`].
+pub(super) fn crossing(
     scene: &Scene,
     mechanism: &Arc<Mechanism>,
+    (pool, until_settled): (Option<&Pool>, Option<f64>),
+    gaps: Gaps,
     task: &Task,
-) -> Option<Thresholds> {
+) -> Option<(Found, f64)> {
     let Excitation::Sine { .. } = scene.excitation else { return None };
     let push = holding_push(scene, mechanism)?;
     let step = push / f64::from(FINE_STEPS);
@@ -71,39 +83,37 @@ pub(super) fn thresholds_on(
     values.iter_mut().for_each(|value| *value = multiple(*value, third_digit(*value)));
     values.dedup();
     let searched_to = values.last().copied().unwrap_or(push);
+    let trial = Scene { start: Start::Rest, ..scene.clone() };
     let files = Files::default(); // an amplitude changes no mechanism
-    let scan = |values: Vec<f64>| {
-        let resolution = third_digit(values.first().copied().unwrap_or(push));
-        let scan = Scan { field: AMPLITUDE.to_owned(), values, resolution };
-        threshold_on((pool, 1), scene, mechanism, &files, (&scan, Onset::Crossing), task)
-    };
-    let mut found = Thresholds {
-        frees_at: frees_at(scene, mechanism),
-        crosses_from: None,
-        without_gap: None,
-        searched_to,
-    };
+    let family = Family::new(&trial, &files, mechanism, AMPLITUDE);
+    let search = Search { family, onset: Onset::Crossing, until_settled, task, pool, ahead: 1 };
+    let (mut answers, mut resolution) = (Answers::default(), third_digit(push));
     for part in values.chunks(TOGETHER) {
-        // the last value before it, so that the first one that crosses can be located
-        let first = values.iter().position(|own| *own == part[0]).unwrap_or(0);
-        let Some(value) = scan(values[first.saturating_sub(1)..first + part.len()].to_vec())?.value else {
-            continue;
-        };
-        let above = (0..=GAP_STEPS).map(|i| value * (1.0 + GAP_STEP * f64::from(i)));
-        let above = above.map(|own| multiple(own, third_digit(own))).collect();
-        found.crosses_from = Some(value);
-        found.without_gap = scan(above)?.without_gap;
-        break;
+        resolution = third_digit(answers.scan.last().map_or(part[0], |last| last.0));
+        search.scan(&mut answers, part, resolution)?;
+        if answers.any_does() {
+            break;
+        }
     }
-    Some(found)
+    let found = answers.found(resolution);
+    let Some(value) = found.value.filter(|_| gaps == Gaps::Counted) else {
+        return Some((found, searched_to));
+    };
+    let above = (1..=GAP_STEPS).map(|i| value * (1.0 + GAP_STEP * f64::from(i)));
+    let mut above: Vec<f64> = above.map(|value| multiple(value, third_digit(value))).collect();
+    above.dedup();
+    let mut answers = Answers::begun_with(value);
+    search.scan(&mut answers, &above, resolution)?;
+    let Found { windows, without_gap, .. } = answers.found(resolution);
+    Some((Found { windows, without_gap, ..found }, searched_to))
 }
 
 /// The search for stops makes at least so many steps from the well to the middle, and at most two and a half
 /// times as many.
 const FEWEST_STOPS: f64 = 50.0;
 
-/// From the wells inward the first travel limit in mm, the same on both sides, whose run from rest is
-/// interwell under the scene's own excitation; inner `None` where there is none, outer `None` where the
+/// From the wells inward the first travel limit in mm, the same on both sides, whose motion from rest is known
+/// to be interwell under the scene's own excitation; inner `None` where there is none, outer `None` where the
 /// search was cancelled.
 ///
 /// The limits that cross are no interval, so nothing is bisected: every step is run, 1, 2 or 5 of a decimal
@@ -126,14 +136,13 @@ pub fn stops_that_cross(
         let travel_limit_mm = multiple(f64::from(i) * step, step);
         trial.stops = Stops::Rigid { travel_limit_mm, restitution };
         let Ok(model) = Model::build(&trial, Arc::clone(mechanism)) else { continue };
-        let until_settled = Some(longest(&model));
-        let request = Request { cancel: Some(task.cancel), until_settled, ..Request::default() };
-        let run = model.run(&request);
+        let (model, request) = followed(model, None);
+        let run = model.run(&Request { cancel: Some(task.cancel), ..request });
         (task.tick)();
         if task.is_cancelled() {
             return None;
         }
-        if run.summary.regime == Regime::Interwell {
+        if Onset::Interwell.verdict(&run.summary) == (Verdict { does: true, known: true }) {
             return Some(Some(travel_limit_mm));
         }
     }

@@ -3,9 +3,10 @@
 use std::collections::VecDeque;
 
 /// The next value of a bisection that is to be asked, that which follows from what is known or, where it is
-/// under way (without an answer), one of those that may be asked after it; none where so many are, `ahead`.
+/// under way, one of those that may be asked after it; none where so many are, `ahead`. `answer` is none for
+/// a value that was not asked, and none inside where it is under way.
 pub(super) fn next_between(
-    asked: &[(f64, Option<bool>)],
+    answer: impl Fn(f64) -> Option<Option<bool>>,
     span: (f64, f64),
     resolution: f64,
     ahead: usize,
@@ -15,11 +16,11 @@ pub(super) fn next_between(
         && let Some((low, high)) = spans.pop_front()
     {
         let Some(middle) = between(low, high, resolution) else { continue };
-        match asked.iter().find(|own| own.0 == middle) {
+        match answer(middle) {
             None => return Some(middle),
-            Some((_, Some(true))) => spans.push_front((low, middle)),
-            Some((_, Some(false))) => spans.push_front((middle, high)),
-            Some((_, None)) => {
+            Some(Some(true)) => spans.push_front((low, middle)),
+            Some(Some(false)) => spans.push_front((middle, high)),
+            Some(None) => {
                 under_way += 1;
                 spans.extend([(low, middle), (middle, high)]);
             }
@@ -32,7 +33,7 @@ pub(super) fn next_between(
 pub(super) fn between(low: f64, high: f64, resolution: f64) -> Option<f64> {
     let middle = multiple(0.5 * (low + high), resolution);
     let near = [middle, multiple(middle - resolution, resolution), multiple(middle + resolution, resolution)];
-    near.into_iter().find(|own| *own > low && *own < high)
+    near.into_iter().find(|value| *value > low && *value < high)
 }
 
 /// The multiple of `unit` nearest to a value; of a decimal unit the decimal itself.
@@ -52,17 +53,21 @@ mod tests {
         {
             let mut asked: Vec<(f64, Option<bool>)> = Vec::new();
             loop {
-                while let Some(next) = next_between(&asked, (0.5, 1.0), 0.01, ahead) {
+                let answer = |asked: &[(f64, Option<bool>)], value| {
+                    asked.iter().find(|entry| entry.0 == value).map(|entry| entry.1)
+                };
+                while let Some(next) = next_between(|value| answer(&asked, value), (0.5, 1.0), 0.01, ahead) {
                     asked.push((next, None));
                 }
-                let open = asked.iter().filter(|own| own.1.is_none()).count();
+                let open = asked.iter().filter(|entry| entry.1.is_none()).count();
                 assert!(open <= ahead);
                 // the last that was asked is answered first
-                let Some(own) = asked.iter_mut().rfind(|own| own.1.is_none()) else { break };
-                own.1 = Some(own.0 >= at);
+                let Some(last) = asked.iter_mut().rfind(|entry| entry.1.is_none()) else { break };
+                last.1 = Some(last.0 >= at);
             }
-            let does = |own: f64| asked.contains(&(own, Some(true)));
-            let least = (51..100).map(|own| f64::from(own) / 100.0).find(|own| does(*own)).unwrap_or(1.0);
+            let does = |value: f64| asked.contains(&(value, Some(true)));
+            let hundredths = (51..100).map(|i| f64::from(i) / 100.0);
+            let least = hundredths.into_iter().find(|value| does(*value)).unwrap_or(1.0);
             assert_eq!(least, at);
             assert!(ahead > 1 || asked.len() <= 6);
         }

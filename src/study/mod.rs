@@ -31,6 +31,7 @@ mod levels;
 mod map;
 mod measured;
 mod models;
+mod onset;
 mod orbit;
 mod push;
 mod section;
@@ -94,15 +95,16 @@ pub use measured::{
     Comparison, ForceComparison, MeasuredMotion, NoComparison, OffTheCurve, compare, compare_force,
 };
 pub use models::Held;
+pub use onset::{Onset, Verdict};
 pub use orbit::{Branch, BranchEnd, BranchEvent, NoOrbit, Orbit, branch, orbit, orbit_near, orbit_table};
 pub use section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};
-pub use settled::{Standing, lasts, settled, standing};
+pub use settled::{Standing, followed_until, lasts, settled, standing};
 pub use simulate::{Keep, Sampling, Simulation, events_table, sample_times, samples_table, simulate};
 pub use slice::{Shard, Slice};
 pub use spectrum::{NoSpectrum, Signal, Spectrum, SpectrumOptions, spectrum};
 pub use sweep::{DIRECTION, STANDARD as STANDARD_COLUMNS, Sweep, SweepOptions};
 pub use table::{Column, Table, Values};
-pub use thresholds::{Found, Onset, Scan, threshold, threshold_table};
+pub use thresholds::{Found, Scan, threshold, threshold_table};
 pub use times::{MAX_SAMPLES, SamplingStep, TimesError, even_times, listed_times};
 pub use trace::{Trace, simulate_with_trace};
 pub use up_and_down::{Visit, up_and_down};

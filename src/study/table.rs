@@ -27,6 +27,16 @@ impl Values {
         }
     }
 
+    /// Whether the value of a row is missing; true beyond the last row.
+    pub fn is_missing(&self, row: usize) -> bool {
+        match self {
+            Self::Numbers(values) => values.get(row).is_none_or(|value| value.is_nan()),
+            Self::Counts(values) => values.get(row).is_none_or(Option::is_none),
+            Self::Words(values) => values.get(row).is_none_or(|word| word.is_empty()),
+            Self::Names(values) => values.get(row).is_none_or(String::is_empty),
+        }
+    }
+
     /// Whether there are no rows.
     pub fn is_empty(&self) -> bool {
         self.len() == 0

@@ -2,8 +2,10 @@
 //!
 //! The values that do are no interval: without stops, and near a resonance, they come in windows. So nothing
 //! is bisected before every step of a scan from below has been run; then the first step that changes the
-//! answer is, and the changes above it are counted. Each run goes on until its motion repeats, so that a
-//! crossing on the way to a motion that does not cross is no answer.
+//! answer is, and the changes above it are counted. Each run is followed until its motion repeats, so that a
+//! crossing on the way to a motion that does not cross is no answer. Where it does not repeat in time, what
+//! it does at the end of that time is what the bisection goes by, and `low` and `high` are the nearest values
+//! whose answers are known.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -12,46 +14,15 @@ use super::bisection::{between, next_between};
 use super::cell::CellFaults;
 use super::family::Family;
 use super::grid::Grid;
+use super::onset::{Onset, Verdict};
 use super::push::{AMPLITUDE, frees_at};
-use super::shared_runs::{runs_from, shared_runs};
+use super::settled::followed;
+use super::shared_runs::runs_from;
 use super::table::Table;
-use crate::dynamics::{Model, Regime, Request, Run, Summary};
+use crate::dynamics::{Model, Request, Run};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, Files, Scene, Start};
 use crate::system::threads::{Pool, Queue, UnderWay};
-
-/// What begins at a threshold.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Onset {
-    /// The mass leaves the stop on which it rests.
-    Release,
-    /// The settled motion crosses the barrier at all.
-    Crossing,
-    /// The settled motion crosses, and its crossings repeat.
-    Interwell,
-}
-
-impl Onset {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Release, Self::Crossing, Self::Interwell];
-
-    /// The word on the command line and in the CSV.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Release => "release",
-            Self::Crossing => "crossing",
-            Self::Interwell => "interwell",
-        }
-    }
-
-    pub(super) fn is_in(self, summary: &Summary) -> bool {
-        match self {
-            Self::Release => summary.releases > 0,
-            Self::Crossing => summary.crossings > 0 && summary.regime != Regime::OneWell,
-            Self::Interwell => summary.regime == Regime::Interwell,
-        }
-    }
-}
 
 /// What a threshold is searched for over: the values of a scan, ascending, and how closely the first one is
 /// located.
@@ -63,27 +34,27 @@ pub struct Scan {
     pub values: Vec<f64>,
     /// The threshold is located among the multiples of this, in the field's unit.
     pub resolution: f64,
+    /// Time in s up to which a run goes on until its motion repeats; 1000 forcing periods beyond the run where
+    /// there is none.
+    pub until_settled: Option<f64>,
 }
 
 /// A threshold.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Found {
     /// The least value; none where no value of the scan does it.
     pub value: Option<f64>,
+    /// The last value below it, of those tried, that is known not to do it.
+    pub low: Option<f64>,
+    /// The first value from it on, of those tried, that is known to do it.
+    pub high: Option<f64>,
+    /// Whether the answer just below the value, or at it, is not known; of no value, that at the scan's end.
+    pub undecided: bool,
     /// How often the answer changes above it, within the scan.
     pub windows: u64,
     /// From this value of the scan on nothing changes any more: that of the last change upward; none where
     /// the scan ends with the answer no.
     pub without_gap: Option<f64>,
-}
-
-/// Forcing periods for which a run of a scan is followed until its motion repeats: some more than after which
-/// irregular motion is called settled.
-const PATIENCE: f64 = 250.0;
-
-/// The time in s up to which a run is followed until its motion repeats.
-pub(super) fn longest(model: &Model) -> f64 {
-    model.duration() + PATIENCE * model.forcing_period().unwrap_or(0.0)
 }
 
 /// Runs the scan of `scene`, each run from rest. `mechanism` is the scene's own, built from `files`. None
@@ -102,7 +73,7 @@ pub fn threshold(
 }
 
 /// The same, by the threads of a pool; so many values of a bisection are asked at a time.
-pub(super) fn threshold_on(
+fn threshold_on(
     (pool, ahead): (Option<&Pool>, usize),
     scene: &Scene,
     mechanism: &Arc<Mechanism>,
@@ -110,55 +81,34 @@ pub(super) fn threshold_on(
     (scan, onset): (&Scan, Onset),
     task: &Task,
 ) -> Option<Found> {
-    let trial = from_rest(scene);
-    let search = Search { pool, ahead, ..Search::new(&trial, mechanism, files, (scan, onset), task) };
     if onset == Onset::Release
         && scan.field == AMPLITUDE
-        && let Some(value) = frees_at(scene, mechanism)
+        && let Some(frees) = frees_at(scene, mechanism)
     {
-        let inside = scan
-            .values
-            .first()
-            .zip(scan.values.last())
-            .filter(|(low, high)| value >= **low && value <= **high);
-        let value = inside.map(|_| value);
         scan.values.iter().for_each(|_| (task.tick)());
-        return Some(Found { value, windows: 0, without_gap: value });
+        let first = scan.values.first().map(|first| first.max(frees));
+        let value = first.filter(|value| scan.values.last().is_some_and(|last| value <= last));
+        let [low, high] = [value; 2];
+        return Some(Found { value, low, high, without_gap: value, ..Found::default() });
     }
-    let mut found = Found { value: None, windows: 0, without_gap: None };
-    let (mut before, mut last) = (None, false);
-    let mut asked = search.scan(scan)?;
-    for (value, does) in scan.values.iter().zip(asked.of_scan.iter().map(|own| *own == Some(true))) {
-        match (does, found.value) {
-            (true, None) => {
-                let located = match before {
-                    Some(before) => search.locate(&mut asked.between, (before, *value), scan.resolution)?,
-                    None => *value,
-                };
-                (found.value, found.without_gap) = (Some(located), Some(located));
-            }
-            (true, Some(_)) if !last => {
-                found.windows += 1;
-                found.without_gap = Some(*value);
-            }
-            (false, Some(_)) if last => found.windows += 1,
-            _ => {}
-        }
-        (before, last) = (Some(*value), does);
-    }
-    found.without_gap = found.without_gap.filter(|_| last);
-    Some(found)
+    let trial = from_rest(scene);
+    let family = Family::new(&trial, files, mechanism, &scan.field);
+    let until_settled = scan.until_settled;
+    let search = Search { family, onset, until_settled, task, pool, ahead };
+    let mut answers = Answers::default();
+    search.scan(&mut answers, &scan.values, scan.resolution)?;
+    Some(answers.found(scan.resolution))
 }
 
-/// The thresholds of every cell of `grid` over `scene`, in order: the swept fields, then `of,value,windows`.
-/// A value that is not found is missing, as is that of a cell whose mechanism is not solved. Ticks as often
-/// as there are cells and values of the scan. An error has every cell in which no value makes a valid model,
-/// or for interwell motion none under a drive that repeats, and then nothing has been run. None where the
-/// search was cancelled.
+/// The thresholds of every cell of `grid` over `scene`, in order: the swept fields, then
+/// `of,value,low,high,undecided,windows`. A value that is not found is missing, as is that of a cell whose
+/// mechanism is not solved. Ticks as often as there are cells and values of the scan. An error has every cell
+/// in which no value makes a valid model, or for interwell motion none under a drive that repeats, and then
+/// nothing has been run. None where the search was cancelled.
 pub fn threshold_table(
     (scene, files): (&Scene, &Files),
     grid: Option<&Grid>,
-    asked: (&Scan, Onset),
+    (scan, onset): (&Scan, Onset),
     pool: &Pool,
     task: &Task,
 ) -> Option<Result<Table, Vec<CellFaults>>> {
@@ -173,10 +123,7 @@ pub fn threshold_table(
             return Err(());
         }
         let faults = match prepared(scene, index) {
-            Ok(mechanism) => {
-                let trial = from_rest(scene);
-                Search::new(&trial, &mechanism, files, asked, task).faults(&asked.0.values)
-            }
+            Ok(mechanism) => faults(&from_rest(scene), &mechanism, files, (scan, onset)),
             Err(BuildError::Unsolved(_)) => return Ok(None),
             Err(BuildError::Wrong(fault)) => Some(vec![fault]),
         };
@@ -191,10 +138,12 @@ pub fn threshold_table(
     // of several cells each has a thread of its own
     let ahead = if cells == 1 { pool.count() } else { 1 };
     let cell = |scene: &mut Scene, index: usize| match prepared(scene, index) {
-        Ok(mechanism) => threshold_on((Some(pool), ahead), scene, &mechanism, files, asked, task).ok_or(()),
+        Ok(mechanism) => {
+            threshold_on((Some(pool), ahead), scene, &mechanism, files, (scan, onset), task).ok_or(())
+        }
         Err(_) => {
-            asked.0.values.iter().for_each(|_| (task.tick)());
-            Ok(Found { value: None, windows: 0, without_gap: None })
+            scan.values.iter().for_each(|_| (task.tick)());
+            Ok(Found { undecided: true, ..Found::default() })
         }
     };
     let found = pool.map(cells, || scene.clone(), cell).ok()?;
@@ -204,9 +153,12 @@ pub fn threshold_table(
         table = table.with(column, (0..cells as u64).map(value).collect());
     }
     Some(Ok(table
-        .each("of", &found, |_| asked.1.name())
-        .each("value", &found, |own| own.value.unwrap_or(f64::NAN))
-        .each("windows", &found, |own| own.value.map(|_| own.windows))))
+        .each("of", &found, |_| onset.name())
+        .each("value", &found, |found| found.value.unwrap_or(f64::NAN))
+        .each("low", &found, |found| found.low.unwrap_or(f64::NAN))
+        .each("high", &found, |found| found.high.unwrap_or(f64::NAN))
+        .each("undecided", &found, |found| if found.undecided { "true" } else { "false" })
+        .each("windows", &found, |found| found.value.map(|_| found.windows))))
 }
 
 fn build(scene: &Scene, files: &Files) -> Result<Arc<Mechanism>, BuildError> {
@@ -217,146 +169,182 @@ fn from_rest(scene: &Scene) -> Scene {
     Scene { start: Start::Rest, ..scene.clone() }
 }
 
+/// The faults of the model at the first value of the scan, where none of them makes one that can do it.
+fn faults(
+    trial: &Scene,
+    mechanism: &Arc<Mechanism>,
+    files: &Files,
+    (scan, onset): (&Scan, Onset),
+) -> Option<Vec<Fault>> {
+    let family = Family::new(trial, files, mechanism, &scan.field);
+    let mut first = None;
+    for value in &scan.values {
+        let faults = match family.model(*value) {
+            Ok(model) if onset != Onset::Interwell || model.repeats() => return None,
+            Ok(_) => vec![no_period(trial)],
+            Err(faults) if faults.is_empty() => return None,
+            Err(faults) => faults,
+        };
+        first = first.or(Some(faults));
+    }
+    first
+}
+
+fn no_period(trial: &Scene) -> Fault {
+    let kind = format!("{:?}", trial.excitation);
+    let kind = kind.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default().to_owned();
+    let problem = "does not repeat, so no motion can be said to repeat with it (interwell): ask for crossing, \
+                   or take a Sine, or a Sum of sines whose frequencies have a common period";
+    Fault { field: "excitation".into(), value: kind, problem: problem.into() }
+}
+
+/// A value of the field and what its run says; none where that is not known yet.
+type Answer = (f64, Option<Verdict>);
+
+/// What is known of a scan and of the bisection at its first change.
+#[derive(Default)]
+pub(super) struct Answers {
+    /// The values of the scan, ascending.
+    pub scan: Vec<Answer>,
+    /// Those of the bisection, in the order in which they were taken up.
+    between: Vec<Answer>,
+    /// The values of the scan from its first on that do not do it.
+    not: usize,
+}
+
+impl Answers {
+    /// Of a scan that begins with a value that does it.
+    pub fn begun_with(value: f64) -> Self {
+        let verdict = Verdict { does: true, known: false };
+        Self { scan: vec![(value, Some(verdict))], ..Self::default() }
+    }
+
+    /// Whether some value of the scan does it.
+    pub fn any_does(&self) -> bool {
+        self.scan.iter().any(|(_, verdict)| verdict.is_some_and(|verdict| verdict.does))
+    }
+
+    /// The values of the scan between which the answer changes first, once nothing below is open.
+    fn first_change(&mut self) -> Option<(f64, f64)> {
+        let does = |answer: &Answer| answer.1.map(|verdict| verdict.does);
+        self.not += self.scan[self.not..].iter().take_while(|answer| does(answer) == Some(false)).count();
+        let (below, above) = (self.scan.get(self.not.checked_sub(1)?)?, self.scan.get(self.not)?);
+        does(above)?.then_some((below.0, above.0))
+    }
+
+    fn of_between(&self, value: f64) -> Option<Option<Verdict>> {
+        self.between.iter().find(|answer| answer.0 == value).map(|answer| answer.1)
+    }
+
+    /// The next value that is to be asked of the bisection at the first change.
+    fn next_between(&mut self, resolution: f64, ahead: usize) -> Option<f64> {
+        let span = self.first_change()?;
+        let does = |value: f64| self.of_between(value).map(|verdict| verdict.map(|verdict| verdict.does));
+        next_between(does, span, resolution, ahead)
+    }
+
+    /// What the scan and its bisection came to, once all is known.
+    pub fn found(mut self, resolution: f64) -> Found {
+        let mut tried: Vec<(f64, Verdict)> = Vec::with_capacity(self.scan.len());
+        tried.extend(self.scan.iter().filter_map(|(value, verdict)| Some((*value, (*verdict)?))));
+        let changes = tried.windows(2).skip(self.not).filter(|pair| pair[0].1.does != pair[1].1.does);
+        let last_up = changes.clone().last().map(|pair| pair[1].0);
+        let windows = changes.count() as u64;
+        let ends_with_yes = tried.last().is_some_and(|(_, verdict)| verdict.does);
+        // what was asked ahead is left out: which that is depends on the threads
+        let span = self.first_change();
+        let mut place = self.not;
+        let (mut low, mut high) = span.unwrap_or_default();
+        while span.is_some()
+            && let Some(middle) = between(low, high, resolution)
+            && let Some(Some(verdict)) = self.of_between(middle)
+        {
+            tried.insert(place, (middle, verdict));
+            match verdict.does {
+                true => high = middle,
+                false => (low, place) = (middle, place + 1),
+            }
+        }
+        let (below, above) = tried.split_at(place);
+        let known = |does: bool| move |tried: &&(f64, Verdict)| tried.1 == Verdict { does, known: true };
+        let value = above.first().map(|(value, _)| *value);
+        Found {
+            value,
+            low: below.iter().rfind(known(false)).map(|(value, _)| *value),
+            high: above.iter().find(known(true)).map(|(value, _)| *value),
+            undecided: [below.last(), above.first()].into_iter().flatten().any(|(_, verdict)| !verdict.known),
+            windows,
+            without_gap: last_up.or(value).filter(|_| ends_with_yes),
+        }
+    }
+}
+
 /// Runs that a thread has under way from which on a further one shares their lanes, and values of a bisection
 /// that are then asked at a time.
 const COMPANY: usize = 5;
 const IN_COMPANY: usize = 3;
 
-/// What is known of the values of a scan and of those of the bisection at its first change, which come in the
-/// order in which they were asked: no answer where a run is under way.
-struct Asked {
-    of_scan: Vec<Option<bool>>,
-    between: Vec<(f64, Option<bool>)>,
-}
-
-impl Asked {
-    /// The values of the scan between which the answer changes first, once nothing below is open.
-    fn first_change(&self, values: &[f64]) -> Option<(f64, f64)> {
-        let first = self.of_scan.iter().position(|own| *own != Some(false)).filter(|first| *first > 0)?;
-        (self.of_scan[first] == Some(true)).then(|| (values[first - 1], values[first]))
-    }
-}
-
-struct Search<'a> {
-    trial: &'a Scene,
-    family: Family<'a>,
-    onset: Onset,
-    task: &'a Task<'a>,
-    pool: Option<&'a Pool>,
+/// A search over the values of a field.
+pub(super) struct Search<'a> {
+    pub family: Family<'a>,
+    pub onset: Onset,
+    /// As in [`Scan`].
+    pub until_settled: Option<f64>,
+    pub task: &'a Task<'a>,
+    pub pool: Option<&'a Pool>,
     /// Values of a bisection that are asked at a time, by themselves.
-    ahead: usize,
+    pub ahead: usize,
 }
 
 impl<'a> Search<'a> {
-    fn new(
-        trial: &'a Scene,
-        mechanism: &'a Arc<Mechanism>,
-        files: &'a Files,
-        (scan, onset): (&Scan, Onset),
-        task: &'a Task<'a>,
-    ) -> Self {
-        let family = Family::new(trial, files, mechanism, &scan.field);
-        Self { trial, family, onset, task, pool: None, ahead: 1 }
-    }
-
-    /// Runs the scan, and what can be asked meanwhile of the bisection that follows it: in the lanes it takes
-    /// little more time.
-    fn scan(&self, scan: &Scan) -> Option<Asked> {
-        let Scan { values, resolution, .. } = scan;
+    /// Goes on with a scan by further values, and with what can be asked meanwhile of the bisection at its
+    /// first change: in the lanes it takes little more time. Then makes the rest of the bisection. Ticks for
+    /// each value of the scan.
+    pub fn scan(&self, answers: &mut Answers, values: &[f64], resolution: f64) -> Option<()> {
+        let first = answers.scan.len();
+        answers.scan.extend(values.iter().map(|value| (*value, None)));
+        let count = answers.scan.len();
         let queue = Queue::new(values.len(), self.pool.map_or(1, Pool::count));
-        let asked = Mutex::new(Asked { of_scan: vec![None; values.len()], between: Vec::new() });
-        let lock = || asked.lock().unwrap_or_else(PoisonError::into_inner);
+        let shared = Mutex::new(answers);
+        let lock = || shared.lock().unwrap_or_else(PoisonError::into_inner);
         let take = |held: UnderWay| {
             let ahead = match held.runs {
                 0 => self.ahead,
                 COMPANY.. => self.ahead.max(IN_COMPANY),
                 _ => 1,
             };
-            let mut own = lock();
-            let span = own.first_change(values);
-            let Some(next) = span.and_then(|span| next_between(&own.between, span, *resolution, ahead))
-            else {
-                return queue.take(held);
+            let mut answers = lock();
+            let Some(next) = answers.next_between(resolution, ahead) else {
+                return queue.take(held).map(|number| first + number);
             };
-            own.between.push((next, None));
-            Some(values.len() + own.between.len() - 1)
+            answers.between.push((next, None));
+            Some(count + answers.between.len() - 1)
         };
-        let told = |number: usize, does: bool| match number.checked_sub(values.len()) {
-            Some(place) => lock().between[place].1 = Some(does),
+        let answer = |number: usize, verdict: Verdict| match number.checked_sub(count) {
+            Some(place) => lock().between[place].1 = Some(verdict),
             None => {
-                lock().of_scan[number] = Some(does);
+                lock().scan[number].1 = Some(verdict);
                 (self.task.tick)();
             }
         };
         let model = |number: usize| {
-            let value = values.get(number).copied();
-            let value = value.unwrap_or_else(|| lock().between[number - values.len()].0);
-            self.model(value).ok_or_else(|| told(number, false))
+            let value = match number.checked_sub(count) {
+                Some(place) => lock().between[place].0,
+                None => lock().scan[number].0,
+            };
+            self.model(value).ok_or_else(|| answer(number, Verdict::NO_MODEL))
         };
-        let does = |number: usize, run: &Run| told(number, self.onset.is_in(&run.summary));
-        runs_from(self.pool, self.task, &take, model, does)?;
-        Some(asked.into_inner().unwrap_or_else(PoisonError::into_inner))
-    }
-
-    /// Which of the values do it.
-    fn ask(&self, values: &[f64]) -> Option<Vec<bool>> {
-        let model = |number: usize| self.model(values[number]).ok_or(false);
-        let does = |run: &Run| self.onset.is_in(&run.summary);
-        shared_runs(self.pool, self.task, values.len(), model, does)
+        let ended = |number: usize, run: &Run| answer(number, self.onset.verdict(&run.summary));
+        loop {
+            runs_from(self.pool, self.task, &take, model, ended)?;
+            if lock().next_between(resolution, 1).is_none() {
+                return Some(());
+            }
+        }
     }
 
     /// The model of a value, where there is one, and what is asked of it.
     fn model(&self, value: f64) -> Option<(Model, Request<'a>)> {
-        let model = self.family.model(value).ok()?;
-        let until_settled = Some(longest(&model));
-        Some((model, Request { until_settled, ..Request::default() }))
-    }
-
-    /// The faults of the model at the first of the values, where none of them makes one that can do it.
-    fn faults(&self, values: &[f64]) -> Option<Vec<Fault>> {
-        let mut first = None;
-        for value in values {
-            let faults = match self.family.model(*value) {
-                Ok(model) if self.onset != Onset::Interwell || model.repeats() => return None,
-                Ok(_) => vec![self.no_period()],
-                Err(faults) if faults.is_empty() => return None,
-                Err(faults) => faults,
-            };
-            first = first.or(Some(faults));
-        }
-        first
-    }
-
-    fn no_period(&self) -> Fault {
-        let kind = format!("{:?}", self.trial.excitation);
-        let kind = kind.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default().to_owned();
-        let problem = "does not repeat, so no motion can be said to repeat with it (interwell): ask for \
-                       crossing, or take a Sine, or a Sum of sines whose frequencies have a common period";
-        Fault { field: "excitation".into(), value: kind, problem: problem.into() }
-    }
-
-    /// The least multiple of the resolution, as far as bisection tells, that does it, between a value that
-    /// does not and one that does; of some it may be known.
-    fn locate(&self, asked: &mut Vec<(f64, Option<bool>)>, span: (f64, f64), resolution: f64) -> Option<f64> {
-        loop {
-            let known = asked.len();
-            while let Some(next) = next_between(asked, span, resolution, self.ahead) {
-                asked.push((next, None));
-            }
-            let next: Vec<f64> = asked[known..].iter().map(|own| own.0).collect();
-            if next.is_empty() {
-                break;
-            }
-            let does = self.ask(&next)?;
-            asked[known..].iter_mut().zip(does).for_each(|(own, does)| own.1 = Some(does));
-        }
-        let (mut low, mut high) = span;
-        while let Some(middle) = between(low, high, resolution) {
-            match asked.contains(&(middle, Some(true))) {
-                true => high = middle,
-                false => low = middle,
-            }
-        }
-        Some(high)
+        self.family.model(value).ok().map(|model| followed(model, self.until_settled))
     }
 }

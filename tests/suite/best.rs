@@ -25,12 +25,13 @@ fn environment(document: &Document) -> Environment {
 fn question(document: &Document, over: (&str, f64, f64), intervals: usize) -> BestQuestion {
     let (field, low, high) = over;
     BestQuestion {
-        over: vec![DesignRange { field: field.into(), low, high, intervals }],
+        over: vec![DesignRange { field: field.into(), low, high, intervals, whole: false }],
         maximise: SummaryField::find("rms_velocity_m_per_s").unwrap(),
         subject_to: Vec::new(),
         environments: vec![environment(document)],
         vary: Vec::new(),
         seed: 1,
+        until_settled: None,
     }
 }
 
@@ -215,7 +216,8 @@ fn two_fields_are_searched_together() {
     let mut document = linear();
     document.set("damping=Coefficient(c_n_s_per_m: 2.5)").unwrap();
     let mut asked = question(&document, ("excitation.frequency_hz", 1.0, 4.0), 24);
-    let stiffness = DesignRange { field: "mechanism.n_per_m".into(), low: 100.0, high: 200.0, intervals: 8 };
+    let field = "mechanism.n_per_m".into();
+    let stiffness = DesignRange { field, low: 100.0, high: 200.0, intervals: 8, whole: false };
     asked.over.push(stiffness);
     let own = found_by(&asked, 2).unwrap();
     let natural = own.optimum.at[1].sqrt() / std::f64::consts::TAU;
@@ -247,9 +249,86 @@ fn the_command_writes_one_row_the_same_for_any_jobs_and_says_what_it_found() {
         "a tenth of it is lost",
         "excitation.amplitude_g = 0.8: ",
         "of 200 samples of what varies the worst gives",
+        " mm: 0.0",
+        "at travel_limit_mm = ",
     ] {
         assert!(said.contains(words), "{words}: {said}");
     }
+}
+
+/// Every number that is said has its unit, and a constraint is spoken of only where there is one.
+#[test]
+fn what_is_said_has_units() {
+    let line = "best paper --over stops.travel_limit_mm=1.5:2.5:0.25 --over stops.restitution=0.2:0.4:0.1 \
+                --set run.duration_s=6 --vary mass_g=+-1%";
+    let said = |line: &str| {
+        let output = headless(line).assert().success().get_output().clone();
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let free = said(line);
+    let places = free.lines().flat_map(|line| line.split("travel_limit_mm = ").skip(1));
+    let units: Vec<&str> = places.map(|place| place.split([',', ':', ' ']).nth(1).unwrap_or("")).collect();
+    assert!(!units.is_empty() && units.iter().all(|unit| *unit == "mm"), "{free}");
+    assert!(!free.contains("constraint"), "{free}");
+    assert!(said(&format!("{line} --subject-to max_abs_x_m<=1")).contains("a constraint broken"));
+    let text = "best paper --over stops.travel_limit_mm=1:2:0.5 --quiet --maximise peak_contact_force_n";
+    let refusal = headless(text).assert().code(2).get_output().stderr.clone();
+    let refusal = String::from_utf8(refusal).unwrap();
+    assert!(refusal.contains("has this result") && !refusal.contains("--subject-to"), "{refusal}");
+}
+
+/// Counts and seeds are whole: so are the best one, the margins and the resolution.
+#[test]
+fn fields_of_whole_numbers_are_searched_among_whole_numbers() {
+    for (line, most) in [
+        ("best paper --over mechanism.parallel.count=1:4 --set stops.travel_limit_mm=1", 4.0),
+        ("best paper --over mechanism.parallel.count=1:9:4 --set stops.travel_limit_mm=1", 9.0),
+        ("best random-shaking --over excitation.lines=10:200 --set run.duration_s=4", 200.0),
+        ("best random-shaking --over excitation.seed=1:20000:2000 --set run.duration_s=1", 20000.0),
+    ] {
+        let row = stdout(&format!("{line} --set run.settle_s=0.5 --quiet"));
+        let cells: Vec<&str> = row.lines().nth(1).unwrap().split(',').collect();
+        let names: Vec<&str> = row.lines().next().unwrap().split(',').collect();
+        let at: f64 = cells[0].parse().unwrap();
+        assert!(at.fract() == 0.0 && (1.0..=most).contains(&at), "{row}");
+        for (name, cell) in names.iter().zip(&cells).filter(|own| own.0.starts_with("margin")) {
+            assert!(cell.is_empty() || cell.parse::<f64>().unwrap().fract() == 0.0, "{name}: {row}");
+        }
+    }
+    // each of them alone: there is none better
+    let value = |count: u32| {
+        let set = format!("--set mechanism.parallel.count={count} --set stops.travel_limit_mm=1");
+        let csv = stdout(&format!("sweep paper --over run.tolerance=1e-9 {set} --quiet"));
+        crate::cli::column(&csv, "rms_velocity_m_per_s")[0].parse::<f64>().unwrap()
+    };
+    let row = stdout("best paper --over mechanism.parallel.count=1:4 --set stops.travel_limit_mm=1 --quiet");
+    let best: f64 = crate::cli::column(&row, "value")[0].parse().unwrap();
+    assert_eq!(best, (1..=4).map(value).fold(0.0, f64::max));
+    refused(
+        headless("best paper --over mechanism.parallel.count=1:4:0.5"),
+        &["the step must be a whole number above 0"],
+    );
+    refused(headless("best paper --over mechanism.parallel.count=1.5:4"), &["whole, 1 to 64", "1.5"]);
+    refused(
+        headless("best paper --over mass_g=10:20 --vary mechanism.parallel.count=+-1"),
+        &["holds whole numbers"],
+    );
+}
+
+/// A run goes on until its motion repeats: a transient is no result.
+#[test]
+fn a_transient_is_not_what_is_best() {
+    let fields = ["excitation.amplitude_g=1.26", "run.duration_s=12", "run.settle_s=8"];
+    let document = changed("paper-unconstrained", &fields);
+    let best = found_by(&question(&document, ("mass_g", 15.2, 15.3), 1), 2).unwrap().optimum;
+    let mass = format!("mass_g={:?}", best.at[0]);
+    let model = preset("paper-unconstrained", &[&fields[..], &[mass.as_str()]].concat());
+    // 1000 forcing periods beyond the run
+    let until_settled = Some(12.0 + 1000.0 / 3.0);
+    let followed = model.run(&Request { until_settled, ..Request::default() }).summary;
+    let short = model.run(&Request::default()).summary;
+    assert_eq!((short.settled, followed.settled), (Some(false), Some(true)));
+    assert_eq!(Some(best.value), followed.rms_velocity);
 }
 
 #[test]
@@ -268,7 +347,7 @@ fn what_cannot_be_searched_is_refused_with_what_would_be_right() {
     refused(of("--subject-to max_abs_x_m<0.1"), &["COLUMN<=VALUE"]);
     refused(
         of("--subject-to max_abs_x_m<=1e-6"),
-        &["nothing that was tried", "travel_limit_mm = 1,", "is 0.001"],
+        &["nothing that was tried", "travel_limit_mm = 1 mm,", "is 0.001 m"],
     );
     refused(of("--vary stops.bogus=+-1%"), &["--vary", "stops.restitution"]);
     refused(of("--vary start.x_mm=+-1%"), &["--vary"]);

@@ -11,7 +11,8 @@
 //! - it has settled where its states come back or it rests, and impacts are counted alike by every command
 //!   and at every tolerance (`settled`, `counts`);
 //! - its error is at most a constant times its conditioning times its tolerance, plus rounding (`bound`);
-//! - nothing panics or goes on without end, and no number is silently not finite (`extremes`).
+//! - nothing panics or goes on without end, and no number is silently not finite (`extremes`);
+//! - a threshold is what closed forms say, and what it names is what runs of their own do (`thresholds`).
 //!
 //! The scenes are the same on every day, so that a test that was green does not turn red without a change.
 //! `INTERWELL_PROPERTY_SEED=7` draws others, `INTERWELL_PROPERTY_SEED=new` new ones each time, and
@@ -30,4 +31,5 @@ pub mod scenes;
 mod settled;
 pub mod sound;
 mod sweep;
+mod thresholds;
 mod units;

@@ -183,9 +183,10 @@ pub(super) fn reach(card: &Card) -> String {
 
 /// The least shaking that crosses, as far as it was searched for.
 fn crosses_from(card: &Card) -> String {
-    let found = card.thresholds.and_then(|found| found.crosses_from);
-    match found {
-        Some(g) => format!("{} g", grams(g)),
+    let found = card.thresholds.map(|found| found.crossing);
+    match found.and_then(|crossing| Some((crossing.value?, crossing.undecided))) {
+        Some((g, true)) => format!("about {} g", grams(g)),
+        Some((g, false)) => format!("{} g", grams(g)),
         None => dash(),
     }
 }

@@ -21,8 +21,9 @@ fn value_of(column: &str, value: f64) -> String {
     if column.ends_with("_w") { power(value) } else { format!("{} mm/s", speed(value)) }
 }
 
-/// What is found in runs from rest of `duration_s` seconds.
-pub fn sentence(found: &Found<'_>, column: &str, range: &DesignRange, duration_s: f64) -> String {
+/// What is found in runs from rest of `duration_s` seconds; without that they are followed until the motion
+/// repeats.
+pub fn sentence(found: &Found<'_>, column: &str, range: &DesignRange, duration_s: Option<f64>) -> String {
     let name = column_info(column).map_or(column, |own| own.name);
     let mm = |value: f64| format!("{} mm", short(value));
     let design = match found {
@@ -43,7 +44,10 @@ pub fn sentence(found: &Found<'_>, column: &str, range: &DesignRange, duration_s
     };
     let (at, value) = (design.optimum.at[0], value_of(column, design.optimum.value));
     let between = format!("between ±{} and ±{}", short(range.low), mm(range.high));
-    let runs = format!("from rest, in runs of {} s", three(duration_s));
+    let runs = match duration_s {
+        Some(duration) => format!("from rest, in runs of {} s", three(duration)),
+        None => "from rest, each run followed until its motion repeats, for 1000 periods at most".to_owned(),
+    };
     if design.flat {
         return format!("No stops are best: the {name} is {value} wherever they stand {between}, {runs}.");
     }

@@ -1,7 +1,7 @@
 //! `best`: the best design for an environment, one row, with its margins.
 
 use clap::Args;
-use interwell::scene::{Axis, Document, FieldPath, RunSettings, Transducer};
+use interwell::scene::{Axis, Document, FieldPath, RunSettings, Transducer, is_whole};
 use interwell::study::{
     BestQuestion, Constraint, DesignRange, Environment, INTERVALS, MOST_FIELDS, NoBest, Read, SUMMARY_FIELDS,
     SummaryField, Task, Variation, best, scan_runs,
@@ -14,7 +14,9 @@ use words::{names, place, quantity, words};
 
 use super::failure::Failure;
 use super::options::Common;
-use super::support::{finish, inputs, load, open, warn, write_table};
+use super::support::{
+    finish, inputs, load, mechanism, model_from_rest, open, until_settled, warn, write_table,
+};
 use super::sweep::{bar, pool};
 use super::{interrupt, say};
 
@@ -61,6 +63,11 @@ pub struct Arguments {
     #[arg(long, value_name = "FIELD=+-1%|+-0.05", allow_hyphen_values = true)]
     pub vary: Vec<String>,
 
+    /// Follow each run, window after window, until its motion repeats, or up to this time in s; where the drive
+    /// never repeats, each run is as long as the scene says [default: 1000 forcing periods after the scene's run]
+    #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
+    pub until_settled: Option<String>,
+
     /// Seed of the samples of --vary
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     pub seed: u64,
@@ -69,15 +76,22 @@ pub struct Arguments {
 /// Searches and writes the row.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let (document, warnings) = load(&options.scene, common, None)?;
-    let question = BestQuestion {
+    let mut question = BestQuestion {
         over: ranges(&options.over, &document)?,
         maximise: number("--maximise", &options.maximise)?,
         subject_to: options.subject_to.iter().map(|text| constraint(text)).collect::<Result<_, _>>()?,
         environments: environments(&options.environment, &document)?,
         vary: options.vary.iter().map(|text| variation(text, &document)).collect::<Result<_, _>>()?,
         seed: options.seed,
+        until_settled: None,
     };
     has_fields(&question)?;
+    if let (Some(text), [first, ..]) = (options.until_settled.as_deref(), &question.environments[..]) {
+        let mut shaken = document.clone();
+        (shaken.scene, shaken.files) = (first.scene.clone(), first.files.clone());
+        let model = model_from_rest(&shaken, &mechanism(&shaken)?)?;
+        question.until_settled = until_settled(Some(text), &shaken, &model)?;
+    }
     warn(&document, common, &warnings, None);
     let pool = pool(common)?;
     let mut sinks = open(&inputs(&options.scene, &document), [Some(("--out", common.out()))])?;
@@ -90,7 +104,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     bar.finish_and_clear();
     if let (Err(NoBest::Cancelled), Some(own)) = (&found, &so_far) {
         let maximised = question.maximise.name;
-        let at = place(&names(&question), own);
+        let at = place(&names(&question), &own.at);
         let value = quantity(own.value, maximised);
         say(&format!("{}: best so far at {at}: {maximised} {value}", document.name));
     }
@@ -135,21 +149,20 @@ fn failure(why: NoBest, options: &Arguments, question: &BestQuestion, document: 
                     document.name
                 ),
                 None => format!(
-                    "--maximise {}: no design of the range has this result, or one of --subject-to",
-                    options.maximise
+                    "--maximise {}: no design of the range has this result{}",
+                    options.maximise,
+                    if question.subject_to.is_empty() { "" } else { ", or one of --subject-to" }
                 ),
             })
         }
         NoBest::NoneMeets { nearest, results } => {
-            let at =
-                names(question).into_iter().zip(nearest).map(|(name, value)| format!("{name} = {value}"));
             let results = question.subject_to.iter().zip(results);
             let results =
                 results.map(|(own, value)| format!("{} is {}", own.of.name, quantity(value, own.of.name)));
             Failure::argument(format!(
                 "--subject-to {}: nothing that was tried in the range keeps to it; nearest is {}, where {}",
                 options.subject_to.join(", "),
-                at.collect::<Vec<_>>().join(", "),
+                place(&names(question), &nearest),
                 results.collect::<Vec<_>>().join(", ")
             ))
         }
@@ -180,11 +193,15 @@ fn ranges(over: &[String], document: &Document) -> Result<Vec<DesignRange>, Fail
         if low >= high {
             return Err(wrong(format!("the range must go upward: {low} is not below {high}")));
         }
+        let whole = is_whole(&document.scene, &axis.field);
         let intervals = match parts.get(2) {
+            None if whole => INTERVALS[over.len().min(MOST_FIELDS) - 1].min((high - low) as usize),
             None => INTERVALS[over.len().min(MOST_FIELDS) - 1],
             Some(step) => {
-                let step = step.trim().parse().ok().filter(|own: &f64| *own > 0.0 && own.is_finite());
-                let step = step.ok_or_else(|| wrong("the step must be a number above 0".into()))?;
+                let fits = |step: &f64| *step > 0.0 && step.is_finite() && (!whole || step.fract() == 0.0);
+                let kind = if whole { "whole number" } else { "number" };
+                let step = step.trim().parse().ok().filter(fits);
+                let step = step.ok_or_else(|| wrong(format!("the step must be a {kind} above 0")))?;
                 let intervals = ((high - low) / step).round();
                 if !(1.0..=1e5).contains(&intervals) {
                     return Err(wrong(format!("takes {intervals} steps; give one with 1 to 100000")));
@@ -195,7 +212,7 @@ fn ranges(over: &[String], document: &Document) -> Result<Vec<DesignRange>, Fail
         if ranges.iter().any(|own| own.field == axis.field) {
             return Err(wrong("is given twice; give each field one range".into()));
         }
-        ranges.push(DesignRange { field: axis.field, low, high, intervals });
+        ranges.push(DesignRange { field: axis.field, low, high, intervals, whole });
     }
     if ranges.len() > MOST_FIELDS {
         return Err(Failure::argument(format!(
@@ -250,6 +267,11 @@ fn variation(text: &str, document: &Document) -> Result<Variation, Failure> {
             .map_err(|problem| wrong(&problem))
             .and_then(|_| Err(wrong("the scene leaves this field out; give it a value with --set")))?,
     };
+    if is_whole(&document.scene, field) {
+        return Err(wrong(
+            "holds whole numbers, which do not come out a little otherwise; vary another field",
+        ));
+    }
     let by = by.trim().trim_start_matches("+-").trim_start_matches('\u{b1}');
     let (number, relative) = by.strip_suffix('%').map_or((by, false), |share| (share, true));
     let number = number.trim().parse().ok().filter(|own: &f64| *own >= 0.0 && own.is_finite());

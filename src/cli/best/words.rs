@@ -2,13 +2,13 @@
 
 use interwell::numeric::short;
 use interwell::scene::column_names;
-use interwell::study::{BestDesign, BestQuestion, Optimum, SAMPLES};
+use interwell::study::{BestDesign, BestQuestion, SAMPLES};
 
 /// The answer in sentences.
 pub fn words(design: &BestDesign, question: &BestQuestion) -> Vec<String> {
     let names = names(question);
     let maximised = question.maximise.name;
-    let at = place(&names, &design.optimum);
+    let at = place(&names, &design.optimum.at);
     let mean = if question.environments.len() > 1 { "the mean of " } else { "" };
     let value = |own: f64| quantity(own, maximised);
     let mut lines = vec![format!("{mean}{maximised} is largest at {at}: {}", value(design.optimum.value))];
@@ -51,9 +51,8 @@ pub fn words(design: &BestDesign, question: &BestQuestion) -> Vec<String> {
                 "no place beside it along the first field, of those tried, has a better worst case".into()
             }
             Some((own, spread)) => format!(
-                "at {} = {} the worst gives {}, one in twenty less than {}; the value there is {}, {} % less",
-                names[0],
-                own.at[0],
+                "at {} the worst gives {}, one in twenty less than {}; the value there is {}, {} % less",
+                place(&names[..1], &own.at),
                 number(spread.worst),
                 number(spread.quantile_5),
                 value(own.value),
@@ -64,9 +63,10 @@ pub fn words(design: &BestDesign, question: &BestQuestion) -> Vec<String> {
     lines
 }
 
-/// A place as `field = value`, field by field.
-pub fn place(names: &[String], own: &Optimum) -> String {
-    let each = names.iter().zip(&own.at).map(|(name, value)| format!("{name} = {value}"));
+/// A place as `field = value` with its unit, field by field.
+pub fn place(names: &[String], at: &[f64]) -> String {
+    let each = names.iter().zip(at);
+    let each = each.map(|(name, value)| format!("{name} = {}", with_unit(&value.to_string(), name)));
     each.collect::<Vec<_>>().join(", ")
 }
 

@@ -181,7 +181,7 @@ fn panels(picture: &ComparisonPicture<'_>) -> Vec<Panel> {
     };
     let sensitivity = |own: &Rated| own.sensitivity.as_ref().map(|own| own.0);
     let all = [
-        panel("crosses from", "g", Best::Least, 1.0, &|own| own.crossing_g),
+        panel("crosses from", "g", Best::Least, 1.0, &Rated::crossing_g),
         panel("RMS velocity", speed_name, Best::Most, per_speed, &speed),
         panel("power", watt, Best::Most, per_watt, &power),
         panel("reach", "mm", Best::Least, 1e3, &|own| own.summary.max_abs_x),
@@ -355,7 +355,9 @@ fn drawn(rated: &[Rated]) -> Table {
         let power = summary.harvest.and_then(|own| own.mean_load_power);
         let all = [
             ("release_g", own.release_g),
-            ("crossing_g", own.crossing_g),
+            ("crossing_g", own.crossing_g()),
+            ("crossing_low_g", own.crossing.and_then(|found| found.low)),
+            ("crossing_high_g", own.crossing.and_then(|found| found.high)),
             ("rms_velocity_m_per_s", summary.rms_velocity),
             ("mean_load_power_w", power),
             ("max_abs_x_m", summary.max_abs_x),

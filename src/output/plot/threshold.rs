@@ -66,11 +66,14 @@ pub fn threshold_figure(
             map(&mut figure, &shown, (&columns[0], &columns[1]), theme);
         }
     }
-    let mut drawn = Drawn::new(grid.columns().iter().map(String::as_str).chain([&*least, "windows"]), &[]);
+    let names = grid.columns().iter().map(String::as_str);
+    let mut drawn = Drawn::new(names.chain([&*least, "low", "high", "windows"]), &[]);
     let windows = rows.column("windows").and_then(as_numbers).unwrap_or_default();
+    let of_row = |name: &str, row: usize| rows.numbers(name).map(|values| values[row]);
     for row in 0..rows.rows() {
-        let fields = grid.columns().iter().filter_map(|name| rows.numbers(name)).map(|own| own[row]);
-        let numbers: Vec<f64> = fields.chain([values[row], windows[row]]).collect();
+        let fields = grid.columns().iter().map(String::as_str);
+        let columns = fields.chain(["value", "low", "high"]).filter_map(|name| of_row(name, row));
+        let numbers: Vec<f64> = columns.chain([windows[row]]).collect();
         drawn.put("threshold", &numbers, &[]);
     }
     figure.data = drawn.table();
@@ -120,6 +123,21 @@ fn lines(
         entries.push((Sample::Marker(Marker::Disc, theme.ink), "holds for all values above".to_owned()));
         entries.push((Sample::Marker(Marker::Triangle, theme.unstable), "gaps above".to_owned()));
     }
+    let undecided: Vec<usize> = rows
+        .words("undecided")
+        .iter()
+        .enumerate()
+        .filter(|(_, word)| **word == "true")
+        .map(|(row, _)| row)
+        .collect();
+    let bars: Vec<(usize, [f64; 2])> = undecided
+        .into_iter()
+        .map(|row| (row, ["low", "high"].map(|name| numbers(name)[row])))
+        .filter(|(_, bar)| bar.iter().all(|end| end.is_finite()))
+        .collect();
+    if !bars.is_empty() {
+        entries.push((Sample::Line(theme.soft, style::GUIDE, None), "known between, undecided".to_owned()));
+    }
     let missing: Vec<usize> = (0..values.len()).filter(|i| !values[*i].is_finite()).collect();
     if !missing.is_empty() {
         entries.push((Sample::Ticks(theme.soft), "none in the range".to_owned()));
@@ -134,6 +152,9 @@ fn lines(
     let frame = Frame::whole(figure, (LEFT, top), across, upward);
     let Area { left, right, bottom, .. } = frame.area;
     frame.grid(figure, theme);
+    for (row, [low, high]) in bars {
+        frame.line(figure, &[(places[row], low), (places[row], high)], style::GUIDE, theme.soft);
+    }
     for row in missing {
         let at = frame.across(places[row]);
         figure.line(&[(at, bottom - TICK), (at, bottom)], style::LINE, theme.soft, frame.area);

@@ -2,10 +2,10 @@
 
 use super::starts::Starts;
 use crate::dynamics::{Capture, Pursuit, Region};
+use crate::study::settled;
 
-/// Forcing periods after which a motion that goes to nothing known is judged: five times the longest
-/// transients of the prototype.
-pub(super) const PATIENCE: u64 = 1000;
+/// Forcing periods after which a motion that goes to nothing known is judged.
+pub(super) const PATIENCE: u64 = settled::PATIENCE as u64;
 
 /// How long a motion is followed until it is known where it goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -14,8 +14,10 @@ pub struct DesignRange {
     pub low: f64,
     /// Largest value, above the least.
     pub high: f64,
-    /// Intervals of the scan; at least 1.
+    /// Intervals of the scan; at least 1, and of whole numbers at most as many as there are.
     pub intervals: usize,
+    /// Whether only whole numbers are tried.
+    pub whole: bool,
 }
 
 impl DesignRange {
@@ -75,6 +77,9 @@ pub struct BestQuestion {
     pub vary: Vec<Variation>,
     /// Seed of the samples of what varies.
     pub seed: u64,
+    /// Time in s up to which each run is followed until its motion repeats; 1000 forcing periods beyond the run
+    /// where there is none.
+    pub until_settled: Option<f64>,
 }
 
 /// The most fields of a design: the scan grows with their power.

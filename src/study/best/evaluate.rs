@@ -8,6 +8,7 @@ use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, FieldPath, Scene, check};
 use crate::study::Task;
 use crate::study::fields::{Read, SummaryField};
+use crate::study::settled::followed;
 use crate::study::shared_runs::shared_runs;
 use crate::system::threads::Pool;
 
@@ -95,20 +96,21 @@ impl<'a> Evaluator<'a> {
     /// The same of designs in which what varies has values of its own.
     pub fn judge_varied(&self, designs: &[Design]) -> Result<Vec<Judged>, NoBest> {
         let each = self.question.environments.len();
-        let constraints = self.question.subject_to.iter().map(|own| own.of);
+        let constraints = self.question.subject_to.iter().map(|constraint| constraint.of);
         let ledger = constraints.chain([self.question.maximise]).any(|field| field.needs_ledger);
-        let told = |own: Ran| {
+        let ticked = |ran: Ran| {
             (self.task.tick)();
-            own
+            ran
         };
         let model = |job: usize| {
-            let model = self.model(&designs[job / each], job % each).map_err(|faults| told(Err(faults)))?;
-            Ok((model, Request { ledger, ..Request::default() }))
+            let model = self.model(&designs[job / each], job % each).map_err(|faults| ticked(Err(faults)))?;
+            let (model, request) = followed(model, self.question.until_settled);
+            Ok((model, Request { ledger, ..request }))
         };
-        let summary = |run: &Run| told(Ok(Box::new(run.summary)));
+        let summary = |run: &Run| ticked(Ok(Box::new(run.summary)));
         let runs = shared_runs(Some(self.pool), self.task, designs.len() * each, model, summary);
         let summaries = runs.ok_or(NoBest::Cancelled)?;
-        Ok(summaries.chunks(each).map(|own| self.judged(own)).collect())
+        Ok(summaries.chunks(each).map(|runs| self.judged(runs)).collect())
     }
 
     fn model(&self, (at, varied): &Design, environment: usize) -> Result<Model, Vec<Fault>> {

@@ -26,9 +26,10 @@ pub(super) struct Found {
     pub flat: bool,
 }
 
-/// How closely a field is located: 1, 2 or 5 of a decimal place.
+/// How closely a field is located: 1, 2 or 5 of a decimal place, and no closer than 1 among whole numbers.
 pub(super) fn resolution(range: &DesignRange) -> f64 {
-    round_down((range.high - range.low) / PARTS, &ONE_TWO_FIVE)
+    let parts = round_down((range.high - range.low) / PARTS, &ONE_TWO_FIVE);
+    if range.whole { parts.max(1.0) } else { parts }
 }
 
 /// The place of the scan with these indices.

@@ -7,9 +7,7 @@ use super::orbit::of_orbit;
 use super::result::{ExponentOptions, Exponents, NoExponents};
 use super::tangent::Tangent;
 use crate::dynamics::{Model, Outcome, Request};
-
-/// Forcing periods after a scene's run for which a motion is followed until it repeats.
-const PATIENCE: f64 = 1000.0;
+use crate::study::settled::{PATIENCE, followed_until};
 
 /// Forcing periods of a window in which every period of a motion up to 12 of them is told.
 const WINDOW: f64 = 36.0;
@@ -28,11 +26,11 @@ pub fn exponents(
     let (run, until_settled) = match model.forcing_period().filter(|_| model.repeats()) {
         Some(period) => {
             let window = (model.duration() - model.settle()).max(WINDOW * period);
-            let until = options.until_settled.unwrap_or(model.duration() + PATIENCE * period);
+            let until = options.until_settled.unwrap_or(followed_until(model));
             (model.with_duration(model.settle() + window, model.settle()), Some(until))
         }
         None if model.excitation().is_constant() => {
-            let end = model.duration() + PATIENCE * model.natural_time();
+            let end = model.duration() + f64::from(PATIENCE) * model.natural_time();
             (model.with_duration(end, end), None)
         }
         None => return Err(NoExponents::NoPeriod),

@@ -67,7 +67,7 @@ fn waiting_needs_something_to_wait_for() {
 fn thresholds_are_tables() {
     // in closed form: mass times amplitude is the force at the stop
     let csv = stdout("threshold paper --of release --over stops.travel_limit_mm=1,1.5,4");
-    assert_eq!(csv.lines().next().unwrap(), "travel_limit_mm,of,value,windows");
+    assert_eq!(csv.lines().next().unwrap(), "travel_limit_mm,of,value,low,high,undecided,windows");
     let curve = column(&stdout("curve paper --at-mm 1,1.5,4"), "force_n");
     assert_eq!((column(&csv, "value").len(), curve.len()), (3, 3));
     for (value, force) in column(&csv, "value").iter().zip(curve) {
@@ -93,7 +93,7 @@ fn thresholds_are_tables() {
     // none in the range, and another field
     assert_eq!(
         stdout("threshold paper --field excitation.amplitude_g=0:0.5"),
-        "of,value,windows\ncrossing,,\n"
+        "of,value,low,high,undecided,windows\ncrossing,,0.5,,false,\n"
     );
     // that is said
     let told = |line: &str| {
@@ -109,6 +109,63 @@ fn thresholds_are_tables() {
     assert!(told(some).contains("1 of 2 rows have no value"), "{}", told(some));
     let csv = stdout("threshold paper --field stops.travel_limit_mm=1:3:0.1 --of interwell");
     assert_eq!(column(&csv, "windows"), ["1"], "it ends where the stops hold the mass too hard: {csv}");
+}
+
+/// Followed for 10 000 s at each quarter of a thousandth, it crosses from 1.15075 g on and not at 1.1505 g. Just
+/// above, it may take 1500 s to: nothing found in the default time may claim more than it has seen.
+#[test]
+fn a_threshold_that_is_reached_ever_later_is_bracketed() {
+    for (range, more) in [("1:1.3", ""), ("1.05:1.25:0.01", ""), ("1:1.3:0.02", " --until-settled 100")] {
+        let line = format!("threshold paper-unconstrained --field excitation.amplitude_g={range}{more}");
+        let csv = stdout(&format!("{line} --jobs 1"));
+        let number = |name: &str| column(&csv, name)[0].parse::<f64>().unwrap();
+        assert!(number("low") <= 1.1505 && number("high") >= 1.15075, "{range}{more}: {csv}");
+        assert!(number("value") >= 1.15 && number("value") <= number("high"), "{range}{more}: {csv}");
+        assert_eq!(column(&csv, "undecided"), ["true"]);
+        let output = headless(&format!("{line} --jobs 3")).assert().success().get_output().clone();
+        assert_eq!(String::from_utf8_lossy(&output.stdout), csv);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(said.contains("the row is undecided") && said.contains("--until-settled"), "{said}");
+    }
+}
+
+/// Under a drive that never repeats the run is all that is asked about.
+#[test]
+fn under_noise_the_run_decides() {
+    let line =
+        "threshold random-shaking --set run.duration_s=20 --field excitation.rms_g=0.1:0.6:0.02 --quiet";
+    let csv = stdout(line);
+    let number = |name: &str| column(&csv, name)[0].parse::<f64>().unwrap();
+    assert_eq!((column(&csv, "undecided")[0].as_str(), number("value")), ("false", number("high")));
+    assert!((number("value") - number("low") - 2e-5).abs() < 1e-9, "{csv}");
+    let runs = format!(
+        "sweep random-shaking --set run.duration_s=20 --over excitation.rms_g={},{} --quiet",
+        number("low"),
+        number("high")
+    );
+    let crossings = column(&stdout(&runs), "crossings");
+    assert!(crossings[0] == "0" && crossings[1] != "0", "{crossings:?}");
+}
+
+#[test]
+fn a_threshold_of_whole_numbers_is_a_whole_number() {
+    let lines = "threshold random-shaking --set run.duration_s=10 --field excitation.lines=2:402 --quiet";
+    let csv = stdout(lines);
+    let number = |name: &str| column(&csv, name)[0].parse::<f64>().unwrap();
+    let crossings = |lines: f64| {
+        let run =
+            format!("sweep random-shaking --set run.duration_s=10 --over excitation.lines={lines} --quiet");
+        column(&stdout(&run), "crossings")[0].parse::<u64>().unwrap()
+    };
+    assert!(number("value").fract() == 0.0 && crossings(number("value")) > 0, "{csv}");
+    assert!(number("low") == number("value") - 1.0 && crossings(number("low")) == 0, "{csv}");
+    for (line, words) in [
+        ("threshold paper --field mechanism.parallel.count=1:4:0.5", &["whole, 1 to 64", "1.5"][..]),
+        ("threshold paper --field mechanism.parallel.count=1.5:4", &["whole, 1 to 64", "1.5"]),
+        ("threshold paper --field mechanism.parallel.count=1:4 --resolution 0.5", &["whole number above 0"]),
+    ] {
+        refused(headless(line), words);
+    }
 }
 
 #[test]
@@ -130,6 +187,16 @@ fn a_threshold_that_cannot_be_searched_is_refused() {
         ),
         ("threshold paper --of motion", &["release", "crossing", "interwell"]),
         ("threshold paper --resolution 0", &["--resolution 0", "above 0"]),
+        ("threshold paper --until-settled 5", &["--until-settled 5", "already lasts 10 s"]),
+        (
+            "threshold random-shaking --field excitation.rms_g=0:1 --until-settled 300",
+            &["--until-settled 300", "does not repeat"],
+        ),
+        ("compare paper balanced --until-settled 5", &["--until-settled 5", "already lasts 10 s"]),
+        (
+            "best walking --over stops.travel_limit_mm=0.2:2 --until-settled 300",
+            &["--until-settled 300", "does not repeat"],
+        ),
         ("threshold paper --over excitation.amplitude_g=1,2", &["the threshold is over it"]),
         ("threshold paper --field stops.restitution=0:2:0.5", &["stops.restitution", "0 to 1"]),
     ] {

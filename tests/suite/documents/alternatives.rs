@@ -54,7 +54,7 @@ fn beside_paper(name: &str, changes: &[&str]) -> Document {
 /// The least amplitude in g that crosses, as `compare` looks for it.
 fn crossing(document: &Document) -> f64 {
     let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
-    thresholds(&document.scene, &mechanism(document), &task).unwrap().crosses_from.unwrap()
+    thresholds(&document.scene, &mechanism(document), &task).unwrap().crossing.value.unwrap()
 }
 
 #[test]

@@ -64,7 +64,12 @@ impl Told {
         let document = self.changed(changes);
         let steps = ((range.end - range.start) / 0.01).round() as u32;
         let values = (0..=steps).map(|i| range.start + 0.01 * f64::from(i)).collect();
-        let scan = Scan { field: "excitation.amplitude_g".to_owned(), values, resolution: 1e-4 };
+        let scan = Scan {
+            field: "excitation.amplitude_g".to_owned(),
+            values,
+            resolution: 1e-4,
+            until_settled: None,
+        };
         let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
         let found = threshold(&document.scene, &mechanism(&document), &document.files, (&scan, onset), &task);
         found.unwrap().value.unwrap()

@@ -44,11 +44,12 @@ pub fn balanced(text: &mut Text) {
     // with the run of `paper`, and as long as a motion is followed for a threshold
     let compared = changed("balanced", &["run.duration_s=10", "run.settle_s=5"]);
     let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
-    let found = thresholds(&compared.scene, &mechanism(&compared), &task).unwrap().crosses_from.unwrap();
-    let followed = 10.0 + 250.0 / 3.0;
-    text.says(&format!("follows it for {followed:.0} s, may take that for crossing"));
-    within(found, 0.185..0.21);
-    text.says("and gives a value from 0.19 g on");
+    let found = thresholds(&compared.scene, &mechanism(&compared), &task).unwrap().crossing;
+    let followed = 10.0 + 1000.0 / 3.0;
+    text.says(&format!("which follows it for {followed:.0} s, may give a value from 0.19 g on"));
+    within(found.value.unwrap(), 0.185..0.215);
+    text.says("it calls that undecided");
+    assert!(found.undecided && found.low.is_none_or(|low| low < 0.21), "{found:?}");
     let stiffness = 50.489_568_209_863_194;
     text.says(&format!("A spring of {stiffness:.2} N/m"));
     let other = |share: f64| height("balanced", &[&format!("mechanism.1.n_per_m={}", share * stiffness)]);

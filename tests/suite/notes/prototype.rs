@@ -79,6 +79,17 @@ pub fn paper(text: &mut Text) {
     assert!(further.iter().all(|own| *own > open + 0.01), "{further:?}");
     assert!(further[..5].is_sorted() && further[5..].iter().all(|own| *own < further[4]), "{further:?}");
     text.says(&format!("it is higher than without stops, at most {:.2} g at 4.6 mm", further[4]));
+    // The other reading of the damping ratio
+    let mechanism = preset("paper", &[]).mechanism().clone();
+    let outer = mechanism.landscape.kink_at_right_well().unwrap().outer;
+    let damping = 2.0 * 0.023 * (outer * 15.2e-3).sqrt();
+    text.says(&format!("By the slope outside it would be {damping:.3} N s/m"));
+    let damping = format!("damping=Coefficient(c_n_s_per_m: {damping:?})");
+    let [open, below, above] =
+        ["stops=None", &stopped(3.4), &stopped(3.6)].map(|stops| from(&[&damping, stops], 1.2..1.6));
+    within(open, 1.395..1.425);
+    assert!(below < 1.395 && above > below + 0.02 && above > open - 0.01, "{below} {open} {above}");
+    text.says("then it takes about 1.4 g without stops, and stops up to 3.4 mm lower that");
     // A softer preload
     let softer = ["mechanism.preload_mm=2.5"];
     let [stiff, soft] = [&[][..], &softer[..]].map(|changes| barrier(preset("paper", changes).mechanism()));

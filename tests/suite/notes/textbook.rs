@@ -220,7 +220,8 @@ pub fn duffing_cascade(text: &mut Text) {
     text.says(&format!("At 0.360 ({in_g}) no period is found, and the mass still stays in its well"));
     let document = changed(name, &[]);
     let values = (0..=40).map(|i| 0.036 + 5e-5 * f64::from(i)).collect();
-    let scan = Scan { field: "excitation.amplitude_g".to_owned(), values, resolution: 1e-6 };
+    let scan =
+        Scan { field: "excitation.amplitude_g".to_owned(), values, resolution: 1e-6, until_settled: None };
     let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
     let asked = (&scan, Onset::Crossing);
     let found = threshold(&document.scene, &mechanism(&document), &document.files, asked, &task).unwrap();

@@ -29,6 +29,8 @@ struct Asked {
     scene: Scene,
     range: DesignRange,
     column: &'static str,
+    /// Length of a run in s under a drive that does not repeat.
+    duration_s: Option<f64>,
 }
 
 /// The search for the best stops, and what it found. An answer to another scene is thrown away.
@@ -76,7 +78,6 @@ impl BestStops {
             return why.to_owned();
         }
         let Some(asked) = &self.asked else { return String::new() };
-        let run = asked.scene.run;
         let found = match (&self.answer, &self.preview) {
             (Some(answer), _) => Found::Whole(answer),
             (None, preview) if self.job.is_some() => {
@@ -84,7 +85,7 @@ impl BestStops {
             }
             (None, _) => Found::Nothing,
         };
-        sentence(&found, asked.column, &asked.range, run.duration_s)
+        sentence(&found, asked.column, &asked.range, asked.duration_s)
     }
 
     pub(super) fn poll(&mut self) {
@@ -115,6 +116,7 @@ impl BestStops {
                 environments: vec![environment],
                 vary: Vec::new(),
                 seed: 1,
+                until_settled: None,
             };
             let tick = || {
                 runs.fetch_add(1, Ordering::Relaxed);

@@ -58,8 +58,10 @@ impl Session {
             low: reach.low,
             high: reach.high,
             intervals: INTERVALS[0],
+            whole: false,
         };
-        Ok(Asked { scene, range, column: maximised(self.model()) })
+        let duration_s = (!self.model().repeats()).then_some(scene.run.duration_s);
+        Ok(Asked { scene, range, column: maximised(self.model()), duration_s })
     }
 
     /// Takes in what has come; what is about another scene is thrown away. To be called once a frame.

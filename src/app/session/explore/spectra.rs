@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::app::session::Session;
 use crate::dynamics::Model;
-use crate::study::{Signal, Spectrum, SpectrumOptions, Task, spectrum};
+use crate::study::{Signal, Spectrum, SpectrumOptions, Task, followed_until, spectrum};
 
 use super::Explored;
 
@@ -52,5 +52,5 @@ impl Session {
 
 /// For how long in s the motion is waited for to repeat, where it may.
 pub fn longest_wait(model: &Model) -> Option<f64> {
-    model.forcing_period().filter(|_| model.can_settle()).map(|period| model.duration() + 200.0 * period)
+    model.can_settle().then(|| followed_until(model))
 }

@@ -19,7 +19,7 @@ const NARROW: f64 = 1.03;
 
 /// How far above the least amplitude that crosses the gaps end, where there are any.
 fn gaps(found: &Thresholds, from: f64) -> String {
-    match found.without_gap {
+    match found.crossing.without_gap {
         Some(whole) if whole > NARROW * from => format!(", with gaps up to {} g", grams(whole)),
         None => ", with gaps above it".to_owned(),
         Some(_) => String::new(),
@@ -33,15 +33,15 @@ pub(super) fn remedy(scene: &Scene, summary: &Summary, found: &Thresholds) -> St
         return String::new();
     }
     let crosses = summary.crossings > 0;
-    let Some(from) = found.crosses_from else {
+    let Some(from) = found.crossing.value else {
         let most = grams(found.searched_to);
         return match crosses {
             true => String::new(),
             false => format!("From rest no shaking up to {most} g crosses."),
         };
     };
-    // without stops it hangs on next to nothing whether a motion near it crosses
-    let about = if scene.stops == Stops::None { "about " } else { "" };
+    // a motion near it may be a transient
+    let about = if found.crossing.undecided { "about " } else { "" };
     let (least, gaps) = (format!("{about}{}", grams(from)), gaps(found, from));
     let text = match (crosses, g >= from) {
         (true, true) => format!("{about}{} g to spare: crosses from {least} g{gaps}.", grams_apart(g - from)),
@@ -80,7 +80,7 @@ pub fn ways(scene: &Scene, settled: &Summary, thresholds: &Thresholds, stops_mm:
             None => "It crosses already, if not regularly.".to_owned(),
         },
         Regime::Rest | Regime::Intrawell => {
-            let more = thresholds.crosses_from.filter(|from| *from > g);
+            let more = thresholds.crossing.value.filter(|from| *from > g);
             let more = more.map(|from| format!("with {} g more", grams_apart(from - g)));
             match (more, stops) {
                 (Some(more), Some(stops)) => format!("Crosses {more}, or {stops}."),

@@ -1,0 +1,233 @@
+//! Thresholds against closed forms, against runs of their own at what they name, and against each other.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use interwell::dynamics::{Model, Regime, Request, STANDARD_GRAVITY, Summary};
+use interwell::mechanics::Mechanism;
+use interwell::scene::{Document, FieldPath, Files, Scene};
+use interwell::study::{Found, Onset, Scan, Task, threshold, thresholds};
+use proptest::prelude::*;
+
+use super::harness::hold_for;
+
+const AMPLITUDE: &str = "excitation.amplitude_g";
+
+/// Two wells with a barrier V = B (x^2/q^2 - 1)^2 between them, and what shakes the mass. Stops stand at a
+/// share of q, and the drive has a share of the frequency of small oscillations.
+#[derive(Debug, Clone, Copy)]
+struct Drawn {
+    mass_g: f64,
+    barrier_mj: f64,
+    damping: f64,
+    limit: Option<f64>,
+    restitution: f64,
+    frequency: f64,
+    /// Forcing periods of the run, of which the second half is the settled window.
+    periods: u32,
+}
+
+const WELL_MM: f64 = 7.0;
+
+impl Drawn {
+    fn frequency_hz(&self) -> f64 {
+        let stiffness = 8.0 * self.barrier_mj * 1e3 / (WELL_MM * WELL_MM);
+        self.frequency * (stiffness / (self.mass_g * 1e-3)).sqrt() / TAU
+    }
+
+    fn text(&self) -> String {
+        let Self { mass_g, barrier_mj, damping, limit, restitution, periods, .. } = *self;
+        let stops = limit.map_or_else(
+            || "None".to_owned(),
+            |share| format!("Rigid(travel_limit_mm: {:?}, restitution: {restitution:?})", share * WELL_MM),
+        );
+        let (frequency, duration) = (self.frequency_hz(), f64::from(periods) / self.frequency_hz());
+        format!(
+            "(title: \"drawn\", mass_g: {mass_g:?}, damping: Ratio({damping:?}), stops: {stops}, \
+             mechanism: DoubleWell(equilibrium_mm: {WELL_MM:?}, barrier_mj: {barrier_mj:?}), \
+             excitation: Sine(frequency_hz: {frequency:?}, amplitude_g: 0.3), \
+             run: (duration_s: {duration:?}, tolerance: 1e-9))"
+        )
+    }
+
+    fn scene(&self) -> Scene {
+        Document::from_text("drawn", &self.text(), Files::default()).unwrap().scene
+    }
+
+    /// The amplitude in g whose push is the force at a share of q.
+    fn push_g(&self, share: f64) -> f64 {
+        let force = 4.0 * self.barrier_mj / WELL_MM * share * (1.0 - share * share);
+        force / (self.mass_g * 1e-3) / STANDARD_GRAVITY
+    }
+
+    /// The largest force against which the mass must be moved to the barrier, in the same way.
+    fn most_g(&self) -> f64 {
+        self.push_g(self.limit.unwrap_or(1.0).min(3.0_f64.sqrt().recip()))
+    }
+}
+
+fn drawn(
+    limits: impl Strategy<Value = Option<f64>>,
+    dampings: std::ops::Range<f64>,
+    frequencies: std::ops::Range<f64>,
+    periods: u32,
+) -> impl Strategy<Value = Drawn> {
+    (1.0..100.0_f64, 0.01..1.0_f64, dampings, limits, 0.0..0.8_f64, frequencies).prop_map(
+        move |(mass_g, barrier_mj, damping, limit, restitution, frequency)| Drawn {
+            mass_g,
+            barrier_mj,
+            damping,
+            limit,
+            restitution,
+            frequency,
+            periods,
+        },
+    )
+}
+
+fn mechanism(scene: &Scene) -> Arc<Mechanism> {
+    Arc::new(Mechanism::build(&scene.mechanism, &Files::default()).unwrap())
+}
+
+/// So many even steps of a field; to a thousandth of a step, and followed up to a time in s.
+fn scan(field: &str, (low, high): (f64, f64), steps: u32, until_settled: Option<f64>) -> Scan {
+    let step = (high - low) / f64::from(steps);
+    let values = (0..=steps).map(|i| low + step * f64::from(i)).collect();
+    Scan { field: field.to_owned(), values, resolution: 1e-3 * step, until_settled }
+}
+
+fn found(scene: &Scene, scan: &Scan, onset: Onset) -> Found {
+    let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
+    threshold(scene, &mechanism(scene), &Files::default(), (scan, onset), &task).unwrap()
+}
+
+/// The least mass, and the least amplitude, that a push moves off the stop on which it rests are force over
+/// acceleration and force over weight.
+#[test]
+fn release_is_where_the_push_is_the_force() {
+    let all = drawn((0.05..0.95_f64).prop_map(Some), 0.0..0.5, 0.05..2.0, 6);
+    hold_for("release", 24, 1.0, all, Drawn::text, |drawn| {
+        let scene = drawn.scene();
+        let exact = drawn.push_g(drawn.limit.unwrap());
+        let over_amplitude = scan(AMPLITUDE, (0.0, 2.0 * exact), 10, None);
+        let amplitude = found(&scene, &over_amplitude, Onset::Release);
+        let value = amplitude.value.unwrap();
+        prop_assert!((value / exact - 1.0).abs() < 1e-9, "{value} is not {exact}");
+        prop_assert_eq!(
+            (amplitude.low, amplitude.high, amplitude.undecided),
+            (Some(value), Some(value), false)
+        );
+        // the amplitude is 0.3 g: the mass that this releases
+        let exact = drawn.mass_g * exact / 0.3;
+        let over_mass = scan("mass_g", (0.5 * exact, 1.6 * exact), 11, None);
+        let mass = found(&scene, &over_mass, Onset::Release);
+        let (low, high) = (mass.low.unwrap(), mass.high.unwrap());
+        prop_assert!(!mass.undecided && mass.value == Some(high) && mass.windows == 0, "{mass:?}");
+        prop_assert!(low <= exact * (1.0 + 1e-9) && exact <= high * (1.0 + 1e-9), "{mass:?} not {exact}");
+        prop_assert!(high - low <= 1.001 * over_mass.resolution, "{mass:?}");
+        Ok(true)
+    });
+}
+
+/// Pushed slowly off a stop inside the largest force, the mass is across as soon as it is off.
+#[test]
+fn a_slow_push_crosses_where_it_releases() {
+    let all = drawn((0.1..0.55_f64).prop_map(Some), 0.02..0.5, 0.004..0.01, 4);
+    hold_for("slow crossing", 24, 1.0, all, Drawn::text, |drawn| {
+        let releases = drawn.push_g(drawn.limit.unwrap());
+        let scan = scan(AMPLITUDE, (0.0, 2.0 * releases), 20, None);
+        let crossing = found(&drawn.scene(), &scan, Onset::Crossing);
+        let (low, high) = (crossing.low.unwrap(), crossing.high.unwrap());
+        prop_assert!(!crossing.undecided && high - low <= 1.001 * scan.resolution, "{crossing:?}");
+        let excess = high / releases - 1.0;
+        prop_assert!((-1e-9..0.02).contains(&excess), "{excess} above {releases}");
+        Ok(true)
+    });
+}
+
+/// What a run of its own does, followed as the search follows: whether it crosses, and whether that goes on.
+fn told(scene: &Scene, amplitude: f64, until_settled: f64) -> (bool, bool) {
+    let mut scene = scene.clone();
+    assert!(FieldPath::new(AMPLITUDE).set(&mut scene, amplitude));
+    let model = Model::build(&scene, mechanism(&scene)).unwrap();
+    let request = Request { until_settled: Some(until_settled), ..Request::default() };
+    let Summary { crossings, settled, period, regime, .. } = model.run(&request).summary;
+    (crossings > 0, settled == Some(true) && (period.is_some() || regime == Regime::Rest))
+}
+
+/// Runs at `value`, `low` and `high`, at the scan's values and just below the threshold do what the columns
+/// say, where the time is so short that much is left undecided.
+#[test]
+fn what_a_threshold_names_is_what_its_runs_do() {
+    let limits = prop_oneof![2 => Just(None), 1 => (0.3..1.3_f64).prop_map(Some)];
+    let all = drawn(limits, 0.005..0.15, 0.3..1.6, 16);
+    let undecided = std::cell::Cell::new(0);
+    hold_for("named values", 40, 0.7, all, Drawn::text, |drawn| {
+        let scene = drawn.scene();
+        let until = 60.0 / drawn.frequency_hz();
+        let mut scan = scan(AMPLITUDE, (0.0, 2.0 * drawn.most_g()), 16, Some(until));
+        scan.resolution *= 20.0;
+        let found = found(&scene, &scan, Onset::Crossing);
+        let each: Vec<(f64, (bool, bool))> =
+            scan.values.iter().map(|value| (*value, told(&scene, *value, until))).collect();
+        let Some(value) = found.value else {
+            prop_assert!(each.iter().all(|(_, (crosses, _))| !crosses), "{found:?} {each:?}");
+            prop_assert_eq!((found.high, found.windows), (None, 0));
+            prop_assert_eq!(found.undecided, !each[16].1.1);
+            return Ok(false);
+        };
+        prop_assert!(told(&scene, value, until).0, "{found:?}");
+        prop_assert!(each.iter().all(|(at, (crosses, _))| *at >= value || !crosses), "{found:?} {each:?}");
+        let above: Vec<bool> = each.iter().filter(|own| own.0 >= value).map(|own| own.1.0).collect();
+        let changes = above.windows(2).filter(|pair| pair[0] != pair[1]).count() as u64;
+        prop_assert_eq!(found.windows, changes, "{:?} {:?}", found, each);
+        for (named, does) in [(found.low, false), (found.high, true)] {
+            let Some(named) = named else { continue };
+            prop_assert_eq!(told(&scene, named, until), (does, true), "{:?} at {}", found, named);
+        }
+        prop_assert!(found.low.is_none_or(|low| low < value) && found.high.is_none_or(|high| high >= value));
+        let known = each.iter().filter(|own| own.1.1);
+        let known_low = known.clone().filter(|own| own.0 < value).map(|own| own.0).fold(-1.0, f64::max);
+        prop_assert!(found.low.unwrap_or(-1.0) >= known_low, "{found:?} {each:?}");
+        if found.undecided {
+            undecided.set(undecided.get() + 1);
+            let apart = |end: Option<f64>| end.is_none_or(|end| (value - end).abs() > 0.5 * scan.resolution);
+            prop_assert!(found.high != Some(value) || apart(found.low.map(|low| low + scan.resolution)));
+        } else {
+            prop_assert_eq!(found.high, Some(value));
+            let near =
+                found.low.map_or(value == scan.values[0], |low| value - low <= 1.001 * scan.resolution);
+            prop_assert!(near, "{found:?}");
+        }
+        Ok(true)
+    });
+    assert!(undecided.get() >= 4, "{}", undecided.get());
+}
+
+/// A sharp threshold is the same for any step of the scan and for the search that needs none.
+#[test]
+fn a_sharp_threshold_does_not_depend_on_the_scan() {
+    let all = drawn((0.15..0.9_f64).prop_map(Some), 0.02..0.3, 0.1..0.8, 12);
+    hold_for("sharp", 24, 0.6, all, Drawn::text, |drawn| {
+        let scene = drawn.scene();
+        let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
+        let alone = thresholds(&scene, &mechanism(&scene), &task).unwrap().crossing;
+        let (Some(value), Some(low)) = (alone.value, alone.low) else { return Ok(false) };
+        if alone.undecided || alone.windows > 0 {
+            return Ok(false);
+        }
+        let resolution = 10_f64.powf((value - low).log10().round());
+        for steps in [15, 40, 150] {
+            let scan = Scan { resolution, ..scan(AMPLITUDE, (0.0, 1.5 * value), steps, None) };
+            let found = found(&scene, &scan, Onset::Crossing);
+            if found.windows > 0 {
+                return Ok(false);
+            }
+            let apart = (found.value.unwrap() - value).abs();
+            // (the values of the scan are no multiples of the resolution, and the least may be one of them)
+            prop_assert!(!found.undecided && apart <= 1.001 * resolution, "{steps}: {found:?} {alone:?}");
+        }
+        Ok(true)
+    });
+}
