@@ -31,8 +31,6 @@ pub fn wells_between(landscape: &Landscape, low: f64, high: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanics::Mechanism;
-    use crate::scene::Scene;
 
     #[test]
     fn each_well_has_a_name_of_its_own() {
