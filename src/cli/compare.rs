@@ -36,8 +36,8 @@ pub struct Arguments {
     #[arg(long, value_name = "SCENE")]
     pub environment: Option<String>,
 
-    /// Follow each run, window after window, until its motion repeats, or up to this time in s: longer is surer
-    /// where the motion is irregular [default: 1000 forcing periods after the run]
+    /// Follow each run, window after window, until its motion repeats, or up to this time in s: longer is
+    /// surer where the motion is irregular [default: 1000 forcing periods after the run]
     #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
     pub until_settled: Option<String>,
 
@@ -148,8 +148,8 @@ fn remarks(scene: &Alternative, rated: &Rated, amplitude_g: f64) -> Vec<String> 
         let low = crossing.low.map_or_else(String::new, |low| format!(" above {} g", short(low)));
         let high = crossing.high.map_or_else(String::new, |high| format!(" below {} g", short(high)));
         all.push(format!(
-            "its threshold is undecided: of some amplitudes{low}{high} it is not known whether they cross, since \
-             the motion does not repeat up to the end of the time for which it is followed"
+            "its threshold is undecided: of some amplitudes{low}{high} it is not known whether they cross, \
+             since the motion does not repeat up to the end of the time for which it is followed"
         ));
     }
     if let Some((_, size)) = rated.sensitivity.as_ref().filter(|(change, _)| change.is_infinite()) {

@@ -45,13 +45,13 @@ pub struct Arguments {
           value_parser = ["release", "crossing", "interwell"])]
     pub of: String,
 
-    /// How closely the threshold is located, in the field's unit [default: a 1000th of the step; of a field of
-    /// whole numbers 1]
+    /// How closely the threshold is located, in the field's unit [default: a 1000th of the step; of a field
+    /// of whole numbers 1]
     #[arg(long, value_name = "R", allow_hyphen_values = true)]
     pub resolution: Option<String>,
 
-    /// Follow each run, window after window, until its motion repeats, or up to this time in s: longer is surer
-    /// where the motion is irregular [default: 1000 forcing periods after the scene's run]
+    /// Follow each run, window after window, until its motion repeats, or up to this time in s: longer is
+    /// surer where the motion is irregular [default: 1000 forcing periods after the scene's run]
     #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
     pub until_settled: Option<String>,
 
@@ -128,8 +128,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     finish(sinks)
 }
 
-/// So many of all rows, as the subject of a sentence whose verb depends on whether there is only one row; none
-/// where it is none of them.
+/// So many of all rows, as the subject of a sentence whose verb depends on whether there is only one row;
+/// none where it is none of them.
 fn of_rows(count: usize, all: usize, verbs: [&str; 2]) -> Option<String> {
     match (count, all) {
         (0, _) => None,
@@ -144,9 +144,9 @@ fn undecided(table: &Table) -> Option<String> {
     let count = words.iter().filter(|word| **word == "true").count();
     let rows = of_rows(count, words.len(), ["is undecided", "are undecided"])?;
     Some(format!(
-        "{rows}: beside the value the motion does not repeat up to the end of the time for which it is followed, \
-         and may be a transient; the threshold is known between low and high, and --until-settled with a longer \
-         time may bring them together"
+        "{rows}: beside the value the motion does not repeat up to the end of the time for which it is \
+         followed, and may be a transient; low and high, where given, are values whose motion repeats, and \
+         --until-settled with a longer time may bring them together"
     ))
 }
 

@@ -43,8 +43,8 @@ pub(crate) struct Motion<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> {
     pub steps: u64,
     /// The segment of the drive and the instant since which a search has found no release.
     pub searched: Option<(usize, Instant<T>)>,
-    /// Whether windows may be completed from a recurrence, whether this one may yet be, and whether the mirror
-    /// image of a motion is one.
+    /// Whether windows may be completed from a recurrence, whether this one may yet be, and whether the
+    /// mirror image of a motion is one.
     pub may_recur: bool,
     pub recurs: bool,
     pub symmetric: bool,

@@ -103,8 +103,8 @@ fn sizes(scene: &Scene) -> Vec<String> {
     numeric_fields(scene).into_iter().filter(is_size).collect()
 }
 
-/// Rates the scenes, on `pool`; each run from rest, and followed until its motion repeats or up to a time in s
-/// (1000 forcing periods beyond the run where there is none). None where it was cancelled. The same for any
+/// Rates the scenes, on `pool`; each run from rest, and followed until its motion repeats or up to a time in
+/// s (1000 forcing periods beyond the run where there is none). None where it was cancelled. The same for any
 /// number of threads.
 pub fn alternatives(
     scenes: &[Alternative],

@@ -112,9 +112,9 @@ pub(super) fn crossing(
 /// times as many.
 const FEWEST_STOPS: f64 = 50.0;
 
-/// From the wells inward the first travel limit in mm, the same on both sides, whose motion from rest is known
-/// to be interwell under the scene's own excitation; inner `None` where there is none, outer `None` where the
-/// search was cancelled.
+/// From the wells inward the first travel limit in mm, the same on both sides, whose motion from rest is
+/// known to be interwell under the scene's own excitation; inner `None` where there is none, outer `None`
+/// where the search was cancelled.
 ///
 /// The limits that cross are no interval, so nothing is bisected: every step is run, 1, 2 or 5 of a decimal
 /// place, a tenth of a millimetre where the wells are some 7 mm away. `restitution` is that of the stops that

@@ -53,8 +53,8 @@ impl Onset {
     }
 }
 
-/// Whether what a run did in its last window is what the motion does from then on: it repeats or rests, or the
-/// drive has no period and nothing is asked beyond the run.
+/// Whether what a run did in its last window is what the motion does from then on: it repeats or rests, or
+/// the drive has no period and nothing is asked beyond the run.
 fn goes_on_so(summary: &Summary) -> bool {
     let within_the_run = summary.settled.is_none() || summary.periods == 0;
     summary.outcome == Outcome::Done && (summary.settled == Some(true) || within_the_run)

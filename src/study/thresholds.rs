@@ -34,8 +34,8 @@ pub struct Scan {
     pub values: Vec<f64>,
     /// The threshold is located among the multiples of this, in the field's unit.
     pub resolution: f64,
-    /// Time in s up to which a run goes on until its motion repeats; 1000 forcing periods beyond the run where
-    /// there is none.
+    /// Time in s up to which a run goes on until its motion repeats; 1000 forcing periods beyond the run
+    /// where there is none.
     pub until_settled: Option<f64>,
 }
 
@@ -193,8 +193,8 @@ fn faults(
 fn no_period(trial: &Scene) -> Fault {
     let kind = format!("{:?}", trial.excitation);
     let kind = kind.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default().to_owned();
-    let problem = "does not repeat, so no motion can be said to repeat with it (interwell): ask for crossing, \
-                   or take a Sine, or a Sum of sines whose frequencies have a common period";
+    let problem = "does not repeat, so no motion can be said to repeat with it (interwell): ask for \
+                   crossing, or take a Sine, or a Sum of sines whose frequencies have a common period";
     Fault { field: "excitation".into(), value: kind, problem: problem.into() }
 }
 

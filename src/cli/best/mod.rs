@@ -63,8 +63,9 @@ pub struct Arguments {
     #[arg(long, value_name = "FIELD=+-1%|+-0.05", allow_hyphen_values = true)]
     pub vary: Vec<String>,
 
-    /// Follow each run, window after window, until its motion repeats, or up to this time in s; where the drive
-    /// never repeats, each run is as long as the scene says [default: 1000 forcing periods after the scene's run]
+    /// Follow each run, window after window, until its motion repeats, or up to this time in s; where the
+    /// drive never repeats, each run is as long as the scene says [default: 1000 forcing periods after the
+    /// scene's run]
     #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
     pub until_settled: Option<String>,
 

@@ -25,8 +25,8 @@ use crate::mechanics::{Hertz, Mechanism};
 use crate::scene::Scene;
 
 /// Impacts that are slower than this share of the speed scale are not counted, and may be part of a chatter
-/// that is summed in closed form. The share is far above rounding and far below the slowest impact that can be
-/// seen in a trace.
+/// that is summed in closed form. The share is far above rounding and far below the slowest impact that can
+/// be seen in a trace.
 pub(in crate::dynamics) const LEAST_IMPACT: f64 = 1e-6;
 
 /// Length in m, speed in m/s, time in s; all above 0 and finite.

@@ -288,8 +288,8 @@ impl Judge {
         self.period().is_some() || self.crossings.repeat()
     }
 
-    /// The smallest number of forcing periods, at most 12, after which the motion repeats over the whole window,
-    /// which must hold it twice, and the number of the state since which it has.
+    /// The smallest number of forcing periods, at most 12, after which the motion repeats over the whole
+    /// window, which must hold it twice, and the number of the state since which it has.
     fn repeats(&self) -> Option<(u32, u64)> {
         self.strobes.period().filter(|_| self.rhythm == Rhythm::Periodic)
     }
@@ -309,8 +309,8 @@ impl Judge {
         }
     }
 
-    /// Whether the averages of the window's halves agree, where this can be judged. Those of a motion that has
-    /// settled do.
+    /// Whether the averages of the window's halves agree, where this can be judged. Those of a motion that
+    /// has settled do.
     pub fn steady(&self, rests: bool) -> Option<bool> {
         match self.settled(rests)? {
             true => Some(true),

@@ -124,8 +124,8 @@ pub struct Summary {
     pub chatter_sums: u64,
     /// Times the mass came to rest on a stop.
     pub rests: u64,
-    /// Period of the motion in forcing periods; none where it does not repeat after at most 12 of them, or the
-    /// mass rests.
+    /// Period of the motion in forcing periods; none where it does not repeat after at most 12 of them, or
+    /// the mass rests.
     pub period: Option<u32>,
     /// Largest force in N of a compliant stop on the mass over the whole run; none where the stops are not
     /// compliant.

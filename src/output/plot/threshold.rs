@@ -120,23 +120,16 @@ fn lines(
     }
     let gap = gaps.contains(&true);
     if gap {
-        entries.push((Sample::Marker(Marker::Disc, theme.ink), "holds for all values above".to_owned()));
+        entries.push((Sample::Marker(Marker::Disc, theme.ink), "no gap found above".to_owned()));
         entries.push((Sample::Marker(Marker::Triangle, theme.unstable), "gaps above".to_owned()));
     }
-    let undecided: Vec<usize> = rows
-        .words("undecided")
-        .iter()
-        .enumerate()
-        .filter(|(_, word)| **word == "true")
-        .map(|(row, _)| row)
-        .collect();
+    let undecided = rows.words("undecided").iter().enumerate().filter(|(_, word)| **word == "true");
     let bars: Vec<(usize, [f64; 2])> = undecided
-        .into_iter()
-        .map(|row| (row, ["low", "high"].map(|name| numbers(name)[row])))
+        .map(|(row, _)| (row, ["low", "high"].map(|name| numbers(name)[row])))
         .filter(|(_, bar)| bar.iter().all(|end| end.is_finite()))
         .collect();
     if !bars.is_empty() {
-        entries.push((Sample::Line(theme.soft, style::GUIDE, None), "known between, undecided".to_owned()));
+        entries.push((Sample::Line(theme.soft, style::GUIDE, None), "undecided between".to_owned()));
     }
     let missing: Vec<usize> = (0..values.len()).filter(|i| !values[*i].is_finite()).collect();
     if !missing.is_empty() {
@@ -147,7 +140,7 @@ fn lines(
 
     let x_label = label(rows, x);
     let across = PlotAxis::around(places.iter().copied(), 0.02, 8, &x_label).or_given(ranges.x, 8, &x_label);
-    let from_zero = values.iter().copied().chain([0.0]);
+    let from_zero = values.iter().copied().chain(bars.iter().flat_map(|(_, bar)| *bar)).chain([0.0]);
     let upward = PlotAxis::around(from_zero, 0.05, 6, up).or_given(ranges.y, 6, up);
     let frame = Frame::whole(figure, (LEFT, top), across, upward);
     let Area { left, right, bottom, .. } = frame.area;

@@ -77,8 +77,8 @@ pub struct BestQuestion {
     pub vary: Vec<Variation>,
     /// Seed of the samples of what varies.
     pub seed: u64,
-    /// Time in s up to which each run is followed until its motion repeats; 1000 forcing periods beyond the run
-    /// where there is none.
+    /// Time in s up to which each run is followed until its motion repeats; 1000 forcing periods beyond the
+    /// run where there is none.
     pub until_settled: Option<f64>,
 }
 

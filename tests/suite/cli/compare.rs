@@ -231,12 +231,12 @@ fn what_a_row_cannot_say_is_said() {
         format!("{first}, {second}: no mean_load_power_w: it has no transducer\n"),
         format!("{first}: no impact_speed_max_m_per_s: it strikes no stop\n"),
         format!(
-            "{first}: no crosses_from_hz, crosses_to_hz: no frequency that was tried makes its settled motion \
-             cross at 0.6 g\n"
+            "{first}: no crosses_from_hz, crosses_to_hz: no frequency that was tried makes its settled \
+             motion cross at 0.6 g\n"
         ),
         format!(
-            "{first}: no threshold_sensitivity, most_sensitive_to: its mechanism has no length, thickness or gap \
-             to change\n"
+            "{first}: no threshold_sensitivity, most_sensitive_to: its mechanism has no length, thickness or \
+             gap to change\n"
         ),
         format!("{second}: no release_g: it rests on no stop\n"),
         format!("{second}: no impact_speed_max_m_per_s: it has no stops\n"),

@@ -166,7 +166,7 @@ fn the_best_limits_are_those_of_their_commands() {
         "Stepped back to {back:.3} mm, at a cost of {lost:.1} %, the worst gives {:.0} mm/s",
         in_mm("back_worst")
     ));
-    assert!(said.contains(&format!("at travel_limit_mm = {back} the worst gives")), "{said}");
+    assert!(said.contains(&format!("at travel_limit_mm = {back} mm the worst gives")), "{said}");
     let csv = command("best paper --over stops.travel_limit_mm=0.2:2", " --vary").1;
     assert_eq!(row("a walker"), cells(&csv, [3, 1, 3, 3]));
 }

@@ -237,7 +237,9 @@ fn the_data_of_a_picture_are_the_rows_that_it_shows() {
     assert_eq!(series(&curve, "unstable_equilibrium"), [["unstable_equilibrium", "0", "0", "0"]]);
 
     let line = "threshold paper --of release --over stops.travel_limit_mm=1:6:1";
-    assert!(drawn(line).starts_with("series,travel_limit_mm,least_amplitude_g,windows\nthreshold,1,0."));
+    assert!(
+        drawn(line).starts_with("series,travel_limit_mm,least_amplitude_g,low,high,windows\nthreshold,1,0.")
+    );
     for (line, header) in [
         ("spectrum paper", "series,frequency_hz,amplitude\n"),
         ("section paper --over excitation.amplitude_g=0.5:1:0.25", "series,amplitude_g,x_m,v_m_per_s\n"),

@@ -147,8 +147,8 @@ type Oscillator = (f64, u32, u32, f64, f64);
 
 #[test]
 fn an_approach_has_settled_once_what_remains_is_small() {
-    // x'' + 2 z x' + x = -A sin(w t): the transient shrinks by exp(-z) a unit of time, so that what remains of
-    // it is known at any time
+    // x'' + 2 z x' + x = -A sin(w t): the transient shrinks by exp(-z) a unit of time, so that what remains
+    // of it is known at any time
     let drawn = ((-3.5..-0.5f64), 0..120u32, 2..80u32, 0.3..3.0f64, -3.0..3.0f64);
     let (settled, open) = (Cell::new(0), Cell::new(0));
     let show = |drawn: &Oscillator| format!("{drawn:?}");
@@ -158,9 +158,9 @@ fn an_approach_has_settled_once_what_remains_is_small() {
         let period = TAU / rate;
         let (settle, duration) = (f64::from(*before) * period, f64::from(before + periods) * period);
         let model = crate::support::model(&format!(
-            "mass_g: 1000, mechanism: Polynomial(coefficients_si: [0, 1]), damping: Ratio({ratio}), excitation: \
-             Sine(frequency_hz: {:?}, amplitude_g: 0.1), start: At(x_mm: {:?}, v_m_per_s: 0), run: (duration_s: \
-             {:?}, settle_s: {settle:?}, tolerance: 1e-12)",
+            "mass_g: 1000, mechanism: Polynomial(coefficients_si: [0, 1]), damping: Ratio({ratio}), \
+             excitation: Sine(frequency_hz: {:?}, amplitude_g: 0.1), start: At(x_mm: {:?}, v_m_per_s: 0), \
+             run: (duration_s: {:?}, settle_s: {settle:?}, tolerance: 1e-12)",
             1.0 / period,
             1e3 * start,
             duration * (1.0 + 1e-12)

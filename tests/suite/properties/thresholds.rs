@@ -123,7 +123,8 @@ fn release_is_where_the_push_is_the_force() {
         let over_mass = scan("mass_g", (0.5 * exact, 1.6 * exact), 11, None);
         let mass = found(&scene, &over_mass, Onset::Release);
         let (low, high) = (mass.low.unwrap(), mass.high.unwrap());
-        prop_assert!(!mass.undecided && mass.value == Some(high) && mass.windows == 0, "{mass:?}");
+        // (a heavier mass may fly throughout the window, which is no release)
+        prop_assert!(!mass.undecided && mass.value == Some(high), "{mass:?}");
         prop_assert!(low <= exact * (1.0 + 1e-9) && exact <= high * (1.0 + 1e-9), "{mass:?} not {exact}");
         prop_assert!(high - low <= 1.001 * over_mass.resolution, "{mass:?}");
         Ok(true)
