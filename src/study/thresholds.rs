@@ -248,7 +248,7 @@ impl Answers {
         let mut tried: Vec<(f64, Verdict)> = Vec::with_capacity(self.scan.len());
         tried.extend(self.scan.iter().filter_map(|(value, verdict)| Some((*value, (*verdict)?))));
         let changes = tried.windows(2).skip(self.not).filter(|pair| pair[0].1.does != pair[1].1.does);
-        let last_up = changes.clone().last().map(|pair| pair[1].0);
+        let last_up = changes.clone().next_back().map(|pair| pair[1].0);
         let windows = changes.count() as u64;
         let ends_with_yes = tried.last().is_some_and(|(_, verdict)| verdict.does);
         // what was asked ahead is left out: which that is depends on the threads

@@ -70,10 +70,10 @@ pub fn threshold_figure(
     let mut drawn = Drawn::new(names.chain([&*least, "low", "high", "windows"]), &[]);
     let windows = rows.column("windows").and_then(as_numbers).unwrap_or_default();
     let of_row = |name: &str, row: usize| rows.numbers(name).map(|values| values[row]);
-    for row in 0..rows.rows() {
+    for (row, &windows) in windows.iter().enumerate() {
         let fields = grid.columns().iter().map(String::as_str);
         let columns = fields.chain(["value", "low", "high"]).filter_map(|name| of_row(name, row));
-        let numbers: Vec<f64> = columns.chain([windows[row]]).collect();
+        let numbers: Vec<f64> = columns.chain([windows]).collect();
         drawn.put("threshold", &numbers, &[]);
     }
     figure.data = drawn.table();

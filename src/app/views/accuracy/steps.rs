@@ -298,11 +298,6 @@ mod tests {
         assert_eq!(rounded(0.01668), 1.0 / 60.0);
         assert_eq!(rounded(0.0012345), 1.2e-3);
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
 
     #[test]
     fn the_pieces_of_a_path_are_inside_and_join_where_it_stays_inside() {
