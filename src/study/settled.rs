@@ -10,36 +10,47 @@ use crate::dynamics::{Model, Outcome, Phase, Request, Sample, Summary};
 /// without stops, of 40 amplitudes within 1 % of it, five take between 1000 and 4500 periods.
 pub(super) const PATIENCE: u32 = 1000;
 
-/// The time in s up to which a run of `model` is followed until its motion repeats.
+/// Forcing periods for which it is followed at least, where the fastest of several sines is much faster than
+/// they repeat together.
+const LEAST_PATIENCE: f64 = 16.0;
+
+/// The time in s up to which a run of `model` is followed until its motion repeats: [`PATIENCE`] periods of
+/// its fastest sine beyond its duration, and at least [`LEAST_PATIENCE`] forcing periods.
 pub fn followed_until(model: &Model) -> f64 {
-    model.duration() + f64::from(PATIENCE) * model.forcing_period().unwrap_or(0.0)
+    let period = model.forcing_period().unwrap_or(0.0);
+    let fastest = period / model.window_periods().1.max(1) as f64;
+    model.duration() + (f64::from(PATIENCE) * fastest).max(LEAST_PATIENCE * period)
 }
 
 /// Forcing periods of a settled window in place of one that holds less than two: in fewer nothing is seen to
 /// repeat.
 const WINDOW: f64 = 8.0;
 
-/// A model, and the request by which its run is followed until the motion repeats, or up to a time in s
-/// ([`PATIENCE`] where there is none).
-pub(super) fn followed<'a>(model: Model, until: Option<f64>) -> (Model, Request<'a>) {
-    let period = model.forcing_period().filter(|_| model.repeats() && !model.can_settle());
-    let model = match period {
+/// The model with a settled window in which a motion can be seen to repeat, where its drive does.
+pub fn widened(model: Model) -> Model {
+    match model.forcing_period().filter(|_| model.repeats() && !model.can_settle()) {
         Some(period) => model.with_duration(model.settle() + WINDOW * period, model.settle()),
         None => model,
-    };
+    }
+}
+
+/// A model, and the request by which its run is followed until the motion repeats, or up to a time in s
+/// ([`followed_until`] where there is none).
+pub(super) fn followed<'a>(model: Model, until: Option<f64>) -> (Model, Request<'a>) {
+    let model = widened(model);
     let until_settled = until.or(Some(followed_until(&model)));
     (model, Request { until_settled, ..Request::default() })
 }
 
-/// Runs `model` for its settled motion, on beyond its duration until the motion repeats or 1000 forcing
-/// periods have passed without that; under an amplitude ramp to the ramp's end, but no longer. None where it
-/// was cancelled.
+/// Runs `model` for its settled motion, on beyond its duration until the motion repeats, at most up to
+/// [`followed_until`]; under an amplitude ramp to the ramp's end, but no longer. None where it was cancelled.
 pub fn settled(model: &Model, cancel: &AtomicBool) -> Option<Summary> {
     settled_within(model, None, cancel)
 }
 
 /// The same, followed up to a time in s where there is one.
 pub(super) fn settled_within(model: &Model, until: Option<f64>, cancel: &AtomicBool) -> Option<Summary> {
+    let model = &widened(model.clone());
     let until_settled = until.or(model.forcing_period().map(|_| followed_until(model)));
     let ramp = until_settled.and_then(|until| model.ramp_end().map(|end| end.min(until)));
     let duration = ramp.map_or(model.duration(), |end| end.max(model.duration()));

@@ -47,6 +47,12 @@ impl Jacobian {
         Self { rows: [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]] }
     }
 
+    /// The same of the mirrored state.
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        Self { rows: self.rows.map(|row| row.map(|entry| -entry)) }
+    }
+
     /// Eigenvalues, the larger magnitude first, of a pair of conjugates the one above the real axis. The
     /// smaller real one is `determinant` over the larger: known apart, it keeps its digits however small it
     /// is.

@@ -52,6 +52,27 @@ impl Passage {
         self.misses.iter().map(|miss| miss.gap).reduce(f64::min)
     }
 
+    /// This passage and then its mirror image, `later` seconds after it, which ends mirrored too.
+    #[must_use]
+    pub(crate) fn with_mirror_image(mut self, later: f64) -> Self {
+        let image = |event: &Event| Event {
+            t: event.t + later,
+            side: event.side.other(),
+            v_in: -event.v_in,
+            v_out: -event.v_out,
+            ..*event
+        };
+        let events: Vec<Event> = self.events.iter().map(image).collect();
+        let image = |miss: &Miss| Miss { t: miss.t + later, side: miss.side.other(), ..*miss };
+        let misses: Vec<Miss> = self.misses.iter().map(image).collect();
+        self.events.extend(events);
+        self.misses.extend(misses);
+        self.state = (-self.state.0, -self.state.1);
+        self.determinant = self.determinant.map(|half| half * half);
+        self.impacts *= 2;
+        self
+    }
+
     fn count(&self, kinds: [EventKind; 2]) -> u64 {
         self.events.iter().filter(|event| kinds.contains(&event.kind)).count() as u64
     }

@@ -265,6 +265,14 @@ impl Model {
         alike && self.mechanism.curve.is_odd() && self.crossing_level.is_none_or(|level| level == 0.0)
     }
 
+    /// Whether the mirror image of a motion is one half a forcing period later. The drive is mirrored then
+    /// where each of its tones turns an odd number of times in the period.
+    pub(crate) fn mirrors_in_half_a_period(&self) -> bool {
+        let ExcitationParts { constant, tones, .. } = &self.excitation;
+        let odd = |period: f64| tones.iter().all(|tone| (tone.frequency * period).round() % 2.0 == 1.0);
+        self.is_symmetric() && *constant == 0.0 && self.repeats() && self.forcing_period.is_some_and(odd)
+    }
+
     /// Whether the base moves at all.
     pub fn is_shaken(&self) -> bool {
         !self.excitation.is_still()

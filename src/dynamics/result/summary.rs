@@ -151,9 +151,10 @@ pub struct Summary {
 
 impl Summary {
     /// Whether its words and averages may be those of a transient: the motion has not settled, and is not
-    /// irregular with steady averages.
+    /// irregular with steady averages, over the barrier or where there is none to cross.
     pub fn is_transient(&self) -> bool {
-        let chaotic = self.regime == Regime::Irregular && self.steady == Some(true);
+        let irregular = matches!(self.regime, Regime::Irregular | Regime::OneWell);
+        let chaotic = irregular && self.steady == Some(true);
         self.settled == Some(false) && !chaotic
     }
 

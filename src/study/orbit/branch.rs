@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use super::corrector::{Corrector, Units};
 use super::events::BranchEvent;
 use super::walk::Walk;
-use super::{NoOrbit, Orbit, orbit, with_orbits};
+use super::{NoOrbit, Orbit, map_of, orbit, with_orbits};
 use crate::scene::column_names;
 use crate::study::family::Family;
 use crate::study::{Table, Task};
@@ -23,7 +23,8 @@ pub enum BranchEnd {
     /// The motion touches a stop without speed, and no motion near to it goes on.
     Grazing,
     /// A motion that rests on its way leaps to another one: the mass, released as before, no longer goes
-    /// where it went, as where it just fails to pass the barrier.
+    /// where it went, as where it just fails to pass the barrier; or its chatter no longer ends before it is
+    /// released.
     Leap,
     /// Newton's method finds no motion near the last one: it leaps, changes too fast, or ends early.
     Lost,
@@ -91,7 +92,9 @@ pub fn branch(
     let first = orbit(&model, phase, period, task.cancel)?;
     let scales = model.scales();
     let units = Units { length: scales.length, speed: scales.speed, range: (to - from).abs() };
-    let corrector = Corrector { family, phase, periods: first.period, units };
+    let map = map_of(&model, phase).ok_or(NoOrbit::NotConverged)?;
+    let mirrored = Corrector::is_mirrored(&map, &first);
+    let corrector = Corrector { family, phase, periods: first.period, mirrored, units };
     let upwards = Vector3::new(0.0, 0.0, (to - from).signum());
     let point = corrector.correct(corrector.at(first.state, from), &upwards).ok_or(NoOrbit::NotConverged)?;
     let along = corrector.tangent(&point, &upwards).ok_or(NoOrbit::Grazing)?;

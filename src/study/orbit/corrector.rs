@@ -3,8 +3,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Orbit, allowed, map_of};
-use crate::dynamics::{Event, EventKind, Outcome, Passage, Side, StroboscopicMap};
+use super::{Orbit, SAME, allowed, map_of};
+use crate::dynamics::{Event, EventKind, Jacobian, Outcome, Passage, Side, StroboscopicMap};
 use crate::study::family::Family;
 
 /// The most steps to a point.
@@ -60,7 +60,10 @@ pub(super) struct Point {
     /// Value of the field.
     pub value: f64,
     pub orbit: Orbit,
-    /// Derivative of the map by the field, in the units.
+    /// Derivatives of the corrector's map by the state, and their determinant.
+    pub by_state: Jacobian,
+    pub determinant: f64,
+    /// Derivative of that map by the field, in the units.
     pub by_field: [f64; 2],
 }
 
@@ -117,10 +120,15 @@ pub(super) fn newton<T>(
 }
 
 /// What all points of a branch share.
+///
+/// A point is a fixed point of the corrector's map. Of motions that are their own mirror images half a period
+/// later that is the mirrored map over half a period: its multipliers are the roots of those over the period,
+/// and one of -1 breaks the symmetry.
 pub(super) struct Corrector<'a> {
     pub family: &'a Family<'a>,
     pub phase: f64,
     pub periods: u32,
+    pub mirrored: bool,
     pub units: Units,
 }
 
@@ -128,6 +136,29 @@ impl Corrector<'_> {
     /// The map at a value of the field; none where that is no scene.
     pub fn map(&self, value: f64) -> Option<StroboscopicMap> {
         map_of(&self.family.model(value).ok()?, self.phase)
+    }
+
+    /// Forcing periods over which the corrector's map goes.
+    pub fn flight(&self) -> f64 {
+        f64::from(self.periods) * if self.mirrored { 0.5 } else { 1.0 }
+    }
+
+    /// A state after that many forcing periods as the corrector's map has it.
+    pub fn image(&self, (x, v): (f64, f64)) -> (f64, f64) {
+        if self.mirrored { (-x, -v) } else { (x, v) }
+    }
+
+    /// Whether a motion of some forcing periods is its own mirror image half of them later.
+    pub fn is_mirrored(map: &StroboscopicMap, orbit: &Orbit) -> bool {
+        let model = map.model();
+        if !model.mirrors_in_half_a_period() || orbit.period.is_multiple_of(2) {
+            return false;
+        }
+        let half = map.pass_between(orbit.state, (0.0, 0.5 * f64::from(orbit.period)));
+        let scales = model.scales();
+        let off =
+            [(orbit.state.0 + half.state.0) / scales.length, (orbit.state.1 + half.state.1) / scales.speed];
+        half.outcome == Outcome::Done && off.iter().all(|part| part.abs() <= SAME)
     }
 
     /// The same motion at another phase of the drive; none where it ends early.
@@ -190,16 +221,21 @@ impl Corrector<'_> {
         [(to.0 - from.0) / self.units.length, (to.1 - from.1) / self.units.speed]
     }
 
-    /// The derivative of the map by the field at a motion from a state, in the units; from one side where the
-    /// other is no scene.
-    fn by_field(&self, orbit: &Orbit, value: f64) -> Option<[f64; 2]> {
-        let stretch = match orbit.passage.strikes() {
-            false => self.slopes(orbit, [0.0; 2]).iter().map(|row| row.amax()).fold(0.0, f64::max),
+    /// The derivative of the map by the field at a passage from a state, in the units; from one side where
+    /// the other is no scene. `by_state` are its derivatives by the state.
+    fn by_field(
+        &self,
+        (state, passage): ((f64, f64), &Passage),
+        by_state: &Jacobian,
+        value: f64,
+    ) -> Option<[f64; 2]> {
+        let stretch = match passage.strikes() {
+            false => self.slopes(by_state, [0.0; 2]).iter().map(|row| row.amax()).fold(0.0, f64::max),
             true => 0.0,
         };
         let mut step = DIFFERENCE * (STRETCHED / stretch).min(1.0) * self.units.range;
         let map = |value: f64| {
-            let passage = self.map(value)?.pass(orbit.state, self.periods);
+            let passage = self.map(value)?.pass_between(state, (0.0, self.flight()));
             (passage.outcome == Outcome::Done).then_some((passage, value))
         };
         loop {
@@ -209,10 +245,10 @@ impl Corrector<'_> {
                 (None, Some(below)) => (map(value)?, below),
                 (None, None) => return None,
             };
-            let alike = [&above, &below].iter().all(|side| strike_alike(&orbit.passage, &side.0));
+            let alike = [&above, &below].iter().all(|side| strike_alike(passage, &side.0));
             if alike || step < SMALLEST_DIFFERENCE * self.units.range {
                 let over = (above.1 - below.1) / self.units.range;
-                let [above, below] = [above, below].map(|side| self.change(orbit.state, side.0.state));
+                let [above, below] = [above, below].map(|side| self.change(state, self.image(side.0.state)));
                 return Some([(above[0] - below[0]) / over, (above[1] - below[1]) / over]);
             }
             step *= 0.1;
@@ -220,9 +256,9 @@ impl Corrector<'_> {
     }
 
     /// Derivatives of the change of a state by the map, by the coordinates.
-    fn slopes(&self, orbit: &Orbit, by_field: [f64; 2]) -> [Vector3<f64>; 2] {
+    fn slopes(&self, by_state: &Jacobian, by_field: [f64; 2]) -> [Vector3<f64>; 2] {
         let Units { length, speed, .. } = self.units;
-        let [[a, b], [c, d]] = orbit.jacobian.rows;
+        let [[a, b], [c, d]] = by_state.rows;
         let (b, c) = (b * speed / length, c * length / speed);
         [Vector3::new(a - 1.0, b, by_field[0]), Vector3::new(c, d - 1.0, by_field[1])]
     }
@@ -235,7 +271,7 @@ impl Corrector<'_> {
             Some(Equations {
                 at: point.at,
                 off: self.change(point.orbit.state, point.orbit.passage.state),
-                slopes: self.slopes(&point.orbit, point.by_field),
+                slopes: self.slopes(&point.by_state, point.by_field),
                 of: point,
             })
         };
@@ -244,7 +280,7 @@ impl Corrector<'_> {
 
     /// The direction of the branch at a point, on the side of `along`.
     pub fn tangent(&self, point: &Point, along: &Vector3<f64>) -> Option<Vector3<f64>> {
-        let [first, second] = self.slopes(&point.orbit, point.by_field).map(|row| row.transpose());
+        let [first, second] = self.slopes(&point.by_state, point.by_field).map(|row| row.transpose());
         let matrix = Matrix3::from_rows(&[first, second, along.transpose()]);
         let tangent = matrix.lu().solve(&Vector3::new(0.0, 0.0, 1.0))?;
         let tangent = tangent.try_normalize(0.0)?;
@@ -257,14 +293,20 @@ impl Corrector<'_> {
         let value = at.z * self.units.range;
         let map = self.map(value)?;
         let state = allowed(map.model(), self.state(at));
-        let (passage, jacobian) = map.pass_with_jacobian(state, self.periods);
+        let (passage, jacobian) = map.pass_part_with_jacobian(state, (0.0, self.flight()));
         let finite = jacobian.rows.as_flattened().iter().all(|entry| entry.is_finite());
         if !finite || passage.outcome != Outcome::Done {
             return None;
         }
+        let by_state = if self.mirrored { jacobian.mirrored() } else { jacobian };
+        let by_field = self.by_field((state, &passage), &by_state, value)?;
+        let determinant = passage.determinant.unwrap_or_else(|| by_state.determinant());
+        let (passage, jacobian) = match self.mirrored {
+            true => (passage.with_mirror_image(self.flight() * map.period()), by_state.after(&by_state)),
+            false => (passage, jacobian),
+        };
         let orbit = Orbit { period: self.periods, state, passage, jacobian };
-        let by_field = self.by_field(&orbit, value)?;
-        Some(Point { at: self.at(state, value), value, orbit, by_field })
+        Some(Point { at: self.at(state, value), value, orbit, by_state, determinant, by_field })
     }
 }
 

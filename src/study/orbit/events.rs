@@ -53,9 +53,9 @@ pub(super) fn differ(a: &Point, b: &Point) -> bool {
     a.len() != b.len() || !a.is_empty() && !(0..a.len()).any(|from| a[from..].iter().chain(&a[..from]).eq(&b))
 }
 
-/// The characteristic polynomial at 1 or -1: 0 where that is a multiplier.
+/// The characteristic polynomial of the corrector's map at 1 or -1: 0 where that is a multiplier.
 fn characteristic(point: &Point, at: f64) -> f64 {
-    1.0 - at * point.orbit.jacobian.trace() + point.orbit.determinant()
+    1.0 - at * point.by_state.trace() + point.determinant
 }
 
 /// The events between two points that follow each other, with motions between them that touch the stops as
@@ -72,12 +72,13 @@ pub(super) fn between(
         return None;
     }
     let mut found = Vec::new();
-    for (at, event) in
-        [(1.0, if turns { BranchEvent::Fold } else { BranchEvent::Symmetry }), (-1.0, BranchEvent::Flip)]
-    {
+    let at_one = if turns { BranchEvent::Fold } else { BranchEvent::Symmetry };
+    let at_minus_one = if corrector.mirrored { BranchEvent::Symmetry } else { BranchEvent::Flip };
+    for (at, event) in [(1.0, at_one), (-1.0, at_minus_one)] {
         if passes(at) {
             let (share, point) = root(corrector, (from, to), |point| characteristic(point, at))?;
-            let unit = point.orbit.multipliers().iter().any(|one| (one.re - at).hypot(one.im) <= AT_UNIT);
+            let multipliers = point.by_state.multipliers(point.determinant);
+            let unit = multipliers.iter().any(|one| (one.re - at).hypot(one.im) <= AT_UNIT);
             if !unit {
                 return None;
             }

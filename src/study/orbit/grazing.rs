@@ -11,8 +11,8 @@
 use nalgebra::Vector3;
 
 use super::corrector::{Accuracy, Corrector, Equations, Point, newton};
-use super::{Orbit, SAME, map_of};
-use crate::dynamics::{EventKind, Jacobian, Miss, Model, Outcome, Passage, Side, StroboscopicMap};
+use super::{Orbit, map_of};
+use crate::dynamics::{EventKind, Jacobian, Miss, Outcome, Passage, Side, StroboscopicMap};
 
 /// The share of the length scale that a gap is below where its stop may be touched near by.
 const SMALL_GAP: f64 = 0.1;
@@ -60,9 +60,6 @@ pub(super) struct Grazing<'a> {
     corrector: &'a Corrector<'a>,
     /// The side of the stop.
     side: Side,
-    /// Forcing periods that are flown, and whether the motion is then where its mirror image was.
-    flight: f64,
-    mirrored: bool,
     /// Times in forcing periods after a strobe about which there are no stops, and for how long before and
     /// after; they come again with each flight.
     open: Vec<(f64, f64)>,
@@ -109,13 +106,11 @@ pub(super) fn grazings<'a>(corrector: &'a Corrector<'a>, near: &Point) -> Vec<(G
         Beside::Missing => *size,
         Beside::Touching => size * size,
     };
+    let flight = corrector.flight();
+    // of a motion that is its own mirror image the first half has all
+    turns.retain(|((t, ..), _)| *t < flight);
     turns.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
     turns.truncate(MOST_LOOKED_AT);
-    let mirrored = is_mirrored(corrector, map.model(), near.orbit.state, |state, span| {
-        let passage = map.pass_between(state, span);
-        (passage.outcome == Outcome::Done).then_some(passage.state)
-    });
-    let flight = if mirrored { 0.5 * whole } else { whole };
     let apart = |a: f64, b: f64| {
         let far = (a - b).rem_euclid(flight);
         far.min(flight - far)
@@ -128,25 +123,10 @@ pub(super) fn grazings<'a>(corrector: &'a Corrector<'a>, near: &Point) -> Vec<(G
         let open = misses.iter().map(|miss| miss.0).chain([t]).map(|at| (at, room(at))).collect();
         let guess = Vector3::new(t, 0.0, near.at.z);
         let point = near.clone();
-        let unsolved = Grazing { corrector, side, flight, mirrored, open, solution: guess, point };
+        let unsolved = Grazing { corrector, side, open, solution: guess, point };
         Some((unsolved.solved()?, beside))
     };
     turns.into_iter().filter_map(grazing).collect()
-}
-
-/// Whether a motion is its own mirror image half a period later.
-fn is_mirrored(
-    corrector: &Corrector,
-    model: &Model,
-    state: (f64, f64),
-    fly: impl Fn((f64, f64), (f64, f64)) -> Option<(f64, f64)>,
-) -> bool {
-    if !model.is_symmetric() {
-        return false;
-    }
-    let half = fly(state, (0.0, 0.5 * f64::from(corrector.periods)));
-    let far = half.map(|half| corrector.change((-state.0, -state.1), half));
-    far.is_some_and(|far| far.iter().all(|part| part.abs() <= SAME))
 }
 
 impl Maps {
@@ -170,25 +150,13 @@ impl Grazing<'_> {
         self.solution = solution;
         let maps = Maps::of(self.corrector, solution.z * range)?;
         let state = self.fly(&maps, (self.stop(&maps)?.0, 0.0), (solution.x, solution.x.ceil()))?;
-        let orbit = self.orbit(&maps, state)?;
-        let value = solution.z * range;
-        self.point = Point { at: self.corrector.at(state, value), value, orbit, by_field: [0.0; 2] };
-        Some(self)
-    }
-
-    /// The same for motions that are their own mirror images, where it is one.
-    pub fn mirrored(mut self) -> Option<Self> {
-        let maps = Maps::of(self.corrector, self.point.value)?;
-        let fly = |state, span| self.fly(&maps, state, span);
-        if !self.mirrored && is_mirrored(self.corrector, maps.with.model(), self.point.orbit.state, fly) {
-            (self.mirrored, self.flight) = (true, 0.5 * self.flight);
-        }
+        self.point = self.at_strobe(&maps, state, solution.z * range)?;
         Some(self)
     }
 
     /// Its times in forcing periods after a strobe.
     pub fn times(&self) -> [f64; 2] {
-        [self.solution.x, self.solution.x + self.flight]
+        [self.solution.x, self.solution.x + self.corrector.flight()]
     }
 
     /// Place in m and restitution of the stop.
@@ -206,12 +174,12 @@ impl Grazing<'_> {
         while at < to {
             let (mut opens, mut closes) = (to, None::<f64>);
             for (middle, room) in &self.open {
-                let since = (at - (middle - room) + ROUNDING).rem_euclid(self.flight) - ROUNDING;
+                let since = (at - (middle - room) + ROUNDING).rem_euclid(self.corrector.flight()) - ROUNDING;
                 if since < 2.0 * room - ROUNDING {
                     let end = at + 2.0 * room - since;
                     closes = Some(closes.map_or(end, |other| other.max(end)));
                 } else {
-                    opens = opens.min(at + self.flight - since);
+                    opens = opens.min(at + self.corrector.flight() - since);
                 }
             }
             let until = closes.map_or(opens, |closes| closes.min(to));
@@ -247,9 +215,8 @@ impl Grazing<'_> {
     /// What is off after a flight from a time with a gap or speed, in the units.
     fn off(&self, maps: &Maps, at: &Vector3<f64>, beside: Beside) -> Option<[f64; 2]> {
         let [start, back] = self.ends(maps, at.y, beside)?;
-        let (x, v) = self.fly(maps, start, (at.x, at.x + self.flight))?;
-        let end = if self.mirrored { (-x, -v) } else { (x, v) };
-        Some(self.corrector.change(back, end))
+        let end = self.fly(maps, start, (at.x, at.x + self.corrector.flight()))?;
+        Some(self.corrector.change(back, self.corrector.image(end)))
     }
 
     /// The motion with a gap or speed in the units, from a guess, and the step that was left.
@@ -279,37 +246,52 @@ impl Grazing<'_> {
         newton(guess, &Vector3::y(), FINEST, look).map(|((), at, left)| (at, left))
     }
 
-    /// The grazing motion over its period from its state at a strobe; none where it does not touch the stop
-    /// or does not come back.
-    fn orbit(&self, maps: &Maps, state: (f64, f64)) -> Option<Orbit> {
-        let whole = f64::from(self.corrector.periods);
-        let (mut at, mut jacobian) = (state, Jacobian::IDENTITY);
+    /// The grazing motion from its state at a strobe, at a value of the field; none where it does not touch
+    /// the stop or does not come back.
+    fn at_strobe(&self, maps: &Maps, state: (f64, f64), value: f64) -> Option<Point> {
+        let corrector = self.corrector;
+        let flight = corrector.flight();
+        let (mut at, mut by_state) = (state, Jacobian::IDENTITY);
         let (mut events, mut misses, mut impacts, mut determinant) = (Vec::new(), Vec::new(), 0, Some(1.0));
-        let mut outcome = Outcome::Done;
-        for (stops, span) in self.parts((0.0, whole)) {
+        for (stops, span) in self.parts((0.0, flight)) {
             let map = if stops { &maps.with } else { &maps.without };
             let (passage, part) = map.pass_part_with_jacobian(at, span);
+            if passage.outcome != Outcome::Done {
+                return None;
+            }
             at = passage.state;
-            jacobian = part.after(&jacobian);
+            by_state = part.after(&by_state);
             events.extend(passage.events);
             misses.extend(passage.misses);
             impacts += passage.impacts;
             determinant = determinant.zip(passage.determinant).map(|(before, part)| before * part);
-            if outcome == Outcome::Done {
-                outcome = passage.outcome;
-            }
         }
-        let time = self.solution.x.rem_euclid(whole);
-        let (x, v) = self.fly(maps, state, (0.0, time))?;
+        // the touch within the flight, at the other stop where the motion is mirrored an odd number of times
+        let flights = (self.solution.x / flight).floor();
+        let time = self.solution.x - flights * flight;
+        let (mut side, (mut x, v)) = (self.side, self.fly(maps, state, (0.0, time))?);
+        if corrector.mirrored && flights % 2.0 != 0.0 {
+            (side, x) = (side.other(), -x);
+        }
         let gap = (x - self.stop(maps)?.0).abs();
         let t = maps.with.first_strobe() + time * maps.with.period();
-        misses.push(Miss { t, side: self.side, gap });
-        let off = self.corrector.change(state, at);
-        let units = &self.corrector.units;
+        misses.push(Miss { t, side, gap });
+        let units = &corrector.units;
+        let off = corrector.change(state, corrector.image(at));
         let most = [off[0], off[1], gap / units.length, v / units.speed].map(f64::abs);
-        let holds = outcome == Outcome::Done && most.iter().all(|part| *part <= EXACT);
-        let passage = Passage { state: at, events, determinant, misses, outcome, impacts };
-        holds.then_some(Orbit { period: self.corrector.periods, state, passage, jacobian })
+        if !most.iter().all(|part| *part <= EXACT) {
+            return None;
+        }
+        let mut passage = Passage { state: at, events, determinant, misses, outcome: Outcome::Done, impacts };
+        let mut jacobian = by_state;
+        if corrector.mirrored {
+            passage = passage.with_mirror_image(flight * maps.with.period());
+            (by_state, jacobian) = (by_state.mirrored(), by_state.after(&by_state));
+        }
+        let orbit = Orbit { period: corrector.periods, state, passage, jacobian };
+        let determinant = determinant.unwrap_or_else(|| by_state.determinant());
+        let at = corrector.at(state, value);
+        Some(Point { at, value, orbit, by_state, determinant, by_field: [0.0; 2] })
     }
 
     /// Its state in m and m/s at another phase of the drive.

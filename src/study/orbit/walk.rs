@@ -149,6 +149,11 @@ impl<'a> Walk<'a> {
             }
             step *= 0.5;
             if step < SHORTEST {
+                // where chatter no longer ends in rest at both stops it may do so at one
+                if leaps && self.corrector.mirrored && self.forgets_its_mirror_image() {
+                    step = FIRST;
+                    continue;
+                }
                 let leaves = beyond.is_some_and(|end| (self.at.0.at.z - end).abs() < SHORTEST);
                 return Ok(match leaves {
                     true => BranchEnd::Range,
@@ -271,7 +276,6 @@ impl<'a> Walk<'a> {
         }
         let mut events = self.up_to(&grazing, beside)?;
         events.push(event);
-        let grazing = grazing.mirrored()?;
         let (after, next) = self.on_from(&grazing, beside.other());
         events.extend(after);
         let is_last = next.is_none()
@@ -376,6 +380,18 @@ impl<'a> Walk<'a> {
         {
             (self.corrector, self.at) = (corrector, (next, onward));
         }
+    }
+
+    /// Goes on from the present motion without the condition that motions are their own mirror images; false
+    /// where that finds none.
+    fn forgets_its_mirror_image(&mut self) -> bool {
+        let (point, along) = &self.at;
+        let corrector = Corrector { mirrored: false, ..self.corrector };
+        let upwards = Vector3::new(0.0, 0.0, along.z.signum());
+        let Some(point) = corrector.correct(point.at, &upwards) else { return false };
+        let Some(onward) = corrector.tangent(&point, along) else { return false };
+        (self.corrector, self.at) = (corrector, (point, onward));
+        true
     }
 
     /// Whether the last motion is the first one, but for the length of a step.

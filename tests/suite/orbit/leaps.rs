@@ -7,21 +7,24 @@ use super::{at, over_amplitude};
 use crate::cli::{headless, refused, stdout};
 use crate::support::{changed, near};
 
-/// With stops at 1.5 mm the mass is released as ever, and from some amplitude down fails to pass the barrier:
-/// its state once a period is the same, and what it does is not.
+/// With stops at 1.3 or 1.4 mm the mass is released as ever, and from some amplitude down fails to pass the
+/// barrier: its state once a period is the same, and what it does is not. At 1.5 mm, from 1 g down, its chatter
+/// no longer ends before it is released, some 1e-4 g above that amplitude.
 #[test]
 fn a_mass_that_rests_leaps_where_it_just_fails_to_cross() {
-    let own = changed("paper", &[]);
-    let down = over_amplitude(&own, (1.0, 0.6), Some(1));
-    let up = over_amplitude(&own, (0.6, 1.0), Some(1));
-    assert_eq!((down.end, up.end), (BranchEnd::Leap, BranchEnd::Leap));
-    let strikes_left = |own: &Orbit| {
-        let mut impacts = own.passage.events.iter().filter(|event| event.kind == EventKind::Impact);
-        impacts.any(|event| event.side == Side::Left)
-    };
-    assert!(down.orbits.iter().all(strikes_left) && !up.orbits.iter().any(strikes_left));
-    let (above, below) = (down.values.last().unwrap(), up.values.last().unwrap());
-    assert!(above > below && above - below < 2e-6, "{above} {below}");
+    for (limit, apart) in [(1.3, 2e-6), (1.4, 2e-6), (1.5, 5e-4)] {
+        let scene = changed("paper", &[&format!("stops.travel_limit_mm={limit:?}")]);
+        let down = over_amplitude(&scene, (1.0, 0.6), Some(1));
+        let up = over_amplitude(&scene, (0.6, 1.0), Some(1));
+        assert_eq!((down.end, up.end), (BranchEnd::Leap, BranchEnd::Leap), "{limit}");
+        let strikes_left = |orbit: &Orbit| {
+            let mut impacts = orbit.passage.events.iter().filter(|event| event.kind == EventKind::Impact);
+            impacts.any(|event| event.side == Side::Left)
+        };
+        assert!(down.orbits.iter().all(strikes_left) && !up.orbits.iter().any(strikes_left), "{limit}");
+        let (above, below) = (down.values.last().unwrap(), up.values.last().unwrap());
+        assert!(above > below && above - below < apart, "{limit}: {above} {below}");
+    }
 }
 
 /// Between two kinks the branch turns back: it goes through all motions between, none of which is far from

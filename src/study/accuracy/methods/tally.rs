@@ -21,6 +21,8 @@ pub(super) struct Tally<'a> {
     settle: f64,
     barrier: Option<f64>,
     side: bool,
+    /// The speed in m/s above which an impact counts.
+    least_speed: f64,
 }
 
 impl<'a> Tally<'a> {
@@ -28,6 +30,7 @@ impl<'a> Tally<'a> {
         let barrier = problem.model.crossing_level();
         Self {
             keep,
+            least_speed: problem.model.least_impact_speed(),
             run: MethodRun::default(),
             next: 0,
             squares: 0.0,
@@ -67,7 +70,7 @@ impl<'a> Tally<'a> {
 
     /// Takes in an impact on the stop of `side`.
     pub fn impact(&mut self, t: f64, side: Side, v_in: f64, v_out: f64) {
-        self.run.statistics.impacts += 1;
+        self.run.statistics.impacts += u64::from(v_in.abs() > self.least_speed);
         if self.keep.impacts {
             self.run.impacts.push(Event { t, kind: EventKind::Impact, side, v_in, v_out });
         }
