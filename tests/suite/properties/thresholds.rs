@@ -118,6 +118,16 @@ fn release_is_where_the_push_is_the_force() {
             (amplitude.low, amplitude.high, amplitude.undecided),
             (Some(value), Some(value), false)
         );
+        // all of a range above it releases, and nothing of one below it
+        let ends = |scan: &Scan| {
+            let Found { value, low, high, undecided, .. } = found(&scene, scan, Onset::Release);
+            (value, low, high, undecided)
+        };
+        let above = scan(AMPLITUDE, (1.2 * exact, 3.0 * exact), 10, None);
+        let first = above.values.first().copied();
+        prop_assert_eq!(ends(&above), (first, None, first, false));
+        let below = scan(AMPLITUDE, (0.1 * exact, 0.9 * exact), 10, None);
+        prop_assert_eq!(ends(&below), (None, below.values.last().copied(), None, false));
         // the amplitude is 0.3 g: the mass that this releases
         let exact = drawn.mass_g * exact / 0.3;
         let over_mass = scan("mass_g", (0.5 * exact, 1.6 * exact), 11, None);
