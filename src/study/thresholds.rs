@@ -221,9 +221,9 @@ impl Answers {
         Self { scan: vec![(value, Some(verdict))], ..Self::default() }
     }
 
-    /// Whether some value of the scan does it.
-    pub fn any_does(&self) -> bool {
-        self.scan.iter().any(|(_, verdict)| verdict.is_some_and(|verdict| verdict.does))
+    /// The place in the scan of the first value that does it.
+    pub fn first_that_does(&self) -> Option<usize> {
+        self.scan.iter().position(|(_, verdict)| verdict.is_some_and(|verdict| verdict.does))
     }
 
     /// The values of the scan between which the answer changes first, once nothing below is open.
