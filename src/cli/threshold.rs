@@ -144,8 +144,9 @@ fn undecided(table: &Table) -> Option<String> {
     let count = words.iter().filter(|word| **word == "true").count();
     let rows = of_rows(count, words.len(), ["is undecided", "are undecided"])?;
     Some(format!(
-        "{rows}: beside the value the motion does not repeat up to the end of the time for which it is \
-         followed, and may be a transient; low and high, where given, are values whose motion repeats, and \
+        "{rows}: the answer just below or at the value (without a value, at the end of the range) is not \
+         known: the motion does not repeat in the time for which it is followed, the run ended early, or \
+         there is no valid scene; low and high, where given, are values whose answers are known, and \
          --until-settled with a longer time may bring them together"
     ))
 }
