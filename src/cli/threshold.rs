@@ -9,7 +9,7 @@ use super::failure::Failure;
 use super::options::{ChartOptions, Common};
 use super::picture::{Picture, caption, ranges};
 use super::support::{
-    finish, inputs, load, mechanism, model_from_rest, number, open, until_settled, warn, write_table,
+    drive_alone, finish, inputs, load, mechanism, number, open, until_settled, warn, write_table,
 };
 use super::sweep::{bar, located, pool};
 use super::{interrupt, say};
@@ -97,12 +97,12 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         can_show_thresholds(grid.as_ref())?;
     }
     let same = grid.as_ref().is_none_or(|grid| !grid.changes_mechanism());
-    let text = options.until_settled.as_deref();
-    let mechanism = (same || text.is_some()).then(|| mechanism(&document)).transpose()?;
+    let mechanism = same.then(|| mechanism(&document)).transpose()?;
     warn(&document, common, &warnings, mechanism.as_deref());
-    if let Some((text, mechanism)) = text.zip(mechanism) {
-        let model = model_from_rest(&document, &mechanism)?;
-        scan.until_settled = until_settled(Some(text), &document, &model)?;
+    if let Some(text) = options.until_settled.as_deref() {
+        let mut first = document.scene.clone();
+        grid.iter().for_each(|grid| grid.apply(0, &mut first));
+        scan.until_settled = until_settled(Some(text), &document, &drive_alone(&document, first)?)?;
     }
     let pool = pool(common)?;
     let [plot, data] = Picture::outputs(picture);

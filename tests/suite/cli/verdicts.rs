@@ -177,6 +177,22 @@ fn a_threshold_of_whole_numbers_is_a_whole_number() {
     }
 }
 
+/// The time of `--until-settled` is checked by the drive and the window alone: the mechanism may be one that
+/// only the grid or the design makes possible.
+#[test]
+fn waiting_needs_no_mechanism_that_is_never_run() {
+    let too_much = "threshold paper --set mechanism.preload_mm=30 --over mechanism.preload_mm=2.7 \
+                    --field excitation.amplitude_g=0.6:0.8:0.1 --quiet";
+    let no_well = "best nominal-cubic --set mechanism.cubic_n_per_m3=-1e5 \
+                   --over mechanism.cubic_n_per_m3=8e5:9e5:1e5 --set run.duration_s=4 --set run.settle_s=2 \
+                   --quiet";
+    for line in [too_much, no_well] {
+        let rows = stdout(&format!("{line} --until-settled 300"));
+        assert_eq!(rows.lines().count(), 2, "{rows}");
+        refused(headless(&format!("{line} --until-settled 1")), &["--until-settled 1", "already lasts"]);
+    }
+}
+
 #[test]
 fn a_threshold_that_cannot_be_searched_is_refused() {
     for (line, words) in [
