@@ -110,6 +110,22 @@ fn each_column_is_that_of_the_study_it_is_made_of() {
     assert_eq!(column(&csv, "threshold_sensitivity"), ["", ""]);
 }
 
+/// A threshold is one, whichever command is asked: between the last value that is known not to cross and the
+/// first that is known to.
+#[test]
+fn the_harvester_has_one_threshold() {
+    let ends = |line: &str, names: [&str; 2]| {
+        let csv = stdout(line);
+        let [low, high] = names.map(|name| column(&csv, name)[0].parse::<f64>().ok());
+        (low.unwrap_or(0.0), high.unwrap_or(f64::INFINITY))
+    };
+    let compared = ends("compare harvester --quiet", ["crossing_low_g", "crossing_high_g"]);
+    let line = "threshold harvester --of crossing --field excitation.amplitude_g=0.6:0.8:0.02 --quiet";
+    let searched = ends(line, ["low", "high"]);
+    assert!(compared.0 > 0.7 && compared.1 < 0.75, "{compared:?}");
+    assert!(compared.0 <= searched.1 && searched.0 <= compared.1, "{compared:?} {searched:?}");
+}
+
 #[test]
 fn the_sensitivity_is_that_of_scenes_with_a_size_changed() {
     let folder = tempfile::tempdir().unwrap();

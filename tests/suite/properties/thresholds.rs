@@ -217,8 +217,8 @@ fn what_a_threshold_names_is_what_its_runs_do() {
     assert!(undecided.get() >= 4, "{}", undecided.get());
 }
 
-/// Above the least amplitude that crosses those of the bisection are tried, and the hundredths of it up to one
-/// and a half times it: `high` is the first of them all that is known to cross.
+/// Above the least amplitude that crosses those of the bisection are tried, and the hundredths of it up to
+/// one and a half times it: `high` is the first of them all that is known to cross.
 #[test]
 fn a_comparison_names_the_first_amplitude_that_is_known_to_cross() {
     let limits = prop_oneof![2 => Just(None), 1 => (0.3..1.3_f64).prop_map(Some)];
@@ -258,6 +258,23 @@ fn a_comparison_names_the_first_amplitude_that_is_known_to_cross() {
         Ok(true)
     });
     assert!(apart.get() >= 4, "{}", apart.get());
+}
+
+/// Without stops the mass of the harvester moves irregularly near its threshold, and a transient that crosses
+/// was taken for one that goes on: both searches bracket the same threshold.
+#[test]
+fn two_searches_of_a_harvester_without_stops_bracket_one_threshold() {
+    let mut document = Document::load("harvester").unwrap();
+    document.set("stops=None").unwrap();
+    let Document { scene, files, .. } = document;
+    let mechanism = Arc::new(Mechanism::build(&scene.mechanism, &files).unwrap());
+    let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
+    let alone = thresholds(&scene, &mechanism, &task).unwrap().crossing;
+    let scan = scan(AMPLITUDE, (1.3, 1.44), 7, None);
+    let scanned = threshold(&scene, &mechanism, &files, (&scan, Onset::Crossing), &task).unwrap();
+    let ends = |found: Found| (found.low.unwrap_or(0.0), found.high.unwrap_or(f64::INFINITY));
+    let ((low, high), (other_low, other_high)) = (ends(alone), ends(scanned));
+    assert!(low > 1.0 && low <= other_high && other_low <= high, "{alone:?} {scanned:?}");
 }
 
 /// A sharp threshold is the same for any step of the scan and for the search that needs none.
