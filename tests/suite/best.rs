@@ -295,8 +295,8 @@ fn fields_of_whole_numbers_are_searched_among_whole_numbers() {
     }
     // whoever asks: the scene says which fields are whole
     let document = changed("paper", &["stops.travel_limit_mm=1", "run.duration_s=4", "run.settle_s=2"]);
-    let own = found_by(&question(&document, ("mechanism.parallel.count", 1.0, 4.0), 3), 2).unwrap();
-    assert_eq!((own.resolution[0], own.optimum.at[0].fract()), (1.0, 0.0));
+    let found = found_by(&question(&document, ("mechanism.parallel.count", 1.0, 4.0), 3), 2).unwrap();
+    assert_eq!((found.resolution[0], found.optimum.at[0].fract()), (1.0, 0.0));
     // each of them alone: there is none better
     let value = |count: u32| {
         let set = format!("--set mechanism.parallel.count={count} --set stops.travel_limit_mm=1");
@@ -345,8 +345,8 @@ fn a_run_that_ended_early_is_not_what_is_best() {
         let changes = [&fields[..], &[amplitude.as_str()]].concat();
         preset("paper-table", &changes).run(&Request::default()).summary
     };
-    let (own, beyond) = (run(best.at[0]), run(8.0));
-    assert_eq!(own.outcome, Outcome::Done, "{best:?}");
+    let (there, beyond) = (run(best.at[0]), run(8.0));
+    assert_eq!(there.outcome, Outcome::Done, "{best:?}");
     assert!(matches!(beyond.outcome, Outcome::LeftTable { .. }), "{beyond:?}");
     assert!(beyond.rms_velocity.unwrap() > best.value, "{beyond:?} {best:?}");
 }

@@ -41,6 +41,6 @@ fn thresholds_are_lines_and_maps() {
     let open = "threshold paper-unconstrained --field excitation.amplitude_g=1.12:1.2:0.02 --until-settled \
                 30 --over mass_g=15,15.2,15.4";
     assert_eq!(column(&stdout(&format!("{open} --quiet")), "low"), ["", "", ""]);
-    let own = texts(&plot(open, folder.path(), "open.svg"));
-    assert!(own.iter().any(|own| own == "undecided between"), "{own:?}");
+    let words = texts(&plot(open, folder.path(), "open.svg"));
+    assert!(words.iter().any(|word| word == "undecided between"), "{words:?}");
 }

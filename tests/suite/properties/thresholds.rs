@@ -228,13 +228,13 @@ fn a_comparison_names_the_first_amplitude_that_is_known_to_cross() {
     let apart = std::cell::Cell::new(0);
     hold_for("known to cross", 30, 0.5, all, Drawn::text, |drawn| {
         let (scene, until) = (drawn.scene(), 60.0 / drawn.frequency_hz());
-        let own = Alternative {
+        let alone = Alternative {
             name: "drawn".to_owned(),
             scene: scene.clone(),
             files: Files::default(),
             mechanism: mechanism(&scene),
         };
-        let found = alternatives(&[own], Some(until), &pool, &task).unwrap()[0].crossing.unwrap();
+        let found = alternatives(&[alone], Some(until), &pool, &task).unwrap()[0].crossing.unwrap();
         let Some(value) = found.value else {
             prop_assert_eq!((found.high, found.windows), (None, 0));
             return Ok(false);
@@ -245,7 +245,7 @@ fn a_comparison_names_the_first_amplitude_that_is_known_to_cross() {
             (amplitude / digit).round() / (1.0 / digit).round()
         };
         let known = |amplitude: f64| told(&scene, amplitude, until) == (true, true);
-        let first = std::iter::once(value).chain((1..=50).map(hundredth)).find(|own| known(*own));
+        let first = std::iter::once(value).chain((1..=50).map(hundredth)).find(|at| known(*at));
         match found.high {
             // one of the bisection may come before the first of these
             Some(high) => {
