@@ -176,12 +176,13 @@ fn outcome(answer: &Answer, count: u64, seconds: f64) -> String {
     };
     let mut text = number(count, "start");
     text += &format!(" in {seconds:.2} s, {}", number(answer.attractors.len() as u64, "attractor"));
+    let undecided = format!("not settled after {} periods", Basins::PATIENCE);
     for (count, what) in [
         (answer.unsure(), "not sure"),
         (answer.outside, "outside the room of the mass"),
         (answer.lost - answer.spent, "ended early"),
         (answer.spent, "out of work: a motion far faster than its drive; raise the frequency or the damping"),
-        (answer.undecided, "not settled after 1000 periods"),
+        (answer.undecided, undecided.as_str()),
     ] {
         if count > 0 {
             text += &format!(", {count} {what}");

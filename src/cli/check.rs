@@ -3,11 +3,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use interwell::scene::Excitation;
 use interwell::study::inspect;
 
 use super::failure::Failure;
 use super::options::Common;
 use super::say;
+use super::shard::line;
 use super::support::{finish, load, mechanism, open, write_text};
 
 #[derive(Debug, Args)]
@@ -52,6 +54,15 @@ fn report(spec: &str, common: &Common) -> Result<String, Failure> {
     let lines = inspect(&document.scene, &mechanism).map_err(|faults| document.error_from(faults))?;
     let mut text = format!("{}: {}\n", document.name, document.scene.title);
     lines.iter().for_each(|line| text += &format!("  {line}\n"));
+    if let Excitation::Sine { .. } = document.scene.excitation
+        && mechanism.landscape.barrier.is_some()
+    {
+        // a search, for which nobody waits here
+        let set = common.set.iter().flat_map(|set| ["--set", set]);
+        let tolerance = common.tolerance.iter().flat_map(|tolerance| ["--tolerance", tolerance]);
+        let search = ["interwell", "--headless", "threshold", spec, "--of", "crossing"].into_iter();
+        text += &format!("  least amplitude that crosses: {}\n", line(search.chain(set).chain(tolerance)));
+    }
     let warnings = warnings.iter().map(String::as_str).chain(mechanism.warnings());
     warnings.for_each(|warning| text += &format!("  warning: {warning}\n"));
     Ok(text)

@@ -148,8 +148,9 @@ fn remarks(scene: &Alternative, rated: &Rated, amplitude_g: f64) -> Vec<String> 
         let low = crossing.low.map_or_else(String::new, |low| format!(" above {} g", short(low)));
         let high = crossing.high.map_or_else(String::new, |high| format!(" below {} g", short(high)));
         all.push(format!(
-            "its threshold is undecided: of some amplitudes{low}{high} it is not known whether they cross, \
-             since the motion does not repeat up to the end of the time for which it is followed"
+            "its threshold is undecided: of some amplitudes{low}{high} it is not known whether they cross: \
+             the motion does not repeat in the time for which it is followed, the run ended early, or there \
+             is no valid scene"
         ));
     }
     if let Some((_, size)) = rated.sensitivity.as_ref().filter(|(change, _)| change.is_infinite()) {

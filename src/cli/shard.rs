@@ -94,7 +94,7 @@ pub fn command(arguments: &[String], options: &[&str]) -> String {
 }
 
 /// Words as a shell takes them.
-fn line<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
+pub fn line<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
     let quoted = |word: &str| {
         let plain = |c: char| c.is_ascii_alphanumeric() || "_-+=:,./@%".contains(c);
         if !word.is_empty() && word.chars().all(plain) {

@@ -7,7 +7,9 @@ use std::sync::Arc;
 use interwell::dynamics::Model;
 use interwell::mechanics::{BuildError, Mechanism};
 use interwell::output::{Provenance, Sink, header, is_regular, rows, same_target};
-use interwell::scene::{Axis, Document, Scene, SceneError, Start, Transducer, is_manifest, is_scene_file};
+use interwell::scene::{
+    self, Axis, Damping, Document, Scene, SceneError, Start, Stops, Transducer, is_manifest, is_scene_file,
+};
 use interwell::study::{CellFaults, ELECTRICAL_STATE, Table};
 use interwell::system::clock::{ProcessClock, WallClock};
 use interwell::system::files::{canonical, is_file};
@@ -105,6 +107,21 @@ pub fn mechanism(document: &Document) -> Result<Arc<Mechanism>, Failure> {
 pub fn model_from_rest(document: &Document, mechanism: &Arc<Mechanism>) -> Result<Model, Failure> {
     let trial = Scene { start: Start::Rest, ..document.scene.clone() };
     Model::build(&trial, Arc::clone(mechanism)).map_err(|faults| document.error_from(faults).into())
+}
+
+/// The model of what shakes `scene` and for how long, all that waiting for its motion depends on: a mass on a
+/// spring in place of its own, which the grid or the design may replace.
+pub fn drive_alone(document: &Document, scene: Scene) -> Result<Model, Failure> {
+    let mut alone = document.clone();
+    alone.scene = Scene {
+        mass_g: 1.0,
+        mechanism: scene::Mechanism::Linear { n_per_m: 1.0 },
+        damping: Damping::None,
+        stops: Stops::None,
+        transducer: Transducer::None,
+        ..scene
+    };
+    model_from_rest(&alone, &mechanism(&alone)?)
 }
 
 /// What is said where the mechanism of `document` cannot be built: a wrong scene is the writer's to mend,

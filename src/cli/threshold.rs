@@ -9,7 +9,7 @@ use super::failure::Failure;
 use super::options::{ChartOptions, Common};
 use super::picture::{Picture, caption, ranges};
 use super::support::{
-    finish, inputs, load, mechanism, model_from_rest, number, open, until_settled, warn, write_table,
+    drive_alone, finish, inputs, load, mechanism, number, open, until_settled, warn, write_table,
 };
 use super::sweep::{bar, located, pool};
 use super::{interrupt, say};
@@ -97,12 +97,12 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         can_show_thresholds(grid.as_ref())?;
     }
     let same = grid.as_ref().is_none_or(|grid| !grid.changes_mechanism());
-    let text = options.until_settled.as_deref();
-    let mechanism = (same || text.is_some()).then(|| mechanism(&document)).transpose()?;
+    let mechanism = same.then(|| mechanism(&document)).transpose()?;
     warn(&document, common, &warnings, mechanism.as_deref());
-    if let Some((text, mechanism)) = text.zip(mechanism) {
-        let model = model_from_rest(&document, &mechanism)?;
-        scan.until_settled = until_settled(Some(text), &document, &model)?;
+    if let Some(text) = options.until_settled.as_deref() {
+        let mut first = document.scene.clone();
+        grid.iter().for_each(|grid| grid.apply(0, &mut first));
+        scan.until_settled = until_settled(Some(text), &document, &drive_alone(&document, first)?)?;
     }
     let pool = pool(common)?;
     let [plot, data] = Picture::outputs(picture);
@@ -144,8 +144,9 @@ fn undecided(table: &Table) -> Option<String> {
     let count = words.iter().filter(|word| **word == "true").count();
     let rows = of_rows(count, words.len(), ["is undecided", "are undecided"])?;
     Some(format!(
-        "{rows}: beside the value the motion does not repeat up to the end of the time for which it is \
-         followed, and may be a transient; low and high, where given, are values whose motion repeats, and \
+        "{rows}: the answer just below or at the value (without a value, at the end of the range) is not \
+         known: the motion does not repeat in the time for which it is followed, the run ended early, or \
+         there is no valid scene; low and high, where given, are values whose answers are known, and \
          --until-settled with a longer time may bring them together"
     ))
 }
@@ -189,32 +190,33 @@ fn scan(options: &Arguments, document: &Document) -> Result<Scan, Failure> {
     let argument = options.field.trim();
     let default = if argument == AMPLITUDES { " (the default; give another)" } else { "" };
     let wrong = |problem: String| Failure::argument(format!("--field {argument}{default}: {problem}"));
-    let parts: Vec<&str> = argument.split(':').collect();
-    let full = match parts[..] {
-        [from, to] => {
-            let number = |text: &str| {
-                let end = text.rsplit('=').next().unwrap_or(text).trim();
-                end.parse::<f64>().ok().filter(|own| own.is_finite())
-            };
-            let (Some(low), Some(high)) = (number(from), number(to)) else {
-                return Err(wrong(
-                    "write FIELD=FROM:TO or FIELD=FROM:TO:STEP, such as excitation.amplitude_g=0:2".into(),
-                ));
-            };
-            if low == high {
-                return Err(wrong(format!("FROM and TO are both {low}; give a range, such as 0:2")));
-            }
-            if low > high {
-                return Err(wrong(format!("TO must be above FROM; write {high}:{low}")));
-            }
-            let step = (high - low) / STEPS;
-            let field = from.split('=').next().unwrap_or_default().trim();
-            let step = if is_whole(&document.scene, field) { step.ceil() } else { step };
-            format!("{argument}:{step}")
+    let parsed = |text: &str| -> Result<Axis, Failure> {
+        let axis = Axis::parse(text, &document.scene).map_err(wrong)?;
+        match axis.values.iter().all(|value| value.is_finite()) {
+            true => Ok(axis),
+            false => Err(wrong("the ends of the range must be finite".into())),
         }
-        _ => argument.to_owned(),
     };
-    let axis = Axis::parse(&full, &document.scene).map_err(wrong)?;
+    let (mut full, mut end) = (argument.to_owned(), None);
+    if let Some((from, to)) = argument.split_once(':').filter(|(_, to)| !to.contains(':')) {
+        // read as a list, so that the message names what is wrong with an end
+        let ends = parsed(&format!("{from},{to}"))?;
+        let [low, high] = ends.values[..] else {
+            return Err(wrong(
+                "write FIELD=FROM:TO or FIELD=FROM:TO:STEP, such as excitation.amplitude_g=0:2".into(),
+            ));
+        };
+        if low == high {
+            return Err(wrong(format!("FROM and TO are both {low}; give a range, such as 0:2")));
+        }
+        if low > high {
+            return Err(wrong(format!("TO must be above FROM; write {high}:{low}")));
+        }
+        let step = (high - low) / STEPS;
+        let step = if is_whole(&document.scene, &ends.field) { step.ceil() } else { step };
+        (full, end) = (format!("{argument}:{step}"), Some(high));
+    }
+    let axis = parsed(&full)?;
     let mut values = axis.values;
     values.sort_by(f64::total_cmp);
     values.dedup();
@@ -225,6 +227,11 @@ fn scan(options: &Arguments, document: &Document) -> Result<Scan, Failure> {
     }
     let span = values.last().copied().unwrap_or(0.0) - values.first().copied().unwrap_or(0.0);
     let step = span / (values.len() - 1) as f64;
+    if let Some(high) = end {
+        // no whole number of steps may lead there, and a step that is rounded just fails to
+        values.retain(|value| *value < high - 1e-6 * step);
+        values.push(high);
+    }
     let whole = is_whole(&document.scene, &axis.field);
     let resolution = match &options.resolution {
         None if whole => 1.0,

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::Task;
-use super::amplitudes::{Gaps, crossing};
+use super::amplitudes::{Above, crossing};
 use super::bisection::multiple;
 use super::family::Family;
 use super::fields::{Read, SummaryField};
@@ -113,7 +113,9 @@ pub fn alternatives(
     task: &Task,
 ) -> Option<Vec<Rated>> {
     let parts = parts(scenes);
-    let rating = Rating { until_settled, pool, task };
+    // a part is done at its end, whatever its searches tell of
+    let silent = Task { tick: &|| (), cancel: task.cancel };
+    let rating = Rating { until_settled, pool, task: &silent };
     let work = |_: &mut (), index: usize| {
         let done = match &parts[index] {
             Part::Own(i) => rating.rate(&scenes[*i]).map(|rated| Done::Own(Box::new(rated))),
@@ -158,7 +160,7 @@ impl Rated {
 impl Rating<'_> {
     fn rate(&self, scene: &Alternative) -> Option<Rated> {
         let trial = Scene { start: Start::Rest, ..scene.scene.clone() };
-        let crossing = self.crossing(&trial, &scene.mechanism)?;
+        let crossing = self.crossing(&trial, &scene.mechanism, Above::LookedAt)?;
         let model = Model::build(&trial, Arc::clone(&scene.mechanism)).ok()?;
         Some(Rated {
             name: scene.name.clone(),
@@ -171,9 +173,9 @@ impl Rating<'_> {
     }
 
     /// The crossing threshold; none inside where there is none, none where it was cancelled.
-    fn crossing(&self, trial: &Scene, mechanism: &Arc<Mechanism>) -> Option<Option<Found>> {
+    fn crossing(&self, trial: &Scene, mechanism: &Arc<Mechanism>, above: Above) -> Option<Option<Found>> {
         let how = (Some(self.pool), self.until_settled);
-        let found = crossing(trial, mechanism, how, Gaps::NotCounted, self.task);
+        let found = crossing(trial, mechanism, how, above, self.task);
         (!self.task.is_cancelled()).then(|| found.map(|(found, _)| found))
     }
 
@@ -189,7 +191,7 @@ impl Rating<'_> {
             Ok(mechanism) => Arc::new(mechanism),
             Err(BuildError::Wrong(_) | BuildError::Unsolved(_)) => return Some(None),
         };
-        Some(self.crossing(&trial, &mechanism)?.and_then(|found| found.value))
+        Some(self.crossing(&trial, &mechanism, Above::LeftOut)?.and_then(|found| found.value))
     }
 
     /// The band of frequencies that cross. The steps of a scan are all run, and only the ends of the band are
@@ -264,7 +266,12 @@ pub fn comparison_table(rated: &[Rated]) -> Table {
         .with("release_g", number(|row| row.release_g))
         .with("crossing_g", number(Rated::crossing_g))
         .with("crossing_low_g", number(|rated| rated.crossing?.low))
-        .with("crossing_high_g", number(|rated| rated.crossing?.high));
+        .with("crossing_high_g", number(|rated| rated.crossing?.high))
+        .each("crossing_undecided", rated, |row| match row.crossing {
+            Some(found) if found.undecided => "true",
+            Some(_) => "false",
+            None => "",
+        });
     for name in ["rms_velocity_m_per_s", "mean_load_power_w", "max_abs_x_m", "impact_speed_max_m_per_s"] {
         table = table.with(name, summary(name));
     }

@@ -27,7 +27,8 @@ pub struct Thresholds {
     /// The least amplitude that frees the mass from the stop it rests on, in closed form.
     pub frees_at: Option<f64>,
     /// The least amplitude whose settled motion crosses; none where none does up to
-    /// [`searched_to`](Self::searched_to). Windows and gaps are those up to one and a half times it.
+    /// [`searched_to`](Self::searched_to). Windows, gaps and the first amplitude that is known to cross are
+    /// looked for up to one and a half times it.
     pub crossing: Found,
     /// Up to where was searched.
     pub searched_to: f64,
@@ -44,22 +45,22 @@ const TOGETHER: usize = 32;
 /// How many times that push is tried at most before nothing is said to cross.
 const MOST_PUSHES: f64 = 30.0;
 
-/// Above the first amplitude that crosses, gaps are looked for in so many steps of this share of it.
+/// Above the least amplitude that crosses, what changes is looked for in so many steps of this share of it.
 const GAP_STEPS: u32 = 50;
 const GAP_STEP: f64 = 0.01;
 
 /// Searches the amplitudes of a sine. None where the drive is no sine, nothing is to be crossed, or the
 /// search was cancelled.
 pub fn thresholds(scene: &Scene, mechanism: &Arc<Mechanism>, task: &Task) -> Option<Thresholds> {
-    let (crossing, searched_to) = crossing(scene, mechanism, (None, None), Gaps::Counted, task)?;
+    let (crossing, searched_to) = crossing(scene, mechanism, (None, None), Above::LookedAt, task)?;
     Some(Thresholds { frees_at: frees_at(scene, mechanism), crossing, searched_to })
 }
 
-/// Whether the windows and gaps above a threshold are looked for.
+/// Whether what lies above a threshold is looked at: windows, gaps, and what is known to cross.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Gaps {
-    Counted,
-    NotCounted,
+pub(super) enum Above {
+    LookedAt,
+    LeftOut,
 }
 
 /// The least amplitude of a sine whose settled motion from rest crosses, and up to where was searched; by the
@@ -69,7 +70,7 @@ pub(super) fn crossing(
     scene: &Scene,
     mechanism: &Arc<Mechanism>,
     (pool, until_settled): (Option<&Pool>, Option<f64>),
-    gaps: Gaps,
+    above: Above,
     task: &Task,
 ) -> Option<(Found, f64)> {
     let Excitation::Sine { .. } = scene.excitation else { return None };
@@ -91,21 +92,24 @@ pub(super) fn crossing(
     for part in values.chunks(TOGETHER) {
         resolution = third_digit(answers.scan.last().map_or(part[0], |last| last.0));
         search.scan(&mut answers, part, resolution)?;
-        if answers.any_does() {
+        if let Some(first) = answers.first_that_does() {
+            // what was run beyond it depends on where a part ends
+            answers.scan.truncate(first + 1);
             break;
         }
     }
-    let found = answers.found(resolution);
-    let Some(value) = found.value.filter(|_| gaps == Gaps::Counted) else {
-        return Some((found, searched_to));
-    };
-    let above = (1..=GAP_STEPS).map(|i| value * (1.0 + GAP_STEP * f64::from(i)));
-    let mut above: Vec<f64> = above.map(|value| multiple(value, third_digit(value))).collect();
-    above.dedup();
-    let mut answers = Answers::begun_with(value);
-    search.scan(&mut answers, &above, resolution)?;
-    let Found { windows, without_gap, .. } = answers.found(resolution);
-    Some((Found { windows, without_gap, ..found }, searched_to))
+    let mut found = answers.found(resolution);
+    if let Some(value) = found.value.filter(|_| above == Above::LookedAt) {
+        let tried = (1..=GAP_STEPS).map(|i| value * (1.0 + GAP_STEP * f64::from(i)));
+        let mut tried: Vec<f64> = tried.map(|value| multiple(value, third_digit(value))).collect();
+        tried.dedup();
+        let mut answers = Answers::begun_with(value);
+        search.scan(&mut answers, &tried, resolution)?;
+        let Found { high, windows, without_gap, .. } = answers.found(resolution);
+        let high = [found.high, high].into_iter().flatten().reduce(f64::min);
+        found = Found { high, windows, without_gap, ..found };
+    }
+    Some((found, searched_to))
 }
 
 /// The search for stops makes at least so many steps from the well to the middle, and at most two and a half

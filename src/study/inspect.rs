@@ -1,10 +1,11 @@
-//! Scene in words: what it models and leaves out, how good its force curve is, where it rests, how fast its
-//! stops are struck.
+//! Scene in words: what it models and leaves out, how good its force curve is, where it rests, what releases
+//! it from its stop, how fast its stops are struck.
 
 use std::sync::Arc;
 
 use super::contact::strikes_in_words;
 use super::curve::small_amplitude_frequency;
+use super::push::frees_at;
 use crate::dynamics::Model;
 use crate::mechanics::flexure::{Accuracy, Geometry, Group};
 use crate::mechanics::{Equilibrium, Landscape, Mechanism};
@@ -31,6 +32,9 @@ pub fn inspect(scene: &Scene, mechanism: &Arc<Mechanism>) -> Result<Vec<String>,
     }
     lines.extend(damping(scene, &model));
     lines.extend(landscape(&mechanism.landscape, model.mass()));
+    lines.extend(frees_at(scene, mechanism).map(|amplitude| {
+        format!("at rest on its right stop the mass is released from {} g on", short(amplitude))
+    }));
     lines.extend(strikes_in_words(&model, scene));
     Ok(lines)
 }

@@ -61,7 +61,8 @@ pub struct Found {
 /// where the search was cancelled.
 ///
 /// A value that makes no valid model does not do it. A release under one sine that moves a mass from the stop
-/// it is pressed on, over the amplitude, is known in closed form.
+/// it is pressed on, over the amplitude, is known in closed form: exactly there the mass is not released yet,
+/// so that a value within the scan is also the last one that does not do it.
 pub fn threshold(
     scene: &Scene,
     mechanism: &Arc<Mechanism>,
@@ -84,12 +85,13 @@ fn threshold_on(
     if onset == Onset::Release
         && scan.field == AMPLITUDE
         && let Some(frees) = frees_at(scene, mechanism)
+        && let (Some(&first), Some(&last)) = (scan.values.first(), scan.values.last())
+        && first > -frees
     {
         scan.values.iter().for_each(|_| (task.tick)());
-        let first = scan.values.first().map(|first| first.max(frees));
-        let value = first.filter(|value| scan.values.last().is_some_and(|last| value <= last));
-        let [low, high] = [value; 2];
-        return Some(Found { value, low, high, without_gap: value, ..Found::default() });
+        let value = Some(frees.max(first)).filter(|value| *value <= last);
+        let low = (frees >= first).then(|| frees.min(last));
+        return Some(Found { value, low, high: value, without_gap: value, ..Found::default() });
     }
     let trial = from_rest(scene);
     let family = Family::new(&trial, files, mechanism, &scan.field);
@@ -219,9 +221,9 @@ impl Answers {
         Self { scan: vec![(value, Some(verdict))], ..Self::default() }
     }
 
-    /// Whether some value of the scan does it.
-    pub fn any_does(&self) -> bool {
-        self.scan.iter().any(|(_, verdict)| verdict.is_some_and(|verdict| verdict.does))
+    /// The place in the scan of the first value that does it.
+    pub fn first_that_does(&self) -> Option<usize> {
+        self.scan.iter().position(|(_, verdict)| verdict.is_some_and(|verdict| verdict.does))
     }
 
     /// The values of the scan between which the answer changes first, once nothing below is open.

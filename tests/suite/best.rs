@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use interwell::dynamics::Request;
+use interwell::dynamics::{Outcome, Request};
 use interwell::scene::{Document, Files};
 use interwell::study::{
     BestDesign, BestQuestion, Constraint, DesignRange, Environment, NoBest, SummaryField, Task, Variation,
@@ -25,7 +25,7 @@ fn environment(document: &Document) -> Environment {
 fn question(document: &Document, over: (&str, f64, f64), intervals: usize) -> BestQuestion {
     let (field, low, high) = over;
     BestQuestion {
-        over: vec![DesignRange { field: field.into(), low, high, intervals, whole: false }],
+        over: vec![DesignRange::new(field, (low, high), intervals)],
         maximise: SummaryField::find("rms_velocity_m_per_s").unwrap(),
         subject_to: Vec::new(),
         environments: vec![environment(document)],
@@ -216,9 +216,7 @@ fn two_fields_are_searched_together() {
     let mut document = linear();
     document.set("damping=Coefficient(c_n_s_per_m: 2.5)").unwrap();
     let mut asked = question(&document, ("excitation.frequency_hz", 1.0, 4.0), 24);
-    let field = "mechanism.n_per_m".into();
-    let stiffness = DesignRange { field, low: 100.0, high: 200.0, intervals: 8, whole: false };
-    asked.over.push(stiffness);
+    asked.over.push(DesignRange::new("mechanism.n_per_m", (100.0, 200.0), 8));
     let own = found_by(&asked, 2).unwrap();
     let natural = own.optimum.at[1].sqrt() / std::f64::consts::TAU;
     near(own.optimum.at[0], natural, 2e-3);
@@ -295,6 +293,10 @@ fn fields_of_whole_numbers_are_searched_among_whole_numbers() {
             assert!(cell.is_empty() || cell.parse::<f64>().unwrap().fract() == 0.0, "{name}: {row}");
         }
     }
+    // whoever asks: the scene says which fields are whole
+    let document = changed("paper", &["stops.travel_limit_mm=1", "run.duration_s=4", "run.settle_s=2"]);
+    let found = found_by(&question(&document, ("mechanism.parallel.count", 1.0, 4.0), 3), 2).unwrap();
+    assert_eq!((found.resolution[0], found.optimum.at[0].fract()), (1.0, 0.0));
     // each of them alone: there is none better
     let value = |count: u32| {
         let set = format!("--set mechanism.parallel.count={count} --set stops.travel_limit_mm=1");
@@ -329,6 +331,24 @@ fn a_transient_is_not_what_is_best() {
     let short = model.run(&Request::default()).summary;
     assert_eq!((short.settled, followed.settled), (Some(false), Some(true)));
     assert_eq!(Some(best.value), followed.rms_velocity);
+}
+
+/// A run that ends early has no value, however fast it was until then.
+#[test]
+fn a_run_that_ended_early_is_not_what_is_best() {
+    let fields = ["stops=None", "run.duration_s=4", "run.settle_s=0"];
+    let document = changed("paper-table", &fields);
+    let asked = question(&document, ("excitation.amplitude_g", 1.0, 8.0), 28);
+    let best = found_by(&asked, 2).unwrap().optimum;
+    let run = |amplitude: f64| {
+        let amplitude = format!("excitation.amplitude_g={amplitude:?}");
+        let changes = [&fields[..], &[amplitude.as_str()]].concat();
+        preset("paper-table", &changes).run(&Request::default()).summary
+    };
+    let (there, beyond) = (run(best.at[0]), run(8.0));
+    assert_eq!(there.outcome, Outcome::Done, "{best:?}");
+    assert!(matches!(beyond.outcome, Outcome::LeftTable { .. }), "{beyond:?}");
+    assert!(beyond.rms_velocity.unwrap() > best.value, "{beyond:?} {best:?}");
 }
 
 #[test]

@@ -152,6 +152,20 @@ fn check_says_what_is_modelled() {
     for words in ["barrier at 1000 mm, ", "2250 mJ above that right of it", "3 wells: of the barriers"] {
         assert!(text.contains(words), "`{words}` is not in: {text}");
     }
+    // the release that `threshold` says, and the command that finds where it crosses
+    let released: f64 = column(&stdout("threshold paper --of release"), "value")[0].parse().unwrap();
+    let text = stdout("check paper --set excitation.amplitude_g=0.5");
+    assert!(text.contains(&format!("is released from {released:.4} g on\n")), "{text}");
+    let search = "interwell --headless threshold paper --of crossing --set excitation.amplitude_g=0.5";
+    assert!(text.contains(&format!("least amplitude that crosses: {search}\n")), "{text}");
+    assert!(column(&stdout(search.strip_prefix("interwell --headless ").unwrap()), "of")[0] == "crossing");
+    for (scene, released, searched) in
+        [("paper-unconstrained", false, true), ("walking", false, false), ("monostable", false, false)]
+    {
+        let text = stdout(&format!("check {scene}"));
+        assert_eq!(text.contains("is released from"), released, "{text}");
+        assert_eq!(text.contains("least amplitude that crosses"), searched, "{text}");
+    }
     // All are reported, and one that is wrong makes it fail.
     let check = headless("check elastic-box no-such-scene duffing also-none").assert().code(2);
     let check = check.stdout(contains("elastic-box").and(contains("duffing")));

@@ -247,6 +247,21 @@ fn the_readmes_commands_work() {
     }
 }
 
+/// How the damping ratio is read decides how far out stops help: README and notes say the same of it, and
+/// `check` prints the numbers.
+#[test]
+fn the_reading_of_the_damping_ratio_is_the_same_everywhere() {
+    let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let (readme, notes) = (words(README), words(&Document::load("paper").unwrap().scene.notes));
+    for claim in ["it takes about 1.4 g without stops, and stops up to 3.4 mm lower that", "0.358 N s/m"] {
+        assert!(readme.contains(claim), "README.md does not say: {claim}");
+        assert!(notes.contains(claim), "the notes of paper do not say: {claim}");
+    }
+    assert!(readme.contains("With stops up to 2.6 mm the mass crosses at weaker shaking"));
+    let checked = stdout("check paper");
+    assert!(checked.contains("c = 2 xi sqrt(k m) = 0.0663") && checked.contains("c = 0.3579"), "{checked}");
+}
+
 #[test]
 fn links_and_pictures_lead_somewhere() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use assert_cmd::Command;
 use predicates::str::contains;
 
-use super::cli::{headless, refused, stdout};
+use super::cli::{column, headless, refused, stdout};
 
 /// Runs `line --plot FILE` with the rows thrown away; the picture's place.
 fn plot(line: &str, folder: &Path, name: &str) -> PathBuf {

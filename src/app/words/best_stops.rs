@@ -4,7 +4,7 @@ use crate::app::words::columns::column_info;
 use crate::app::words::numbers::{power, three};
 use crate::app::words::status::speed;
 use crate::numeric::short;
-use crate::study::{BestDesign, DesignRange, NoBest, Optimum};
+use crate::study::{Basins, BestDesign, DesignRange, NoBest, Optimum};
 
 /// What a search has come to.
 #[derive(Debug, Clone, Copy)]
@@ -46,7 +46,10 @@ pub fn sentence(found: &Found<'_>, column: &str, range: &DesignRange, duration_s
     let between = format!("between ±{} and ±{}", short(range.low), mm(range.high));
     let runs = match duration_s {
         Some(duration) => format!("from rest, in runs of {} s", three(duration)),
-        None => "from rest, each run followed until its motion repeats, for 1000 periods at most".to_owned(),
+        None => format!(
+            "from rest, each run followed until its motion repeats, for at most {} forcing periods more",
+            Basins::PATIENCE
+        ),
     };
     if design.flat {
         return format!("No stops are best: the {name} is {value} wherever they stand {between}, {runs}.");

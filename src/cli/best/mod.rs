@@ -14,9 +14,7 @@ use words::{names, place, quantity, words};
 
 use super::failure::Failure;
 use super::options::Common;
-use super::support::{
-    finish, inputs, load, mechanism, model_from_rest, open, until_settled, warn, write_table,
-};
+use super::support::{drive_alone, finish, inputs, load, open, until_settled, warn, write_table};
 use super::sweep::{bar, pool};
 use super::{interrupt, say};
 
@@ -88,10 +86,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     };
     has_fields(&question)?;
     if let (Some(text), [first, ..]) = (options.until_settled.as_deref(), &question.environments[..]) {
-        let mut shaken = document.clone();
-        (shaken.scene, shaken.files) = (first.scene.clone(), first.files.clone());
-        let model = model_from_rest(&shaken, &mechanism(&shaken)?)?;
-        question.until_settled = until_settled(Some(text), &shaken, &model)?;
+        let model = drive_alone(&document, first.scene.clone())?;
+        question.until_settled = until_settled(Some(text), &document, &model)?;
     }
     warn(&document, common, &warnings, None);
     let pool = pool(common)?;
@@ -150,7 +146,7 @@ fn failure(why: NoBest, options: &Arguments, question: &BestQuestion, document: 
                     document.name
                 ),
                 None => format!(
-                    "--maximise {}: no design of the range has this result{}",
+                    "--maximise {}: no design of the range has this result{} in a run that reaches its end",
                     options.maximise,
                     if question.subject_to.is_empty() { "" } else { ", or one of --subject-to" }
                 ),
@@ -213,7 +209,7 @@ fn ranges(over: &[String], document: &Document) -> Result<Vec<DesignRange>, Fail
         if ranges.iter().any(|own| own.field == axis.field) {
             return Err(wrong("is given twice; give each field one range".into()));
         }
-        ranges.push(DesignRange { field: axis.field, low, high, intervals, whole });
+        ranges.push(DesignRange::new(axis.field, (low, high), intervals));
     }
     if ranges.len() > MOST_FIELDS {
         return Err(Failure::argument(format!(

@@ -358,6 +358,7 @@ fn drawn(rated: &[Rated]) -> Table {
             ("crossing_g", own.crossing_g()),
             ("crossing_low_g", own.crossing.and_then(|found| found.low)),
             ("crossing_high_g", own.crossing.and_then(|found| found.high)),
+            ("crossing_undecided", own.crossing.map(|found| f64::from(u8::from(found.undecided)))),
             ("rms_velocity_m_per_s", summary.rms_velocity),
             ("mean_load_power_w", power),
             ("max_abs_x_m", summary.max_abs_x),

@@ -124,10 +124,8 @@ fn lines(
         entries.push((Sample::Marker(Marker::Triangle, theme.unstable), "gaps above".to_owned()));
     }
     let undecided = rows.words("undecided").iter().enumerate().filter(|(_, word)| **word == "true");
-    let bars: Vec<(usize, [f64; 2])> = undecided
-        .map(|(row, _)| (row, ["low", "high"].map(|name| numbers(name)[row])))
-        .filter(|(_, bar)| bar.iter().all(|end| end.is_finite()))
-        .collect();
+    let bars: Vec<(usize, [f64; 2])> =
+        undecided.map(|(row, _)| (row, ["low", "high"].map(|name| numbers(name)[row]))).collect();
     if !bars.is_empty() {
         entries.push((Sample::Line(theme.soft, style::GUIDE, None), "undecided between".to_owned()));
     }
@@ -143,10 +141,13 @@ fn lines(
     let from_zero = values.iter().copied().chain(bars.iter().flat_map(|(_, bar)| *bar)).chain([0.0]);
     let upward = PlotAxis::around(from_zero, 0.05, 6, up).or_given(ranges.y, 6, up);
     let frame = Frame::whole(figure, (LEFT, top), across, upward);
+    let edges = [frame.y.low, frame.y.high];
     let Area { left, right, bottom, .. } = frame.area;
     frame.grid(figure, theme);
-    for (row, [low, high]) in bars {
-        frame.line(figure, &[(places[row], low), (places[row], high)], style::GUIDE, theme.soft);
+    for (row, ends) in bars {
+        // an end that is not known lies beyond the picture
+        let end = |i: usize| (places[row], if ends[i].is_finite() { ends[i] } else { edges[i] });
+        frame.line(figure, &[end(0), end(1)], style::GUIDE, theme.soft);
     }
     for row in missing {
         let at = frame.across(places[row]);

@@ -16,11 +16,16 @@ pub struct DesignRange {
     pub high: f64,
     /// Intervals of the scan; at least 1, and of whole numbers at most as many as there are.
     pub intervals: usize,
-    /// Whether only whole numbers are tried.
-    pub whole: bool,
+    /// Whether only whole numbers are tried: as the field of the scene has it.
+    pub(super) whole: bool,
 }
 
 impl DesignRange {
+    /// Of a field called `field`, from `low` to `high`.
+    pub fn new(field: impl Into<String>, (low, high): (f64, f64), intervals: usize) -> Self {
+        Self { field: field.into(), low, high, intervals, whole: false }
+    }
+
     /// Distance of two places of the scan.
     pub fn step(&self) -> f64 {
         (self.high - self.low) / self.intervals as f64

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use super::design::{BestQuestion, NoBest, Optimum, apply};
-use crate::dynamics::{Model, Request, Run, Summary};
+use super::design::{BestQuestion, DesignRange, NoBest, Optimum, apply};
+use crate::dynamics::{Model, Outcome, Request, Run, Summary};
 use crate::mechanics::{BuildError, Mechanism};
-use crate::scene::{Fault, FieldPath, Scene, check};
+use crate::scene::{Fault, FieldPath, Scene, check, is_whole};
 use crate::study::Task;
 use crate::study::fields::{Read, SummaryField};
 use crate::study::settled::followed;
@@ -17,7 +17,7 @@ use crate::system::threads::Pool;
 pub(super) enum Judged {
     /// It is no valid scene.
     Invalid(Vec<Fault>),
-    /// A result is missing.
+    /// A result is missing, or a run ended early.
     Missing,
     /// Constraints are broken: by how much together, each relative to its limit, and the results.
     Broken(f64, Vec<f64>),
@@ -47,6 +47,8 @@ type Ran = Result<Box<Summary>, Vec<Fault>>;
 /// What evaluates designs.
 pub(super) struct Evaluator<'a> {
     pub question: &'a BestQuestion,
+    /// The ranges of the question, in which it is known which fields hold whole numbers.
+    pub over: Vec<DesignRange>,
     pub pool: &'a Pool,
     task: &'a Task<'a>,
     paths: Vec<FieldPath>,
@@ -70,8 +72,12 @@ impl<'a> Evaluator<'a> {
             mechanisms.push(built);
         }
         let path = |field: &String| FieldPath::new(field);
+        let scene = &question.environments[0].scene;
+        let known =
+            |range: &DesignRange| DesignRange { whole: is_whole(scene, &range.field), ..range.clone() };
         Ok(Self {
             question,
+            over: question.over.iter().map(known).collect(),
             pool,
             task,
             paths: question.over.iter().map(|range| path(&range.field)).collect(),
@@ -141,6 +147,9 @@ impl<'a> Evaluator<'a> {
                 Ok(summary) => summaries.push(summary),
                 Err(faults) => return Judged::Invalid(faults.clone()),
             }
+        }
+        if summaries.iter().any(|summary| summary.outcome != Outcome::Done) {
+            return Judged::Missing;
         }
         let (mut broken, mut results) = (0.0, Vec::new());
         for constraint in &self.question.subject_to {

@@ -16,7 +16,7 @@ const TOGETHER: usize = 16;
 
 /// Of each field, the distance below and above.
 pub(super) fn margins(evaluator: &Evaluator, found: &Found) -> Result<Vec<[Option<f64>; 2]>, NoBest> {
-    let fields = 0..evaluator.question.over.len();
+    let fields = 0..evaluator.over.len();
     fields
         .map(|field| Ok([side(evaluator, found, field, -1.0)?, side(evaluator, found, field, 1.0)?]))
         .collect()
@@ -25,7 +25,7 @@ pub(super) fn margins(evaluator: &Evaluator, found: &Found) -> Result<Vec<[Optio
 /// The least distance in direction `way` at which the value has fallen, every finer step being tried: the
 /// values that hold are no interval.
 fn side(evaluator: &Evaluator, found: &Found, field: usize, way: f64) -> Result<Option<f64>, NoBest> {
-    let range = &evaluator.question.over[field];
+    let range = &evaluator.over[field];
     let (best, middle) = (&found.optimum, found.optimum.at[field]);
     let floor = best.value - FALL * best.value.abs();
     let holds = |judged: &Judged| judged.value().is_some_and(|value| value >= floor);

@@ -35,8 +35,8 @@ pub fn best(
     let (spread, stepped_back) = varied::robust(&evaluator, &found, &margins)?;
     let border = |(range, at): (&DesignRange, &f64)| *at <= range.low || *at >= range.high;
     Ok(BestDesign {
-        at_border: question.over.iter().zip(&found.optimum.at).map(border).collect(),
-        resolution: question.over.iter().map(search::resolution).collect(),
+        at_border: evaluator.over.iter().zip(&found.optimum.at).map(border).collect(),
+        resolution: evaluator.over.iter().map(search::resolution).collect(),
         optimum: found.optimum,
         flat: found.flat,
         margins,

@@ -71,7 +71,7 @@ fn highest(places: &[Vec<f64>], judged: &[Judged]) -> Option<Optimum> {
 }
 
 pub(super) fn search(evaluator: &Evaluator, preview: &mut dyn FnMut(&Optimum)) -> Result<Found, NoBest> {
-    let over = &evaluator.question.over;
+    let over = &evaluator.over;
     let all = indices(over);
     let coarse = |own: &Vec<usize>| own.iter().all(|index| index.is_multiple_of(COARSE));
     let (mut places, mut judged) = (Vec::new(), Vec::new());
@@ -123,7 +123,7 @@ struct Closer {
 /// Scans a box around each of some places, moves each to the best in it and halves it or less, until the
 /// resolution of every field is reached.
 fn refine(evaluator: &Evaluator, starts: Vec<Optimum>) -> Result<Vec<Optimum>, NoBest> {
-    let over = &evaluator.question.over;
+    let over = &evaluator.over;
     let sides = SIDES[over.len() - 1];
     let mut half: Vec<f64> = over.iter().map(DesignRange::step).collect();
     let closer = |best: Optimum| Closer { tried: vec![best.at.clone()], best };

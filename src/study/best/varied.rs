@@ -30,7 +30,7 @@ pub(super) fn robust(
     if evaluator.question.vary.is_empty() {
         return Ok((Spread { worst: best.value, quantile_5: best.value }, None));
     }
-    let range = &evaluator.question.over[0];
+    let range = &evaluator.over[0];
     // the nearer cliff is the one to step back from
     let [low, high] = margins[0].map(|own| own.unwrap_or(f64::INFINITY));
     let way = if high <= low { -1.0 } else { 1.0 };

@@ -80,6 +80,10 @@ fn each_column_is_that_of_the_study_it_is_made_of() {
         let digit = 10_f64.powf(least.log10().floor() - 2.0);
         assert!(crosses(format!("excitation.amplitude_g={least}"), 3.0));
         assert!(!crosses(format!("excitation.amplitude_g={}", least - digit), 3.0), "{least}");
+        // it is decided where both of them are known
+        let low: f64 = cell("crossing_low_g").parse().unwrap_or(0.0);
+        let decided = cell("crossing_high_g") == cell("crossing_g") && low > least - 1.5 * digit;
+        assert_eq!(cell("crossing_undecided"), (!decided).to_string(), "{csv}");
         // so do the ends of the band that are not those of the search, and a little beyond them does not;
         // without stops the motions at the ends are irregular, and what is beyond is up to rounding
         for (name, beyond) in [("crosses_from_hz", 0.998), ("crosses_to_hz", 1.002)] {
@@ -96,6 +100,7 @@ fn each_column_is_that_of_the_study_it_is_made_of() {
         }
     }
     assert!(ends > 0);
+    assert_eq!(column(&csv, "crossing_undecided")[1], "false");
     // the coil's scene has power, the stopped one a release, in closed form
     assert!(number(&column(&csv, "mean_load_power_w")[0]) > 0.0);
     assert_eq!(column(&csv, "release_g")[0], "");
@@ -103,6 +108,22 @@ fn each_column_is_that_of_the_study_it_is_made_of() {
     assert_eq!(column(&csv, "release_g")[1], column(&stdout(&line), "value")[0]);
     // neither has a size that could be 1 % larger
     assert_eq!(column(&csv, "threshold_sensitivity"), ["", ""]);
+}
+
+/// A threshold is one, whichever command is asked: between the last value that is known not to cross and the
+/// first that is known to.
+#[test]
+fn the_harvester_has_one_threshold() {
+    let ends = |line: &str, names: [&str; 2]| {
+        let csv = stdout(line);
+        let [low, high] = names.map(|name| column(&csv, name)[0].parse::<f64>().ok());
+        (low.unwrap_or(0.0), high.unwrap_or(f64::INFINITY))
+    };
+    let compared = ends("compare harvester --quiet", ["crossing_low_g", "crossing_high_g"]);
+    let line = "threshold harvester --of crossing --field excitation.amplitude_g=0.6:0.8:0.02 --quiet";
+    let searched = ends(line, ["low", "high"]);
+    assert!(compared.0 > 0.7 && compared.1 < 0.75, "{compared:?}");
+    assert!(compared.0 <= searched.1 && searched.0 <= compared.1, "{compared:?} {searched:?}");
 }
 
 #[test]
@@ -162,6 +183,11 @@ fn rows_picture_and_data_do_not_depend_on_the_threads() {
         for (scene, value) in
             column(&rows, "scene").iter().zip(column(&rows, name)).filter(|own| !own.1.is_empty())
         {
+            let value = match value.as_str() {
+                "true" => "1",
+                "false" => "0",
+                number => number,
+            };
             assert!(data.lines().any(|line| line == format!("{name},{scene},{value}")), "{name} of {scene}");
             count += 1;
         }
@@ -241,8 +267,9 @@ fn what_a_row_cannot_say_is_said() {
         format!("{second}: no release_g: it rests on no stop\n"),
         format!("{second}: no impact_speed_max_m_per_s: it has no stops\n"),
         format!(
-            "{second}: no crossing_g, crossing_low_g, crossing_high_g, crosses_from_hz, crosses_to_hz, \
-             threshold_sensitivity, most_sensitive_to: no barrier between two wells, so nothing to cross\n"
+            "{second}: no crossing_g, crossing_low_g, crossing_high_g, crossing_undecided, crosses_from_hz, \
+             crosses_to_hz, threshold_sensitivity, most_sensitive_to: no barrier between two wells, so \
+             nothing to cross\n"
         ),
     ] {
         assert!(both.contains(&line), "{line}{both}");

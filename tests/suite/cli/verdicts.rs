@@ -107,6 +107,11 @@ fn thresholds_are_tables() {
     let some = "threshold paper --of release --field excitation.amplitude_g=0:0.7:0.1 \
                 --over stops.travel_limit_mm=1.5,4";
     assert!(told(some).contains("1 of 2 rows have no value"), "{}", told(some));
+    // a negative amplitude pushes as hard, half a period later: all from -1 g on is a range with a gap
+    assert_eq!(
+        stdout("threshold paper --of release --field excitation.amplitude_g=-1:1:0.1 --quiet"),
+        "of,value,low,high,undecided,windows\nrelease,-1,,-1,false,2\n"
+    );
     let csv = stdout("threshold paper --field stops.travel_limit_mm=1:3:0.1 --of interwell");
     assert_eq!(column(&csv, "windows"), ["1"], "it ends where the stops hold the mass too hard: {csv}");
 }
@@ -159,6 +164,10 @@ fn a_threshold_of_whole_numbers_is_a_whole_number() {
     };
     assert!(number("value").fract() == 0.0 && crossings(number("value")) > 0, "{csv}");
     assert!(number("low") == number("value") - 1.0 && crossings(number("low")) == 0, "{csv}");
+    // the end of the range is tried where no step meets it
+    let still = "random-shaking --set run.duration_s=2 --set excitation.rms_g=0.01 --quiet";
+    let csv = stdout(&format!("threshold {still} --field excitation.seed=1:402"));
+    assert_eq!(csv, "of,value,low,high,undecided,windows\ncrossing,,402,,false,\n");
     for (line, words) in [
         ("threshold paper --field mechanism.parallel.count=1:4:0.5", &["whole, 1 to 64", "1.5"][..]),
         ("threshold paper --field mechanism.parallel.count=1.5:4", &["whole, 1 to 64", "1.5"]),
@@ -168,13 +177,33 @@ fn a_threshold_of_whole_numbers_is_a_whole_number() {
     }
 }
 
+/// The time of `--until-settled` is checked by the drive and the window alone: the mechanism may be one that
+/// only the grid or the design makes possible.
+#[test]
+fn waiting_needs_no_mechanism_that_is_never_run() {
+    let too_much = "threshold paper --set mechanism.preload_mm=30 --over mechanism.preload_mm=2.7 \
+                    --field excitation.amplitude_g=0.6:0.8:0.1 --quiet";
+    let no_well = "best nominal-cubic --set mechanism.cubic_n_per_m3=-1e5 \
+                   --over mechanism.cubic_n_per_m3=8e5:9e5:1e5 --set run.duration_s=4 --set run.settle_s=2 \
+                   --quiet";
+    for line in [too_much, no_well] {
+        let rows = stdout(&format!("{line} --until-settled 300"));
+        assert_eq!(rows.lines().count(), 2, "{rows}");
+        refused(headless(&format!("{line} --until-settled 1")), &["--until-settled 1", "already lasts"]);
+    }
+}
+
 #[test]
 fn a_threshold_that_cannot_be_searched_is_refused() {
     for (line, words) in [
         ("threshold paper --field excitation.amplitude_g=2:0", &["--field", "TO must be above FROM"][..]),
         ("threshold paper --field excitation.amplitude_g", &["--field", "FROM:TO"]),
         ("threshold paper --field excitation.amplitude=0:2", &["excitation.amplitude_g"]),
-        ("threshold paper --field excitation.amplitude_g=-1e999:2", &["--field"]),
+        ("threshold paper --field excitation.amplitude_g=-1e999:2", &["--field", "`-1e999` is not a finite"]),
+        ("threshold paper --field excitation.amplitude_g=0,1:2", &["--field", "write FIELD=FROM:TO"]),
+        ("threshold harvester --field transducer.load_ohm=0:inf", &["--field", "must be finite"]),
+        ("threshold harvester --field transducer.load_ohm=0,40,inf", &["--field", "must be finite"]),
+        ("threshold harvester --field transducer.load_ohm=0:60ohm", &["`60ohm`", "give the resistance"]),
         ("threshold paper --field excitation.amplitude_g=1:1", &["both 1", "give a range"]),
         ("threshold paper --field excitation.amplitude_g=1:1:0.1", &["single value", "0:2:0.1"]),
         ("threshold paper --field excitation.amplitude_g=1,1", &["single value"]),

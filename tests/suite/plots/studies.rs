@@ -37,4 +37,10 @@ fn thresholds_are_lines_and_maps() {
                 stops.travel_limit_mm=1:6:0.5";
     let own = texts(&plot(gone, folder.path(), "gone.svg"));
     assert!(own.iter().any(|own| own == "none in the range"), "{own:?}");
+    // so soon no value is known not to cross: a bar from the lower edge
+    let open = "threshold paper-unconstrained --field excitation.amplitude_g=1.12:1.2:0.02 --until-settled \
+                30 --over mass_g=15,15.2,15.4";
+    assert_eq!(column(&stdout(&format!("{open} --quiet")), "low"), ["", "", ""]);
+    let words = texts(&plot(open, folder.path(), "open.svg"));
+    assert!(words.iter().any(|word| word == "undecided between"), "{words:?}");
 }

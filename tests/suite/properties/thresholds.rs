@@ -7,7 +7,8 @@ use std::sync::atomic::AtomicBool;
 use interwell::dynamics::{Model, Regime, Request, STANDARD_GRAVITY, Summary};
 use interwell::mechanics::Mechanism;
 use interwell::scene::{Document, FieldPath, Files, Scene};
-use interwell::study::{Found, Onset, Scan, Task, threshold, thresholds};
+use interwell::study::{Alternative, Found, Onset, Scan, Task, alternatives, threshold, thresholds};
+use interwell::system::threads::Pool;
 use proptest::prelude::*;
 
 use super::harness::hold_for;
@@ -118,6 +119,16 @@ fn release_is_where_the_push_is_the_force() {
             (amplitude.low, amplitude.high, amplitude.undecided),
             (Some(value), Some(value), false)
         );
+        // all of a range above it releases, and nothing of one below it
+        let ends = |scan: &Scan| {
+            let Found { value, low, high, undecided, .. } = found(&scene, scan, Onset::Release);
+            (value, low, high, undecided)
+        };
+        let above = scan(AMPLITUDE, (1.2 * exact, 3.0 * exact), 10, None);
+        let first = above.values.first().copied();
+        prop_assert_eq!(ends(&above), (first, None, first, false));
+        let below = scan(AMPLITUDE, (0.1 * exact, 0.9 * exact), 10, None);
+        prop_assert_eq!(ends(&below), (None, below.values.last().copied(), None, false));
         // the amplitude is 0.3 g: the mass that this releases
         let exact = drawn.mass_g * exact / 0.3;
         let over_mass = scan("mass_g", (0.5 * exact, 1.6 * exact), 11, None);
@@ -204,6 +215,66 @@ fn what_a_threshold_names_is_what_its_runs_do() {
         Ok(true)
     });
     assert!(undecided.get() >= 4, "{}", undecided.get());
+}
+
+/// Above the least amplitude that crosses those of the bisection are tried, and the hundredths of it up to
+/// one and a half times it: `high` is the first of them all that is known to cross.
+#[test]
+fn a_comparison_names_the_first_amplitude_that_is_known_to_cross() {
+    let limits = prop_oneof![2 => Just(None), 1 => (0.3..1.3_f64).prop_map(Some)];
+    let all = drawn(limits, 0.005..0.15, 0.3..1.6, 16);
+    let pool = Pool::new(2).unwrap();
+    let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
+    let apart = std::cell::Cell::new(0);
+    hold_for("known to cross", 30, 0.5, all, Drawn::text, |drawn| {
+        let (scene, until) = (drawn.scene(), 60.0 / drawn.frequency_hz());
+        let alone = Alternative {
+            name: "drawn".to_owned(),
+            scene: scene.clone(),
+            files: Files::default(),
+            mechanism: mechanism(&scene),
+        };
+        let found = alternatives(&[alone], Some(until), &pool, &task).unwrap()[0].crossing.unwrap();
+        let Some(value) = found.value else {
+            prop_assert_eq!((found.high, found.windows), (None, 0));
+            return Ok(false);
+        };
+        let hundredth = |i: u32| {
+            let amplitude = value * (1.0 + 0.01 * f64::from(i));
+            let digit = 10_f64.powi(amplitude.log10().floor() as i32 - 2);
+            (amplitude / digit).round() / (1.0 / digit).round()
+        };
+        let known = |amplitude: f64| told(&scene, amplitude, until) == (true, true);
+        let first = std::iter::once(value).chain((1..=50).map(hundredth)).find(|at| known(*at));
+        match found.high {
+            // one of the bisection may come before the first of these
+            Some(high) => {
+                prop_assert!(high >= value && known(high), "{found:?}");
+                prop_assert!(first.is_none_or(|first| high <= first), "{found:?} {first:?}");
+            }
+            None => prop_assert_eq!(first, None),
+        }
+        apart.set(apart.get() + u32::from(found.high != Some(value)));
+        Ok(true)
+    });
+    assert!(apart.get() >= 4, "{}", apart.get());
+}
+
+/// Without stops the mass of the harvester moves irregularly near its threshold, and a transient that crosses
+/// was taken for one that goes on: both searches bracket the same threshold.
+#[test]
+fn two_searches_of_a_harvester_without_stops_bracket_one_threshold() {
+    let mut document = Document::load("harvester").unwrap();
+    document.set("stops=None").unwrap();
+    let Document { scene, files, .. } = document;
+    let mechanism = Arc::new(Mechanism::build(&scene.mechanism, &files).unwrap());
+    let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
+    let alone = thresholds(&scene, &mechanism, &task).unwrap().crossing;
+    let scan = scan(AMPLITUDE, (1.3, 1.44), 7, None);
+    let scanned = threshold(&scene, &mechanism, &files, (&scan, Onset::Crossing), &task).unwrap();
+    let ends = |found: Found| (found.low.unwrap_or(0.0), found.high.unwrap_or(f64::INFINITY));
+    let ((low, high), (other_low, other_high)) = (ends(alone), ends(scanned));
+    assert!(low > 1.0 && low <= other_high && other_low <= high, "{alone:?} {scanned:?}");
 }
 
 /// A sharp threshold is the same for any step of the scan and for the search that needs none.

@@ -63,9 +63,17 @@ fn infinity_is_a_load_of_scene_argument_and_axis() {
     document.check().unwrap();
     let none: [&str; 0] = [];
     assert_eq!(document.axes(&none).unwrap()[0].values, axes[0].values);
-    for axis in ["transducer.coil_ohm=1,inf", "transducer.load_ohm=1:inf:2"] {
+    for (axis, said) in [
+        (
+            "transducer.coil_ohm=1,inf",
+            "`inf` is not a finite decimal number; give the resistance of the coil",
+        ),
+        ("transducer.load_ohm=60ohm", "`60ohm` is not a finite decimal number; give the resistance"),
+        ("transducer.load_ohm=1:inf:2", "`inf` is not a finite decimal number; give the resistance"),
+        ("transducer.load_ohm=1:inf:2", "inf stands in a list alone"),
+    ] {
         let error = document.axes(&[axis]).unwrap_err().to_string();
-        assert!(error.contains("`inf` is not a finite decimal number"), "{error}");
+        assert!(error.contains(said), "{axis}\n  gives {error}\n  wants {said}");
     }
 }
 

@@ -53,13 +53,7 @@ impl Session {
         if !FieldPath::new(LIMIT).set(&mut scene, reach.low) {
             return Err("The stops that would come stand not equally far out.");
         }
-        let range = DesignRange {
-            field: LIMIT.to_owned(),
-            low: reach.low,
-            high: reach.high,
-            intervals: INTERVALS[0],
-            whole: false,
-        };
+        let range = DesignRange::new(LIMIT, (reach.low, reach.high), INTERVALS[0]);
         let duration_s = (!self.model().repeats()).then_some(scene.run.duration_s);
         Ok(Asked { scene, range, column: maximised(self.model()), duration_s })
     }

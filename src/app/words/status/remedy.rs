@@ -26,6 +26,11 @@ fn gaps(found: &Thresholds, from: f64) -> String {
     }
 }
 
+/// What stands before a threshold beside which a motion may be a transient.
+fn about(found: &Thresholds) -> &'static str {
+    if found.crossing.undecided { "about " } else { "" }
+}
+
 /// What the thresholds, all from rest at this frequency, say of the present amplitude and motion.
 pub(super) fn remedy(scene: &Scene, summary: &Summary, found: &Thresholds) -> String {
     let Some(g) = amplitude(scene) else { return String::new() };
@@ -37,11 +42,13 @@ pub(super) fn remedy(scene: &Scene, summary: &Summary, found: &Thresholds) -> St
         let most = grams(found.searched_to);
         return match crosses {
             true => String::new(),
+            false if found.crossing.undecided => {
+                format!("From rest no shaking up to {most} g was seen to cross.")
+            }
             false => format!("From rest no shaking up to {most} g crosses."),
         };
     };
-    // a motion near it may be a transient
-    let about = if found.crossing.undecided { "about " } else { "" };
+    let about = about(found);
     let (least, gaps) = (format!("{about}{}", grams(from)), gaps(found, from));
     let text = match (crosses, g >= from) {
         (true, true) => format!("{about}{} g to spare: crosses from {least} g{gaps}.", grams_apart(g - from)),
@@ -81,13 +88,15 @@ pub fn ways(scene: &Scene, settled: &Summary, thresholds: &Thresholds, stops_mm:
         },
         Regime::Rest | Regime::Intrawell => {
             let more = thresholds.crossing.value.filter(|from| *from > g);
-            let more = more.map(|from| format!("with {} g more", grams_apart(from - g)));
+            let about = about(thresholds);
+            let more = more.map(|from| format!("with {about}{} g more", grams_apart(from - g)));
+            let make = if thresholds.crossing.undecided { "were seen to make" } else { "make" };
             match (more, stops) {
                 (Some(more), Some(stops)) => format!("Crosses {more}, or {stops}."),
                 (Some(more), None) => format!("Crosses {more}; no stops alone would do it."),
                 (None, Some(stops)) => format!("Crosses {stops}."),
                 (None, None) => format!(
-                    "From rest neither shaking up to {} g nor any stops make it cross.",
+                    "From rest neither shaking up to {} g nor any stops {make} it cross.",
                     grams(thresholds.searched_to)
                 ),
             }
@@ -99,4 +108,53 @@ pub fn ways(scene: &Scene, settled: &Summary, thresholds: &Thresholds, stops_mm:
 fn at_least_one_decimal(mm: f64) -> String {
     let text = format!("{mm}");
     if text.contains('.') { text } else { format!("{mm:.1}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::dynamics::{Model, Request};
+    use crate::mechanics::Mechanism;
+    use crate::scene::Document;
+    use crate::study::Found;
+
+    #[test]
+    fn what_is_not_known_is_said_to_be_about_or_as_far_as_seen() {
+        let Document { scene, files, .. } = Document::load("first-look").unwrap();
+        let mechanism = Arc::new(Mechanism::build(&scene.mechanism, &files).unwrap());
+        let settled = Model::build(&scene, mechanism).unwrap().run(&Request::default()).summary;
+        assert_eq!((settled.regime, settled.crossings), (Regime::Intrawell, 0));
+        let said = |value: Option<f64>, undecided: bool| {
+            let crossing = Found { value, undecided, without_gap: value, ..Found::default() };
+            let found = Thresholds { frees_at: None, crossing, searched_to: 30.0 };
+            [remedy(&scene, &settled, &found), ways(&scene, &settled, &found, None)]
+        };
+        assert_eq!(
+            said(Some(1.2), false),
+            ["0.30 g short of crossing at 1.20 g.", "Crosses with 0.30 g more; no stops alone would do it."]
+        );
+        assert_eq!(
+            said(Some(1.2), true),
+            [
+                "About 0.30 g short of crossing at about 1.20 g.",
+                "Crosses with about 0.30 g more; no stops alone would do it."
+            ]
+        );
+        assert_eq!(
+            said(None, false),
+            [
+                "From rest no shaking up to 30.0 g crosses.",
+                "From rest neither shaking up to 30.0 g nor any stops make it cross."
+            ]
+        );
+        assert_eq!(
+            said(None, true),
+            [
+                "From rest no shaking up to 30.0 g was seen to cross.",
+                "From rest neither shaking up to 30.0 g nor any stops were seen to make it cross."
+            ]
+        );
+    }
 }
