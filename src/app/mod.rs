@@ -84,7 +84,7 @@ pub fn run(spec: Option<&str>, refused: impl FnOnce(CannotRun)) -> Result<(), Ap
     })
 }
 
-/// Whether there is a display; assumed where the environment does not tell, outside Unix and on macOS.
+/// Whether there is a display; assumed where the environment does not tell (outside Unix, and on macOS).
 fn has_display() -> bool {
     let unix = cfg!(all(unix, not(target_os = "macos")));
     let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());

@@ -114,8 +114,7 @@ impl Subject {
         self.axes().len() == 1
     }
 
-    /// The command with its specific options, in the order of `--help`: those before the options of the plot,
-    /// and those after.
+    /// The command, its options before those of the plot, and those after, in the order of `--help`.
     fn command(&self) -> (&'static str, Vec<Argument>, Vec<Argument>) {
         let mut options: Vec<Argument> =
             self.axes().iter().map(|axis| Argument::of("over", over(axis))).collect();

@@ -24,7 +24,7 @@ const SPAN_FACTOR: f64 = 2.0;
 pub struct Accuracy {
     /// The model that moves, and the live time in s at which it began; `None` if its error cannot be known.
     origin: Option<(Arc<Model>, f64)>,
-    /// The time in s, from there on, for which the error was last asked.
+    /// The time in s, from there on, for which the error was last requested.
     span: Option<f64>,
     trust: Latest<Trust>,
     /// The selected method of fixed step.
@@ -133,7 +133,7 @@ impl Accuracy {
     }
 
     /// The error of the motion in a few words, and in full.
-    pub(super) fn words(&self) -> Option<(String, String)> {
+    pub(super) fn descriptions(&self) -> Option<(String, String)> {
         let (_, from) = self.origin.as_ref()?;
         let trust = self.trust.newest()?;
         // for a run that ended early its end is reported instead

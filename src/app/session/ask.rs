@@ -106,10 +106,10 @@ impl Session {
     /// of the run, and while the accuracy is unknown.
     pub fn trust(&self) -> Option<(String, String)> {
         let moves = self.fault.is_none() && !self.player.is_held() && self.player.ended().is_none();
-        self.accuracy.words().filter(|_| moves)
+        self.accuracy.descriptions().filter(|_| moves)
     }
 
-    /// Whether it can be searched for what it would take to cross the barrier.
+    /// Whether a search for what it would take to cross the barrier is possible.
     fn can_search(&self) -> bool {
         self.fault.is_none()
             && matches!(self.built.excitation, Excitation::Sine { .. })

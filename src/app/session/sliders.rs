@@ -14,7 +14,7 @@ impl FieldInfo {
         let (low, high, step) = self.slider;
         let saved = FieldPath::new(self.path).get(session.editor.saved());
         let scales = session.opened();
-        // for the prototype these are about 2 g and 20 Hz
+        // for the prototype these are 2 g and 20 Hz
         let scaled = match self.scale {
             Scale::Fixed => None,
             Scale::Value => saved.map(|value| 2.5 * value.abs()),
@@ -28,9 +28,7 @@ impl FieldInfo {
         };
         let fits = saved.is_none_or(|value| (low..=high).contains(&value))
             && match self.scale {
-                Scale::Push | Scale::Rate => {
-                    scaled.is_none_or(|scaled| (0.25..=4.0).contains(&(scaled / high)))
-                }
+                Scale::Push | Scale::Rate => scaled.is_none_or(|end| (0.25..=4.0).contains(&(end / high))),
                 Scale::Value => saved.is_none_or(|value| value == 0.0 || value.abs() > high / 200.0),
                 _ => true,
             };

@@ -63,7 +63,7 @@ impl BestStops {
         *self = Self { is_off: self.is_off, ..Self::default() };
     }
 
-    /// The best travel limit in mm known so far, at first from the coarse scan; `None` if none is better.
+    /// The best travel limit in mm so far, at first that of the coarse scan; `None` if no limit stands out.
     pub fn limit_mm(&self) -> Option<f64> {
         match &self.answer {
             Some(Ok(design)) => (!design.flat).then(|| design.optimum.at[0]),

@@ -51,7 +51,7 @@ impl Session {
         let axis = SweepAxis { field: LIMIT.to_owned(), step: reach.step, ..SweepAxis::default() };
         let mut scene = ground(self.scene(), self.remembered_stops(), std::slice::from_ref(&axis));
         if !FieldPath::new(LIMIT).set(&mut scene, reach.low) {
-            return Err("The stops that would come stand not equally far out.");
+            return Err("The stops that would come do not stand equally far out.");
         }
         let range = DesignRange {
             field: LIMIT.to_owned(),

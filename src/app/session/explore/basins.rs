@@ -82,8 +82,7 @@ fn find(
     each: &dyn Fn(Level),
 ) -> Result<(), String> {
     let range = |(from, to): (f64, f64)| EvenRange { from, to, count: STARTS };
-    let starts =
-        Starts::grid(&range(question.x_mm), &range(question.v)).map_err(|error| error.to_string())?;
+    let starts = Starts::grid(&range(question.x_mm), &range(question.v)).map_err(|why| why.to_string())?;
     let message = |error: NoBasins| match error {
         NoBasins::Faults(faults) => faults.first().map_or(String::new(), |fault| fault.problem.clone()),
         other => other.to_string(),

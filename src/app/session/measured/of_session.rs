@@ -11,8 +11,7 @@ use crate::study::{MeasuredMotion, NoComparison, compare, compare_force};
 use super::{Differences, MeasuredQuestion, MeasuredRecord, sentence};
 
 impl Session {
-    /// Asks for the differences between the record and the present scene; to be called in every frame that
-    /// shows them.
+    /// Asks for the differences of the record from the present scene; called in every frame that shows them.
     pub fn want_differences(&mut self) {
         let Some(over) = self.measured.over.clone() else { return };
         let still = self.stands_still();
