@@ -1,10 +1,10 @@
-//! The window: everything that is seen of a scene, and the controls that change it.
+//! The window: views of a scene, and the controls that change it.
 //!
-//! Nothing is computed here. [`session`] holds what is open (a scene with undo, its live motion, the answers
-//! of background tasks) and works without a window; the rest draws it. A view is a function of a
-//! [`views::ViewContext`].
+//! No physics is computed here. [`session`] holds the open scene with undo, its live motion and the answers
+//! of background jobs, and works without a window; the other modules draw it. A view is a function of
+//! a [`views::ViewContext`].
 //!
-//! Each folder uses only those above it; a test holds this.
+//! Each module uses only those above it in this table, which `tests/suite/layers.rs` checks.
 //!
 //! | module | holds |
 //! | --- | --- |
@@ -34,28 +34,28 @@ pub use session::CannotRun;
 use ui::settings::Settings;
 use window::Window;
 
-/// Why there is no window.
+/// Why no window can be opened.
 #[derive(Debug, thiserror::Error)]
 pub enum AppError {
     /// The scene cannot be run.
     #[error(transparent)]
     Scene(#[from] CannotRun),
-    /// The machine has no display, or no graphics.
+    /// The machine has no display or no usable graphics.
     #[error(
         "no window can be opened ({0}); without a display use interwell --headless, see interwell --help"
     )]
     NoWindow(String),
 }
 
-/// Opens the window on a scene, and comes back when it is closed. What is wrong with the scene is handed to
-/// `refused` before a window is there; the window then says it too, and opens on the first preset.
+/// Opens the window on a scene, and returns when it is closed. If the scene cannot be run, the reason is
+/// passed to `refused` before the window opens; the window shows it too, and opens on the first preset.
 pub fn run(spec: Option<&str>, refused: impl FnOnce(CannotRun)) -> Result<(), AppError> {
-    let tried = Window::open(spec, Settings::default(), Arc::new(|| ())).map(drop);
+    let opened = Window::open(spec, Settings::default(), Arc::new(|| ())).map(drop);
     if !has_display() {
-        tried?;
+        opened?;
         return Err(AppError::NoWindow("neither DISPLAY nor WAYLAND_DISPLAY is set".to_owned()));
     }
-    tried.unwrap_or_else(refused);
+    opened.unwrap_or_else(refused);
     let viewport = egui::ViewportBuilder::default()
         .with_title("interwell")
         .with_app_id("interwell")
@@ -84,7 +84,7 @@ pub fn run(spec: Option<&str>, refused: impl FnOnce(CannotRun)) -> Result<(), Ap
     })
 }
 
-/// Whether there is a display to ask for; only where that is told by the environment.
+/// Whether there is a display; assumed where the environment does not tell (outside Unix, and on macOS).
 fn has_display() -> bool {
     let unix = cfg!(all(unix, not(target_os = "macos")));
     let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());

@@ -1,7 +1,7 @@
-//! Background computations.
+//! Background jobs, and the newest answer to a question that changes.
 //!
-//! A job is a value: dropped, it is cancelled. [`Latest`] asks again and again for the same kind of
-//! answer and shows the newest; an answer to an older question is thrown away.
+//! Dropping a [`Job`] cancels it. [`Latest`] keeps the newest answer; a question that is replaced before its
+//! answer has come is cancelled.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, channel};
@@ -11,27 +11,27 @@ use std::time::Duration;
 use crate::system::clock::WallClock;
 use crate::system::threads::{Pool, processors, sleep, spawn};
 
-/// Threads for a computation that uses all cores but one, which stays for the window; none where the system
-/// has no threads to give.
+/// A pool of threads for all cores but one, which is left to the window. Returns `None` if the system cannot
+/// start threads.
 pub fn pool() -> Option<Pool> {
     Pool::new(processors().saturating_sub(1).max(1)).ok()
 }
 
-/// Lets `take` take in what comes until it says that nothing more will, at most so long.
-pub fn wait_while(most: Duration, mut take: impl FnMut() -> bool) {
+/// Calls `take` every 2 ms until it returns false, for at most `timeout`.
+pub fn wait_while(timeout: Duration, mut take: impl FnMut() -> bool) {
     let clock = WallClock::start();
-    while take() && clock.elapsed() < most {
+    while take() && clock.elapsed() < timeout {
         sleep(Duration::from_millis(2));
     }
 }
 
-/// Wakes the window when an answer is there.
+/// Callback that wakes the window when an answer is ready.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
-/// How often at most a job wakes the window while it runs.
-const WAKE_EVERY: Duration = Duration::from_millis(40);
+/// Shortest interval between two wakes of the window while a job runs.
+const WAKE_INTERVAL: Duration = Duration::from_millis(40);
 
-/// A computation on a thread of its own whose answer comes in parts, from any thread that it uses.
+/// A computation on its own thread whose answer comes in parts, from any thread that it uses.
 #[derive(Debug)]
 pub struct Job<T> {
     parts: Receiver<T>,
@@ -39,8 +39,8 @@ pub struct Job<T> {
 }
 
 impl<T: Send + 'static> Job<T> {
-    /// Starts `job`, which looks at the flag that it is given and hands its parts over one by one; none where
-    /// the system has no thread to give.
+    /// Starts `job`, which is given a cancel flag to check and a callback for each part of its answer.
+    /// Returns `None` if the system cannot start a thread.
     pub fn start(
         wake: &Wake,
         job: impl FnOnce(&AtomicBool, &(dyn Fn(T) + Sync)) + Send + 'static,
@@ -48,21 +48,21 @@ impl<T: Send + 'static> Job<T> {
         let (sender, parts) = channel();
         let cancel = Arc::new(AtomicBool::new(false));
         let (flag, wake) = (Arc::clone(&cancel), Arc::clone(wake));
-        let last = Mutex::new(WallClock::start());
+        let last_wake = Mutex::new(WallClock::start());
         let run = move || {
-            let each = |part: T| {
-                // nobody listens where the job was dropped
+            let send = |part: T| {
+                // the receiver is gone once the job is dropped
                 if sender.send(part).is_err() {
                     return;
                 }
-                if let Ok(mut last) = last.try_lock()
-                    && last.elapsed() > WAKE_EVERY
+                if let Ok(mut last_wake) = last_wake.try_lock()
+                    && last_wake.elapsed() > WAKE_INTERVAL
                 {
-                    *last = WallClock::start();
+                    *last_wake = WallClock::start();
                     wake();
                 }
             };
-            job(&flag, &each);
+            job(&flag, &send);
             drop(sender);
             if !flag.load(Ordering::Relaxed) {
                 wake();
@@ -71,16 +71,16 @@ impl<T: Send + 'static> Job<T> {
         spawn(run).then_some(Self { parts, cancel })
     }
 
-    /// Waits for the next part, at most so long; `Err` where none will come any more.
-    fn wait(&self, most: Duration) -> Result<Option<T>, ()> {
-        match self.parts.recv_timeout(most) {
+    /// Waits at most `timeout` for the next part; `Err` if no more will come.
+    fn wait(&self, timeout: Duration) -> Result<Option<T>, ()> {
+        match self.parts.recv_timeout(timeout) {
             Ok(part) => Ok(Some(part)),
             Err(RecvTimeoutError::Timeout) => Ok(None),
             Err(RecvTimeoutError::Disconnected) => Err(()),
         }
     }
 
-    /// Takes what has come, and says whether more may come.
+    /// Passes the parts that have come to `each`. Returns whether more may come.
     pub fn take(&self, mut each: impl FnMut(T)) -> bool {
         loop {
             match self.parts.try_recv() {
@@ -103,7 +103,7 @@ impl<T> Drop for Job<T> {
 pub struct Latest<T> {
     generation: u64,
     job: Option<Job<T>>,
-    /// When the question under way was asked.
+    /// When the current question was asked.
     since: Option<WallClock>,
     /// The answer and the generation of its question.
     answer: Option<(u64, T)>,
@@ -116,7 +116,7 @@ impl<T> Default for Latest<T> {
 }
 
 impl<T: Send + 'static> Latest<T> {
-    /// Asks anew; a question under way is dropped.
+    /// Asks a new question, and cancels the current one.
     pub fn ask(&mut self, wake: &Wake, job: impl FnOnce(&AtomicBool) -> Option<T> + Send + 'static) {
         self.generation += 1;
         self.job = Job::start(wake, move |cancel, each| {
@@ -127,22 +127,22 @@ impl<T: Send + 'static> Latest<T> {
         self.since = Some(WallClock::start());
     }
 
-    /// Forgets question and answer.
+    /// Cancels the question and forgets the answer.
     pub fn clear(&mut self) {
         self.generation += 1;
         (self.job, self.answer) = (None, None);
     }
 
-    /// Drops the question under way; an answer that is there stays.
+    /// Cancels the question; an answer that has come is kept.
     pub fn stop(&mut self) {
         self.job = None;
     }
 
-    /// Takes in an answer that has come. Whether one has.
+    /// Stores the answer if it has come. Returns whether the job has ended, with or without an answer.
     pub fn poll(&mut self) -> bool {
         let Some(job) = &self.job else { return false };
         let mut answer = None;
-        let more = job.take(|own| answer = Some(own));
+        let more = job.take(|part| answer = Some(part));
         if answer.is_none() && more {
             return false;
         }
@@ -150,11 +150,11 @@ impl<T: Send + 'static> Latest<T> {
         true
     }
 
-    /// Takes in an answer that has come and hands it over, if it is one to the present question.
+    /// Removes and returns the answer to the current question, if it has come.
     pub fn take(&mut self) -> Option<T> {
         self.poll();
-        let present = self.generation;
-        self.answer.take_if(|answer| answer.0 == present).map(|answer| answer.1)
+        let current = self.generation;
+        self.answer.take_if(|answer| answer.0 == current).map(|answer| answer.1)
     }
 
     fn finish(&mut self, answer: Option<T>) {
@@ -164,9 +164,9 @@ impl<T: Send + 'static> Latest<T> {
         }
     }
 
-    /// Waits for the answer to the present question, at most so long. Whether it is there.
-    pub fn wait(&mut self, most: Duration) -> bool {
-        match self.job.as_ref().map(|job| job.wait(most)) {
+    /// Waits at most `timeout` for the answer to the current question. Returns whether it has come.
+    pub fn wait(&mut self, timeout: Duration) -> bool {
+        match self.job.as_ref().map(|job| job.wait(timeout)) {
             Some(Ok(Some(answer))) => self.finish(Some(answer)),
             Some(Err(())) => self.finish(None),
             Some(Ok(None)) | None => {}
@@ -174,22 +174,22 @@ impl<T: Send + 'static> Latest<T> {
         self.current().is_some()
     }
 
-    /// The answer to the present question, once it is there.
+    /// The answer to the current question, once it has come.
     pub fn current(&self) -> Option<&T> {
         self.answer.as_ref().filter(|answer| answer.0 == self.generation).map(|answer| &answer.1)
     }
 
-    /// The newest answer, be it to an older question.
+    /// The newest answer, which may belong to an older question.
     pub fn newest(&self) -> Option<&T> {
         self.answer.as_ref().map(|answer| &answer.1)
     }
 
-    /// For how long an answer has been worked on; none where none is.
+    /// How long the job has been running; `None` if none is.
     pub fn running_for(&self) -> Option<Duration> {
         self.since.filter(|_| self.is_running()).map(|since| since.elapsed())
     }
 
-    /// Whether an answer is being worked on.
+    /// Whether an answer is being computed.
     pub fn is_running(&self) -> bool {
         self.job.is_some()
     }
@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn dropped_it_is_cancelled() {
+    fn dropping_a_job_cancels_it() {
         let (sender, seen) = channel();
         let job = Job::<()>::start(&wake(), move |cancel, _| {
             while !cancel.load(Ordering::Relaxed) {
@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_come_until_nobody_listens() {
+    fn parts_come_until_the_job_is_dropped() {
         let (sender, seen) = channel();
         let job = Job::start(&wake(), move |cancel: &AtomicBool, each: &(dyn Fn(u32) + Sync)| {
             each(1);

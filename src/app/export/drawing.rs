@@ -1,4 +1,4 @@
-//! Pictures of figures: the scene as the command line reads it, the study, and the plot of its table.
+//! Drawing of figures: reads the scene as the command line does, runs the study and plots its table.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -23,39 +23,39 @@ use crate::system::threads::Pool;
 
 use super::figure::{FigureOrder, Subject};
 
-/// What is said where the system has no threads to give.
+/// Message if the system cannot start threads.
 const NO_THREADS: &str = "The system has no threads to give: close something, and save again.";
 
-/// What is said where the file of the scene is not what it was.
+/// Message if the file of the scene has changed since it was opened.
 const CHANGED: &str = "The file of this scene is no longer what was opened, and the figure's command begins \
                        with it: save the scene first (Ctrl+S), or open it anew.";
 
-/// Draws the figure; none where it was cancelled.
+/// Draws the figure. Returns `None` if cancelled.
 pub(super) fn draw(order: &FigureOrder, cancel: &AtomicBool) -> Option<Result<Figure, String>> {
-    let drawn = drawn(order, cancel);
-    (!cancel.load(Ordering::Relaxed)).then_some(drawn)
+    let figure = figure(order, cancel);
+    (!cancel.load(Ordering::Relaxed)).then_some(figure)
 }
 
-fn drawn(order: &FigureOrder, cancel: &AtomicBool) -> Result<Figure, String> {
+fn figure(order: &FigureOrder, cancel: &AtomicBool) -> Result<Figure, String> {
     let document = document(order)?;
-    let own = Drawing {
+    let drawing = Drawing {
         caption: Caption::new(&document, env!("CARGO_PKG_VERSION")),
         theme: Theme::of(false, Some(order.sheet)),
         task: Task { tick: &|| (), cancel },
         document,
     };
     match &order.subject {
-        Subject::Run(times, panels) => own.run(*times, panels),
-        Subject::Curve => own.curve(),
-        Subject::Sweep(_, quantity, surface) => own.sweep(&order.subject, quantity, *surface),
-        Subject::Diagram(_) => own.diagram(&order.subject),
-        Subject::Section => own.section(),
-        Subject::Basins(x_mm, v) => own.basins(*x_mm, *v),
-        Subject::Spectrum(signal, until) => own.spectrum(*signal, *until),
+        Subject::Run(times, panels) => drawing.run(*times, panels),
+        Subject::Curve => drawing.curve(),
+        Subject::Sweep(_, quantity, surface) => drawing.sweep(&order.subject, quantity, *surface),
+        Subject::Diagram(_) => drawing.diagram(&order.subject),
+        Subject::Section => drawing.section(),
+        Subject::Basins(x_mm, v) => drawing.basins(*x_mm, *v),
+        Subject::Spectrum(signal, until) => drawing.spectrum(*signal, *until),
     }
 }
 
-/// The document as the command line reads it; an error where it is not the scene of the window.
+/// Reads the document as the command line does; an error if it differs from the scene of the window.
 fn document(order: &FigureOrder) -> Result<Document, String> {
     let mut document = Document::of_argument(&order.origin).map_err(|error| error.to_string())?;
     for setting in &order.settings {
@@ -75,7 +75,7 @@ fn document(order: &FigureOrder) -> Result<Document, String> {
     if arguments(&first.scene, &order.scene).is_empty() { Ok(document) } else { Err(CHANGED.to_owned()) }
 }
 
-/// What every picture is drawn from.
+/// What all figures need.
 struct Drawing<'a> {
     document: Document,
     caption: Caption,
@@ -101,15 +101,15 @@ impl Drawing<'_> {
         Ok((grid, pool().ok_or_else(|| NO_THREADS.to_owned())?))
     }
 
-    fn wrong_cell(&self, cell: CellFaults) -> String {
+    fn cell_error(&self, cell: CellFaults) -> String {
         self.document.error_from(cell.faults).to_string()
     }
 
     fn run(&self, times: Option<(f64, f64)>, panels: &[Panel]) -> Result<Figure, String> {
         let (document, model) = (&self.document, self.model()?);
-        let sampled = sample_times(&document.scene, &model, &Sampling::Default, None);
-        let times_of_rows = sampled.map_err(|error| error.to_string())?;
-        let keep = Keep { times: times_of_rows, events: false, until_settled: None };
+        let sample_times = sample_times(&document.scene, &model, &Sampling::Default, None);
+        let sample_times = sample_times.map_err(|error| error.to_string())?;
+        let keep = Keep { times: sample_times, events: false, until_settled: None };
         let (simulation, trace) = simulate_with_trace(&model, &keep, times, Some(self.task.cancel));
         let ranges = Ranges { x: times, y: None };
         let mechanism = &model.mechanism();
@@ -135,42 +135,42 @@ impl Drawing<'_> {
         let sweep = Sweep::new(scene, &self.document.files, grid).with(options);
         let view = if surface { View::Surface } else { View::Top };
         can_show(sweep.grid(), (quantity, &view), &sweep.empty_table()).map_err(|error| error.to_string())?;
-        sweep.validate(&pool, &self.task).map_err(|cell| self.wrong_cell(cell))?;
+        sweep.validate(&pool, &self.task).map_err(|cell| self.cell_error(cell))?;
         let mut rows = Table::new();
-        let kept = sweep.run(&pool, &self.task, |table| keep(&mut rows, table));
-        kept.map_err(|end| words(&end))?;
+        let end = sweep.run(&pool, &self.task, |table| append(&mut rows, table));
+        end.map_err(|end| end_message(&end))?;
         let grid = sweep.grid();
         let overlay = match carry {
             Some(_) => Overlay::default(),
             None => Overlay::of(scene, sweep.first_mechanism().ok().as_deref(), grid, &rows),
         };
         let (rows, ranges) = (&rows, Ranges::default());
-        let shown = SweepPicture { rows, grid, scene, until_settled: None, quantity, overlay, view, ranges };
-        sweep_figure(&shown, &self.caption, &self.theme).map_err(|error| error.to_string())
+        let plot = SweepPicture { rows, grid, scene, until_settled: None, quantity, overlay, view, ranges };
+        sweep_figure(&plot, &self.caption, &self.theme).map_err(|error| error.to_string())
     }
 
     fn diagram(&self, subject: &Subject) -> Result<Figure, String> {
         let (grid, pool) = self.grid(subject)?;
-        let asked = strobes(Some(Carry::Both));
-        let sections = Sections::new(&self.document.scene, &self.document.files, grid, asked);
-        sections.validate(&pool, &self.task).map_err(|cell| self.wrong_cell(cell))?;
+        let options = strobe_options(Some(Carry::Both));
+        let sections = Sections::new(&self.document.scene, &self.document.files, grid, options);
+        sections.validate(&pool, &self.task).map_err(|cell| self.cell_error(cell))?;
         let mut rows = Table::new();
-        let kept = sections.run(&pool, &self.task, |table| keep(&mut rows, table));
-        kept.map_err(|end| words(&end))?;
+        let end = sections.run(&pool, &self.task, |table| append(&mut rows, table));
+        end.map_err(|end| end_message(&end))?;
         let over = sections.grid().columns().first().map(String::as_str);
         Ok(self.of_section(&rows, over, (None, None)))
     }
 
     fn section(&self) -> Result<Figure, String> {
-        let (model, asked) = (self.model()?, strobes(None));
-        let found = section(&model, &self.document.scene, &asked, self.task.cancel);
+        let (model, options) = (self.model()?, strobe_options(None));
+        let found = section(&model, &self.document.scene, &options, self.task.cancel);
         let (rows, _) = found.map_err(|fault| self.document.error_from(vec![fault]).to_string())?;
         Ok(self.of_section(&rows, None, model.stop_positions()))
     }
 
     fn of_section(&self, rows: &Table, over: Option<&str>, stops: (Option<f64>, Option<f64>)) -> Figure {
-        let shown = SectionPicture { rows, over, phase_deg: Some(0.0), stops, ranges: Ranges::default() };
-        section_figure(&shown, &self.caption, &self.theme)
+        let plot = SectionPicture { rows, over, phase_deg: Some(0.0), stops, ranges: Ranges::default() };
+        section_figure(&plot, &self.caption, &self.theme)
     }
 
     fn basins(&self, x_mm: (f64, f64), v: (f64, f64)) -> Result<Figure, String> {
@@ -183,31 +183,31 @@ impl Drawing<'_> {
         })?;
         let pool = pool().ok_or_else(|| NO_THREADS.to_owned())?;
         while !basins.is_whole() && basins.run_level(&pool, &self.task) {}
-        // none where it was cancelled
+        // `None` if cancelled: `draw` then drops the error
         let answer = basins.answer(&self.task).ok_or_else(String::new)?;
         Ok(basins_figure(&basins, &answer, &self.caption, &self.theme))
     }
 
     fn spectrum(&self, signal: Signal, until_settled: Option<f64>) -> Result<Figure, String> {
-        let asked = SpectrumOptions { signal, taper: None, rate_hz: None, until_settled };
-        let found = spectrum(&self.model()?, &asked, &self.task).map_err(|problem| problem.to_string())?;
+        let options = SpectrumOptions { signal, taper: None, rate_hz: None, until_settled };
+        let found = spectrum(&self.model()?, &options, &self.task).map_err(|problem| problem.to_string())?;
         let (quantity, ranges) = (SpectrumQuantity::Amplitude, Ranges::default());
         Ok(spectrum_figure(&found, quantity, ranges, &self.caption, &self.theme))
     }
 }
 
-/// States once a forcing period.
-fn strobes(carry: Option<Carry>) -> SectionOptions {
+/// Options for the states once a forcing period.
+fn strobe_options(carry: Option<Carry>) -> SectionOptions {
     SectionOptions { at: SectionAt::Phase(0.0), periods: None, until_settled: None, carry }
 }
 
-fn keep(rows: &mut Table, more: &Table) -> Result<bool, String> {
+fn append(rows: &mut Table, more: &Table) -> Result<bool, String> {
     rows.append(more);
     Ok(true)
 }
 
-/// Why not all rows came.
-fn words(end: &SweepEnd<String>) -> String {
+/// Why a sweep ended early; empty if it was cancelled.
+fn end_message(end: &SweepEnd<String>) -> String {
     match end {
         SweepEnd::Cancelled => String::new(),
         SweepEnd::Write(problem) => problem.clone(),

@@ -1,4 +1,4 @@
-//! Figures of what the views show, each by the command that makes it without a window.
+//! Figures of the views, each with the command line that draws the same figure without a window.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -18,53 +18,53 @@ use crate::system::files::canonical;
 use super::drawing::draw;
 use super::quoted;
 
-/// What a figure shows, with everything that its command is told of it.
+/// What a figure shows, with the options of its command.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Subject {
-    /// Panels of a run, over these times in s or all of them.
+    /// Panels of a run, over a range of times in s or over all times.
     Run(Option<(f64, f64)>, Vec<Panel>),
     /// Force and potential of the mechanism.
     Curve,
-    /// A quantity over two fields, or over one that is walked up and down; over two also as a surface.
+    /// A quantity over two fields, or over one that is walked up and down; over two, optionally as a surface.
     Sweep(Vec<SweepAxis>, &'static str, bool),
     /// Stroboscopic displacements over a field that is walked up and down.
     Diagram(SweepAxis),
     /// Stroboscopic states of one run.
     Section,
-    /// The attractor of each start; ends of displacements in mm and of velocities in m/s.
+    /// The attractor of each start, for ranges of displacements in mm and of velocities in m/s.
     Basins((f64, f64), (f64, f64)),
-    /// Amplitudes of a signal, and for how long in s the motion is waited for to repeat.
+    /// Amplitude spectrum of a signal, and how long in s to wait for the motion to repeat.
     Spectrum(Signal, Option<f64>),
 }
 
 #[derive(Debug, Clone)]
 pub struct FigureOrder {
-    /// What the command line calls the scene.
+    /// The scene's name on the command line.
     pub(super) origin: String,
-    /// What is changed in that scene.
+    /// Changes of that scene, as values of `--set`.
     pub(super) settings: Vec<String>,
-    /// What it then is, with the first values of what is swept.
+    /// The changed scene, with the first value of each swept field.
     pub(super) scene: Scene,
     pub(super) subject: Subject,
     pub(super) sheet: Sheet,
     format: Format,
-    /// The sheet as options.
+    /// The sheet as command-line options.
     layout: Vec<Argument>,
     path: PathBuf,
     data: Option<PathBuf>,
 }
 
-/// Where a figure goes and how it is laid out; checked.
+/// Output files and layout of a figure, already checked.
 #[derive(Debug, Clone)]
 pub struct Place {
     pub path: PathBuf,
     pub format: Format,
     pub sheet: Sheet,
-    /// The file of the numbers that are drawn, where one is asked for.
+    /// The file for the plotted numbers, if wanted.
     pub data: Option<PathBuf>,
 }
 
-/// Why a view that is not looked at has no figure.
+/// Message if the view has not been shown, so that its ranges are unknown.
 const NOT_SEEN: &str = "Show this view first: the figure has its ranges.";
 
 impl Subject {
@@ -83,10 +83,10 @@ impl Subject {
     }
 
     pub fn map(session: &Session, surface: bool) -> Result<Self, String> {
-        let none = || "This scene has no two fields to make a map over.".to_owned();
+        let no_axes = || "This scene has no two fields to make a map over.".to_owned();
         let quantity = session.map.quantity().column;
         let surface = surface && words_of(quantity).is_none();
-        Ok(Self::Sweep(session.map_axes().ok_or_else(none)?.to_vec(), quantity, surface))
+        Ok(Self::Sweep(session.map_axes().ok_or_else(no_axes)?.to_vec(), quantity, surface))
     }
 
     /// The basins as the view shows them.
@@ -100,7 +100,7 @@ impl Subject {
         Self::Spectrum(session.explore.spectra.signal, longest_wait(session.model()))
     }
 
-    /// The fields that are swept.
+    /// The swept fields.
     pub(super) fn axes(&self) -> &[SweepAxis] {
         match self {
             Self::Sweep(axes, ..) => axes,
@@ -109,57 +109,57 @@ impl Subject {
         }
     }
 
-    /// Whether each run goes on from the one before.
+    /// Whether each run continues from the end of the one before.
     pub(super) fn is_walked(&self) -> bool {
         self.axes().len() == 1
     }
 
-    /// The command, and its own options in the order of `--help`: those before and after the picture's.
+    /// The command, its options before those of the plot, and those after, in the order of `--help`.
     fn command(&self) -> (&'static str, Vec<Argument>, Vec<Argument>) {
-        let mut own: Vec<Argument> =
+        let mut options: Vec<Argument> =
             self.axes().iter().map(|axis| Argument::of("over", over(axis))).collect();
         if self.is_walked() {
-            own.push(Argument::of("carry", "both"));
+            options.push(Argument::of("carry", "both"));
         }
         let mut ranges = Vec::new();
         let name = match self {
             Self::Run(times, panels) => {
                 if panels.len() < Panel::ALL.len() {
-                    own.extend(panels.iter().map(|panel| Argument::of("panels", panel.name())));
+                    options.extend(panels.iter().map(|panel| Argument::of("panels", panel.name())));
                 }
                 ranges.extend(times.map(|(from, to)| Argument::of("plot-x", format!("{from}:{to}"))));
                 "simulate"
             }
             Self::Curve => "curve",
             Self::Sweep(_, quantity, surface) => {
-                own.push(Argument::of("quantity", *quantity));
-                own.extend(surface.then(|| Argument::switch("surface")));
+                options.push(Argument::of("quantity", *quantity));
+                options.extend(surface.then(|| Argument::switch("surface")));
                 "sweep"
             }
             Self::Diagram(_) | Self::Section => "section",
             Self::Basins(x_mm, v) => {
                 let even = |(from, to): (f64, f64)| format!("{from}:{to}:{STARTS}");
-                own.extend([Argument::of("x-mm", even(*x_mm)), Argument::of("v", even(*v))]);
+                options.extend([Argument::of("x-mm", even(*x_mm)), Argument::of("v", even(*v))]);
                 "basins"
             }
             Self::Spectrum(signal, until) => {
-                own.push(Argument::of("of", signal.name()));
-                own.extend(until.map(|until| Argument::of("until-settled", until.to_string())));
+                options.push(Argument::of("of", signal.name()));
+                options.extend(until.map(|until| Argument::of("until-settled", until.to_string())));
                 "spectrum"
             }
         };
-        (name, own, ranges)
+        (name, options, ranges)
     }
 
-    /// The scene of a session as the figure shows it, and the scene that the command begins with, both with
-    /// the first values of what is swept.
+    /// The scene that the command begins with, and the scene that the figure shows, both with the first value
+    /// of each swept field.
     fn scenes(&self, session: &Session) -> (Scene, Scene) {
         let editor = &session.editor;
         let (mut from, mut scene) = (editor.named().clone(), editor.scene().clone());
         keep_start_inside(&mut scene);
         match self {
             Self::Run(Some((_, to)), _) => scene.run.duration_s = scene.run.duration_s.max(*to),
-            // every start is one of the figure's
+            // the figure sets the starts
             Self::Basins(..) => (scene.start, from.start) = (Start::Rest, Start::Rest),
             _ if !self.axes().is_empty() => {
                 scene = ground(&scene, session.remembered_stops(), self.axes());
@@ -167,9 +167,9 @@ impl Subject {
             _ => {}
         }
         for axis in self.axes() {
-            for own in [&mut from, &mut scene] {
-                // a field that the scene does not have comes with the settings
-                let _ = FieldPath::new(&axis.field).set(own, axis.from);
+            for target in [&mut from, &mut scene] {
+                // a field that the named scene lacks is added by the settings
+                let _ = FieldPath::new(&axis.field).set(target, axis.from);
             }
         }
         (from, scene)
@@ -177,20 +177,21 @@ impl Subject {
 }
 
 impl FigureOrder {
-    /// The figure of `subject` in a session; a sentence where there can be none.
+    /// The figure of `subject` in a session; the error is a sentence.
     pub fn new(session: &Session, subject: Subject, place: Place) -> Result<Self, String> {
-        let nameless =
+        let no_name =
             || "This scene has no name that a command could open: save it first (Ctrl+S).".to_owned();
-        let origin = session.editor.origin().ok_or_else(nameless)?;
+        let origin = session.editor.origin().ok_or_else(no_name)?;
         if let Some(fault) = session.fault() {
             return Err(fault.to_owned());
         }
         let read = session.editor.document().named_files();
-        let is_read = |own: &Path| {
-            canonical(own).is_some_and(|own| read.iter().any(|read| canonical(read).as_ref() == Some(&own)))
+        let is_read = |path: &Path| {
+            canonical(path)
+                .is_some_and(|path| read.iter().any(|read| canonical(read).as_ref() == Some(&path)))
         };
-        if let Some(own) = place.data.iter().chain([&place.path]).find(|own| is_read(own)) {
-            return Err(format!("{} is read by this scene: give the figure another name.", own.display()));
+        if let Some(path) = place.data.iter().chain([&place.path]).find(|path| is_read(path)) {
+            return Err(format!("{} is read by this scene: give the figure another name.", path.display()));
         }
         let (from, scene) = subject.scenes(session);
         let Place { path, format, sheet, data } = place;
@@ -202,11 +203,11 @@ impl FigureOrder {
         Ok(Self { origin, settings, scene, subject, sheet, format, layout, path, data })
     }
 
-    /// The command and all of its arguments, in the order of `--help`.
-    fn given(&self) -> (&'static str, Vec<Argument>) {
-        let (command, own, ranges) = self.subject.command();
+    /// The command and all its arguments, in the order of `--help`.
+    fn command_with_arguments(&self) -> (&'static str, Vec<Argument>) {
+        let (command, options, ranges) = self.subject.command();
         let mut all = vec![Argument { option: None, value: Some(self.origin.clone()) }];
-        all.extend(own);
+        all.extend(options);
         all.push(Argument::of("plot", self.path.to_string_lossy()));
         all.extend(self.layout.iter().cloned().chain(ranges));
         all.push(Argument::of("out", if cfg!(windows) { "NUL" } else { "/dev/null" }));
@@ -216,15 +217,15 @@ impl FigureOrder {
 
     /// The command line that makes the same file without a window.
     pub fn command_line(&self) -> String {
-        let (command, all) = self.given();
+        let (command, all) = self.command_with_arguments();
         let words: Vec<String> = all.iter().flat_map(Argument::words).map(|word| quoted(&word)).collect();
         format!("interwell --headless {command} {}", words.join(" "))
     }
 
-    /// Makes the figure and writes its files, both or neither; what was written, in words. None where it was
-    /// cancelled.
+    /// Draws the figure and writes its files, both or neither. Returns a message with their names, or `None`
+    /// if cancelled.
     pub fn save(&self, cancel: &AtomicBool) -> Option<Result<String, String>> {
-        // a place that cannot be written to is known before the work
+        // open the files first: a path that cannot be written to is reported before the work
         let open = |path: &PathBuf| Sink::open(path).map_err(|error| error.to_string());
         let sinks = open(&self.path).and_then(|plot| Ok((plot, self.data.as_ref().map(open).transpose()?)));
         let (plot, data) = match sinks {
@@ -238,33 +239,33 @@ impl FigureOrder {
         if !self.sheet.titled {
             figure = figure.without_title();
         }
-        let (command, given) = self.given();
-        figure.origin.insert("arguments".into(), picture_arguments(command, given).into());
+        let (command, all) = self.command_with_arguments();
+        figure.origin.insert("arguments".into(), picture_arguments(command, all).into());
         let bytes = self.format.bytes(&figure).map_err(|error| error.to_string())?;
-        let refused = |name: &str, error: std::io::Error| format!("cannot write {name}: {error}");
+        let failure = |name: &str, error: std::io::Error| format!("cannot write {name}: {error}");
         let mut sinks = vec![plot];
-        sinks[0].put_bytes(&bytes).map_err(|error| refused(sinks[0].name(), error))?;
+        sinks[0].put_bytes(&bytes).map_err(|error| failure(sinks[0].name(), error))?;
         if let Some(mut data) = data {
             let text = header(&figure.data) + &rows(&figure.data, 0..usize::MAX);
-            data.put(&text).map_err(|error| refused(data.name(), error))?;
+            data.put(&text).map_err(|error| failure(data.name(), error))?;
             sinks.push(data);
         }
-        // what there is no room for is known before the first file has its name
+        // flush all of them first: a full disk is noticed before any file has its final name
         for sink in &mut sinks {
-            sink.flush().map_err(|error| refused(sink.name(), error))?;
+            sink.flush().map_err(|error| failure(sink.name(), error))?;
         }
         let mut names = Vec::new();
         for sink in sinks {
             let name = sink.name().to_owned();
-            sink.finish().map_err(|error| refused(&name, error))?;
-            let own = Path::new(&name).file_name();
-            names.push(own.map_or(name.clone(), |own| own.to_string_lossy().into_owned()));
+            sink.finish().map_err(|error| failure(&name, error))?;
+            let file_name = Path::new(&name).file_name();
+            names.push(file_name.map_or(name.clone(), |file| file.to_string_lossy().into_owned()));
         }
         Ok(format!("Saved {}", names.join(" and ")))
     }
 }
 
-/// A stretch of time in round numbers, as it is offered: to a thousandth of it.
+/// A range of times to suggest, rounded to a thousandth of its length or finer; `None` if it is empty.
 pub fn round_times((from, to): (f64, f64)) -> Option<(f64, f64)> {
     let digit = 10_f64.powf((to - from).log10().floor() - 3.0);
     let round = |t: f64| short((t / digit).round() * digit).parse::<f64>().unwrap_or(t);

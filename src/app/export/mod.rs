@@ -19,36 +19,36 @@ use crate::study::{
     events_table, sample_times, samples_table, simulate, watched_events,
 };
 
-/// The motion that is remembered, in the columns of the command line's `simulate`.
+/// The remembered motion, in the columns of the command `simulate`.
 pub fn motion_csv(player: &Player) -> String {
     let samples: Vec<_> = player.watch().samples().iter().copied().collect();
-    csv(&samples_table(&samples, |own| player.watch().model_at(own.t).output(own)))
+    csv(&samples_table(&samples, |sample| player.watch().model_at(sample.t).output(sample)))
 }
 
-/// The run of a scene from its start to its end, as `simulate` writes it; none where it was cancelled.
+/// The run of a scene from start to end, as `simulate` writes it. Returns `None` if cancelled.
 pub fn run_csv(scene: &Scene, model: &Model, cancel: &AtomicBool) -> Option<Result<String, String>> {
     let times = match sample_times(scene, model, &Sampling::Default, None) {
         Ok(times) => times,
         Err(error) => return Some(Err(error.to_string())),
     };
     let table = simulate(model, &Keep { times, events: false, until_settled: None }, Some(cancel)).samples;
-    let whole = !cancel.load(Ordering::Relaxed);
-    whole.then(|| Ok(csv(&table)))
+    let finished = !cancel.load(Ordering::Relaxed);
+    finished.then(|| Ok(csv(&table)))
 }
 
-/// The events that are remembered, in the columns of `simulate --events`.
+/// The remembered events, in the columns of `simulate --events`.
 pub fn events_csv(player: &Player) -> String {
     let events: Vec<_> = player.watch().events().iter().copied().collect();
     csv(&events_table(&events))
 }
 
-/// The same with the phase of the drive and the energy that each event took.
+/// The remembered events, with the phase of the drive and the kinetic energy lost in each.
 pub fn events_seen_csv(player: &Player) -> String {
     csv(&watched_events(player.watch(), 0..usize::MAX))
 }
 
-/// Force, potential and stiffness of the mechanism in the columns and at the positions of the command line's
-/// `curve`.
+/// Force, potential and stiffness of the mechanism, in the columns and at the positions of the command
+/// `curve` without options.
 pub fn curve_csv(session: &Session) -> Result<String, OutsideCurve> {
     let mechanism = &session.model().mechanism();
     let table = curve(mechanism, default_positions(session.scene(), mechanism, CURVE_POINTS as usize))?;
@@ -59,7 +59,7 @@ fn csv(table: &Table) -> String {
     header(table) + &rows(table, 0..table.rows())
 }
 
-/// A picture as PNG.
+/// Encodes a picture as PNG.
 pub fn png(image: &ColorImage) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     let pixels: Vec<u8> = image.pixels.iter().flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b()]).collect();
@@ -72,20 +72,20 @@ pub fn png(image: &ColorImage) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// What a copied command does.
+/// What a copied command runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Runs {
     /// The motion on the screen, from its start.
     Whole,
     /// The motion on the screen, from its present state on.
     FromNow,
-    /// The scene from its start, where the motion on the screen was changed on its way and no scene says how
-    /// it goes on.
+    /// The scene from its start, because the motion on the screen was changed on the way and no scene
+    /// describes its continuation.
     Another,
 }
 
-/// The command that runs what is on the screen without a window, and what it does; none for a scene that
-/// neither has a file nor is built in, until it is saved.
+/// The command that runs the motion on the screen without a window, and what it runs. Returns `None` for a
+/// scene that is not built in and has not been saved to a file.
 pub fn command_line(session: &Session) -> Option<(String, Runs)> {
     let editor = &session.editor;
     let mut line = format!("interwell --headless simulate {}", quoted(&editor.origin()?));
@@ -101,13 +101,13 @@ pub fn command_line(session: &Session) -> Option<(String, Runs)> {
     Some((line, runs))
 }
 
-/// The command that makes the map without a window; none without a map, and for a scene that neither has a
-/// file nor is built in.
+/// The command that makes the map without a window. Returns `None` if there is no map, and for a scene that
+/// is not built in and has not been saved to a file.
 pub fn map_command_line(session: &Session) -> Option<String> {
     let (question, editor) = (&session.map.map()?.question, &session.editor);
     let mut line = format!("interwell --headless sweep {}", quoted(&editor.origin()?));
     let mut from = editor.named().clone();
-    // what the axes say need not be set
+    // the fields of the axes need no `--set`
     for axis in &question.axes {
         let known = FieldPath::new(&axis.field).set(&mut from, axis.from);
         debug_assert!(known || editor.named().stops != question.scene.stops);
@@ -122,12 +122,12 @@ pub fn map_command_line(session: &Session) -> Option<String> {
     Some(line)
 }
 
-/// The options of a command that change one scene into another.
+/// The `--set` options that change one scene into another.
 fn settings(from: &Scene, to: &Scene) -> String {
     arguments(from, to).iter().map(|argument| format!(" --set {}", quoted(argument))).collect()
 }
 
-/// A word as a shell takes it.
+/// A word quoted for a shell.
 fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "._-/=+:,".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
@@ -151,9 +151,9 @@ mod tests {
         session.edit_once(|scene| scene.stops = scene.app.as_ref().unwrap().stops_when_on.unwrap());
         session.poll();
         session.restart();
-        let own = "interwell --headless simulate first-look --set \
+        let expected = "interwell --headless simulate first-look --set \
                    'stops=Rigid(travel_limit_mm:1.5,restitution:0.36)'";
-        assert_eq!(command_line(&session).unwrap(), (own.to_owned(), Runs::Whole));
+        assert_eq!(command_line(&session).unwrap(), (expected.to_owned(), Runs::Whole));
         assert_eq!(quoted("it's"), r"'it'\''s'");
         assert_eq!(quoted("excitation.amplitude_g=0:2:0.02"), "excitation.amplitude_g=0:2:0.02");
     }

@@ -12,16 +12,16 @@ use super::Session;
 impl Session {
     pub(super) fn ask_settled(&mut self) {
         let (now, from_here) = (self.player.watch().time(), self.player.watch().from_here());
-        // a ramp that was changed on its way is no run of its own: nothing is known of its error
+        // a ramp that was changed under way cannot be run again from there, so its error is unknown
         let is_known = now == 0.0 || from_here.is_some();
-        self.asked_from = if from_here.is_some() { now } else { 0.0 };
+        self.settled_from = if from_here.is_some() { now } else { 0.0 };
         let model = Arc::new(from_here.unwrap_or_else(|| (*self.model).clone()));
         self.accuracy.begin(is_known.then(|| (Arc::clone(&model), now)));
         self.settled.ask(&self.wake, move |cancel| study::settled(&model, cancel));
     }
 
     pub(super) fn ask_thresholds(&mut self) {
-        if self.thresholds.is_running() || self.thresholds.current().is_some() || !self.is_searched() {
+        if self.thresholds.is_running() || self.thresholds.current().is_some() || !self.can_search() {
             return;
         }
         let (scene, mechanism) = (self.built.clone(), Arc::clone(&self.mechanism));
@@ -30,12 +30,12 @@ impl Session {
         });
     }
 
-    /// What it would take to cross, in words: asked for, it is searched for.
+    /// What it would take to cross the barrier, in words; the first call starts the search.
     pub fn ways(&mut self) -> String {
         if self.keeps_remedy {
             return "What it would take is for you to find out.".to_owned();
         }
-        if !self.is_searched() {
+        if !self.can_search() {
             return "What it would take is searched for where a sine shakes a mass with two wells."
                 .to_owned();
         }
@@ -44,9 +44,9 @@ impl Session {
             && !self.editor.in_gesture()
         {
             let (scene, mechanism) = (self.built.clone(), Arc::clone(&self.mechanism));
-            let own =
+            let known =
                 [&scene.stops, &self.remembered_stops].into_iter().find_map(|stops| stops.restitutions()[1]);
-            let restitution = own.unwrap_or(1.0);
+            let restitution = known.unwrap_or(1.0);
             self.stops_that_cross.ask(&self.wake, move |cancel| {
                 let task = study::Task { tick: &|| (), cancel };
                 study::stops_that_cross(&scene, &mechanism, restitution, &task)
@@ -63,7 +63,7 @@ impl Session {
         }
     }
 
-    /// Has the error of the motion worked out once the scene stands still and it is known what it settles to.
+    /// Starts to compute the error of the motion once the scene stands still and its settled motion is known.
     pub(super) fn follow_accuracy(&mut self) {
         self.accuracy.poll();
         if self.stands_still() && self.settled.current().is_some() {
@@ -71,19 +71,19 @@ impl Session {
         }
     }
 
-    /// For how long the background has worked on what is said of the scene; none where it does not.
+    /// How long the longest background computation about the scene has been running; `None` if none is.
     pub fn working(&self) -> Option<Duration> {
-        let all = [
+        let times = [
             self.settled.running_for(),
             self.thresholds.running_for(),
             self.stops_that_cross.running_for(),
             self.accuracy.working(),
             self.pins.working(),
         ];
-        all.into_iter().flatten().max()
+        times.into_iter().flatten().max()
     }
 
-    /// Stops it; the next change asks again.
+    /// Stops the background computations about the scene; the next change starts them again.
     pub fn stop_working(&mut self) {
         self.settled.stop();
         self.thresholds.stop();
@@ -92,25 +92,25 @@ impl Session {
         self.pins.stop_working();
     }
 
-    /// Asks, for a view, what digits and steps cost in the scene; to be asked anew in every frame.
+    /// Asks for the cost of digits and steps in the scene; to be called by a view in every frame.
     pub fn want_accuracy(&mut self) {
         self.accuracy.want(&self.model, self.stands_still(), &self.wake);
     }
 
-    /// Whether the scene can be run and no hand is about to change it or its motion.
+    /// Whether the scene can be run and the user is changing neither it nor its motion.
     pub(super) fn stands_still(&self) -> bool {
         !self.editor.in_gesture() && !self.player.is_held() && self.fault.is_none()
     }
 
-    /// How accurate the motion is, in a few words and in full; none while nothing moves by itself, and where
-    /// nothing is known.
+    /// How accurate the motion is, in a few words and in full. `None` while the mass is held, after the end
+    /// of the run, and while the accuracy is unknown.
     pub fn trust(&self) -> Option<(String, String)> {
-        let own = self.fault.is_none() && !self.player.is_held() && self.player.ended().is_none();
-        self.accuracy.words().filter(|_| own)
+        let moves = self.fault.is_none() && !self.player.is_held() && self.player.ended().is_none();
+        self.accuracy.descriptions().filter(|_| moves)
     }
 
-    /// Whether what it would take is searched for.
-    fn is_searched(&self) -> bool {
+    /// Whether a search for what it would take to cross the barrier is possible.
+    fn can_search(&self) -> bool {
         self.fault.is_none()
             && matches!(self.built.excitation, Excitation::Sine { .. })
             && self.mechanism.landscape.barrier.is_some()

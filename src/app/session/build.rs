@@ -1,4 +1,4 @@
-//! Conversion of a scene into a model, and the reasons why it fails.
+//! Construction of the model of a scene, and the reasons why it fails.
 
 use std::sync::Arc;
 
@@ -12,32 +12,32 @@ use crate::scene::{Document, Excitation, Fault, Scene, SceneError};
 pub enum CannotRun {
     #[error(transparent)]
     Wrong(#[from] SceneError),
-    /// It is right, and its flexures were not solved.
+    /// The scene is valid, but its flexures could not be solved.
     #[error(transparent)]
     Unsolved(#[from] FlexureError),
 }
 
-pub(super) fn unbuilt(document: &Document, error: BuildError) -> CannotRun {
+pub(super) fn build_error(document: &Document, error: BuildError) -> CannotRun {
     match error {
         BuildError::Wrong(fault) => document.error_from(vec![fault]).into(),
         BuildError::Unsolved(error) => error.into(),
     }
 }
 
-/// The mechanism of a scene, and the model of the scene with it.
-pub(super) fn solved(document: &Document, tolerance: f64) -> Result<(Arc<Mechanism>, Model), CannotRun> {
+/// Builds the mechanism and the model of a scene.
+pub(super) fn solve(document: &Document, tolerance: f64) -> Result<(Arc<Mechanism>, Model), CannotRun> {
     document.check()?;
     let scene = &document.scene;
     let mechanism = Mechanism::build_with(&scene.mechanism, &document.files, tolerance)
-        .map_err(|error| unbuilt(document, error))?;
+        .map_err(|error| build_error(document, error))?;
     let mechanism = Arc::new(mechanism);
     let model = Model::build(scene, Arc::clone(&mechanism)).map_err(|faults| document.error_from(faults))?;
     Ok((mechanism, model))
 }
 
-/// The first thing that is wrong, with the names that stand on the screen and without the place in a file,
-/// which a hand on a slider does not look at.
-pub(super) fn why(error: &CannotRun, scene: &Scene) -> String {
+/// The first fault, with the field names of the screen and without the position in the file, which is of no
+/// use at a slider.
+pub(super) fn fault_message(error: &CannotRun, scene: &Scene) -> String {
     match error {
         CannotRun::Wrong(SceneError::Faults { faults, .. }) => faults.first().map_or_else(
             || error.to_string(),
@@ -52,14 +52,14 @@ pub(super) fn why(error: &CannotRun, scene: &Scene) -> String {
     }
 }
 
-/// Whether all thresholds of one scene are those of the other.
+/// Whether two scenes differ in the amplitude of a sine at most, so that their thresholds are the same.
 pub(super) fn differ_in_amplitude_alone(a: &Scene, b: &Scene) -> bool {
-    let mut other = a.clone();
-    match (&mut other.excitation, &b.excitation) {
-        (Excitation::Sine { amplitude_g: own, .. }, Excitation::Sine { amplitude_g, .. }) => {
-            *own = *amplitude_g
+    let mut changed = a.clone();
+    match (&mut changed.excitation, &b.excitation) {
+        (Excitation::Sine { amplitude_g: other, .. }, Excitation::Sine { amplitude_g, .. }) => {
+            *other = *amplitude_g
         }
         _ => return false,
     }
-    other == *b
+    changed == *b
 }

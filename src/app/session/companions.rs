@@ -1,4 +1,4 @@
-//! Copies of the files that a scene names, beside the file that it is saved to.
+//! Copies of the files that a scene names, made beside the file that the scene is saved to.
 
 use std::path::{Path, PathBuf};
 
@@ -6,12 +6,12 @@ use crate::output::write_file;
 use crate::scene::{FileError, Files, Scene, named_paths};
 use crate::system;
 
-/// Puts the table and the records of `scene` into the folder of `target` and names them as they are called
-/// there. A file that is there already is used where it holds the same, and never written over. Returns the
-/// names of the files that were written, and says on an error why one could not be.
-pub fn bring(scene: &mut Scene, files: &Files, target: &Path) -> Result<Vec<String>, String> {
+/// Copies the table and the records of `scene` into the folder of `target`, and renames them in `scene`
+/// accordingly. An existing file is used if its content is the same, and is never overwritten. Returns the
+/// names of the files written; the error says why one could not be.
+pub fn copy_files(scene: &mut Scene, files: &Files, target: &Path) -> Result<Vec<String>, String> {
     let mut written = Vec::new();
-    if files.folder.as_deref().is_some_and(|own| is_same(own, folder_of(target))) {
+    if files.folder.as_deref().is_some_and(|folder| is_same(folder, folder_of(target))) {
         return Ok(written);
     }
     for path in named_paths(scene) {
@@ -33,13 +33,13 @@ pub fn bring(scene: &mut Scene, files: &Files, target: &Path) -> Result<Vec<Stri
     Ok(written)
 }
 
-/// Has what a scene of the past names lie where it lay, once the scene was saved elsewhere: `now` is the
-/// scene that was saved, and `was` the same one before.
-pub fn follow(scene: &mut Scene, files: &Files, (was, now): (&mut Scene, &mut Scene)) {
+/// Updates the file names in a scene of the undo history after a save to another folder: a copied file gets
+/// the name of its copy, any other its absolute path. `was` and `now` are the saved scene before and after.
+pub fn update_names(scene: &mut Scene, files: &Files, (was, now): (&mut Scene, &mut Scene)) {
     let renamed: Vec<_> = named_paths(was).into_iter().zip(named_paths(now)).collect();
     for path in named_paths(scene) {
         let place = || files.place(path).and_then(|place| std::path::absolute(place).ok());
-        if let Some((_, name)) = renamed.iter().find(|own| own.0 == path) {
+        if let Some((_, name)) = renamed.iter().find(|names| names.0 == path) {
             path.clone_from(name);
         } else if let Some(place) = place().as_deref().and_then(Path::to_str) {
             *path = place.to_owned();
@@ -49,10 +49,10 @@ pub fn follow(scene: &mut Scene, files: &Files, (was, now): (&mut Scene, &mut Sc
 
 /// The first of `a.csv`, `a-2.csv`, `a-3.csv` .. beside `target` that is free or holds this text.
 fn free_name(path: &str, text: &str, target: &Path) -> Result<String, String> {
-    let own = Path::new(path);
+    let file = Path::new(path);
     let part = |part: Option<&std::ffi::OsStr>| part.map(|part| part.to_string_lossy().into_owned());
-    let stem = part(own.file_stem()).ok_or_else(|| format!("`{path}` names no file"))?;
-    let ending = part(own.extension()).map_or_else(String::new, |ending| format!(".{ending}"));
+    let stem = part(file.file_stem()).ok_or_else(|| format!("`{path}` names no file"))?;
+    let ending = part(file.extension()).map_or_else(String::new, |ending| format!(".{ending}"));
     let names = (1_u32..).map(|n| match n {
         1 => format!("{stem}{ending}"),
         n => format!("{stem}-{n}{ending}"),
@@ -61,7 +61,7 @@ fn free_name(path: &str, text: &str, target: &Path) -> Result<String, String> {
         let there = target.with_file_name(name);
         there != target
             && (!system::files::exists(&there)
-                || system::files::bytes(&there).is_ok_and(|own| own == text.as_bytes()))
+                || system::files::bytes(&there).is_ok_and(|bytes| bytes == text.as_bytes()))
     };
     names
         .take(1000)

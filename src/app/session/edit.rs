@@ -8,17 +8,17 @@ use crate::mechanics::FLEXURE_TOLERANCE;
 use crate::scene::{Excitation, FieldPath, Mechanism, Scene, Stops, check};
 
 use super::Session;
-use super::build::{solved, why};
+use super::build::{fault_message, solve};
 use super::editor::Editor;
 use super::player::fitting_speed;
 use super::stops::first_stops;
 
-/// Error of the force of flexures while a hand still changes them: the curve is there within a frame, and
-/// what it is off by is not seen. At the end of the gesture they are solved as every study solves them.
-const HANDLED_TOLERANCE: f64 = 1e-6;
+/// Error of the force of flexures during a gesture: the curve is solved within a frame, and its error is too
+/// small to see. At the end of the gesture the flexures are solved with [`FLEXURE_TOLERANCE`].
+const GESTURE_TOLERANCE: f64 = 1e-6;
 
-/// Time in s within which another press of an arrow key belongs to the same gesture.
-const PRESSES: f64 = 1.0;
+/// Longest time in s between two presses of an arrow key that belong to one gesture.
+const PRESS_GAP: f64 = 1.0;
 
 impl Session {
     /// Changes the scene as part of a gesture; see [`Editor::edit`].
@@ -31,8 +31,8 @@ impl Session {
         changed
     }
 
-    /// Changes the mechanism as part of a gesture, if the changed one can be solved and run; if not,
-    /// everything stays as it is and [`refused`](Self::refused) says why. Whether it changed.
+    /// Changes the mechanism as part of a gesture, if the changed one can be solved and run; otherwise
+    /// nothing changes, and [`refused`](Self::refused) says why. Returns whether the mechanism changed.
     pub fn edit_mechanism(&mut self, change: impl FnOnce(&mut Mechanism)) -> bool {
         let mut document = self.editor.runnable();
         change(&mut document.scene.mechanism);
@@ -40,20 +40,20 @@ impl Session {
             return false;
         }
         let wanted = document.scene.mechanism.clone();
-        match solved(&document, HANDLED_TOLERANCE) {
+        match solve(&document, GESTURE_TOLERANCE) {
             Ok((mechanism, _)) => {
-                (self.mechanism, self.mechanism_of, self.hurried) = (mechanism, wanted.clone(), true);
+                (self.mechanism, self.mechanism_of, self.is_coarse) = (mechanism, wanted.clone(), true);
                 self.refused = None;
                 self.edit(|scene| scene.mechanism = wanted)
             }
             Err(error) => {
-                self.refused = Some(why(&error, &document.scene));
+                self.refused = Some(fault_message(&error, &document.scene));
                 false
             }
         }
     }
 
-    /// Why the last change that a hand wanted of the mechanism was not made.
+    /// Why the last change of the mechanism was refused.
     pub fn refused(&self) -> Option<&str> {
         self.refused.as_deref()
     }
@@ -63,17 +63,17 @@ impl Session {
         if self.editor.in_gesture() {
             self.apply();
             self.editor.end_gesture();
-            self.solve_in_earnest();
+            self.solve_fully();
             self.ask_thresholds();
         }
     }
 
-    /// Solves a mechanism anew that was solved in a hurry; where that fails, the hurried one stays.
-    fn solve_in_earnest(&mut self) {
-        if !std::mem::take(&mut self.hurried) {
+    /// Solves a coarsely solved mechanism with the full tolerance; if that fails, the coarse solution stays.
+    fn solve_fully(&mut self) {
+        if !std::mem::take(&mut self.is_coarse) {
             return;
         }
-        let Ok((mechanism, model)) = solved(&self.editor.runnable(), FLEXURE_TOLERANCE) else { return };
+        let Ok((mechanism, model)) = solve(&self.editor.runnable(), FLEXURE_TOLERANCE) else { return };
         (self.mechanism, self.model) = (mechanism, Arc::new(model));
         self.player.change(&self.model);
         self.continued = true;
@@ -87,17 +87,17 @@ impl Session {
         changed
     }
 
-    /// A step back. Whether there was one.
+    /// Undoes one step. Returns whether there was one.
     pub fn undo(&mut self) -> bool {
-        self.travel(Editor::undo)
+        self.move_in_history(Editor::undo)
     }
 
-    /// A step forward again. Whether there was one.
+    /// Redoes one step. Returns whether there was one.
     pub fn redo(&mut self) -> bool {
-        self.travel(Editor::redo)
+        self.move_in_history(Editor::redo)
     }
 
-    pub(super) fn travel(&mut self, step: impl FnOnce(&mut Editor) -> bool) -> bool {
+    fn move_in_history(&mut self, step: impl FnOnce(&mut Editor) -> bool) -> bool {
         self.end_gesture();
         self.refused = None;
         let now = self.now_card();
@@ -110,25 +110,25 @@ impl Session {
         moved
     }
 
-    /// The number at a path; that of the stops is, while they are off, of those that come.
+    /// The number at a path. While the stops are off, their numbers are those of the remembered stops.
     pub fn number(&self, path: &str) -> Option<f64> {
         FieldPath::new(path).get(&self.with_stops_for(path))
     }
 
-    /// Changes the number at a path as part of a gesture; a number of the stops switches them on. Whether the
-    /// scene changed, or why it stays as it was.
+    /// Changes the number at a path as part of a gesture; a number of the stops switches them on. Returns
+    /// whether the scene changed, or why the number was refused.
     pub fn set_number(&mut self, path: &str, value: f64) -> Result<bool, String> {
         let mut wanted = self.with_stops_for(path);
         if !FieldPath::new(path).set(&mut wanted, value) {
             return Ok(false);
         }
         if path == "run.duration_s" {
-            // a window that would begin after the end begins in the middle
+            // a settled window that would begin after the end begins in the middle of the run
             wanted.run.settle_s = wanted.run.settle_s.filter(|settle| *settle < value);
         }
         let section = |path: &str| path.split('.').next().map(str::to_owned);
-        let own = |field: &str| section(field) == section(path);
-        let fault = check(&wanted).faults.into_iter().find(|fault| own(&fault.field));
+        let same_section = |field: &str| section(field) == section(path);
+        let fault = check(&wanted).faults.into_iter().find(|fault| same_section(&fault.field));
         if let (Some(fault), None) = (fault, self.fault()) {
             let problem = in_words(&fault.problem, &wanted);
             return Err(match fault.field == path {
@@ -154,46 +154,46 @@ impl Session {
         scene
     }
 
-    /// A key is pressed on a field at the time `now` in s: presses on one field within a second are one
-    /// gesture.
+    /// Notes a key press on a field at the time `now` in s. Presses on one field that follow each other
+    /// within a second are one gesture.
     pub fn press(&mut self, field: &str, now: f64) {
-        if self.presses.as_ref().is_none_or(|(own, last)| own != field || now - last > PRESSES) {
+        if self.presses.as_ref().is_none_or(|(pressed, last)| pressed != field || now - last > PRESS_GAP) {
             self.end_gesture();
         }
         self.presses = Some((field.to_owned(), now));
     }
 
-    /// Ends presses that something else follows.
+    /// Ends a series of key presses because another action follows.
     pub fn end_presses(&mut self) {
         if self.presses.is_some() {
             self.end_gesture();
         }
     }
 
-    /// Ends presses that no other one has followed for a second. How long in s others are waited for from
-    /// `now` on.
+    /// Ends a series of key presses after a second without one. Returns the time in s, from `now`, that is
+    /// left for another press.
     pub fn follow_presses(&mut self, now: f64) -> Option<f64> {
         let last = self.presses.as_ref()?.1;
-        let left = last + PRESSES - now;
+        let left = last + PRESS_GAP - now;
         if left <= 0.0 {
             self.end_gesture();
         }
         (left > 0.0).then_some(left)
     }
 
-    /// A sine that suits the scales of the mechanism; for the prototype 3 Hz and 0.5 g.
+    /// A sine that suits the scales of the mechanism: 3 Hz and 0.5 g for the prototype.
     pub fn suiting_sine(&self) -> Excitation {
         let scales = &self.model().scales();
-        let digit = |value: f64, otherwise: f64| match value > 0.0 && value.is_finite() {
+        let one_digit = |value: f64, otherwise: f64| match value > 0.0 && value.is_finite() {
             true => format!("{value:.0e}").parse().unwrap_or(otherwise),
             false => otherwise,
         };
-        let frequency_hz = digit(0.2 / (std::f64::consts::TAU * scales.time), 3.0);
-        let amplitude_g = digit(0.075 * scales.length / scales.time.powi(2) / STANDARD_GRAVITY, 0.5);
+        let frequency_hz = one_digit(0.2 / (std::f64::consts::TAU * scales.time), 3.0);
+        let amplitude_g = one_digit(0.075 * scales.length / scales.time.powi(2) / STANDARD_GRAVITY, 0.5);
         Excitation::Sine { frequency_hz, amplitude_g, phase_deg: 0.0 }
     }
 
-    /// Switches the stops; the ones that were there are remembered.
+    /// Switches the stops on or off; stops that are switched off are remembered.
     pub fn switch_stops(&mut self, on: bool) {
         let stops = if on { self.remembered_stops } else { Stops::None };
         if !on && self.scene().stops != Stops::None {
@@ -202,14 +202,14 @@ impl Session {
         self.edit_once(|scene| scene.stops = stops);
     }
 
-    /// The stops that come when they are switched on.
+    /// The stops that the scene gets when they are switched on.
     pub fn remembered_stops(&self) -> Stops {
         self.remembered_stops
     }
 
-    /// The scene and the time as they were opened, playing.
+    /// Goes back to the scene as it was opened or last saved, and plays it from its start.
     pub fn back_to_start(&mut self) {
-        self.travel(Editor::back_to_start);
+        self.move_in_history(Editor::back_to_start);
         self.before = None;
         self.remembered_stops = first_stops(self.scene(), &self.model);
         self.restart();

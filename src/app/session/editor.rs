@@ -8,17 +8,17 @@ use std::path::Path;
 use crate::output::write_file;
 use crate::scene::{Document, Files, Scene, SceneError, Source, Start, numeric_fields, write};
 
-use super::companions::{bring, follow};
+use super::companions::{copy_files, update_names};
 
-/// The most steps back that are kept.
-const MOST_STEPS: usize = 500;
+/// Largest number of undo steps that are kept.
+const MAX_STEPS: usize = 500;
 
-/// How messages call a scene that came as text.
+/// Name in messages of a scene that was given as text.
 const PASTED: &str = "the pasted scene";
 
 #[derive(Debug, Clone)]
 pub struct Editor {
-    /// The document; its scene is what is edited.
+    /// The document with the edited scene.
     document: Document,
     /// The scene as it was opened or last saved.
     saved: Scene,
@@ -26,7 +26,7 @@ pub struct Editor {
     named: Scene,
     undo: Vec<Scene>,
     redo: Vec<Scene>,
-    /// The scene at the begin of the gesture under way.
+    /// The scene before the current gesture.
     gesture: Option<Scene>,
 }
 
@@ -36,8 +36,8 @@ impl Editor {
         Self { document, saved, named, undo: Vec::new(), redo: Vec::new(), gesture: None }
     }
 
-    /// An editor on the scene of a lesson, which is changed from the one that its source names: that one
-    /// stays as it is, and a scene file is not written over.
+    /// An editor on the scene of a lesson, which differs from the scene that its source names. The source
+    /// does not change, and a scene file is not overwritten.
     pub fn in_lesson(mut document: Document) -> Self {
         let named = match document.source {
             Source::BuiltIn(name) => Document::load(name).ok(),
@@ -46,8 +46,8 @@ impl Editor {
         if named.is_none() {
             document.source = Source::Text;
         }
-        let own = Self::new(document);
-        Self { named: named.map_or_else(|| own.saved.clone(), |named| named.scene), ..own }
+        let editor = Self::new(document);
+        Self { named: named.map_or_else(|| editor.saved.clone(), |named| named.scene), ..editor }
     }
 
     pub fn open(spec: &str) -> Result<Self, SceneError> {
@@ -59,8 +59,8 @@ impl Editor {
         Document::from_text(PASTED, text, Files::default()).map(Self::new)
     }
 
-    /// What the command line calls the scene that was opened or last saved; none for one that has no such
-    /// name.
+    /// The name on the command line of the scene as it was opened or last saved; `None` for a scene that was
+    /// given as text.
     pub fn origin(&self) -> Option<String> {
         match &self.document.source {
             Source::File(path) => Some(path.to_string_lossy().into_owned()),
@@ -69,9 +69,8 @@ impl Editor {
         }
     }
 
-    /// The document as it can be run and written: without axes of its sweep that name a field which the scene
-    /// does not have at the moment, such as the travel limit while the stops are off. The scene keeps them
-    /// for when it has.
+    /// The document as it can be run and written: without sweep axes over a field that the scene lacks at
+    /// present, such as the travel limit while the stops are off. The edited scene keeps these axes.
     pub fn runnable(&self) -> Document {
         runnable(&self.document)
     }
@@ -81,7 +80,7 @@ impl Editor {
         text_of(&self.runnable().scene)
     }
 
-    /// Whether the file that the scene came from has comments, which are no part of a scene.
+    /// Whether the file of the scene has comments, which are not part of a scene.
     pub fn has_comments(&self) -> bool {
         self.path().is_some() && crate::scene::has_comments(&self.document.text)
     }
@@ -90,7 +89,7 @@ impl Editor {
         &self.document.scene
     }
 
-    /// The scene as it was opened or last saved: what stands in its file.
+    /// The scene as it was opened or last saved, as in its file.
     pub fn saved(&self) -> &Scene {
         &self.saved
     }
@@ -100,7 +99,7 @@ impl Editor {
         &self.named
     }
 
-    /// The document, for what needs its files and its places.
+    /// The document, with its files and the positions of its fields.
     pub fn document(&self) -> &Document {
         &self.document
     }
@@ -123,7 +122,7 @@ impl Editor {
         self.gesture.is_some()
     }
 
-    /// Changes the scene as part of a gesture, which begins here if none is under way. Whether it changed.
+    /// Changes the scene as part of a gesture, and begins one if necessary. Returns whether it changed.
     pub fn edit(&mut self, change: impl FnOnce(&mut Scene)) -> bool {
         let before = self.document.scene.clone();
         change(&mut self.document.scene);
@@ -135,18 +134,18 @@ impl Editor {
         changed
     }
 
-    /// Ends the gesture: it is one step back, if it changed anything.
+    /// Ends the gesture, which becomes one undo step if it changed anything.
     pub fn end_gesture(&mut self) {
         let Some(before) = self.gesture.take().filter(|before| *before != self.document.scene) else {
             return;
         };
         self.undo.push(before);
         self.redo.clear();
-        let spare = self.undo.len().saturating_sub(MOST_STEPS);
-        self.undo.drain(..spare);
+        let excess = self.undo.len().saturating_sub(MAX_STEPS);
+        self.undo.drain(..excess);
     }
 
-    /// Changes the scene by one gesture of its own. Whether it changed.
+    /// Changes the scene in a gesture of its own. Returns whether the scene changed.
     pub fn edit_once(&mut self, change: impl FnOnce(&mut Scene)) -> bool {
         self.end_gesture();
         let changed = self.edit(change);
@@ -154,17 +153,17 @@ impl Editor {
         changed
     }
 
-    /// Whether there is a step back.
+    /// Whether there is a step to undo.
     pub fn can_undo(&self) -> bool {
         !self.undo.is_empty() || self.gesture.is_some()
     }
 
-    /// Whether there is a step forward again.
+    /// Whether there is a step to redo.
     pub fn can_redo(&self) -> bool {
         !self.redo.is_empty()
     }
 
-    /// Goes a step back. Whether there was one.
+    /// Undoes one step. Returns whether there was one.
     pub fn undo(&mut self) -> bool {
         self.end_gesture();
         let Some(before) = self.undo.pop() else { return false };
@@ -172,7 +171,7 @@ impl Editor {
         true
     }
 
-    /// Goes a step forward again. Whether there was one.
+    /// Redoes one step. Returns whether there was one.
     pub fn redo(&mut self) -> bool {
         self.end_gesture();
         let Some(after) = self.redo.pop() else { return false };
@@ -180,30 +179,30 @@ impl Editor {
         true
     }
 
-    /// Back to the scene as it was opened or last saved; that, too, can be undone. Whether anything changed.
+    /// Goes back to the scene as it was opened or last saved, as one undo step. Returns whether it changed.
     pub fn back_to_start(&mut self) -> bool {
         let saved = self.saved.clone();
         self.edit_once(|scene| *scene = saved)
     }
 
-    /// Writes the scene to a file, which is then its own, and the files that it names beside it. Returns
-    /// the names of those that were written.
+    /// Writes the scene to a file, which becomes the scene's file, and copies the files that it names beside
+    /// it. Returns the names of the copies that were written.
     pub fn save_to(&mut self, path: &Path) -> Result<Vec<String>, String> {
         self.end_gesture();
         let mut document = self.document.clone();
-        let brought = bring(&mut document.scene, &document.files, path)?;
+        let copied = copy_files(&mut document.scene, &document.files, path)?;
         document.text = text_of(&runnable(&document).scene)?;
         write_file(path, document.text.as_bytes())?;
         (document.name, document.source) = (path.display().to_string(), Source::File(path.to_owned()));
         let before = std::mem::replace(&mut document.files, Files::beside(path));
         let mut now = document.scene.clone();
         for scene in self.undo.iter_mut().chain(&mut self.redo) {
-            follow(scene, &before, (&mut self.document.scene, &mut now));
+            update_names(scene, &before, (&mut self.document.scene, &mut now));
         }
         self.saved = document.scene.clone();
         self.named = document.scene.clone();
         self.document = document;
-        Ok(brought)
+        Ok(copied)
     }
 }
 
@@ -220,7 +219,7 @@ fn text_of(scene: &Scene) -> Result<String, String> {
     write(scene).map_err(|error| format!("the scene cannot be written as text: {error}"))
 }
 
-/// A start beyond a stop is no start: a stop that is moved over it carries it along.
+/// Moves a start that lies beyond a stop to that stop.
 pub(in crate::app) fn keep_start_inside(scene: &mut Scene) {
     let [left, right] = scene.stops.limits_mm();
     let (left, right) = (left.map_or(f64::NEG_INFINITY, |mm| -mm), right.unwrap_or(f64::INFINITY));
@@ -262,14 +261,14 @@ mod tests {
         assert!(!editor.undo() && !editor.is_dirty());
         assert!(editor.redo() && editor.redo() && !editor.redo());
         assert_eq!(mass(&editor), 50.0);
-        // a new edit forgets the steps forward
+        // a new edit clears the redo stack
         editor.undo();
         editor.edit_once(|scene| scene.mass_g = 1.0);
         assert!(!editor.can_redo());
     }
 
     #[test]
-    fn a_gesture_that_comes_back_is_none() {
+    fn a_gesture_without_a_net_change_is_no_step() {
         let mut editor = editor();
         editor.edit(|scene| scene.mass_g = 16.0);
         editor.edit(|scene| scene.mass_g = 15.2);
@@ -299,7 +298,7 @@ mod tests {
     #[test]
     fn saved_and_opened_it_is_the_same() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("own.ron");
+        let path = folder.path().join("scene.ron");
         let mut editor = editor();
         editor.edit_once(|scene| scene.mass_g = 16.5);
         editor.save_to(&path).unwrap();
@@ -313,7 +312,7 @@ mod tests {
     #[test]
     fn tables_go_where_the_scene_goes() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("own.ron");
+        let path = folder.path().join("scene.ron");
         Editor::open("paper-table").unwrap().save_to(&path).unwrap();
         let again = Editor::open(path.to_str().unwrap()).unwrap();
         assert!(

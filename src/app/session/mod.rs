@@ -1,6 +1,6 @@
-//! The open scene with its model, its motion and what is known of it.
+//! The open scene, with its model, its motion and the results of background computations.
 //!
-//! Everything here works without a window; the views look at it and change it through its methods.
+//! Everything here works without a window; the views read it and change it through its methods.
 
 pub mod accuracy;
 mod ask;
@@ -31,7 +31,7 @@ use crate::study;
 use accuracy::Accuracy;
 use best::BestStops;
 pub use build::CannotRun;
-use build::{differ_in_amplitude_alone, solved, unbuilt, why};
+use build::{build_error, differ_in_amplitude_alone, fault_message, solve};
 use editor::Editor;
 use explore::Explore;
 use map::Mapping;
@@ -41,20 +41,20 @@ use player::{Player, fitting_speed};
 pub use state::{Card, OpenedScales, Session};
 use stops::first_stops;
 
-/// For how long the background works before it is offered to stop it.
+/// Time after which the user is offered to stop a background computation.
 pub const OFFER_TO_STOP: Duration = Duration::from_secs(2);
 
-/// Share of a period for which a motion has to go on to be worth going on with.
-const MOMENT: f64 = 0.02;
+/// Least time for which an ended motion has to continue, as a share of the characteristic time.
+const LEAST_CONTINUATION: f64 = 0.02;
 
-/// Share of the length scale by which a change has to carry the mass to be worth a word.
-const CARRIED: f64 = 0.02;
+/// Least displacement of the mass by a change that is reported, as a share of the length scale.
+const REPORTED_MOVE: f64 = 0.02;
 
 impl Session {
-    /// A session on a scene; `wake` is called from other threads when something has come.
+    /// A session on a scene; `wake` is called from other threads when a result has come.
     pub fn new(editor: Editor, wake: Wake) -> Result<Self, CannotRun> {
         let document = editor.document();
-        let (mechanism, model) = solved(document, FLEXURE_TOLERANCE)?;
+        let (mechanism, model) = solve(document, FLEXURE_TOLERANCE)?;
         let scene = editor.scene().clone();
         let hints = scene.app.clone().unwrap_or_default();
         let speed = hints.speed.unwrap_or_else(|| fitting_speed(model.characteristic_time()));
@@ -76,15 +76,15 @@ impl Session {
             measured: MeasuredData::default(),
             before: None,
             mechanism_of: scene.mechanism.clone(),
-            hurried: false,
+            is_coarse: false,
             refused: None,
             built: scene,
             mechanism,
             changed_at: 0.0,
             by_hand: false,
-            carried: false,
+            moved_to_stop: false,
             opened,
-            asked_from: 0.0,
+            settled_from: 0.0,
             continued: false,
             remembered_stops,
             presses: None,
@@ -98,7 +98,7 @@ impl Session {
         Ok(session)
     }
 
-    /// Takes in what has been computed meanwhile, and what was edited. To be called once a frame.
+    /// Receives background results and applies edits; to be called once a frame.
     pub fn poll(&mut self) {
         self.settled.poll();
         self.thresholds.poll();
@@ -111,12 +111,12 @@ impl Session {
         self.follow_accuracy();
     }
 
-    /// The motion from its start again.
+    /// Restarts the motion.
     pub fn restart(&mut self) {
         self.player.restart(&self.model);
         self.pins.restart(&self.wake);
         (self.changed_at, self.continued, self.by_hand) = (0.0, false, false);
-        self.carried = false;
+        self.moved_to_stop = false;
         self.ask_settled();
     }
 
@@ -129,14 +129,14 @@ impl Session {
         self.player.set_playing(!playing);
     }
 
-    /// The mass has been moved by hand: what it settles to is asked anew.
+    /// Notes that the mass has been moved by hand, and asks again what the motion settles to.
     pub fn moved_by_hand(&mut self) {
         (self.changed_at, self.continued, self.by_hand) = (self.player.watch().time(), true, true);
-        self.carried = false;
+        self.moved_to_stop = false;
         self.ask_settled();
     }
 
-    /// Lets the mass go on as the scene now says, where that has changed.
+    /// Applies the edited scene to the motion, if it has changed.
     pub(super) fn apply(&mut self) {
         if *self.editor.scene() == self.built {
             return;
@@ -147,14 +147,14 @@ impl Session {
                 self.fault = None;
                 self.model = Arc::new(model);
                 self.map.trail.note(&self.built);
-                self.go_on();
+                self.continue_motion();
                 if !differ_in_amplitude_alone(&before, &self.built) {
                     self.thresholds.clear();
                 }
                 self.stops_that_cross.clear();
             }
             Err(error) => {
-                self.fault = Some(why(&error, self.editor.scene()));
+                self.fault = Some(fault_message(&error, self.editor.scene()));
                 self.settled.clear();
                 self.accuracy.begin(None);
                 self.thresholds.clear();
@@ -163,69 +163,69 @@ impl Session {
         }
     }
 
-    /// Lets the motion go on from its present state by the model; one that has ended, and could not go on
-    /// from there, begins again.
-    fn go_on(&mut self) {
+    /// Continues the motion from its present state with the new model. A motion that has ended and cannot
+    /// continue from there is restarted.
+    fn continue_motion(&mut self) {
         let (ended, before) = (self.player.ended().is_some(), self.player.watch().now().x);
         self.player.change(&self.model);
-        if ended && !self.can_go_on() {
+        if ended && !self.can_continue() {
             return self.restart();
         }
         let now = self.player.watch().now().x;
         let (left, right) = self.model.stop_positions();
-        let is_far = (now - before).abs() > CARRIED * self.model.scales().length;
-        self.carried = is_far && [left, right].contains(&Some(now));
+        let is_far = (now - before).abs() > REPORTED_MOVE * self.model.scales().length;
+        self.moved_to_stop = is_far && [left, right].contains(&Some(now));
         (self.changed_at, self.continued, self.by_hand) = (self.player.watch().time(), true, false);
         self.ask_settled();
     }
 
-    /// Whether the motion goes on for a moment at least from its present state.
-    fn can_go_on(&self) -> bool {
+    /// Whether the motion continues from its present state for at least a short time.
+    fn can_continue(&self) -> bool {
         let Some(model) = self.player.watch().from_here() else { return false };
-        study::lasts(&model, MOMENT * model.characteristic_time())
+        study::lasts(&model, LEAST_CONTINUATION * model.characteristic_time())
     }
 
-    /// Whether the last change carried the mass to a stop, and it has not moved on for long.
+    /// Whether the last change moved the mass to a stop, and the motion since then is short.
     pub fn was_set_on_stop(&self) -> bool {
-        let gone = self.player.watch().time() - self.changed_at;
-        self.carried && (self.settling().is_some() || gone < self.model.characteristic_time())
+        let elapsed = self.player.watch().time() - self.changed_at;
+        self.moved_to_stop && (self.settling().is_some() || elapsed < self.model.characteristic_time())
     }
 
-    /// How far the motion has come, after a change, towards what the sentence tells of: seconds gone, and of
-    /// how many.
+    /// Progress of the motion, after a change, towards the settled motion that the sentence describes: the
+    /// elapsed time and the whole time in s.
     pub fn settling(&self) -> Option<(f64, f64)> {
-        let goes = self.model.is_shaken() && self.player.ended().is_none();
-        let told = self.told().filter(|_| goes && self.changed_at > 0.0)?;
-        let (gone, of) = (told.now - told.origin, told.seen_from() - told.origin);
-        (gone < of).then_some((gone, of))
+        let moves = self.model.is_shaken() && self.player.ended().is_none();
+        let facts = self.sentence_facts().filter(|_| moves && self.changed_at > 0.0)?;
+        let (elapsed, whole) = (facts.now - facts.origin, facts.seen_from() - facts.origin);
+        (elapsed < whole).then_some((elapsed, whole))
     }
 
-    /// The model of the scene as it stands.
+    /// Builds the model of the present scene.
     pub(super) fn build(&mut self) -> Result<Model, CannotRun> {
         let document = &self.editor.runnable();
         document.check()?;
         let scene = &document.scene;
         if scene.mechanism != self.mechanism_of {
             let built = Mechanism::build(&scene.mechanism, &document.files)
-                .map_err(|error| unbuilt(document, error))?;
+                .map_err(|error| build_error(document, error))?;
             self.mechanism = Arc::new(built);
             self.mechanism_of = scene.mechanism.clone();
         }
         Ok(Model::build(scene, Arc::clone(&self.mechanism)).map_err(|faults| document.error_from(faults))?)
     }
 
-    /// Waits until it is known what the motion settles to, at most so long.
-    pub fn wait_settled(&mut self, most: Duration) {
+    /// Waits at most `timeout` until it is known what the motion settles to.
+    pub fn wait_settled(&mut self, timeout: Duration) {
         self.apply();
-        self.settled.wait(most);
+        self.settled.wait(timeout);
     }
 
-    /// Waits for what is being computed, at most so long.
-    pub fn wait(&mut self, most: Duration) {
-        self.wait_settled(most);
-        self.thresholds.wait(most);
-        self.stops_that_cross.wait(most);
+    /// Waits for the background computations about the scene, at most `timeout` for each.
+    pub fn wait(&mut self, timeout: Duration) {
+        self.wait_settled(timeout);
+        self.thresholds.wait(timeout);
+        self.stops_that_cross.wait(timeout);
         self.follow_accuracy();
-        self.accuracy.wait(most);
+        self.accuracy.wait(timeout);
     }
 }

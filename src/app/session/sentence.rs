@@ -1,4 +1,4 @@
-//! Choice of the sentence about the open scene.
+//! Choice of the sentence about the motion of the open scene.
 
 use crate::app::words::kind::Kind;
 use crate::app::words::status::{self, Sentence, Told};
@@ -21,29 +21,29 @@ impl Session {
         if !self.model.is_shaken() {
             return status::unshaken(&self.model, &state);
         }
-        match self.told() {
-            Some(told) if self.keeps_remedy => Sentence { remedy: String::new(), ..status::driven(&told) },
-            Some(told) => status::driven(&told),
+        match self.sentence_facts() {
+            Some(facts) if self.keeps_remedy => Sentence { remedy: String::new(), ..status::driven(&facts) },
+            Some(facts) => status::driven(&facts),
             None if self.settled.is_running() => Sentence::waiting(),
             None => stopped(),
         }
     }
 
-    /// What the sentence tells of, once it is known.
-    pub(super) fn told(&self) -> Option<Told<'_>> {
+    /// The facts for the sentence about a driven motion; `None` until it is known what the motion settles to.
+    pub(super) fn sentence_facts(&self) -> Option<Told<'_>> {
         let settled = self.settled.current()?;
         Some(Told {
             scene: self.scene(),
             model: &self.model,
             summary: settled,
             thresholds: self.thresholds.current(),
-            origin: self.asked_from,
+            origin: self.settled_from,
             now: self.player.watch().time(),
         })
     }
 }
 
-/// While it is not known what the motion settles to, because a person has stopped that.
+/// The sentence after the user has stopped the computation of what the motion settles to.
 fn stopped() -> Sentence {
     let text = "Stopped before it was known what this settles to: a shorter run length is known sooner.";
     Sentence { kind: Kind::Other, text: text.to_owned(), remedy: String::new() }

@@ -1,4 +1,4 @@
-//! Ranges of the sliders, from the scales of the scene.
+//! Ranges of the sliders, derived from the scales of the scene.
 
 use crate::app::words::fields::{FieldInfo, Reach, Scale};
 use crate::app::words::numbers::{below, decimal, round_up};
@@ -8,14 +8,14 @@ use crate::scene::{FieldPath, Mechanism, Stops};
 use super::Session;
 
 impl FieldInfo {
-    /// How far the slider goes in a scene: as in the prototype's, where that suits its scales, else by its
-    /// own.
+    /// The range of the slider in a scene: that for the prototype if it suits the scales of the scene, else
+    /// one that is derived from them.
     pub fn reach(&self, session: &Session) -> Reach {
         let (low, high, step) = self.slider;
         let saved = FieldPath::new(self.path).get(session.editor.saved());
         let scales = session.opened();
-        // of the prototype these are 2 g and 20 Hz
-        let own = match self.scale {
+        // for the prototype these are 2 g and 20 Hz
+        let scaled = match self.scale {
             Scale::Fixed => None,
             Scale::Value => saved.map(|value| 2.5 * value.abs()),
             Scale::Push => Some(0.15 * high * scales.length / scales.time.powi(2) / STANDARD_GRAVITY),
@@ -28,21 +28,21 @@ impl FieldInfo {
         };
         let fits = saved.is_none_or(|value| (low..=high).contains(&value))
             && match self.scale {
-                Scale::Push | Scale::Rate => own.is_none_or(|own| (0.25..=4.0).contains(&(own / high))),
+                Scale::Push | Scale::Rate => scaled.is_none_or(|end| (0.25..=4.0).contains(&(end / high))),
                 Scale::Value => saved.is_none_or(|value| value == 0.0 || value.abs() > high / 200.0),
                 _ => true,
             };
-        let Some(own) = own.filter(|own| !fits && *own > 0.0 && own.is_finite()) else {
+        let Some(scaled) = scaled.filter(|scaled| !fits && *scaled > 0.0 && scaled.is_finite()) else {
             return Reach::even(low, high, step);
         };
-        let high_own = round_up(own.max(1.25 * saved.map_or(0.0, f64::abs)));
-        let low_own = if low < 0.0 { -high_own } else { low / high * high_own };
-        let step = below(high_own / 200.0);
-        Reach::even((low_own / step).round() * step, high_own, step)
+        let new_high = round_up(scaled.max(1.25 * saved.map_or(0.0, f64::abs)));
+        let new_low = if low < 0.0 { -new_high } else { low / high * new_high };
+        let step = below(new_high / 200.0);
+        Reach::even((new_low / step).round() * step, new_high, step)
     }
 }
 
-/// The slider of a stop: from near the middle to beyond the well.
+/// The range of the slider of a travel limit: from near the middle to beyond the well.
 fn travel(session: &Session) -> Reach {
     let (saved, limits) = (session.editor.saved(), [session.remembered_stops(), session.scene().stops]);
     let well = session.opened().well_mm;
@@ -53,25 +53,25 @@ fn travel(session: &Session) -> Reach {
     Reach::even(2.0 * step, (0.6 * size / step).round() * 2.0 * step, step)
 }
 
-/// Five powers of ten around a value; none around 0 and infinity.
+/// Five powers of ten around a value; `None` around 0 and infinity.
 fn decades(value: Option<f64>) -> Option<Reach> {
     let size = value.filter(|value| *value > 0.0 && value.is_finite())?.log10().floor() as i32;
-    let power = |of: i32| decimal(10.0_f64.powi(of));
+    let power = |exponent: i32| decimal(10.0_f64.powi(exponent));
     (-100..100)
         .contains(&size)
         .then(|| Reach { ratios: true, ..Reach::even(power(size - 2), power(size + 3), power(size - 2)) })
 }
 
-/// The preload that the slider reaches, as a share of the shorter flexure.
-const MOST_PRELOAD: f64 = 0.2;
+/// Largest preload on the slider, as a share of the length of the shorter flexure.
+const MAX_PRELOAD: f64 = 0.2;
 
 fn preload(session: &Session) -> Option<Reach> {
     let Mechanism::Flexures { parallel, buckling, .. } = &session.editor.saved().mechanism else {
         return None;
     };
-    let most = MOST_PRELOAD * parallel.length_mm.min(buckling.length_mm);
-    let step = below(most / 80.0);
-    Some(Reach::even(0.0, (most / step).round() * step, step))
+    let largest = MAX_PRELOAD * parallel.length_mm.min(buckling.length_mm);
+    let step = below(largest / 80.0);
+    Some(Reach::even(0.0, (largest / step).round() * step, step))
 }
 
 #[cfg(test)]
@@ -96,20 +96,20 @@ mod tests {
         assert_eq!(reach("duffing", "stops.travel_limit_mm"), Reach::even(10.0, 1200.0, 5.0));
         assert_eq!(reach("duffing", "mass_g").high, 3000.0);
         assert_eq!(reach("duffing", "run.duration_s").high, 4000.0);
-        // on its slider every number is at a place that a hand can reach
+        // every number is at a position that its slider can reach
         for preset in crate::scene::PRESETS {
             let session = session(preset.name);
             for field in FIELDS {
-                let (own, value) = (field.reach(&session), FieldPath::new(field.path).get(session.scene()));
-                assert!(own.low < own.high && own.step > 0.0, "{}: {own:?}", field.path);
+                let (reach, value) = (field.reach(&session), FieldPath::new(field.path).get(session.scene()));
+                assert!(reach.low < reach.high && reach.step > 0.0, "{}: {reach:?}", field.path);
                 let Some(value) = value else { continue };
-                if own.ratios {
-                    assert!((own.low..=own.high).contains(&value), "{} {}", preset.name, field.path);
+                if reach.ratios {
+                    assert!((reach.low..=reach.high).contains(&value), "{} {}", preset.name, field.path);
                     continue;
                 }
                 assert!(
-                    value <= 1.3 * own.high && (value == 0.0 || value.abs() > own.high / 250.0),
-                    "{} {}: {value} {own:?}",
+                    value <= 1.3 * reach.high && (value == 0.0 || value.abs() > reach.high / 250.0),
+                    "{} {}: {value} {reach:?}",
                     preset.name,
                     field.path
                 );

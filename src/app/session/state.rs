@@ -1,4 +1,4 @@
-//! State of the open scene, and what can be read of it.
+//! State of the open scene, and the methods that read it.
 
 use std::sync::Arc;
 
@@ -17,8 +17,8 @@ use super::measured::MeasuredData;
 use super::pins::Pins;
 use super::player::Player;
 
-/// Scales of a scene that set how far its sliders go: those of the scene as it was opened, so that no slider
-/// jumps while another one is moved.
+/// Scales that set the ranges of the sliders: those of the scene as it was opened, so that no slider jumps
+/// while another one is moved.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OpenedScales {
     /// Length in m.
@@ -40,66 +40,66 @@ impl OpenedScales {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Card {
     pub scene: Scene,
-    /// What it settles to, once that is known.
+    /// What it settles to; `None` until it is known.
     pub settled: Option<Summary>,
-    /// How much shaking it takes, once that is known.
+    /// Its thresholds; `None` until they are known.
     pub thresholds: Option<Thresholds>,
 }
 
 pub struct Session {
-    /// The scene and the way back.
+    /// The scene and its undo stack.
     pub editor: Editor,
-    /// The model that moves: of the scene, or of the last one that could be run.
+    /// The model that moves: that of the scene, or of its last version that could be run.
     pub(super) model: Arc<Model>,
-    /// Why the scene as it stands cannot be run.
+    /// Why the present scene cannot be run.
     pub(super) fault: Option<String>,
     pub player: Player,
     pub(super) settled: Latest<Summary>,
     pub(super) thresholds: Latest<Thresholds>,
-    /// The travel limit in mm with which it would cross; searched for only when somebody asks.
+    /// The travel limit in mm with which the mass would cross the barrier; computed only on request.
     pub(super) stops_that_cross: Latest<Option<f64>>,
     pub accuracy: Accuracy,
     pub map: Mapping,
-    /// What the views of the layout Explore show.
+    /// The studies that the views of the layout Explore show.
     pub explore: Explore,
-    /// The motions that go on beside it.
+    /// The pinned motions.
     pub pins: Pins,
-    /// The measured data that lie over it.
+    /// The measured data that are shown over the computed results.
     pub measured: MeasuredData,
     pub(super) before: Option<Card>,
     /// The scene that the model was built from.
     pub(super) built: Scene,
     pub(super) mechanism: Arc<Mechanism>,
-    /// What the mechanism was built from: a table is fitted once, not for every move of a slider.
+    /// What the mechanism was built from, so that a table is fitted once and not at every move of a slider.
     pub(super) mechanism_of: scene::Mechanism,
-    /// Whether the mechanism was solved in a hurry, in the midst of a gesture.
-    pub(super) hurried: bool,
-    /// What a hand asked of the mechanism and did not get, and why.
+    /// Whether the mechanism was solved with the coarse tolerance of a gesture.
+    pub(super) is_coarse: bool,
+    /// Why the last change of the mechanism was refused.
     pub(super) refused: Option<String>,
     /// Live time in s of the last change.
     pub(super) changed_at: f64,
-    /// Whether that was a hand on the mass.
+    /// Whether the last change was a move of the mass by hand.
     pub(super) by_hand: bool,
-    /// Whether the last change carried the mass to a stop.
-    pub(super) carried: bool,
-    /// The scales that the sliders keep while the scene is open.
+    /// Whether the last change moved the mass to a stop.
+    pub(super) moved_to_stop: bool,
+    /// The scales of the scene as it was opened.
     pub(super) opened: OpenedScales,
-    /// Live time in s at which the run begins that is asked what the motion settles to.
-    pub(super) asked_from: f64,
-    /// The motion is no longer the run of the scene from its start: something was changed on its way.
+    /// Live time in s at which the run for the settled motion begins.
+    pub(super) settled_from: f64,
+    /// Whether the motion was changed after its start, so that it is no run of the scene from its start.
     pub(super) continued: bool,
-    /// The stops that come back when they are switched on.
+    /// The stops that the scene gets when they are switched on.
     pub(super) remembered_stops: Stops,
-    /// The field whose presses of arrow keys are one gesture, and the time in s of the last one.
+    /// The field of the current series of arrow key presses, and the time in s of the last press.
     pub(super) presses: Option<(String, f64)>,
-    /// What it would take to cross is not to be said: it is the answer of a lesson.
+    /// Whether to withhold what it would take to cross the barrier, as the answer of a lesson.
     pub keeps_remedy: bool,
     pub best: BestStops,
     pub(super) wake: Wake,
 }
 
 impl Session {
-    /// The scene as it stands.
+    /// The present scene.
     pub fn scene(&self) -> &Scene {
         self.editor.scene()
     }
@@ -109,22 +109,22 @@ impl Session {
         &self.model
     }
 
-    /// The model of what is shown: the one that held then, where the past is looked at.
+    /// The model at the time that is shown, which may be in the past.
     pub fn shown(&self) -> &Model {
         if self.player.is_past() { self.player.shown_model() } else { &self.model }
     }
 
-    /// Why the scene as it stands cannot be run; the motion is that of the last one that could.
+    /// Why the present scene cannot be run; the motion is then that of its last version that could.
     pub fn fault(&self) -> Option<&str> {
         self.fault.as_deref()
     }
 
-    /// Calls back when something that was asked for has come.
+    /// The callback for new background results.
     pub fn wake(&self) -> &Wake {
         &self.wake
     }
 
-    /// Whether the last change was a hand on the mass.
+    /// Whether the last change was a move of the mass by hand.
     pub fn is_by_hand(&self) -> bool {
         self.by_hand
     }
@@ -134,23 +134,23 @@ impl Session {
         self.opened
     }
 
-    /// Whether what the motion settles to crosses the barrier; none while that is not known.
+    /// Whether the settled motion crosses the barrier; `None` until it is known.
     pub fn crosses(&self) -> Option<bool> {
         let summary = self.settled.current()?;
         (self.fault.is_none() && summary.outcome == Outcome::Done).then_some(summary.crossings > 0)
     }
 
-    /// What the present scene settles to, once that is known.
+    /// What the present scene settles to; `None` until it is known.
     pub fn settled_now(&self) -> Option<&Summary> {
         self.settled.current().filter(|_| self.fault.is_none())
     }
 
-    /// What the motion settles to; of an earlier scene while the answer is still to come.
+    /// What the motion settles to, or that of an earlier scene until the new answer has come.
     pub fn settled(&self) -> Option<&Summary> {
         self.settled.newest()
     }
 
-    /// The scene as it stands, for the card.
+    /// The present scene, for the card.
     pub fn now_card(&self) -> Card {
         Card {
             scene: self.scene().clone(),
@@ -164,14 +164,14 @@ impl Session {
         self.before.as_ref()
     }
 
-    /// The time in s at which the run that is watched ends: as long after the last change as the scene says,
-    /// or after the start where the shaking is a function of the time since then.
+    /// The live time in s at which the run ends: the scene's run length after the last change, or after the
+    /// start if the excitation is a function of the time since then.
     pub fn end_of_run(&self) -> f64 {
         let begins_here = self.player.watch().from_here().is_some();
         self.model.duration() + if begins_here { self.changed_at } else { 0.0 }
     }
 
-    /// Whether something was changed on the motion's way, so that it is no run of the scene from its start.
+    /// Whether the motion was changed after its start, so that it is no run of the scene from its start.
     pub fn is_continued(&self) -> bool {
         self.continued
     }
@@ -181,7 +181,7 @@ impl Session {
         self.changed_at
     }
 
-    /// Amplitude of the shaking in g, where it is a sine.
+    /// Amplitude of the excitation in g, if it is a sine.
     pub fn amplitude_g(&self) -> Option<f64> {
         match self.scene().excitation {
             Excitation::Sine { amplitude_g, .. } => Some(amplitude_g),

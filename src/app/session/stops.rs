@@ -1,12 +1,12 @@
-//! Stops that suit a scene which has none.
+//! Stops that suit a scene without stops.
 
 use crate::dynamics::Model;
 use crate::scene::{Scene, Stops};
 
-/// The share of speed that stops keep where a scene does not say which stops come.
+/// Restitution of the stops if the scene gives no stops to switch on.
 const RESTITUTION: f64 = 0.36;
 
-/// The stops that come when they are switched on, before a hand has moved any.
+/// The stops that the scene gets when they are first switched on.
 pub(super) fn first_stops(scene: &Scene, model: &Model) -> Stops {
     let hinted = || scene.app.as_ref().and_then(|hints| hints.stops_when_on);
     let suiting = || {
@@ -19,8 +19,7 @@ pub(super) fn first_stops(scene: &Scene, model: &Model) -> Stops {
     }
 }
 
-/// Stops that suit a scene that does not say which: where the prototype has them, in parts of the well's
-/// distance.
+/// Travel limit in mm that suits a well at this distance: the same share of it as in the prototype.
 pub fn suiting_limit(well_mm: Option<f64>) -> f64 {
     match well_mm.filter(|mm| *mm > 0.0 && mm.is_finite()) {
         Some(mm) => format!("{:.1e}", 0.215 * mm).parse().unwrap_or(mm),

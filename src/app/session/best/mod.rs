@@ -1,4 +1,4 @@
-//! Search for the best stops of the open scene, on a thread of its own, coarse first.
+//! Background search for the best stops of the open scene, with a coarse scan first.
 
 mod of_session;
 
@@ -12,20 +12,20 @@ use crate::study::{
     BestDesign, BestQuestion, DesignRange, Environment, NoBest, Optimum, SummaryField, Task, best,
 };
 
-/// The field that is searched over.
+/// The field whose best value is searched for.
 pub const LIMIT: &str = "stops.travel_limit_mm";
 
-/// What has come of a search.
+/// A part of the answer of a search.
 enum Part {
-    /// The best place of the coarse scan.
+    /// The optimum of the coarse scan.
     Preview(Optimum),
     /// The answer, or why there is none.
     Whole(Result<BestDesign, NoBest>),
 }
 
-/// What is asked: the scene from rest with its least travel limit, and the range.
+/// A search: the scene, from rest with its least travel limit, and the range of travel limits.
 #[derive(Debug, Clone, PartialEq)]
-struct Asked {
+struct Search {
     scene: Scene,
     range: DesignRange,
     column: &'static str,
@@ -33,51 +33,51 @@ struct Asked {
     duration_s: Option<f64>,
 }
 
-/// The search for the best stops, and what it found. An answer to another scene is thrown away.
+/// The search for the best stops, and its result. Both are dropped when the scene changes.
 #[derive(Default)]
 pub struct BestStops {
-    asked: Option<Asked>,
+    search: Option<Search>,
     job: Option<Job<Part>>,
     runs: Arc<AtomicU64>,
     preview: Option<Optimum>,
     answer: Option<Result<BestDesign, NoBest>>,
-    /// Why nothing is searched for.
+    /// Why there can be no search.
     refusal: Option<&'static str>,
-    /// It is not offered: it may be the answer of a lesson.
+    /// Whether the search is not offered, as its result may be the answer of a lesson.
     pub is_off: bool,
 }
 
 impl BestStops {
     /// Whether there is anything to say.
     pub fn is_shown(&self) -> bool {
-        self.asked.is_some() || self.refusal.is_some()
+        self.search.is_some() || self.refusal.is_some()
     }
 
-    /// Whether it is being searched.
+    /// Whether the search is running.
     pub fn is_running(&self) -> bool {
         self.job.is_some()
     }
 
-    /// Ends the search, and forgets what it found.
+    /// Ends the search and forgets its result.
     pub fn close(&mut self) {
         *self = Self { is_off: self.is_off, ..Self::default() };
     }
 
-    /// The best travel limit in mm, be it of the coarse scan; none where no place is better than another.
+    /// The best travel limit in mm so far, at first that of the coarse scan; `None` if no limit stands out.
     pub fn limit_mm(&self) -> Option<f64> {
         match &self.answer {
             Some(Ok(design)) => (!design.flat).then(|| design.optimum.at[0]),
             Some(Err(_)) => None,
-            None => self.preview.as_ref().filter(|own| own.value != 0.0).map(|own| own.at[0]),
+            None => self.preview.as_ref().filter(|best| best.value != 0.0).map(|best| best.at[0]),
         }
     }
 
-    /// What is known so far, in a sentence or two.
+    /// What is known so far, in one or two sentences.
     pub fn words(&self) -> String {
         if let Some(why) = self.refusal {
             return why.to_owned();
         }
-        let Some(asked) = &self.asked else { return String::new() };
+        let Some(search) = &self.search else { return String::new() };
         let found = match (&self.answer, &self.preview) {
             (Some(answer), _) => Found::Whole(answer),
             (None, preview) if self.job.is_some() => {
@@ -85,15 +85,15 @@ impl BestStops {
             }
             (None, _) => Found::Nothing,
         };
-        sentence(&found, asked.column, &asked.range, asked.duration_s)
+        sentence(&found, search.column, &search.range, search.duration_s)
     }
 
     pub(super) fn poll(&mut self) {
         let Some(job) = &self.job else { return };
         let (mut preview, mut answer) = (None, None);
         let more = job.take(|part| match part {
-            Part::Preview(own) => preview = Some(own),
-            Part::Whole(own) => answer = Some(own),
+            Part::Preview(optimum) => preview = Some(optimum),
+            Part::Whole(result) => answer = Some(result),
         });
         self.preview = preview.or(self.preview.take());
         self.answer = answer.or(self.answer.take());
@@ -102,15 +102,15 @@ impl BestStops {
         }
     }
 
-    fn start(&mut self, asked: Asked, files: Files, wake: &Wake) {
+    fn start(&mut self, search: Search, files: Files, wake: &Wake) {
         self.close();
-        let (runs, question) = (Arc::clone(&self.runs), asked.clone());
+        let (runs, Search { scene, range, column, .. }) = (Arc::clone(&self.runs), search.clone());
         self.job = Job::start(wake, move |cancel, each| {
-            let Some(maximise) = SummaryField::find(question.column) else { return };
+            let Some(maximise) = SummaryField::find(column) else { return };
             let Some(pool) = pool() else { return };
-            let environment = Environment { name: String::new(), weight: 1.0, scene: question.scene, files };
+            let environment = Environment { name: String::new(), weight: 1.0, scene, files };
             let question = BestQuestion {
-                over: vec![question.range],
+                over: vec![range],
                 maximise,
                 subject_to: Vec::new(),
                 environments: vec![environment],
@@ -122,11 +122,11 @@ impl BestStops {
                 runs.fetch_add(1, Ordering::Relaxed);
             };
             let task = Task { tick: &tick, cancel };
-            let found = best(&question, &pool, &task, &mut |own| each(Part::Preview(own.clone())));
+            let found = best(&question, &pool, &task, &mut |optimum| each(Part::Preview(optimum.clone())));
             if !matches!(found, Err(NoBest::Cancelled)) {
                 each(Part::Whole(found));
             }
         });
-        self.asked = Some(asked);
+        self.search = Some(search);
     }
 }

@@ -1,4 +1,4 @@
-//! Search for the best stops of the open scene: what is asked of it, and the way there.
+//! The session's search for the best stops, and the move of the stops to them.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -11,24 +11,24 @@ use crate::dynamics::Model;
 use crate::scene::{FieldPath, Stops, SweepAxis};
 use crate::study::{DesignRange, INTERVALS};
 
-use super::{Asked, LIMIT};
+use super::{LIMIT, Search};
 
-/// What is made as large as may be: the power into a load where there is one, else the RMS velocity.
-fn maximised(model: &Model) -> &'static str {
+/// The column to maximise: the mean power into the load if there is a transducer, else the RMS velocity.
+fn maximised_column(model: &Model) -> &'static str {
     if model.has_transducer() { "mean_load_power_w" } else { "rms_velocity_m_per_s" }
 }
 
 impl Session {
-    /// Searches for the travel limit at which the scene as it stands does best, from rest.
+    /// Searches for the best travel limit of the present scene, started from rest.
     pub fn find_best_stops(&mut self) {
         if self.best.is_off {
             return;
         }
         self.end_gesture();
-        match self.best_asked() {
-            Ok(asked) => {
+        match self.best_search() {
+            Ok(search) => {
                 let (files, wake) = (self.editor.document().files.clone(), Arc::clone(&self.wake));
-                self.best.start(asked, files, &wake);
+                self.best.start(search, files, &wake);
             }
             Err(why) => {
                 self.best.close();
@@ -37,8 +37,8 @@ impl Session {
         }
     }
 
-    /// What would be asked of the scene as it stands, or why it cannot be.
-    fn best_asked(&self) -> Result<Asked, &'static str> {
+    /// The search for the present scene, or why there can be none.
+    fn best_search(&self) -> Result<Search, &'static str> {
         if self.fault().is_some() {
             return Err("The best stops are searched for once the scene can be run.");
         }
@@ -51,48 +51,48 @@ impl Session {
         let axis = SweepAxis { field: LIMIT.to_owned(), step: reach.step, ..SweepAxis::default() };
         let mut scene = ground(self.scene(), self.remembered_stops(), std::slice::from_ref(&axis));
         if !FieldPath::new(LIMIT).set(&mut scene, reach.low) {
-            return Err("The stops that would come stand not equally far out.");
+            return Err("The stops that would come do not stand equally far out.");
         }
         let range = DesignRange::new(LIMIT, (reach.low, reach.high), INTERVALS[0]);
         let duration_s = (!self.model().repeats()).then_some(scene.run.duration_s);
-        Ok(Asked { scene, range, column: maximised(self.model()), duration_s })
+        Ok(Search { scene, range, column: maximised_column(self.model()), duration_s })
     }
 
-    /// Takes in what has come; what is about another scene is thrown away. To be called once a frame.
+    /// Receives results, and drops them once the scene has changed; to be called once a frame.
     pub fn follow_best(&mut self) {
         self.best.poll();
-        let same = |asked: &Asked| self.best_asked().as_ref() == Ok(asked);
-        let is_stale = match &self.best.asked {
-            Some(asked) => !same(asked),
-            None => self.best.refusal.is_some_and(|why| self.best_asked() != Err(why)),
+        let same = |search: &Search| self.best_search().as_ref() == Ok(search);
+        let is_stale = match &self.best.search {
+            Some(search) => !same(search),
+            None => self.best.refusal.is_some_and(|why| self.best_search() != Err(why)),
         };
         if is_stale {
             self.best.close();
         }
     }
 
-    /// Whether the stops stand where they do best.
+    /// Whether the stops stand at the best travel limit known.
     pub fn is_at_best_stops(&self) -> bool {
         let limit = self.best.limit_mm();
         limit.is_some() && limit == FieldPath::new(LIMIT).get(self.scene())
     }
 
-    /// Takes the stops to the best place that is known, by one gesture.
+    /// Moves the stops to the best travel limit known, as one gesture.
     pub fn go_to_best_stops(&mut self) {
-        let (Some(limit), Some(asked)) = (self.best.limit_mm(), &self.best.asked) else { return };
-        let stops = asked.scene.stops;
+        let (Some(limit), Some(search)) = (self.best.limit_mm(), &self.best.search) else { return };
+        let stops = search.scene.stops;
         self.edit_once(|scene| {
             if scene.stops == Stops::None {
                 scene.stops = stops;
             }
-            let known = FieldPath::new(LIMIT).set(scene, limit);
-            debug_assert!(known, "the stops of the search have a travel limit");
+            let is_set = FieldPath::new(LIMIT).set(scene, limit);
+            debug_assert!(is_set, "the stops of the search have a travel limit");
         });
     }
 
-    /// Waits for the answer, at most so long. Whether it is there.
-    pub fn wait_for_best_stops(&mut self, most: Duration) -> bool {
-        wait_while(most, || {
+    /// Waits at most `timeout` for the answer. Returns whether it has come.
+    pub fn wait_for_best_stops(&mut self, timeout: Duration) -> bool {
+        wait_while(timeout, || {
             self.best.poll();
             self.best.is_running()
         });

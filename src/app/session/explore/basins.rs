@@ -1,4 +1,4 @@
-//! Where the motion goes from every start: basins of attraction, coarse first.
+//! Basins of attraction of the open scene, computed coarse first.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -11,38 +11,38 @@ use crate::study::{Answer, Basins, EvenRange, NoBasins, Starts, Task};
 
 use super::Explored;
 
-/// Starts across and up.
+/// Number of starts along each axis.
 pub const STARTS: u64 = 81;
 
-/// A scene without its own start, and the starts in mm and m/s.
+/// A scene, apart from its start, and the ranges of the starts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BasinsQuestion {
     pub scene: Scene,
-    /// Ends of the displacements in mm.
+    /// Least and greatest displacement in mm.
     pub x_mm: (f64, f64),
-    /// Ends of the velocities in m/s.
+    /// Least and greatest velocity in m/s.
     pub v: (f64, f64),
 }
 
-/// What is known after a level of starts.
+/// What is known after one level of starts has been run.
 #[derive(Debug, Clone)]
 pub struct Level {
-    /// The attractors, and what each start goes to.
+    /// The attractors, and the attractor that each start goes to.
     pub answer: Answer,
-    /// For each start the one whose answer is shown: its own, or a neighbour's.
+    /// For each start the index of the start whose answer is shown: itself or a neighbour.
     pub shown: Vec<usize>,
     /// Displacements in mm and velocities in m/s of the starts.
     pub axes: (Vec<f64>, Vec<f64>),
-    /// Displacements in m that the mass may have.
+    /// Range of displacements in m that the mass may have.
     pub room: (f64, f64),
 }
 
-/// The basins as they become known, level by level, or why there are none.
+/// The basins, level by level, or why there are none.
 pub type BasinsFound = Explored<BasinsQuestion, Result<Level, String>>;
 
 impl Session {
-    /// Asks for the basins of the scene as it stands, in a frame that shows them over these displacements in
-    /// m and velocities `v` in m/s.
+    /// Asks for the basins of the present scene over a range of displacements in m and of velocities `v` in
+    /// m/s; to be called in every frame that shows them.
     pub fn want_basins(&mut self, (low, high): (f64, f64), v: (f64, f64)) {
         let still = self.stands_still();
         let scene = Scene {
@@ -62,7 +62,7 @@ impl Session {
         });
     }
 
-    /// Has the scene begin at a displacement in m and a velocity in m/s, from now on; one step of undo.
+    /// Starts the scene at a displacement in m and a velocity in m/s, from now on, as one undo step.
     pub fn start_at(&mut self, x: f64, v: f64) {
         let rounded = |value: f64, unit: f64| (value / unit).round() * unit;
         let x_mm = crate::app::words::numbers::decimal(rounded(x * 1e3, 1e-3));
@@ -74,7 +74,7 @@ impl Session {
     }
 }
 
-/// Finds them, level by level; the error is why there are none.
+/// Finds the basins level by level; the error says why there are none.
 fn find(
     question: &BasinsQuestion,
     mechanism: Arc<Mechanism>,
@@ -82,12 +82,12 @@ fn find(
     each: &dyn Fn(Level),
 ) -> Result<(), String> {
     let range = |(from, to): (f64, f64)| EvenRange { from, to, count: STARTS };
-    let starts = Starts::grid(&range(question.x_mm), &range(question.v)).map_err(|own| own.to_string())?;
-    let said = |own: NoBasins| match own {
+    let starts = Starts::grid(&range(question.x_mm), &range(question.v)).map_err(|why| why.to_string())?;
+    let message = |error: NoBasins| match error {
         NoBasins::Faults(faults) => faults.first().map_or(String::new(), |fault| fault.problem.clone()),
         other => other.to_string(),
     };
-    let mut basins = Basins::new(&question.scene, mechanism, starts).map_err(said)?;
+    let mut basins = Basins::new(&question.scene, mechanism, starts).map_err(message)?;
     let task = Task { tick: &|| (), cancel };
     let Some(pool) = pool() else { return Ok(()) };
     while !basins.is_whole() {

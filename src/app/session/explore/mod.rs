@@ -1,5 +1,5 @@
-//! Studies of the open scene for the views that show them: asked for frame by frame, begun when no hand
-//! changes the scene, stopped when no view looks.
+//! Studies of the open scene for the views of the layout Explore. A view asks for its study in every frame;
+//! the study begins once nobody is changing the scene, and stops when no view asks for it.
 
 mod basins;
 mod explored;
@@ -11,12 +11,12 @@ pub use explored::Explored;
 pub use spectra::{Spectra, longest_wait};
 pub use walks::{WalkQuantity, WalkQuestion, Walks};
 
-/// What the views of the layout Explore ask.
+/// The studies that the views of the layout Explore ask for.
 #[derive(Default)]
 pub struct Explore {
-    /// The scene walked up and down over a field.
+    /// Walks up and down over a field.
     pub walks: Walks,
-    /// Where the motion goes from every start.
+    /// Basins of attraction.
     pub basins: BasinsFound,
     /// The spectrum of the settled motion.
     pub spectra: Spectra,
@@ -29,7 +29,7 @@ impl Explore {
         self.spectra.found.poll();
     }
 
-    /// To be called once a frame: what no view has asked for stops.
+    /// Stops the studies that no view has asked for in this frame; to be called once a frame.
     pub fn end_frame(&mut self) {
         self.walks.found.end_frame();
         self.basins.end_frame();

@@ -8,7 +8,7 @@ use crate::study::{Signal, Spectrum, SpectrumOptions, Task, followed_until, spec
 
 use super::Explored;
 
-/// A model, and what of its motion.
+/// A model, and the signal of its motion to analyse.
 #[derive(Debug, Clone)]
 pub struct SpectrumQuestion {
     model: Arc<Model>,
@@ -34,7 +34,7 @@ impl Default for Spectra {
 }
 
 impl Session {
-    /// Asks for the spectrum of the scene as it stands, in a frame that shows it.
+    /// Asks for the spectrum of the present scene; to be called in every frame that shows it.
     pub fn want_spectrum(&mut self) {
         let still = self.stands_still();
         let question =
@@ -45,12 +45,12 @@ impl Session {
             let options =
                 SpectrumOptions { signal: question.signal, taper: None, rate_hz: None, until_settled };
             let found = spectrum(&question.model, &options, &Task { tick: &|| (), cancel });
-            each(found.map_err(|own| own.to_string()));
+            each(found.map_err(|error| error.to_string()));
         });
     }
 }
 
-/// For how long in s the motion is waited for to repeat, where it may.
+/// How long in s to wait for the motion to repeat; `None` if it cannot settle.
 pub fn longest_wait(model: &Model) -> Option<f64> {
     model.can_settle().then(|| followed_until(model))
 }

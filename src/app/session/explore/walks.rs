@@ -1,4 +1,4 @@
-//! The scene walked up and down over a field, each run going on from where the one before was.
+//! Walks over a field of the open scene, up and down: each run continues from the end of the one before.
 
 use std::sync::Arc;
 
@@ -11,10 +11,10 @@ use crate::study::{Family, Task, Visit, up_and_down};
 
 use super::Explored;
 
-/// Every so manieth value is walked over first.
+/// Stride of the coarse walks, which come first.
 const COARSE: usize = 5;
 
-/// What is drawn of each run.
+/// The quantity that is drawn for each run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum WalkQuantity {
     /// Displacements once a forcing period.
@@ -25,7 +25,7 @@ pub enum WalkQuantity {
     LoadPower,
 }
 
-/// A scene without its own value of the field, and the axis over it.
+/// A scene, apart from its value of the field, and the axis over the field.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WalkQuestion {
     /// The scene, from rest, with the first value of the axis.
@@ -36,18 +36,18 @@ pub struct WalkQuestion {
 
 #[derive(Default)]
 pub struct Walks {
-    /// The axis that was chosen; none for one around the scene.
+    /// The axis that the user has chosen; `None` for an axis around the present value.
     pub chosen: Option<SweepAxis>,
     pub quantity: WalkQuantity,
-    /// The runs as they come, with the stride of their values: coarse ones first.
+    /// The runs as they come, each with the stride of its walk; the coarse walks come first.
     pub found: Explored<WalkQuestion, (usize, Visit)>,
-    /// Why there are none.
+    /// Why there are no walks.
     pub problem: Option<String>,
 }
 
 impl Session {
-    /// The axis of the walks: the chosen one where the scene has its field, else the amplitude of the
-    /// shaking, else the first field that a map could go over. None where there is none.
+    /// The axis of the walks: the chosen one if the scene has its field, else one over the amplitude of the
+    /// shaking, else over the first field that a map could have. Returns `None` if there is no such field.
     pub fn walk_axis(&self) -> Option<SweepAxis> {
         let has = |axis: &&SweepAxis| {
             let ground = ground(self.scene(), self.remembered_stops(), std::slice::from_ref(axis));
@@ -57,11 +57,11 @@ impl Session {
             return Some(chosen.clone());
         }
         let known = self.map_fields();
-        let own = known.iter().find(|path| path.ends_with("amplitude_g")).or(known.first())?;
-        Some(self.map_axis(own))
+        let path = known.iter().find(|path| path.ends_with("amplitude_g")).or(known.first())?;
+        Some(self.map_axis(path))
     }
 
-    /// Asks for the walks of the scene as it stands, in a frame that shows them.
+    /// Asks for the walks of the present scene; to be called in every frame that shows them.
     pub fn want_walks(&mut self) {
         let still = self.stands_still();
         let Some(axis) = self.walk_axis() else {
@@ -83,7 +83,7 @@ impl Session {
             return;
         }
         self.explore.walks.problem = None;
-        let own_scene = scene.clone();
+        let present = scene.clone();
         if !FieldPath::new(&axis.field).set(&mut scene, axis.from) {
             return;
         }
@@ -91,20 +91,20 @@ impl Session {
         let (mechanism, files) = (Arc::clone(&self.mechanism), self.editor.document().files.clone());
         let wake = Arc::clone(&self.wake);
         self.explore.walks.found.want(&question, still, &wake, move |question, cancel, each| {
-            walk(question, (&own_scene, mechanism, &files), &values, &Task { tick: &|| (), cancel }, each);
+            walk(question, (&present, mechanism, &files), &values, &Task { tick: &|| (), cancel }, each);
         });
     }
 
-    /// Takes the field of the walks to a value, as part of a gesture.
+    /// Sets the field of the walks to a value, as part of a gesture.
     pub fn drag_along_walk(&mut self, value: f64) {
         let Some(axis) = self.walk_axis() else { return };
         let value = ((value / axis.step).round() * axis.step).clamp(axis.from, axis.to);
-        // the refusal of a value within the axis is said where the scene is judged
+        // a value that is refused is reported where the scene is checked
         let _ = self.set_number(&axis.field, crate::app::words::numbers::decimal(value));
     }
 }
 
-/// The walks over every fifth value, then over all.
+/// The coarse walks, then those over all values.
 fn walk(
     question: &WalkQuestion,
     (scene, mechanism, files): (&Scene, Arc<Mechanism>, &Files),

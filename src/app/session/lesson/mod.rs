@@ -1,8 +1,8 @@
-//! An open lesson: its step, what was chosen and done, and what the runs say of it.
+//! An open lesson: its current step, the student's choices, and the verdicts of runs on them.
 //!
-//! It holds no scene of its own: it says which one is to be shown, and looks at the one that a hand has
-//! changed. A prediction is covered until an option is chosen; which one holds is worked out meanwhile. A
-//! task is judged on a full run of the scene once that has stood still.
+//! It does not hold the scene that is edited: it says which scene to show, and judges the session's. The
+//! results of a prediction are covered until an option is chosen; meanwhile runs find the option that holds.
+//! A task is judged by a full run of the scene once the scene has stood still.
 
 mod progress;
 mod verdict;
@@ -19,22 +19,22 @@ use super::Session;
 
 pub use progress::{Answer, Progress, Records, answers_text};
 pub use verdict::{Outcome, TaskState};
-use verdict::{Verdict, judge, only};
+use verdict::{Verdict, judge, single_option};
 
-/// For how long in s a scene stands still before a task is done by it.
+/// Time in s for which a scene has to stay unchanged before it can complete a task.
 const STILL: f64 = 0.5;
 
-/// After how long in s a hint comes by itself.
+/// Time in s after which a hint is shown by itself.
 const HINT_AFTER: f64 = 45.0;
 
-/// What is to be on the screen now.
+/// What the screen is to show after an action in the lesson.
 #[derive(Debug)]
 pub enum Turn {
-    /// What is there; nothing has changed.
+    /// The same scene and step.
     Stay,
-    /// What is there, in another step.
+    /// The same scene, in another step.
     Same,
-    /// This scene from its start, playing or standing.
+    /// This scene from its start, and whether it plays.
     Show(Box<Document>, bool),
     Leave,
 }
@@ -42,21 +42,21 @@ pub enum Turn {
 pub struct OpenLesson {
     document: Arc<LessonDocument>,
     progress: Progress,
-    /// When the step began, in s of the window.
+    /// Time of the window in s at which the step began.
     begun: Option<f64>,
     hinted: bool,
     options: Latest<Verdict<Vec<bool>>>,
     goal: Latest<Verdict<Option<Lack>>>,
-    /// The scene that is judged, and since when in s it stands still.
+    /// The scene that is judged, and the time in s since which it has stood still.
     judged: Option<(Scene, f64)>,
     wake: Wake,
 }
 
 impl OpenLesson {
-    /// Opens a lesson where it was left; the scene to begin with.
+    /// Opens a lesson where it was left. Returns it with the scene to begin with.
     pub fn open(document: LessonDocument, kept: Option<&Progress>, wake: Wake) -> (Self, Box<Document>) {
         let progress = Progress::of(&document.lesson, kept);
-        let mut own = Self {
+        let mut opened = Self {
             document: Arc::new(document),
             progress,
             begun: None,
@@ -66,11 +66,11 @@ impl OpenLesson {
             judged: None,
             wake,
         };
-        let scene = match own.enter(own.progress.step) {
+        let scene = match opened.enter(opened.progress.step) {
             Turn::Show(scene, _) => scene,
-            _ => Box::new(own.behind()),
+            _ => Box::new(opened.preceding_scene()),
         };
-        (own, scene)
+        (opened, scene)
     }
 
     pub fn lesson(&self) -> &Lesson {
@@ -91,7 +91,7 @@ impl OpenLesson {
         Self::key_of(&self.document)
     }
 
-    /// What was done in it so far.
+    /// What the student has done so far.
     pub fn progress(&self) -> &Progress {
         &self.progress
     }
@@ -113,12 +113,12 @@ impl OpenLesson {
         &mut self.progress.answers[self.progress.step]
     }
 
-    /// The word of the student's own in a prediction.
+    /// The student's reason for a prediction.
     pub fn why_mut(&mut self) -> &mut String {
         &mut self.answer_mut().why
     }
 
-    /// The options of the step; none where it asks for no prediction.
+    /// The options of a prediction; empty in any other step.
     pub fn options(&self) -> &[Choice] {
         match self.step() {
             Step::Predict { options, .. } => options,
@@ -126,19 +126,19 @@ impl OpenLesson {
         }
     }
 
-    /// Whether the motion and all results are covered: a prediction without a choice.
+    /// Whether the motion and all results are covered: in a prediction that has not been shown.
     pub fn is_covering(&self) -> bool {
         matches!(self.step(), Step::Predict { .. }) && !self.answer().shown
     }
 
-    /// Whether what other settings would come to is covered: until the first prediction is shown.
+    /// Whether results for other settings are covered: until the first prediction has been shown.
     pub fn hides_surveys(&self) -> bool {
         let is_prediction = |step: &Step| matches!(step, Step::Predict { .. });
         let first = self.lesson().steps.iter().position(is_prediction);
         first.is_some_and(|number| !self.is_settled(number))
     }
 
-    /// Whether a step has been answered or done; one that only tells something has.
+    /// Whether a step has been answered or done; always so for a step that only tells or explains something.
     pub fn is_settled(&self, number: usize) -> bool {
         match (&self.lesson().steps[number], &self.progress.answers[number]) {
             (Step::Say(_) | Step::Explain(_), _) => true,
@@ -147,12 +147,12 @@ impl OpenLesson {
         }
     }
 
-    /// Whether a student goes on from here.
+    /// Whether the student may go on to the next step.
     pub fn may_go_on(&self) -> bool {
         self.is_settled(self.progress.step)
     }
 
-    /// Whether what it would take to cross may be said: once nothing is left to be found out.
+    /// Whether it may be said what it would take to cross the barrier: once all steps are settled.
     pub fn tells_remedy(&self) -> bool {
         (0..self.lesson().steps.len()).all(|number| self.is_settled(number))
     }
@@ -163,14 +163,15 @@ impl OpenLesson {
 
     /// The name of the built-in lesson that comes after this one.
     pub fn following(&self) -> Option<&'static str> {
-        let Source::BuiltIn(own) = self.document.source else { return None };
-        let number = LESSONS.iter().position(|lesson| lesson.name == own)?;
+        let Source::BuiltIn(name) = self.document.source else { return None };
+        let number = LESSONS.iter().position(|lesson| lesson.name == name)?;
         LESSONS.get(number + 1).map(|lesson| lesson.name)
     }
 
-    /// Chooses an option of a prediction that is covered.
+    /// Chooses an option of a covered prediction.
     pub fn choose(&mut self, option: usize) -> Turn {
-        let Some(text) = self.options().get(option).map(|own| own.text.clone()) else { return Turn::Stay };
+        let Some(choice) = self.options().get(option) else { return Turn::Stay };
+        let text = choice.text.clone();
         if !self.is_covering() {
             return Turn::Stay;
         }
@@ -184,7 +185,7 @@ impl OpenLesson {
         Turn::Show(Box::new(self.document.end(self.progress.step).clone()), true)
     }
 
-    /// Goes on, whatever is still open in the step: a prediction is shown first, without a choice.
+    /// Goes on even if the step is not settled; a covered prediction is first shown, without a choice.
     pub fn go_on(&mut self) -> Turn {
         if self.is_covering() {
             return self.reveal();
@@ -198,13 +199,13 @@ impl OpenLesson {
     pub fn go_back(&mut self) -> Turn {
         let Some(number) = self.progress.step.checked_sub(1) else { return Turn::Stay };
         match self.enter(number) {
-            // what is there belongs to a later step
-            Turn::Same => Turn::Show(Box::new(self.behind()), true),
+            // the scene on the screen belongs to a later step
+            Turn::Same => Turn::Show(Box::new(self.preceding_scene()), true),
             turn => turn,
         }
     }
 
-    /// From the first step again, without answers.
+    /// Begins again with the first step, without answers.
     pub fn begin_anew(&mut self) -> Turn {
         let done = self.progress.done;
         self.progress = Progress { done, ..Progress::of(self.lesson(), None) };
@@ -220,12 +221,12 @@ impl OpenLesson {
         let (begin, end) = (document.begin(number), document.end(number));
         match self.step() {
             Step::Predict { .. } => {
-                let own = Arc::clone(&document);
+                let lesson = Arc::clone(&document);
                 self.options.ask(&self.wake, move |cancel| {
                     let verdict = |step: &Step, subject: Subject<'_>, before: &Subject<'_>| {
                         options_that_hold(step, &subject, before)
                     };
-                    judge(&own, number, own.end(number), cancel, verdict)
+                    judge(&lesson, number, lesson.end(number), cancel, verdict)
                 });
                 match self.answer().shown {
                     true => Turn::Show(Box::new(end.clone()), true),
@@ -238,9 +239,9 @@ impl OpenLesson {
         }
     }
 
-    /// The scene that a step which only tells something comes after: the answer of the prediction before, or
-    /// the task, solved where it was done.
-    fn behind(&self) -> Document {
+    /// The scene to show in a step that only tells or explains something: that of the last prediction with
+    /// its answer, or of the last task, solved if it was done.
+    fn preceding_scene(&self) -> Document {
         let step = self.progress.step;
         for number in (0..step).rev() {
             match &self.lesson().steps[number] {
@@ -252,8 +253,8 @@ impl OpenLesson {
         self.document.begin(step).clone()
     }
 
-    /// Takes in verdicts, and has the scene judged once it stands still; to be called once a frame, at `now`
-    /// in s. Seconds until it should be called again.
+    /// Receives verdicts, and has the scene judged once it stands still; to be called once a frame, at `now`
+    /// in s. Returns the time in s until it should be called again.
     pub fn follow(&mut self, session: &Session, now: f64) -> Option<f64> {
         self.options.poll();
         self.goal.poll();
@@ -281,7 +282,7 @@ impl OpenLesson {
         next
     }
 
-    /// Has the scene of a task judged. Seconds until it has stood still for long enough.
+    /// Has the scene of a task judged. Returns the time in s until it has stood still for long enough.
     fn judge_task(&mut self, session: &Session, now: f64) -> Option<f64> {
         if self.answer().met {
             return None;
@@ -292,31 +293,31 @@ impl OpenLesson {
             return None;
         }
         let scene = session.scene();
-        let since = self.judged.as_ref().filter(|own| own.0 == *scene).map(|own| own.1);
+        let since = self.judged.as_ref().filter(|judged| judged.0 == *scene).map(|judged| judged.1);
         let Some(since) = since else {
             self.judged = Some((scene.clone(), now));
             let (document, number) = (Arc::clone(&self.document), self.progress.step);
-            let (own, mechanism) = (session.editor.runnable(), Arc::clone(session.model().mechanism()));
-            let built = session.mechanism_of == own.scene.mechanism;
+            let (edited, mechanism) = (session.editor.runnable(), Arc::clone(session.model().mechanism()));
+            let built = session.mechanism_of == edited.scene.mechanism;
             self.goal.ask(&self.wake, move |cancel| {
                 let verdict = |step: &Step, subject: Subject<'_>, before: &Subject<'_>| match built {
                     true => goal_lack(step, &subject.with_mechanism(mechanism), before),
                     false => goal_lack(step, &subject, before),
                 };
-                judge(&document, number, &own, cancel, verdict)
+                judge(&document, number, &edited, cancel, verdict)
             });
             return Some(STILL);
         };
-        let stands = now - since;
+        let still_for = now - since;
         if self.goal.current() != Some(&Ok(None)) {
             return None;
         }
-        if stands < STILL {
-            return Some(STILL - stands);
+        if still_for < STILL {
+            return Some(STILL - still_for);
         }
-        let with = arguments(&self.document.begin(self.progress.step).scene, scene).join(", ");
+        let settings = arguments(&self.document.begin(self.progress.step).scene, scene).join(", ");
         let answer = self.answer_mut();
-        (answer.met, answer.with) = (true, with);
+        (answer.met, answer.with) = (true, settings);
         None
     }
 
@@ -337,15 +338,15 @@ impl OpenLesson {
 
     /// Which option of the prediction holds.
     pub fn outcome(&self) -> Outcome {
-        only(self.options.current())
+        single_option(self.options.current())
     }
 
-    /// The hint of a task, once it was asked for or the task has taken long.
+    /// The hint of a task, while it is shown: on request, or because the task has taken long.
     pub fn hint(&self) -> Option<&str> {
         self.offered_hint().filter(|_| self.hinted)
     }
 
-    /// The hint of a task, whether it is shown or not.
+    /// The hint of a task, shown or not.
     pub fn offered_hint(&self) -> Option<&str> {
         match self.step() {
             Step::Do { hint, .. } => hint.as_deref(),
@@ -357,7 +358,7 @@ impl OpenLesson {
         self.hinted = !self.hinted;
     }
 
-    /// The solution of a task: field and value.
+    /// The solution of a task, as pairs of field and value.
     pub fn solution(&self) -> &[(String, String)] {
         match self.step() {
             Step::Do { solution, .. } => solution,
@@ -365,9 +366,9 @@ impl OpenLesson {
         }
     }
 
-    /// Waits for the verdict that is being worked out, at most so long.
-    pub fn wait(&mut self, most: Duration) {
-        self.options.wait(most);
-        self.goal.wait(most);
+    /// Waits for the verdicts that are being computed, at most `timeout` for each.
+    pub fn wait(&mut self, timeout: Duration) {
+        self.options.wait(timeout);
+        self.goal.wait(timeout);
     }
 }

@@ -1,4 +1,4 @@
-//! Verdicts on a lesson's scenes, worked out in the background.
+//! Verdicts on the scenes of a lesson, computed in the background.
 
 use std::sync::atomic::AtomicBool;
 
@@ -8,58 +8,58 @@ use crate::study::{Lack, Subject, Task, Unjudged};
 
 #[derive(Debug, Clone, PartialEq)]
 pub enum TaskState {
-    /// A hand changes the scene, or has just changed it.
+    /// The user is changing the scene, or has just changed it.
     Moving,
     Judging,
-    /// Not done by the present scene, and the first thing that it lacks.
+    /// The present scene does not do the task; the first thing that it lacks.
     NotYet(Lack),
     Met,
-    /// The scene cannot be judged, and why.
+    /// Why the scene cannot be judged.
     Unjudged(String),
 }
 
 /// Which option of a prediction holds.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Outcome {
-    /// It is still being worked out.
+    /// The verdict is still being computed.
     Unknown,
     /// This one.
     Holds(usize),
-    /// None or several, which is a fault of the lesson.
+    /// No option or several, which is a fault of the lesson.
     Unclear,
-    /// The scene cannot be judged, and why.
+    /// Why the scene cannot be judged.
     Unjudged(String),
 }
 
-/// What a run says, or why it says nothing.
+/// The verdict of a run, or why there is none.
 pub(super) type Verdict<T> = Result<T, String>;
 
-/// The one option that holds.
-pub(super) fn only(options: Option<&Verdict<Vec<bool>>>) -> Outcome {
+/// The outcome of a prediction, from whether each of its options holds.
+pub(super) fn single_option(options: Option<&Verdict<Vec<bool>>>) -> Outcome {
     let all = match options {
         None => return Outcome::Unknown,
         Some(Err(why)) => return Outcome::Unjudged(why.clone()),
         Some(Ok(all)) => all,
     };
-    let mut right = all.iter().enumerate().filter(|own| *own.1).map(|own| own.0);
+    let mut right = all.iter().enumerate().filter(|(_, holds)| **holds).map(|(number, _)| number);
     match (right.next(), right.next()) {
         (Some(option), None) => Outcome::Holds(option),
         _ => Outcome::Unclear,
     }
 }
 
-/// What `verdict` says of a scene in a step of a lesson; none where it was cancelled.
+/// The `verdict` on a scene in a step of a lesson; `None` if cancelled.
 pub(super) fn judge<T>(
     document: &LessonDocument,
     number: usize,
-    own: &Document,
+    judged: &Document,
     cancel: &AtomicBool,
     verdict: impl FnOnce(&Step, Subject<'_>, &Subject<'_>) -> Result<T, Unjudged>,
 ) -> Option<Verdict<T>> {
     let (lesson, begin) = (&document.lesson, document.begin(number));
     let task = Task { tick: &|| (), cancel };
     let before = Subject::new(&begin.scene, &begin.files, lesson, &task);
-    let subject = Subject::new(&own.scene, &own.files, lesson, &task);
+    let subject = Subject::new(&judged.scene, &judged.files, lesson, &task);
     match verdict(&lesson.steps[number], subject, &before) {
         Ok(verdict) => Some(Ok(verdict)),
         Err(Unjudged::Cancelled) => None,

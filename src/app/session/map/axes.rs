@@ -1,10 +1,10 @@
-//! Choice of the two axes of a map and of their ranges.
+//! Choice of the two axes of a map, and of their ranges.
 
 use crate::app::words::numbers::{below, decimal, round_up};
 use crate::scene::{FieldPath, Scene, Start, Stops, SweepAxis, numeric_fields};
 use crate::study::{Column, Values};
 
-/// The fields that make a map worth looking at, by the ends of their paths.
+/// The fields that are offered as axes, by the ends of their paths and in this order.
 const FIELDS: [&str; 41] = [
     "travel_limit_mm",
     "amplitude_g",
@@ -49,15 +49,16 @@ const FIELDS: [&str; 41] = [
     "seed",
 ];
 
-/// Travel limit and amplitude of the prototype's map, for scenes of its size.
+/// Ends and step of the travel limit in mm on the prototype's map, for scenes of its size.
 const LIMITS_MM: (f64, f64, f64) = (0.5, 7.0, 0.125);
+/// Ends and step of the amplitude in g on the same map.
 const AMPLITUDES_G: (f64, f64, f64) = (0.0, 2.0, 0.02);
 
-/// Steps of an axis whose range follows from the present value.
+/// Number of steps of an axis whose range is derived from the present value.
 const STEPS: f64 = 40.0;
 
-/// The scene that a map is made of, with the axes' fields in it: from rest, and between the stops that would
-/// come if they were switched on, where an axis moves stops.
+/// The scene that a map is made of, which has the fields of the axes: from rest, and with the stops `when_on`
+/// if it has none and an axis is over a field of the stops.
 pub fn ground(scene: &Scene, when_on: Stops, axes: &[SweepAxis]) -> Scene {
     let mut ground = Scene {
         start: Start::Rest,
@@ -91,8 +92,8 @@ pub fn fields(scene: &Scene, when_on: Stops) -> Vec<String> {
     FIELDS.iter().flat_map(of).collect()
 }
 
-/// The axes of a scene's map: its own two where both have even steps, else travel limit and amplitude, else
-/// the first two that it has.
+/// The axes of a scene's map: its two sweep axes if both have even steps, else travel limit and amplitude,
+/// else the first two fields of the scene that can be axes.
 pub fn default_axes(scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> Option<[SweepAxis; 2]> {
     let known = fields(scene, when_on);
     if let [a, b] = scene.sweep.as_slice()
@@ -112,15 +113,15 @@ pub fn default_axes(scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> Opti
     Some([a, b].map(|path| axis(path, scene, when_on, well_mm)))
 }
 
-/// An axis over a field, around its present value; `well_mm` is where the right-hand well lies.
+/// An axis over a field, around its present value; `well_mm` is the position of the right-hand well.
 pub fn axis(path: &str, scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> SweepAxis {
     let with_stops =
         ground(scene, when_on, &[SweepAxis { field: path.to_owned(), step: 1.0, ..SweepAxis::default() }]);
-    // an open circuit has a load without end
+    // the load of an open circuit is infinite
     let signed = FieldPath::new(path).get(&with_stops).filter(|value| value.is_finite()).unwrap_or(1.0);
     let present = signed.abs();
     let name = path.rsplit('.').next().unwrap_or(path);
-    let upward = |greatest: f64| {
+    let up_to = |greatest: f64| {
         let to = round_up(greatest);
         let step = decimal(to / STEPS);
         (decimal(4.0 * step), to, step)
@@ -128,8 +129,8 @@ pub fn axis(path: &str, scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> 
     let (from, to, step) = match name {
         "travel_limit_mm" | "left_mm" | "right_mm" => match well_mm.filter(|mm| *mm > 0.0) {
             Some(mm) if (6.0..=7.2).contains(&mm) => LIMITS_MM,
-            Some(mm) => upward(mm),
-            None => upward(2.0 * present),
+            Some(mm) => up_to(mm),
+            None => up_to(2.0 * present),
         },
         "amplitude_g" | "rms_g" if (0.3..=AMPLITUDES_G.1).contains(&present) => AMPLITUDES_G,
         "amplitude_g" | "rms_g" => {
@@ -143,22 +144,22 @@ pub fn axis(path: &str, scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> 
         name if name.starts_with("restitution") => (0.0, 1.0, 1.0 / STEPS),
         "seed" => (1.0, STEPS, 1.0),
         _ if signed < 0.0 => {
-            let (from, to, step) = upward(2.0 * present);
+            let (from, to, step) = up_to(2.0 * present);
             (-to, -from, step)
         }
-        _ => upward(if present > 0.0 { 2.0 * present } else { 1.0 }),
+        _ => up_to(if present > 0.0 { 2.0 * present } else { 1.0 }),
     };
     SweepAxis { field: path.to_owned(), from, to, step, values: Vec::new() }
 }
 
-/// The part of an axis between two of its values, in as many steps as it has itself, on a round step.
+/// The part of an axis between two of its values, with about as many steps as the axis and a round step.
 pub fn part(axis: &SweepAxis, from: f64, to: f64) -> SweepAxis {
     let (from, to) = (from.min(to).max(axis.from), from.max(to).min(axis.to));
     let cells = ((axis.to - axis.from) / axis.step).max(1.0);
     let width = (to - from).max(1e-3 * (axis.to - axis.from));
     let step = below(width / cells).min(axis.step);
     let on_step = |value: f64| decimal((value / step).round() * step);
-    // at least a step, and never below what the axis begins with
+    // at least one step long, and never below the begin of the axis
     let from = on_step(from).max(axis.from);
     SweepAxis {
         field: axis.field.clone(),
@@ -169,8 +170,8 @@ pub fn part(axis: &SweepAxis, from: f64, to: f64) -> SweepAxis {
     }
 }
 
-/// What a person calls a field, and its unit, where it has one: `travel limit` and `mm`. `column` is its name
-/// in a table.
+/// The label of a field and its unit, if it has one, such as `travel limit` and `mm`. `column` is the name of
+/// the field in a table.
 pub fn name_and_unit(column: &str) -> (String, Option<String>) {
     let label = Column { name: column.to_owned(), values: Values::Words(Vec::new()) }.label();
     match label.split_once(", ") {
@@ -179,7 +180,7 @@ pub fn name_and_unit(column: &str) -> (String, Option<String>) {
     }
 }
 
-/// The same as the name of an axis: `travel limit (mm)`.
+/// The label of an axis, such as `travel limit (mm)`.
 pub fn label(column: &str) -> String {
     match name_and_unit(column) {
         (name, Some(unit)) => format!("{name} ({unit})"),
@@ -206,8 +207,8 @@ mod tests {
 
     #[test]
     fn the_scenes_own_axes_come_first() {
-        let own = "stops.travel_limit_mm=0.5:7:0.25 excitation.amplitude_g=0:2:0.02";
-        assert_eq!(defaults("paper").as_deref(), Some(own));
+        let paper = "stops.travel_limit_mm=0.5:7:0.25 excitation.amplitude_g=0:2:0.02";
+        assert_eq!(defaults("paper").as_deref(), Some(paper));
         let prototype = "stops.travel_limit_mm=0.5:7:0.125 excitation.amplitude_g=0:2:0.02";
         assert_eq!(defaults("first-look").as_deref(), Some(prototype));
         assert!(defaults("random-shaking").is_some_and(|axes| axes.contains("rms_g")));
@@ -217,8 +218,8 @@ mod tests {
     fn a_part_of_an_axis_has_as_many_cells() {
         let axis =
             SweepAxis { field: "a".to_owned(), from: 0.5, to: 7.0, step: 0.125, ..SweepAxis::default() };
-        let own = part(&axis, 2.51, 1.23);
-        assert_eq!((own.from, own.to, own.step), (1.24, 2.5, 0.02));
+        let enlarged = part(&axis, 2.51, 1.23);
+        assert_eq!((enlarged.from, enlarged.to, enlarged.step), (1.24, 2.5, 0.02));
         let tiny = part(&axis, 6.9999, 6.9999);
         assert!(tiny.step > 0.0 && tiny.to > tiny.from);
     }

@@ -1,4 +1,4 @@
-//! Cells of a map, as far as they are known, and its lines.
+//! Cells of a map, as far as they are known, and the lines drawn over them.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -15,44 +15,44 @@ use crate::study::{
 
 use super::{Question, over};
 
-/// The most cells of a map in the window.
-const MOST_CELLS: u64 = 200_000;
+/// Largest number of cells of a map in the window.
+const MAX_CELLS: u64 = 200_000;
 
-/// Why a map of so many cells is not made; none where it is.
+/// Why a map of so many cells is not made; `None` if it is.
 pub(super) fn too_many(cells: u64) -> Option<String> {
-    let words = || format!("{cells} cells are more than the window makes ({MOST_CELLS}): take longer steps");
-    (cells > MOST_CELLS).then(words)
+    let problem = || format!("{cells} cells are more than the window makes ({MAX_CELLS}): take longer steps");
+    (cells > MAX_CELLS).then(problem)
 }
 
 /// A cell on a line through a map.
 pub struct CutCell<'a> {
-    /// Its place along the line.
+    /// Its index along the line.
     pub place: usize,
-    /// What it came to.
+    /// Its result.
     pub cell: &'a Cell,
-    /// Whether it lies on the line; if not it is the nearest one that is known so far.
+    /// Whether the result is of this cell; if not, it is of the nearest cell that is known so far.
     pub own: bool,
 }
 
 /// A map as far as it is known.
 pub struct Map {
     pub question: Question,
-    /// The cells across and up.
+    /// The edges of the cells across and up.
     pub edges: [Edges; 2],
-    /// The least amplitude that frees the mass, in closed form, where that makes sense: `x` and `y` of its
-    /// points.
+    /// The least amplitude that releases the mass from a stop, in closed form, where it exists: `x` and `y`
+    /// of its points.
     pub release: Vec<(f64, f64)>,
-    /// Where the first crossing cells begin, as far as is known.
+    /// The edge of the first crossing cells, as far as they are known.
     pub crossing: Vec<Vec<(f64, f64)>>,
     pub(super) sweep: Arc<Sweep>,
     pub(super) levels: Arc<Levels>,
     pub(super) cells: Vec<Option<Cell>>,
     pub(super) known: usize,
-    /// After how much work its lines were last drawn.
+    /// Computing time after which its lines were last drawn.
     lines_after: Option<Duration>,
-    /// Time that has been worked on it.
+    /// Computing time so far.
     pub took: Duration,
-    /// When it had every cell of its coarsest level, after so much work.
+    /// Computing time after which every cell of its coarsest level was known.
     pub coarse_after: Option<Duration>,
 }
 
@@ -61,10 +61,10 @@ impl Map {
     pub(super) fn new(question: &Question, editor: &Editor) -> Result<Self, String> {
         let mut document = editor.document().clone();
         document.scene = question.scene.clone();
-        let words = |error: SceneError| in_words(&error.to_string(), &question.scene);
-        document.check().map_err(words)?;
+        let message = |error: SceneError| in_words(&error.to_string(), &question.scene);
+        document.check().map_err(message)?;
         let arguments = question.axes.each_ref().map(over);
-        let axes = document.axes(&arguments).map_err(words)?;
+        let axes = document.axes(&arguments).map_err(message)?;
         let grid = Grid::new(axes).map_err(|error| error.to_string())?;
         if let Some(problem) = too_many(grid.cells()) {
             return Err(problem);
@@ -91,12 +91,12 @@ impl Map {
         })
     }
 
-    /// How many cells there are.
+    /// Number of cells.
     pub fn len(&self) -> usize {
         self.cells.len()
     }
 
-    /// Whether there are none, which does not happen.
+    /// Whether there are no cells, which does not occur.
     pub fn is_empty(&self) -> bool {
         self.cells.is_empty()
     }
@@ -110,7 +110,7 @@ impl Map {
         self.known == self.cells.len()
     }
 
-    /// Whether every part of it shows something, be it coarse.
+    /// Whether every part of the map shows a result, at least that of a coarse cell.
     pub fn is_covered(&self) -> bool {
         self.levels.whole(self.known).is_some()
     }
@@ -124,12 +124,12 @@ impl Map {
         [self.edges[0].values.len(), self.edges[1].values.len()]
     }
 
-    /// The cell in a column and row, or the one that stands for it meanwhile, and whether it is its own.
+    /// The cell in a column and row, or its stand-in until it is known, and whether it is the cell itself.
     pub fn cell(&self, column: usize, row: usize) -> Option<(&Cell, bool)> {
         let index = (column * self.size()[1] + row) as u64;
-        let own = self.cells.get(index as usize)?.as_ref();
-        if let Some(own) = own {
-            return Some((own, true));
+        let known = self.cells.get(index as usize)?.as_ref();
+        if let Some(cell) = known {
+            return Some((cell, true));
         }
         let levels = (0..STRIDES.len() - 1).rev();
         let stand_in = |level| self.cells[self.levels.stand_in(index, level) as usize].as_ref();
@@ -147,7 +147,7 @@ impl Map {
         short(run.duration_s - run.settle_s.unwrap_or(0.5 * run.duration_s))
     }
 
-    /// The rows of the sweep, with stand-ins where they are still to come.
+    /// The rows of the sweep, with stand-ins for the cells that are not known yet.
     fn table(&self) -> Table {
         let [columns, rows] = self.size();
         let cell = |i: usize| self.cell(i / rows, i % rows).map_or(Cell::NotRun, |found| *found.0);
@@ -155,8 +155,8 @@ impl Map {
         self.sweep.table(0, &cells)
     }
 
-    /// The cells along a line through the map: up in a column (`upright`), or across in a row. Those that are
-    /// not known yet are left out, but for the nearest ones of the coarse levels.
+    /// The cells along a line through the map: up a column (`upright`), or across a row. A cell that is not
+    /// known yet has a stand-in from a coarser level, or is left out.
     pub fn cut(&self, upright: bool, at: usize) -> Vec<CutCell<'_>> {
         let [columns, rows] = self.size();
         let index = |place: usize| if upright { at * rows + place } else { place * rows + at };
@@ -174,7 +174,7 @@ impl Map {
         (0..if upright { rows } else { columns }).filter_map(cell).collect()
     }
 
-    /// The map as the command line writes it with these columns after those of its axes.
+    /// The map as the command line writes it, with these columns after those of its axes.
     pub(super) fn csv(&self, columns: &[&str]) -> String {
         let mut table = self.table();
         for field in columns.iter().filter_map(|name| SummaryField::find(name)) {
@@ -189,8 +189,8 @@ impl Map {
         header(&table) + &rows(&table, 0..usize::MAX)
     }
 
-    /// Draws the line of first crossings anew, `worked` into the work; not for every part of a map that is
-    /// large.
+    /// Updates the line of first crossings, on a large map not for every part; `worked` is the computing time
+    /// so far.
     pub(super) fn draw_lines(&mut self, worked: Duration) {
         let every = Duration::from_micros(10 * self.len() as u64);
         if !self.is_whole() && self.lines_after.is_some_and(|last| worked < last + every) {

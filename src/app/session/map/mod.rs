@@ -1,8 +1,7 @@
-//! Map of the scene: a run for every cell of a grid over two fields, from rest, coarse first.
+//! Map of the scene: a run from rest for every cell of a grid over two fields, coarse first.
 //!
-//! It is the sweep of the command line, run on threads of its own and looked at while it comes. It is asked
-//! for by the view that shows it, frame by frame: a map that is not looked at stops where it is, and goes on
-//! when it is looked at again.
+//! It is the sweep of the command line, run in the background and shown while its cells come. The view that
+//! shows it asks for it in every frame; a map that no view asks for pauses until a view asks for it again.
 
 mod axes;
 mod cells;
@@ -25,61 +24,60 @@ pub use axes::{ground, label, name_and_unit, over, part};
 pub use cells::{CutCell, Map};
 pub use trail::Trail;
 
-/// Seconds for which a hand has to be still before a map is begun in the middle of a gesture.
+/// Time in s without a change after which a map is begun in the middle of a gesture.
 const STILL: f64 = 0.25;
 
-/// What a map answers: a scene without what its axes change, and the axes.
+/// The question that a map answers: a scene, apart from the fields of the axes, and the axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Question {
     /// The scene, with the first value of each axis.
     pub scene: Scene,
     /// Across and up.
     pub axes: [SweepAxis; 2],
-    /// The column for which the runs sum up their energies, where they do.
+    /// The column for which the runs keep an energy ledger, if they do.
     pub ledger: Option<&'static str>,
 }
 
 #[derive(Default)]
 pub struct Mapping {
-    /// What the map shows, where it is not the RMS velocity.
+    /// The quantity that the map shows; `None` for the RMS velocity.
     quantity: Option<&'static ColumnInfo>,
-    /// Where the scene has been.
+    /// The earlier positions of the scene.
     pub trail: Trail,
-    /// The axes that were chosen; none for the scene's own.
+    /// The axes that the user has chosen; `None` for the default axes.
     chosen: Option<[SweepAxis; 2]>,
-    /// The scene's own, as they were when the map was first looked at: they do not follow the scene over its
-    /// map.
-    held: Option<[SweepAxis; 2]>,
-    /// What was chosen before a part of the map was enlarged, once for each part within the one before.
-    larger: Vec<Option<[SweepAxis; 2]>>,
+    /// The default axes, as they were when the map was first shown: they do not move with the scene.
+    default_axes: Option<[SweepAxis; 2]>,
+    /// The choices of axes before each enlargement of a part of the map, the first one first.
+    before_enlarging: Vec<Option<[SweepAxis; 2]>>,
     map: Option<Map>,
-    /// The map before, shown until the new one covers its ground.
-    before: Option<Map>,
+    /// The previous map, shown until the new one has a result everywhere.
+    previous: Option<Map>,
     task: Option<Job<(u64, u64, Cell)>>,
-    /// Which question the cells under way belong to.
+    /// Number of the question that the running cells belong to.
     generation: u64,
-    /// Counts what has changed in the picture.
+    /// Number of changes of the picture.
     version: u64,
     begun: Option<WallClock>,
     stopped: bool,
     wanted: bool,
-    /// A question that waits for the hand to be still, and since when.
+    /// A question that waits for a pause in the gesture, and the time in s since which it has not changed.
     waiting: Option<(Question, f64)>,
     /// Why there is no map.
     problem: Option<String>,
 }
 
 impl Mapping {
-    /// The map that is to be seen, and whether it is still that of the scene.
+    /// The map to show, and whether it is that of the present scene.
     pub fn shown(&self) -> Option<(&Map, bool)> {
-        let own = self.map.as_ref().filter(|map| map.is_covered() || self.before.is_none());
+        let newest = self.map.as_ref().filter(|map| map.is_covered() || self.previous.is_none());
         let current = self.waiting.is_none() && self.problem.is_none();
-        own.map(|map| (map, current)).or_else(|| self.before.as_ref().map(|map| (map, false)))
+        newest.map(|map| (map, current)).or_else(|| self.previous.as_ref().map(|map| (map, false)))
     }
 
-    /// Where the scene has been on the axes of the map that is to be seen, the oldest place first.
+    /// Positions of the scene so far on the axes of the map that is shown, the oldest first.
     pub fn trail_places(&mut self) -> Vec<[Option<f64>; 2]> {
-        let Some(axes) = self.shown().map(|own| own.0.question.axes.clone()) else { return Vec::new() };
+        let Some(axes) = self.shown().map(|(map, _)| map.question.axes.clone()) else { return Vec::new() };
         self.trail.places(axes.each_ref().map(|axis| axis.field.as_str())).to_vec()
     }
 
@@ -88,7 +86,7 @@ impl Mapping {
         self.map.as_ref()
     }
 
-    /// Counts what has changed in the picture.
+    /// Number of changes of the picture.
     pub fn version(&self) -> u64 {
         self.version
     }
@@ -108,7 +106,7 @@ impl Mapping {
         self.stopped = true;
     }
 
-    /// Goes on, or begins anew where it is whole.
+    /// Continues a stopped map, or begins again if it is complete.
     pub fn go_on(&mut self) {
         self.stopped = false;
         if self.map.as_ref().is_some_and(Map::is_whole) {
@@ -124,16 +122,16 @@ impl Mapping {
         self.quantity = Some(quantity);
     }
 
-    /// The columns of the map's table, where they are more than the standard ones.
+    /// The columns of the map's table; `None` if they are the standard ones.
     pub fn columns(&self) -> Option<Vec<&'static str>> {
         let ledger = self.map.as_ref().and_then(|map| map.question.ledger);
         let wanted = ledger.into_iter().chain([self.quantity().column]);
-        let mut more: Vec<&str> = wanted.filter(|name| !STANDARD_COLUMNS.contains(name)).collect();
-        more.dedup();
-        (!more.is_empty()).then(|| STANDARD_COLUMNS.into_iter().chain(more).collect())
+        let mut extra: Vec<&str> = wanted.filter(|name| !STANDARD_COLUMNS.contains(name)).collect();
+        extra.dedup();
+        (!extra.is_empty()).then(|| STANDARD_COLUMNS.into_iter().chain(extra).collect())
     }
 
-    /// The map as the command line writes it, once it is whole.
+    /// The map as the command line writes it; `None` until all cells are known.
     pub fn csv(&self) -> Option<String> {
         self.map
             .as_ref()
@@ -141,31 +139,31 @@ impl Mapping {
             .map(|map| map.csv(&self.columns().unwrap_or_else(|| STANDARD_COLUMNS.to_vec())))
     }
 
-    /// Chooses axes; none for the scene's own.
+    /// Chooses axes; `None` for the default axes.
     pub fn choose(&mut self, axes: Option<[SweepAxis; 2]>) {
-        (self.chosen, self.larger) = (axes, Vec::new());
+        (self.chosen, self.before_enlarging) = (axes, Vec::new());
     }
 
-    /// Enlarges a part of the map, which has these axes.
+    /// Enlarges the part of the map that these axes span.
     pub fn enlarge(&mut self, axes: [SweepAxis; 2]) {
-        self.larger.push(self.chosen.replace(axes));
+        self.before_enlarging.push(self.chosen.replace(axes));
     }
 
     /// Whether a part of the map is enlarged.
     pub fn is_enlarged(&self) -> bool {
-        !self.larger.is_empty()
+        !self.before_enlarging.is_empty()
     }
 
-    /// Back to what was there before the last part was enlarged.
+    /// Goes back to the axes before the last enlargement.
     pub fn show_larger(&mut self) {
-        if let Some(axes) = self.larger.pop() {
+        if let Some(axes) = self.before_enlarging.pop() {
             self.chosen = axes;
         }
     }
 
-    /// Back to the whole map.
+    /// Goes back to the whole map.
     pub fn show_whole(&mut self) {
-        self.larger.truncate(1);
+        self.before_enlarging.truncate(1);
         self.show_larger();
     }
 
@@ -177,10 +175,10 @@ impl Mapping {
         }
     }
 
-    /// Takes in the cells that have come.
+    /// Receives the cells that have been computed.
     pub fn take(&mut self) {
         let (Some(task), Some(map)) = (&self.task, &mut self.map) else { return };
-        let before = map.known;
+        let known_before = map.known;
         let generation = self.generation;
         let running = task.take(|(of, index, cell)| {
             if of != generation {
@@ -192,30 +190,30 @@ impl Mapping {
             }
         });
         let worked = map.took + self.begun.map_or(Duration::ZERO, |begun| begun.elapsed());
-        if map.known > before {
+        if map.known > known_before {
             self.version += 1;
             if map.is_covered() {
                 map.coarse_after.get_or_insert(worked);
-                self.before = None;
+                self.previous = None;
                 map.draw_lines(worked);
             }
         }
         if !running {
             map.took = worked;
             (self.task, self.begun) = (None, None);
-            // an end short of the last cell, for want of threads, is not tried again by itself
+            // a job that ended early, because no threads could be started, is not tried again by itself
             self.stopped |= !map.is_whole();
         }
     }
 
-    /// To be called once a frame: a map that no view has asked for stops.
+    /// Pauses the map if no view has asked for it in this frame; to be called once a frame.
     pub fn end_frame(&mut self) {
         if !std::mem::take(&mut self.wanted) {
             self.pause();
         }
     }
 
-    /// Asks that the map of this question be made, now or when the hand is still.
+    /// Asks for the map of a question, now or after a pause in the gesture. Returns whether it waits.
     fn ask(&mut self, question: Question, editor: &Editor, in_gesture: bool, time: f64, wake: &Wake) -> bool {
         self.wanted = true;
         if self.map.as_ref().is_some_and(|map| map.question == question) {
@@ -228,7 +226,7 @@ impl Mapping {
         if self.problem.is_some() && self.waiting.as_ref().is_some_and(|waiting| waiting.0 == question) {
             return false;
         }
-        // what runs would be thrown away
+        // the results of the running cells would not be used
         self.pause();
         if in_gesture {
             let since = match &self.waiting {
@@ -244,11 +242,11 @@ impl Mapping {
         self.stopped = false;
         match Map::new(&question, editor) {
             Ok(map) => {
-                let old = self.map.take().filter(Map::is_covered).or_else(|| self.before.take());
+                let old = self.map.take().filter(Map::is_covered).or_else(|| self.previous.take());
                 let fields = |question: &Question| question.axes.clone().map(|axis| axis.field);
                 let shows = |old: &Question| old.ledger.is_some() || question.ledger.is_none();
                 let alike = |old: &Map| fields(&old.question) == fields(&question) && shows(&old.question);
-                self.before = old.filter(alike);
+                self.previous = old.filter(alike);
                 self.map = Some(map);
                 (self.waiting, self.problem) = (None, None);
                 self.generation += 1;

@@ -1,4 +1,4 @@
-//! The map of the open scene: its axes, the place of the scene on it, moves to a cell.
+//! The session's map: its axes, the position of the scene on it, and moves of the scene to a cell.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -13,24 +13,24 @@ use super::cells::too_many;
 use super::{Map, Question, axes};
 
 impl Session {
-    /// The axes of the map; none where the scene has too few fields.
+    /// The axes of the map; `None` if the scene has fewer than two fields for them.
     pub fn map_axes(&self) -> Option<[SweepAxis; 2]> {
         let (scene, when_on) = (self.scene(), self.remembered_stops());
-        for own in [&self.map.chosen, &self.map.held].into_iter().flatten() {
-            let ground = axes::ground(scene, when_on, own);
-            if own.iter().all(|axis| FieldPath::new(&axis.field).get(&ground).is_some()) {
-                return Some(own.clone());
+        for axes in [&self.map.chosen, &self.map.default_axes].into_iter().flatten() {
+            let ground = axes::ground(scene, when_on, axes);
+            if axes.iter().all(|axis| FieldPath::new(&axis.field).get(&ground).is_some()) {
+                return Some(axes.clone());
             }
         }
         axes::default_axes(scene, when_on, self.well_mm())
     }
 
-    /// The fields that a map of this scene can go over.
+    /// The fields of this scene that a map can have as axes.
     pub fn map_fields(&self) -> Vec<String> {
         axes::fields(self.scene(), self.remembered_stops())
     }
 
-    /// An axis over a field, around where the scene is.
+    /// An axis over a field, around its present value.
     pub fn map_axis(&self, field: &str) -> SweepAxis {
         axes::axis(field, self.scene(), self.remembered_stops(), self.well_mm())
     }
@@ -39,16 +39,16 @@ impl Session {
         self.model().mechanism().landscape.right_stable().map(|well| well.x * 1e3)
     }
 
-    /// Asks for the map of the scene as it stands, in the frame at `time`. Whether it waits for the hand to
-    /// be still.
+    /// Asks for the map of the present scene, in the frame at `time` in s. Returns whether the map waits for
+    /// a pause in the gesture.
     pub fn want_map(&mut self, time: f64) -> bool {
         let Some(axes) = self.map_axes() else {
             self.map.problem = Some("This scene has no two fields to make a map over.".to_owned());
             return false;
         };
-        // a choice that the scene has no fields for at the moment is kept for when it has
+        // chosen axes whose fields the scene lacks at present stay chosen
         if self.map.chosen.as_ref() != Some(&axes) {
-            self.map.held = Some(axes.clone());
+            self.map.default_axes = Some(axes.clone());
         }
         let mut scene = axes::ground(self.scene(), self.remembered_stops(), &axes);
         for axis in &axes {
@@ -61,7 +61,7 @@ impl Session {
         let quantity = self.map.quantity();
         let same =
             self.map.map.as_ref().filter(|map| map.question.scene == scene && map.question.axes == axes);
-        // runs that sum up their energies have all that the others have
+        // runs with an energy ledger have all columns of runs without one
         let needed = || quantity.field().filter(|field| field.needs_ledger).map(|_| quantity.column);
         let ledger = same.and_then(|map| map.question.ledger).or_else(needed);
         let waits = self.map.ask(Question { scene, axes, ledger }, &self.editor, in_gesture, time, &wake);
@@ -77,14 +77,14 @@ impl Session {
         waits
     }
 
-    /// Where the scene stands on the axes of a map; none on an axis whose field it lacks, as a travel limit
-    /// without stops.
+    /// Position of the scene on the axes of a map; `None` on an axis whose field it lacks, such as the travel
+    /// limit without stops.
     pub fn place_on_map(&self, question: &Question) -> [Option<f64>; 2] {
         question.axes.each_ref().map(|axis| FieldPath::new(&axis.field).get(self.scene()))
     }
 
-    /// Why axes cannot be those of a map of the scene: which of the two is at fault, which of its parts, and
-    /// a sentence. None where they can.
+    /// Why a map of the scene cannot have these axes: the index of the faulty axis, its faulty part, and a
+    /// sentence. `None` if it can.
     pub fn map_problem(&self, axes: &[SweepAxis; 2]) -> Option<(usize, &'static str, String)> {
         let ground = axes::ground(self.scene(), self.remembered_stops(), axes);
         let mut cells = 1;
@@ -100,14 +100,14 @@ impl Session {
         too_many(cells).map(|problem| (1, "step", problem))
     }
 
-    /// Takes the scene to a cell of its map, by one gesture; the motion goes on from where it is.
+    /// Moves the scene to a cell of its map, as one gesture; the motion goes on from its present state.
     pub fn go_to_cell(&mut self, column: usize, row: usize) {
         self.end_gesture();
         self.drag_to_cell(column, row);
         self.end_gesture();
     }
 
-    /// The same as part of a gesture.
+    /// Moves the scene to a cell of its map, as part of a gesture.
     pub fn drag_to_cell(&mut self, column: usize, row: usize) {
         let Some((map, _)) = self.map.shown() else { return };
         let (Some(x), Some(y)) = (map.edges[0].values.get(column), map.edges[1].values.get(row)) else {
@@ -119,15 +119,15 @@ impl Session {
                 scene.stops = stops;
             }
             for (axis, value) in axes.iter().zip(values) {
-                let known = FieldPath::new(&axis.field).set(scene, value);
-                debug_assert!(known, "an axis of the map belongs to the scene");
+                let is_set = FieldPath::new(&axis.field).set(scene, value);
+                debug_assert!(is_set, "an axis of the map belongs to the scene");
             }
         });
     }
 
-    /// Waits until the map that was asked for is whole, at most so long. Whether it is.
-    pub fn wait_for_map(&mut self, most: Duration) -> bool {
-        wait_while(most, || {
+    /// Waits at most `timeout` until all cells of the map are known. Returns whether they are.
+    pub fn wait_for_map(&mut self, timeout: Duration) -> bool {
+        wait_while(timeout, || {
             self.map.take();
             self.map.is_running()
         });

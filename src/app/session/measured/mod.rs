@@ -1,4 +1,4 @@
-//! Measured data over the computed: the record, how it is laid over, and by how much the two differ.
+//! Measured data over computed results: the record, its placement, and the differences between the two.
 
 mod of_session;
 
@@ -12,26 +12,26 @@ use crate::study::{Comparison, ForceComparison};
 
 use super::explore::Explored;
 
-/// A measured record whose columns are chosen.
+/// A measured record with its two chosen columns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasuredRecord {
     pub name: String,
     /// Times in s, or positions in m.
     pub across: Channel,
-    /// What was measured, SI.
+    /// Measured values, SI.
     pub values: Channel,
     /// Whether the numbers had a decimal comma.
     pub decimal_commas: bool,
-    /// How it was sampled, where it is one over time.
+    /// How it was sampled, if it is over time.
     pub timing: Option<Timing>,
     /// Least and greatest value, SI.
     pub range: (f64, f64),
 }
 
 impl MeasuredRecord {
-    /// The record of two columns of a text, or what is wrong with it as a sentence.
+    /// The record of two columns of a text; the error is a sentence.
     pub fn of(name: &str, text: &MeasuredText, chosen: [(usize, Unit); 2]) -> Result<Self, String> {
-        let kinds = chosen.map(|own| own.1.quantity);
+        let kinds = chosen.map(|(_, unit)| unit.quantity);
         match kinds {
             [Quantity::Time, Quantity::Displacement | Quantity::Velocity | Quantity::Acceleration]
             | [Quantity::Displacement, Quantity::Force] => {}
@@ -64,7 +64,7 @@ impl MeasuredRecord {
         match &self.timing {
             Some(timing) => format!("{}{commas}.", timing.describe()),
             None => {
-                let (low, high) = extent(self.across.values.iter().map(|own| own * 1e3));
+                let (low, high) = extent(self.across.values.iter().map(|x| x * 1e3));
                 let (low, high) = (short(low), short(high));
                 format!("{} samples from {low} to {high} mm{commas}.", self.across.values.len())
             }
@@ -72,33 +72,33 @@ impl MeasuredRecord {
     }
 }
 
-/// A record over the computed, and how it is moved and stretched in time.
+/// A record over computed results, and how it is shifted and stretched in time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Overlay {
     pub record: Arc<MeasuredRecord>,
-    /// What is added to displacements or positions, in m.
+    /// Offset in m that is added to displacements or positions.
     pub offset: f64,
-    /// What the times are multiplied by.
+    /// Factor of the times.
     pub time_scale: f64,
-    /// What is added to them then, in s.
+    /// Shift in s that is added to the scaled times.
     pub shift: f64,
-    /// The shift around which the slider goes.
+    /// The shift in the middle of the slider's range.
     pub centre: f64,
 }
 
 impl Overlay {
-    /// The time in s at which a measured time lies.
+    /// The time in s at which a measured time is shown.
     pub fn time(&self, t: f64) -> f64 {
         t * self.time_scale + self.shift
     }
 
-    /// What is added to the values, SI.
+    /// Offset that is added to the values, SI.
     pub fn added(&self) -> f64 {
         if self.record.values.quantity == Quantity::Displacement { self.offset } else { 0.0 }
     }
 }
 
-/// What a record is compared with.
+/// A record, and the scene and model that it is compared with.
 #[derive(Clone)]
 pub struct MeasuredQuestion {
     model: Arc<Model>,
@@ -108,14 +108,14 @@ pub struct MeasuredQuestion {
 
 impl PartialEq for MeasuredQuestion {
     fn eq(&self, other: &Self) -> bool {
-        let laid = |own: &Overlay| (own.shift, own.time_scale, own.offset);
+        let placement = |over: &Overlay| (over.shift, over.time_scale, over.offset);
         Arc::ptr_eq(&self.model, &other.model)
             && Arc::ptr_eq(&self.over.record, &other.over.record)
-            && laid(&self.over) == laid(&other.over)
+            && placement(&self.over) == placement(&other.over)
     }
 }
 
-/// The numbers in which a record and the computed differ.
+/// The differences between a record and the computed results.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Differences {
     Motion(Box<Comparison>),
@@ -124,9 +124,9 @@ pub enum Differences {
 
 #[derive(Default)]
 pub struct MeasuredData {
-    /// The record that lies over the computed.
+    /// The record that is shown over the computed results.
     pub over: Option<Overlay>,
-    /// By how much the two differ, or why that is not known.
+    /// The differences, or why they are not known.
     pub found: Explored<MeasuredQuestion, Result<Differences, String>>,
     /// The shift in s that fits best, or why there is none.
     fit: Latest<Result<f64, String>>,
@@ -135,14 +135,14 @@ pub struct MeasuredData {
 }
 
 impl MeasuredData {
-    /// Lays a record over the computed; the one before goes.
+    /// Shows a record over the computed results, in place of the previous one.
     pub fn lay(&mut self, record: MeasuredRecord) {
         let record = Arc::new(record);
         let over = Overlay { record, offset: 0.0, time_scale: 1.0, shift: 0.0, centre: 0.0 };
         *self = Self { over: Some(over), ..Self::default() };
     }
 
-    /// Moves the record in time; the slider goes on around the new place where it was `typed`.
+    /// Shifts the record in time; if the shift was `typed`, the slider's range is centred on it.
     pub fn shift_to(&mut self, shift: f64, typed: bool) {
         if let Some(over) = &mut self.over {
             over.shift = shift;
@@ -169,6 +169,6 @@ impl MeasuredData {
 
 pub fn sentence(clause: &str) -> String {
     let mut letters = clause.chars();
-    let first = letters.next().map(|own| own.to_uppercase().to_string()).unwrap_or_default();
+    let first = letters.next().map(|letter| letter.to_uppercase().to_string()).unwrap_or_default();
     format!("{first}{}{}", letters.as_str(), if clause.ends_with('.') { "" } else { "." })
 }

@@ -1,4 +1,4 @@
-//! Questions of the open scene about its measured data, and the drive that they may be.
+//! The session's comparisons with measured data, and the use of a measured acceleration as the drive.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use crate::study::{MeasuredMotion, NoComparison, compare, compare_force};
 use super::{Differences, MeasuredQuestion, MeasuredRecord, sentence};
 
 impl Session {
-    /// Asks by how much the record differs from the scene as it stands, in a frame that shows it.
+    /// Asks for the differences of the record from the present scene; called in every frame that shows them.
     pub fn want_differences(&mut self) {
         let Some(over) = self.measured.over.clone() else { return };
         let still = self.stands_still();
@@ -25,7 +25,7 @@ impl Session {
         });
     }
 
-    /// Has the shift looked for with which the record fits the run of the scene best.
+    /// Starts the search for the shift with which the record fits the run of the scene best.
     pub fn fit_shift(&mut self) {
         let Some(over) = self.measured.over.clone() else { return };
         let (model, scene) = (Arc::clone(&self.model), Arc::new(self.built.clone()));
@@ -33,33 +33,33 @@ impl Session {
         self.measured.no_fit = None;
         self.measured.fit.ask(&self.wake, move |cancel| {
             let shift = |found| match found {
-                Differences::Motion(own) => own.shift,
+                Differences::Motion(comparison) => comparison.shift,
                 Differences::Force(_) => 0.0,
             };
             differences(&question, None, cancel).map(|found| found.map(shift))
         });
     }
 
-    /// Has the acceleration in the file at `path` shake the base; one step of undo. Returns what to know of
-    /// the record, each a clause that continues its name. An error is a sentence, and changes nothing.
-    pub fn shake_with(&mut self, path: &Path, laid: &MeasuredRecord) -> Result<Vec<String>, String> {
-        let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-        let named = whole.to_str().ok_or("The name of the file is not valid UTF-8: rename it.")?;
-        let record = read_record(&whole).map_err(|problem| {
+    /// Shakes the base with the acceleration in the file at `path`, as one undo step. Returns warnings about
+    /// the record, each a clause that continues its name. On an error, which is a sentence, nothing changes.
+    pub fn shake_with(&mut self, path: &Path, shown: &MeasuredRecord) -> Result<Vec<String>, String> {
+        let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        let name = absolute.to_str().ok_or("The name of the file is not valid UTF-8: rename it.")?;
+        let record = read_record(&absolute).map_err(|problem| {
             format!(
                 "A scene knows its record by the file alone, and has to find the columns of time and \
                  acceleration by the units at the ends of their names, such as `t_s` and `a_g`. The file \
                  {problem}"
             )
         })?;
-        let other = "A scene knows its record by the file alone, and reads other columns than those that \
+        let mismatch = "A scene knows its record by the file alone, and reads other columns than those that \
                      are chosen here, or in other units: name the two columns `t_s` and `accel_m_per_s2`, \
                      or end their names with their units, and no other ones with such units.";
-        if (&record.times, &record.accelerations) != (&laid.across.values, &laid.values.values) {
-            return Err(other.to_owned());
+        if (&record.times, &record.accelerations) != (&shown.across.values, &shown.values.values) {
+            return Err(mismatch.to_owned());
         }
         let warnings = record.warnings(self.scene().run.duration_s);
-        let excitation = recorded(named, record);
+        let excitation = recorded(name, record);
         self.edit_once(|scene| scene.excitation = excitation);
         self.apply();
         self.restart();
@@ -71,7 +71,7 @@ fn recorded(path: &str, record: Record) -> Excitation {
     Excitation::Recorded { path: path.to_owned(), record: Some(Arc::new(record)) }
 }
 
-/// By how much the record differs with this shift, or with the best one; none where it was cancelled.
+/// The differences with a given shift, or with the best one; `None` if cancelled.
 fn differences(
     question: &MeasuredQuestion,
     shift: Option<f64>,
@@ -88,8 +88,8 @@ fn differences(
         });
     }
     let (offset, time_scale) = (over.added(), over.time_scale);
-    let own = MeasuredMotion { times: across, channel, offset, time_scale, shift };
-    match compare(scene, model, &own, cancel) {
+    let motion = MeasuredMotion { times: across, channel, offset, time_scale, shift };
+    match compare(scene, model, &motion, cancel) {
         Ok(found) => Some(Ok(Differences::Motion(Box::new(found)))),
         Err(NoComparison::Cancelled) => None,
         Err(problem) => Some(Err(sentence(&problem.to_string()))),

@@ -1,4 +1,4 @@
-//! Pinned motions: each goes on by a scene of its own, at the same live time and with the drive in step.
+//! Pinned motions: each continues with its own scene, at the same live time and drive phase as the session's.
 
 mod of_session;
 
@@ -11,20 +11,20 @@ use crate::scene::Scene;
 use crate::study::{self, Watch};
 use crate::system::clock::WallClock;
 
-/// The most motions that are pinned at a time, and how they are called.
+/// Names of the pinned motions; as many can be pinned at a time.
 const LETTERS: [char; 3] = ['A', 'B', 'C'];
 
-/// Time on the screen that one frame takes to bring a pinned motion up to the present, and the stretch of it
-/// between two looks at the clock, in multiples of its characteristic time.
-const SHARE: Duration = Duration::from_millis(4);
-const STRETCH: f64 = 2.0;
+/// Computing time that one frame spends to bring a pinned motion up to the present.
+const FRAME_SHARE: Duration = Duration::from_millis(4);
+/// Motion between two checks of that time, in multiples of the characteristic time.
+const CHECK_INTERVAL: f64 = 2.0;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PinKind {
     Motion,
-    /// The motion from here on with its stops switched the other way.
+    /// The motion from here on, with the stops switched off if they are on, and on if they are off.
     OtherStops,
-    /// The motion from its start, and that of a mass which begins a micrometre beside it.
+    /// The motion from its start, for a mass that begins a micrometre beside the session's.
     Twin,
 }
 
@@ -34,22 +34,23 @@ pub struct Pin {
     scene: Scene,
     model: Arc<Model>,
     watch: Watch,
-    /// Live time in s from which on it is a motion of its own.
+    /// Live time in s from which on it is computed separately.
     since: f64,
-    /// What it settles to, where that was known when it was pinned; else what was asked.
+    /// What it settles to, if that was known when it was pinned.
     known: Option<Summary>,
-    asked: Latest<Summary>,
+    /// What it settles to, if it had to be asked.
+    settled: Latest<Summary>,
 }
 
 impl Pin {
-    /// What it is called.
+    /// Its name.
     pub fn letter(&self) -> char {
         self.letter
     }
 
-    /// Which of the pins it is, from 0.
+    /// The index of its name, from 0.
     pub fn place(&self) -> usize {
-        LETTERS.iter().position(|own| *own == self.letter).unwrap_or(0)
+        LETTERS.iter().position(|letter| *letter == self.letter).unwrap_or(0)
     }
 
     pub fn kind(&self) -> PinKind {
@@ -64,44 +65,44 @@ impl Pin {
         &self.watch
     }
 
-    /// Live time in s from which on it is a motion of its own.
+    /// Live time in s from which on it is computed separately.
     pub fn since(&self) -> f64 {
         self.since
     }
 
-    /// Its state at a live time in s; where it has ended before that, the last one.
+    /// Its state at a live time in s; after its end, its last state.
     pub fn state_at(&self, t: f64) -> Sample {
         self.watch.state_at(t)
     }
 
-    /// How it ended, where it did.
+    /// How it ended; `None` if it goes on.
     pub fn ended(&self) -> Option<Outcome> {
         self.watch.ended()
     }
 
-    /// What it settles to, once that is known.
+    /// What it settles to; `None` until it is known.
     pub fn settled(&self) -> Option<&Summary> {
-        self.known.as_ref().or(self.asked.current())
+        self.known.as_ref().or(self.settled.current())
     }
 
     fn ask(&mut self, wake: &Wake) {
         let model = self.watch.from_here().unwrap_or_else(|| (*self.model).clone());
         self.known = None;
-        self.asked.ask(wake, move |cancel| study::settled(&model, cancel));
+        self.settled.ask(wake, move |cancel| study::settled(&model, cancel));
     }
 
     fn is_behind(&self, t: f64) -> bool {
         self.watch.time() < t && self.ended().is_none()
     }
 
-    /// Goes on to the live time `to` in s, or as far as a frame's share of time allows.
+    /// Continues to the live time `to` in s, or as far as a frame's share of computing time allows.
     fn follow(&mut self, to: f64) {
         let begun = WallClock::start();
-        let stretch = STRETCH * self.model.characteristic_time();
+        let stretch = CHECK_INTERVAL * self.model.characteristic_time();
         while self.is_behind(to) {
             let before = self.watch.time();
             self.watch.advance((before + stretch).min(to));
-            if self.watch.time() <= before || begun.elapsed() >= SHARE {
+            if self.watch.time() <= before || begun.elapsed() >= FRAME_SHARE {
                 break;
             }
         }
@@ -114,22 +115,22 @@ pub struct Pins {
 }
 
 impl Pins {
-    /// All of them, in the order in which they were pinned.
+    /// All pins, in the order in which they were pinned.
     pub fn all(&self) -> &[Pin] {
         &self.all
     }
 
-    /// The one that is called so.
+    /// The pin with this letter.
     pub fn get(&self, letter: char) -> Option<&Pin> {
         self.all.iter().find(|pin| pin.letter == letter)
     }
 
-    /// Whether there is no room for another one.
+    /// Whether no more motions can be pinned.
     pub fn is_full(&self) -> bool {
         self.free_letter().is_none()
     }
 
-    /// Whether one of them has not come up to the live time `t` in s.
+    /// Whether a pin has not reached the live time `t` in s yet.
     pub fn are_behind(&self, t: f64) -> bool {
         self.all.iter().any(|pin| pin.is_behind(t))
     }
@@ -142,14 +143,14 @@ impl Pins {
         LETTERS.into_iter().find(|letter| self.get(*letter).is_none())
     }
 
-    /// Takes in what has been computed meanwhile.
+    /// Receives background results.
     pub(super) fn poll(&mut self) {
         for pin in &mut self.all {
-            pin.asked.poll();
+            pin.settled.poll();
         }
     }
 
-    /// All from their own starts again.
+    /// Restarts all pins, each from its own start.
     pub(super) fn restart(&mut self, wake: &Wake) {
         for pin in &mut self.all {
             (pin.watch, pin.since) = (Watch::new(&pin.model), 0.0);
@@ -157,13 +158,13 @@ impl Pins {
         }
     }
 
-    /// For how long what they settle to has been worked on.
+    /// How long the longest computation of what a pin settles to has been running; `None` if none is.
     pub(super) fn working(&self) -> Option<Duration> {
-        self.all.iter().filter_map(|pin| pin.asked.running_for()).max()
+        self.all.iter().filter_map(|pin| pin.settled.running_for()).max()
     }
 
-    /// Stops that.
+    /// Stops the computations of what the pins settle to.
     pub(super) fn stop_working(&mut self) {
-        self.all.iter_mut().for_each(|pin| pin.asked.stop());
+        self.all.iter_mut().for_each(|pin| pin.settled.stop());
     }
 }

@@ -1,7 +1,7 @@
 //! Fast forward to the end of the run or to the next release or crossing.
 //!
-//! It takes as many frames as it takes. In each the motion is advanced in short stretches until the frame's
-//! share of time is used up, so that the window answers meanwhile.
+//! It may take many frames. In each, the motion is advanced in short stretches until the frame's share of
+//! computing time is used up, so that the window stays responsive.
 
 use std::time::Duration;
 
@@ -10,10 +10,10 @@ use crate::system::clock::WallClock;
 
 use super::Player;
 
-/// Time on the screen that one frame computes, and the stretch of the motion between two looks at the clock,
-/// in multiples of its characteristic time.
-const SHARE: Duration = Duration::from_millis(12);
-const STRETCH: f64 = 2.0;
+/// Computing time that one frame spends on the way to a goal.
+const FRAME_SHARE: Duration = Duration::from_millis(12);
+/// Motion between two checks of that time, in multiples of the characteristic time.
+const CHECK_INTERVAL: f64 = 2.0;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Goal {
@@ -35,14 +35,14 @@ impl Goal {
 pub enum Reached {
     Time,
     Event(Event),
-    /// Without an event of that kind, up to the time that was set.
+    /// No event of this kind came up to the time of the goal.
     Nothing(EventKind),
-    /// The run has ended on the way.
+    /// The run ended before the goal.
     Ended,
 }
 
 impl Player {
-    /// Goes on to a goal from the time that is shown; what is remembered is not computed again.
+    /// Starts towards a goal from the time that is shown; an event in the remembered past is reached at once.
     pub fn go_to(&mut self, goal: Goal) {
         self.playing = false;
         if let (Goal::First(kind, _), Some(past)) = (goal, self.past)
@@ -56,32 +56,32 @@ impl Player {
         self.goal = Some(goal);
     }
 
-    /// Where the motion is going as fast as it can.
+    /// The goal of the current fast forward.
     pub fn goal(&self) -> Option<Goal> {
         self.goal
     }
 
-    /// Stays where it is on the way to a goal.
+    /// Gives up the goal, and stays at the time reached.
     pub fn give_up(&mut self) {
         self.goal = None;
     }
 
-    /// How the way to the last goal ended, once.
+    /// How the way to the last goal ended; reported once.
     pub fn take_reached(&mut self) -> Option<Reached> {
         self.reached.take()
     }
 
-    /// The first event of a kind after a time in s that is remembered.
+    /// The first remembered event of a kind after a time in s.
     fn first(&self, kind: EventKind, after: f64) -> Option<Event> {
         let events = self.watch.events();
         let begin = events.partition_point(|event| event.t <= after);
         events.range(begin..).find(|event| is_kind(event, kind)).copied()
     }
 
-    /// One frame's share of the way.
+    /// Advances the motion towards a goal for one frame.
     pub(super) fn follow(&mut self, goal: Goal) {
         let (begun, until) = (WallClock::start(), goal.until());
-        let stretch = STRETCH * self.watch.model_at(self.watch.time()).characteristic_time();
+        let stretch = CHECK_INTERVAL * self.watch.model_at(self.watch.time()).characteristic_time();
         loop {
             let before = self.watch.time();
             let arrived = self.watch.advance((before + stretch).min(until));
@@ -94,7 +94,7 @@ impl Player {
             if self.watch.ended().is_some() {
                 return self.arrive(Reached::Ended);
             }
-            // also where the stretch is nothing beside the time
+            // also if the stretch is too short to change the time in floating point
             if self.watch.time() >= until || arrived && self.watch.time() <= before {
                 let reached = match goal {
                     Goal::Time(_) => Reached::Time,
@@ -102,7 +102,7 @@ impl Player {
                 };
                 return self.arrive(reached);
             }
-            if begun.elapsed() >= SHARE {
+            if begun.elapsed() >= FRAME_SHARE {
                 return;
             }
         }
@@ -113,7 +113,7 @@ impl Player {
     }
 }
 
-/// Whether an event is of a kind; a mass that leaves a compliant stop is released by it.
+/// Whether an event is of a kind; leaving a compliant stop counts as a release.
 fn is_kind(event: &Event, kind: EventKind) -> bool {
     event.kind == kind || (kind == EventKind::Release && event.kind == EventKind::Separate)
 }

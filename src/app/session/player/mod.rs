@@ -1,7 +1,7 @@
-//! The player: time, speed and remembered past of the live motion.
+//! Player of the live motion: its time, speed and remembered past.
 //!
 //! The motion is live: playing advances it, and a change acts from its present state. Its past is remembered
-//! and can be looked at; playing from there goes through it once more and then on.
+//! and can be shown; playing from a time in the past repeats it up to the present, and then goes on.
 
 mod goal;
 
@@ -12,7 +12,7 @@ use crate::study::Watch;
 
 pub use goal::{Goal, Reached};
 
-/// Speeds relative to real time, and how they are called; the keys 1 to 7.
+/// Speeds relative to real time, with their names; for the keys 1 to 7.
 pub const SPEEDS: [(f64, &str); 7] = [
     (1e-3, "1/1000"),
     (1e-2, "1/100"),
@@ -23,18 +23,17 @@ pub const SPEEDS: [(f64, &str); 7] = [
     (100.0, "100 times"),
 ];
 
-/// Time on the screen in s that a period of the motion should take.
+/// Preferred duration on the screen, in s, of the characteristic time of the motion.
 const PERIOD_ON_SCREEN: f64 = 3.0;
 
-/// The speed up to real time that suits a motion whose characteristic time is so many seconds.
-pub fn fitting_speed(pace: f64) -> f64 {
-    let off = |speed: f64| (pace / speed / PERIOD_ON_SCREEN).ln().abs();
-    let speeds = SPEEDS.iter().map(|own| own.0).filter(|speed| *speed <= 1.0);
+/// The speed, at most real time, that suits a motion with this characteristic time in s.
+pub fn fitting_speed(characteristic_time: f64) -> f64 {
+    let off = |speed: f64| (characteristic_time / speed / PERIOD_ON_SCREEN).ln().abs();
+    let speeds = SPEEDS.iter().map(|(speed, _)| *speed).filter(|speed| *speed <= 1.0);
     speeds.min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or(1.0)
 }
 
-/// Longest stretch of real time in s that one frame plays: after a pause of the window it goes on where it
-/// was.
+/// Longest real time in s that one frame plays, so that the motion does not jump after a pause of the window.
 const LONGEST_FRAME: f64 = 0.1;
 
 /// Time on the screen in s that a single step takes.
@@ -46,19 +45,20 @@ pub struct Player {
     /// Speed relative to real time.
     pub speed: f64,
     playing: bool,
-    /// The time that is looked at, where it is not the present.
+    /// The time in s that is shown; `None` for the present.
     past: Option<f64>,
-    /// Whether the mass is held by hand, which holds the clock.
+    /// Whether the mass is held by hand, which stops the clock.
     held: bool,
-    /// Where it goes as fast as it can, and how the last such way ended.
+    /// The goal of the current fast forward.
     goal: Option<Goal>,
+    /// How the last fast forward ended, until it is reported.
     reached: Option<Reached>,
-    /// Whether a view of this frame shows where the energy went.
+    /// Whether a view of this frame shows the energy ledger.
     wants_ledgers: bool,
 }
 
 impl Player {
-    /// Begins at the model's own start, playing.
+    /// A player at the start of the model, playing.
     pub fn new(model: &Model, speed: f64) -> Self {
         Self {
             watch: Watch::new(model),
@@ -83,7 +83,7 @@ impl Player {
         (self.playing, self.goal) = (playing, None);
     }
 
-    /// Plays on by `seconds` of real time.
+    /// Plays for `seconds` of real time.
     pub fn tick(&mut self, seconds: f64) {
         if let Some(goal) = self.goal {
             self.follow(goal);
@@ -92,7 +92,7 @@ impl Player {
         }
     }
 
-    /// A single step, paused.
+    /// Pauses, and advances by a single step.
     pub fn step(&mut self) {
         self.set_playing(false);
         self.go(STEP * self.speed);
@@ -115,29 +115,29 @@ impl Player {
         (self.past, self.held, self.goal) = (None, false, None);
     }
 
-    /// Asks that ledgers be kept at the ends of forcing periods; to be asked anew in every frame.
+    /// Asks for ledgers at the ends of forcing periods; to be called by a view in every frame.
     pub fn want_ledgers(&mut self) {
         self.wants_ledgers = true;
     }
 
-    /// To be called once a frame: ledgers that no view has asked for are not kept.
+    /// Stops keeping ledgers if no view has asked for them in this frame; to be called once a frame.
     pub fn end_frame(&mut self) {
         self.watch.keep_ledgers(std::mem::take(&mut self.wants_ledgers));
     }
 
-    /// From now on the mass moves as `model` says.
+    /// Continues the motion with another model.
     pub fn change(&mut self, model: &Model) {
         (self.past, self.goal) = (None, None);
         self.watch.change(model);
     }
 
-    /// Holds the mass at `x` in m; the clock stands.
+    /// Holds the mass at `x` in m, with the clock stopped.
     pub fn hold(&mut self, x: f64) {
         (self.past, self.held, self.goal) = (None, true, None);
         self.watch.place(x, 0.0);
     }
 
-    /// Puts the mass to `x` in m with velocity `v` in m/s, from where the motion goes on.
+    /// Places the mass at `x` in m with velocity `v` in m/s; the motion goes on from there.
     pub fn place(&mut self, x: f64, v: f64) {
         (self.past, self.held, self.goal) = (None, false, None);
         self.watch.place(x, v);
@@ -152,16 +152,16 @@ impl Player {
         self.held
     }
 
-    /// Looks at the time `t` in s, as far as it is remembered.
+    /// Shows the time `t` in s, or the earliest time that is remembered.
     pub fn seek(&mut self, t: f64) {
         self.goal = None;
         let t = t.max(self.watch.begin());
         self.past = (t < self.watch.time()).then_some(t);
     }
 
-    /// Goes to the next or the previous event and pauses there; what has not happened yet is played up to it,
-    /// as far as `most` seconds ahead.
-    pub fn seek_event(&mut self, later: bool, most: f64) {
+    /// Goes to the next (`later`) or the previous event and pauses there. If the next event is in the future,
+    /// the motion is advanced to it, by at most `longest` seconds.
+    pub fn seek_event(&mut self, later: bool, longest: f64) {
         self.set_playing(false);
         let t = self.time();
         if let Some(event) = self.watch.neighbour(t, later) {
@@ -171,21 +171,21 @@ impl Player {
             return;
         }
         self.past = None;
-        let until = self.watch.time() + most;
+        let until = self.watch.time() + longest;
         while self.watch.time() < until {
             let before = self.watch.time();
-            let arrived = self.watch.advance((before + most / 50.0).min(until));
+            let arrived = self.watch.advance((before + longest / 50.0).min(until));
             if let Some(event) = self.watch.neighbour(t, true) {
                 return self.seek(event.t);
             }
-            // where the work of one call does not get there the window must not wait for more of it
+            // one call was not enough to get there: more of them would block the window
             if !arrived || self.watch.time() <= before {
                 break;
             }
         }
     }
 
-    /// The event at which the motion stands: what a step between events has come to.
+    /// The event at the time that is shown, while the motion is paused, as after a step between events.
     pub fn event(&self) -> Option<&Event> {
         let t = self.time();
         if self.is_playing() || self.held {
@@ -194,7 +194,7 @@ impl Player {
         let events = self.watch.events();
         let first = events.partition_point(|event| event.t < t);
         let here = events.range(first..).take_while(|event| event.t == t);
-        // a rebound that comes to rest at once is an impact
+        // of an impact and a rest at the same instant the impact is reported
         here.min_by_key(|event| event.kind == EventKind::Rest)
     }
 
@@ -203,7 +203,7 @@ impl Player {
         self.past.unwrap_or(self.watch.time())
     }
 
-    /// Back from the past to the present.
+    /// Goes back to the present.
     pub fn to_present(&mut self) {
         self.past = None;
     }
@@ -225,7 +225,7 @@ impl Player {
         &self.watch
     }
 
-    /// How the run ended, where it did.
+    /// How the run ended; `None` if it goes on.
     pub fn ended(&self) -> Option<Outcome> {
         self.watch.ended()
     }
@@ -236,7 +236,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn slow_motion_is_played_fast() {
+    fn the_speed_suits_the_characteristic_time() {
         // 3 Hz, 0.2 Hz, 40 Hz, 1 kHz
         assert_eq!([0.333, 5.2, 0.025, 1e-3, 1e9].map(fitting_speed), [0.1, 1.0, 0.01, 1e-3, 1.0]);
     }
