@@ -29,7 +29,7 @@ const CIRCLE_SEGMENTS: usize = 32;
 
 /// A pinned motion at the time that is shown.
 pub(super) struct Ghost {
-    /// Index of the pin.
+    /// Index of its letter.
     pub place: usize,
     pub letter: char,
     pub state: Sample,
