@@ -1,6 +1,6 @@
 //! Sliders with a number that can be dragged, stepped by keys, or typed.
 //!
-//! It is written only where a hand has changed it: to pass through it, or to leave it as it was typed,
+//! The value changes only by input: passing the focus through the number, or leaving its text as it is,
 //! changes no digit.
 
 use std::cell::RefCell;
@@ -13,19 +13,21 @@ use crate::app::words::numbers::{decimal, decimals, exact, shown};
 use super::style::{COMPACT_BELOW, Style};
 use super::widgets::hover_beside;
 
-/// Room in points that a slider leaves for its number, and what is left of the slider for a long one.
+/// Width in points of a usual number beside its slider.
 const NUMBER: f32 = 72.0;
-const LEAST_SLIDER: f32 = 30.0;
+/// Smallest width of a slider in points, beside a long number.
+const MIN_SLIDER: f32 = 30.0;
 
-/// For how long in s it is said why something was not taken, and how wide in points that may be.
-const SAID: f64 = 8.0;
-const WIDTH: f32 = 300.0;
+/// Time in s for which the reason of a refusal is shown.
+const REFUSAL_TIME: f64 = 8.0;
+/// Largest width in points of the reason of a refusal.
+const REFUSAL_WIDTH: f32 = 300.0;
 
 /// A slider with its number.
 #[derive(Debug, Clone, Copy)]
 pub struct Knob<'a> {
     pub name: &'a str,
-    /// The unit after the number; none for a ratio.
+    /// The unit after the number; empty for a ratio.
     pub unit: &'a str,
     /// How far the slider goes; a typed number may lie outside.
     pub reach: Reach,
@@ -42,25 +44,25 @@ pub enum How {
     /// At once: typed, or set by a screen reader.
     #[default]
     Once,
-    /// By a press of an arrow key, of which more may follow.
+    /// By a press of an arrow key, which more may follow.
     Pressed,
     Dragged,
 }
 
-/// What was done to a knob.
+/// An input on a knob.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Turn {
-    /// The new value, where it changed.
+    /// The new value, if it changed.
     pub value: Option<f64>,
     pub how: How,
     pub ended: bool,
 }
 
 impl Knob<'_> {
-    /// Draws it and says what was done to it.
+    /// Draws the knob and returns the input on it.
     pub fn ui(&self, ui: &mut Ui, value: f64) -> Turn {
-        let least = decimals(self.reach.step);
-        // arrow keys are consumed by what they act on
+        let decimals = decimals(self.reach.step);
+        // read first, since the widgets consume the arrow keys
         let pressed = ui.input(|input| {
             let arrows = [Key::ArrowLeft, Key::ArrowRight, Key::ArrowUp, Key::ArrowDown];
             arrows.iter().any(|key| input.key_pressed(*key))
@@ -69,9 +71,9 @@ impl Knob<'_> {
         let mut turned = value;
         let (slider, field, typed) = ui
             .horizontal(|ui| {
-                let slider = self.slider_ui(ui, &mut turned, least).labelled_by(name.id);
+                let slider = self.slider_ui(ui, &mut turned, decimals).labelled_by(name.id);
                 let slid = turned != value;
-                let (field, typed) = self.number_ui(ui, &mut turned, least, !slid);
+                let (field, typed) = self.number_ui(ui, &mut turned, decimals, !slid);
                 (slider, field.labelled_by(name.id), typed)
             })
             .inner;
@@ -84,30 +86,30 @@ impl Knob<'_> {
         let response = hover_beside(slider.union(field), self.hover);
         let changed = turned != value && !turned.is_nan();
         if changed {
-            forget(ui);
+            clear_refusal(ui);
         }
-        said_ui(ui, self.name, &response);
+        refusal_ui(ui, self.name, &response);
         Turn { value: changed.then_some(turned), how, ended }
     }
 
-    /// The number alone, without a slider. The new number, where one was typed or dragged to.
+    /// Draws the number alone, without a slider. Returns the new number if one was typed or dragged to.
     pub fn alone_ui(&self, ui: &mut Ui, value: f64) -> Option<f64> {
         let mut turned = value;
         let (field, _) = self.number_ui(ui, &mut turned, 0, true);
         ui.ctx().accesskit_node_builder(field.id, |node| node.set_label(self.name));
-        said_ui(ui, self.name, &field);
+        refusal_ui(ui, self.name, &field);
         let changed = turned != value && !turned.is_nan();
         if changed {
-            forget(ui);
+            clear_refusal(ui);
         }
         changed.then_some(turned)
     }
 
-    fn slider_ui(&self, ui: &mut Ui, value: &mut f64, least: usize) -> Response {
+    fn slider_ui(&self, ui: &mut Ui, value: &mut f64, decimals: usize) -> Response {
         let (present, Reach { low, high, step, ratios }) = (*value, self.reach);
-        ui.spacing_mut().slider_width = self.slider_width(ui, present, least);
+        ui.spacing_mut().slider_width = self.slider_width(ui, present, decimals);
         if ratios {
-            return ratios_ui(ui, value, (low, high));
+            return logarithmic_ui(ui, value, (low, high));
         }
         let slider = Slider::new(value, low.min(present)..=high.max(present))
             .show_value(false)
@@ -118,29 +120,29 @@ impl Knob<'_> {
         if *value != present && !slider.dragged() && slider.has_focus() && ui.input(|i| i.modifiers.shift) {
             *value = present + 10.0 * (*value - present);
         }
-        // what a slider gives are multiples of its step
+        // the value of a slider is a multiple of its step
         if *value != present && value.abs() < 1e12 * step {
             *value = decimal((*value / step).round() * step);
         }
         slider
     }
 
-    /// The number beside the slider. Its response, and whether a number was typed that can be taken.
-    fn number_ui(&self, ui: &mut Ui, value: &mut f64, least: usize, free: bool) -> (Response, bool) {
+    /// Draws the number beside the slider. Returns its response, and whether an acceptable number was typed.
+    fn number_ui(&self, ui: &mut Ui, value: &mut f64, decimals: usize, free: bool) -> (Response, bool) {
         let present = *value;
         let editing = ui.memory(|memory| memory.has_focus(ui.next_auto_id()));
-        let write = |own: f64| if editing { exact(own, least) } else { shown(own, least) };
+        let write = |number: f64| if editing { exact(number, decimals) } else { shown(number, decimals) };
         let entered = RefCell::new(None);
-        let mut own = present;
-        let field = DragValue::new(&mut own)
+        let mut edited = present;
+        let field = DragValue::new(&mut edited)
             .speed(self.reach.step)
             .suffix(self.suffix())
-            .custom_formatter(|own, _| write(own))
+            .custom_formatter(|number, _| write(number))
             .update_while_editing(false)
             .custom_parser(|text| {
                 let text = text.trim();
-                // a number that was not touched is the number that it was
-                if text == shown(present, least) || text == exact(present, least) {
+                // a text that was not changed leaves the value as it is
+                if text == shown(present, decimals) || text == exact(present, decimals) {
                     return Some(present);
                 }
                 let number = self.parsed(text, present);
@@ -152,22 +154,22 @@ impl Knob<'_> {
         let typed = matches!(entered, Some(Ok(_)));
         match entered {
             Some(Err(why)) => refuse(ui, self.name, why),
-            _ if own != present && free => {
-                let multiple = decimal((own / self.reach.step).round() * self.reach.step);
-                *value = if typed { own } else { multiple };
+            _ if edited != present && free => {
+                let multiple = decimal((edited / self.reach.step).round() * self.reach.step);
+                *value = if typed { edited } else { multiple };
             }
             _ => {}
         }
         (response, typed)
     }
 
-    /// The unit as it stands behind a number.
+    /// The unit as it follows a number.
     fn suffix(&self) -> String {
         let space = if self.unit.is_empty() || self.unit == "°" { "" } else { " " };
         format!("{space}{}", self.unit)
     }
 
-    /// A typed text as a number that may be taken, or why it is none.
+    /// The number of a typed text, or a message why it is not accepted.
     fn parsed(&self, text: &str, present: f64) -> Result<f64, String> {
         let unit = self.suffix();
         let number = text.strip_suffix(self.unit).unwrap_or(text).trim().replace('−', "-");
@@ -184,7 +186,7 @@ impl Knob<'_> {
             };
             return Err(format!("“{}” is no number: {stays}{point}", clipped(&number)));
         };
-        // what the scene came with is within
+        // the present value is always allowed
         let (low, high) = (self.typed.0.min(present), self.typed.1.max(present));
         if !(low..=high).contains(&value) {
             return Err(format!(
@@ -198,18 +200,18 @@ impl Knob<'_> {
         Ok(value)
     }
 
-    /// What a long number takes more than the usual one, the slider has less: together they keep their room.
-    fn slider_width(&self, ui: &Ui, value: f64, least: usize) -> f32 {
-        let text = format!("{} {}", shown(value, least), self.unit);
+    /// Width of the slider, reduced for a long number so that both together keep their width.
+    fn slider_width(&self, ui: &Ui, value: f64, decimals: usize) -> f32 {
+        let text = format!("{} {}", shown(value, decimals), self.unit);
         let font = egui::TextStyle::Button.resolve(ui.style());
         let text = ui.painter().layout_no_wrap(text, font, Color32::PLACEHOLDER).size().x;
         let number = text + 2.0 * ui.spacing().button_padding.x;
-        (self.width - (number - NUMBER).max(0.0)).max(LEAST_SLIDER)
+        (self.width - (number - NUMBER).max(0.0)).max(MIN_SLIDER)
     }
 }
 
-/// A slider on which equal ways are equal ratios; what lies beyond its ends stands at them.
-fn ratios_ui(ui: &mut Ui, value: &mut f64, (low, high): (f64, f64)) -> Response {
+/// A logarithmic slider; a value beyond its ends is shown at the end.
+fn logarithmic_ui(ui: &mut Ui, value: &mut f64, (low, high): (f64, f64)) -> Response {
     let present = *value;
     let slider = Slider::new(value, low..=high).show_value(false).logarithmic(true);
     let slider = ui.add(slider.clamping(egui::SliderClamping::Never));
@@ -224,13 +226,12 @@ fn ratios_ui(ui: &mut Ui, value: &mut f64, (low, high): (f64, f64)) -> Response 
     slider
 }
 
-/// The number of three significant digits nearest to one.
+/// Rounds to three significant digits.
 fn three_digits(value: f64) -> f64 {
     format!("{value:.2e}").parse().unwrap_or(value)
 }
 
-/// A number with a point where a single comma can only be that: not one before three digits, which may stand
-/// for thousands.
+/// Replaces a decimal comma by a point; `1,234` stays, since its comma may separate thousands.
 fn with_point(number: &str) -> String {
     let Some((whole, part)) = number.split_once(',') else { return number.to_owned() };
     let digits = part.chars().take_while(char::is_ascii_digit).count();
@@ -244,54 +245,54 @@ fn clipped(text: &str) -> String {
     if short.len() < text.len() { format!("{short}..") } else { short }
 }
 
-/// What was asked of a control and not done.
+/// An input that was refused.
 #[derive(Debug, Clone)]
 struct Refused {
     /// The name of the control.
     of: String,
     why: String,
-    /// Time in s at which it was asked.
+    /// Time in s of the input.
     at: f64,
 }
 
-fn place() -> egui::Id {
+fn slot() -> egui::Id {
     egui::Id::unique("refused")
 }
 
-/// Says at a control why it stays as it is, for some seconds or until something else is taken.
+/// Shows at a control why an input was refused, for some seconds or until another one is accepted.
 pub fn refuse(ui: &Ui, of: &str, why: String) {
     let refused = Refused { of: of.to_owned(), why, at: ui.input(|input| input.time) };
-    ui.data_mut(|data| data.insert_temp(place(), refused));
+    ui.data_mut(|data| data.insert_temp(slot(), refused));
 }
 
-fn forget(ui: &Ui) {
-    ui.data_mut(|data| data.remove::<Refused>(place()));
+fn clear_refusal(ui: &Ui) {
+    ui.data_mut(|data| data.remove::<Refused>(slot()));
 }
 
-/// What was refused of this control: beside it, where there is a column of them, else below it.
-fn said_ui(ui: &Ui, of: &str, response: &Response) {
-    let Some(refused) = ui.data(|data| data.get_temp::<Refused>(place())).filter(|own| own.of == of) else {
+/// Shows why an input was refused: beside its control if that is in a column, else below it.
+fn refusal_ui(ui: &Ui, of: &str, response: &Response) {
+    let Some(refused) = ui.data(|data| data.get_temp::<Refused>(slot())).filter(|last| last.of == of) else {
         return;
     };
-    let left = SAID - (ui.input(|input| input.time) - refused.at);
+    let left = REFUSAL_TIME - (ui.input(|input| input.time) - refused.at);
     if left <= 0.0 {
-        forget(ui);
+        clear_refusal(ui);
         return;
     }
     ui.ctx().request_repaint_after_secs(left as f32);
     let (rect, window) = (response.rect, ui.ctx().content_rect());
-    let beside = window.width() >= COMPACT_BELOW && window.right() - rect.right() > WIDTH + 40.0;
+    let beside = window.width() >= COMPACT_BELOW && window.right() - rect.right() > REFUSAL_WIDTH + 40.0;
     let at = if beside {
         pos2(rect.right() + 10.0, rect.top())
     } else {
         rect.left_bottom() + egui::vec2(0.0, 4.0)
     };
     let style = Style::of(ui.ctx(), false);
-    let area = egui::Area::new(place().with(of)).order(egui::Order::Tooltip).fixed_pos(at);
+    let area = egui::Area::new(slot().with(of)).order(egui::Order::Tooltip).fixed_pos(at);
     area.constrain(true).interactable(false).show(ui.ctx(), |ui| {
         let frame = egui::Frame::popup(ui.style()).stroke(egui::Stroke::new(1.5, style.impact()));
         frame.show(ui, |ui| {
-            ui.set_max_width(WIDTH);
+            ui.set_max_width(REFUSAL_WIDTH);
             ui.add(egui::Label::new(RichText::new(refused.why).color(style.ink())).wrap());
         });
     });
@@ -334,12 +335,12 @@ mod tests {
         ] {
             assert_eq!(parsed(text), Err(why.to_owned()));
         }
-        // infinity where it is a value
+        // infinity is accepted if it is in the range
         assert!(parsed("inf").is_err());
         let load = Knob { typed: (0.0, f64::INFINITY), ..knob() };
         assert_eq!((load.parsed("inf", 60.0), load.parsed("0", 60.0)), (Ok(f64::INFINITY), Ok(0.0)));
         assert!(load.parsed("-inf", 60.0).is_err() && load.parsed("nan", 60.0).is_err());
-        // what is there already may be typed again
+        // the present value may be typed again
         assert_eq!(knob().parsed("50", 50.0), Ok(50.0));
     }
 }

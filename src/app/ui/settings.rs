@@ -1,13 +1,13 @@
-//! Settings of the window, whatever the scene.
+//! Settings of the window, independent of the scene.
 
-/// Kept between two starts of the program.
+/// Settings that are kept between two starts of the program.
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default)]
 pub struct Settings {
     pub dark: bool,
     /// Light ground, larger, thicker lines.
     pub projector: bool,
-    /// No rings at impacts.
+    /// Whether rings at impacts are left out.
     pub reduce_motion: bool,
 }
 
@@ -21,7 +21,7 @@ pub enum Setting {
 }
 
 impl Settings {
-    /// One of them.
+    /// The value of a setting, to be changed.
     pub fn of(&mut self, setting: Setting) -> &mut bool {
         match setting {
             Setting::Dark => &mut self.dark,

@@ -1,8 +1,8 @@
 //! Colours, line widths and text sizes, with what each stands for.
 //!
-//! The hues are Okabe and Ito's (2008, "Color Universal Design"), one meaning each, and never a hue alone:
-//! every regime has a shape as well. Light, dark and projector differ in grounds, widths and zoom, not in
-//! meanings.
+//! The hues are those of Okabe and Ito (2008, "Color Universal Design"), each with one meaning. No meaning
+//! depends on a hue alone: every regime has a shape as well. Light, dark and projector modes differ in
+//! background, widths and zoom, not in meanings.
 
 use std::sync::Arc;
 
@@ -17,25 +17,25 @@ pub const PROJECTOR_ZOOM: f32 = 1.5;
 /// Width in points below which the window is laid out for a projector: two controls in a row, two views.
 pub const COMPACT_BELOW: f32 = 1000.0;
 
-/// Size in points of a window above which there is room for a tile more.
+/// Size in points of a window above which there is room for one more tile.
 pub const LARGE_FROM: egui::Vec2 = egui::Vec2::new(1600.0, 880.0);
 
-/// Text sizes in points.
+/// Size of small text in points.
 pub const SMALL: f32 = 11.5;
-/// Body text and buttons.
+/// Size of body text and buttons in points.
 pub const BODY: f32 = 14.0;
 pub const STATUS: f32 = 18.0;
-/// The status sentence where room is short.
+/// Size of the status sentence in points where room is short.
 pub const STATUS_COMPACT: f32 = 16.0;
 
 /// Radius in points of the proof mass where it rides on a curve; stops are drawn as far outside their limit,
-/// so that it touches them when it should.
+/// so that the mass touches them at the limit.
 pub const BALL: f32 = 9.0;
 
-/// How near in points a hand has to be to grab something.
+/// Distance in points within which something can be grabbed.
 pub const GRAB: f32 = 14.0;
 
-/// Screen time in s in which the ring of an impact grows and fades.
+/// Time in s in which the ring of an impact grows and fades.
 pub const RING_SECONDS: f64 = 0.3;
 
 const ORANGE: Color32 = Color32::from_rgb(230, 159, 0);
@@ -49,12 +49,12 @@ const PURPLE: Color32 = Color32::from_rgb(204, 121, 167);
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Style {
     pub dark: bool,
-    /// Whether lines are to be seen from the last row.
+    /// Whether lines are thick enough to be seen from the last row of a lecture hall.
     pub projector: bool,
 }
 
 impl Style {
-    /// The style of what is shown now.
+    /// The style of the present theme.
     pub fn of(ctx: &egui::Context, projector: bool) -> Self {
         Self { dark: ctx.theme() == Theme::Dark, projector }
     }
@@ -68,12 +68,12 @@ impl Style {
         self.pick(Color32::from_gray(25), Color32::from_gray(230))
     }
 
-    /// What stands back: ticks, units, notes.
+    /// Secondary text and lines: ticks, units, notes.
     pub fn faint(&self) -> Color32 {
         self.pick(Color32::from_gray(95), Color32::from_gray(165))
     }
 
-    /// Edges of what can be pressed: three times as light or dark as the ground at least.
+    /// Edges of controls, with a contrast of at least 3:1 to the background.
     pub fn edge(&self) -> Color32 {
         self.pick(Color32::from_gray(135), Color32::from_gray(118))
     }
@@ -95,7 +95,7 @@ impl Style {
         Stroke::new(self.width(1.8), self.mass_ink())
     }
 
-    /// What is written about the proof mass.
+    /// Text about the proof mass.
     pub fn mass_ink(&self) -> Color32 {
         self.pick(Color32::from_rgb(140, 92, 0), ORANGE)
     }
@@ -142,7 +142,7 @@ impl Style {
     }
 
     fn width(&self, points: f32) -> f32 {
-        // three pixels where it is projected, at its zoom
+        // three pixels at the zoom of the projector mode
         if self.projector { points.max(3.0 / PROJECTOR_ZOOM) } else { points }
     }
 
@@ -160,7 +160,7 @@ impl Style {
         Stroke::new(3.0, self.curve())
     }
 
-    /// The potential without it.
+    /// The potential without the push.
     pub fn ghost_stroke(&self) -> Stroke {
         Stroke::new(self.width(1.2), self.faint())
     }
@@ -179,17 +179,17 @@ impl Style {
         self.kind(Kind::Irregular)
     }
 
-    /// Many measured samples, below what is computed.
+    /// Many measured samples, below the computed line.
     pub fn measured_stroke(&self) -> Stroke {
         Stroke::new(self.width(4.5), self.measured().lerp_to_gamma(self.ground(), 0.25))
     }
 
-    /// What a transducer takes, over time.
+    /// Power of a transducer over time.
     pub fn power_stroke(&self) -> Stroke {
         Stroke::new(self.width(1.6), self.curve())
     }
 
-    /// What the base does, over time and as a push.
+    /// Acceleration of the base over time, and its push.
     pub fn base_stroke(&self) -> Stroke {
         Stroke::new(self.width(1.6), self.base())
     }
@@ -199,7 +199,7 @@ impl Style {
         Stroke::new(self.width(2.0), self.ink())
     }
 
-    /// An impact: a tick in time, a jump of the velocity.
+    /// An impact: a tick on a time axis, a jump of the velocity.
     pub fn impact_stroke(&self) -> Stroke {
         Stroke::new(self.width(1.5), self.impact())
     }
@@ -208,12 +208,12 @@ impl Style {
         Stroke::new(self.width(2.0), self.stop())
     }
 
-    /// Around what the keyboard acts on.
+    /// Frame of what has the keyboard focus.
     pub fn focus_stroke(&self) -> Stroke {
         Stroke::new(self.width(2.0), self.base())
     }
 
-    /// Around what a lesson points at.
+    /// Frame of what a lesson points at.
     pub fn pointing_stroke(&self) -> Stroke {
         Stroke::new(3.0, self.mass_ink())
     }
@@ -234,24 +234,24 @@ impl Style {
         self.pick(Color32::from_gray(190), Color32::from_gray(85))
     }
 
-    /// A share from 0 to 1 of a map's scale.
+    /// Colour of a share from 0 to 1 of the scale of a map.
     pub fn scale(&self, share: f64) -> Color32 {
         let Ink(red, green, blue) = viridis(share);
         Color32::from_rgb(red, green, blue)
     }
 
-    /// The colour of an attractor, by its place from 0.
+    /// The colour of an attractor, by its index.
     pub fn attractor(&self, place: usize) -> Color32 {
         let Ink(red, green, blue) = attractor_colour(place);
         Color32::from_rgb(red, green, blue)
     }
 
-    /// What is not known yet.
+    /// Background of panels, and cells that are not computed yet.
     pub fn panel(&self) -> Color32 {
         self.pick(Color32::from_gray(246), Color32::from_gray(34))
     }
 
-    /// Over a map that is not that of the scene.
+    /// Veil over a map that is not that of the scene.
     pub fn veil(&self) -> Color32 {
         self.pick(Color32::from_white_alpha(140), Color32::from_black_alpha(130))
     }
@@ -261,52 +261,52 @@ impl Style {
         self.pick(Color32::WHITE, Color32::BLACK)
     }
 
-    /// Hatching over what is at rest.
+    /// Hatching of cells at rest.
     pub fn hatch_stroke(&self) -> Stroke {
         Stroke::new(1.2, self.pick(Color32::from_gray(140), Color32::from_gray(125)))
     }
 
-    /// Hatching over what has no value.
+    /// Hatching of cells without a value.
     pub fn missing_stroke(&self) -> Stroke {
         Stroke::new(1.2, self.faint())
     }
 
-    /// The release over a map: its outline and itself.
+    /// The release on a map: outline and line.
     pub fn release_strokes(&self) -> [Stroke; 2] {
         let width = self.width(2.4);
         [Stroke::new(width + 2.4, Color32::BLACK), Stroke::new(width, Color32::WHITE)]
     }
 
-    /// The first crossing over a map: its outline and itself.
+    /// The first crossing on a map: outline and line.
     pub fn crossing_strokes(&self) -> [Stroke; 2] {
         let width = self.width(2.4);
         [Stroke::new(width + 2.4, Color32::WHITE), Stroke::new(width, VERMILION)]
     }
 
-    /// Where the scene is on a map: an outline and the mark, which is the mass.
+    /// The mark of the scene on a map, in the colour of the mass: outline and mark.
     pub fn marker_strokes(&self) -> [Stroke; 2] {
         let width = self.width(2.4);
         [Stroke::new(width + 2.6, Color32::BLACK), Stroke::new(width, ORANGE)]
     }
 
-    /// Where the scene has been on a map: an outline and the line.
+    /// The trail of the scene on a map: outline and line.
     pub fn trail_strokes(&self) -> [Stroke; 2] {
         let width = self.width(1.8);
         [Stroke::new(width + 1.8, Color32::BLACK), Stroke::new(width, ORANGE)]
     }
 
-    /// A line over a map in any theme: light, or its dark outline.
+    /// A line over a map in any theme: the light line, or its dark outline.
     pub fn over_map(light: bool) -> Color32 {
         if light { Color32::WHITE } else { Color32::BLACK }
     }
 
-    /// The edge of a face of a surface at a share from 0 to 1 of the scale.
+    /// The edge of a face of a surface, at a share from 0 to 1 of the scale.
     pub fn scale_edge(share: f64) -> Color32 {
         let Ink(red, green, blue) = viridis(share).over(BLACK, 0.62);
         Color32::from_rgb(red, green, blue)
     }
 
-    /// The cell under the pointer.
+    /// Outline of the cell under the pointer.
     pub fn cell_stroke(&self) -> Stroke {
         Stroke::new(self.width(2.0), self.ink())
     }
@@ -322,7 +322,7 @@ impl Style {
     }
 }
 
-/// Fonts, text sizes and spacing of the window; to be called once.
+/// Installs fonts, text sizes and spacing of the window; to be called once.
 pub fn install(ctx: &egui::Context) {
     let mut fonts = FontDefinitions::default();
     let inter = FontData::from_static(include_bytes!("../../../assets/fonts/Inter-Regular.ttf"));
@@ -348,19 +348,19 @@ pub fn install(ctx: &egui::Context) {
         .into();
         style.spacing.slider_width = 150.0;
         style.spacing.item_spacing = egui::vec2(8.0, 6.0);
-        // what can be scrolled shows it
+        // scroll bars are always visible
         style.spacing.scroll =
             egui::style::ScrollStyle { bar_width: 7.0, ..egui::style::ScrollStyle::solid() };
         style.visuals.override_text_color = Some(ink.ink());
         style.visuals.slider_trailing_fill = true;
-        // what can be pressed or ticked has an edge that is seen on every ground
+        // buttons and check boxes have an edge that is visible on every background
         style.visuals.widgets.inactive.bg_stroke = Stroke::new(1.0, ink.edge());
-        // what has the keyboard's focus has this frame, too
+        // the widget with the keyboard focus has this frame as well
         style.visuals.widgets.active.bg_stroke = ink.focus_stroke();
     });
 }
 
-/// The family of headings and of what is to be read first.
+/// The font family of headings and of text that is to be read first.
 pub fn strong_family() -> FontFamily {
     FontFamily::Name("strong".into())
 }

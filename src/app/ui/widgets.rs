@@ -6,30 +6,29 @@ use crate::app::words::kind::Kind;
 
 use super::style::COMPACT_BELOW;
 
-/// What waits for an answer, over everything else.
+/// A modal dialog.
 pub fn dialog(ctx: &egui::Context, id: &str) -> egui::Modal {
     let frame = egui::Frame::popup(&ctx.global_style()).inner_margin(16.0);
     egui::Modal::new(egui::Id::unique(id)).frame(frame)
 }
 
-/// Width in points of a dialog that wants `most`, where the window has room for it.
-pub fn dialog_width(ui: &Ui, most: f32) -> f32 {
-    (ui.ctx().content_rect().width() - 60.0).clamp(60.0, most)
+/// Width in points of a dialog: `wanted`, or less in a narrow window.
+pub fn dialog_width(ui: &Ui, wanted: f32) -> f32 {
+    (ui.ctx().content_rect().width() - 60.0).clamp(60.0, wanted)
 }
 
-/// A hover text that stands beside what it explains, where the window has a column of controls: below it
-/// would cover the next one. It stays away from what a hand has just changed, until the pointer comes back to
-/// it.
+/// Shows a hover text beside its widget where the window has a column of controls, since below it would cover
+/// the next one. After an input on the widget it stays hidden until the pointer has left and come back.
 pub fn hover_beside(response: Response, text: &str) -> Response {
-    let hushed = egui::Id::unique("hushed");
-    let own = Some(response.id);
-    let is_hushed = || response.ctx.data(|data| data.get_temp::<Option<egui::Id>>(hushed)).flatten() == own;
+    let hidden = egui::Id::unique("hidden hover text");
+    let id = Some(response.id);
+    let is_hidden = || response.ctx.data(|data| data.get_temp::<Option<egui::Id>>(hidden)).flatten() == id;
     if response.changed() || response.dragged() || response.is_pointer_button_down_on() {
-        response.ctx.data_mut(|data| data.insert_temp(hushed, own));
-    } else if is_hushed() && !response.contains_pointer() {
-        response.ctx.data_mut(|data| data.insert_temp::<Option<egui::Id>>(hushed, None));
+        response.ctx.data_mut(|data| data.insert_temp(hidden, id));
+    } else if is_hidden() && !response.contains_pointer() {
+        response.ctx.data_mut(|data| data.insert_temp::<Option<egui::Id>>(hidden, None));
     }
-    if is_hushed() {
+    if is_hidden() {
         return response;
     }
     if response.ctx.content_rect().width() < COMPACT_BELOW {
@@ -41,7 +40,7 @@ pub fn hover_beside(response: Response, text: &str) -> Response {
     response
 }
 
-/// The button that closes a message; it has the keyboard, so that Enter does.
+/// The button that closes a message; it takes a free keyboard focus, so that Enter closes the message.
 pub fn close_ui(ui: &mut Ui) -> bool {
     let button = ui.button("Close");
     if ui.memory(|memory| memory.focused().is_none()) {
@@ -50,7 +49,7 @@ pub fn close_ui(ui: &mut Ui) -> bool {
     button.clicked()
 }
 
-/// Steps to the right that the arrow keys ask of what has the focus; they then do not move the focus itself.
+/// Steps to the right by the arrow keys, ten times as many with Shift; the keys do not move the focus.
 pub fn arrows(ui: &Ui, id: egui::Id) -> f64 {
     let filter = egui::EventFilter { horizontal_arrows: true, ..egui::EventFilter::default() };
     ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
@@ -61,7 +60,7 @@ pub fn arrows(ui: &Ui, id: egui::Id) -> f64 {
     })
 }
 
-/// What a button shows.
+/// The icon of a button.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Icon {
     /// A triangle.
@@ -80,13 +79,13 @@ pub enum Icon {
     Restore,
     /// Two axes and a line: a figure of a view.
     Figure,
-    /// A lock that is closed, and one that is open.
+    /// A closed lock.
     Held,
-    /// See [`Self::Held`].
+    /// An open lock.
     Free,
 }
 
-/// A button with an icon; `name` is what a screen reader and the tests call it.
+/// A button with an icon; screen readers and tests call it `name`.
 pub fn icon_button_ui(ui: &mut Ui, icon: Icon, size: f32, name: &str, hover: &str) -> Response {
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(size), Sense::click());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, ui.is_enabled(), name));
@@ -140,7 +139,7 @@ fn icon_shapes(icon: Icon, rect: Rect, color: Color32) -> Vec<Shape> {
         Icon::Figure => {
             let place = |(x, y): (f32, f32)| rect.lerp_inside(vec2(x, y));
             let line = |points: &[(f32, f32)]| {
-                Shape::line(points.iter().map(|own| place(*own)).collect(), Stroke::new(1.5, color))
+                Shape::line(points.iter().map(|point| place(*point)).collect(), Stroke::new(1.5, color))
             };
             let axes = line(&[(0.0, 0.0), (0.0, 1.0), (1.0, 1.0)]);
             vec![axes, line(&[(0.2, 0.75), (0.45, 0.3), (0.65, 0.6), (1.0, 0.1)])]
@@ -184,11 +183,11 @@ pub fn kind_shapes(kind: Kind, center: Pos2, radius: f32, color: Color32) -> Vec
             center + vec2(-1.2 * r, 0.0),
         ])],
         Kind::Interwell | Kind::Crossing => {
-            let head = |way: f32| {
+            let head = |side: f32| {
                 polygon(vec![
-                    center + vec2(way * 1.4 * r, 0.0),
-                    center + vec2(way * 0.4 * r, -0.9 * r),
-                    center + vec2(way * 0.4 * r, 0.9 * r),
+                    center + vec2(side * 1.4 * r, 0.0),
+                    center + vec2(side * 0.4 * r, -0.9 * r),
+                    center + vec2(side * 0.4 * r, 0.9 * r),
                 ])
             };
             let shaft = [center - vec2(0.6 * r, 0.0), center + vec2(0.6 * r, 0.0)];

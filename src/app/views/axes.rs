@@ -1,4 +1,4 @@
-//! Choice of a field for an axis, and of its ends and steps.
+//! Controls for the field of an axis, its ends and its step.
 
 use eframe::egui::{self, ComboBox, Ui};
 
@@ -7,7 +7,7 @@ use crate::app::ui::knob::Knob;
 use crate::app::words::fields::Reach;
 use crate::scene::{SweepAxis, column_names};
 
-/// The name of a field without its unit: what its control is called, or its column.
+/// The name of a field without its unit: that of its control, or else of its column.
 pub fn field_name(path: &str) -> String {
     let (name, _) = crate::app::words::fields::name_and_unit(path);
     if name != path {
@@ -17,7 +17,7 @@ pub fn field_name(path: &str) -> String {
     name_and_unit(&column).0
 }
 
-/// Lets one of the `known` fields be chosen for the axis that is called by its `role`; the new one.
+/// Offers the `known` fields for the axis named by its `role`. Returns the new field if it changed.
 pub fn field_ui(ui: &mut Ui, axis: &SweepAxis, role: &str, known: &[String]) -> Option<String> {
     let name = field_name(&axis.field);
     let mut wanted = None;
@@ -35,7 +35,7 @@ pub fn field_ui(ui: &mut Ui, axis: &SweepAxis, role: &str, known: &[String]) -> 
     wanted.filter(|path| *path != axis.field)
 }
 
-/// Lets ends and step of an axis be typed, in a row of a grid.
+/// Inputs for the ends and the step of an axis, as a row of a grid.
 pub fn range_row_ui(ui: &mut Ui, axis: &mut SweepAxis, role: &str) {
     ui.label(field_name(&axis.field));
     let (_, unit) = crate::app::words::fields::name_and_unit(&axis.field);

@@ -1,4 +1,4 @@
-//! Basins of attraction: the start plane in the colours of where the motion goes.
+//! View of the basins of attraction: the plane of starts, coloured by the attractor of each start.
 
 use eframe::egui::{
     self, Align2, Color32, Mesh, Painter, RichText, Sense, Shape, Stroke, Ui, UiBuilder, vec2,
@@ -11,9 +11,9 @@ use crate::numeric::short;
 use crate::study::{Attractor, Edges};
 
 use super::chart::Chart;
-use super::hand::hand;
-use super::labels::{plated, rests};
-use super::legend::Sign;
+use super::hand::axes_input;
+use super::labels::{plated, pointer_rests};
+use super::legend::Symbol;
 use super::stops::stops_ui;
 use super::view::Axis;
 use super::{View, ViewContext, too_small_ui};
@@ -21,8 +21,8 @@ use super::{View, ViewContext, too_small_ui};
 /// Radius in points of the mark of an attractor.
 const MARK: f32 = 5.0;
 
-/// The most attractors that the legend names, those that most starts go to.
-const MOST_NAMED: usize = 6;
+/// Number of attractors that the legend names, those with the most starts.
+const MAX_NAMED: usize = 6;
 
 pub fn basins_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::click() | Sense::DRAG);
@@ -33,16 +33,16 @@ pub fn basins_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "basins of attraction"));
     let speed = context.memory.ranges.follow(context.session).speed();
     let span = context.span;
-    // what is zoomed into is worked out anew, as finely
+    // a zoomed range is computed anew with the same number of starts
     let (low, high) = context.memory.axes.ends(Axis::Up(View::Basins), (-speed, speed));
     context.session.want_basins((span.low, span.high), (low, high));
     let chart = Chart::new(area, span, low, high);
-    hand(ui, context.memory, View::Basins, &response, (area, chart.rect));
+    axes_input(ui, context.memory, View::Basins, &response, (area, chart.rect));
     chart.axes(ui, context, 1e-3);
     let (parts, current) = context.session.explore.basins.parts();
     let level = parts.last().cloned();
     let whole = context.session.explore.basins.is_whole() && current;
-    let mut legend: Vec<(Sign, String)> = Vec::new();
+    let mut legend: Vec<(Symbol, String)> = Vec::new();
     match &level {
         Some(Ok(level)) => {
             let painter = ui.painter().with_clip_rect(chart.rect);
@@ -61,20 +61,20 @@ pub fn basins_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     stops_ui(ui, context, chart.rect, edges, 0.0);
     chart.numbers(ui, &style, "velocity at the start (mm/s)", 1e-3);
     if let Some(Ok(level)) = &level {
-        hand_ui(ui, &response, context, (&chart, level, whole));
+        pointer_ui(ui, &response, context, (&chart, level, whole));
     }
-    let entries: Vec<(Sign, &str)> = legend.iter().map(|(sign, words)| (*sign, words.as_str())).collect();
+    let entries: Vec<(Symbol, &str)> = legend.iter().map(|(sign, words)| (*sign, words.as_str())).collect();
     chart.legend(ui, &style, area.right(), &entries);
 }
 
-/// The starts in the colours of their attractors; those that go to none that is known are left as the ground.
+/// Draws each start in the colour of its attractor; starts without a known attractor keep the background.
 fn cells(painter: &Painter, style: &Style, chart: &Chart, level: &Level, current: bool) {
     let (across, up) = (Edges::new(&level.axes.0), Edges::new(&level.axes.1));
     let rows = level.axes.1.len();
     let mut mesh = Mesh::default();
     for column in 0..level.axes.0.len() {
-        let own = |row: usize| level.answer.rows[level.shown[column * rows + row]].map(|own| own.0);
-        let all: Vec<Option<u32>> = (0..rows).map(own).collect();
+        let attractor = |row: usize| level.answer.rows[level.shown[column * rows + row]].map(|end| end.0);
+        let all: Vec<Option<u32>> = (0..rows).map(attractor).collect();
         let mut row = 0;
         for run in all.chunk_by(|a, b| a == b) {
             let (from, to) = (row, row + run.len());
@@ -102,7 +102,7 @@ fn cells(painter: &Painter, style: &Style, chart: &Chart, level: &Level, current
     painter.add(Shape::mesh(mesh));
 }
 
-/// The states of the attractors at time 0 of the drive, in their colours.
+/// Draws the states of the attractors at time 0 of the drive, in their colours.
 fn attractors(painter: &Painter, style: &Style, chart: &Chart, level: &Level) {
     for (place, attractor) in level.answer.attractors.iter().enumerate() {
         for (x, v) in &attractor.states {
@@ -113,21 +113,21 @@ fn attractors(painter: &Painter, style: &Style, chart: &Chart, level: &Level) {
     }
 }
 
-/// The attractors in words, those that most starts go to first.
-fn entries(style: &Style, attractors: &[Attractor]) -> Vec<(Sign, String)> {
+/// Legend entries of the attractors with the most starts, in falling order.
+fn entries(style: &Style, attractors: &[Attractor]) -> Vec<(Symbol, String)> {
     let mut named: Vec<usize> = (0..attractors.len()).collect();
     named.sort_by_key(|place| std::cmp::Reverse(attractors[*place].starts));
-    named.truncate(MOST_NAMED);
-    named.into_iter().map(|place| (Sign::Shade(style.attractor(place)), said(&attractors[place]))).collect()
+    named.truncate(MAX_NAMED);
+    named.into_iter().map(|i| (Symbol::Shade(style.attractor(i)), entry(&attractors[i]))).collect()
 }
 
-/// What an attractor is, and which share of the starts goes to it.
-fn said(attractor: &Attractor) -> String {
+/// The kind of an attractor and the share of the starts that go to it.
+fn entry(attractor: &Attractor) -> String {
     format!("{}: {} %", attractor.words(), short((1e2 * attractor.share.share).round()))
 }
 
-/// What is under the pointer, in the lower corner of the picture, and a click that begins there.
-fn hand_ui(
+/// Describes the start under the pointer in the lower corner; a click begins the scene there.
+fn pointer_ui(
     ui: &Ui,
     response: &egui::Response,
     context: &mut ViewContext<'_>,
@@ -142,19 +142,19 @@ fn hand_ui(
     let cell = across.cell(x * 1e3).zip(up.cell(v));
     let place = cell.and_then(|(column, row)| {
         let row = level.shown[column * level.axes.1.len() + row];
-        level.answer.rows[row].map(|own| own.0 as usize - 1)
+        level.answer.rows[row].map(|end| end.0 as usize - 1)
     });
-    let goes = place.map_or("to none that is known".to_owned(), |place| {
+    let target = place.map_or("to none that is known".to_owned(), |place| {
         format!("to {}", level.answer.attractors[place].words())
     });
     let coarse = if whole { "" } else { " (coarse)" };
-    let text = format!("{} mm, {} mm/s: {goes}{coarse}", three(x * 1e3), three(v * 1e3));
+    let text = format!("{} mm, {} mm/s: {target}{coarse}", three(x * 1e3), three(v * 1e3));
     let at = (chart.rect.right_bottom() - vec2(6.0, 4.0), Align2::RIGHT_BOTTOM);
     plated(ui.painter(), &context.style, at, &text, (context.style.small(), context.style.ink()));
     if response.clicked() {
         context.session.start_at(x, v);
     }
-    if rests(ui) {
+    if pointer_rests(ui) {
         response.clone().on_hover_text_at_pointer("Click: the scene begins here.");
     }
 }

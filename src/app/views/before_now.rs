@@ -14,19 +14,20 @@ use crate::scene::{Damping, Excitation, FieldPath, Scene, Start, numeric_fields}
 
 use super::ViewContext;
 
-/// Height in points of a row, and the room between two: most, and least.
+/// Height of a row in points.
 const ROW: f32 = 20.0;
-const APART: (f32, f32) = (6.0, 1.0);
+/// Largest and smallest gap between two rows in points.
+const ROW_GAP: (f32, f32) = (6.0, 1.0);
 
-/// Rows that are always there: the heading, motion, RMS velocity, reach, and from where it crosses.
-const ALWAYS: usize = 5;
+/// Number of rows always shown: heading, motion, RMS velocity, reach and crossing threshold.
+const FIXED_ROWS: usize = 5;
 
 pub fn before_now_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let style = context.style;
     let ground = egui::Frame::new().fill(style.ground()).inner_margin(10.0);
     ground.show(ui, |ui| {
         ui.set_min_size(ui.available_size());
-        // what has no room for every row can be scrolled
+        // scrolls where not all rows fit
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| card_ui(ui, context));
     });
 }
@@ -36,22 +37,22 @@ fn card_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let now = context.session.now_card();
     let before = context.session.before_card();
     let mut rows = before.map_or_else(Vec::new, |before| changes(&before.scene, &now.scene));
-    // shaking and stops stay to be seen where there is room for what has not changed
+    // shaking and stops are shown even if unchanged, where there is room
     let height = ui.available_height();
-    let room = (height / (ROW + APART.1)) as usize;
+    let room = (height / (ROW + ROW_GAP.1)) as usize;
     for (i, (name, text)) in
         [("shaking", shaking as fn(&Scene) -> String), ("stops", stops)].into_iter().enumerate()
     {
-        let own = before.map_or_else(dash, |before| text(&before.scene));
-        if rows.iter().all(|row| row.name != name) && rows.len() + ALWAYS < room {
+        let old = before.map_or_else(dash, |before| text(&before.scene));
+        if rows.iter().all(|row| row.name != name) && rows.len() + FIXED_ROWS < room {
             let at = rows.len().min(i);
-            rows.insert(at, Row { name: name.to_owned(), before: own, now: text(&now.scene) });
+            rows.insert(at, Row { name: name.to_owned(), before: old, now: text(&now.scene) });
         }
     }
     let columns = ui.available_width() / 3.0 - 12.0;
-    let count = (rows.len() + ALWAYS) as f32;
-    let apart = ((height - count * ROW) / (count - 1.0)).clamp(APART.1, APART.0);
-    let grid = Grid::new("before and now").num_columns(3).min_col_width(columns).spacing([8.0, apart]);
+    let count = (rows.len() + FIXED_ROWS) as f32;
+    let gap = ((height - count * ROW) / (count - 1.0)).clamp(ROW_GAP.1, ROW_GAP.0);
+    let grid = Grid::new("before and now").num_columns(3).min_col_width(columns).spacing([8.0, gap]);
     let mut pin = false;
     grid.show(ui, |ui| {
         let hover = "This motion goes on, dashed, beside the one that you change from here on (K).";
@@ -87,7 +88,6 @@ fn card_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             row_ui(ui, &both("crosses from", crosses_from));
         }
     });
-    // only where there is room for it
     if before.is_none() && ui.available_height() > 28.0 {
         ui.add_space(6.0);
         let text = "Change something: the state before it stays here to compare.";
@@ -100,7 +100,7 @@ fn card_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 
 const RMS: &str = "RMS velocity";
 
-/// What the RMS velocity is, and over which time it was taken.
+/// Meaning of the RMS velocity, and the time over which it was taken.
 fn rms_words(settled: &Summary) -> String {
     let (from, to) = settled.window;
     let time = format!("from {} to {} after the start or the last change", seconds(from), seconds(to));
@@ -114,7 +114,7 @@ struct Row {
     now: String,
 }
 
-/// A row for everything in which two scenes differ: shaking and stops whole, else a number each.
+/// Rows for all differences: one each for shaking, stops, damping, mechanism, start and other numbers.
 fn changes(before: &Scene, now: &Scene) -> Vec<Row> {
     let row = |name: &str, text: fn(&Scene) -> String| Row {
         name: name.to_owned(),
@@ -130,35 +130,35 @@ fn changes(before: &Scene, now: &Scene) -> Vec<Row> {
     ];
     let mut rows: Vec<Row> = whole.into_iter().filter(|row| row.before != row.now).collect();
     let differs = |name: &str, rows: &[Row]| rows.iter().any(|row| row.name == name);
-    let (shaken, stopped, begun) =
+    let (shaking_differs, stops_differ, start_differs) =
         (differs("shaking", &rows), differs("stops", &rows), differs("start", &rows));
     for path in numeric_fields(now) {
-        let (own, field) = (name_and_unit(&path), FieldPath::new(&path));
+        let ((name, unit), field) = (name_and_unit(&path), FieldPath::new(&path));
         let numbers = [before, now].map(|scene| field.get(scene));
         let [Some(was), Some(is)] = numbers else { continue };
-        // what a row above says already
-        let is_told = match path.split_once('.') {
-            Some(("excitation", number)) => shaken && in_shaking(&now.excitation, number),
-            Some(("stops", number)) => stopped && number.ends_with("_mm") && number != "radius_mm",
-            Some(("start", _)) => begun,
+        // numbers that a row above contains already
+        let is_in_row_above = match path.split_once('.') {
+            Some(("excitation", number)) => shaking_differs && in_shaking(&now.excitation, number),
+            Some(("stops", number)) => stops_differ && number.ends_with("_mm") && number != "radius_mm",
+            Some(("start", _)) => start_differs,
             Some(("app", _)) => true,
             _ => false,
         };
-        if was == is || is_told {
+        if was == is || is_in_row_above {
             continue;
         }
-        // as many digits as tell them apart
-        let short = shown(was, 0) != shown(is, 0);
+        // all digits if the rounded numbers are equal
+        let rounded_differ = shown(was, 0) != shown(is, 0);
         let text = |value: f64| {
-            let number = if short { shown(value, 0) } else { exact(value, 0) };
-            format!("{number} {}", own.1).trim_end().to_owned()
+            let number = if rounded_differ { shown(value, 0) } else { exact(value, 0) };
+            format!("{number} {unit}").trim_end().to_owned()
         };
-        rows.push(Row { name: own.0, before: text(was), now: text(is) });
+        rows.push(Row { name, before: text(was), now: text(is) });
     }
     rows
 }
 
-/// Whether the row of the shaking says this number.
+/// Whether the row of the shaking contains this number.
 fn in_shaking(excitation: &Excitation, number: &str) -> bool {
     let all: &[&str] = match excitation {
         Excitation::Constant { .. } => &["accel_g"],
@@ -181,7 +181,7 @@ pub(super) fn reach(card: &Card) -> String {
     value(card, |settled| settled.max_abs_x.map(|reach| format!("{} mm", mm_beside(reach, stops))))
 }
 
-/// The least shaking that crosses, as far as it was searched for.
+/// The smallest shaking amplitude at which the mass crosses the barrier, as far as it is known.
 fn crosses_from(card: &Card) -> String {
     let found = card.thresholds.map(|found| found.crossing);
     match found.and_then(|crossing| Some((crossing.value?, crossing.undecided))) {
@@ -200,7 +200,7 @@ pub(super) fn value(card: &Card, of: impl Fn(&Summary) -> Option<String>) -> Str
 }
 
 pub(super) fn shaking(scene: &Scene) -> String {
-    // what these leave out has a row of its own where it differs
+    // a difference that this rounding hides has a row of its own, from `changes`
     let rounded = |value: f64| format!("{value:.3e}").parse().unwrap_or(value);
     let g = |value: f64| shown(rounded(value), 2);
     let hz = |value: f64| shown(rounded(value), 1);
@@ -223,7 +223,7 @@ pub(super) fn shaking(scene: &Scene) -> String {
 pub(super) fn stops(scene: &Scene) -> String {
     let (stops, mm) = (&scene.stops, |value: f64| format!("{} mm", shown(value, decimals_for(value).min(2))));
     let side =
-        |own: Option<f64>, sign: &str| own.map_or("open".to_owned(), |own| format!("{sign}{}", mm(own)));
+        |stop: Option<f64>, sign: &str| stop.map_or("open".to_owned(), |stop| format!("{sign}{}", mm(stop)));
     match (stops.travel_limit_mm(), stops.limits_mm()) {
         (Some(limit), _) if stops.restitutions() == [None; 2] => format!("±{}, compliant", mm(limit)),
         (Some(limit), _) => format!("±{}", mm(limit)),
@@ -232,7 +232,7 @@ pub(super) fn stops(scene: &Scene) -> String {
     }
 }
 
-/// What kind of damping there is; its number has a row of its own.
+/// The kind of damping; its value has another row.
 fn damping(scene: &Scene) -> String {
     match scene.damping {
         Damping::None => "none",
@@ -249,7 +249,7 @@ fn start(scene: &Scene) -> String {
     }
 }
 
-/// What kind of motion it is: its sign and its name, where the name has little room a `small` one below.
+/// Symbol and name of the regime; if `small`, the name stands below the symbol in small text.
 pub(super) fn regime_ui(ui: &mut Ui, context: &ViewContext<'_>, settled: Option<&Summary>, small: bool) {
     let Some(settled) = settled else {
         ui.label("-");
@@ -283,7 +283,7 @@ mod tests {
     use super::*;
     use crate::scene::{Document, PRESETS};
 
-    /// Whatever differs has a row, whose two sides differ.
+    /// Every difference has one row, whose two sides differ.
     #[test]
     fn every_number_that_differs_has_a_row() {
         for preset in PRESETS {
@@ -293,7 +293,7 @@ mod tests {
                 let Some(value) = field.get(&before) else { continue };
                 let changed = if value == 0.0 { 1.0 } else { value * 1.000_000_01 };
                 assert!(field.set(&mut now, changed));
-                // a whole number does not take so small a change
+                // an integer field ignores so small a change
                 if now == before {
                     assert!(field.set(&mut now, value + 1.0));
                 }

@@ -1,7 +1,7 @@
-//! Charts over the displacement: coordinates, axes, readout.
+//! Charts over displacement: coordinates, axes, readout.
 //!
-//! The x axis is the one that all views share, over the whole width, so that pictures above each other line
-//! up; what belongs to the vertical axis is written into the picture.
+//! All views share the x axis over their whole width, so that pictures above each other line up. The labels
+//! of the vertical axis are written inside the picture.
 
 use eframe::egui::{Align2, Painter, Pos2, Rect, Stroke, Ui, pos2, vec2};
 
@@ -10,27 +10,27 @@ use crate::mechanics::Landscape;
 
 use super::ViewContext;
 use super::labels::{haloed, plated};
-use super::legend::{LEGEND, Sign, legend};
+use super::legend::{LEGEND, Symbol, legend};
 use super::span::{Span, ticks};
 
-/// How far outside the picture in points is far enough.
+/// Distance in points outside the picture at which positions are clamped.
 const FAR: f32 = 4000.0;
 
-/// Points between two points of a curve.
+/// Distance in points between two samples of a curve.
 pub const CURVE_STEP: f32 = 2.0;
 
 /// Radius in points of the mark of an equilibrium.
 const MARK: f32 = 5.0;
 
-/// Height in points of the name of the x axis.
+/// Height in points of the label of the x axis.
 const NAME: f32 = 16.0;
 
-/// Where things stand.
+/// Coordinates of a chart.
 #[derive(Debug, Clone, Copy)]
 pub struct Chart {
-    /// The whole of it.
+    /// The whole chart.
     pub area: Rect,
-    /// What is drawn on.
+    /// The plot area.
     pub rect: Rect,
     span: Span,
     /// Ends of the vertical axis.
@@ -45,7 +45,7 @@ impl Chart {
         Self { area, rect, span, low, high }
     }
 
-    /// The place on the screen of a displacement in m and a value of the vertical axis.
+    /// Screen position of a displacement in m and a value of the vertical axis.
     pub fn screen_from_world(&self, x: f64, y: f64) -> Pos2 {
         let share = (y - self.low) / (self.high - self.low);
         let at = self.rect.bottom() - (share * f64::from(self.rect.height())) as f32;
@@ -56,13 +56,13 @@ impl Chart {
         )
     }
 
-    /// The displacement in m and the value of the vertical axis of a place on the screen.
+    /// Displacement in m and value of the vertical axis at a screen position.
     pub fn world_from_screen(&self, at: Pos2) -> (f64, f64) {
         let share = f64::from((self.rect.bottom() - at.y) / self.rect.height());
         (self.span.world_from_screen(at.x, self.rect), self.low + share * (self.high - self.low))
     }
 
-    /// The places of `y` over the part of the axis from `low` to `high` in m.
+    /// Screen positions of the curve `y` for displacements from `low` to `high` in m.
     pub fn curve(&self, low: f64, high: f64, y: impl Fn(f64) -> f64) -> Vec<Pos2> {
         if !(high > low) {
             return Vec::new();
@@ -77,14 +77,14 @@ impl Chart {
         (0..=count).map(point).collect()
     }
 
-    /// Values of the grid's rows in the unit of which one is `unit`, and the decimals to write them.
+    /// Values of the grid lines in multiples of `unit`, and the decimals to write them with.
     fn rows(&self, unit: f64) -> (Vec<f64>, usize) {
         let rows = f64::from((self.rect.height() / 40.0).clamp(2.0, 7.0));
         let (values, decimals) = ticks(self.low / unit, self.high / unit, rows);
         (values.iter().map(|value| value * 1e3).collect(), decimals)
     }
 
-    /// Ground, grid and the axis below; the vertical axis has a row at multiples of `unit`.
+    /// Draws background, grid and x axis; grid lines lie at round multiples of `unit`.
     pub fn axes(&self, ui: &Ui, context: &ViewContext<'_>, unit: f64) {
         let (style, rect) = (context.style, self.rect);
         let painter = ui.painter().with_clip_rect(self.area);
@@ -99,8 +99,7 @@ impl Chart {
         }
     }
 
-    /// What belongs to the vertical axis, over what is drawn: its name, with the unit of which one is `unit`,
-    /// and numbers.
+    /// Draws the name of the vertical axis and its numbers, in multiples of `unit`, over the picture.
     pub fn numbers(&self, ui: &Ui, style: &Style, name: &str, unit: f64) {
         let painter = ui.painter().with_clip_rect(self.area);
         let write = |at: Pos2, align: Align2, text: &str| {
@@ -111,26 +110,26 @@ impl Chart {
             let at = self.screen_from_world(self.span.low, value * unit).y;
             if at > self.rect.top() + 26.0 && at < self.rect.bottom() - 8.0 {
                 let text = format!("{:.decimals$}", value + 0.0);
-                // on its row, which does not cross it
+                // above its grid line, so that the line does not cross it
                 write(pos2(self.rect.left() + 4.0, at - 1.0), Align2::LEFT_BOTTOM, &text);
             }
         }
         write(self.rect.left_top() + vec2(4.0, 3.0), Align2::LEFT_TOP, name);
     }
 
-    /// What is under the pointer, below the picture.
+    /// Writes `text` below the picture, about the point under the pointer.
     pub fn readout(&self, ui: &Ui, style: &Style, text: &str) {
         let painter = ui.painter().with_clip_rect(self.area);
         let at = (self.area.right_bottom() - vec2(6.0, 3.0), Align2::RIGHT_BOTTOM);
         haloed(&painter, style, at, text, (style.small(), style.ink()));
     }
 
-    /// What the lines mean, above the picture; what has no room before `right` is left out.
-    pub fn legend(&self, ui: &Ui, style: &Style, right: f32, entries: &[(Sign, &str)]) {
+    /// Draws the legend above the picture; entries that do not fit left of `right` are left out.
+    pub fn legend(&self, ui: &Ui, style: &Style, right: f32, entries: &[(Symbol, &str)]) {
         legend(ui, style, self.area, right, entries);
     }
 
-    /// Equilibria where the vertical axis is 0: filled where stable, hollow where not.
+    /// Marks the equilibria at 0 of the vertical axis: filled if stable, hollow if unstable.
     pub fn equilibria(&self, painter: &Painter, style: &Style, landscape: &Landscape) {
         for equilibrium in &landscape.equilibria {
             let at = self.screen_from_world(equilibrium.x, 0.0);
@@ -140,7 +139,7 @@ impl Chart {
     }
 }
 
-/// Ticks in mm below `rect`.
+/// Draws the ticks of the x axis, in mm, below `rect`.
 pub fn x_axis(painter: &Painter, context: &ViewContext<'_>, rect: Rect) {
     let style = context.style;
     let (ticks, decimals) = context.span.ticks(f64::from(rect.width()) / 55.0);
@@ -152,7 +151,7 @@ pub fn x_axis(painter: &Painter, context: &ViewContext<'_>, rect: Rect) {
         let text = format!("{:.decimals$}{unit}", x * 1e3 + 0.0);
         let galley = painter.layout_no_wrap(text, style.small(), style.faint());
         let half = 0.5 * galley.size().x + 2.0;
-        // whole, also where a tick is at the edge
+        // moved inwards at the edges, so that the number is not cut off
         let middle = at.clamp(rect.left() + half, (rect.right() - half).max(rect.left() + half));
         painter.galley(pos2(middle - half, rect.bottom() + 4.0), galley, style.faint());
     }

@@ -14,27 +14,27 @@ use crate::scene::Stops;
 use super::ViewContext;
 use super::before_now::{reach, regime_ui, rms, shaking, stops, value};
 
-/// A number of the table: its name, its unit, what it is of a card, in words and as a number with its
-/// decimals.
+/// A row of the table: name, unit, text of a value, the value itself, and the decimals of a difference.
 type Row = (&'static str, &'static str, fn(&Card) -> String, fn(&Summary) -> Option<f64>, fn(f64) -> usize);
 
 const NUMBERS: [Row; 3] = [
-    ("RMS velocity", "mm/s", rms, |own| own.rms_velocity.map(|v| v * 1e3), |most| usize::from(most < 9.95)),
-    ("reach", "mm", reach, |own| own.max_abs_x.map(|x| x * 1e3), |most| if most < 0.95 { 2 } else { 1 }),
-    ("impacts take", "%", impacts, |own| own.impact_share.map(|share| share * 100.0), |_| 0),
+    ("RMS velocity", "mm/s", rms, |run| run.rms_velocity.map(|v| v * 1e3), |size| usize::from(size < 9.95)),
+    ("reach", "mm", reach, |run| run.max_abs_x.map(|x| x * 1e3), |size| if size < 0.95 { 2 } else { 1 }),
+    ("impacts take", "%", impacts, |run| run.impact_share.map(|share| share * 100.0), |_| 0),
 ];
 
-/// Widths in points: of the names, the least of a column, and of one in which words have their room beside
-/// their signs.
+/// Width in points of the column of names.
 const NAMES: f32 = 92.0;
-const LEAST: f32 = 44.0;
-const ROOMY: f32 = 96.0;
+/// Smallest width in points of a column of values.
+const MIN_COLUMN: f32 = 44.0;
+/// Width in points from which on a column has text of full size beside the symbols.
+const WIDE_COLUMN: f32 = 96.0;
 
-/// Room in points between columns.
-const APART: f32 = 8.0;
+/// Gap in points between columns.
+const COLUMN_GAP: f32 = 8.0;
 
-/// What a person asked of a pin.
-enum Asked {
+/// An action on a pin.
+enum PinAction {
     TakeBack(char),
     Unpin(char),
 }
@@ -53,15 +53,15 @@ pub fn compare_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
                 return;
             }
             match table_ui(ui, context) {
-                Some(Asked::TakeBack(letter)) => _ = context.session.take_back(letter),
-                Some(Asked::Unpin(letter)) => context.session.pins.unpin(letter),
+                Some(PinAction::TakeBack(letter)) => _ = context.session.take_back(letter),
+                Some(PinAction::Unpin(letter)) => context.session.pins.unpin(letter),
                 None => {}
             }
         });
     });
 }
 
-/// What can be pinned.
+/// Buttons that pin a motion.
 fn buttons_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let full = context.session.pins.is_full();
     let stops = match context.session.scene().stops {
@@ -89,44 +89,44 @@ fn buttons_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     });
 }
 
-fn table_ui(ui: &mut Ui, context: &ViewContext<'_>) -> Option<Asked> {
+fn table_ui(ui: &mut Ui, context: &ViewContext<'_>) -> Option<PinAction> {
     let style = context.style;
     let now = context.session.now_card();
     let pins: Vec<(&Pin, Card)> = context.session.pins.all().iter().map(|pin| (pin, card(pin))).collect();
     let columns = (1 + pins.len()) as f32;
-    let width = ((ui.available_width() - NAMES) / columns - APART).max(LEAST);
-    let small = width < ROOMY;
+    let width = ((ui.available_width() - NAMES) / columns - COLUMN_GAP).max(MIN_COLUMN);
+    let small = width < WIDE_COLUMN;
     if small {
         let styles = &mut ui.style_mut().text_styles;
         styles.insert(TextStyle::Body, style.small());
         styles.insert(TextStyle::Heading, FontId::new(SMALL, strong_family()));
         (ui.spacing_mut().button_padding.x, ui.spacing_mut().interact_size.y) = (2.0, 0.0);
     }
-    let mut asked = None;
+    let mut action = None;
     let name_ui = |ui: &mut Ui, name: &str, unit: &str| {
         let unit = if unit.is_empty() { String::new() } else { format!(" ({unit})") };
         let text = RichText::new(format!("{name}{unit}")).color(style.faint());
         explained(cell_ui(ui, NAMES, |ui| ui.add(Label::new(text).wrap())), name);
     };
-    Grid::new("compare").num_columns(2 + pins.len()).spacing([APART, 2.0]).show(ui, |ui| {
+    Grid::new("compare").num_columns(2 + pins.len()).spacing([COLUMN_GAP, 2.0]).show(ui, |ui| {
         ui.label("");
         cell_ui(ui, width, |ui| ui.label(RichText::new("now").heading()));
         for (pin, _) in &pins {
-            let own = cell_ui(ui, width, |ui| heading_ui(ui, context, (pin, width)));
-            asked = asked.take().or(own);
+            let clicked = cell_ui(ui, width, |ui| heading_ui(ui, context, (pin, width)));
+            action = action.take().or(clicked);
         }
         ui.end_row();
         for (name, unit, text) in [("shaking", "", shaking as fn(&_) -> String), ("stops", "mm", stops)] {
             name_ui(ui, name, unit);
-            let own = text(&now.scene);
+            let present = text(&now.scene);
             let write = |ui: &mut Ui, text: RichText| {
                 cell_ui(ui, width, |ui| ui.add(Label::new(text).wrap()));
             };
-            write(ui, RichText::new(bare(&own, unit)).heading());
+            write(ui, RichText::new(bare(&present, unit)).heading());
             for (_, card) in &pins {
                 let text = text(&card.scene);
                 let shown = RichText::new(bare(&text, unit));
-                write(ui, if text == own { shown.color(style.faint()) } else { shown });
+                write(ui, if text == present { shown.color(style.faint()) } else { shown });
             }
             ui.end_row();
         }
@@ -144,16 +144,16 @@ fn table_ui(ui: &mut Ui, context: &ViewContext<'_>) -> Option<Asked> {
         ui.end_row();
         for (name, unit, text, number, decimals) in NUMBERS {
             name_ui(ui, name, unit);
-            let own = RichText::new(bare(&text(&now), unit)).heading();
-            cell_ui(ui, width, |ui| ui.label(own));
+            let present = RichText::new(bare(&text(&now), unit)).heading();
+            cell_ui(ui, width, |ui| ui.label(present));
             for (_, card) in &pins {
-                let apart = difference(card, &now, number, decimals);
-                cell_ui(ui, width, |ui| number_ui(ui, &style, &bare(&text(card), unit), apart.as_deref()));
+                let delta = difference(card, &now, number, decimals);
+                cell_ui(ui, width, |ui| number_ui(ui, &style, &bare(&text(card), unit), delta.as_deref()));
             }
             ui.end_row();
         }
     });
-    asked
+    action
 }
 
 fn cell_ui<R>(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui) -> R) -> R {
@@ -164,14 +164,14 @@ fn cell_ui<R>(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui) -> R) -> R
     cell.inner
 }
 
-/// A text without the unit that stands in the heading of its row.
+/// A text without the unit that the heading of its row contains.
 fn bare(text: &str, unit: &str) -> String {
     if unit.is_empty() { text.to_owned() } else { text.replace(&format!(" {unit}"), "") }
 }
 
-/// What a pin is called, and what can be done with it.
-fn heading_ui(ui: &mut Ui, context: &ViewContext<'_>, (pin, width): (&Pin, f32)) -> Option<Asked> {
-    let (letter, mut asked) = (pin.letter(), None);
+/// Name of a pin and the buttons that act on it. Returns the action clicked.
+fn heading_ui(ui: &mut Ui, context: &ViewContext<'_>, (pin, width): (&Pin, f32)) -> Option<PinAction> {
+    let (letter, mut action) = (pin.letter(), None);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         let kind = match (pin.kind(), pin.scene().stops) {
@@ -186,41 +186,41 @@ fn heading_ui(ui: &mut Ui, context: &ViewContext<'_>, (pin, width): (&Pin, f32))
         let hover = "The scene as it is in this pin: one step that can be undone. The motion goes on from \
                      where it is.";
         let other = pin.scene() != context.session.scene();
-        let text = RichText::new(if width < ROOMY { "Back" } else { "Take back" }).small();
+        let text = RichText::new(if width < WIDE_COLUMN { "Back" } else { "Take back" }).small();
         let back = ui.add_enabled(other, Button::new(text).small().wrap_mode(Extend));
         if named(back, other, format!("Take {letter} back"))
             .on_hover_text(hover)
             .on_disabled_hover_text("It is the present scene.")
             .clicked()
         {
-            asked = Some(Asked::TakeBack(letter));
+            action = Some(PinAction::TakeBack(letter));
         }
-        let gone = ui.add(Button::new(RichText::new("Unpin").small()).small().wrap_mode(Extend));
-        if named(gone, true, format!("Unpin {letter}")).clicked() {
-            asked = Some(Asked::Unpin(letter));
+        let unpin = ui.add(Button::new(RichText::new("Unpin").small()).small().wrap_mode(Extend));
+        if named(unpin, true, format!("Unpin {letter}")).clicked() {
+            action = Some(PinAction::Unpin(letter));
         }
     });
-    asked
+    action
 }
 
-/// A button by a name that no other one has.
+/// Gives a button a unique name for screen readers.
 fn named(button: egui::Response, enabled: bool, name: String) -> egui::Response {
     button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, enabled, &name));
     button
 }
 
-/// A number, and by how much it differs from that of the present motion.
-fn number_ui(ui: &mut Ui, style: &Style, text: &str, apart: Option<&str>) {
+/// A value, with its difference from the present motion in brackets.
+fn number_ui(ui: &mut Ui, style: &Style, text: &str, difference: Option<&str>) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         ui.label(text);
-        if let Some(apart) = apart {
-            ui.label(RichText::new(format!("({apart})")).font(style.small()).color(style.faint()));
+        if let Some(difference) = difference {
+            ui.label(RichText::new(format!("({difference})")).font(style.small()).color(style.faint()));
         }
     });
 }
 
-/// By how much a number of a pin is more than that of the present motion; none while one is not known.
+/// The value of a pin minus that of the present motion, as text. `None` while either is unknown.
 fn difference(
     pin: &Card,
     now: &Card,
@@ -228,15 +228,15 @@ fn difference(
     decimals: fn(f64) -> usize,
 ) -> Option<String> {
     let of = |card: &Card| card.settled.as_ref().and_then(number);
-    let (own, now) = (of(pin)?, of(now)?);
-    let decimals = decimals(own.abs().max(now.abs()));
-    let text = format!("{:+.decimals$}", own - now);
-    // what is written as nothing has no sign
-    let nothing = text.trim_start_matches(['+', '-', '0', '.']).is_empty();
-    Some(if nothing { "same".to_owned() } else { text })
+    let (pinned, now) = (of(pin)?, of(now)?);
+    let decimals = decimals(pinned.abs().max(now.abs()));
+    let text = format!("{:+.decimals$}", pinned - now);
+    // a difference that rounds to zero has no sign
+    let is_zero = text.trim_start_matches(['+', '-', '0', '.']).is_empty();
+    Some(if is_zero { "same".to_owned() } else { text })
 }
 
-/// Share of the work that impacts take.
+/// Share of the work that impacts dissipate.
 fn impacts(card: &Card) -> String {
     value(card, |settled| settled.impact_share.map(|share| format!("{:.0} %", 100.0 * share)))
 }

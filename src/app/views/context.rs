@@ -1,4 +1,4 @@
-//! What every view is given, and what stands in the place of one that has no room.
+//! Context passed to every view, and the placeholder of a view that is too small.
 
 use eframe::egui::{Align, Label, Layout, Rect, RichText, Ui, UiBuilder};
 
@@ -11,15 +11,13 @@ use crate::study::Watch;
 use super::memory::Memory;
 use super::span::Span;
 
-/// What is covered, so that one predicts first.
+/// What a lesson covers until the learner has made a prediction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cover {
-    /// Nothing.
     None,
-    /// What other settings or starts than the present ones would come to.
+    /// Results of other settings or starts than the present ones.
     Surveys,
-    /// All that is not there to be seen before the motion begins; the motion stands at its start, and nothing
-    /// can be moved.
+    /// Everything that follows from the motion, which stands at its start; nothing can be moved.
     Future,
     /// The motion and all results.
     All,
@@ -28,16 +26,16 @@ pub enum Cover {
 /// Which motion a drawing shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Drawn {
-    /// The present one, and the pinned ones as ghosts.
+    /// The present motion, with the pinned ones as ghosts.
     WithGhosts,
-    /// The present one.
+    /// The present motion alone.
     Alone,
-    /// The pinned one at this place; no hand moves it.
+    /// The pinned motion at this index, which cannot be moved by hand.
     Pinned(usize),
 }
 
 impl Drawn {
-    /// The pinned motion that is drawn.
+    /// The pinned motion that is drawn, if any.
     pub(super) fn pin(self, session: &Session) -> Option<&Pin> {
         match self {
             Self::Pinned(place) => session.pins.all().get(place),
@@ -45,7 +43,7 @@ impl Drawn {
         }
     }
 
-    /// Its past.
+    /// The recorded motion that is drawn.
     pub(super) fn watch(self, session: &Session) -> &Watch {
         self.pin(session).map_or(session.player.watch(), Pin::watch)
     }
@@ -55,32 +53,32 @@ impl Drawn {
         self.pin(session).map_or_else(|| session.player.state(), |pin| pin.state_at(session.player.time()))
     }
 
-    /// The model by which it moves then.
+    /// Its model at that time.
     pub(super) fn model(self, session: &Session) -> &Model {
         let of_pin = |pin| Pin::watch(pin).model_at(session.player.time());
         self.pin(session).map_or(session.shown(), |pin| of_pin(pin))
     }
 }
 
-/// What a view looks at and acts on.
+/// What a view shows and acts on.
 pub struct ViewContext<'a> {
     /// The open scene: document, model, motion, results.
     pub session: &'a mut Session,
-    /// Colours and widths.
+    /// Colours and line widths.
     pub style: Style,
     /// The x axis that views share.
     pub span: Span,
-    /// What views keep between frames.
+    /// State that views keep between frames.
     pub memory: &'a mut Memory,
-    /// No rings at impacts.
+    /// Whether rings at impacts are left out.
     pub reduce_motion: bool,
     pub cover: Cover,
-    /// One view fills the window, and shares its axes with none.
+    /// Whether the view fills the window, so that it shares its axes with no other.
     pub filled: bool,
     pub drawn: Drawn,
 }
 
-/// In place of a view that has no room: a word, where there is room for one.
+/// Shows a hint in place of a view that is too small.
 pub fn too_small_ui(ui: &mut Ui, style: &Style, area: Rect) {
     ui.painter().rect_filled(area, 0.0, style.ground());
     let text = RichText::new("Too small to show: drag an edge of it, or press Z over it.")

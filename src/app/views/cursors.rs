@@ -1,4 +1,4 @@
-//! Two cursors over time, in all views over time at once, with what is read off at them.
+//! Two time cursors shared by all views over time, with a readout of the values at them.
 
 use eframe::egui::{
     Align2, CursorIcon, EventFilter, Key, Label, PointerButton, Rect, Response, RichText, Role, Sense, Shape,
@@ -11,26 +11,27 @@ use crate::app::ui::widgets::arrows;
 use crate::app::words::numbers::{below, decimals_for, three};
 
 use super::ViewContext;
-use super::cursor_times::{Cursors, remembered};
+use super::cursor_times::{Cursors, recorded_range};
 use super::labels::plated;
 use super::legend::LEGEND;
 use super::view::Axis;
 use super::zoom::Ends;
 
-/// Steps of an arrow key in the stretch of time that is shown, at least.
+/// Smallest number of arrow-key steps over the time range shown.
 const STEPS: f64 = 500.0;
 
-/// Digits of a time that are told apart below three of the stretch that is shown.
-const DIGITS: usize = 2;
+/// Decimals of a cursor's time beyond the three significant digits of the range shown.
+const EXTRA_DECIMALS: usize = 2;
 
-/// The time of the event before or after a time in s, or the nearest one.
-fn event(session: &Session, t: f64, way: Option<bool>) -> Option<f64> {
+/// Time of the next event after `t` in s for `Some(true)`, of the previous one for `Some(false)`, else
+/// of the nearest.
+fn event(session: &Session, t: f64, later: Option<bool>) -> Option<f64> {
     let events = session.player.watch().events();
     let before = events.partition_point(|event| event.t < t).checked_sub(1);
     let before = before.and_then(|i| events.get(i)).map(|event| event.t);
-    let from = if way.is_some() { events.partition_point(|event| event.t <= t) } else { 0 };
+    let from = if later.is_some() { events.partition_point(|event| event.t <= t) } else { 0 };
     let after = events.range(from..).find(|event| event.t >= t).map(|event| event.t);
-    match (way, before, after) {
+    match (later, before, after) {
         (Some(true), _, after) => after,
         (Some(false), before, _) => before,
         (None, Some(a), Some(b)) => Some(if t - a < b - t { a } else { b }),
@@ -38,7 +39,7 @@ fn event(session: &Session, t: f64, way: Option<bool>) -> Option<f64> {
     }
 }
 
-/// What is read off at the cursors: time, phase and what a view says of each, and what lies between them.
+/// Texts of the readout: time, phase and value at each cursor, and the differences between the two.
 fn reading(
     context: &ViewContext<'_>,
     window: f64,
@@ -46,8 +47,8 @@ fn reading(
     between: impl Fn(f64, f64) -> String,
 ) -> [String; 3] {
     let (session, at) = (&context.session, context.memory.cursors.at);
-    let (begin, end) = remembered(session);
-    let decimals = decimals_for(window) + DIGITS;
+    let (begin, end) = recorded_range(session);
+    let decimals = decimals_for(window) + EXTRA_DECIMALS;
     let model_at = |t: f64| session.player.watch().model_at(t);
     let is_known = |t: f64| (begin..=end).contains(&t);
     let each = |i: usize| {
@@ -56,11 +57,11 @@ fn reading(
         let value = if is_known(at[i]) { at_each(at[i]) } else { "not remembered".to_owned() };
         format!("{}: {:.decimals$} s{phase}, {value}", i + 1, at[i])
     };
-    let apart = at[1] - at[0];
-    let rate = if apart == 0.0 { String::new() } else { format!(" = 1 / {} Hz", three(1.0 / apart.abs())) };
-    let mut last = format!("2 - 1: {apart:.decimals$} s{rate}");
+    let span = at[1] - at[0];
+    let rate = if span == 0.0 { String::new() } else { format!(" = 1 / {} Hz", three(1.0 / span.abs())) };
+    let mut last = format!("2 - 1: {span:.decimals$} s{rate}");
     if let Some(period) = model_at(at[1]).forcing_period() {
-        last += &format!(" = {} periods", three(apart / period));
+        last += &format!(" = {} periods", three(span / period));
     }
     if at.into_iter().all(is_known) {
         last += &format!(", {}", between(at[0], at[1]));
@@ -68,8 +69,7 @@ fn reading(
     [each(0), each(1), last]
 }
 
-/// What is read off, below the row of the legend: what a view says `at_each` of the times, and `between` the
-/// two. How much of the view's height that takes, in points.
+/// Writes the texts `at_each` cursor and `between` the two below the legend. Returns their height in points.
 pub(super) fn readout_ui(
     ui: &mut Ui,
     context: &ViewContext<'_>,
@@ -94,9 +94,8 @@ pub(super) fn readout_ui(
     inner.response.rect.height()
 }
 
-/// Draws the cursors over `frame`, which shows the times `ends`, and lets them be moved: by a click or a drag
-/// anywhere in it, with Ctrl to the nearest event; with the keyboard's focus by the arrow keys, up and down
-/// from event to event.
+/// Draws the cursors over `frame`, which shows the times `ends`. A click or a drag moves the nearer one, with
+/// Ctrl to the nearest event; focused, it moves by the left and right keys, with up and down to events.
 pub(super) fn cursors_ui(
     ui: &mut Ui,
     context: &mut ViewContext<'_>,
@@ -114,7 +113,7 @@ pub(super) fn cursors_ui(
     let session = &*context.session;
     let snapped = |t: f64| event(session, t, None).filter(|_| snaps).unwrap_or(t);
     let cursors = &mut context.memory.cursors;
-    pointed(cursors, session, response, shift, |x| snapped(time(x)));
+    move_by_pointer(cursors, session, response, shift, |x| snapped(time(x)));
     for which in 0..2 {
         let x = screen(cursors.at[which]);
         let seen = frame.x_range().contains(x);
@@ -158,7 +157,7 @@ pub(super) fn cursors_ui(
             (true, 0) => _ = painter.line_segment(line, stroke),
             (true, _) => painter.extend(Shape::dashed_line(&line, stroke, 6.0, 4.0)),
         }
-        // one that is out of sight says on which side
+        // a cursor outside the range is marked at the edge that it lies beyond
         let number = ["1", "2"][which];
         let (align, text) = match (seen, x < frame.left()) {
             (true, _) => (Align2::LEFT_TOP, number.to_owned()),
@@ -173,8 +172,8 @@ pub(super) fn cursors_ui(
     }
 }
 
-/// A click or a drag anywhere else moves the cursor that is nearer.
-fn pointed(
+/// Moves the nearer cursor by a click or a drag beside the cursors.
+fn move_by_pointer(
     cursors: &mut Cursors,
     session: &Session,
     response: &Response,
@@ -213,13 +212,13 @@ mod tests {
         let mut session = Session::new(Editor::open("paper").unwrap(), std::sync::Arc::new(|| ())).unwrap();
         session.player.speed = 100.0;
         session.player.tick(0.1);
-        let times: Vec<f64> = session.player.watch().events().iter().map(|own| own.t).collect();
+        let times: Vec<f64> = session.player.watch().events().iter().map(|event| event.t).collect();
         let i = (1..times.len() - 1).find(|i| times[i - 1] < times[*i] && times[*i] < times[i + 1]).unwrap();
-        let (before, own, after) = (times[i - 1], times[i], times[i + 1]);
-        assert_eq!(event(&session, own, Some(true)), Some(after));
-        assert_eq!(event(&session, own, Some(false)), Some(before));
-        assert_eq!(event(&session, own, None), Some(own));
-        assert_eq!(event(&session, 0.4 * own + 0.6 * after, None), Some(after));
+        let (before, at, after) = (times[i - 1], times[i], times[i + 1]);
+        assert_eq!(event(&session, at, Some(true)), Some(after));
+        assert_eq!(event(&session, at, Some(false)), Some(before));
+        assert_eq!(event(&session, at, None), Some(at));
+        assert_eq!(event(&session, 0.4 * at + 0.6 * after, None), Some(after));
         assert_eq!(event(&session, 1e9, Some(true)), None);
     }
 }

@@ -1,4 +1,4 @@
-//! Distance of the pinned motions from the present one over time, by decades.
+//! View of the distance between the pinned motions and the present one over time, on a logarithmic scale.
 
 use eframe::egui::{self, Align2, RichText, Ui, UiBuilder, vec2};
 use egui_plot::{HLine, Line, PlotBounds, PlotPoint, Text, VLine};
@@ -9,21 +9,21 @@ use crate::study::distances;
 
 use super::cursors::{cursors_ui, readout_ui};
 use super::ghosts::PINNED;
-use super::hand::hand;
+use super::hand::axes_input;
 use super::labels::haloed;
 use super::legend::LEGEND;
 use super::plot::{LOW, MARGIN, decades, marks, plot_place, power, still_plot};
 use super::view::Axis;
 use super::{View, ViewContext, too_small_ui};
 
-const MOST_POINTS: usize = 2000;
+const MAX_POINTS: usize = 2000;
 
-/// Decades of a mm below which nothing is told apart.
-const LEAST: f64 = -14.0;
+/// Decimal logarithm of the smallest distance shown, in mm; below it lies rounding error.
+const MIN_LOG: f64 = -14.0;
 
-/// Forcing periods, or characteristic times, that are shown at least, and where in the picture the present
-/// is.
+/// Smallest number of forcing periods, or characteristic times, shown.
 const PERIODS: f64 = 6.0;
+/// Position of the present in the picture, as a share of its width.
 const PRESENT: f64 = 0.94;
 
 pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
@@ -42,34 +42,34 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         .iter()
         .map(|pin| {
             let span = (pin.since(), now);
-            (pin.place(), distances(session.player.watch(), pin.watch(), span, MOST_POINTS))
+            (pin.place(), distances(session.player.watch(), pin.watch(), span, MAX_POINTS))
         })
         .collect();
-    let seen = || lines.iter().flat_map(|own| &own.1).map(|own| (own.1 * 1e3).log10());
-    let finite = || seen().filter(|own| own.is_finite());
-    // motions that are equal to the last digit lie at the bottom, whatever stands there
-    let bottom = if finite().next().is_some() { 0.0 } else { LEAST };
-    let least = finite().fold(bottom, f64::min).floor().max(LEAST);
-    let most = finite().fold(least + 1.0, f64::max).ceil().max(1.0);
-    let height = |metres: f64| (metres * 1e3).log10().max(least);
+    let seen = || lines.iter().flat_map(|line| &line.1).map(|point| (point.1 * 1e3).log10());
+    let finite = || seen().filter(|log| log.is_finite());
+    // if all motions are equal to the last digit, the axis starts at its lowest end
+    let bottom = if finite().next().is_some() { 0.0 } else { MIN_LOG };
+    let low = finite().fold(bottom, f64::min).floor().max(MIN_LOG);
+    let high = finite().fold(low + 1.0, f64::max).ceil().max(1.0);
+    let height = |metres: f64| (metres * 1e3).log10().max(low);
     let model = session.shown();
-    let own = PERIODS * model.forcing_period().unwrap_or(model.characteristic_time());
-    let to = from + ((now - from) / PRESENT).max(own);
+    let shortest = PERIODS * model.forcing_period().unwrap_or(model.characteristic_time());
+    let to = from + ((now - from) / PRESENT).max(shortest);
     let [across, up] = [Axis::Across(View::Distance), Axis::Up(View::Distance)];
     let (from, to) = context.memory.axes.ends(across, (from, to));
-    let (least, most) = context.memory.axes.ends(up, (least, most));
+    let (low, high) = context.memory.axes.ends(up, (low, high));
     let stroke = style.motion_stroke();
     let rows = f64::from((area.height() / 40.0).clamp(2.0, 7.0));
     let columns = f64::from((area.width() / 80.0).clamp(2.0, 10.0));
-    let apart = |pin: &Pin, t: f64| (session.player.watch().state_at(t).x - pin.state_at(t).x).abs();
+    let distance = |pin: &Pin, t: f64| (session.player.watch().state_at(t).x - pin.state_at(t).x).abs();
     let of_all = |word: &dyn Fn(&Pin) -> String| {
         pins.iter().map(|pin| format!("{} {}", pin.letter(), word(pin))).collect::<Vec<_>>().join(", ")
     };
-    let at_each = |t: f64| of_all(&|pin| millimetres(apart(pin, t)));
+    let at_each = |t: f64| of_all(&|pin| millimetres(distance(pin, t)));
     let between = |a: f64, b: f64| {
-        let rate = |pin: &Pin| (apart(pin, b) / apart(pin, a)).ln() / (b - a);
-        let said = |rate: f64| if rate.is_finite() { format!("{} /s", three(rate)) } else { "-".to_owned() };
-        format!("exponential rate {}", of_all(&|pin| said(rate(pin))))
+        let rate = |pin: &Pin| (distance(pin, b) / distance(pin, a)).ln() / (b - a);
+        let text = |rate: f64| if rate.is_finite() { format!("{} /s", three(rate)) } else { "-".to_owned() };
+        format!("exponential rate {}", of_all(&|pin| text(rate(pin))))
     };
     let readout = readout_ui(ui, context, (area, to - from), at_each, between);
     let is_low = area.height() < LOW;
@@ -78,20 +78,20 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let mut child = plot_place(ui, &style, plot);
     let shown = still_plot("distance")
         .x_grid_spacer(|_| marks(from, to - 0.05 * (to - from), columns))
-        .y_grid_spacer(|_| decades(least, most, rows))
+        .y_grid_spacer(|_| decades(low, high, rows))
         .x_axis_label(time_label)
         .y_axis_label(label)
         .y_axis_formatter(|mark, _| power(mark.value))
         .show(&mut child, |plot| {
-            plot.set_plot_bounds(PlotBounds::from_min_max([from, least], [to, most]));
-            for mark in decades(least, most, rows) {
+            plot.set_plot_bounds(PlotBounds::from_min_max([from, low], [to, high]));
+            for mark in decades(low, high, rows) {
                 plot.hline(HLine::new("", mark.value).stroke(style.grid_stroke()));
             }
             plot.vline(VLine::new("now", now).stroke(style.ghost_stroke()));
             for (place, path) in &lines {
-                let points: Vec<[f64; 2]> = path.iter().map(|(t, own)| [*t, height(*own)]).collect();
-                let end = points.last().map(|own| PlotPoint::new(own[0], own[1]));
-                // without dashes, of which so steep a line has thousands; its letter stands at its end
+                let points: Vec<[f64; 2]> = path.iter().map(|(t, metres)| [*t, height(*metres)]).collect();
+                let end = points.last().map(|last| PlotPoint::new(last[0], last[1]));
+                // solid, since so steep a line has thousands of dashes; the letter at its end names it
                 plot.line(Line::new("distance", points).stroke(stroke).allow_band(false));
                 if let Some(end) = end {
                     let letter = RichText::new(PINNED[place % PINNED.len()]).font(style.body());
@@ -103,7 +103,7 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         });
     let spoken = "distance of the pinned motions";
     shown.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, spoken));
-    let said: Vec<String> = lines
+    let texts: Vec<String> = lines
         .iter()
         .filter_map(|(place, path)| Some((PINNED[place % PINNED.len()], path.last()?.1)))
         .map(|(letter, metres)| match metres {
@@ -113,19 +113,19 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         .collect();
     let at = (area.right_top() + vec2(-6.0, 0.5 * LEGEND), Align2::RIGHT_CENTER);
     let painter = ui.painter().with_clip_rect(area);
-    haloed(&painter, &style, at, &said.join("   "), (style.small(), style.ink()));
+    haloed(&painter, &style, at, &texts.join("   "), (style.small(), style.ink()));
     let frame = *shown.transform.frame();
-    hand(&child, context.memory, View::Distance, &shown.response, (area, frame));
+    axes_input(&child, context.memory, View::Distance, &shown.response, (area, frame));
     cursors_ui(&mut child, context, &shown.response, (frame, (from, to)), "distance");
 }
 
-/// A distance in m in words: short ones as powers of ten.
+/// A distance in m as text in mm; a small one in scientific notation.
 fn millimetres(metres: f64) -> String {
     let mm = 1e3 * metres;
     if mm >= 0.01 { format!("{} mm", three(mm)) } else { format!("{mm:.1e} mm") }
 }
 
-/// What stands there while nothing is pinned.
+/// Placeholder while nothing is pinned.
 fn nothing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, area: egui::Rect) {
     let faint = context.style.faint();
     ui.scope_builder(UiBuilder::new().max_rect(area.shrink(10.0)), |ui| {

@@ -1,8 +1,7 @@
-//! View of the energy: sources, sinks, and what is left beside the barrier.
+//! View of the energy: sources, sinks, and the present energy compared with the barrier.
 //!
-//! Every number is the live run's own ledger, or the difference of two of them. What comes in is counted up
-//! and drawn to the right, what is taken is counted down and drawn to the left, so that a column adds up to
-//! what is stored.
+//! Every number is from the ledger of the live run, or a difference of two ledgers. Energy supplied is
+//! positive, energy taken negative, so that a column adds up to the stored energy.
 
 use eframe::egui::{self, Align, Align2, Color32, Layout, Rect, RichText, Sense, Stroke, Ui, pos2, vec2};
 
@@ -13,71 +12,77 @@ use super::ghosts::dashed;
 use super::ranges::{axis_end, floor};
 use super::{ViewContext, too_small_ui};
 
-/// Widths in points of the names and of the numbers.
+/// Width in points of the names.
 const NAMES: f32 = 64.0;
+/// Width in points of the numbers.
 const NUMBERS: f32 = 62.0;
 
-/// Room in points between a number and the bars beside it.
+/// Gap in points between a number and the bars beside it.
 const GAP: f32 = 10.0;
 
-/// Distance in points of the lines of two pinned motions.
+/// Distance in points between the lines of two pinned motions.
 const GHOSTS: f32 = 2.5;
 
-/// Heights in points of a row: least and most.
+/// Smallest and largest height of a row in points.
 const ROWS: (f32, f32) = (17.0, 30.0);
 
-/// Rows of the whole view, headings and the bar of the present included.
+/// Number of rows of the view, including the headings and the bar of the present energy.
 const COUNT: f32 = 10.0;
 
-/// Multiples of a joule, and how they are called.
+/// Units of energy in J, with their names.
 const UNITS: [(f64, &str); 5] = [(1.0, "J"), (1e-3, "mJ"), (1e-6, "µJ"), (1e-9, "nJ"), (1e-12, "pJ")];
 
-/// A row of the ledger: its name, what it says, its value with its sign, its colour.
+/// A row of the ledger: name, explanation, signed value, colour.
 type Row = (&'static str, &'static str, fn(&LiveLedger) -> f64, fn(&Style) -> Color32);
 
 /// The row that only a scene with a transducer has.
 const TRANSDUCER: &str = "transducer";
 
 const LEDGER: [Row; 6] = [
-    ("work in", "Work of the base on the mass.", |own| own.work_j, Style::base),
+    ("work in", "Work of the base on the mass.", |ledger| ledger.work_j, Style::base),
     (
         "by hand",
         "Put in or taken out by you: a stop dragged over the mass, a mass put elsewhere, another potential \
          under it.",
-        |own| own.by_hand_j,
+        |ledger| ledger.by_hand_j,
         Style::mass,
     ),
-    ("damping", "Taken by damping.", |own| -own.damping_j, Style::faint),
-    ("impacts", "Taken by impacts: (1 - e²) of the kinetic energy each.", |own| -own.impact_j, Style::impact),
+    ("damping", "Taken by damping.", |ledger| -ledger.damping_j, Style::faint),
+    (
+        "impacts",
+        "Taken by impacts: (1 - e²) of the kinetic energy each.",
+        |ledger| -ledger.impact_j,
+        Style::impact,
+    ),
     (
         TRANSDUCER,
         "Taken by the load and the coil of the transducer.",
-        |own| -(own.harvested_j + own.coil_j),
+        |ledger| -(ledger.harvested_j + ledger.coil_j),
         Style::curve,
     ),
-    ("stored", "What that leaves in the mass and its mechanism.", |own| own.stored_j, Style::ink),
+    ("stored", "What that leaves in the mass and its mechanism.", |ledger| ledger.stored_j, Style::ink),
 ];
 
-/// The unit that suits a scene: of the energy of its own speed, so that it stays.
+/// The largest unit not above `energy`, which callers take from the speed scale so that the unit stays.
 pub fn unit_of(energy: f64) -> (f64, &'static str) {
     UNITS.into_iter().find(|unit| energy >= unit.0).unwrap_or(UNITS[4])
 }
 
-/// Decimals of all numbers of a ledger: three, or one where there are large ones.
+/// Decimals of all numbers of a ledger: three, or one if any number has three digits before the point.
 pub fn decimals(ledger: &LiveLedger, unit: f64) -> usize {
-    let most = LEDGER.iter().map(|row| row.2(ledger).abs()).fold(0.0, f64::max);
-    if most / unit >= 100.0 { 1 } else { 3 }
+    let largest = LEDGER.iter().map(|row| row.2(ledger).abs()).fold(0.0, f64::max);
+    if largest / unit >= 100.0 { 1 } else { 3 }
 }
 
-/// A number of the ledger as it is written.
+/// A value of the ledger as text with its sign, in the given unit in J.
 pub fn written(joule: f64, unit: f64, decimals: usize) -> String {
     let value = joule / unit;
     let text = format!("{value:+.decimals$}");
-    // what is written as nothing has no sign
+    // a value that rounds to zero has no sign
     if text.trim_start_matches(['+', '-', '0', '.']).is_empty() { text[1..].to_owned() } else { text }
 }
 
-/// How much of the energy is accounted for in per cent: with decimals only where they say something.
+/// Percentage of the energy that the ledger accounts for, without decimals if it is 100.
 fn accounted(residual: f64) -> String {
     let missing = 100.0 * residual.clamp(0.0, 1.0);
     if missing < 0.005 { "100".to_owned() } else { format!("{:.2}", 100.0 - missing) }
@@ -87,7 +92,7 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let style = context.style;
     ui.painter().rect_filled(ui.max_rect(), 0.0, style.ground());
     let area = ui.available_rect_before_wrap().shrink2(vec2(10.0, 6.0));
-    // less than every row and the bar below them
+    // too small for all rows and the bar below them
     if area.width() < NAMES + NUMBERS + 40.0 || area.height() < ROWS.0 * (COUNT - 2.0) {
         return too_small_ui(ui, &style, ui.max_rect());
     }
@@ -101,7 +106,7 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         .pins
         .all()
         .iter()
-        .map(|pin| (pin.place(), [pin.watch().ledger_at(now).map(|own| own.1), pin.watch().last_period(now)]))
+        .map(|pin| (pin.place(), [pin.watch().ledger_at(now).map(|at| at.1), pin.watch().last_period(now)]))
         .collect();
     let count = COUNT + if model.has_transducer() { 1.0 } else { 0.0 };
     let row = (area.height() / count).clamp(ROWS.0, ROWS.1);
@@ -110,7 +115,7 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let column = (area.width() - NAMES) / columns;
     let heads: [(Option<LiveLedger>, &str, &str); 2] = [
         (
-            whole.map(|own| own.1),
+            whole.map(|at| at.1),
             "since the start",
             "From the start of the motion up to the time that is shown.",
         ),
@@ -140,17 +145,17 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
                 put_ui(ui, numbers, RichText::new("-").color(style.faint()), Align::Max, hover);
                 continue;
             };
-            // the columns stand in the other order than their headings
+            // the columns are drawn in reverse order of `heads`
             let column = heads.len() - 1 - i;
             let ghosts = pins.iter().filter_map(|pin| Some((pin.0, pin.1[column].as_ref()?)));
             let ghosts: Vec<(usize, &LiveLedger)> = ghosts.collect();
-            let all = ghosts.iter().map(|own| own.1).chain([ledger]);
-            let most = all.flat_map(|own| LEDGER.map(|row| row.2(own).abs())).fold(0.0, f64::max);
+            let all = ghosts.iter().map(|ghost| ghost.1).chain([ledger]);
+            let largest = all.flat_map(|ledger| LEDGER.map(|row| row.2(ledger).abs())).fold(0.0, f64::max);
             let bars =
                 Rect::from_min_max(rect.min + vec2(GAP, 0.0), pos2(numbers.left() - 4.0, rect.bottom()));
-            bar(ui, &style, bars, value(ledger), most, color(&style));
+            bar(ui, &style, bars, value(ledger), largest, color(&style));
             for (place, ghost) in ghosts {
-                ghost_bar(ui, &style, bars, (value(ghost) / most, place));
+                ghost_bar(ui, &style, bars, (value(ghost) / largest, place));
             }
             let number = written(value(ledger), unit, decimals(ledger, unit));
             put_ui(ui, numbers, RichText::new(number), Align::Max, hover);
@@ -186,12 +191,12 @@ fn put_ui(ui: &mut Ui, rect: Rect, text: RichText, align: Align, hover: &str) {
     ui.scope_builder(builder, |ui| ui.add(egui::Label::new(text).extend()).on_hover_text(hover));
 }
 
-/// A bar from the middle: to the right what comes in, to the left what is taken.
-fn bar(ui: &Ui, style: &Style, rect: Rect, value: f64, most: f64, color: Color32) {
+/// Draws a bar from the middle: to the right for energy supplied, to the left for energy taken.
+fn bar(ui: &Ui, style: &Style, rect: Rect, value: f64, largest: f64, color: Color32) {
     let painter = ui.painter();
     let (middle, half) = (rect.center().x, 0.5 * rect.width() - 2.0);
-    if half > 4.0 && most > 0.0 {
-        let end = middle + (value / most) as f32 * half;
+    if half > 4.0 && largest > 0.0 {
+        let end = middle + (value / largest) as f32 * half;
         let thick = (0.5 * rect.height()).min(12.0);
         let from = pos2(middle, rect.center().y - 0.5 * thick);
         let to = pos2(end, rect.center().y + 0.5 * thick);
@@ -200,7 +205,7 @@ fn bar(ui: &Ui, style: &Style, rect: Rect, value: f64, most: f64, color: Color32
     }
 }
 
-/// The bar of a pinned motion as a dashed line along the lower edge of the row, `share` of the longest.
+/// Draws the bar of a pinned motion as a dashed line below the row, a `share` of the longest bar.
 fn ghost_bar(ui: &Ui, style: &Style, rect: Rect, (share, place): (f64, usize)) {
     let (middle, half) = (rect.center().x, 0.5 * rect.width() - 2.0);
     if half > 4.0 && share.is_finite() {
@@ -210,7 +215,7 @@ fn ghost_bar(ui: &Ui, style: &Style, rect: Rect, (share, place): (f64, usize)) {
     }
 }
 
-/// Potential and kinetic energy now, above the bottom of the deeper well, against the barrier.
+/// Draws the present potential and kinetic energy above the deeper well, and the height of the barrier.
 fn present_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, (unit, name): (f64, &str)) {
     let style = context.style;
     let kinetic_room = context.memory.ranges.follow(context.session).kinetic();
@@ -218,21 +223,21 @@ fn present_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, (unit, nam
     let model = session.shown();
     let (kinetic, potential) = model.energies(state.x, state.v);
     let landscape = &model.mechanism().landscape;
-    let wells = landscape.equilibria.iter().filter(|own| own.stable);
-    let wells = wells.map(|own| model.mechanism().curve.potential(own.x)).reduce(f64::min);
-    // without a well the lower stop is the bottom
+    let wells = landscape.equilibria.iter().filter(|point| point.stable);
+    let wells = wells.map(|well| model.mechanism().curve.potential(well.x)).reduce(f64::min);
+    // without a well, energy is counted from the lower stop
     let bottom = wells.or(floor(model)).unwrap_or(potential.min(0.0));
     let (potential, barrier) = (
         (potential - bottom).max(0.0),
         landscape.barrier.map(|barrier| model.mechanism().curve.potential(barrier.x) - bottom),
     );
-    let most = axis_end(kinetic_room.max(1.3 * barrier.unwrap_or(0.0)).max(1e-300));
+    let scale = axis_end(kinetic_room.max(1.3 * barrier.unwrap_or(0.0)).max(1e-300));
     if rect.height() < 34.0 {
         return;
     }
     let thick = (0.32 * rect.height()).clamp(10.0, 22.0);
     let track = Rect::from_min_size(pos2(rect.left(), rect.top() + 14.0), vec2(rect.width(), thick));
-    let screen_from_energy = |energy: f64| track.left() + (energy / most).min(1.0) as f32 * track.width();
+    let screen_from_energy = |energy: f64| track.left() + (energy / scale).min(1.0) as f32 * track.width();
     let response = ui.interact(rect, ui.scope_id().with("present"), Sense::hover());
     let painter = ui.painter().with_clip_rect(rect.expand(4.0));
     painter.rect_filled(track, 0.0, style.grid());
@@ -244,7 +249,7 @@ fn present_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, (unit, nam
         painter.text(pos2(track.left(), below), Align2::LEFT_TOP, "potential", style.small(), style.ink());
     let at = pos2(legend.right() + 8.0, below);
     painter.text(at, Align2::LEFT_TOP, "+ kinetic now", style.small(), style.mass_ink());
-    let end = format!("{} {name}", short(most / unit));
+    let end = format!("{} {name}", short(scale / unit));
     painter.text(pos2(track.right(), below), Align2::RIGHT_TOP, end, style.small(), style.faint());
     if let Some(barrier) = barrier {
         let x = screen_from_energy(barrier);
@@ -281,7 +286,7 @@ mod tests {
         assert_eq!(written(1.2345e-3, 1e-3, 3), "+1.234");
         assert_eq!(written(-0.25, 1e-3, 1), "-250.0");
         assert_eq!(written(-1e-9, 1e-3, 3), "0.000");
-        // one large number of a column is enough
+        // one large number sets the decimals of all
         let ledger = LiveLedger { work_j: 0.3, damping_j: 1e-3, ..LiveLedger::default() };
         assert_eq!((decimals(&ledger, 1e-3), decimals(&LiveLedger::default(), 1e-3)), (1, 3));
         assert_eq!([0.0, 1e-9, 3e-4, 2.0].map(accounted), ["100", "100", "99.97", "0.00"]);

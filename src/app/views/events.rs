@@ -1,4 +1,4 @@
-//! Events of the motion as a table: what happened when, how fast, and what it took.
+//! View of the events of the motion as a table: time, kind, velocities and energy lost.
 
 use eframe::egui::{self, Align2, FontId, Rect, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, pos2};
 
@@ -14,7 +14,7 @@ use super::{ViewContext, too_small_ui};
 /// Height in points of a row.
 const ROW: f32 = 18.0;
 
-/// A column: its heading, its name in the table, its share of the width, what it says.
+/// A column: heading, name in the table, share of the width, explanation.
 type Column = (&'static str, &'static str, f32, &'static str);
 
 const COLUMNS: [Column; 7] = [
@@ -40,11 +40,11 @@ pub fn events_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     ui.spacing_mut().item_spacing.y = 0.0;
     ui.horizontal(|ui| {
         ui.add_space(8.0);
-        let gone = match forgotten {
+        let note = match forgotten {
             0 => String::new(),
-            gone => format!("; {gone} earlier ones are no longer remembered"),
+            number => format!("; {number} earlier ones are no longer remembered"),
         };
-        ui.label(RichText::new(format!("{count} events{gone}")).font(style.small()).color(style.faint()));
+        ui.label(RichText::new(format!("{count} events{note}")).font(style.small()).color(style.faint()));
         let hover = "The rows that are remembered, as the command line writes them, with two more columns.";
         let button = ui.add_enabled(count > 0, egui::Button::new("Copy as CSV").small());
         if button.on_hover_text(hover).clicked() {
@@ -70,27 +70,28 @@ pub fn events_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     list_ui(ui, context, count, smaller(unit));
 }
 
-/// The unit a thousand times smaller: an impact takes little of what moves.
+/// The unit a thousand times smaller: an impact takes little of the kinetic energy.
 fn smaller((joule, _): (f64, &'static str)) -> (f64, &'static str) {
     unit_of(1.001e-3 * joule)
 }
 
 fn list_ui(ui: &mut Ui, context: &mut ViewContext<'_>, count: usize, unit: (f64, &str)) {
     let (style, now) = (context.style, context.session.player.time());
-    let marked = context.session.player.watch().events().partition_point(|own| own.t <= now).checked_sub(1);
+    let marked =
+        context.session.player.watch().events().partition_point(|event| event.t <= now).checked_sub(1);
     let moved = context.memory.marked != marked && marked.is_some();
     let mut list = ScrollArea::vertical().auto_shrink(false).id_salt("events");
     let (height, in_list) =
         (ui.available_height(), ui.rect_contains_pointer(ui.available_rect_before_wrap()));
-    // the present stays in sight, unless a hand is on the list while it plays
+    // scrolls to the present event, unless the pointer is over the list during playback
     let follows = moved && !(in_list && context.session.player.is_playing());
     if let Some(row) = marked.filter(|_| follows) {
         list = list.vertical_scroll_offset(((row as f32 - (0.6 * height / ROW).round()) * ROW).max(0.0));
     }
-    let mut wanted = None;
+    let mut clicked = None;
     list.show_rows(ui, ROW, count, |ui, rows| {
         let first = rows.start;
-        // how long a list is that has just grown the next frame knows
+        // the list has its new length only in the next frame
         match follows && !marked.is_some_and(|row| rows.contains(&row)) {
             true => ui.ctx().request_repaint(),
             false => context.memory.marked = marked,
@@ -99,7 +100,7 @@ fn list_ui(ui: &mut Ui, context: &mut ViewContext<'_>, count: usize, unit: (f64,
         for row in rows {
             let (place, response) =
                 ui.allocate_exact_size(egui::vec2(ui.available_width(), ROW), Sense::click());
-            let texts = COLUMNS.map(|own| cell(&table, own.1, row - first, unit));
+            let texts = COLUMNS.map(|column| cell(&table, column.1, row - first, unit));
             let is_marked = marked == Some(row);
             let spoken = spoken(&texts, unit.1);
             response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_marked, spoken.as_str()));
@@ -114,34 +115,34 @@ fn list_ui(ui: &mut Ui, context: &mut ViewContext<'_>, count: usize, unit: (f64,
                 write(ui, &style, place, column.1, text, true);
             }
             if response.clicked() {
-                wanted = Some(row);
+                clicked = Some(row);
             }
         }
     });
-    if let Some(row) = wanted {
+    if let Some(row) = clicked {
         look_at(context.session, row);
     }
 }
 
-/// Looks at the instant of an event, by its place.
+/// Pauses at the instant of the event in a row.
 fn look_at(session: &mut Session, row: usize) {
-    let Some(t) = session.player.watch().events().get(row).map(|own| own.t) else { return };
+    let Some(t) = session.player.watch().events().get(row).map(|event| event.t) else { return };
     session.player.set_playing(false);
     session.player.seek(t);
 }
 
-/// The places of a row's columns.
+/// Rectangles of the cells of a row.
 fn cells(row: Rect) -> [Rect; COLUMNS.len()] {
-    let all: f32 = COLUMNS.iter().map(|own| own.2).sum();
+    let all: f32 = COLUMNS.iter().map(|column| column.2).sum();
     let (mut x, width) = (row.left() + 6.0, row.width() - 16.0);
-    COLUMNS.map(|own| {
+    COLUMNS.map(|column| {
         let from = x;
-        x += width * own.2 / all;
+        x += width * column.2 / all;
         Rect::from_min_max(pos2(from, row.top()), pos2(x, row.bottom()))
     })
 }
 
-/// A text in its place: words at the left, numbers at the right.
+/// Writes a text into its cell: words to the left, numbers to the right.
 fn write(ui: &Ui, style: &Style, place: Rect, column: &str, text: &str, strong: bool) {
     let color = if strong { style.ink() } else { style.faint() };
     let is_word = matches!(column, "kind" | "side");
@@ -154,7 +155,7 @@ fn write(ui: &Ui, style: &Style, place: Rect, column: &str, text: &str, strong: 
 }
 
 fn cell(table: &Table, column: &str, row: usize, unit: (f64, &str)) -> String {
-    match table.column(column).map(|own| &own.values) {
+    match table.column(column).map(|column| &column.values) {
         Some(Values::Words(words)) => words[row].to_owned(),
         Some(Values::Numbers(numbers)) if numbers[row].is_nan() => "-".to_owned(),
         Some(Values::Numbers(numbers)) => match column {
@@ -167,12 +168,12 @@ fn cell(table: &Table, column: &str, row: usize, unit: (f64, &str)) -> String {
     }
 }
 
-/// Three digits, of a small number with its power of ten.
+/// A number with three digits; a small one in scientific notation.
 fn brief(value: f64) -> String {
     if value != 0.0 && value.abs() < 0.01 { format!("{value:.1e}") } else { three(value) }
 }
 
-/// A row as it is spoken.
+/// A row as a sentence for screen readers.
 fn spoken([t, phase, kind, side, before, after, lost]: &[String; COLUMNS.len()], unit: &str) -> String {
     let energy = if lost == "0" || lost == "-" { String::new() } else { format!(", {lost} {unit} lost") };
     format!("{kind}, {side}, at {t} s, phase {phase}°, {before} to {after} mm/s{energy}")

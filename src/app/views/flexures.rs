@@ -1,9 +1,8 @@
-//! Drawing of the bent flexures, from the solved mechanism held at the place of the mass.
+//! Drawing of the bent flexures, from the solved shape at the displacement of the mass.
 //!
-//! The solver is asked once a frame (it takes less than a tenth of a millisecond), so that nothing is read
-//! between two shapes and the bulge ends where it ends. Along the flexures the drawing has a scale of its
-//! own; sideways it has the view's, and the ratio of the two is written. The mass is a body between the two
-//! groups, its size no part of the scale.
+//! The solver runs once per frame (less than a tenth of a millisecond), so that no shape is interpolated and
+//! the bulge vanishes where it should. The scale along the flexures differs from that of the x axis; the
+//! ratio of the two is written. The mass is a body between the two groups, not to scale.
 
 use eframe::egui::{self, Align2, Pos2, Rect, Stroke, Vec2, pos2, vec2};
 
@@ -12,32 +11,32 @@ use crate::mechanics::flexure::{Geometry, State};
 
 use super::{Span, ViewContext};
 
-/// The widest sideways travel in points at which a true scale would show too little.
-const LEAST_TRAVEL: f64 = 60.0;
+/// Smallest travel in points that is drawn at true scale.
+const MIN_TRAVEL: f64 = 60.0;
 
-/// A group is drawn with at most so many flexures.
-const MOST_LINES: usize = 4;
+/// Largest number of flexures drawn for a group.
+const MAX_LINES: usize = 4;
 
 /// Thickness of the clamps in points.
 pub(super) const CLAMP: f32 = 8.0;
 
-/// Where the drawing stands: between two clamps, with a body in it.
+/// Area of the drawing: between two clamps, with the body of the mass.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct DrawingArea {
-    /// The inner sides of the clamps above and below.
+    /// Inner edge of the upper clamp.
     pub top: f32,
+    /// Inner edge of the lower clamp.
     pub bottom: f32,
     /// Half the size of the body.
     pub half: Vec2,
 }
 
-/// How the drawing is scaled.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct DrawingScale {
     place: DrawingArea,
     /// Points per m along the flexures.
     along: f64,
-    /// Distance of the clamps in m, with a body of no size.
+    /// Distance between the clamps in m, for a body of zero size.
     clamps: f64,
 }
 
@@ -48,13 +47,13 @@ impl DrawingScale {
         Self { place, along: room / clamps, clamps }
     }
 
-    /// The x axis of a true scale over `rect`, where the travel between the wells is seen at it.
+    /// The x axis over `rect` at true scale. `None` if the travel would be too small or does not fit.
     pub fn true_span(&self, reach: f64, rect: Rect) -> Option<Span> {
         let half = 0.5 * f64::from(rect.width()) / self.along;
-        (reach * self.along >= LEAST_TRAVEL && half > 1.1 * reach).then_some(Span { low: -half, high: half })
+        (reach * self.along >= MIN_TRAVEL && half > 1.1 * reach).then_some(Span { low: -half, high: half })
     }
 
-    /// How many times wider than long the drawing is, in words.
+    /// The ratio of the scales across and along the flexures, as text.
     pub fn words(&self, span: Span, rect: Rect) -> String {
         let stretch = span.scale(rect) / self.along;
         match stretch {
@@ -64,19 +63,18 @@ impl DrawingScale {
         }
     }
 
-    /// Points per m along the flexures.
     pub fn along(&self) -> f32 {
         self.along as f32
     }
 
-    /// The middle of the body.
+    /// Height of the middle of the body on the screen.
     pub fn middle(&self, state: &State) -> f32 {
         let end = |line: usize| state.lines.get(line).and_then(|line| line.points.last());
         let along = end(0).map_or(0.5 * self.clamps, |point| point[1]);
         self.place.bottom - (along * self.along) as f32 - self.place.half.y
     }
 
-    /// A place in the frame on the screen; the buckling flexures stand above the body.
+    /// Screen position of a point of a flexure; the buckling flexures are `above` the body.
     fn screen_from_world(&self, [along, across]: [f64; 2], above: bool, span: Span, rect: Rect) -> Pos2 {
         let y = if above {
             self.place.top + ((self.clamps - along) * self.along) as f32
@@ -97,7 +95,7 @@ impl DrawingScale {
                 .iter()
                 .map(|[_, along, across]| self.screen_from_world([*along, *across], above, span, rect))
                 .collect();
-            let count = group.count.clamp(1, MOST_LINES);
+            let count = group.count.clamp(1, MAX_LINES);
             for i in 0..count {
                 let share = if count == 1 { 0.0 } else { 2.0 * i as f32 / (count - 1) as f32 - 1.0 };
                 let aside = vec2(0.9 * share * self.place.half.x, 0.0);
@@ -123,7 +121,7 @@ impl DrawingScale {
     }
 }
 
-/// The flexures held where the mass is; the last ones that were known, should these not be.
+/// Shape of the flexures with the mass at `x` in m, or the last known shape if the solver fails.
 pub(super) fn state_at(context: &mut ViewContext<'_>, x: f64) -> Option<State> {
     let mechanism = &context.drawn.model(context.session).mechanism();
     let flexures = mechanism.flexures.as_ref()?;
@@ -134,13 +132,13 @@ pub(super) fn state_at(context: &mut ViewContext<'_>, x: f64) -> Option<State> {
     context.memory.drawing.bent.clone()
 }
 
-/// What the buckling flexures do, in words.
+/// Bulge of the buckling flexures, as text.
 pub(super) fn bulge_words(state: &State) -> String {
     let bulge = state.bump.abs() * 1e3;
     if bulge < 0.005 { "taut: no bulge left".to_owned() } else { format!("bulge {bulge:.1} mm") }
 }
 
-/// A clamp: a bar of the frame, hatched on the side away from the flexures.
+/// Draws a clamp: a bar of the frame, hatched on the side away from the flexures.
 pub(super) fn clamp(painter: &egui::Painter, style: &Style, bar: Rect, above: bool) {
     painter.rect_filled(bar, 0.0, style.frame_colour());
     let stroke = Stroke::new(1.0, style.ground());

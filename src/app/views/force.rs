@@ -1,9 +1,9 @@
 //! View of the force curve, with the force of the shaking.
 //!
-//! The curve is dV/dx, the force that would hold the mass there: the mechanism pulls the other way. The base
-//! pushes the mass with -m a_b, a level line that moves up and down. Both act on the mass and are positive to
-//! the right. Where the line is above the curve the mass is driven to the right, where it is below to the
-//! left; on a stop it is released when the line passes the curve at the stop.
+//! The curve is dV/dx, the force that would hold the mass in place; the mechanism exerts the opposite force.
+//! The push -m a_b of the base is a horizontal line that moves up and down. Both are positive to the right.
+//! Where the line is above the curve, the mass is driven to the right, where it is below, to the left. A mass
+//! on a stop is released when the line passes the curve at the stop.
 
 use eframe::egui::{Align2, Painter, Sense, Shape, Stroke, Ui, pos2, vec2};
 
@@ -13,26 +13,27 @@ use crate::dynamics::STANDARD_GRAVITY;
 
 use super::chart::Chart;
 use super::ghosts::ghosts;
-use super::hand::hand;
+use super::hand::axes_input;
 use super::labels::plated;
-use super::legend::Sign;
+use super::legend::Symbol;
 use super::overlay::measured_force;
 use super::ranges::{axis_end, room_for_push};
 use super::stops::stops_ui;
 use super::view::Axis;
 use super::{View, ViewContext, too_small_ui};
 
-/// Room above the largest force of the wells, as a factor.
+/// Factor by which the axis exceeds the largest force between the wells.
 const ROOM: f64 = 1.3;
 
 /// Half the size in points of the mark of a kink and of the force at a stop.
 const MARK: f32 = 5.0;
 
-/// Length of the line at a stop, in marks.
+/// Length of the line at a stop, in multiples of [`MARK`].
 const LINE: f32 = 8.0;
 
-/// Distance in points of the label at a stop from it, and the room that it needs.
+/// Distance in points of a label from its stop.
 const BESIDE: f32 = 16.0;
+/// Width in points that a label needs.
 const LABEL: f32 = 110.0;
 
 pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
@@ -41,11 +42,11 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         return too_small_ui(ui, &context.style, area);
     }
     let style = context.style;
-    let own = end_of_axis(context);
-    let own = context.memory.held.force.keep((-own, own), context.session.editor.in_gesture());
-    let (low, high) = context.memory.axes.ends(Axis::Up(View::ForceCurve), own);
+    let end = end_of_axis(context);
+    let ends = context.memory.frozen.force.keep((-end, end), context.session.editor.in_gesture());
+    let (low, high) = context.memory.axes.ends(Axis::Up(View::ForceCurve), ends);
     let chart = Chart::new(area, context.span, low, high);
-    hand(ui, context.memory, View::ForceCurve, &response, (area, chart.rect));
+    axes_input(ui, context.memory, View::ForceCurve, &response, (area, chart.rect));
     chart.axes(ui, context, 1.0);
     let painter = ui.painter().with_clip_rect(chart.rect);
     let measured = measured_force(&painter, context, &chart);
@@ -54,22 +55,22 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     stops_ui(ui, context, chart.rect, edges, 0.0);
     let painter = ui.painter().with_clip_rect(chart.rect);
     let model = context.session.shown();
-    let (landscape, own) = (&model.mechanism().landscape, &model.mechanism().curve);
+    let (landscape, curve) = (&model.mechanism().landscape, &model.mechanism().curve);
     chart.equilibria(&painter, &style, landscape);
     for kink in &landscape.kinks {
-        let at = chart.screen_from_world(kink.x, own.force(kink.x));
+        let at = chart.screen_from_world(kink.x, curve.force(kink.x));
         let points = [vec2(0.0, -MARK), vec2(MARK, 0.0), vec2(0.0, MARK), vec2(-MARK, 0.0)];
         let diamond = points.iter().map(|step| at + *step * 1.3).collect();
         painter.add(Shape::closed_line(diamond, Stroke::new(1.5, style.ink())));
     }
     let state = context.session.player.state();
     let push = -model.mass() * state.base_accel;
-    let mut legend = vec![(Sign::Line(style.tray_stroke()), "holds the mass there")];
+    let mut legend = vec![(Symbol::Line(style.tray_stroke()), "holds the mass there")];
     if model.is_shaken() {
-        legend.push((Sign::Line(style.arrow_stroke()), "push of the base"));
+        legend.push((Symbol::Line(style.arrow_stroke()), "push of the base"));
         let at = chart.screen_from_world(state.x, push);
         painter.hline(chart.rect.x_range(), at.y, style.arrow_stroke());
-        let from = chart.screen_from_world(state.x, own.force(state.x));
+        let from = chart.screen_from_world(state.x, curve.force(state.x));
         painter.extend(Shape::dashed_line(&[from, at], style.base_stroke(), 4.0, 3.0));
     }
     legend.extend(measured);
@@ -80,7 +81,7 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         let at = chart.screen_from_world(ghost.state.x, curve.force(ghost.state.x));
         ghost.ball(&painter, &style, at, BALL - 2.0);
     }
-    let at = chart.screen_from_world(state.x, own.force(state.x));
+    let at = chart.screen_from_world(state.x, curve.force(state.x));
     painter.circle(at, BALL - 2.0, style.mass(), Stroke::new(1.5, style.mass_edge()));
     chart.numbers(ui, &style, "force to the right (N)", 1.0);
     chart.legend(ui, &style, area.right(), &legend);
@@ -88,74 +89,74 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         let (x, _) = chart.world_from_screen(pointer);
         let force = context.session.shown().mechanism().curve.force(x);
         if force.is_finite() {
-            let way = if force < 0.0 { " to the left" } else { " to the right" };
-            let text = format!("{} N{way} holds it at {} mm", three(force.abs()), three(x * 1e3));
+            let direction = if force < 0.0 { " to the left" } else { " to the right" };
+            let text = format!("{} N{direction} holds it at {} mm", three(force.abs()), three(x * 1e3));
             chart.readout(ui, &style, &text);
         }
     }
 }
 
-/// As far up as the forces between the wells and the pushes that the scene may have.
+/// End of the axis in N: covers the forces between the wells and the largest push of the base.
 fn end_of_axis(context: &ViewContext<'_>) -> f64 {
     let model = context.session.shown();
     let landscape = &model.mechanism().landscape;
     let wells = landscape.barrier.map(|barrier| (barrier.left_well, barrier.right_well));
     let between = |x: f64| wells.is_some_and(|(left, right)| x > left && x < right);
-    let mut most = landscape
+    let mut largest = landscape
         .extrema
         .iter()
         .filter(|extremum| between(extremum.x))
         .map(|extremum| extremum.force.abs())
         .fold(0.0, f64::max);
     if wells.is_none() {
-        // without a pair of wells the whole axis is of interest
+        // without two wells, the forces at the ends of the x axis count
         let curve = &model.mechanism().curve;
         let domain = curve.domain();
         for x in [context.span.low, context.span.high] {
-            most = most.max(curve.force(x.clamp(domain.0, domain.1)).abs());
+            largest = largest.max(curve.force(x.clamp(domain.0, domain.1)).abs());
         }
     }
-    let hardest = model.largest_base_acceleration();
-    let push = if model.is_shaken() { model.mass() * room_for_push(hardest).min(1.1 * hardest) } else { 0.0 };
-    axis_end((ROOM * most).max(1.1 * push))
+    let accel = model.largest_base_acceleration();
+    let push = if model.is_shaken() { model.mass() * room_for_push(accel).min(1.1 * accel) } else { 0.0 };
+    axis_end((ROOM * largest).max(1.1 * push))
 }
 
-/// The curve: thick where the mass can be, faint beyond the stops.
+/// Draws the force curve: thick between the stops, dashed beyond them.
 fn curve(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     let (style, model) = (context.style, context.session.shown());
-    let own = &model.mechanism().curve;
+    let curve = &model.mechanism().curve;
     let (left, right) = model.stop_positions();
-    let domain = own.domain();
+    let domain = curve.domain();
     let (low, high) = (context.span.low.max(domain.0), context.span.high.min(domain.1));
     let (inner, outer) = (left.unwrap_or(low).clamp(low, high), right.unwrap_or(high).clamp(low, high));
-    let force = |x: f64| own.force(x);
+    let force = |x: f64| curve.force(x);
     for (from, to) in [(low, inner), (outer, high)] {
         painter.extend(Shape::dashed_line(&chart.curve(from, to, force), style.ghost_stroke(), 5.0, 5.0));
     }
     painter.add(Shape::line(chart.curve(inner, outer, force), style.tray_stroke()));
 }
 
-/// The force at each stop that the mass rests against: the push has to pass it to release the mass.
+/// Marks the force at each stop that the mass can rest on: a larger push releases the mass.
 fn releases(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     let (style, model) = (context.style, context.session.shown());
     let (left, right) = model.stop_positions();
-    for (stop, way) in [(left, -1.0), (right, 1.0)] {
+    for (stop, side) in [(left, -1.0), (right, 1.0)] {
         let Some(x) = stop else { continue };
         let force = model.mechanism().curve.force(x);
-        // only where the mechanism presses the mass outwards
-        if !(force * way < 0.0) {
+        // only where the mechanism presses the mass onto the stop
+        if !(force * side < 0.0) {
             continue;
         }
         let at = chart.screen_from_world(x, force);
-        let inwards = -MARK * way as f32;
+        let inwards = -MARK * side as f32;
         painter.line_segment([at, at + vec2(LINE * inwards, 0.0)], style.stop_stroke());
-        // beyond the wall, out of the way of the mass; on the inner side where the picture ends
+        // outside the wall, away from the mass; inside it where the picture ends
         let text = format!("frees at {} g", three(force.abs() / (model.mass() * STANDARD_GRAVITY)));
-        let room = if way > 0.0 { chart.rect.right() - at.x } else { at.x - chart.rect.left() };
+        let room = if side > 0.0 { chart.rect.right() - at.x } else { at.x - chart.rect.left() };
         let outwards = if room > LABEL { -inwards.signum() } else { inwards.signum() };
         let align = if outwards > 0.0 { Align2::LEFT_BOTTOM } else { Align2::RIGHT_BOTTOM };
         let off = if room > LABEL { BESIDE } else { BESIDE + LINE * MARK };
-        // on the line of the mark, which does not cross it, and over the curve and the push
+        // above the line of the mark, so that the line does not cross it
         let beyond = pos2(at.x + outwards * off, at.y - 2.0);
         plated(painter, &style, (beyond, align), &text, (style.small(), style.faint()));
     }

@@ -1,4 +1,4 @@
-//! Ghosts of the pinned motions: dashed, with the letter of the pin.
+//! Ghosts of the pinned motions: dashed outlines with the letters of the pins.
 
 use std::sync::Arc;
 
@@ -12,31 +12,30 @@ use super::ViewContext;
 use super::context::Drawn;
 use super::labels::haloed;
 
-/// Lengths in points of a dash and of the gap after it, of each pin.
+/// Lengths in points of a dash and of the gap after it, for each pin.
 const DASHES: [(f32, f32); 3] = [(7.0, 4.0), (3.0, 3.0), (11.0, 3.0)];
 
-/// The most dashes of a path, and the distance in points of two of its points that are told apart.
-const MOST_DASHES: usize = 300;
+const MAX_DASHES: usize = 300;
+/// Distance in points within which points of a path are merged.
 const NEAR: f32 = 1.0;
 
-/// What the lines of the pins are called.
+/// Letters of the pins.
 pub(super) const PINNED: [&str; 3] = ["A", "B", "C"];
 
-/// Room in points for a letter.
+/// Width in points reserved for a letter.
 const LETTER: f32 = 10.0;
 
-/// Pieces of a dashed circle.
-const ROUND: usize = 32;
+const CIRCLE_SEGMENTS: usize = 32;
 
 /// A pinned motion at the time that is shown.
 pub(super) struct Ghost {
-    /// Which of the pins it is.
+    /// Index of its letter.
     pub place: usize,
     pub letter: char,
     pub state: Sample,
     /// The model by which it moves.
     pub model: Arc<Model>,
-    /// How far in points its letter stands beside its middle: those of motions at one place stand in a row.
+    /// Horizontal offset in points of its letter, so that letters at one place do not overlap.
     aside: f32,
 }
 
@@ -55,15 +54,15 @@ pub(super) fn ghosts(context: &ViewContext<'_>) -> Vec<Ghost> {
         aside: 0.0,
     };
     let mut all: Vec<Ghost> = session.pins.all().iter().map(ghost).collect();
-    let places: Vec<f64> = all.iter().map(|own| own.state.x).collect();
-    for (own, aside) in all.iter_mut().zip(asides(&places)) {
-        own.aside = aside;
+    let places: Vec<f64> = all.iter().map(|ghost| ghost.state.x).collect();
+    for (ghost, aside) in all.iter_mut().zip(offsets(&places)) {
+        ghost.aside = aside;
     }
     all
 }
 
-/// How far letters are moved aside, in the order of their places, so that no two are nearer than one is wide.
-fn asides(places: &[f64]) -> Vec<f32> {
+/// Offsets of the letters, in the order of their places, so that no two overlap.
+fn offsets(places: &[f64]) -> Vec<f32> {
     let middle = 0.5 * (places.len().max(1) - 1) as f32;
     let before = |i: usize| {
         let is_before = |j: &usize| (places[*j], *j) < (places[i], i);
@@ -72,43 +71,42 @@ fn asides(places: &[f64]) -> Vec<f32> {
     (0..places.len()).map(|i| LETTER * (before(i) - middle)).collect()
 }
 
-/// A path with the dashes of a pin; what turns within a point is drawn straight.
+/// A path with the dashes of a pin; points within [`NEAR`] of each other are merged.
 pub(super) fn dashed(path: &[Pos2], place: usize, stroke: Stroke) -> Vec<Shape> {
-    let mut few: Vec<Pos2> = Vec::with_capacity(path.len().min(MOST_DASHES * 8));
+    let mut kept: Vec<Pos2> = Vec::with_capacity(path.len().min(MAX_DASHES * 8));
     for at in path {
-        if few.last().is_none_or(|last| last.distance_sq(*at) > NEAR * NEAR) {
-            few.push(*at);
+        if kept.last().is_none_or(|last| last.distance_sq(*at) > NEAR * NEAR) {
+            kept.push(*at);
         }
     }
-    few.extend(path.last());
-    let length: f32 = few.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
-    let longer = longer(length, place);
+    kept.extend(path.last());
+    let length: f32 = kept.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+    let factor = dash_factor(length, place);
     let (dash, gap) = DASHES[place % DASHES.len()];
-    Shape::dashed_line(&few, stroke, dash * longer, gap * longer)
+    Shape::dashed_line(&kept, stroke, dash * factor, gap * factor)
 }
 
-/// By which factor the dashes of a pin are longer on a path of that many points: so that they are not too
-/// many to be drawn.
-fn longer(length: f32, place: usize) -> f32 {
+/// Factor by which the dashes of a pin are lengthened on a path of `length` points, to limit their number.
+fn dash_factor(length: f32, place: usize) -> f32 {
     let (dash, gap) = DASHES[place % DASHES.len()];
-    (length / ((dash + gap) * MOST_DASHES as f32)).max(1.0)
+    (length / ((dash + gap) * MAX_DASHES as f32)).max(1.0)
 }
 
-/// The length in points of a dash of a pin, on a path of that many points.
+/// Length in points of a dash of a pin on a path of `length` points.
 pub(super) fn dash(place: usize, length: f32) -> f32 {
-    DASHES[place % DASHES.len()].0 * longer(length, place)
+    DASHES[place % DASHES.len()].0 * dash_factor(length, place)
 }
 
 impl Ghost {
-    /// The mass as a dashed ring with its letter.
+    /// Draws the mass as a dashed ring with its letter.
     pub fn ball(&self, painter: &Painter, style: &Style, at: Pos2, radius: f32) {
-        let turn = std::f32::consts::TAU / ROUND as f32;
+        let turn = std::f32::consts::TAU / CIRCLE_SEGMENTS as f32;
         let point = |i: usize| at + radius * Vec2::angled(i as f32 * turn);
-        let ring: Vec<Pos2> = (0..=ROUND).map(point).collect();
+        let ring: Vec<Pos2> = (0..=CIRCLE_SEGMENTS).map(point).collect();
         self.outline(painter, style, &ring, at - vec2(0.0, radius));
     }
 
-    /// The mass as a dashed box with its letter.
+    /// Draws the mass as a dashed box with its letter.
     pub fn body(&self, painter: &Painter, style: &Style, body: Rect) {
         let corners = [body.left_top(), body.right_top(), body.right_bottom(), body.left_bottom()];
         let outline: Vec<Pos2> = corners.into_iter().chain([body.left_top()]).collect();
@@ -122,12 +120,12 @@ impl Ghost {
         haloed(painter, style, at, &self.letter.to_string(), (style.small(), style.mass_ink()));
     }
 
-    /// Its stops where they are not those of the present motion, as dashed lines over the height of `rect`.
+    /// Draws its stops as dashed lines over the height of `rect`, where they differ from the present ones.
     pub fn stops(&self, painter: &Painter, context: &ViewContext<'_>, rect: Rect, aside: f32) {
-        let (own, present) = (self.model.stop_positions(), context.session.shown().stop_positions());
-        for (stop, present, way) in [(own.0, present.0, -aside), (own.1, present.1, aside)] {
+        let (pinned, present) = (self.model.stop_positions(), context.session.shown().stop_positions());
+        for (stop, present, offset) in [(pinned.0, present.0, -aside), (pinned.1, present.1, aside)] {
             let Some(x) = stop.filter(|_| stop != present) else { continue };
-            let x = context.span.screen_from_world(x, rect) + way;
+            let x = context.span.screen_from_world(x, rect) + offset;
             let ends = [pos2(x, rect.top()), pos2(x, rect.bottom())];
             painter.extend(dashed(&ends, self.place, context.style.stop_stroke()));
         }
@@ -140,13 +138,13 @@ mod tests {
 
     #[test]
     fn letters_of_motions_at_one_place_stand_in_a_row() {
-        assert_eq!(asides(&[]), [0.0; 0]);
-        assert_eq!(asides(&[0.3]), [0.0]);
-        assert_eq!(asides(&[0.3, 0.3]), [-5.0, 5.0]);
-        assert_eq!(asides(&[0.3, 0.2, 0.3]), [0.0, -10.0, 10.0]);
-        // wherever they are, no two get nearer
+        assert_eq!(offsets(&[]), [0.0; 0]);
+        assert_eq!(offsets(&[0.3]), [0.0]);
+        assert_eq!(offsets(&[0.3, 0.3]), [-5.0, 5.0]);
+        assert_eq!(offsets(&[0.3, 0.2, 0.3]), [0.0, -10.0, 10.0]);
+        // the offsets bring no two letters closer
         let places = [0.7, -0.1, 0.69];
-        let moved: Vec<f64> = places.iter().zip(asides(&places)).map(|(x, by)| x + f64::from(by)).collect();
+        let moved: Vec<f64> = places.iter().zip(offsets(&places)).map(|(x, by)| x + f64::from(by)).collect();
         assert!((moved[0] - moved[2]).abs() >= 10.0 && (moved[1] - moved[2]).abs() >= 10.0, "{moved:?}");
     }
 
@@ -156,9 +154,9 @@ mod tests {
             (0..20_000).map(|i| pos2(0.01 * i as f32, if i / 25 % 2 == 0 { 0.0 } else { 300.0 })).collect();
         for place in 0..3 {
             let shapes = dashed(&zigzag, place, Stroke::new(1.0, eframe::egui::Color32::RED));
-            // a dash around a corner is two
-            assert!(shapes.len() > MOST_DASHES / 2 && shapes.len() < 5 * MOST_DASHES, "{}", shapes.len());
-            let right = shapes.iter().map(|own| own.visual_bounding_rect().right()).fold(0.0, f32::max);
+            // a dash around a corner consists of two
+            assert!(shapes.len() > MAX_DASHES / 2 && shapes.len() < 5 * MAX_DASHES, "{}", shapes.len());
+            let right = shapes.iter().map(|shape| shape.visual_bounding_rect().right()).fold(0.0, f32::max);
             assert!(right > 190.0, "{right}");
         }
         assert_eq!(dash(0, 100.0), DASHES[0].0);

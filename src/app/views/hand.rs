@@ -1,4 +1,4 @@
-//! The hand on the axes of a view: wheel, drag, box and keys.
+//! Input on the axes of a view: wheel, drag, box and keys.
 
 use eframe::egui::{PointerButton, Pos2, Rect, Response, Shape, Stroke, StrokeKind, Ui};
 
@@ -6,33 +6,34 @@ use super::memory::Memory;
 use super::view::{Axis, View};
 use super::zoom::{Ends, LONGEST, SHORTEST};
 
-/// The factor by which a key takes an axis, points that the wheel turns for a factor of e, and the least
-/// sides in points of a box that is drawn.
+/// Zoom factor of a key press.
 const KEY: f64 = 1.25;
+/// Wheel travel in points that zooms by a factor of e.
 const WHEEL: f64 = 200.0;
+/// Smallest side in points of a zoom box.
 const BOX: f32 = 6.0;
 
 impl Memory {
-    /// Makes an axis longer by a factor about a share of it. The stretch of time ends at the present, unless
-    /// a hand has chosen when it begins.
+    /// Multiplies the length of an axis by `by`, with the point at the share `about` fixed. The time axis
+    /// ends at the present unless its ends were chosen by hand.
     fn zoom(&mut self, axis: Axis, by: f64, about: f64) {
         if axis != Axis::Time || self.axes.chosen(axis).is_some() {
             return self.axes.zoom(axis, by, about);
         }
-        let own = self.timeline.own;
-        if by > 0.0 && by.is_finite() && own > 0.0 {
-            let window = self.timeline.window.unwrap_or(own) * by;
-            self.timeline.window = Some(window.clamp(SHORTEST * own, LONGEST * own));
+        let default = self.timeline.default_window;
+        if by > 0.0 && by.is_finite() && default > 0.0 {
+            let window = self.timeline.window.unwrap_or(default) * by;
+            self.timeline.window = Some(window.clamp(SHORTEST * default, LONGEST * default));
         }
     }
 
-    /// Zooms the axis of a view to the right, or upwards, by a key.
+    /// Zooms the horizontal axis of a view by a key press, or the vertical one if `upwards`.
     pub fn zoom_by_key(&mut self, view: View, upwards: bool, closer: bool) {
         let Some(axes) = view.axes() else { return };
         self.zoom(axes[usize::from(upwards)], if closer { 1.0 / KEY } else { KEY }, 0.5);
     }
 
-    /// Leaves the axes of a view to the scene and the motion.
+    /// Returns the axes of a view to their automatic ends.
     pub fn free_axes(&mut self, view: View) {
         if view.axes().is_some_and(|axes| axes.contains(&Axis::Time)) {
             self.timeline.window = None;
@@ -40,27 +41,27 @@ impl Memory {
         self.axes.free(view);
     }
 
-    /// Holds the axes of a view as they are, or lets go of them. Whether they are held now.
+    /// Holds the axes of a view at their present ends, or frees held ones. Returns whether they are held now.
     pub fn hold_axes(&mut self, view: View) -> bool {
         self.axes.hold(view);
         self.axes.is_held(view)
     }
 
-    /// The ends that a hand has chosen for the axes of a view, to the right and upwards.
+    /// The ends chosen by hand for the horizontal and the vertical axis of a view.
     pub fn chosen_axes(&self, view: View) -> [Option<Ends>; 2] {
         view.axes().map_or([None; 2], |axes| axes.map(|axis| self.axes.chosen(axis)))
     }
 
-    /// Whether the axes of a view are held; none where it has no axes.
+    /// Whether the axes of a view are held. `None` if it has no axes.
     pub fn are_axes_held(&self, view: View) -> Option<bool> {
         view.axes().map(|_| self.axes.is_held(view))
     }
 }
 
-/// The wheel zooms to the right, with Shift or over the numbers of the vertical axis upwards, with Ctrl both;
-/// a drag with Shift moves what is shown, one with the other button draws a box to be shown; a double click
-/// is back. `area` is the view and `frame` what its axes span.
-pub(super) fn hand(
+/// Zooms and pans the axes of a view, which span `frame`, anywhere in `area`. The wheel zooms the horizontal
+/// axis, with Shift or left of the frame the vertical one, with Ctrl both. A drag with Shift pans, one with
+/// the secondary button draws a box to zoom to. A double click restores the automatic ends.
+pub(super) fn axes_input(
     ui: &Ui,
     memory: &mut Memory,
     view: View,
@@ -68,10 +69,10 @@ pub(super) fn hand(
     (area, frame): (Rect, Rect),
 ) {
     let Some([across, up]) = view.axes() else { return };
-    let twice = ui.input(|input| input.pointer.button_double_clicked(PointerButton::Primary));
+    let double_clicked = ui.input(|input| input.pointer.button_double_clicked(PointerButton::Primary));
     let pointer = ui.input(|input| input.pointer.hover_pos()).filter(|at| area.contains(*at));
     let Some(at) = pointer.filter(|_| ui.rect_contains_pointer(area)) else { return };
-    if twice && response.contains_pointer() {
+    if double_clicked && response.contains_pointer() {
         return memory.free_axes(view);
     }
     let share = |at: Pos2| {
@@ -81,7 +82,7 @@ pub(super) fn hand(
     let (turned, pinched, shift) =
         ui.input(|input| (input.smooth_scroll_delta(), f64::from(input.zoom_delta()), input.modifiers.shift));
     let ((x, y), upwards) = (share(at), shift || at.x < frame.left());
-    // with Shift a wheel goes sideways
+    // with Shift the wheel scrolls sideways
     let turned = if upwards { turned.x + turned.y } else { turned.y };
     let by = (-f64::from(turned) / WHEEL).exp();
     if pinched != 1.0 {
@@ -96,9 +97,9 @@ pub(super) fn hand(
         memory.axes.pan(across, -f64::from(moved.x / frame.width()));
         memory.axes.pan(up, f64::from(moved.y / frame.height()));
     }
-    let begun = ui.input(|input| input.pointer.press_origin());
-    let Some(corner) = begun.filter(|_| response.dragged_by(PointerButton::Secondary)) else {
-        return box_ended(memory, (across, up), response, share);
+    let origin = ui.input(|input| input.pointer.press_origin());
+    let Some(corner) = origin.filter(|_| response.dragged_by(PointerButton::Secondary)) else {
+        return zoom_to_box(memory, (across, up), response, share);
     };
     let drawn = Rect::from_two_pos(corner, at).intersect(frame);
     let stroke = Stroke::new(1.0, ui.visuals().text_color());
@@ -106,8 +107,8 @@ pub(super) fn hand(
     memory.corner = Some((corner, at));
 }
 
-/// Shows the box that was drawn, once the hand lets go of it.
-fn box_ended(
+/// Zooms to the box that was drawn, once its drag has ended.
+fn zoom_to_box(
     memory: &mut Memory,
     (across, up): (Axis, Axis),
     response: &Response,

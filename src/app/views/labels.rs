@@ -1,20 +1,20 @@
-//! Placement of texts in pictures.
+//! Placement of text in pictures.
 
 use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rangef, Rect, Ui, vec2};
 
 use crate::app::session::Session;
 use crate::app::ui::style::Style;
 
-/// How far in points the ground shows around a letter.
+/// Width in points of the background-coloured edge around letters.
 const HALO: f32 = 1.2;
 
-/// How long in s a pointer rests before a note comes.
+/// Time in s for which the pointer rests before a hint appears.
 const REST: f32 = 1.2;
 
-/// Room in points between texts in a row, and beside a wall.
-const APART: f32 = 4.0;
+/// Gap in points between texts in a row, and beside a wall.
+const GAP: f32 = 4.0;
 
-/// Text with a thin edge of the ground around its letters, readable over lines. Where it stands.
+/// Draws text with a thin background-coloured edge, readable over lines. Returns its rectangle.
 pub fn haloed(
     painter: &Painter,
     style: &Style,
@@ -31,7 +31,7 @@ pub fn haloed(
     place
 }
 
-/// Text on a plate of the ground, readable over walls and hatching as well. Where it stands.
+/// Draws text on a background-coloured plate, readable also over walls and hatching. Returns its rectangle.
 pub fn plated(
     painter: &Painter,
     style: &Style,
@@ -46,27 +46,27 @@ pub fn plated(
     place
 }
 
-/// The left end of a text of some width in a row, as near as may be to the middle that it should have: within
-/// `room` and clear of what is taken. None where it would not stand by that middle any more.
+/// The left end of a text of `width` in a row, as close to the wanted `middle` as possible: within `room` and
+/// clear of what is `taken`. `None` if it would be farther from there than its width.
 pub fn free_place(middle: f32, width: f32, room: Rangef, taken: &[Rangef]) -> Option<f32> {
-    let (least, most) = (room.min + APART, room.max - APART - width);
-    let wanted = (middle - 0.5 * width).clamp(least, most.max(least));
+    let (low, high) = (room.min + GAP, room.max - GAP - width);
+    let wanted = (middle - 0.5 * width).clamp(low, high.max(low));
     let clear = |left: &f32| {
-        let inside = *left >= least && *left <= most;
-        inside && taken.iter().all(|own| left + width <= own.min - APART || *left >= own.max + APART)
+        let inside = *left >= low && *left <= high;
+        inside && taken.iter().all(|range| left + width <= range.min - GAP || *left >= range.max + GAP)
     };
-    let beside = taken.iter().flat_map(|own| [own.min - APART - width, own.max + APART]);
+    let beside = taken.iter().flat_map(|range| [range.min - GAP - width, range.max + GAP]);
     let places = beside.chain([wanted]).filter(clear);
     let nearest = places.min_by(|a, b| (a - wanted).abs().total_cmp(&(b - wanted).abs()))?;
     ((nearest - wanted).abs() <= width).then_some(nearest)
 }
 
-/// Whether the pointer has stood still for so long that a note does not come in its way.
-pub fn rests(ui: &Ui) -> bool {
+/// Whether the pointer has rested long enough for a hint.
+pub fn pointer_rests(ui: &Ui) -> bool {
     ui.input(|input| input.pointer.time_since_last_movement()) > REST
 }
 
-/// How long ago that was which is shown, where it is the past.
+/// The age of the state that is shown, as text. `None` for the present.
 pub fn ago(session: &Session) -> Option<String> {
     let player = &session.player;
     let seconds = player.watch().time() - player.time();

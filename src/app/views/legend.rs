@@ -1,4 +1,4 @@
-//! Legend in a row over a picture.
+//! Legend in a row above a picture.
 
 use eframe::egui::{Color32, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
@@ -10,12 +10,14 @@ use super::ghosts::dashed;
 /// Height in points of the row.
 pub const LEGEND: f32 = 22.0;
 
-/// Width in points of a sign, room between it and its name, and between entries.
-const SIGN: f32 = 18.0;
+/// Width in points of a symbol.
+const SYMBOL: f32 = 18.0;
+/// Gap in points between a symbol and its name.
 const GAP: f32 = 6.0;
-const APART: f32 = 14.0;
+/// Gap in points between entries.
+const ENTRY_GAP: f32 = 14.0;
 
-/// What long entries are called where room is short.
+/// Short names of long entries.
 const SHORT: [(&str, &str); 5] = [
     ("potential with the push", "with the push"),
     ("the mechanism's own", "its own"),
@@ -25,7 +27,7 @@ const SHORT: [(&str, &str); 5] = [
 ];
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Sign {
+pub enum Symbol {
     Line(Stroke),
     Dashed(Stroke),
     /// A line with the dashes of a pin.
@@ -37,7 +39,7 @@ pub enum Sign {
     Ticks(Stroke),
 }
 
-impl Sign {
+impl Symbol {
     fn shapes(self, rect: Rect) -> Vec<Shape> {
         let ends = [rect.left_center(), rect.right_center()];
         match self {
@@ -68,26 +70,26 @@ impl Sign {
     }
 }
 
-/// The entries in the upper row of `area`, in their short words where there is no room before `right` for all
-/// of the long ones; what has no room even so is left out. Each says under the pointer what it means.
-pub fn legend(ui: &Ui, style: &Style, area: Rect, right: f32, entries: &[(Sign, &str)]) {
+/// Draws the entries in the upper row of `area`, with short names if the long ones do not all fit left of
+/// `right`; entries that still do not fit are left out. Each is explained on hover.
+pub fn legend(ui: &Ui, style: &Style, area: Rect, right: f32, entries: &[(Symbol, &str)]) {
     let painter = ui.painter().with_clip_rect(area);
     let written = |text: &str| painter.layout_no_wrap(text.to_owned(), style.small(), style.faint());
-    let wide: f32 = entries.iter().map(|(_, text)| SIGN + GAP + written(text).size().x + APART).sum();
-    let is_wide = area.left() + 8.0 + wide - APART <= right - 4.0;
+    let wide: f32 = entries.iter().map(|(_, text)| SYMBOL + GAP + written(text).size().x + ENTRY_GAP).sum();
+    let is_wide = area.left() + 8.0 + wide - ENTRY_GAP <= right - 4.0;
     let (mut x, y) = (area.left() + 8.0, area.top() + 0.5 * LEGEND);
     for (sign, name) in entries {
-        let short = SHORT.iter().find(|(long, _)| long == name).map_or(*name, |own| own.1);
+        let short = SHORT.iter().find(|(long, _)| long == name).map_or(*name, |pair| pair.1);
         let galley = written(if is_wide { name } else { short });
         let (width, height) = (galley.size().x, galley.size().y);
-        if x + SIGN + GAP + width > right - 4.0 {
+        if x + SYMBOL + GAP + width > right - 4.0 {
             break;
         }
-        let rect = Rect::from_min_max(pos2(x, y - 5.0), pos2(x + SIGN, y + 5.0));
+        let rect = Rect::from_min_max(pos2(x, y - 5.0), pos2(x + SYMBOL, y + 5.0));
         painter.extend(sign.shapes(rect));
-        painter.galley(pos2(x + SIGN + GAP, y - 0.5 * height), galley, style.faint());
-        let whole = Rect::from_min_max(rect.min, pos2(x + SIGN + GAP + width, rect.max.y));
+        painter.galley(pos2(x + SYMBOL + GAP, y - 0.5 * height), galley, style.faint());
+        let whole = Rect::from_min_max(rect.min, pos2(x + SYMBOL + GAP + width, rect.max.y));
         explained(ui.interact(whole, ui.scope_id().with(("legend", name)), Sense::hover()), name);
-        x += SIGN + GAP + width + APART;
+        x += SYMBOL + GAP + width + ENTRY_GAP;
     }
 }

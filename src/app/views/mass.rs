@@ -1,4 +1,4 @@
-//! The mass as something that a hand or the arrow keys take hold of.
+//! Input on the mass: dragging it, and moving it by the arrow keys.
 
 use eframe::egui::{self, CursorIcon, Pos2, Rect, Sense, Ui};
 
@@ -9,11 +9,11 @@ use super::ViewContext;
 use super::context::Drawn;
 use super::stops::key_step;
 
-/// Steps of a stop's slider that an arrow key moves the mass by; with Shift ten times as many.
+/// Distance that an arrow key moves the mass, in steps of a stop's slider; ten times as far with Shift.
 const KEY_STEPS: f64 = 2.0;
 
-/// Lets the mass be grabbed: it is held where the hand is, and the clock stands. With the keyboard's focus on
-/// it the arrow keys take hold of it and move it, and Enter lets go.
+/// Lets the mass be dragged: it is held at the pointer, and time stands still. With the keyboard focus, the
+/// arrow keys hold and move it, and Enter lets it go.
 pub fn mass_ui(ui: &mut Ui, context: &mut ViewContext<'_>, at: Pos2, rect: Rect) {
     if matches!(context.drawn, Drawn::Pinned(_)) {
         return;
@@ -38,7 +38,7 @@ pub fn mass_ui(ui: &mut Ui, context: &mut ViewContext<'_>, at: Pos2, rect: Rect)
         ui.painter().circle_stroke(at, BALL + 5.0, context.style.focus_stroke());
         let moved = arrows(ui, response.id);
         if moved != 0.0 {
-            // on the grid of the step
+            // rounded to multiples of the step
             let step = KEY_STEPS * key_step(context.session);
             let place = (mm / step).round() + moved;
             context.session.player.hold(place * step / 1e3);

@@ -1,4 +1,4 @@
-//! Card of the measured data: shift and stretch in time, and the numbers in which it differs.
+//! View of the measured data: shift and scale in time, and differences from the computed motion.
 
 use eframe::egui::{self, Button, Grid, RichText, ScrollArea, Ui};
 
@@ -15,16 +15,16 @@ use crate::study::{Table, metres};
 
 use super::ViewContext;
 
-/// Forcing periods, or characteristic times, by which the slider goes to either side.
+/// Range of the shift slider to either side, in forcing periods or characteristic times.
 const PERIODS: f64 = 2.0;
 
-/// The most by which a record is moved in s, and by which it is stretched.
-const FARTHEST: f64 = 1e12;
+/// Largest shift in s, offset in mm and time scale that may be typed.
+const MAX_TYPED: f64 = 1e12;
 
-/// Of a number that is next to nothing no percent tell anything.
-const MOST_PERCENT: f64 = 1000.0;
+/// Percentage above which it is left out, since the reference is close to zero.
+const MAX_PERCENT: f64 = 1000.0;
 
-/// Width in points of the slider, where there is room.
+/// Width of a slider in points.
 const SLIDER: f32 = 100.0;
 
 pub fn measured_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
@@ -46,17 +46,17 @@ pub fn measured_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
                 if over.record.timing.is_some() {
                     time_ui(ui, context.session, &over);
                 }
-                zero_ui(ui, context.session, &over);
+                offset_ui(ui, context.session, &over);
             });
             if let Some(why) = &context.session.measured.no_fit {
                 ui.label(format!("No shift was found. {why}"));
             }
-            found_ui(ui, context, &over);
+            differences_ui(ui, context, &over);
         });
     });
 }
 
-/// What it is, and what can be done with it.
+/// Name of the record and the buttons that act on it.
 fn head_ui(ui: &mut Ui, context: &mut ViewContext<'_>, over: &Overlay) {
     let record = &over.record;
     ui.horizontal(|ui| {
@@ -97,7 +97,7 @@ fn time_ui(ui: &mut Ui, session: &mut Session, over: &Overlay) {
         name: "shift",
         unit: "s",
         reach: Reach::even(low, high, below(period / 200.0)),
-        typed: (-FARTHEST, FARTHEST),
+        typed: (-MAX_TYPED, MAX_TYPED),
         hover: "What is added to the times of the record. Type a number to go farther than the slider.",
         width: SLIDER,
     };
@@ -111,7 +111,7 @@ fn time_ui(ui: &mut Ui, session: &mut Session, over: &Overlay) {
         name: "time scale",
         unit: "",
         reach: Reach::even(0.9, 1.1, 1e-4),
-        typed: (1.0 / FARTHEST, FARTHEST),
+        typed: (1.0 / MAX_TYPED, MAX_TYPED),
         hover,
         width: SLIDER,
     };
@@ -123,8 +123,8 @@ fn time_ui(ui: &mut Ui, session: &mut Session, over: &Overlay) {
     }
 }
 
-/// What is added to a displacement or a position.
-fn zero_ui(ui: &mut Ui, session: &mut Session, over: &Overlay) {
+/// Control of the offset that is added to a displacement or a position.
+fn offset_ui(ui: &mut Ui, session: &mut Session, over: &Overlay) {
     let record = &over.record;
     if ![record.across.quantity, record.values.quantity].contains(&Quantity::Displacement) {
         return;
@@ -135,7 +135,7 @@ fn zero_ui(ui: &mut Ui, session: &mut Session, over: &Overlay) {
         name: "add",
         unit: "mm",
         reach: Reach::even(-10.0, 10.0, 0.01),
-        typed: (-FARTHEST, FARTHEST),
+        typed: (-MAX_TYPED, MAX_TYPED),
         hover,
         width: SLIDER,
     };
@@ -147,8 +147,8 @@ fn zero_ui(ui: &mut Ui, session: &mut Session, over: &Overlay) {
     }
 }
 
-/// The numbers, and what they are against.
-fn found_ui(ui: &mut Ui, context: &ViewContext<'_>, over: &Overlay) {
+/// Table of the differences, and a note on the run that they refer to.
+fn differences_ui(ui: &mut Ui, context: &ViewContext<'_>, over: &Overlay) {
     let (style, session) = (context.style, &context.session);
     let faint = |text: String| egui::Label::new(RichText::new(text).color(style.faint())).wrap();
     let (parts, current) = session.measured.found.parts();
@@ -157,13 +157,13 @@ fn found_ui(ui: &mut Ui, context: &ViewContext<'_>, over: &Overlay) {
         Some(Err(problem)) => _ = ui.label(problem),
         Some(Ok(found)) => {
             let (table, remarks) = match found {
-                Differences::Motion(own) => (&own.table, &own.remarks),
-                Differences::Force(own) => (&own.table, &own.remarks),
+                Differences::Motion(motion) => (&motion.table, &motion.remarks),
+                Differences::Force(force) => (&force.table, &force.remarks),
             };
             table_ui(ui, &style, table, current);
-            // how it was sampled was said before
-            let sampled = over.record.timing.as_ref().map(|own| own.describe());
-            for remark in remarks.iter().filter(|own| sampled.as_ref() != Some(*own)) {
+            // the hover text of the name describes the sampling already
+            let sampled = over.record.timing.as_ref().map(|timing| timing.describe());
+            for remark in remarks.iter().filter(|remark| sampled.as_ref() != Some(*remark)) {
                 ui.add(faint(sentence(remark)));
             }
         }
@@ -194,8 +194,8 @@ fn table_ui(ui: &mut Ui, style: &Style, table: &Table, current: bool) {
         }
         ui.end_row();
         for (row, (name, unit)) in table.words("quantity").iter().zip(table.words("unit")).enumerate() {
-            let [measured, computed, difference, percent] = columns.map(|own| own[row]);
-            // neither has any
+            let [measured, computed, difference, percent] = columns.map(|column| column[row]);
+            // neither side has a value
             if !difference.is_finite() && measured.is_nan() && computed.is_nan() {
                 continue;
             }
@@ -208,26 +208,26 @@ fn table_ui(ui: &mut Ui, style: &Style, table: &Table, current: bool) {
                 "g" => (1.0, ", g"),
                 _ => (1.0, ""),
             };
-            // both with the decimals of the larger
-            let most = measured.abs().max(computed.abs()) * scale;
-            let decimals = if unit.is_empty() { 0 } else { decimals_for(most) };
+            // both values get the decimals of the larger one
+            let larger = measured.abs().max(computed.abs()) * scale;
+            let decimals = if unit.is_empty() { 0 } else { decimals_for(larger) };
             let both = |value: f64| match value.is_finite() {
                 true => format!("{:.decimals$}", value * scale),
                 false if difference.is_finite() => String::new(),
                 false => "-".to_owned(),
             };
-            let mut apart = match difference.is_finite() && *name != "largest_difference_at" {
+            let mut third = match difference.is_finite() && *name != "largest_difference_at" {
                 true if unit.is_empty() => format!("{difference:.0}"),
-                true if (difference * scale).abs() < 1e-9 * most => "0".to_owned(), // rounding
+                true if (difference * scale).abs() < 1e-9 * larger => "0".to_owned(), // rounding
                 true => three(difference * scale),
                 false => String::new(),
             };
-            if percent.abs() < MOST_PERCENT && !apart.is_empty() {
+            if percent.abs() < MAX_PERCENT && !third.is_empty() {
                 let digits = usize::from(percent.abs() < 99.95);
-                apart += &format!(" ({percent:.digits$} %)");
+                third += &format!(" ({percent:.digits$} %)");
             }
-            ui.label(RichText::new(format!("{}{unit}", called(name))).color(style.faint()));
-            for text in [both(measured), both(computed), apart] {
+            ui.label(RichText::new(format!("{}{unit}", row_name(name))).color(style.faint()));
+            for text in [both(measured), both(computed), third] {
                 ui.label(RichText::new(text).color(ink));
             }
             ui.end_row();
@@ -235,8 +235,8 @@ fn table_ui(ui: &mut Ui, style: &Style, table: &Table, current: bool) {
     });
 }
 
-/// What a row of the table is called.
-fn called(name: &str) -> String {
+/// Name of a row of the table.
+fn row_name(name: &str) -> String {
     match name {
         "first_crossing_amplitude" => "shaking then".to_owned(),
         "rebound_height_left" | "rebound_height_right" => "their height".to_owned(),

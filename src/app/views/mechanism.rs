@@ -1,10 +1,10 @@
-//! View of the mechanism as a drawing, seen from the base, on the x axis of the well.
+//! View of the mechanism as a drawing in the frame of the base, on the x axis of the well.
 //!
-//! Where the force comes from flexures they are drawn as they are bent ([`flexures`](super::flexures));
-//! another force is a spring in a schematic, and one that is the same everywhere has none; springs, magnets
-//! and a transducer stand [`beside`](super::beside) these. The base stands still in it, and the push that
-//! the mass feels instead is an arrow; the base's own motion is far larger than the travel and has an inset
-//! at its own scale. An impact is a ring whose size is the energy that it takes.
+//! Flexures are drawn in their bent shape ([`flexures`](super::flexures)). Another force is drawn as a
+//! spring, and a constant force not at all. Springs, magnets and a transducer are drawn
+//! [`beside`](super::beside) these. The base stands still, and its push on the mass is an arrow; the motion
+//! of the base is far larger than the travel and is drawn in an inset at another scale. An impact is a ring
+//! whose size shows the energy that it takes.
 
 use eframe::egui::{self, Align2, Color32, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
@@ -13,7 +13,7 @@ use crate::app::words::meanings::explained;
 use crate::app::words::numbers::{decimals_for, three};
 use crate::dynamics::{EventKind, STANDARD_GRAVITY, Side};
 
-use super::beside::{Below, Bench, Beside, NAMED};
+use super::beside::{Attachments, LowerFlexures, MIN_LABELLED, Places};
 use super::flexures::{CLAMP, DrawingArea, DrawingScale, bulge_words, clamp, state_at};
 use super::ghosts::ghosts;
 use super::labels::{ago, plated};
@@ -22,16 +22,16 @@ use super::schematic::{Schematic, schematic};
 use super::stops::{WALL, stops_ui};
 use super::{ViewContext, mass::mass_ui, too_small_ui};
 
-/// Height in points of the name of a stop above its foot, clear of the rail.
+/// Height in points of the name of a stop above the foot of the stop, clear of the rail.
 const CLEAR: f32 = 6.0;
 
 /// Length in points of an arrow's head.
 const ARROW_HEAD: f32 = 12.0;
 
-/// This part of a flexure next to its clamp is its foot.
+/// The foot of a flexure is its part next to the clamp, one in `FOOT` of its points.
 const FOOT: usize = 5;
 
-/// Room in points that the base's own motion needs.
+/// Width in points that the inset with the motion of the base needs.
 const INSET: f32 = 184.0;
 
 pub fn mechanism_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
@@ -39,7 +39,7 @@ pub fn mechanism_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     if rect.width() < 60.0 || rect.height() < 60.0 {
         return too_small_ui(ui, &context.style, rect);
     }
-    // an axis of its own only where no other view stands on it
+    // a true scale changes the x axis of this view only
     let shared = context.span;
     drawing_ui(ui, context, rect);
     context.span = shared;
@@ -54,7 +54,7 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
     // as wide as the ball on the well, so that it touches the stops when it should
     let half = vec2(BALL, ((bottom - top) * 0.13).clamp(14.0, 30.0));
     let place = DrawingArea { top, bottom, half };
-    let beside = Beside::of(context.drawn.model(context.session));
+    let beside = Attachments::of(context.drawn.model(context.session));
     let behind = painter.add(Shape::Noop);
     let (middle, words, below) = match bent_ui(ui, &painter, context, rect, place, state.x) {
         Some((middle, words, below)) => (middle, words, Some(below)),
@@ -68,7 +68,7 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
     let x = context.span.screen_from_world(state.x, rect);
     let body = Rect::from_center_size(pos2(x, middle), half * 2.0);
     let zero = context.span.screen_from_world(0.0, rect);
-    beside.draw(ui, &painter, &style, behind, &Bench { rect, bottom, body, zero, below });
+    beside.draw(ui, &painter, &style, behind, &Places { rect, bottom, body, zero, below });
     let edge = Stroke::new(1.5, style.mass_edge());
     painter.rect(body, 3.0, style.mass(), edge, egui::StrokeKind::Inside);
     let heights = (middle - half.y - 4.0, middle + half.y + 4.0);
@@ -83,26 +83,25 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
     rings(ui, context, rect, middle);
     let arrow = body.translate(vec2(0.0, -beside.lift() * half.y));
     push_arrow(&painter, context, arrow, state.base_accel, rect);
-    names(&painter, context, rect, (top, heights), body);
-    words_ui(ui, &painter, context, rect, &words, state.base_accel);
+    part_names(&painter, context, rect, (top, heights), body);
+    caption_ui(ui, &painter, context, rect, &words, state.base_accel);
 }
 
-/// What the parts are called, each once: a flexure at its clamp and the mass, each on the side to which the
-/// flexure does not go from there; a stop at its foot on the outer side, or where there is no room on the
-/// inner one.
-fn names(
+/// Names the kinds of parts, each once: the flexure at its clamp and the mass, each on the side away from the
+/// flexure, and a stop at its foot on the outer side, or on the inner side where there is no room.
+fn part_names(
     painter: &egui::Painter,
     context: &ViewContext<'_>,
     rect: Rect,
     (top, walls): (f32, (f32, f32)),
     body: Rect,
 ) {
-    if rect.width() < NAMED.x || rect.height() < NAMED.y {
+    if rect.width() < MIN_LABELLED.x || rect.height() < MIN_LABELLED.y {
         return;
     }
     let (style, model) = (context.style, context.drawn.model(context.session));
     let width = |name: &str| painter.layout_no_wrap(name.to_owned(), style.small(), style.faint()).size().x;
-    // to the right of a place, or to the left of another
+    // writes a name to the right of `x_right` or to the left of `x_left`
     let put = |right: bool, (x_right, x_left): (f32, f32), y: f32, below: bool, name: &str| {
         let fits = |right: bool| match right {
             true => x_right + width(name) < rect.right(),
@@ -116,10 +115,10 @@ fn names(
             (false, false) => Align2::RIGHT_BOTTOM,
         };
         let at = pos2(if right { x_right } else { x_left }, y);
-        // over a flexure, where there is room on its side alone
+        // on a plate, since the side with room may be that of the flexure
         plated(painter, &style, (at, align), name, (style.small(), style.faint()));
     };
-    let (at_clamp, at_mass) = leaves_right(context);
+    let (at_clamp, at_mass) = runs_right(context);
     let barrier = model.mechanism().landscape.barrier.map_or(0.0, |barrier| barrier.x);
     if model.mechanism().flexures.is_some() {
         let zero = context.span.screen_from_world(0.0, rect);
@@ -128,22 +127,21 @@ fn names(
         let foot = context.span.screen_from_world(barrier, rect);
         put(body.center().x < foot, (foot + 10.0, foot - 10.0), top + 5.0, true, "spring");
     }
-    // over the stops, whose room it may need
+    // above the stops, since the name may reach over them
     let y = walls.0.min(body.top()) - 4.0;
     put(!at_mass, (body.right() + 2.0, body.left() - 2.0), y, false, "mass");
     let (left, right) = model.stop_positions();
     let stop = left.map(|x| (x, -1.0)).or(right.map(|x| (x, 1.0)));
-    if let Some((x, way)) = stop {
-        let face = context.span.screen_from_world(x, rect) + way * BALL;
-        let sides = [face, face + way * WALL];
+    if let Some((x, side)) = stop {
+        let face = context.span.screen_from_world(x, rect) + side * BALL;
+        let sides = [face, face + side * WALL];
         let (low, high) = (sides[0].min(sides[1]), sides[0].max(sides[1]));
-        put(way > 0.0, (high + 5.0, low - 5.0), walls.1 - CLEAR, false, "stop");
+        put(side > 0.0, (high + 5.0, low - 5.0), walls.1 - CLEAR, false, "stop");
     }
 }
 
-/// Whether the flexure over the mass goes to the right from its clamp, and from the mass. A spring leaves the
-/// mass to the side of the barrier.
-fn leaves_right(context: &ViewContext<'_>) -> (bool, bool) {
+/// Whether the flexure above the mass, or the spring, runs to the right from its clamp, and from the mass.
+fn runs_right(context: &ViewContext<'_>) -> (bool, bool) {
     let model = context.drawn.model(context.session);
     let bent = context.memory.drawing.bent.as_ref().filter(|_| model.mechanism().flexures.is_some());
     let Some(line) = bent.and_then(|bent| bent.lines.get(1)).filter(|line| line.points.len() > 8) else {
@@ -153,19 +151,18 @@ fn leaves_right(context: &ViewContext<'_>) -> (bool, bool) {
     };
     let near = line.points.len() / 6;
     let ends = [(0, near), (line.points.len() - 1, line.points.len() - 1 - near)];
-    let goes = ends.map(|(end, near)| (line.points[end][1], line.points[near][2] > line.points[end][2]));
-    // the clamp is the end that is further along
-    if goes[0].0 > goes[1].0 { (goes[0].1, goes[1].1) } else { (goes[1].1, goes[0].1) }
+    let runs = ends.map(|(end, near)| (line.points[end][1], line.points[near][2] > line.points[end][2]));
+    // the end that is farther along is the clamp
+    if runs[0].0 > runs[1].0 { (runs[0].1, runs[1].1) } else { (runs[1].1, runs[0].1) }
 }
 
-/// What a word of the drawing means, while the pointer rests on it.
 fn explain(ui: &Ui, place: Rect, word: &str) {
     let id = ui.scope_id().with(("word", word.split(' ').next()));
     explained(ui.interact(place, id, Sense::hover()), word);
 }
 
-/// The flexures as they are bent, where there are such: the middle of the body, what is said of the drawing,
-/// and what is below the body.
+/// Draws the bent flexures. Returns the height of the middle of the body, the text on the scale and the
+/// flexures below the body. `None` if the mechanism has no flexures.
 fn bent_ui(
     ui: &Ui,
     painter: &egui::Painter,
@@ -173,7 +170,7 @@ fn bent_ui(
     rect: Rect,
     place: DrawingArea,
     x: f64,
-) -> Option<(f32, String, Below)> {
+) -> Option<(f32, String, LowerFlexures)> {
     let bent = state_at(context, x)?;
     let style = context.style;
     let mechanism = &context.drawn.model(context.session).mechanism();
@@ -181,9 +178,9 @@ fn bent_ui(
     let scale = DrawingScale::of(geometry, place);
     let reach = mechanism.landscape.right_stable().map_or(0.0, |well| well.x.abs());
     if context.filled
-        && let Some(own) = scale.true_span(reach, rect)
+        && let Some(span) = scale.true_span(reach, rect)
     {
-        context.span = own;
+        context.span = span;
     }
     for (y, above) in [(place.top, true), (place.bottom, false)] {
         let y = if above { y - CLAMP..=y } else { y..=y + CLAMP };
@@ -194,16 +191,16 @@ fn bent_ui(
     painter.extend(lines.into_iter().flatten().map(|line| Shape::line(line, style.flexure_stroke())));
     scale.bar(painter, &style, pos2(rect.right() - 18.0, place.bottom - 8.0));
     let words = bulge_words(&bent);
-    // beside the feet of the flexures, where these never are
+    // in the lower left corner, which the flexures never reach
     let at = pos2(rect.left() + 12.0, place.bottom - 5.0);
     let place = plated(painter, &style, (at, Align2::LEFT_BOTTOM), &words, (style.body(), style.ink()));
     explain(ui, place, &words);
-    let below = Below { along: scale.along(), feet };
+    let below = LowerFlexures { along: scale.along(), feet };
     Some((scale.middle(&bent), scale.words(context.span, rect), below))
 }
 
-/// What pushes the mass in the base's frame, -m a_b, as an arrow of m a_b / (m g). It lies at the mass's
-/// height on the inner side of the body, where neither flexures nor stops are.
+/// Draws the push -m a_b on the mass as an arrow, relative to the largest push. It lies at the height of the
+/// mass on the inner side of the body, clear of flexures and stops.
 fn push_arrow(painter: &egui::Painter, context: &ViewContext<'_>, body: Rect, base_accel: f64, rect: Rect) {
     if !context.drawn.model(context.session).is_shaken() {
         return;
@@ -225,9 +222,8 @@ fn push_arrow(painter: &egui::Painter, context: &ViewContext<'_>, body: Rect, ba
     }
 }
 
-/// The row over the drawing, where nothing moves: when, what is seen, how hard it is pushed, and how the base
-/// moves.
-fn words_ui(
+/// Writes the row above the drawing: age, frame of reference, scale, push and motion of the base.
+fn caption_ui(
     ui: &Ui,
     painter: &egui::Painter,
     context: &ViewContext<'_>,
@@ -236,25 +232,25 @@ fn words_ui(
     base_accel: f64,
 ) {
     let style = context.style;
-    // what can be spared first comes last
+    // the number is the priority of a text: the lowest is left out first
     let mut all =
         vec![("seen from the base".to_owned(), style.faint(), 0), (words.to_owned(), style.faint(), 1)];
     if let Some(ago) = ago(context.session) {
         all.insert(0, (ago, style.ink(), 2));
     }
     if context.drawn.model(context.session).is_shaken() {
-        // hundredths, and more only where these say nothing
-        let most = context.drawn.model(context.session).largest_base_acceleration() / STANDARD_GRAVITY;
-        let decimals = if most < 0.1 { decimals_for(most) } else { 2 };
+        // two decimals, or more for a push below 0.1 g
+        let largest = context.drawn.model(context.session).largest_base_acceleration() / STANDARD_GRAVITY;
+        let decimals = if largest < 0.1 { decimals_for(largest) } else { 2 };
         let push = (base_accel / STANDARD_GRAVITY).abs();
         all.push((format!("push {push:.decimals$} g"), style.base(), 3));
     }
     let width = |text: &str| painter.layout_no_wrap(text.to_owned(), style.small(), style.ink()).size().x;
-    let needed = |all: &[(String, Color32, u8)]| all.iter().map(|own| width(&own.0) + 14.0).sum::<f32>();
+    let needed = |all: &[(String, Color32, u8)]| all.iter().map(|text| width(&text.0) + 14.0).sum::<f32>();
     while needed(&all) > rect.width() - 6.0
-        && let Some(least) = all.iter().map(|own| own.2).min()
+        && let Some(lowest) = all.iter().map(|text| text.2).min()
     {
-        all.retain(|own| own.2 > least);
+        all.retain(|text| text.2 > lowest);
     }
     let mut at = rect.left_top() + vec2(10.0, 4.0);
     for (text, color, _) in all {
@@ -265,7 +261,7 @@ fn words_ui(
     inset(ui, painter, context, Rect::from_min_max(pos2(at.x, rect.top()), rect.max), base_accel);
 }
 
-/// The base's own motion at its own scale, for a sine, whose displacement is -a/(2 pi f)^2.
+/// Draws the motion of the base at another scale, for a sine, whose displacement is -a/(2 pi f)^2.
 fn inset(ui: &Ui, painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect, base_accel: f64) {
     let Some((amplitude, rate)) = context.drawn.model(context.session).single_sine() else { return };
     let (swing, place) = (amplitude / (rate * rate), -base_accel / (rate * rate));
@@ -285,7 +281,7 @@ fn inset(ui: &Ui, painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect
     explain(ui, place, &text);
 }
 
-/// Impacts since the last frame begin a ring, one at a time a side; rings under way are drawn.
+/// Starts a ring for an impact since the last frame, at most one at a time per side, and draws the rings.
 fn rings(ui: &Ui, context: &mut ViewContext<'_>, rect: Rect, y: f32) {
     let now = ui.input(|input| input.time);
     let (from, to) = (context.memory.drawing.seen_to, context.session.player.time());
@@ -299,14 +295,14 @@ fn rings(ui: &Ui, context: &mut ViewContext<'_>, rect: Rect, y: f32) {
         for event in watch.events().range(first..).take_while(|event| event.t <= to) {
             let side = usize::from(event.side == Side::Right);
             let busy = context.memory.drawing.rings[side].is_some_and(|ring| now - ring.began < RING_SECONDS);
-            // A compliant stop takes its share over the contact that begins here.
-            let kept = match &model.compliant() {
+            // a compliant stop dissipates energy during the contact that begins here
+            let v_out = match &model.compliant() {
                 Some(stop) => stop.restitution(event.v_in.abs()) * event.v_in,
                 None => event.v_out,
             };
-            let taken = (event.v_in * event.v_in - kept * kept) / scale;
-            if matches!(event.kind, EventKind::Impact | EventKind::Contact) && !busy && taken > 1e-4 {
-                context.memory.drawing.rings[side] = Some(Ring { began: now, size: taken.min(1.0) });
+            let lost = (event.v_in * event.v_in - v_out * v_out) / scale;
+            if matches!(event.kind, EventKind::Impact | EventKind::Contact) && !busy && lost > 1e-4 {
+                context.memory.drawing.rings[side] = Some(Ring { began: now, size: lost.min(1.0) });
             }
         }
     }
@@ -319,8 +315,8 @@ fn rings(ui: &Ui, context: &mut ViewContext<'_>, rect: Rect, y: f32) {
             context.memory.drawing.rings[side] = None;
             continue;
         }
-        let way = if side == 0 { -BALL } else { BALL };
-        let center = pos2(context.span.screen_from_world(stop, rect) + way, y);
+        let offset = if side == 0 { -BALL } else { BALL };
+        let center = pos2(context.span.screen_from_world(stop, rect) + offset, y);
         let radius = (8.0 + 42.0 * ring.size.sqrt() * age) as f32;
         let color: Color32 = style.impact().gamma_multiply((1.0 - age) as f32);
         painter.circle_stroke(center, radius, Stroke::new(2.5, color));

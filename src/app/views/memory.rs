@@ -1,4 +1,4 @@
-//! What views keep between frames.
+//! State that the views keep between frames.
 
 use eframe::egui::Pos2;
 
@@ -12,88 +12,87 @@ use super::span::Span;
 use super::view::{Axis, View};
 use super::zoom::Axes;
 
-/// What views keep between frames.
+/// State that the views keep between frames.
 #[derive(Debug, Clone, Default)]
 pub struct Memory {
-    /// Axes that stand still during a gesture.
-    pub(super) held: HeldAxes,
+    /// Axes that are frozen during a gesture.
+    pub(super) frozen: FrozenAxes,
     pub(super) drawing: Drawing,
-    /// The mass is to be taken hold of by the first view that has it.
+    /// Whether the first view that shows the mass is to grab it.
     pub grab: bool,
-    /// What is to be pinned.
+    /// The kind of pin that is to be made.
     pub pin: Option<PinKind>,
     /// The view of which a figure is to be saved.
     pub figure: Option<View>,
-    /// Measured data are to be opened.
+    /// Whether measured data are to be opened.
     pub open_measured: bool,
     pub hovered: Option<View>,
     pub timeline: Timeline,
-    /// Two cursors over time.
     pub cursors: Cursors,
-    /// Ends of axes that a hand has chosen.
+    /// Ends of axes chosen by hand.
     pub(super) axes: Axes,
-    /// Where a box begins and ends that is drawn, to be shown.
+    /// Corners of the zoom box that is being drawn.
     pub(super) corner: Option<(Pos2, Pos2)>,
-    /// The same of the pinned motion that is drawn beside the present one, and which of the pins it is.
+    /// Drawing of the pinned motion beside the present one.
     pub(super) beside: Drawing,
+    /// Index of that pin.
     pub(super) beside_place: usize,
     /// The row of the list of events that was marked last.
     pub(super) marked: Option<usize>,
-    /// How far axes of velocity and power reach.
+    /// Ranges of the axes of velocity and power.
     pub(super) ranges: Ranges,
-    /// The phase portrait shows a point a period and no path.
+    /// Whether the phase portrait shows one point per forcing period and no path.
     pub points_only: bool,
     pub map_look: MapLook,
     pub(super) map_pointer: PointerState,
-    /// What the view Accuracy shows where there is no room for all of it.
+    /// The page of the view Accuracy that is shown where both do not fit.
     pub(super) accuracy_page: Page,
 }
 
 impl Memory {
-    /// The x axis that views share, with room for what has been seen.
+    /// The x axis that views share, with room for all displacements seen.
     pub fn span(&mut self, session: &Session) -> Span {
         let seen = self.ranges.follow(session).reach(session);
-        let own = Span::of(session, seen);
+        let span = Span::of(session, seen);
         let x = session.player.state().x;
-        let is_seen = self.held.span.0.is_none_or(|(low, high)| low < x && x < high);
-        let held = session.editor.in_gesture() && is_seen;
-        let own = self.held.span.keep((own.low, own.high), held);
-        let (low, high) = self.axes.ends(Axis::Place, own);
+        let is_seen = self.frozen.span.0.is_none_or(|(low, high)| low < x && x < high);
+        let frozen = session.editor.in_gesture() && is_seen;
+        let ends = self.frozen.span.keep((span.low, span.high), frozen);
+        let (low, high) = self.axes.ends(Axis::Place, ends);
         Span { low, high }
     }
 
-    /// What stays of it when another scene is opened.
+    /// The state that remains when another scene is opened.
     pub fn for_another_scene(&self) -> Self {
         Self { axes: self.axes.held(), ..Self::default() }
     }
 }
 
-/// An axis that stands still while a hand changes the scene, so that what the hand does to it is seen.
+/// An axis that is frozen while a gesture changes the scene, so that the effect of the gesture is seen.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Held(Option<(f64, f64)>);
+pub(super) struct FrozenAxis(Option<(f64, f64)>);
 
-/// The room in an axis, as a share of it, that may be used up before an axis that is held gives way.
+/// Share of the axis by which the wanted ends may exceed a frozen axis before it moves.
 const SPARE: f64 = 0.08;
 
-impl Held {
-    /// The ends of the axis: those that it should have, or in the midst of a gesture those that it had, as
-    /// long as what it has to show is inside.
-    pub(super) fn keep(&mut self, own: (f64, f64), in_gesture: bool) -> (f64, f64) {
-        let spare = SPARE * (own.1 - own.0);
-        let holds = |had: &(f64, f64)| had.0 <= own.0 + spare && had.1 >= own.1 - spare;
-        let ends = self.0.filter(|had| in_gesture && holds(had)).unwrap_or(own);
+impl FrozenAxis {
+    /// The `wanted` ends of the axis, or during a gesture the previous ones while they contain these.
+    pub(super) fn keep(&mut self, wanted: (f64, f64), in_gesture: bool) -> (f64, f64) {
+        let spare = SPARE * (wanted.1 - wanted.0);
+        let contains = |old: &(f64, f64)| old.0 <= wanted.0 + spare && old.1 >= wanted.1 - spare;
+        let ends = self.0.filter(|old| in_gesture && contains(old)).unwrap_or(wanted);
         self.0 = Some(ends);
         ends
     }
 }
 
-/// The axes that stand still during a gesture.
+/// The axes that are frozen during a gesture.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct HeldAxes {
-    pub span: Held,
+pub(super) struct FrozenAxes {
+    pub span: FrozenAxis,
     /// Potential energy.
-    pub heights: Held,
-    pub force: Held,
+    pub energy: FrozenAxis,
+    pub force: FrozenAxis,
 }
 
 /// A ring that grows and fades.
@@ -108,9 +107,9 @@ pub(super) struct Ring {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapLook {
     pub surface: bool,
-    /// Lines through it where the scene is stand beside it.
+    /// Whether cuts through the map at the scene are drawn beside it.
     pub cuts: bool,
-    /// Where the scene has been is drawn.
+    /// Whether the trail of the scene is drawn.
     pub trail: bool,
 }
 
@@ -120,25 +119,25 @@ impl Default for MapLook {
     }
 }
 
-/// What the drawing of a mechanism keeps.
+/// State of a drawing of the mechanism.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Drawing {
-    /// The last impact on the left and the right that is drawn as a ring.
+    /// Rings of the last impacts on the left and the right stop.
     pub rings: [Option<Ring>; 2],
-    /// The flexures as they were drawn last.
+    /// Last solved shape of the flexures.
     pub bent: Option<State>,
-    /// The time up to which impacts have been looked at.
+    /// Time in s up to which impacts have been handled.
     pub seen_to: f64,
 }
 
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct PointerState {
     pub corner: Option<Pos2>,
-    /// A click that waits whether it is the first of two, and since when.
+    /// The cell of a click that may become a double click, and its time in s.
     pub clicked: Option<((usize, usize), f64)>,
 }
 
-/// What the view Accuracy shows where there is no room for all of it.
+/// The pages of the view Accuracy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) enum Page {
     /// What each digit costs.
@@ -156,14 +155,14 @@ impl Page {
     }
 }
 
-/// What traces share.
+/// Time range and pointer that the traces share.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Timeline {
-    /// The stretch of time in s that a person has chosen.
+    /// The length of time in s that a person has chosen.
     pub window: Option<f64>,
-    /// The stretch of time in s that is shown otherwise.
-    pub(super) own: f64,
-    /// The time in s under the pointer, and the pass in which it was there.
+    /// The length of time in s that is shown otherwise.
+    pub(super) default_window: f64,
+    /// The time in s under the pointer, and the number of the pass in which it was there.
     pub(super) cursor: Option<(f64, u64)>,
 }
 
@@ -173,13 +172,13 @@ mod tests {
 
     #[test]
     fn an_axis_stands_still_while_a_hand_moves_what_it_shows() {
-        let mut held = Held::default();
-        assert_eq!(held.keep((-8.0, 8.0), false), (-8.0, 8.0));
-        // smaller or a little larger it stays, and what leaves it takes it along
-        assert_eq!(held.keep((-4.0, 4.0), true), (-8.0, 8.0));
-        assert_eq!(held.keep((-9.0, 9.0), true), (-8.0, 8.0));
-        assert_eq!(held.keep((-12.0, 12.0), true), (-12.0, 12.0));
-        assert_eq!(held.keep((-9.0, 9.0), true), (-12.0, 12.0));
-        assert_eq!(held.keep((-9.0, 9.0), false), (-9.0, 9.0));
+        let mut axis = FrozenAxis::default();
+        assert_eq!(axis.keep((-8.0, 8.0), false), (-8.0, 8.0));
+        // a smaller or slightly larger range keeps the axis, a much larger one moves it
+        assert_eq!(axis.keep((-4.0, 4.0), true), (-8.0, 8.0));
+        assert_eq!(axis.keep((-9.0, 9.0), true), (-8.0, 8.0));
+        assert_eq!(axis.keep((-12.0, 12.0), true), (-12.0, 12.0));
+        assert_eq!(axis.keep((-9.0, 9.0), true), (-12.0, 12.0));
+        assert_eq!(axis.keep((-9.0, 9.0), false), (-9.0, 9.0));
     }
 }

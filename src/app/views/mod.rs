@@ -1,8 +1,8 @@
 //! The views of the window.
 //!
-//! A view is a row in the table of [`View`] and a function `..._ui(ui, &mut ViewContext)` in a file or folder
-//! of its own. Views share the x axis of [`Span`], so that mechanism and well stand above each
-//! other, and keep what they must remember between frames in [`Memory`].
+//! Each view is a row of the table of [`View`] and a function `..._ui(ui, &mut ViewContext)` in its own file
+//! or folder. Views share the x axis of [`Span`], so that the mechanism lines up with the well below it, and
+//! keep their state between frames in [`Memory`].
 
 mod accuracy;
 mod axes;
@@ -58,7 +58,7 @@ pub(super) use trace::stretch;
 pub use view::View;
 
 pub fn view_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) {
-    // what is left of the panel: over a filled window stand a title and a button
+    // the rest of the panel: a view that fills the window has a title and a button above it
     let rect = ui.available_rect_before_wrap();
     if ui.rect_contains_pointer(rect) {
         context.memory.hovered = Some(view);
@@ -66,7 +66,7 @@ pub fn view_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) {
     ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| drawn_ui(ui, view, context));
 }
 
-/// What stands in the place of a view while the motion and all results are covered.
+/// Draws the placeholder of a view whose content is covered.
 fn covered_ui(ui: &mut Ui, style: &Style) {
     let rect = ui.max_rect();
     ui.painter().rect_filled(rect, 0.0, style.ground());

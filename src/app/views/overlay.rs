@@ -1,4 +1,4 @@
-//! Measured data over a trace and over the force curve: few samples as dots, many as a broad line below.
+//! Measured data over traces and the force curve: few samples as dots, many as a broad line.
 
 use eframe::egui::{Painter, Shape};
 use egui_plot::{Line, PlotPoint, PlotPoints, PlotUi, Points};
@@ -9,30 +9,30 @@ use crate::scene::Quantity;
 
 use super::ViewContext;
 use super::chart::Chart;
-use super::legend::Sign;
+use super::legend::Symbol;
 
-/// Fewer samples than this in a picture are dots.
+/// Number of samples in a picture below which they are drawn as dots.
 const DOTS: usize = 400;
 
 /// Radius in points of a dot.
 const DOT: f32 = 2.6;
 
-/// Of more samples the least and the greatest of each stretch are drawn, of which there are so many.
-const STRETCHES: usize = 1500;
+/// Number of intervals into which more samples are divided, of which each shows its smallest and largest one.
+const INTERVALS: usize = 1500;
 
 /// Room above and below the measured values, as a share of their range.
 const ROOM: f64 = 0.05;
 
-/// What the entry of the legend is called.
+/// Name of the legend entry.
 const NAME: &str = "measured";
 
-/// The unit of an axis in SI, where it shows what was measured: the quantity that it can show, and its unit.
+/// The unit of an axis in SI. `None` unless the axis shows the measured quantity.
 fn unit(session: &Session, axis: Option<(Quantity, f64)>) -> Option<f64> {
     let measured = session.measured.over.as_ref()?.record.values.quantity;
-    axis.filter(|own| own.0 == measured).map(|own| own.1)
+    axis.filter(|shown| shown.0 == measured).map(|shown| shown.1)
 }
 
-/// The ends of the vertical axis of a trace, with room for what was measured.
+/// The ends of the vertical axis of a trace, widened to hold the measured values.
 pub(super) fn with_room(
     session: &Session,
     axis: Option<(Quantity, f64)>,
@@ -41,20 +41,20 @@ pub(super) fn with_room(
     let Some((unit, over)) = unit(session, axis).zip(session.measured.over.as_ref()) else {
         return (low, high);
     };
-    let (least, greatest) = over.record.range;
-    let more = ROOM * (greatest - least);
+    let (smallest, largest) = over.record.range;
+    let margin = ROOM * (largest - smallest);
     let added = over.added();
-    (low.min((least + added - more) / unit), high.max((greatest + added + more) / unit))
+    (low.min((smallest + added - margin) / unit), high.max((largest + added + margin) / unit))
 }
 
-/// What was measured in a stretch of time.
+/// Measured values over a range of time, as they are drawn.
 pub(super) struct MeasuredTrace {
     parts: Vec<Vec<PlotPoint>>,
     dots: bool,
 }
 
 impl MeasuredTrace {
-    /// What was measured from `from` to `to` in s, where a trace shows that quantity.
+    /// The values measured from `from` to `to` in s. `None` if the trace shows another quantity.
     pub fn of(session: &Session, axis: Option<(Quantity, f64)>, (from, to): (f64, f64)) -> Option<Self> {
         let unit = unit(session, axis)?;
         let over = session.measured.over.as_ref()?;
@@ -66,34 +66,34 @@ impl MeasuredTrace {
             return Some(Self { parts: vec![(first..last).map(point).collect()], dots: true });
         }
         let timing = over.record.timing.as_ref();
-        let parted = |i: usize| timing.is_some_and(|own| own.is_gap(times[i] - times[i - 1]));
-        let stretch = ((last - first) / STRETCHES).max(1);
+        let follows_gap = |i: usize| timing.is_some_and(|timing| timing.is_gap(times[i] - times[i - 1]));
+        let length = ((last - first) / INTERVALS).max(1);
         let mut parts = vec![Vec::new()];
         let mut begin = first;
         while begin < last {
-            let most = (begin + stretch).min(last);
-            let gap = (begin + 1..most).find(|i| parted(*i));
-            let end = gap.unwrap_or(most);
-            if begin > first && parted(begin) {
+            let limit = (begin + length).min(last);
+            let gap = (begin + 1..limit).find(|i| follows_gap(*i));
+            let end = gap.unwrap_or(limit);
+            if begin > first && follows_gap(begin) {
                 parts.push(Vec::new());
             }
             let by = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
-            let least = (begin..end).min_by(by).unwrap_or(begin);
-            let greatest = (begin..end).max_by(by).unwrap_or(begin);
+            let smallest = (begin..end).min_by(by).unwrap_or(begin);
+            let largest = (begin..end).max_by(by).unwrap_or(begin);
             if let Some(part) = parts.last_mut() {
-                part.push(point(least.min(greatest)));
-                part.extend((least != greatest).then(|| point(least.max(greatest))));
+                part.push(point(smallest.min(largest)));
+                part.extend((smallest != largest).then(|| point(smallest.max(largest))));
             }
             begin = end;
         }
         Some(Self { parts, dots: false })
     }
 
-    pub fn entry(&self, style: &Style) -> (Sign, &'static str) {
+    pub fn entry(&self, style: &Style) -> (Symbol, &'static str) {
         entry(self.dots, style)
     }
 
-    /// Draws it, below what is computed.
+    /// Draws the values, below the computed line.
     pub fn draw(self, plot: &mut PlotUi<'_>, style: &Style) {
         for part in self.parts {
             let points = PlotPoints::Owned(part);
@@ -107,16 +107,16 @@ impl MeasuredTrace {
     }
 }
 
-fn entry(dots: bool, style: &Style) -> (Sign, &'static str) {
-    (if dots { Sign::Dots(style.measured()) } else { Sign::Line(style.measured_stroke()) }, NAME)
+fn entry(dots: bool, style: &Style) -> (Symbol, &'static str) {
+    (if dots { Symbol::Dots(style.measured()) } else { Symbol::Line(style.measured_stroke()) }, NAME)
 }
 
-/// Draws the measured force over the position; its entry in the legend, where there is one.
+/// Draws the measured force over position. Returns its legend entry, or `None` if no force was measured.
 pub(super) fn measured_force(
     painter: &Painter,
     context: &ViewContext<'_>,
     chart: &Chart,
-) -> Option<(Sign, &'static str)> {
+) -> Option<(Symbol, &'static str)> {
     let over = context.session.measured.over.as_ref()?;
     let record = &over.record;
     if record.values.quantity != Quantity::Force {
@@ -130,8 +130,8 @@ pub(super) fn measured_force(
     if dots {
         painter.extend(points.into_iter().map(|at| Shape::circle_filled(at, DOT, style.measured())));
     } else {
-        // nearer to each other than a point they are not told apart
-        points.dedup_by(|next, own| next.distance(*own) < 1.0);
+        // points closer than one screen point are merged
+        points.dedup_by(|next, last| next.distance(*last) < 1.0);
         painter.add(Shape::line(points, style.measured_stroke()));
     }
     Some(entry(dots, &style))

@@ -1,7 +1,7 @@
-//! Phase portrait: velocity over displacement.
+//! View of the phase portrait: velocity over displacement.
 //!
-//! The separatrix is the curve of the energy that just suffices to stand on top of the barrier: without
-//! shaking and without loss a state inside one of its loops never leaves that well. Shaking and impacts carry
+//! The separatrix consists of the states whose energy equals the potential at the top of the barrier: without
+//! shaking and dissipation, a state inside one of its loops never leaves that well. Shaking and impacts carry
 //! the state across it.
 
 use std::collections::VecDeque;
@@ -17,41 +17,45 @@ use crate::study::between;
 
 use super::chart::Chart;
 use super::ghosts::{dashed, ghosts};
-use super::hand::hand;
-use super::labels::rests;
-use super::legend::{LEGEND, Sign};
+use super::hand::axes_input;
+use super::labels::pointer_rests;
+use super::legend::{LEGEND, Symbol};
 use super::stops::stops_ui;
 use super::view::Axis;
 use super::{View, ViewContext, too_small_ui};
 
-/// Length of the trail in forcing periods; without a period, in swings of the scene's own time scale.
+/// Length of the trail in forcing periods.
 const TRAIL_PERIODS: f64 = 4.0;
+/// Length of the trail in natural times of the mechanism, if the shaking has no period.
 const TRAIL_SWINGS: f64 = 12.0;
 
-/// The most points of the trail, and the steps in which it fades.
-const MOST_POINTS: usize = 4000;
+/// Largest number of points of the trail.
+const MAX_POINTS: usize = 4000;
+/// Number of steps in which the trail fades.
 const FADES: usize = 16;
 
-/// What is not seen of a bend in points, the most pieces between two samples, and the most of all.
-const ROUND: f32 = 0.4;
-const MOST_PIECES: f32 = 12.0;
-const MOST_BETWEEN: usize = 6000;
+/// Deviation in points from a straight line below which a path between two samples is drawn straight.
+const FLAT: f32 = 0.4;
+/// Largest number of pieces between two samples.
+const MAX_PIECES: f32 = 12.0;
+/// Largest number of pieces of a path.
+const MAX_TOTAL_PIECES: usize = 6000;
 
-/// What is left of its colour at the end of the trail.
+/// Opacity of the oldest part of the trail.
 const FAINTEST: f32 = 0.12;
 
-/// The most stroboscopic points.
-const MOST_STROBES: f64 = 300.0;
+const MAX_STROBES: f64 = 300.0;
 
-/// Radius in points of the state and of a stroboscopic point.
+/// Radius in points of the mark of the present state.
 const STATE: f32 = 6.0;
+/// Radius in points of the mark of a stroboscopic state.
 const STROBE: f32 = 3.0;
 
 pub fn phase_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     states_ui(ui, context, false);
 }
 
-/// Draws the stroboscopic states alone: the section of the live motion.
+/// Draws the stroboscopic states without the path: the section of the live motion.
 pub fn section_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     if context.session.shown().forcing_period().is_none() {
         let text = "A section has a point once a forcing period, and the shaking of this scene has none.";
@@ -76,7 +80,7 @@ fn states_ui(ui: &mut Ui, context: &mut ViewContext<'_>, is_section: bool) {
     let painter = ui.painter().with_clip_rect(chart.rect);
     let mut legend = Vec::new();
     if separatrix(&painter, context, &chart) {
-        legend.push((Sign::Dashed(style.ghost_stroke()), "separatrix"));
+        legend.push((Symbol::Dashed(style.ghost_stroke()), "separatrix"));
     }
     chart.equilibria(&painter, &style, &context.session.shown().mechanism().landscape);
     let edges = (chart.rect.top(), chart.rect.bottom());
@@ -89,10 +93,10 @@ fn states_ui(ui: &mut Ui, context: &mut ViewContext<'_>, is_section: bool) {
         trail(&painter, context, &chart);
     }
     if is_periodic {
-        legend.push((Sign::Ring(style.base_stroke()), "once a period"));
+        legend.push((Symbol::Ring(style.base_stroke()), "once a period"));
     }
     if context.session.shown().stop_positions() != (None, None) && !points_only {
-        legend.push((Sign::Dashed(style.impact_stroke()), "impact"));
+        legend.push((Symbol::Dashed(style.impact_stroke()), "impact"));
     }
     strobes(&painter, context, &chart);
     for ghost in ghosts(context) {
@@ -114,11 +118,11 @@ fn states_ui(ui: &mut Ui, context: &mut ViewContext<'_>, is_section: bool) {
         false => area.right(),
     };
     chart.legend(ui, &style, right, &legend);
-    hand(ui, context.memory, view, &response, (area, chart.rect));
+    axes_input(ui, context.memory, view, &response, (area, chart.rect));
     start_ui(ui, &response, context, &chart);
 }
 
-/// The choice whether the path is drawn, in the row of the legend. Its left end.
+/// Button in the row of the legend that hides the path. Returns its left edge.
 fn points_ui(ui: &mut Ui, area: egui::Rect, points_only: &mut bool) -> f32 {
     let row = area.with_max_y(area.top() + LEGEND).with_max_x(area.right() - 4.0);
     let layout = egui::Layout::right_to_left(egui::Align::Center);
@@ -138,7 +142,7 @@ fn points_ui(ui: &mut Ui, area: egui::Rect, points_only: &mut bool) -> f32 {
     .inner
 }
 
-/// A click starts the motion at that state.
+/// Shows the state under the pointer; a click lets the motion go on from there.
 fn start_ui(ui: &Ui, response: &egui::Response, context: &mut ViewContext<'_>, chart: &Chart) {
     let Some(pointer) = response.hover_pos().filter(|at| chart.rect.contains(*at)) else { return };
     let (x, v) = chart.world_from_screen(pointer);
@@ -148,7 +152,7 @@ fn start_ui(ui: &Ui, response: &egui::Response, context: &mut ViewContext<'_>, c
         context.session.moved_by_hand();
     }
     chart.readout(ui, &context.style, &format!("{} mm, {} mm/s", three(x * 1e3), three(v * 1e3)));
-    if rests(ui) {
+    if pointer_rests(ui) {
         response.clone().on_hover_text_at_pointer("Click: the motion goes on from here.");
     }
 }
@@ -160,7 +164,7 @@ fn within(context: &ViewContext<'_>, x: f64) -> bool {
     x >= left.unwrap_or(domain.0).max(domain.0) && x <= right.unwrap_or(domain.1).min(domain.1)
 }
 
-/// The states with the energy of the barrier's top. Whether there is one.
+/// Draws the states with the energy of the top of the barrier. Returns whether there is a barrier.
 fn separatrix(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) -> bool {
     let model = context.session.shown();
     let Some(barrier) = model.mechanism().landscape.barrier else { return false };
@@ -169,7 +173,7 @@ fn separatrix(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) -> bo
     let domain = curve.domain();
     let (low, high) = (context.span.low.max(domain.0), context.span.high.min(domain.1));
     let stroke = context.style.ghost_stroke();
-    // from the barrier outwards, up to where the potential is as high again
+    // from the barrier outwards, to the point where the potential is as high again
     for end in [low, high] {
         let place = |i: usize| barrier.x + (end - barrier.x) * i as f64 / 400.0;
         let square = |x: f64| 2.0 * (top - curve.potential(x)) / model.mass();
@@ -177,7 +181,7 @@ fn separatrix(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) -> bo
         for i in 1..=400 {
             let square = square(place(i));
             if !(square > 0.0) {
-                let turn = turning(|x| top - curve.potential(x), place(i - 1), place(i));
+                let turn = turning_point(|x| top - curve.potential(x), place(i - 1), place(i));
                 path.push((turn, 0.0));
                 break;
             }
@@ -191,13 +195,13 @@ fn separatrix(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) -> bo
     true
 }
 
-/// Where `height` comes to 0 between a place where it is above and one where it is not, as near as is seen.
-fn turning(height: impl Fn(f64) -> f64, above: f64, below: f64) -> f64 {
+/// The zero of `height` between a point where it is positive and one where it is not, to screen accuracy.
+fn turning_point(height: impl Fn(f64) -> f64, above: f64, below: f64) -> f64 {
     let (above, below) = bisect(above, below, 20, |x| height(x) > 0.0);
     0.5 * (above + below)
 }
 
-/// The last of the path, fading; an impact is a jump, a mass put elsewhere a gap.
+/// Draws the recent path, fading with age. An impact is a dashed jump; moving the mass by hand leaves a gap.
 fn trail(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     let (session, style) = (&context.session, context.style);
     let model = session.shown();
@@ -206,7 +210,7 @@ fn trail(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     let state = session.player.state();
     let watch = session.player.watch();
     let path = recent(watch.samples(), state, length);
-    let mut spare = MOST_BETWEEN;
+    let mut pieces_left = MAX_TOTAL_PIECES;
     let level = |t: f64| {
         let age = ((state.t - t) / length).clamp(0.0, 1.0);
         ((age * FADES as f64) as usize).min(FADES - 1)
@@ -242,8 +246,8 @@ fn trail(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
             line.push(from);
             drawn = now;
         }
-        let count = pieces(chart, watch.model_at(a.t), (&a, &b)).min(spare);
-        spare -= count;
+        let count = pieces(chart, watch.model_at(a.t), (&a, &b)).min(pieces_left);
+        pieces_left -= count;
         let between = between(watch.model_at(a.t), &a, &b, count);
         line.extend(between.iter().map(|(x, v)| chart.screen_from_world(*x, *v)));
         line.push(to);
@@ -251,7 +255,7 @@ fn trail(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     finish(&mut line, drawn.min(FADES - 1));
 }
 
-/// The last of the paths of the pinned motions, dashed: a period of each, which is what is told apart.
+/// Draws the last period of the paths of the pinned motions, dashed; longer paths could not be told apart.
 fn ghost_trails(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     let session = &context.session;
     let model = session.shown();
@@ -261,13 +265,13 @@ fn ghost_trails(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     for pin in session.pins.all() {
         let watch = pin.watch();
         let path = recent(watch.samples(), pin.state_at(now), length.min(now - pin.since()));
-        let mut spare = MOST_BETWEEN;
+        let mut pieces_left = MAX_TOTAL_PIECES;
         let mut points: Vec<Pos2> = Vec::with_capacity(2 * path.len());
         for pair in path.windows(2) {
             let (a, b) = (pair[0], pair[1]);
             let count = if a.t == b.t { 1 } else { pieces(chart, watch.model_at(a.t), (&a, &b)) };
-            let count = count.min(spare);
-            spare -= count;
+            let count = count.min(pieces_left);
+            pieces_left -= count;
             let between = between(watch.model_at(a.t), &a, &b, count);
             points.push(chart.screen_from_world(a.x, a.v));
             points.extend(between.iter().map(|(x, v)| chart.screen_from_world(*x, *v)));
@@ -277,47 +281,47 @@ fn ghost_trails(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     }
 }
 
-/// In how many pieces the way between two samples looks round: from how far the ends of its cubic's tangents
-/// are off the straight line.
+/// Number of pieces that make the path between two samples look smooth, from how far the control points of
+/// its cubic are off the chord.
 fn pieces(chart: &Chart, model: &Model, (a, b): (&Sample, &Sample)) -> usize {
     let third = (b.t - a.t) / 3.0;
-    let tangent = |own: &Sample, third: f64| {
-        let acceleration = model.acceleration(own.x, own.v, own.base_accel);
-        chart.screen_from_world(own.x + third * own.v, own.v + third * acceleration)
+    let control = |sample: &Sample, third: f64| {
+        let acceleration = model.acceleration(sample.x, sample.v, sample.base_accel);
+        chart.screen_from_world(sample.x + third * sample.v, sample.v + third * acceleration)
     };
     let (from, to) = (chart.screen_from_world(a.x, a.v), chart.screen_from_world(b.x, b.v));
     let along = (to - from).normalized();
-    let off = |at: Pos2| {
+    let distance = |at: Pos2| {
         let aside = at - from;
         (aside - along * aside.dot(along)).length()
     };
-    let most = off(tangent(a, third)).max(off(tangent(b, -third)));
-    if a.phase != Phase::Free || !(most > ROUND) {
+    let deviation = distance(control(a, third)).max(distance(control(b, -third)));
+    if a.phase != Phase::Free || !(deviation > FLAT) {
         1
     } else {
-        (2.0 * most).sqrt().ceil().min(MOST_PIECES) as usize
+        (2.0 * deviation).sqrt().ceil().min(MAX_PIECES) as usize
     }
 }
 
-/// The samples of the last `length` seconds before `state`, and that.
+/// The samples of the last `length` seconds before `state`, followed by `state`.
 fn recent(samples: &VecDeque<Sample>, state: Sample, length: f64) -> Vec<Sample> {
     let last = samples.partition_point(|sample| sample.t <= state.t);
     let first = samples.partition_point(|sample| sample.t < state.t - length);
-    let first = first.max(last.saturating_sub(MOST_POINTS)).min(last);
+    let first = first.max(last.saturating_sub(MAX_POINTS)).min(last);
     samples.range(first..last).copied().chain([state]).collect()
 }
 
-/// The state once a forcing period, always at the same phase of it, since the last change.
+/// Draws the stroboscopic states since the last change.
 fn strobes(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     let session = &context.session;
     let Some(period) = session.shown().forcing_period() else { return };
     let (watch, now) = (session.player.watch(), session.player.time());
-    // since it goes as it does, and since the mass was last put elsewhere
+    // since the last change of the model, and since the mass was last moved by hand
     let placed = if session.player.is_past() { 0.0 } else { session.changed_at() };
     let begin = watch.model_since(now).max(placed).max(watch.begin());
     let last = (now / period).floor();
-    let first = (begin / period).ceil().max(last - MOST_STROBES);
-    let count = (last - first + 1.0).clamp(0.0, MOST_STROBES) as u32;
+    let first = (begin / period).ceil().max(last - MAX_STROBES);
+    let count = (last - first + 1.0).clamp(0.0, MAX_STROBES) as u32;
     let stroke = context.style.base_stroke();
     for i in 0..count {
         let state = watch.state_at((first + f64::from(i)) * period);
@@ -337,12 +341,12 @@ mod tests {
         let samples: VecDeque<Sample> = (0..20_000).map(|i| sample(f64::from(i) * 1e-3)).collect();
         let path = recent(&samples, sample(10.0005), 2.0);
         assert!(path.len() == 2001 && path.last().is_some_and(|last| last.t == 10.0005));
-        assert_eq!(recent(&samples, sample(19.0), 1e9).len(), MOST_POINTS + 1);
+        assert_eq!(recent(&samples, sample(19.0), 1e9).len(), MAX_POINTS + 1);
         assert_eq!(recent(&VecDeque::new(), sample(0.0), 1.0).len(), 1);
     }
 
     #[test]
     fn a_turning_point_is_found() {
-        assert!((turning(|x| 1.0 - x, 0.0, 4.0) - 1.0).abs() < 1e-5);
+        assert!((turning_point(|x| 1.0 - x, 0.0, 4.0) - 1.0).abs() < 1e-5);
     }
 }

@@ -1,4 +1,4 @@
-//! View of the power: what the load of a transducer takes, and the work of the base where there is none.
+//! View of the power into the load of a transducer, or of the base on the mass without a transducer.
 
 use eframe::egui::{self, Label, Rect, RichText, Ui, UiBuilder, pos2, vec2};
 
@@ -11,13 +11,13 @@ use super::ViewContext;
 use super::ranges::axis_end;
 use super::trace::{TraceQuantity, trace_ui};
 
-/// Height in points that the trace is left at least below all that is said, and below its first line; a lower
-/// view has the trace alone.
+/// Smallest height in points of the trace below the whole text.
 const TRACE: f32 = 110.0;
+/// Smallest height in points of the trace below the first line of text; a lower view has no text.
 const LOW_TRACE: f32 = 70.0;
 
-/// What stands in place of the numbers where nothing gives power.
-const NONE: &str = "The work of the base. This scene has no transducer: add one to its file, such as \
+/// Text for a scene without a transducer.
+const HINT: &str = "The work of the base. This scene has no transducer: add one to its file, such as \
                     transducer: Electromagnetic(coupling_v_s_per_m: 5, coil_ohm: 40, load_ohm: 60), or open \
                     the scene harvester.";
 
@@ -25,7 +25,7 @@ pub fn power_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (style, area) = (context.style, ui.max_rect());
     ui.painter().rect_filled(area, 0.0, style.ground());
     let has_transducer = context.session.shown().has_transducer();
-    let words = if has_transducer { harvested(context.session) } else { vec![NONE.to_owned()] };
+    let words = if has_transducer { harvested(context.session) } else { vec![HINT.to_owned()] };
     let place = area.shrink2(vec2(10.0, 6.0));
     let wrapped = |text: &str| {
         let galley = ui.painter().layout(text.to_owned(), style.body(), style.ink(), place.width());
@@ -67,18 +67,19 @@ pub fn power_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     ui.scope_builder(below, |ui| trace_ui(ui, quantity, context));
 }
 
-/// What the transducer gives, in sentences: the numbers, and what they are means over.
+/// Sentences on the harvested power: means, and the window over which they were taken.
 fn harvested(session: &Session) -> Vec<String> {
     let Some(summary) = session.settled_now() else {
         return vec!["Into the load: the mean is being worked out.".to_owned(), String::new()];
     };
     let harvest = summary.harvest;
-    let means = harvest.and_then(|own| Some((own.mean_load_power?, own.mean_coil_power?, own.voltage_rms?)));
-    let Some((load, coil, volt)) = means else {
+    let means = harvest
+        .and_then(|harvest| Some((harvest.mean_load_power?, harvest.mean_coil_power?, harvest.voltage_rms?)));
+    let Some((load, coil, voltage)) = means else {
         return vec!["Into the load: the run ended before there was a mean.".to_owned(), String::new()];
     };
-    // of work that goes back to the base there is no share
-    let share = match harvest.and_then(|own| own.load_share).filter(|share| *share >= 0.0) {
+    // no share of work that flows back to the base
+    let share = match harvest.and_then(|harvest| harvest.load_share).filter(|share| *share >= 0.0) {
         Some(share) => format!(", {} % of the work of the base", three(100.0 * share)),
         None => String::new(),
     };
@@ -88,12 +89,12 @@ fn harvested(session: &Session) -> Vec<String> {
     };
     vec![
         format!("Into the load: mean {}{share}.", power(load)),
-        format!("{coil}Voltage: {} V RMS. {}", three(volt), what_of(summary)),
+        format!("{coil}Voltage: {} V RMS. {}", three(voltage), window_text(summary)),
     ]
 }
 
-/// What the means are means over, and whether they are to be relied on.
-fn what_of(summary: &Summary) -> String {
+/// Sentence on the window of the means, and on whether they are steady.
+fn window_text(summary: &Summary) -> String {
     let (from, to) = summary.window;
     let length = three(to - from);
     match (summary.outcome, summary.settled) {

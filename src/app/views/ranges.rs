@@ -1,26 +1,26 @@
 //! Ranges of the axes of velocity, power and base acceleration.
 //!
-//! An axis that follows the motion tells nothing of its size. These reach to what the scene lets expect, go a
-//! coarse step further where the motion needs it, and are chosen anew only once a change has settled.
+//! An axis that follows the motion hides how large it is. These ranges cover the values expected of the
+//! scene, grow by coarse steps if the motion exceeds them, and shrink only once a change has settled.
 
 use crate::app::session::Session;
 use crate::app::session::pins::Pin;
 use crate::dynamics::{Model, STANDARD_GRAVITY};
 use crate::numeric::round::round_up;
 
-/// Pushes in g that an axis of the base's acceleration has room for.
+/// Ends in g of an axis of the base's acceleration.
 const PUSHES: [f64; 14] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.35, 0.6, 1.0, 1.5, 2.2, 3.2, 5.0, 10.0, 20.0];
 
-/// Ends of an axis within a power of ten.
+/// Ends of an axis within a decade.
 const ENDS: [f64; 10] = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0];
 
-/// Room above the largest value, as a factor.
+/// Factor by which an axis exceeds the largest value.
 const ROOM: f64 = 1.05;
 
-/// Share of the scene's own speed that is shown where no barrier sets one.
+/// Share of the speed scale expected as speed without a barrier, and of push times speed as power.
 const SHARE: f64 = 0.3;
 
-/// Acceleration in m/s^2 up to which an axis reaches that has to show `push`.
+/// End in m/s^2 of an axis that has to show `push`.
 pub fn room_for_push(push: f64) -> f64 {
     PUSHES.iter().map(|g| g * STANDARD_GRAVITY).find(|room| *room >= push).unwrap_or(push)
 }
@@ -31,18 +31,17 @@ pub fn axis_end(value: f64) -> f64 {
     if end.is_finite() && end > 0.0 { end } else { 1.0 }
 }
 
-/// The potential in J of the lowest place between the stops, where there is one.
+/// Lowest potential in J of the wells between the stops and of the stops themselves, if there are any.
 pub fn floor(model: &Model) -> Option<f64> {
     let (left, right) = model.stop_positions();
     let inside = |x: &f64| left.is_none_or(|stop| *x >= stop) && right.is_none_or(|stop| *x <= stop);
     let landscape = &model.mechanism().landscape;
-    let wells = landscape.equilibria.iter().filter(|own| own.stable).map(|own| own.x).filter(inside);
+    let wells = landscape.equilibria.iter().filter(|well| well.stable).map(|well| well.x).filter(inside);
     let places = wells.chain(left).chain(right);
     places.map(|x| model.mechanism().curve.potential(x)).reduce(f64::min)
 }
 
-/// The largest speed in m/s, powers in W and energy in J that have been seen since the last change, and the
-/// way out from the middle in m.
+/// Largest speed in m/s, powers in W and kinetic energy in J, and the range of displacements in m.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct Extremes {
     speed: f64,
@@ -66,40 +65,42 @@ impl Extremes {
     }
 }
 
-/// How many means of the power into a load its axis has room for at least.
+/// End of the axis of power into a load, in multiples of its mean, at least.
 const MEANS: f64 = 3.0;
 
-/// What the axes have to hold; kept between frames.
+/// Values that the axes have to show; kept between frames.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Ranges {
-    /// What the scene lets expect.
+    /// Values expected of the scene.
     expected: Extremes,
-    /// What has been seen since the last change, and what the axes held before it.
+    /// Values of the motion since the last change.
     seen: Extremes,
-    kept: Extremes,
-    /// What has been seen since the start.
-    ever: Extremes,
-    /// Time in s of that change, and up to which the motion has been looked at.
+    /// Values before the last change, kept until the motion has settled.
+    previous: Extremes,
+    /// Values of the motion since the start.
+    since_start: Extremes,
+    /// Time in s of the last change.
     since: Option<f64>,
+    /// Time in s up to which the motion has been read.
     looked_to: f64,
 }
 
 impl Ranges {
-    /// Takes in what has happened since the last time.
+    /// Takes in the motion since the last call.
     pub fn follow(&mut self, session: &Session) -> &Self {
         let changed_at = session.changed_at();
         let watch = session.player.watch();
         if watch.time() < self.looked_to {
-            self.ever = Extremes::default();
+            self.since_start = Extremes::default();
         }
         if self.since != Some(changed_at) || watch.time() < self.looked_to {
-            self.kept = self.kept.or(self.seen);
+            self.previous = self.previous.or(self.seen);
             self.seen = Extremes::default();
             self.since = Some(changed_at);
             self.looked_to = changed_at;
         }
         if session.settling().is_none() {
-            self.kept = Extremes::default();
+            self.previous = Extremes::default();
         }
         let model = session.model();
         for watch in session.pins.all().iter().map(Pin::watch).chain([watch]) {
@@ -108,7 +109,7 @@ impl Ranges {
                 self.seen = self.seen.or(Extremes {
                     speed: sample.v.abs(),
                     power: sample.work_rate(model.mass()).abs(),
-                    load: watch.model_at(sample.t).output(sample).map_or(0.0, |own| own.power),
+                    load: watch.model_at(sample.t).output(sample).map_or(0.0, |output| output.power),
                     kinetic: model.energies(sample.x, sample.v).0,
                     low: sample.x,
                     high: sample.x,
@@ -116,7 +117,7 @@ impl Ranges {
             }
         }
         self.looked_to = watch.time();
-        let falls = match model.mechanism().landscape.barrier {
+        let energy = match model.mechanism().landscape.barrier {
             Some(barrier) => barrier.from_left_j.max(barrier.from_right_j),
             None if !model.is_shaken() => {
                 let (kinetic, potential) = model.energies(model.start().0, model.start().1);
@@ -124,28 +125,27 @@ impl Ranges {
             }
             None => 0.0,
         };
-        let speed = match falls > 0.0 {
-            true => (2.0 * falls / model.mass()).sqrt(),
+        let speed = match energy > 0.0 {
+            true => (2.0 * energy / model.mass()).sqrt(),
             false => SHARE * model.scales().speed,
         };
         let power = SHARE * speed * model.mass() * room_for_push(model.largest_base_acceleration());
         let kinetic = 0.5 * model.mass() * speed * speed;
-        let mean = session.settled_now().and_then(|own| own.harvest?.mean_load_power);
+        let mean = session.settled_now().and_then(|settled| settled.harvest?.mean_load_power);
         let load = MEANS * mean.unwrap_or(0.0);
         self.expected = Extremes { speed, power, load, kinetic, ..Extremes::default() };
-        self.ever = self.ever.or(self.seen);
+        self.since_start = self.since_start.or(self.seen);
         self
     }
 
     fn whole(&self) -> Extremes {
-        self.expected.or(self.seen).or(self.kept)
+        self.expected.or(self.seen).or(self.previous)
     }
 
-    /// The displacements in m that an axis has to show: those seen since the last change, or where the past
-    /// is looked at since the start.
+    /// Range of displacements in m to show: since the last change, or since the start if the past is shown.
     pub fn reach(&self, session: &Session) -> (f64, f64) {
-        let own = if session.player.is_past() { self.ever } else { self.whole() };
-        (own.low, own.high)
+        let extremes = if session.player.is_past() { self.since_start } else { self.whole() };
+        (extremes.low, extremes.high)
     }
 
     /// The end of an axis of velocity in m/s.
@@ -158,7 +158,7 @@ impl Ranges {
         axis_end(ROOM * self.whole().power)
     }
 
-    /// The end of an axis of power into a load in W; a milliwatt where there is none.
+    /// The end of an axis of power into a load in W; 1 mW if there is no power.
     pub fn load_power(&self) -> f64 {
         let load = self.whole().load;
         if load > 0.0 { axis_end(ROOM * load) } else { 1e-3 }

@@ -5,29 +5,29 @@ use eframe::egui::{self, Rect, Shape, Stroke, pos2};
 use crate::app::words::numbers::three;
 use crate::mechanics::Mechanism;
 
-use super::beside::{Beside, coil};
+use super::beside::{Attachments, coil};
 use super::flexures::{CLAMP, clamp};
 use super::{Span, ViewContext};
 
-/// Half turns of a drawn spring, and half its width in points.
+/// Number of half turns of the spring.
 const COILS: usize = 12;
+/// Half the width of the spring in points.
 const COIL: f32 = 9.0;
 
-/// Share of a drawn spring that each of its ends takes.
+/// Share of the spring that each of its straight ends takes.
 const END: f32 = 0.15;
 
-/// What is drawn of a force without flexures behind it.
+/// Drawing of a force that does not come from flexures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Schematic {
-    /// A spring that pushes the mass away from the middle and draws it back from far out, or the like.
+    /// A spring, for a force that depends on the displacement.
     Spring,
-    /// Nothing: the force is the same everywhere.
+    /// The mass alone, for a constant force.
     Mass { pulled: bool },
 }
 
 impl Schematic {
-    /// Where the force does not depend on the place there is no spring; springs and magnets that are drawn as
-    /// such do not count.
+    /// A spring if the force depends on the displacement, springs and magnets not counted.
     pub fn of(mechanism: &Mechanism, span: Span) -> Self {
         let depends = |part: &Mechanism| {
             let forces = [0.0, 0.21, 0.5, 0.83, 1.0].map(|share| {
@@ -36,67 +36,67 @@ impl Schematic {
             });
             forces.iter().any(|force| (force - forces[0]).abs() > 1e-9 * forces[0].abs())
         };
-        match others(mechanism).any(depends) {
+        match other_parts(mechanism).any(depends) {
             true => Self::Spring,
-            false => Self::Mass { pulled: steady(mechanism) != 0.0 },
+            false => Self::Mass { pulled: other_force(mechanism) != 0.0 },
         }
     }
 
-    /// What is said of a mechanism; `beside` what is drawn as such there is something.
+    /// Caption of the drawing; `beside` if springs or magnets are drawn as such.
     fn words(self, mechanism: &Mechanism, beside: bool) -> String {
-        let force = steady(mechanism);
+        let force = other_force(mechanism);
         match self {
             Self::Spring if beside => "the other force as a spring, not to scale".to_owned(),
             Self::Spring => "a spring of this force, not to scale".to_owned(),
             Self::Mass { pulled: false } if beside => "not to scale".to_owned(),
             Self::Mass { pulled: false } => "a free mass".to_owned(),
             Self::Mass { pulled: true } => {
-                let way = if force > 0.0 { "left" } else { "right" };
-                format!("a steady force of {} N to the {way}", three(force.abs()))
+                let direction = if force > 0.0 { "left" } else { "right" };
+                format!("a steady force of {} N to the {direction}", three(force.abs()))
             }
         }
     }
 }
 
-/// The parts of a mechanism that are no spring and no magnets.
-fn others(mechanism: &Mechanism) -> impl Iterator<Item = &Mechanism> {
+/// The parts of a mechanism except springs and magnets.
+fn other_parts(mechanism: &Mechanism) -> impl Iterator<Item = &Mechanism> {
     mechanism.side_by_side().iter().filter(|part| part.element.is_none())
 }
 
-/// Their force in the middle.
-fn steady(mechanism: &Mechanism) -> f64 {
+/// The force of these parts at x = 0.
+fn other_force(mechanism: &Mechanism) -> f64 {
     let force = |part: &Mechanism| {
         let (low, high) = part.curve.domain();
         part.curve.force(0.0_f64.clamp(low, high))
     };
-    others(mechanism).map(force).sum()
+    other_parts(mechanism).map(force).sum()
 }
 
-/// The mass on its rail, with a spring from above where there is one; between what is `beside` it.
+/// Draws the rail and, for a spring, the spring from above to the mass. Returns the caption.
 pub(super) fn schematic(
     painter: &egui::Painter,
     context: &ViewContext<'_>,
     rect: Rect,
     (x, middle, half): (f32, f32, egui::Vec2),
     (top, bottom): (f32, f32),
-    beside: &Beside,
+    beside: &Attachments,
 ) -> String {
     let style = context.style;
     let mechanism = context.drawn.model(context.session).mechanism();
-    let own = Schematic::of(mechanism, context.span);
+    let kind = Schematic::of(mechanism, context.span);
     painter.hline(rect.x_range().shrink(6.0), middle + half.y + 3.0, Stroke::new(2.0, style.faint()));
     let bar = |y: std::ops::RangeInclusive<f32>| Rect::from_x_y_ranges(rect.x_range().shrink(6.0), y);
     if beside.stands_below() {
         clamp(painter, &style, bar(bottom..=bottom + CLAMP), false);
     }
-    if own == Schematic::Spring {
+    if kind == Schematic::Spring {
         clamp(painter, &style, bar(top - CLAMP..=top), true);
         let barrier = mechanism.landscape.barrier;
         let foot = context.span.screen_from_world(barrier.map_or(0.0, |barrier| barrier.x), rect);
         let (from, to) = (pos2(foot, top), pos2(x, middle - half.y));
         painter.add(Shape::line(coil((from, to), COILS, COIL, END), style.flexure_stroke()));
     }
-    own.words(mechanism, beside.is_drawn())
+    kind.words(mechanism, beside.is_drawn())
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! The present motion and a pinned one side by side, in step with the drive.
+//! View of the present motion and a pinned one side by side, in step with the drive.
 
 use eframe::egui::{self, Rect, RichText, Ui, UiBuilder, vec2};
 
@@ -11,12 +11,13 @@ use super::mechanism::mechanism_ui;
 use super::well::well_ui;
 use super::{ViewContext, too_small_ui};
 
-/// Height in points of the heading of a column, and the share of the rest that the mechanism has.
+/// Height in points of the heading of a column.
 const HEADING: f32 = 26.0;
+/// Share of the remaining height for the mechanism.
 const MECHANISM: f32 = 0.42;
 
-/// Room in points between the columns.
-const APART: f32 = 6.0;
+/// Gap in points between the columns.
+const GAP: f32 = 6.0;
 
 pub fn side_by_side_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (area, style) = (ui.max_rect(), context.style);
@@ -29,12 +30,12 @@ pub fn side_by_side_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         return nothing_ui(ui, context, area);
     }
     let place = context.memory.beside_place.min(count - 1);
-    let width = 0.5 * (area.width() - APART);
+    let width = 0.5 * (area.width() - GAP);
     let (before, filled) = (context.drawn, context.filled);
-    // both drawings on the axis that they share
+    // both drawings use the axis that they share
     context.filled = false;
     for (i, drawn) in [Drawn::Alone, Drawn::Pinned(place)].into_iter().enumerate() {
-        let corner = area.min + vec2(i as f32 * (width + APART), 0.0);
+        let corner = area.min + vec2(i as f32 * (width + GAP), 0.0);
         let column = Rect::from_min_size(corner, vec2(width, area.height()));
         context.drawn = drawn;
         let is_pin = drawn != Drawn::Alone;
@@ -51,7 +52,7 @@ pub fn side_by_side_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     ui.painter().vline(x, area.y_range(), style.ghost_stroke());
 }
 
-/// A motion: what it is, its mechanism, its well.
+/// Column of a motion: heading, mechanism, well.
 fn column_ui(ui: &mut Ui, context: &mut ViewContext<'_>, column: Rect, number: usize) {
     let heading = Rect::from_min_size(column.min, vec2(column.width(), HEADING));
     ui.scope_builder(UiBuilder::new().max_rect(heading.shrink2(vec2(8.0, 2.0))), |ui| {
@@ -70,9 +71,9 @@ fn column_ui(ui: &mut Ui, context: &mut ViewContext<'_>, column: Rect, number: u
     }
 }
 
-/// What a motion is called, and its scene in words; of several pins the one that is shown can be chosen.
+/// Name of a motion and its scene in words; for a pin, also the choice of the pin that is shown.
 fn heading_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
-    let said = |scene: &Scene| {
+    let description = |scene: &Scene| {
         let stops = if scene.stops == Stops::None { "no stops".to_owned() } else { stops(scene) };
         format!("{}, {stops}", shaking(scene))
     };
@@ -85,17 +86,17 @@ fn heading_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     };
     if let Some(shown) = shown {
         for (place, pin) in context.session.pins.all().iter().enumerate() {
-            let own = ui.selectable_label(pin.letter() == shown, pin.letter().to_string());
-            if own.on_hover_text("The pinned motion that is shown here.").clicked() {
+            let button = ui.selectable_label(pin.letter() == shown, pin.letter().to_string());
+            if button.on_hover_text("The pinned motion that is shown here.").clicked() {
                 context.memory.beside_place = place;
             }
         }
     }
-    let text = RichText::new(said(scene)).font(context.style.small()).color(context.style.faint());
+    let text = RichText::new(description(scene)).font(context.style.small()).color(context.style.faint());
     ui.add(egui::Label::new(text).truncate());
 }
 
-/// What stands there while nothing is pinned.
+/// Placeholder while nothing is pinned.
 fn nothing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, area: Rect) {
     let text =
         "Nothing is pinned. A pinned motion goes on here beside the present one, with the drive in step.";

@@ -7,16 +7,16 @@ use crate::numeric::round::{ONE_TWO_FIVE, round_up};
 
 use super::ranges::axis_end;
 
-/// Room beside the outermost thing that is shown.
+/// Factor by which the axis exceeds the outermost well, stop or start.
 const ROOM: f64 = 1.18;
 
-/// Stops from the first to the second multiple of the wells' distance widen the axis to the second.
+/// Stops between these multiples of the displacement of the farther well widen the axis to the second one.
 const STOP_STEP: (f64, f64) = (1.1, 1.35);
 
-/// Room beside what has been seen, before the next step.
+/// Factor by which the axis exceeds a displacement that was seen, before the next step.
 const STEP_ROOM: f64 = 1.05;
 
-/// Displacements in m from left to right.
+/// Range of displacements in m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Span {
     pub low: f64,
@@ -24,9 +24,9 @@ pub struct Span {
 }
 
 impl Span {
-    /// What has to be seen of a scene: its wells; without a pair of them its stops and its start; and how far
-    /// the mass settles to go and has been `seen` to go, in m. It depends on the shaking and on the stops as
-    /// little as it can, and grows in coarse steps, so that it stands still while they are changed.
+    /// The range for a scene: its wells, or without two wells its stops and its start; and the displacements
+    /// of the settled motion and those `seen`, in m. It depends on the shaking and on the stops as little as
+    /// possible, and grows in coarse steps, so that it stands still while they are changed.
     pub fn of(session: &Session, seen: (f64, f64)) -> Self {
         let model = session.shown();
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -43,7 +43,7 @@ impl Span {
             let size = barrier.left_well.abs().max(barrier.right_well.abs());
             let (left, right) = model.stop_positions();
             for stop in [left, right].into_iter().flatten() {
-                // stops a little outside the wells, in one step
+                // stops slightly outside the wells widen the axis in one step
                 if (STOP_STEP.0..STOP_STEP.1).contains(&(stop.abs() / size)) {
                     show(stop.signum() * size * STOP_STEP.1);
                 }
@@ -57,7 +57,7 @@ impl Span {
             show(0.0);
             show(start * ROOM);
             for (stop, x) in [left, right].into_iter().zip(reach) {
-                // behind a stop there is nothing to be seen
+                // nothing moves beyond a stop
                 let step = if x == 0.0 { 0.0 } else { x.signum() * axis_end(STEP_ROOM * x.abs()) };
                 show(stop.map_or(step, |stop| stop * ROOM));
             }
@@ -69,13 +69,13 @@ impl Span {
         Self { low: low - margin, high: high + margin }
     }
 
-    /// The place on the screen of a displacement in m, over `rect`.
+    /// Screen position of a displacement in m, over `rect`.
     pub fn screen_from_world(&self, x: f64, rect: Rect) -> f32 {
         let share = (x - self.low) / (self.high - self.low);
         rect.left() + (share * f64::from(rect.width())) as f32
     }
 
-    /// The displacement in m of a place on the screen.
+    /// Displacement in m of a screen position.
     pub fn world_from_screen(&self, x: f32, rect: Rect) -> f64 {
         self.low + f64::from((x - rect.left()) / rect.width()) * (self.high - self.low)
     }
@@ -85,14 +85,13 @@ impl Span {
         f64::from(rect.width()) / (self.high - self.low)
     }
 
-    /// Round displacements in m for ticks, some `count` of them, and the decimals of their mm.
+    /// About `count` round displacements in m for ticks, and the decimals to write them with in mm.
     pub fn ticks(&self, count: f64) -> (Vec<f64>, usize) {
         ticks(self.low * 1e3, self.high * 1e3, count)
     }
 }
 
-/// Round numbers from `low` to `high`, some `count` of them, in thousandths of the unit given, and decimals
-/// to write them.
+/// About `count` round numbers from `low` to `high`, divided by 1000 (mm to m), and their decimals in mm.
 pub(super) fn ticks(low: f64, high: f64, count: f64) -> (Vec<f64>, usize) {
     let step = round_up((high - low) / count.max(1.0), &ONE_TWO_FIVE);
     if !(step > 0.0 && step.is_finite()) {
@@ -114,8 +113,7 @@ mod tests {
     use crate::app::session::editor::Editor;
     use crate::app::views::Memory;
 
-    /// Whether everything that happened in some seconds is within the axis, which then did not grow too
-    /// often.
+    /// Checks that the axis holds the motion of the first `seconds`, and that it changes only a few times.
     fn holds_what_happens(preset: &str, seconds: f64) {
         let mut session = Session::new(Editor::open(preset).unwrap(), Arc::new(|| ())).unwrap();
         let mut memory = Memory::default();

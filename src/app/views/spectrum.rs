@@ -1,4 +1,4 @@
-//! Amplitudes of the settled motion over frequency, by decades.
+//! View of the spectrum of the settled motion: amplitude over frequency, on a logarithmic scale.
 
 use eframe::egui::{self, Rect, RichText, Ui, UiBuilder, vec2};
 use egui_plot::{HLine, Line, PlotBounds, PlotPoints, Points, VLine};
@@ -7,8 +7,8 @@ use crate::app::ui::style::Style;
 use crate::dynamics::STANDARD_GRAVITY;
 use crate::study::{Signal, Spectrum};
 
-use super::hand::hand;
-use super::legend::{LEGEND, Sign, legend};
+use super::hand::axes_input;
+use super::legend::{LEGEND, Symbol, legend};
 use super::plot::{MARGIN, decades, marks, plot_place, power, still_plot};
 use super::view::Axis;
 use super::{Memory, View, ViewContext, too_small_ui};
@@ -16,14 +16,15 @@ use super::{Memory, View, ViewContext, too_small_ui};
 /// Height in points of the row of choices.
 const TOOLS: f32 = 30.0;
 
-/// Decades below the largest amplitude that are shown, and multiples of the forcing frequency.
+/// Number of decades shown below the largest amplitude.
 const DECADES: f64 = 6.0;
+/// Largest multiple of the forcing frequency shown.
 const MULTIPLES: f64 = 15.0;
 
-/// The most points of a line; of more the largest of each stretch is drawn.
-const MOST_POINTS: usize = 2000;
+/// Largest number of points of a line; of more, the largest in each interval is drawn.
+const MAX_POINTS: usize = 2000;
 
-/// What is chosen, with its name, its unit and how many of that are 1 in SI.
+/// Signals with their names, units and the number of units per SI unit.
 const SIGNALS: [(Signal, &str, &str, f64); 3] = [
     (Signal::Displacement, "Displacement", "mm", 1e3),
     (Signal::Velocity, "Velocity", "mm/s", 1e3),
@@ -53,12 +54,12 @@ pub fn spectrum_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             let forcing = context.session.model().forcing_period().map(|period| 1.0 / period);
             picture_ui(ui, context.memory, &style, below, (spectrum, current, forcing));
         }
-        Some(Err(problem)) => said_ui(ui, &style, below, problem),
-        None => said_ui(ui, &style, below, "Working it out."),
+        Some(Err(problem)) => message_ui(ui, &style, below, problem),
+        None => message_ui(ui, &style, below, "Working it out."),
     }
 }
 
-fn said_ui(ui: &mut Ui, style: &Style, area: Rect, text: &str) {
+fn message_ui(ui: &mut Ui, style: &Style, area: Rect, text: &str) {
     ui.scope_builder(UiBuilder::new().max_rect(area.shrink(10.0)), |ui| {
         ui.label(RichText::new(text).color(style.faint()));
     });
@@ -71,7 +72,7 @@ fn picture_ui(
     area: Rect,
     (spectrum, current, forcing): (&Spectrum, bool, Option<f64>),
 ) {
-    let Some((_, name, unit, scale)) = SIGNALS.into_iter().find(|own| own.0 == spectrum.signal) else {
+    let Some((_, name, unit, scale)) = SIGNALS.into_iter().find(|entry| entry.0 == spectrum.signal) else {
         return;
     };
     let (Some(frequency), Some(amplitude)) =
@@ -81,25 +82,25 @@ fn picture_ui(
     };
     let last = frequency.last().copied().unwrap_or(1.0);
     let end = forcing.map_or(last, |forcing| last.min((MULTIPLES + 0.5) * forcing));
-    let most = amplitude.iter().fold(0.0, |most: f64, own| most.max(own * scale));
-    let top = if most > 0.0 { most.log10() + 0.3 } else { 0.0 };
+    let peak = amplitude.iter().fold(0.0, |peak: f64, value| peak.max(value * scale));
+    let top = if peak > 0.0 { peak.log10() + 0.3 } else { 0.0 };
     let [across, up] = [Axis::Across(View::Spectrum), Axis::Up(View::Spectrum)];
     let (begin, end) = memory.axes.ends(across, (0.0, end));
     let (floor, top) = memory.axes.ends(up, (top - DECADES, top));
-    let height = |own: f64| (own * scale).log10().max(floor);
+    let height = |value: f64| (value * scale).log10().max(floor);
     let lines: Vec<[f64; 2]> = frequency
         .iter()
         .zip(amplitude)
-        .filter(|own| (begin..=end).contains(own.0))
+        .filter(|line| (begin..=end).contains(line.0))
         .map(|(frequency, amplitude)| [*frequency, height(*amplitude)])
         .collect();
     let is_lines = spectrum.period.is_some();
     let mut entries = vec![(
-        Sign::Line(style.motion_stroke()),
+        Symbol::Line(style.motion_stroke()),
         if is_lines { "lines of a motion that repeats" } else { "amplitude" },
     )];
     if forcing.is_some() {
-        entries.push((Sign::Line(style.base_stroke()), "forcing frequency"));
+        entries.push((Symbol::Line(style.base_stroke()), "forcing frequency"));
     }
     let rows = f64::from((area.height() / 40.0).clamp(2.0, 7.0));
     let columns = f64::from((area.width() / 80.0).clamp(2.0, 10.0));
@@ -123,7 +124,7 @@ fn picture_ui(
                 plot.vline(VLine::new("forcing", forcing).stroke(style.base_stroke()));
             }
             if is_lines {
-                let seen = || lines.iter().filter(|own| own[1] > floor);
+                let seen = || lines.iter().filter(|line| line[1] > floor);
                 for [frequency, height] in seen() {
                     let ends = vec![[*frequency, floor], [*frequency, *height]];
                     plot.line(Line::new("line", ends).stroke(style.motion_stroke()));
@@ -138,12 +139,12 @@ fn picture_ui(
     let spoken = format!("spectrum of {}", name.to_lowercase());
     shown.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, spoken.clone()));
     legend(ui, style, area, area.right(), &entries);
-    hand(ui, memory, View::Spectrum, &shown.response, (area, *shown.transform.frame()));
+    axes_input(ui, memory, View::Spectrum, &shown.response, (area, *shown.transform.frame()));
 }
 
-/// A line with so few points that the eye misses none: the largest of each stretch.
+/// Thins a line to at most [`MAX_POINTS`] without losing a peak: keeps the largest point of each interval.
 fn largest(lines: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    let stride = lines.len().div_ceil(MOST_POINTS).max(1);
+    let stride = lines.len().div_ceil(MAX_POINTS).max(1);
     lines
         .chunks(stride)
         .filter_map(|part| part.iter().copied().max_by(|a, b| a[1].total_cmp(&b[1])))
@@ -158,7 +159,7 @@ mod tests {
     fn no_peak_is_thinned_away() {
         let lines: Vec<[f64; 2]> =
             (0..9999).map(|i| [f64::from(i), if i == 7777 { 1.0 } else { 0.0 }]).collect();
-        let few = largest(&lines);
-        assert!(few.len() <= MOST_POINTS && few.contains(&[7777.0, 1.0]));
+        let thinned = largest(&lines);
+        assert!(thinned.len() <= MAX_POINTS && thinned.contains(&[7777.0, 1.0]));
     }
 }

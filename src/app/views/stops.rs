@@ -11,7 +11,7 @@ use crate::app::words::numbers::{decimal, decimals, shown};
 use super::ViewContext;
 use super::context::Drawn;
 
-/// Steps of the slider of a stop that a drag tells apart.
+/// Resolution of a drag, in steps of the slider of a stop.
 const FINE: f64 = 0.2;
 
 /// The step in mm of the slider of a stop, which the arrow keys take as well.
@@ -22,8 +22,8 @@ pub(super) fn key_step(session: &Session) -> f64 {
 /// Thickness of a wall in points.
 pub(super) const WALL: f32 = 10.0;
 
-/// The stops of what is shown in mm, and whether a hand can move them: those of the past, where they were
-/// others, it cannot, nor those of a pinned motion.
+/// Displacements in mm of the stops of the motion shown, and whether they can be moved: not those of a pinned
+/// motion, nor those of the past if they differed then.
 fn shown_stops(session: &Session, drawn: Drawn) -> ([Option<f64>; 2], bool) {
     if drawn.pin(session).is_some() {
         let (left, right) = drawn.model(session).stop_positions();
@@ -36,16 +36,15 @@ fn shown_stops(session: &Session, drawn: Drawn) -> ([Option<f64>; 2], bool) {
     }
     let (left, right) = session.shown().stop_positions();
     let then = [left, right].map(|stop| stop.map(|stop| stop * 1e3));
-    let alike = |a: Option<f64>, b: Option<f64>| match (a, b) {
+    let are_equal = |a: Option<f64>, b: Option<f64>| match (a, b) {
         (Some(a), Some(b)) => (a - b).abs() < 1e-9 * a.abs().max(b.abs()),
         _ => a == b,
     };
-    (then, alike(then[0], present[0]) && alike(then[1], present[1]))
+    (then, are_equal(then[0], present[0]) && are_equal(then[1], present[1]))
 }
 
-/// Draws the stops over `rect` between the heights `top` and `bottom`, and lets them be dragged. The sides of
-/// the mass are `radius` points from its place, and a stop's face is as far outside its travel limit, so that
-/// the mass touches it when it should.
+/// Draws the stops over `rect` between the heights `top` and `bottom`, and lets them be dragged. The face of
+/// a stop is drawn `radius` points, the half width of the mass, outside its travel limit.
 pub fn stops_ui(
     ui: &mut Ui,
     context: &mut ViewContext<'_>,
@@ -57,20 +56,20 @@ pub fn stops_ui(
     let step = key_step(context.session);
     let fine = FINE * step;
     let words = |mm: f64| format!("{} mm", shown(mm, decimals(fine)));
-    for (mm, way) in stops.into_iter().zip([-1.0_f32, 1.0]) {
+    for (mm, side) in stops.into_iter().zip([-1.0_f32, 1.0]) {
         let Some(mm) = mm else { continue };
-        let x = context.span.screen_from_world(mm / 1e3, rect) + way * radius;
-        let wall = Rect::from_two_pos(pos2(x, top), pos2(x + way * WALL, bottom));
+        let x = context.span.screen_from_world(mm / 1e3, rect) + side * radius;
+        let wall = Rect::from_two_pos(pos2(x, top), pos2(x + side * WALL, bottom));
         if x < rect.left() - WALL || x > rect.right() + WALL {
             continue;
         }
         let grab = wall.expand2(vec2((GRAB - WALL).max(0.0) * 0.5 + 3.0, 0.0));
-        let name = if way < 0.0 { "left stop" } else { "right stop" };
+        let name = if side < 0.0 { "left stop" } else { "right stop" };
         let id = ui.scope_id().with(name);
         let style = context.style;
         let painter = ui.painter().with_clip_rect(rect);
         painter.rect_filled(wall, 0.0, style.stop());
-        painter.extend(hatching(wall, way, Stroke::new(1.0, style.ground())));
+        painter.extend(hatching(wall, side, Stroke::new(1.0, style.ground())));
         if !movable {
             let then = match context.drawn {
                 Drawn::Pinned(_) => format!("The stop of the pinned motion, at {}.", words(mm)),
@@ -90,23 +89,23 @@ pub fn stops_ui(
             context.session.end_presses();
         }
         if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
-            let place = context.span.world_from_screen(pointer.x - way * (radius + 0.5 * WALL), rect) * 1e3;
-            // of the prototype a hundredth of a millimetre, which is finer than a hand
-            let distance = decimal((f64::from(way) * place / fine).round() * fine).max(step);
-            context.session.edit(|scene| scene.stops.set_limit(way > 0.0, distance));
+            let place = context.span.world_from_screen(pointer.x - side * (radius + 0.5 * WALL), rect) * 1e3;
+            // 0.01 mm for the prototype, which is finer than a hand
+            let distance = decimal((f64::from(side) * place / fine).round() * fine).max(step);
+            context.session.edit(|scene| scene.stops.set_limit(side > 0.0, distance));
             let text = words(distance);
-            let align = if way > 0.0 { egui::Align2::LEFT_TOP } else { egui::Align2::RIGHT_TOP };
-            let at = pos2(x + way * (WALL + 5.0), top);
+            let align = if side > 0.0 { egui::Align2::LEFT_TOP } else { egui::Align2::RIGHT_TOP };
+            let at = pos2(x + side * (WALL + 5.0), top);
             painter.text(at, align, text, style.body(), style.ink());
         }
         if response.has_focus() && !response.dragged() {
             let stroke = context.style.focus_stroke();
             ui.painter().rect_stroke(wall.expand(3.0), 2.0, stroke, egui::StrokeKind::Outside);
-            let moved = arrows(ui, response.id) * f64::from(way);
+            let moved = arrows(ui, response.id) * f64::from(side);
             if moved != 0.0 {
                 let distance = decimal(((mm.abs() / step).round() + moved) * step).max(step);
                 context.session.press(name, ui.input(|input| input.time));
-                context.session.edit(|scene| scene.stops.set_limit(way > 0.0, distance));
+                context.session.edit(|scene| scene.stops.set_limit(side > 0.0, distance));
             }
         }
         if response.drag_stopped() {
@@ -115,14 +114,14 @@ pub fn stops_ui(
     }
 }
 
-/// Strokes that tell a wall from a bar.
-fn hatching(wall: Rect, way: f32, stroke: Stroke) -> Vec<Shape> {
+/// Hatching that distinguishes a wall from a bar.
+fn hatching(wall: Rect, side: f32, stroke: Stroke) -> Vec<Shape> {
     let count = (wall.height() / 8.0).floor().max(0.0) as usize;
     let line = |i: usize| {
         let y = wall.top() + 8.0 * (i as f32 + 0.2);
         let (inner, outer) =
-            if way > 0.0 { (wall.left(), wall.right()) } else { (wall.right(), wall.left()) };
-        Shape::line_segment([pos2(inner + way * 3.0, y), pos2(outer, (y + 6.0).min(wall.bottom()))], stroke)
+            if side > 0.0 { (wall.left(), wall.right()) } else { (wall.right(), wall.left()) };
+        Shape::line_segment([pos2(inner + side * 3.0, y), pos2(outer, (y + 6.0).min(wall.bottom()))], stroke)
     };
     (0..count.min(400)).map(line).collect()
 }

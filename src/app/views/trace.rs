@@ -1,8 +1,8 @@
 //! Traces over time: displacement, velocity, base acceleration, power.
 //!
-//! Displacement, velocity, base acceleration and power are one view with four quantities. All traces show the
-//! same stretch of time and the same cursor, so that they can be read below each other. Their vertical ranges
-//! come from the scene and from [`Ranges`](super::ranges::Ranges), not from what is in the picture.
+//! The traces are one view with several quantities. All traces show the same range of time and the same time
+//! under the pointer, so that they can be read below each other. Their vertical ranges come from the scene
+//! and from [`Ranges`](super::ranges::Ranges), not from what is visible.
 
 use eframe::egui::{self, Align2, Ui, vec2};
 use egui_plot::{HLine, Line, LineStyle, PlotBounds, PlotPoint, PlotPoints, Span, VLine};
@@ -16,40 +16,41 @@ use crate::study::Watch;
 
 use super::cursors::{cursors_ui, readout_ui};
 use super::ghosts::{PINNED, dash};
-use super::hand::hand;
+use super::hand::axes_input;
 use super::labels::haloed;
-use super::legend::{LEGEND, Sign, legend};
+use super::legend::{LEGEND, Symbol, legend};
 use super::overlay::{MeasuredTrace, with_room};
 use super::plot::{LOW, MARGIN, marks, plot_place, still_plot};
 use super::ranges::room_for_push;
 use super::view::Axis;
 use super::{View, ViewContext};
 
-/// Forcing periods that are shown; without a period multiples of the motion's characteristic time. No more
-/// swings of the mechanism than are told apart.
+/// Number of forcing periods shown.
 const PERIODS: f64 = 6.0;
+/// Number of characteristic times of the motion shown, if the shaking has no period.
 const SWINGS: f64 = 8.0;
-const MOST_SWINGS: f64 = 200.0;
+/// Largest number of natural times of the mechanism shown; more swings cannot be told apart.
+const MAX_SWINGS: f64 = 200.0;
 
-/// Where in the window the present is.
+/// Position of the present in the range of time, as a share of it.
 const PRESENT: f64 = 0.94;
 
 /// Height in points of the numbers and the name below a plot.
 const BELOW: f32 = 40.0;
 
-/// Share of the stretch at its end where a number would be cut off.
+/// Share of the time axis at its end without numbers, which would be cut off there.
 const NO_NUMBER: f64 = 0.05;
 
-/// The most points of a line; a longer path is drawn from fewer.
-const MOST_POINTS: usize = 20_000;
+/// Largest number of points of a line; a longer path is thinned.
+const MAX_POINTS: usize = 20_000;
 
-/// The most points of a pinned motion's line, whose dashes cost more.
-const MOST_GHOST_POINTS: usize = 4000;
+/// Largest number of points of a pinned motion's line, whose dashes cost more.
+const MAX_GHOST_POINTS: usize = 4000;
 
-/// The most flights that are drawn one by one; of more no tip is seen.
-const MOST_FLIGHTS: usize = 400;
+/// Largest number of flights drawn as separate lines; with more, the tips of one line are not visible.
+const MAX_FLIGHTS: usize = 400;
 
-/// What is drawn over time.
+/// A quantity drawn over time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TraceQuantity {
     /// Displacement relative to the base.
@@ -57,13 +58,13 @@ pub enum TraceQuantity {
     /// Velocity relative to the base.
     Velocity,
     BaseAcceleration,
-    /// Work of the base on the mass in a second.
+    /// Power of the base into the mass.
     Power,
     /// Power into the load of a transducer.
     LoadPower {
-        /// How many of the unit of the axis a watt is.
+        /// Number of units of the axis in a watt.
         per_watt: u32,
-        /// That unit.
+        /// The unit of the axis.
         unit: &'static str,
     },
 }
@@ -77,17 +78,17 @@ impl TraceQuantity {
             Self::BaseAcceleration => sample.base_accel / STANDARD_GRAVITY,
             Self::Power => sample.work_rate(model.mass()) * 1e3,
             Self::LoadPower { per_watt, .. } => {
-                model.output(sample).map_or(f64::NAN, |own| own.power * f64::from(per_watt))
+                model.output(sample).map_or(f64::NAN, |output| output.power * f64::from(per_watt))
             }
         }
     }
 
-    /// Its value in a motion that was seen, by the model of then.
-    fn seen(self, watch: &Watch, sample: &Sample) -> f64 {
+    /// Its value in a recorded motion, by the model at that time.
+    fn value_in(self, watch: &Watch, sample: &Sample) -> f64 {
         self.value(sample, watch.model_at(sample.t))
     }
 
-    /// What can have been measured of it, and its unit in SI.
+    /// The measured quantity that it can be compared with, and the unit of its axis in SI.
     fn measured(self) -> Option<(Quantity, f64)> {
         match self {
             Self::Displacement => Some((Quantity::Displacement, 1e-3)),
@@ -128,7 +129,7 @@ impl TraceQuantity {
 
     /// The ends of the vertical axis, in its unit.
     fn ends(self, context: &mut ViewContext<'_>) -> (f64, f64) {
-        let both = |most: f64| (-most, most);
+        let both = |end: f64| (-end, end);
         match self {
             Self::Displacement => (context.span.low * 1e3, context.span.high * 1e3),
             Self::Velocity => both(context.memory.ranges.follow(context.session).speed() * 1e3),
@@ -137,8 +138,8 @@ impl TraceQuantity {
             ),
             Self::Power => both(context.memory.ranges.follow(context.session).power() * 1e3),
             Self::LoadPower { per_watt, .. } => {
-                let most = context.memory.ranges.follow(context.session).load_power() * f64::from(per_watt);
-                (-0.04 * most, most)
+                let end = context.memory.ranges.follow(context.session).load_power() * f64::from(per_watt);
+                (-0.04 * end, end)
             }
         }
     }
@@ -150,8 +151,8 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
     let ends = with_room(context.session, quantity.measured(), ends);
     let (low, high) = context.memory.axes.ends(Axis::Up(quantity.view()), ends);
     let (now, model) = (context.session.player.time(), context.session.shown());
-    context.memory.timeline.own = stretch(model);
-    let window = context.memory.timeline.window.unwrap_or(context.memory.timeline.own);
+    context.memory.timeline.default_window = stretch(model);
+    let window = context.memory.timeline.window.unwrap_or(context.memory.timeline.default_window);
     let from = (now - PRESENT * window).max(-0.02 * window);
     let (from, to) = context.memory.axes.ends(Axis::Time, (from, from + window));
     let (window, end) = (to - from, now.min(to));
@@ -160,19 +161,19 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
     let first = shown.partition_point(|sample| sample.t < from).saturating_sub(1);
     let last = shown.partition_point(|sample| sample.t <= end);
     let state = if now <= to { context.session.player.state() } else { watch.state_at(end) };
-    let stride = ((last.max(first) - first) / MOST_POINTS).max(1);
+    let stride = ((last.max(first) - first) / MAX_POINTS).max(1);
     let samples: Vec<Sample> =
         shown.range(first..last.max(first)).step_by(stride).copied().chain([state]).collect();
     let is_displacement = quantity == TraceQuantity::Displacement;
     let paths =
-        paths(&samples, is_displacement, |sample| PlotPoint::new(sample.t, quantity.seen(watch, sample)));
+        paths(&samples, is_displacement, |sample| PlotPoint::new(sample.t, quantity.value_in(watch, sample)));
     let has_ghosts = matches!(quantity, TraceQuantity::Displacement | TraceQuantity::Velocity);
     let ghosts: Vec<(usize, Vec<PlotPoint>)> = match has_ghosts {
-        true => ghost_paths(context.session, (from, end), |watch, own| quantity.seen(watch, own)),
+        true => ghost_paths(context.session, (from, end), |watch, sample| quantity.value_in(watch, sample)),
         false => Vec::new(),
     };
     let measured = MeasuredTrace::of(context.session, quantity.measured(), (from, to));
-    let rests = rests(&samples);
+    let rests = rest_spans(&samples);
     let impacts: Vec<f64> = watch
         .events()
         .iter()
@@ -185,7 +186,7 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
     let pass = ui.ctx().cumulative_pass_nr();
     let cursor = context.memory.timeline.cursor.filter(|cursor| cursor.1 + 1 >= pass).map(|cursor| cursor.0);
     let tick = 0.035 * (high - low);
-    let line = match quantity {
+    let stroke = match quantity {
         TraceQuantity::Displacement | TraceQuantity::Velocity => style.motion_stroke(),
         TraceQuantity::BaseAcceleration | TraceQuantity::Power => style.base_stroke(),
         TraceQuantity::LoadPower { .. } => style.power_stroke(),
@@ -196,18 +197,18 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
     ui.painter().rect_filled(area, 0.0, style.ground());
     let mut entries = Vec::new();
     if !rests.is_empty() {
-        entries.push((Sign::Shade(style.rest_shade()), "at rest on a stop"));
+        entries.push((Symbol::Shade(style.rest_shade()), "at rest on a stop"));
     }
     if !impacts.is_empty() {
-        entries.push((Sign::Ticks(style.impact_stroke()), "impacts"));
+        entries.push((Symbol::Ticks(style.impact_stroke()), "impacts"));
     }
     if !stops.is_empty() {
-        entries.push((Sign::Dashed(style.stop_stroke()), "stops"));
+        entries.push((Symbol::Dashed(style.stop_stroke()), "stops"));
     }
     for (place, _) in &ghosts {
-        entries.push((Sign::Dashes(style.ghost_motion_stroke(), *place), PINNED[*place]));
+        entries.push((Symbol::Dashes(style.ghost_motion_stroke(), *place), PINNED[*place]));
     }
-    entries.extend(measured.as_ref().map(|own| own.entry(&style)));
+    entries.extend(measured.as_ref().map(|trace| trace.entry(&style)));
     let axis = format!("{} ({})", quantity.name(), quantity.unit());
     // a number at the very end of the axis would be cut off
     let edge = 0.02 * (high - low);
@@ -218,13 +219,13 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
     let axis = if is_low || is_long { quantity.unit().to_owned() } else { axis };
     let time_label = if is_low { "" } else { "time (s)" };
     let digits = 1 + decimals_for(high - low);
-    let (read, unit) = (|t: f64| quantity.seen(watch, &watch.state_at(t)), quantity.unit());
+    let (read, unit) = (|t: f64| quantity.value_in(watch, &watch.state_at(t)), quantity.unit());
     let at_each = |t: f64| format!("{:.digits$} {unit}", read(t));
     let between = |a: f64, b: f64| format!("{:+.digits$} {unit}", read(b) - read(a));
     let readout = readout_ui(ui, context, (area, window), at_each, between);
     let plot = area.with_min_x(area.left() + MARGIN).with_min_y(area.top() + LEGEND + readout);
-    // points on the screen between two of the plot
-    let way = |a: &PlotPoint, b: &PlotPoint| {
+    // distance on the screen between two points of the plot
+    let distance = |a: &PlotPoint, b: &PlotPoint| {
         let (x, y) = ((b.x - a.x) / window, (b.y - a.y) / (high - low));
         (x as f32 * plot.width()).hypot(y as f32 * plot.height())
     };
@@ -248,24 +249,24 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
                 plot.line(line.style(LineStyle::dashed_loose()));
             }
             plot.vline(VLine::new("now", now).stroke(style.ghost_stroke()));
-            // a tick stands at the edge, out of the way of the motion
+            // the ticks stand at the edge, clear of the motion
             for t in thinned(&impacts, window) {
                 let ends = vec![[t, low], [t, low + tick]];
                 plot.line(Line::new("impact", ends).stroke(style.impact_stroke()));
             }
-            if let Some(own) = measured {
-                own.draw(plot, &style);
+            if let Some(trace) = measured {
+                trace.draw(plot, &style);
             }
             for (place, path) in ghosts {
-                let length = path.windows(2).map(|pair| way(&pair[0], &pair[1])).sum();
-                let own = Line::new("ghost", PlotPoints::Owned(path)).stroke(style.ghost_motion_stroke());
-                let own = own.style(LineStyle::Dashed { length: dash(place, length) });
-                plot.line(own.allow_band(!is_displacement));
+                let length = path.windows(2).map(|pair| distance(&pair[0], &pair[1])).sum();
+                let line = Line::new("ghost", PlotPoints::Owned(path)).stroke(style.ghost_motion_stroke());
+                let line = line.style(LineStyle::Dashed { length: dash(place, length) });
+                plot.line(line.allow_band(!is_displacement));
             }
             for path in paths {
-                let own = Line::new(quantity.name(), PlotPoints::Owned(path)).stroke(line);
+                let line = Line::new(quantity.name(), PlotPoints::Owned(path)).stroke(stroke);
                 // a band reaches beyond the ends of a steep line
-                plot.line(own.allow_band(!is_displacement));
+                plot.line(line.allow_band(!is_displacement));
             }
             if let Some(t) = cursor {
                 let dashed = LineStyle::dashed_dense();
@@ -273,7 +274,7 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
             }
         });
     let (transform, response) = (response.transform, response.response);
-    hand(&ui, context.memory, quantity.view(), &response, (area, *transform.frame()));
+    axes_input(&ui, context.memory, quantity.view(), &response, (area, *transform.frame()));
     cursors_ui(&mut ui, context, &response, (*transform.frame(), (from, to)), quantity.name());
     let painter = ui.painter().with_clip_rect(area);
     let mut right = area.right();
@@ -282,7 +283,7 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
         let watch = context.session.player.watch();
         let t = t.clamp(watch.begin().min(now), now);
         context.memory.timeline.cursor = Some((t, pass));
-        let value = quantity.seen(watch, &watch.state_at(t));
+        let value = quantity.value_in(watch, &watch.state_at(t));
         let at = (area.right_top() + vec2(-6.0, 0.5 * LEGEND), Align2::RIGHT_CENTER);
         let text = format!("{value:.digits$} {} at {t:.3} s", quantity.unit());
         right = haloed(&painter, &style, at, &text, (style.small(), style.ink())).left();
@@ -290,7 +291,7 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
     legend(&ui, &style, area, right, &entries);
 }
 
-/// The paths of the pinned motions from when on they are motions of their own, with the places of the pins.
+/// Paths of the pinned motions since they were pinned, with the indices of the pins.
 fn ghost_paths(
     session: &Session,
     (from, to): (f64, f64),
@@ -300,33 +301,35 @@ fn ghost_paths(
         let (watch, samples) = (pin.watch(), pin.watch().samples());
         let first = samples.partition_point(|sample| sample.t < from.max(pin.since())).saturating_sub(1);
         let last = samples.partition_point(|sample| sample.t <= to).max(first);
-        let stride = ((last - first) / MOST_GHOST_POINTS).max(1);
+        let stride = ((last - first) / MAX_GHOST_POINTS).max(1);
         let shown = samples.range(first..last).step_by(stride).copied().chain([pin.state_at(to)]);
-        let points = shown.map(|own| PlotPoint::new(own.t, value(watch, &own)));
+        let points = shown.map(|sample| PlotPoint::new(sample.t, value(watch, &sample)));
         (pin.place(), points.collect())
     };
     session.pins.all().iter().map(path).collect()
 }
 
-/// How many seconds are shown of a motion by a model.
+/// The time in s that is shown by default of a motion of a model.
 pub(in crate::app) fn stretch(model: &Model) -> f64 {
-    let most = MOST_SWINGS * model.natural_time();
-    model.forcing_period().map_or(SWINGS * model.characteristic_time(), |period| (PERIODS * period).min(most))
+    let limit = MAX_SWINGS * model.natural_time();
+    model
+        .forcing_period()
+        .map_or(SWINGS * model.characteristic_time(), |period| (PERIODS * period).min(limit))
 }
 
-/// The path as lines, without what is not known. A line that turns on the spot is drawn with a tip that
-/// reaches beyond it: between stops each flight is a line of its own, so that none is seen to go through.
+/// The path as lines, without unknown values. A line has a tip beyond a point where it reverses; with
+/// `flights`, each flight is therefore a separate line, which does not reach through a stop.
 fn paths(samples: &[Sample], flights: bool, point: impl Fn(&Sample) -> PlotPoint) -> Vec<Vec<PlotPoint>> {
-    let turns = |pair: &&[Sample]| pair[0].t == pair[1].t;
-    let line = |part: &[Sample]| part.iter().map(&point).filter(|own| !own.y.is_nan()).collect();
-    if !flights || samples.windows(2).filter(turns).count() > MOST_FLIGHTS {
+    let reverses = |pair: &&[Sample]| pair[0].t == pair[1].t;
+    let line = |part: &[Sample]| part.iter().map(&point).filter(|at| !at.y.is_nan()).collect();
+    if !flights || samples.windows(2).filter(reverses).count() > MAX_FLIGHTS {
         return vec![line(samples)];
     }
     let parts = samples.chunk_by(|a, b| a.t != b.t);
     parts.map(line).collect()
 }
 
-/// Each stop from when to when it was where, in s and mm; a stop that stayed is one line.
+/// Lines of the stops over time, in s and mm; a stop that did not move is one line.
 fn stop_lines(watch: &Watch, from: f64, to: f64) -> Vec<[[f64; 2]; 2]> {
     let mut lines: Vec<[[f64; 2]; 2]> = Vec::new();
     for (begin, end, model) in watch.models_between(from.max(0.0), to) {
@@ -341,8 +344,8 @@ fn stop_lines(watch: &Watch, from: f64, to: f64) -> Vec<[[f64; 2]; 2]> {
     lines
 }
 
-/// From when to when the mass rests.
-fn rests(samples: &[Sample]) -> Vec<(f64, f64)> {
+/// Times between which the mass rests on a stop.
+fn rest_spans(samples: &[Sample]) -> Vec<(f64, f64)> {
     let mut spans: Vec<(f64, f64)> = Vec::new();
     for pair in samples.windows(2) {
         if pair[0].phase == Phase::Free {
@@ -356,7 +359,7 @@ fn rests(samples: &[Sample]) -> Vec<(f64, f64)> {
     spans
 }
 
-/// Impacts that are told apart on the screen.
+/// Times of the impacts that can be told apart on the screen.
 fn thinned(times: &[f64], window: f64) -> Vec<f64> {
     let mut kept: Vec<f64> = Vec::new();
     for t in times {

@@ -1,4 +1,4 @@
-//! One field walked up and down: stroboscopic displacements or RMS velocity, and the hysteresis between.
+//! View of a walk over one field, up and down: states or means of the motion, and hysteresis.
 
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::{self, Align2, PopupCloseBehavior, Rect, RichText, Sense, Ui, UiBuilder, vec2};
@@ -16,9 +16,9 @@ use crate::scene::{FieldPath, SweepAxis, column_names};
 use crate::study::{Direction, Visit};
 
 use super::axes::{field_name, field_ui, range_row_ui};
-use super::hand::hand;
+use super::hand::axes_input;
 use super::labels::haloed;
-use super::legend::{LEGEND, Sign, legend};
+use super::legend::{LEGEND, Symbol, legend};
 use super::plot::{MARGIN, marks, plot_place, still_plot};
 use super::view::Axis;
 use super::{View, ViewContext, too_small_ui};
@@ -26,11 +26,11 @@ use super::{View, ViewContext, too_small_ui};
 /// Height in points of the row of choices.
 const TOOLS: f32 = 30.0;
 
-/// Two values that differ by less than this share of the picture are one.
+/// Relative difference up to which two RMS velocities are the same.
 const SAME: f64 = 0.01;
 
-/// A direction as it is drawn: its runs by value, coarse ones where the fine ones are still to come.
-struct Way<'a> {
+/// The runs of one direction by rising value, coarse ones where the fine ones are still to come.
+struct WalkBranch<'a> {
     direction: Direction,
     visits: Vec<&'a Visit>,
 }
@@ -58,7 +58,7 @@ pub fn up_and_down_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     picture_ui(ui, context, &axis, below);
 }
 
-/// What is walked, and what is drawn.
+/// Choice of quantity, field and range.
 fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis) {
     let known = context.session.map_fields();
     ui.horizontal_centered(|ui| {
@@ -70,14 +70,14 @@ fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis) {
             "Power",
             "Mean power into the load of the transducer, over the settled window.",
         );
-        for (own, name, hover) in [
+        for (value, name, hover) in [
             (WalkQuantity::Strobes, "Once a period", "Where the mass is once in every forcing period."),
             (WalkQuantity::RmsVelocity, "RMS velocity", "Root of the mean square of the velocity."),
         ]
         .into_iter()
         .chain(has_load.then_some(load))
         {
-            ui.selectable_value(quantity, own, name).on_hover_text(hover);
+            ui.selectable_value(quantity, value, name).on_hover_text(hover);
         }
         ui.label("over");
         if let Some(path) = field_ui(ui, axis, "over", &known) {
@@ -85,7 +85,7 @@ fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis) {
         }
         let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
         let (button, _) = MenuButton::new("Range").config(config).ui(ui, |ui| {
-            // numbers that can be typed look so, which a menu's would not
+            // a menu style would hide that the numbers can be typed
             *ui.style_mut() = (*ui.ctx().global_style()).clone();
             let mut wanted = axis.clone();
             egui::Grid::new("walk").num_columns(7).show(ui, |ui| range_row_ui(ui, &mut wanted, "over"));
@@ -102,29 +102,29 @@ fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis) {
 }
 
 /// The runs of both directions: fine ones as far as they are known, then coarse ones.
-fn ways(parts: &[(usize, Visit)]) -> [Way<'_>; 2] {
+fn branches(parts: &[(usize, Visit)]) -> [WalkBranch<'_>; 2] {
     [Direction::Up, Direction::Down].map(|direction| {
-        let own = || parts.iter().filter(|own| own.1.direction == direction);
-        let fine: Vec<&Visit> = own().filter(|own| own.0 == 1).map(|own| &own.1).collect();
+        let runs = || parts.iter().filter(|part| part.1.direction == direction);
+        let fine: Vec<&Visit> = runs().filter(|part| part.0 == 1).map(|part| &part.1).collect();
         let reached = fine.last().map(|last| last.value);
-        let ahead = |value: f64| match (direction, reached) {
+        let is_ahead = |value: f64| match (direction, reached) {
             (_, None) => true,
             (Direction::Up, Some(reached)) => value > reached,
             (Direction::Down, Some(reached)) => value < reached,
         };
-        let coarse = own().filter(|own| own.0 > 1 && ahead(own.1.value)).map(|own| &own.1);
+        let coarse = runs().filter(|part| part.0 > 1 && is_ahead(part.1.value)).map(|part| &part.1);
         let mut visits: Vec<&Visit> = fine.iter().copied().chain(coarse).collect();
         visits.sort_by(|a, b| a.value.total_cmp(&b.value));
-        Way { direction, visits }
+        WalkBranch { direction, visits }
     })
 }
 
-/// RMS velocity in mm/s; NaN where there is none.
+/// RMS velocity in mm/s; NaN if there is none.
 fn rms(visit: &Visit) -> f64 {
     visit.summary.rms_velocity.map_or(f64::NAN, |rms| rms * 1e3)
 }
 
-/// What is drawn of a run as one number, in the unit of the axis; NaN where there is none.
+/// The value of a run on the vertical axis, in the unit of the axis; NaN if there is none.
 fn number(visit: &Visit, quantity: WalkQuantity, per_watt: f64) -> f64 {
     match quantity {
         WalkQuantity::LoadPower => load_power(visit) * per_watt,
@@ -132,9 +132,9 @@ fn number(visit: &Visit, quantity: WalkQuantity, per_watt: f64) -> f64 {
     }
 }
 
-/// Mean power into the load in W; NaN where there is none.
+/// Mean power into the load in W; NaN if there is none.
 fn load_power(visit: &Visit) -> f64 {
-    visit.summary.harvest.and_then(|own| own.mean_load_power).unwrap_or(f64::NAN)
+    visit.summary.harvest.and_then(|harvest| harvest.mean_load_power).unwrap_or(f64::NAN)
 }
 
 fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area: Rect) {
@@ -143,37 +143,38 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
     let walks = &session.explore.walks;
     let quantity = match walks.quantity {
         WalkQuantity::LoadPower if !session.model().has_transducer() => WalkQuantity::RmsVelocity,
-        own => own,
+        quantity => quantity,
     };
     let is_whole = walks.found.is_whole();
     let (parts, current) = walks.found.parts();
-    let of_field = walks.found.question().is_some_and(|own| own.axis.field == axis.field);
-    let ways = ways(if of_field { parts } else { &[] });
+    let of_field = walks.found.question().is_some_and(|question| question.axis.field == axis.field);
+    let branches = branches(if of_field { parts } else { &[] });
     let span = &context.span;
-    let powers = ways.iter().flat_map(|way| way.visits.iter().map(|visit| load_power(visit)));
+    let powers = branches.iter().flat_map(|branch| branch.visits.iter().map(|visit| load_power(visit)));
     let (per_watt, unit) = power_unit(powers.filter(|power| power.is_finite()).fold(0.0, f64::max));
     let (low, high) = match quantity {
         WalkQuantity::Strobes => {
-            let all = ways.iter().flat_map(|way| way.visits.iter().flat_map(|visit| &visit.strobes));
+            let all =
+                branches.iter().flat_map(|branch| branch.visits.iter().flat_map(|visit| &visit.strobes));
             all.fold((span.low * 1e3, span.high * 1e3), |(low, high), x| {
                 (low.min(1.05e3 * x), high.max(1.05e3 * x))
             })
         }
         WalkQuantity::RmsVelocity | WalkQuantity::LoadPower => {
-            let all = ways.iter().flat_map(|way| &way.visits);
+            let all = branches.iter().flat_map(|branch| &branch.visits);
             let all = all.map(|visit| number(visit, quantity, per_watt));
-            (0.0, 1.08 * all.filter(|own| own.is_finite()).fold(1e-3, f64::max))
+            (0.0, 1.08 * all.filter(|value| value.is_finite()).fold(1e-3, f64::max))
         }
     };
     let (up, down) = (style.motion(), style.base());
     let [sign_up, sign_down] = match quantity {
-        WalkQuantity::Strobes => [Sign::Dots(up), Sign::Pluses(down)],
-        _ => [Sign::Line(style.motion_stroke()), Sign::Dashed(style.base_stroke())],
+        WalkQuantity::Strobes => [Symbol::Dots(up), Symbol::Pluses(down)],
+        _ => [Symbol::Line(style.motion_stroke()), Symbol::Dashed(style.base_stroke())],
     };
     let entries = [
         (sign_up, "turned up"),
         (sign_down, "turned down"),
-        (Sign::Shade(style.rest_shade()), "the two differ"),
+        (Symbol::Shade(style.rest_shade()), "the two differ"),
     ];
     let vertical = match quantity {
         WalkQuantity::Strobes => "displacement once a period (mm)".to_owned(),
@@ -207,7 +208,7 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
             for mark in marks(low, high, rows) {
                 plot.hline(HLine::new("", mark.value).stroke(style.grid_stroke()));
             }
-            for (a, b) in differing(&ways, high - low) {
+            for (a, b) in differing(&branches, high - low) {
                 let corners = vec![[a, low], [b, low], [b, high], [a, high]];
                 let shade = Polygon::new("", PlotPoints::from(corners)).fill_color(style.rest_shade());
                 plot.polygon(shade.stroke(egui::Stroke::NONE));
@@ -215,28 +216,28 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
             if let Some(here) = here {
                 plot.vline(VLine::new("here", here).stroke(style.focus_stroke()));
             }
-            for way in &ways {
-                let (color, radius, shape) = match way.direction {
+            for branch in &branches {
+                let (color, radius, shape) = match branch.direction {
                     Direction::Up => (up, 1.6, MarkerShape::Circle),
                     Direction::Down => (down, 2.4, MarkerShape::Plus),
                 };
                 if quantity != WalkQuantity::Strobes {
                     let point =
                         |visit: &&Visit| PlotPoint::new(visit.value, number(visit, quantity, per_watt));
-                    let line: Vec<PlotPoint> = way.visits.iter().map(point).collect();
-                    let line = Line::new(way.direction.name(), PlotPoints::Owned(line));
-                    plot.line(match way.direction {
+                    let line: Vec<PlotPoint> = branch.visits.iter().map(point).collect();
+                    let line = Line::new(branch.direction.name(), PlotPoints::Owned(line));
+                    plot.line(match branch.direction {
                         Direction::Up => line.stroke(style.motion_stroke()),
                         Direction::Down => line.stroke(style.base_stroke()).style(LineStyle::dashed_dense()),
                     });
                     continue;
                 }
-                let points: Vec<PlotPoint> = way
+                let points: Vec<PlotPoint> = branch
                     .visits
                     .iter()
                     .flat_map(|visit| strobes(visit).iter().map(|x| PlotPoint::new(visit.value, x * 1e3)))
                     .collect();
-                let points = Points::new(way.direction.name(), PlotPoints::Owned(points));
+                let points = Points::new(branch.direction.name(), PlotPoints::Owned(points));
                 plot.points(points.radius(style.dot(radius)).shape(shape).color(color));
             }
             if let (Some(here), Some(x)) = (here, live) {
@@ -253,7 +254,7 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
         let value = transform.value_from_position(at).x.clamp(axis.from, axis.to);
         let painter = ui.painter().with_clip_rect(area);
         let at = (area.right_top() + vec2(-6.0, 0.5 * LEGEND), Align2::RIGHT_CENTER);
-        let text = reading(&ways, value, quantity);
+        let text = reading(&branches, value, quantity);
         right = haloed(&painter, &style, at, &text, (style.small(), style.ink())).left();
     }
     legend(ui, &style, area, right, &entries);
@@ -261,18 +262,18 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
     if !shift {
         drag(session, &response, |at| transform.value_from_position(at).x);
     }
-    let said = if is_whole { "" } else { "not all of it is known yet" };
-    if !said.is_empty() && area.height() > 220.0 {
+    let note = if is_whole { "" } else { "not all of it is known yet" };
+    if !note.is_empty() && area.height() > 220.0 {
         let at = (area.right_bottom() - vec2(8.0, 3.0), Align2::RIGHT_BOTTOM);
-        haloed(ui.painter(), &style, at, said, (style.small(), style.faint()));
+        haloed(ui.painter(), &style, at, note, (style.small(), style.faint()));
     }
-    hand(ui, context.memory, View::UpAndDown, &response, (area, *transform.frame()));
+    axes_input(ui, context.memory, View::UpAndDown, &response, (area, *transform.frame()));
 }
 
-/// A click or a drag takes the scene to the value under the pointer.
+/// Takes the scene to the value under the pointer, by a click or a drag.
 fn drag(session: &mut Session, response: &egui::Response, value: impl Fn(egui::Pos2) -> f64) {
-    let own = response.dragged_by(egui::PointerButton::Primary) || response.clicked();
-    if let Some(at) = response.interact_pointer_pos().filter(|_| own) {
+    let is_pressed = response.dragged_by(egui::PointerButton::Primary) || response.clicked();
+    if let Some(at) = response.interact_pointer_pos().filter(|_| is_pressed) {
         session.drag_along_walk(value(at));
     }
     if response.drag_stopped() || response.clicked() {
@@ -280,15 +281,14 @@ fn drag(session: &mut Session, response: &egui::Response, value: impl Fn(egui::P
     }
 }
 
-/// The stretches of the axis over which the two directions differ, each value standing for half the way to
-/// its neighbours.
-fn differing([up, down]: &[Way<'_>; 2], height: f64) -> Vec<(f64, f64)> {
+/// Intervals of the axis over which the two directions differ; each value extends halfway to its neighbours.
+fn differing([up, down]: &[WalkBranch<'_>; 2], height: f64) -> Vec<(f64, f64)> {
     let both: Vec<(f64, bool)> = up
         .visits
         .iter()
-        .filter_map(|own| {
-            let other = down.visits.iter().find(|other| other.value == own.value)?;
-            Some((own.value, differ(own, other, height)))
+        .filter_map(|visit| {
+            let other = down.visits.iter().find(|other| other.value == visit.value)?;
+            Some((visit.value, differ(visit, other, height)))
         })
         .collect();
     let mut spans: Vec<(f64, f64)> = Vec::new();
@@ -296,7 +296,7 @@ fn differing([up, down]: &[Way<'_>; 2], height: f64) -> Vec<(f64, f64)> {
         if !differs {
             continue;
         }
-        let edge = |neighbour: Option<&(f64, bool)>| neighbour.map_or(*value, |own| 0.5 * (own.0 + value));
+        let edge = |neighbour: Option<&(f64, bool)>| neighbour.map_or(*value, |next| 0.5 * (next.0 + value));
         let (low, high) = (edge(i.checked_sub(1).and_then(|i| both.get(i))), edge(both.get(i + 1)));
         match spans.last_mut().filter(|last| last.1 == low) {
             Some(last) => last.1 = high,
@@ -306,39 +306,40 @@ fn differing([up, down]: &[Way<'_>; 2], height: f64) -> Vec<(f64, f64)> {
     spans
 }
 
-/// Whether two runs at one value are different motions: one crosses in a rhythm and the other never, or both
-/// repeat and their RMS velocities differ. Mirror images are one.
+/// Whether two runs at one value are different motions: one is interwell and the other never crosses the
+/// barrier, or both are periodic and their RMS velocities differ. Mirror images count as the same motion.
 fn differ(a: &Visit, b: &Visit, height: f64) -> bool {
     let (x, y) = (rms(a), rms(b));
-    let apart = (x - y).abs() > SAME * x.max(y).max(1e-6 * height);
-    let repeats = |own: &Visit| own.summary.period.is_some();
-    let crosses = |own: &Visit| own.summary.regime == Regime::Interwell;
-    let stays = |own: &Visit| own.summary.crossings == 0;
-    crosses(a) && stays(b) || stays(a) && crosses(b) || repeats(a) && repeats(b) && apart
+    let rms_differs = (x - y).abs() > SAME * x.max(y).max(1e-6 * height);
+    let repeats = |visit: &Visit| visit.summary.period.is_some();
+    let crosses = |visit: &Visit| visit.summary.regime == Regime::Interwell;
+    let stays = |visit: &Visit| visit.summary.crossings == 0;
+    crosses(a) && stays(b) || stays(a) && crosses(b) || repeats(a) && repeats(b) && rms_differs
 }
 
-/// The displacements of a run that are drawn: one of each where they repeat.
+/// The stroboscopic displacements of a run that are drawn: those of one period if it repeats.
 fn strobes(visit: &Visit) -> &[f64] {
     let count = visit.summary.period.map_or(visit.strobes.len(), |period| period as usize);
     &visit.strobes[visit.strobes.len().saturating_sub(count)..]
 }
 
-/// What the walks say at the value nearest to one.
-fn reading(ways: &[Way<'_>; 2], value: f64, quantity: WalkQuantity) -> String {
+/// Text on the runs nearest to `value`.
+fn reading(branches: &[WalkBranch<'_>; 2], value: f64, quantity: WalkQuantity) -> String {
     let number = |visit: &Visit| match quantity {
         WalkQuantity::LoadPower => power(load_power(visit)),
         WalkQuantity::Strobes | WalkQuantity::RmsVelocity => format!("{} mm/s", three(rms(visit))),
     };
-    let nearest = |way: &Way<'_>| {
-        way.visits
+    let nearest = |branch: &WalkBranch<'_>| {
+        branch
+            .visits
             .iter()
             .min_by(|a, b| (a.value - value).abs().total_cmp(&(b.value - value).abs()))
             .map(|visit| (visit.value, visit.summary.regime.name(), number(visit)))
     };
-    let said = |word: &str, regime: &str, number: &str| format!("{word}: {regime}, {number}");
-    match (nearest(&ways[0]), nearest(&ways[1])) {
+    let text = |word: &str, regime: &str, number: &str| format!("{word}: {regime}, {number}");
+    match (nearest(&branches[0]), nearest(&branches[1])) {
         (Some(up), Some(down)) if up.0 == down.0 => {
-            format!("{}   {}   {}", short(up.0), said("up", up.1, &up.2), said("down", down.1, &down.2))
+            format!("{}   {}   {}", short(up.0), text("up", up.1, &up.2), text("down", down.1, &down.2))
         }
         _ => three(value),
     }

@@ -2,27 +2,26 @@
 
 use crate::scene::lesson::LessonView;
 
-/// The views in the order of the menu: variant, name, and what it shows and a hand can do in it.
+/// The views in the order of the menu: variant, name, and description of content and input.
 macro_rules! views {
     ($($(#[doc = $doc:literal])+ $variant:ident $name:literal $about:literal;)*) => {
-        /// What can be seen.
+        /// A view of the window.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
         pub enum View {
             $($(#[doc = $doc])+ $variant,)*
         }
 
         impl View {
-            /// All of them, in the order of the menu.
+            /// All views, in the order of the menu.
             pub const ALL: [Self; [$(Self::$variant),*].len()] = [$(Self::$variant),*];
 
-            /// What it is called.
             pub fn name(self) -> &'static str {
                 match self {
                     $(Self::$variant => $name,)*
                 }
             }
 
-            /// What it shows and what a hand can do in it.
+            /// What it shows, and which input it takes.
             pub fn about(self) -> &'static str {
                 match self {
                     $(Self::$variant => $about,)*
@@ -46,14 +45,14 @@ views! {
     Displacement "Displacement"
         "Where the mass is, seen from the base, over time. The wheel zooms in time; with Shift, or over \
          the numbers of the axis, in displacement. A double click is back.";
-    /// The state before the last gesture against the present one.
+    /// The state before the last gesture, compared with the present one.
     BeforeNow "Before / now"
         "What your last change did: the state before it, and the one after it.";
-    /// The pinned motions against the present one.
+    /// The pinned motions, compared with the present one.
     Compare "Compare"
         "The present motion beside those that are pinned: what each settles to, and by how much it differs. \
          A pin goes on with the drive in step; take its scene back by a click.";
-    /// The measured data against the computed.
+    /// The measured data compared with the computed.
     Measured "Measured"
         "Measured data that lie over the computed: shift and stretch them in time, and read by how much the \
          two differ.";
@@ -70,7 +69,7 @@ views! {
         "Velocity over displacement: a moving mass runs clockwise. An impact is a jump of the velocity. \
          The separatrix needs just the energy to stand on the barrier. Click to let the motion go on from \
          a state.";
-    /// The state once a forcing period.
+    /// The stroboscopic states.
     Section "Section"
         "The state once in every forcing period, always at the same phase of the shaking: motion that \
          repeats is a few points, chaos is a cloud with a shape. Click to let the motion go on from a state.";
@@ -80,7 +79,7 @@ views! {
          much the other way. Where the push is above the curve it drives the mass to the right, below it \
          to the left; a mass on a stop is freed when the push passes the mark there. Filled: stable. \
          Hollow: unstable. Diamond: a kink, where the stiffness jumps.";
-    /// Where the energy went.
+    /// The energy supplied, taken and stored.
     Energy "Energy"
         "Where the energy came from, where it went, and what is there against the barrier.";
     /// Velocity over time.
@@ -91,33 +90,33 @@ views! {
     BaseAcceleration "Base acceleration"
         "Acceleration of the base over time. The mass feels the opposite of it, as one does in a bus that \
          brakes. The wheel zooms in time, a double click is back.";
-    /// Power into a load, or work of the base in a second, over time.
+    /// Power into a load, or of the base into the mass, over time.
     Power "Power"
         "What the load of a transducer takes in a second, over time. Without a transducer the work of the \
          base on the mass; below zero the mass gives energy back to the base. The wheel zooms in time, a \
          double click is back.";
-    /// What happened when, as a table.
+    /// The events of the motion as a table.
     Events "Events"
         "What happened when: impacts, rests, releases and crossings, with phase of the shaking, velocity \
          before and after, and energy lost. Click a row to look at that instant.";
-    /// What every combination of two fields comes to.
+    /// The results of runs for every combination of two fields.
     Map "Map"
         "What every combination of two settings comes to, each in a run of its own. Click to take the \
          scene there.";
-    /// What the motion is on the way up over a field and on the way down.
+    /// The motion over a field that is walked up and down.
     UpAndDown "Up and down"
         "One setting, turned up and then down slowly: each run goes on from where the one before was. Where \
          the two ways differ the motion remembers how it came: hysteresis. Drag along it to take the scene \
          there.";
-    /// Where the motion goes from every start.
+    /// The basins of attraction.
     Basins "Basins"
         "Where the motion goes from every start, by colour, and what it is there. Each start is a \
          displacement and a velocity at time 0 of the shaking. Click to begin there.";
-    /// What oscillations the motion is made of.
+    /// The spectrum of the settled motion.
     Spectrum "Spectrum"
         "The oscillations that the settled motion is made of: their frequencies and amplitudes. One that \
          repeats has lines at multiples of its own frequency and nothing between; chaos fills the gaps.";
-    /// What digits cost, and what a fixed step makes of the scene.
+    /// The cost of accuracy, and the scene computed in fixed steps.
     Accuracy "Accuracy"
         "How far the computed motion is from the true one: what each digit costs, and what becomes of the \
          scene in fixed steps, as a game or a small applet takes them. From the scene's start.";
@@ -129,9 +128,9 @@ pub(super) enum Axis {
     Time,
     /// The displacement, in m.
     Place,
-    /// That of one view, to the right.
+    /// The horizontal axis of one view.
     Across(View),
-    /// That of one view, upwards.
+    /// The vertical axis of one view.
     Up(View),
 }
 
@@ -156,17 +155,17 @@ impl From<LessonView> for View {
 }
 
 impl View {
-    /// Whether it shows, of a motion that stands at its start, nothing that comes of it.
+    /// Whether it shows only the scene while the motion stands at its start.
     pub fn is_static(self) -> bool {
         matches!(self, Self::Mechanism | Self::Well | Self::ForceCurve)
     }
 
-    /// Whether it shows what other settings or starts than the present ones come to.
+    /// Whether it shows results of other settings or starts than the present ones.
     pub fn is_survey(self) -> bool {
         matches!(self, Self::Map | Self::UpAndDown | Self::Basins)
     }
 
-    /// Whether time runs along it, so that it shows the cursors.
+    /// Whether its horizontal axis is time, so that it shows the cursors.
     pub fn is_over_time(self) -> bool {
         use View::{BaseAcceleration, Displacement, Distance, Power, Velocity};
         matches!(self, Displacement | Velocity | BaseAcceleration | Power | Distance)
@@ -177,12 +176,12 @@ impl View {
         self.axes().is_some()
     }
 
-    /// Whether the displacement runs along it.
+    /// Whether its horizontal axis is the displacement.
     pub fn is_along_x(self) -> bool {
         matches!(self, Self::Mechanism | Self::Well | Self::PhasePortrait | Self::Section | Self::ForceCurve)
     }
 
-    /// Its axes to the right and upwards, where a hand can choose their ends.
+    /// Its horizontal and vertical axis. `None` if their ends cannot be chosen by hand.
     pub(super) fn axes(self) -> Option<[Axis; 2]> {
         let across = match self {
             Self::Displacement | Self::Velocity | Self::BaseAcceleration | Self::Power => Axis::Time,

@@ -1,9 +1,9 @@
 //! View of the potential well, with the mass on it.
 //!
-//! In the frame of the base the mass feels the force of the mechanism and the push -m a_b, whose potential is
-//! m a_b x: it moves as a ball does on the sum of both. The sum is drawn thick; the mechanism's own curve is
-//! a thin ghost that stays. The vertical range follows the largest push in a few coarse steps, so that the
-//! tray tips and does not rescale.
+//! In the frame of the base, the force of the mechanism and the push -m a_b act on the mass. The potential of
+//! the push is m a_b x, and the mass moves like a ball on the sum of both potentials. The sum is drawn thick,
+//! the potential of the mechanism alone thin. The vertical range follows the largest push in a few coarse
+//! steps, so that the curve tilts and does not rescale.
 
 use eframe::egui::{self, Align2, Pos2, Rangef, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
@@ -12,9 +12,9 @@ use crate::app::words::wells::well_name;
 
 use super::chart::{CURVE_STEP, x_axis};
 use super::ghosts::{dashed, ghosts};
-use super::hand::hand;
+use super::hand::axes_input;
 use super::labels::{ago, free_place, haloed};
-use super::legend::{LEGEND, Sign};
+use super::legend::{LEGEND, Symbol};
 use super::mass::mass_ui;
 use super::ranges::room_for_push;
 use super::stops::{WALL, stops_ui};
@@ -30,8 +30,8 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let rect = Rect::from_min_max(area.min + vec2(0.0, LEGEND), area.max - vec2(0.0, 22.0));
     let painter = ui.painter().with_clip_rect(area);
     painter.rect_filled(area, 0.0, style.ground());
-    let axis = Heights::of(ui, context, rect);
-    hand(ui, context.memory, View::Well, &response, (area, rect));
+    let axis = EnergyAxis::of(ui, context, rect);
+    axes_input(ui, context.memory, View::Well, &response, (area, rect));
     x_axis(&painter, context, rect);
 
     let state = context.drawn.state(context.session);
@@ -48,7 +48,7 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             context.span.screen_from_world(x, rect),
             axis.screen_from_world(curve.potential(x) + tilt * x),
         );
-        // far outside the view is far enough
+        // clamped far outside the view
         pos2(screen.x, screen.y.clamp(rect.top() - 4000.0, rect.bottom() + 4000.0))
     };
     let line = |tilt: f64| (0..=count).map(|i| height(place(i), tilt)).collect::<Vec<Pos2>>();
@@ -69,10 +69,10 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             let y = axis.screen_from_world(energy).clamp(rect.top() - 4000.0, rect.bottom() + 4000.0);
             pos2(context.span.screen_from_world(x, rect), y)
         };
-        // its own tray, where it is another one
-        let own: Vec<Pos2> = (0..=count).map(|i| height(place(i))).collect();
-        if own.iter().zip(line(tilt)).any(|(own, present)| (own.y - present.y).abs() > 2.0) {
-            clipped.extend(dashed(&own, ghost.place, style.ghost_stroke()));
+        // its potential, where it differs from the present one
+        let pinned: Vec<Pos2> = (0..=count).map(|i| height(place(i))).collect();
+        if pinned.iter().zip(line(tilt)).any(|(pinned, present)| (pinned.y - present.y).abs() > 2.0) {
+            clipped.extend(dashed(&pinned, ghost.place, style.ghost_stroke()));
         }
         ghost.stops(&clipped, context, rect, 0.0);
         balls.push((height(state.x) - vec2(0.0, BALL), ghost));
@@ -81,23 +81,22 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let ball = height(state.x, tilt) - vec2(0.0, BALL);
     stops_ui(ui, context, rect, (rect.top() + 4.0, rect.bottom()), 0.0);
     mass_ui(ui, context, ball, rect);
-    // their letters may stand before a stop
+    // drawn after the stops, since their letters may overlap one
     balls.iter().for_each(|(at, ghost)| ghost.ball(&clipped, &style, *at, BALL));
     let painter = ui.painter().with_clip_rect(rect);
     painter.circle(ball, BALL, style.mass(), Stroke::new(1.5, style.mass_edge()));
     legend(ui, context, area);
 }
 
-/// Names of the wells and the barrier in a row below the curve, each at its place along x; what has no room
-/// beside a stop is left out.
+/// Writes the names of wells and barrier in a row below the curve, without those that do not fit.
 fn landmarks(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect) {
     let (style, model) = (context.style, context.drawn.model(context.session));
     let Some(barrier) = model.mechanism().landscape.barrier else { return };
     let (left, right) = model.stop_positions();
     let screen = |x: f64| context.span.screen_from_world(x, rect);
-    let wall = |stop: f64, way: f32| {
+    let wall = |stop: f64, side: f32| {
         let face = screen(stop);
-        Rangef::new(face.min(face + way * WALL), face.max(face + way * WALL))
+        Rangef::new(face.min(face + side * WALL), face.max(face + side * WALL))
     };
     let mut taken: Vec<Rangef> =
         left.map(|x| wall(x, -1.0)).into_iter().chain(right.map(|x| wall(x, 1.0))).collect();
@@ -112,15 +111,15 @@ fn landmarks(painter: &egui::Painter, context: &ViewContext<'_>, rect: Rect) {
     }
 }
 
-/// The vertical axis in J, upwards.
-struct Heights {
+/// The vertical axis, in J.
+struct EnergyAxis {
     low: f64,
     high: f64,
     rect: Rect,
 }
 
-impl Heights {
-    /// From a little below the deepest to a little above the highest place that the mass gets to.
+impl EnergyAxis {
+    /// Covers the potential energies that the mass reaches, with a margin.
     fn of(ui: &Ui, context: &mut ViewContext<'_>, rect: Rect) -> Self {
         let model = context.drawn.model(context.session);
         let room = room_for_push(model.largest_base_acceleration());
@@ -152,9 +151,9 @@ impl Heights {
         }
         let room = 0.22 * (high - low);
         let in_gesture = context.session.editor.in_gesture();
-        let own = (low - 0.5 * room, high + room);
-        let own = context.memory.held.heights.keep(own, in_gesture);
-        let (low, high) = context.memory.axes.ends(Axis::Up(View::Well), own);
+        let ends = (low - 0.5 * room, high + room);
+        let ends = context.memory.frozen.energy.keep(ends, in_gesture);
+        let (low, high) = context.memory.axes.ends(Axis::Up(View::Well), ends);
         let id = ui.scope_id();
         let ease = |name: &str, value: f64| {
             let target = (value * 1e6) as f32;
@@ -172,8 +171,8 @@ impl Heights {
 fn legend(ui: &Ui, context: &ViewContext<'_>, area: Rect) {
     let style = context.style;
     let entries = [
-        (Sign::Line(style.tray_stroke()), "potential with the push"),
-        (Sign::Line(style.ghost_stroke()), "the mechanism's own"),
+        (Symbol::Line(style.tray_stroke()), "potential with the push"),
+        (Symbol::Line(style.ghost_stroke()), "the mechanism's own"),
     ];
     let y = area.top() + 0.5 * LEGEND;
     let mut right = area.right();

@@ -1,18 +1,19 @@
-//! Ends of axes: as the scene and the motion give them, or as a hand has chosen them.
+//! Ends of axes: automatic ones, or those chosen by hand.
 //!
-//! An axis that a hand has chosen stands still until a double click. One that is held stays even when another
-//! scene is opened, so that two scenes can be compared. The views over time share their time axis and those
-//! along the displacement share that.
+//! An axis chosen by hand stays fixed until a double click. A held axis stays fixed even when another scene
+//! is opened, so that two scenes can be compared. The views over time share their time axis, and those along
+//! the displacement share their displacement axis.
 
 use std::collections::HashMap;
 
 use super::view::{Axis, View};
 
-/// How much longer than its own an axis may be chosen, and how much shorter.
+/// Largest length of a chosen axis, as a multiple of the automatic length.
 pub(super) const LONGEST: f64 = 10.0;
+/// Smallest length of a chosen axis, as a multiple of the automatic length.
 pub(super) const SHORTEST: f64 = 1e-3;
 
-/// The ends of an axis in its unit; of the displacement in m, of time in s.
+/// The ends of an axis in its unit: displacement in m, time in s.
 pub type Ends = (f64, f64);
 
 #[derive(Debug, Clone, Copy)]
@@ -24,35 +25,35 @@ struct Chosen {
 #[derive(Debug, Clone, Default)]
 pub struct Axes {
     chosen: HashMap<Axis, Chosen>,
-    /// As they would be by themselves and as they are, when they were shown last.
+    /// Automatic and actual ends when the axis was last shown.
     shown: HashMap<Axis, (Ends, Ends)>,
 }
 
 impl Axes {
-    /// The ends of an axis that would by itself have its `own`.
-    pub(super) fn ends(&mut self, axis: Axis, own: Ends) -> Ends {
-        let ends = self.chosen(axis).unwrap_or(own);
-        self.shown.insert(axis, (own, ends));
+    /// The ends of an axis: those chosen by hand, or else the `automatic` ones.
+    pub(super) fn ends(&mut self, axis: Axis, automatic: Ends) -> Ends {
+        let ends = self.chosen(axis).unwrap_or(automatic);
+        self.shown.insert(axis, (automatic, ends));
         ends
     }
 
-    /// The ends that a hand has chosen.
+    /// The ends chosen by hand, if any.
     pub(super) fn chosen(&self, axis: Axis) -> Option<Ends> {
-        self.chosen.get(&axis).map(|own| own.ends)
+        self.chosen.get(&axis).map(|choice| choice.ends)
     }
 
-    /// As it was shown last.
+    /// The ends when the axis was last shown.
     pub(super) fn shown(&self, axis: Axis) -> Option<Ends> {
-        self.shown.get(&axis).map(|own| own.1)
+        self.shown.get(&axis).map(|ends| ends.1)
     }
 
-    /// Whether a view keeps its axes whatever the motion and the scene do.
+    /// Whether a view keeps its axes regardless of motion and scene.
     pub(super) fn is_held(&self, view: View) -> bool {
-        let held = |axis: &Axis| self.chosen.get(axis).is_some_and(|own| own.held);
+        let held = |axis: &Axis| self.chosen.get(axis).is_some_and(|choice| choice.held);
         view.axes().is_some_and(|axes| axes.iter().all(held))
     }
 
-    /// Holds the axes of a view as they are, or lets go of them.
+    /// Holds the axes of a view at their present ends, or frees held ones.
     pub(super) fn hold(&mut self, view: View) {
         if self.is_held(view) {
             return self.free(view);
@@ -64,38 +65,38 @@ impl Axes {
         }
     }
 
-    /// Leaves the axes of a view to the scene and the motion.
+    /// Returns the axes of a view to their automatic ends.
     pub(super) fn free(&mut self, view: View) {
         view.axes().into_iter().flatten().for_each(|axis| _ = self.chosen.remove(&axis));
     }
 
-    /// What stays when another scene is opened.
+    /// The choices that remain when another scene is opened.
     pub(super) fn held(&self) -> Self {
-        let held = self.chosen.iter().filter(|own| own.1.held).map(|own| (*own.0, *own.1));
+        let held = self.chosen.iter().filter(|choice| choice.1.held).map(|(axis, choice)| (*axis, *choice));
         Self { chosen: held.collect(), shown: HashMap::new() }
     }
 
     pub(super) fn choose(&mut self, axis: Axis, ends: Ends) {
-        let Some((own, _)) = self.shown.get(&axis) else { return };
+        let Some((automatic, _)) = self.shown.get(&axis) else { return };
         let held = self.chosen.get(&axis).is_some_and(|chosen| chosen.held);
-        let whole = ends.0 <= own.0 && ends.1 >= own.1;
-        let (length, least) = (ends.1 - ends.0, SHORTEST * (own.1 - own.0));
+        let whole = ends.0 <= automatic.0 && ends.1 >= automatic.1;
+        let (length, shortest) = (ends.1 - ends.0, SHORTEST * (automatic.1 - automatic.0));
         if whole && !held && axis != Axis::Time {
-            // all that there is, is as good as nothing chosen
+            // the whole automatic range counts as no choice
             self.chosen.remove(&axis);
-        } else if length >= least && length <= LONGEST * (own.1 - own.0) {
+        } else if length >= shortest && length <= LONGEST * (automatic.1 - automatic.0) {
             self.chosen.insert(axis, Chosen { ends, held });
         }
     }
 
-    /// Makes an axis longer by a factor about a share of it from its lower end.
+    /// Multiplies the length of an axis by `by`, with the point at its share `about` fixed.
     pub(super) fn zoom(&mut self, axis: Axis, by: f64, about: f64) {
         let Some((low, high)) = self.shown(axis).filter(|_| by > 0.0 && by.is_finite()) else { return };
         let middle = low + about * (high - low);
         self.choose(axis, (middle - (middle - low) * by, middle + (high - middle) * by));
     }
 
-    /// Moves what is shown by a share of the axis.
+    /// Moves both ends by a share of the axis.
     pub(super) fn pan(&mut self, axis: Axis, share: f64) {
         let Some((low, high)) = self.shown(axis) else { return };
         let by = share * (high - low);

@@ -1,4 +1,4 @@
-//! Table of runs at several tolerances, and error over time where there is room.
+//! Table of runs at several tolerances, with a plot of error over processor time where there is room.
 
 use eframe::egui::{Align2, Grid, Pos2, Rect, RichText, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 
@@ -12,10 +12,10 @@ use super::super::ViewContext;
 use super::super::labels::haloed;
 use super::waiting::waiting_ui;
 
-/// Height in points from which error over time is drawn, and its least.
+/// Smallest height in points of the plot of error over processor time.
 const PICTURE: f32 = 110.0;
 
-/// Room in points beside the picture for the numbers of its axes.
+/// Width and height in points reserved for the numbers of the axes.
 const AXES: (f32, f32) = (52.0, 36.0);
 
 pub fn digits_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
@@ -24,20 +24,20 @@ pub fn digits_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let Some((known, current)) = accuracy.tolerances(model) else {
         return waiting_ui(ui, context);
     };
-    let (own, known) = (model.tolerance(), known.clone());
+    let (tolerance, known) = (model.tolerance(), known.clone());
     let stepped = accuracy.stepped(model).and_then(|(stepped, _)| stepped.as_ref().ok().cloned());
     ui.scope(|ui| {
         if !current {
             ui.set_opacity(0.5);
         }
-        table_ui(ui, &style, &known, own);
-        let parted = known.runs.iter().filter(|run| run.trusted.is_some()).count();
-        if parted > 0 {
+        table_ui(ui, &style, &known, tolerance);
+        let diverging = known.runs.iter().filter(|run| run.trusted.is_some()).count();
+        if diverging > 0 {
             let text = "A path is trusted until it is off by 1 % of the travel.";
             ui.label(RichText::new(text).color(style.faint()));
         }
-        // where no path is right to its end, its largest error says nothing
-        if parted == known.runs.len() {
+        // where all paths diverge, their largest errors say nothing
+        if diverging == known.runs.len() {
             let text = "A thousand times the accuracy buys only a little more time: in chaos every small \
                         difference grows until it is all there is. Averages such as the RMS velocity stay.";
             ui.label(text);
@@ -45,12 +45,12 @@ pub fn digits_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         }
         let rest = ui.available_rect_before_wrap();
         if rest.height() > PICTURE && rest.width() > 200.0 {
-            picture_ui(ui, &style, rest, (&known, own), stepped.as_ref());
+            picture_ui(ui, &style, rest, (&known, tolerance), stepped.as_ref());
         }
     });
 }
 
-fn table_ui(ui: &mut Ui, style: &Style, known: &Tolerances, own: f64) {
+fn table_ui(ui: &mut Ui, style: &Style, known: &Tolerances, tolerance: f64) {
     let column = (ui.available_width() / 4.0 - 10.0).clamp(40.0, 130.0);
     Grid::new("digits").num_columns(4).min_col_width(column).spacing([8.0, 4.0]).show(ui, |ui| {
         let heads = [
@@ -68,16 +68,16 @@ fn table_ui(ui: &mut Ui, style: &Style, known: &Tolerances, own: f64) {
         }
         ui.end_row();
         for run in &known.runs {
-            let is_own = run.tolerance == own;
+            let is_of_scene = run.tolerance == tolerance;
             let text = |text: String| {
                 let text = RichText::new(text);
-                if is_own { text.heading() } else { text }
+                if is_of_scene { text.heading() } else { text }
             };
             let name = ui.label(text(format!("{:e}", run.tolerance)));
-            if is_own {
+            if is_of_scene {
                 name.on_hover_text("The tolerance of this scene: under More, Advanced.");
             }
-            ui.label(text(error(run, known))).on_hover_text(how_far(run, known));
+            ui.label(text(error(run, known))).on_hover_text(error_details(run, known));
             ui.label(text(duration(run.cpu_s)));
             ui.label(text(format!("{}", run.steps)));
             ui.end_row();
@@ -85,7 +85,7 @@ fn table_ui(ui: &mut Ui, style: &Style, known: &Tolerances, own: f64) {
     });
 }
 
-/// The error in a cell: up to when the path is trusted, where that is not all of it.
+/// Text on the error: the time up to which the path is trusted if it diverges, else the largest error.
 fn error(run: &AtTolerance, known: &Tolerances) -> String {
     match run.trusted {
         Some(t) => format!("trust to {}", moment(t)),
@@ -94,7 +94,8 @@ fn error(run: &AtTolerance, known: &Tolerances) -> String {
     }
 }
 
-fn how_far(run: &AtTolerance, known: &Tolerances) -> String {
+/// Details of the error, for the hover text.
+fn error_details(run: &AtTolerance, known: &Tolerances) -> String {
     match run.trusted {
         Some(t) => {
             format!("Off by 1 % of the travel at {}, and by {} mm later on.", moment(t), length_mm(run.error))
@@ -111,8 +112,8 @@ struct Axes {
     errors: (f64, f64),
 }
 
-/// An error that is none is drawn as this share of the travel: the digits of a double.
-const LEAST: f64 = 1e-16;
+/// Share of the travel at which a zero error is drawn: the digits of a double.
+const MIN_ERROR: f64 = 1e-16;
 
 impl Axes {
     fn new(rect: Rect, points: &[(f64, f64)]) -> Self {
@@ -136,11 +137,11 @@ fn picture_ui(
     ui: &mut Ui,
     style: &Style,
     area: Rect,
-    (known, own): (&Tolerances, f64),
+    (known, tolerance): (&Tolerances, f64),
     stepped: Option<&StepSize>,
 ) {
-    let least = LEAST * known.travel.max(f64::MIN_POSITIVE);
-    let point = |time: f64, error: f64| (time.max(1e-9), error.max(least));
+    let smallest = MIN_ERROR * known.travel.max(f64::MIN_POSITIVE);
+    let point = |time: f64, error: f64| (time.max(1e-9), error.max(smallest));
     let runs: Vec<(f64, f64)> = known.runs.iter().map(|run| point(run.cpu_s, run.error)).collect();
     let ghost = stepped.filter(|run| run.ended_at.is_none()).map(|run| point(run.cpu_s.1, run.error));
     let all: Vec<(f64, f64)> = runs.iter().copied().chain(ghost).collect();
@@ -179,11 +180,11 @@ fn picture_ui(
     painter.line(places.clone(), style.motion_stroke());
     for (run, at) in known.runs.iter().zip(places) {
         painter.circle_filled(at, 4.0, style.motion());
-        if run.tolerance == own {
+        if run.tolerance == tolerance {
             painter.circle_stroke(at, 8.0, style.focus_stroke());
         }
         let text = format!("{:e}", run.tolerance);
-        // to the side on which the picture has room
+        // on the side with more room
         let is_right = at.x > rect.center().x + 0.2 * rect.width();
         let (step, align) =
             if is_right { (-11.0, Align2::RIGHT_CENTER) } else { (11.0, Align2::LEFT_CENTER) };

@@ -1,7 +1,6 @@
 //! View of the accuracy: cost of each digit, and the same run in fixed steps.
 //!
-//! Nothing of it is worked out while the view is closed. Where there is room both parts stand beside each
-//! other, else one of them is chosen.
+//! Nothing is computed while the view is closed. One part can be chosen where both do not fit.
 
 mod digits;
 mod steps;
@@ -12,10 +11,10 @@ use eframe::egui::{Rect, RichText, Ui, UiBuilder, pos2, vec2};
 use super::memory::Page;
 use super::{ViewContext, too_small_ui};
 
-/// Room in points from which both parts are shown.
+/// Width and height in points from which on both parts are shown.
 const BOTH: (f32, f32) = (760.0, 250.0);
 
-/// Share of the width that the digits have then.
+/// Share of the width for the part on digits, if both are shown.
 const DIGITS: f32 = 0.42;
 
 pub fn accuracy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {

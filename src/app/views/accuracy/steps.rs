@@ -1,4 +1,4 @@
-//! The run in fixed steps over the true one, and its errors in numbers.
+//! Plot of the run in fixed steps over the true one, with the errors in words.
 
 use eframe::egui::{self, ComboBox, Rect, TextStyle, Ui, UiBuilder, vec2};
 use egui_plot::{HLine, Line, LineStyle, PlotBounds, PlotPoint, PlotPoints, Points};
@@ -10,12 +10,13 @@ use crate::study::accuracy::methods::Scheme;
 use crate::study::accuracy::scene::{StepSize, step_name};
 
 use super::super::ViewContext;
-use super::super::legend::{LEGEND, Sign, legend};
+use super::super::legend::{LEGEND, Symbol, legend};
 use super::super::plot::{marks, plot_place, still_plot};
 use super::waiting::waiting_ui;
 
-/// Ends of the slider in s, and steps with a name.
+/// Ends of the slider in s.
 const RANGE: (f64, f64) = (1e-5, 1.0 / 30.0);
+/// Steps in s with their names and hover texts.
 const NAMED: [(f64, &str, &str); 4] = [
     (1.0 / 30.0, "1/30 s", "A film of thirty pictures a second"),
     (1.0 / 60.0, "1/60 s", "One frame of a screen: a step as games and small applets take it"),
@@ -23,25 +24,27 @@ const NAMED: [(f64, &str, &str); 4] = [
     (1e-4, "0.1 ms", "Ten thousand steps a second"),
 ];
 
-/// Width in points beyond which method and step stand in one row, and height below which steps have no names.
+/// Width in points above which method and step stand in one row.
 const ONE_ROW: f32 = 400.0;
+/// Height in points below which the buttons of the named steps are left out.
 const NAMES: f32 = 225.0;
 
-/// Height in points of the plot at least.
+/// Smallest height of the plot in points.
 const PLOT: f32 = 70.0;
 
-/// Height in points of a line below it.
-const LINES: f32 = 19.0;
+/// Height in points of a line of text below the plot.
+const LINE_HEIGHT: f32 = 19.0;
 
-/// Width in points of the numbers of its vertical axis.
+/// Width in points of the numbers of the vertical axis.
 const AXIS_WIDTH: f32 = 44.0;
 
-/// Height in points below which the names of the axes are left out, and room at the end for a number.
+/// Height in points below which the names of the axes are left out.
 const LOW: f32 = 170.0;
+/// Margin in points at the right end, for a number.
 const MARGIN: f32 = 14.0;
 
-/// A ghost of so many steps or fewer has a dot for each.
-const MOST_DOTS: usize = 150;
+/// Largest number of steps that are drawn as dots.
+const MAX_DOTS: usize = 150;
 
 pub fn steps_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     choice_ui(ui, context);
@@ -66,19 +69,19 @@ pub fn steps_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         let mut sentences = known.sentences();
         let whole = sentences.join(" ");
         let rest = ui.available_rect_before_wrap();
-        // a line each where they leave the plot its room
-        let is_high = rest.height() > LINES * sentences.len() as f32 + 2.0 * PLOT;
+        // one sentence per line if the plot has enough room
+        let is_high = rest.height() > LINE_HEIGHT * sentences.len() as f32 + 2.0 * PLOT;
         let font = TextStyle::Body.resolve(ui.style());
-        let lay = |sentences: &[String]| {
+        let layout = |sentences: &[String]| {
             let text = sentences.join(if is_high { "\n" } else { " " });
             let galley = ui.painter().layout(text.clone(), font.clone(), style.ink(), rest.width());
             (text, galley.size().y)
         };
-        let (mut text, mut height) = lay(&sentences);
-        // what has no room can be read under the pointer
+        let (mut text, mut height) = layout(&sentences);
+        // sentences that do not fit are shown on hover
         while height > rest.height() && sentences.len() > 1 {
             sentences.pop();
-            (text, height) = lay(&sentences);
+            (text, height) = layout(&sentences);
         }
         let below = height + 6.0;
         let plot = rest.with_max_y((rest.bottom() - below).max(rest.top()));
@@ -93,7 +96,7 @@ pub fn steps_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     });
 }
 
-/// Which run this is, and how it is compared.
+/// Description of the run and of the comparison.
 fn about(known: &StepSize) -> String {
     format!(
         "The first {} of the scene from its start, {} steps of {}. A step that ends beyond a stop is put \
@@ -121,8 +124,8 @@ fn choice_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     }
     ui.horizontal(|ui| {
         for (step, name, hover) in NAMED {
-            let own = (accuracy.step / step - 1.0).abs() < 1e-6;
-            if ui.selectable_label(own, name).on_hover_text(hover).clicked() {
+            let is_chosen = (accuracy.step / step - 1.0).abs() < 1e-6;
+            if ui.selectable_label(is_chosen, name).on_hover_text(hover).clicked() {
                 accuracy.step = step;
             }
         }
@@ -134,10 +137,10 @@ fn method_ui(ui: &mut Ui, accuracy: &mut Accuracy) {
     let combo = ComboBox::from_id_salt("method of fixed step").selected_text(accuracy.scheme.name());
     let combo = combo.show_ui(ui, |ui| {
         for scheme in Scheme::ALL {
-            ui.selectable_value(&mut accuracy.scheme, scheme, scheme.name()).on_hover_text(what(scheme));
+            ui.selectable_value(&mut accuracy.scheme, scheme, scheme.name()).on_hover_text(hint(scheme));
         }
     });
-    combo.response.labelled_by(name.id).on_hover_text(what(accuracy.scheme));
+    combo.response.labelled_by(name.id).on_hover_text(hint(accuracy.scheme));
 }
 
 fn step_ui(ui: &mut Ui, accuracy: &mut Accuracy) {
@@ -155,7 +158,7 @@ fn step_ui(ui: &mut Ui, accuracy: &mut Accuracy) {
     }
 }
 
-fn what(scheme: Scheme) -> &'static str {
+fn hint(scheme: Scheme) -> &'static str {
     match scheme {
         Scheme::SemiImplicitEuler => {
             "Velocity first, then displacement by the new velocity: the simplest that keeps a swing alive. \
@@ -169,7 +172,7 @@ fn what(scheme: Scheme) -> &'static str {
     }
 }
 
-/// A step with three digits, or the fraction of a second that it nearly is.
+/// A step rounded to two digits, or to the named step that it nearly equals.
 fn rounded(step: f64) -> f64 {
     if let Some(named) = NAMED.iter().find(|named| (step / named.0 - 1.0).abs() < 0.02) {
         return named.0;
@@ -177,7 +180,7 @@ fn rounded(step: f64) -> f64 {
     format!("{step:.1e}").parse().unwrap_or(step).clamp(RANGE.0, RANGE.1)
 }
 
-/// A step as it is typed: a fraction of a second, or a number of ms, µs or s.
+/// A typed step: a fraction of a second, or a number of ms, µs or s.
 fn parsed(text: &str) -> Option<f64> {
     let text = text.trim();
     let units = [("ms", 1e-3), ("µs", 1e-6), ("us", 1e-6), ("s", 1.0), ("", 1.0)];
@@ -189,8 +192,8 @@ fn parsed(text: &str) -> Option<f64> {
     Some(value * unit).filter(|step| step.is_finite())
 }
 
-/// The pieces of a path within the bounds. The dashes of a whole path are made before it is clipped, and a
-/// solution that diverges, or a close look, gives more of them than fit into memory.
+/// The pieces of a path within the bounds. egui_plot computes the dashes of a whole path before it clips
+/// them, and a diverging solution or a strong zoom gives more dashes than fit into memory.
 fn pieces_within(path: &[PlotPoint], bounds: &PlotBounds) -> Vec<Vec<PlotPoint>> {
     let mut pieces: Vec<Vec<PlotPoint>> = Vec::new();
     let mut ends_inside = false;
@@ -236,13 +239,13 @@ fn plot_ui(ui: &mut Ui, style: &Style, area: Rect, known: &StepSize, stops: [Opt
         points.iter().map(|(t, x)| PlotPoint::new(*t, x * 1e3)).collect()
     };
     let (truth, ghost) = (path(&known.truth), path(&known.ghost));
-    // what flies apart leaves the picture
+    // a diverging run leaves the picture
     let (low, high) = extent(truth.iter().map(|point| point.y));
     let room = (0.12 * (high - low)).max(1e-6);
     let (low, high) = (low - room, high + room);
     let entries = [
-        (Sign::Line(style.motion_stroke()), "true"),
-        (Sign::Dashed(style.impact_stroke()), known.scheme.name()),
+        (Symbol::Line(style.motion_stroke()), "true"),
+        (Symbol::Dashed(style.impact_stroke()), known.scheme.name()),
     ];
     legend(ui, style, area, area.right(), &entries);
     let rows = f64::from((area.height() / 40.0).clamp(2.0, 6.0));
@@ -278,7 +281,7 @@ fn plot_ui(ui: &mut Ui, style: &Style, area: Rect, known: &StepSize, stops: [Opt
                 let line = Line::new("ghost", PlotPoints::Owned(piece)).stroke(style.impact_stroke());
                 plot.line(line.style(LineStyle::dashed_dense()));
             }
-            if ghost.len() <= MOST_DOTS {
+            if ghost.len() <= MAX_DOTS {
                 plot.points(Points::new("steps", PlotPoints::Owned(ghost)).radius(2.4).color(style.impact()));
             }
         });

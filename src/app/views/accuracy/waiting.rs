@@ -1,10 +1,10 @@
-//! What stands in the place of an answer that is still to come.
+//! Placeholder for a result that is still being computed.
 
 use eframe::egui::{RichText, Ui};
 
 use super::super::ViewContext;
 
-/// Said while something is worked out for the first time.
+/// Shows a message while a result is computed for the first time.
 pub fn waiting_ui(ui: &mut Ui, context: &ViewContext<'_>) {
     let text = match context.session.fault() {
         Some(_) => "This scene cannot run.",

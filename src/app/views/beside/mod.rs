@@ -1,10 +1,10 @@
-//! Drawing of what stands beside flexures: a spring, magnets, a transducer with its load.
+//! Drawing of the parts beside the flexures: a spring, magnets, a transducer with its load.
 //!
 //! The spring lies between the frame on the left and the mass. The magnets face each other across their gap
-//! where the mass is at x = 0, one below the mass and one on a post; along the flexures the gap has their
-//! scale where there is room for that. A coil lies on the lower clamp, cut through, around the feet of the
-//! flexures; its magnet hangs below the mass. Piezoelectric patches lie on the flexures there. Their load is
-//! to the right, where the flexures do not get to.
+//! when the mass is at x = 0, one below the mass and one on a post; the gap is drawn to the scale of the
+//! flexures if there is room for that. A coil lies on the lower clamp around the feet of the flexures, in
+//! section; its magnet hangs below the mass. Piezoelectric patches lie on the feet of the flexures. The load
+//! is on the right, where the flexures do not reach.
 
 use eframe::egui::layers::ShapeIdx;
 use eframe::egui::{Align2, Painter, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, Ui, Vec2, pos2, vec2};
@@ -20,87 +20,90 @@ mod transducer;
 
 use super::labels::plated;
 
-/// The least size in points of a drawing whose parts are named.
-pub(super) const NAMED: Vec2 = vec2(280.0, 140.0);
+/// Smallest size in points of a drawing whose parts are labelled.
+pub(super) const MIN_LABELLED: Vec2 = vec2(280.0, 140.0);
 
-/// Half turns of the spring, half its width and the length of its ends in points; where on the mass it
-/// begins, in halves of its height.
+/// Number of half turns of the spring.
 const HALF_TURNS: usize = 30;
+/// Half the width of the spring in points.
 const SPRING: f32 = 6.0;
+/// Length in points of a straight end of the spring.
 const END: f32 = 16.0;
+/// Distance of the spring below the middle of the mass, in half heights of the mass.
 const SPRING_AT: f32 = 0.5;
 
-/// Half the width of a magnet, and the height of a pole where there is room, where its letter fits, and at
-/// least.
+/// Half the width of a magnet in points.
 const MAGNET: f32 = 7.5;
+/// Height in points of a magnet's pole where there is room.
 const POLE: f32 = 12.0;
+/// Height in points of a pole from which on its letter fits.
 const LETTERED: f32 = 10.5;
-const LEAST_POLE: f32 = 4.5;
+/// Smallest height of a pole in points.
+const MIN_POLE: f32 = 4.5;
 
-/// Room on the left for what is said of the flexures.
+/// Width in points on the left reserved for the text on the flexures.
 const WORDS_ROOM: f32 = 120.0;
 
-/// What stands beside the flexures, or alone.
+/// The springs, magnets and transducer of a mechanism.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Beside {
-    /// Stiffness in N/m of all springs together; 0 without one.
+pub(super) struct Attachments {
+    /// Total stiffness of the springs in N/m; 0 without a spring.
     stiffness: f64,
-    /// Strength in N m^4 and gap in m of the magnets that are the stiffest in the middle, and how many pairs
-    /// there are.
+    /// Strength in N m^4 and gap in m of the pair of magnets that is the stiffest at x = 0.
     magnets: Option<(f64, f64)>,
+    /// Number of pairs of magnets.
     pairs: usize,
     transducer: Transducer,
 }
 
-/// Where it stands.
+/// Places of the parts on the screen.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Bench {
-    /// The drawing.
+pub(super) struct Places {
+    /// The whole drawing.
     pub rect: Rect,
-    /// The inner side of the lower clamp.
+    /// Inner edge of the lower clamp.
     pub bottom: f32,
     pub body: Rect,
-    /// Where x is 0.
+    /// Position of x = 0.
     pub zero: f32,
-    /// The flexures below the mass, where there are such.
-    pub below: Option<Below>,
+    /// The flexures below the mass, if any.
+    pub below: Option<LowerFlexures>,
 }
 
 /// The flexures below the mass.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Below {
-    /// Points per m along them.
+pub(super) struct LowerFlexures {
+    /// Points per m along the flexures.
     pub along: f32,
-    /// Their lines next to the clamp.
+    /// The lines of their feet, next to the clamp.
     pub feet: Vec<Vec<Pos2>>,
 }
 
-impl Beside {
+impl Attachments {
     pub fn of(model: &Model) -> Self {
-        let mut own = Self { stiffness: 0.0, magnets: None, pairs: 0, transducer: model.transducer() };
+        let mut parts = Self { stiffness: 0.0, magnets: None, pairs: 0, transducer: model.transducer() };
         let stiff = |(strength, gap): (f64, f64)| strength.abs() / gap.powi(5);
         for element in model.mechanism().side_by_side().iter().filter_map(|part| part.element) {
             match element {
-                Element::Spring { stiffness } => own.stiffness += stiffness,
+                Element::Spring { stiffness } => parts.stiffness += stiffness,
                 Element::Magnets { strength, gap } if strength != 0.0 => {
-                    own.pairs += 1;
-                    let least = own.magnets.map_or(0.0, stiff);
-                    if stiff((strength, gap)) > least {
-                        own.magnets = Some((strength, gap));
+                    parts.pairs += 1;
+                    let largest = parts.magnets.map_or(0.0, stiff);
+                    if stiff((strength, gap)) > largest {
+                        parts.magnets = Some((strength, gap));
                     }
                 }
                 Element::Magnets { .. } => {}
             }
         }
-        own
+        parts
     }
 
-    /// Whether there are magnets.
     pub fn has_magnets(&self) -> bool {
         self.magnets.is_some()
     }
 
-    /// Whether something stands on a clamp below the mass.
+    /// Whether a part stands on a clamp below the mass.
     pub fn stands_below(&self) -> bool {
         self.has_magnets() || self.transducer != Transducer::None
     }
@@ -110,19 +113,18 @@ impl Beside {
         self.stiffness != 0.0 || self.has_magnets()
     }
 
-    /// How far over the middle of the mass the arrow of its push stands, in halves of its height: the spring
-    /// lies below.
+    /// Height of the arrow of the push above the middle of the mass, in half heights: clear of the spring.
     pub fn lift(&self) -> f32 {
         if self.stiffness == 0.0 { 0.0 } else { 0.4 }
     }
 
-    /// Draws it, most of it in the place that was kept for it behind the flexures.
-    pub fn draw(&self, ui: &Ui, painter: &Painter, style: &Style, behind: ShapeIdx, bench: &Bench) {
+    /// Draws the parts, most of them in the shape reserved `behind` the flexures.
+    pub fn draw(&self, ui: &Ui, painter: &Painter, style: &Style, behind: ShapeIdx, places: &Places) {
         let mut shapes = Vec::new();
-        let named = bench.rect.width() >= NAMED.x && bench.rect.height() >= NAMED.y;
+        let named = places.rect.width() >= MIN_LABELLED.x && places.rect.height() >= MIN_LABELLED.y;
         let is_free_on_the_right = self.transducer == Transducer::None;
         let has_magnets = self.has_magnets();
-        let pen = Pen { ui, painter, style, bench, named, is_free_on_the_right, has_magnets };
+        let pen = Pen { ui, painter, style, places, named, is_free_on_the_right, has_magnets };
         pen.spring(self.stiffness, &mut shapes);
         if let Some(magnets) = self.magnets {
             pen.magnets(magnets, self.pairs, &mut shapes);
@@ -134,13 +136,13 @@ impl Beside {
     }
 }
 
-/// What all of the drawing needs.
+/// Context of the drawing of each part.
 struct Pen<'a> {
     ui: &'a Ui,
     painter: &'a Painter,
     style: &'a Style,
-    bench: &'a Bench,
-    /// Whether parts have their names.
+    places: &'a Places,
+    /// Whether the parts are labelled.
     named: bool,
     /// Whether there is no load.
     is_free_on_the_right: bool,
@@ -153,7 +155,7 @@ impl Pen<'_> {
         Stroke::new(1.3, self.style.ink())
     }
 
-    /// A name where it has room between these ends, and whether it has.
+    /// Writes a name if it fits between these ends. Returns whether it fits.
     fn name(&self, (at, align): (Pos2, Align2), text: &str, (left, right): (f32, f32)) -> bool {
         let (font, colour) = (self.style.small(), self.style.faint());
         let size = self.painter.layout_no_wrap(text.to_owned(), font.clone(), colour).size();
@@ -165,14 +167,13 @@ impl Pen<'_> {
         has_room
     }
 
-    /// What a part is, under the pointer.
     fn explain(&self, place: Rect, part: &str, words: &str) {
         let id = self.ui.scope_id().with(("beside", part));
         self.ui.interact(place.expand(2.0), id, Sense::hover()).on_hover_text(words);
     }
 
     fn spring(&self, stiffness: f64, shapes: &mut Vec<Shape>) {
-        let Bench { rect, body, .. } = *self.bench;
+        let Places { rect, body, .. } = *self.places;
         let y = body.center().y + SPRING_AT * 0.5 * body.height();
         let wall = Rect::from_min_max(pos2(rect.left() + 2.0, y - 14.0), pos2(rect.left() + 10.0, y + 14.0));
         let (from, to) = (pos2(wall.right(), y), pos2(body.left(), y));
@@ -187,13 +188,13 @@ impl Pen<'_> {
             self.style.flexure_stroke(),
         ));
         let text = format!("spring {} N/m", short(stiffness));
-        // under the stops
+        // below the stops
         let below = (pos2(from.x + 6.0, body.bottom() + 5.0), Align2::LEFT_TOP);
         self.name(below, &text, (rect.left(), rect.right()));
-        let way = if stiffness > 0.0 { "draws the mass there" } else { "pushes the mass away from there" };
+        let effect = if stiffness > 0.0 { "draws the mass there" } else { "pushes the mass away from there" };
         let words = format!(
-            "A spring of {} N/m between the frame and the mass. It has no force at x = 0 and {way}, harder \
-             the further out the mass is.",
+            "A spring of {} N/m between the frame and the mass. It has no force at x = 0 and {effect}, \
+             harder the further out the mass is.",
             short(stiffness)
         );
         let place = Rect::from_two_pos(from - vec2(0.0, SPRING), to + vec2(0.0, SPRING));
@@ -201,31 +202,31 @@ impl Pen<'_> {
     }
 
     fn magnets(&self, (strength, gap): (f64, f64), pairs: usize, shapes: &mut Vec<Shape>) {
-        let Bench { rect, bottom, body, zero, ref below } = *self.bench;
+        let Places { rect, bottom, body, zero, ref below } = *self.places;
         let room = bottom - body.bottom();
         let pole = POLE.min((room - 6.0) / 4.0);
-        if pole < LEAST_POLE {
+        if pole < MIN_POLE {
             return;
         }
-        // of the two middles
-        let (least, most) = (2.0 * pole + 3.0, (room - 2.0 * pole - 3.0).max(2.0 * pole + 3.0));
-        let wanted = below.as_ref().map_or(0.5 * (least + most), |own| own.along * gap as f32);
-        let apart = wanted.clamp(least, most);
+        // distance between the middles of the two magnets
+        let (closest, farthest) = (2.0 * pole + 3.0, (room - 2.0 * pole - 3.0).max(2.0 * pole + 3.0));
+        let wanted = below.as_ref().map_or(0.5 * (closest + farthest), |lower| lower.along * gap as f32);
+        let distance = wanted.clamp(closest, farthest);
         let attract = strength > 0.0;
         let hung = pos2(body.center().x, body.bottom() + pole);
-        let stood = pos2(zero, body.bottom() + pole + apart);
+        let stood = pos2(zero, body.bottom() + pole + distance);
         let post = Rect::from_min_max(pos2(zero - 3.0, stood.y + pole), pos2(zero + 3.0, bottom));
         shapes.push(Shape::rect_filled(post, 0.0, self.style.frame_colour()));
         self.magnet(hung, pole, true);
         self.magnet(stood, pole, attract);
         let verb = if attract { "attract" } else { "repel" };
-        // on the side to which the flexures do not go
+        // on the side away from the flexures
         let beside = match body.center().x < zero && self.is_free_on_the_right {
             true => (pos2(zero + MAGNET + 6.0, stood.y), Align2::LEFT_CENTER),
             false => (pos2(zero - MAGNET - 6.0, stood.y), Align2::RIGHT_CENTER),
         };
         self.name(beside, &format!("magnets {verb}"), (rect.left() + WORDS_ROOM, rect.right()));
-        let does = if attract { "draw the mass to x = 0" } else { "push the mass away from x = 0" };
+        let effect = if attract { "draw the mass to x = 0" } else { "push the mass away from x = 0" };
         let mm = |metres: f64| three(1e3 * metres);
         let more = match pairs {
             1 => String::new(),
@@ -235,7 +236,7 @@ impl Pen<'_> {
         };
         let words = format!(
             "Two magnets, {} mm apart where they face each other at x = 0, with a strength of {} N mm⁴. They \
-             {does} up to {} mm from it, and further out the other way.{more}",
+             {effect} up to {} mm from it, and further out the other way.{more}",
             mm(gap),
             three((1e12 * strength).abs()),
             mm(2.0 * gap)
@@ -261,8 +262,7 @@ impl Pen<'_> {
     }
 }
 
-/// A coil spring from one place to another, half of it so wide: straight ends, each such a share of it, and
-/// turns between that a stretch pulls apart.
+/// Points of a coil spring of half width `half`, whose straight ends each take the share `end` of it.
 pub(super) fn coil((from, to): (Pos2, Pos2), half_turns: usize, half: f32, end: f32) -> Vec<Pos2> {
     let along = to - from;
     let across = along.normalized().rot90() * half;

@@ -5,32 +5,36 @@ use eframe::egui::{Align2, Pos2, Rect, Shape, Stroke, StrokeKind, pos2, vec2};
 use crate::numeric::short;
 use crate::scene::Transducer;
 
-use super::{Bench, LEAST_POLE, POLE, Pen};
+use super::{MIN_POLE, POLE, Pen, Places};
 
-/// Width and height of each half of a coil, and its wires in a row.
+/// Width in points of each half of a coil.
 const WINDING: f32 = 28.0;
+/// Height in points of each half of a coil.
 const WOUND: f32 = 11.0;
+/// Number of wires in a row of a coil.
 const TURNS: usize = 5;
 
-/// How far to the right of x = 0 a layer is that lies on no flexures.
+/// Distance in points from x = 0 to a piezoelectric layer, if there are no flexures.
 const ASIDE: f32 = 38.0;
 
-/// Heights over the clamp of the two wires of a load, and how high it reaches; room beside the foot of a
-/// flexure.
+/// Heights in points of the two wires of a load above the clamp.
 const WIRES: [f32; 2] = [13.0, 4.0];
+/// Height in points of the top of a load above the clamp.
 const LOAD_TOP: f32 = 19.0;
+/// Distance in points to keep from the foot of a flexure.
 const FOOT: f32 = 11.0;
 
-/// Thickness of a flexure with patches on both of its faces.
+/// Thickness in points of a flexure with patches on both of its faces.
 const PATCHES: f32 = 7.0;
 
-/// Width of a load, and of the room to the right that it leaves to the scale of the drawing and to its name.
+/// Width of a load in points.
 const LOAD: f32 = 34.0;
+/// Width in points on the right reserved for the scale bar and its name.
 const SCALE_ROOM: f32 = 67.0;
 
 impl Pen<'_> {
     pub(super) fn transducer(&self, transducer: &Transducer, shapes: &mut Vec<Shape>) {
-        let Bench { rect, bottom, body, zero, ref below } = *self.bench;
+        let Places { rect, bottom, body, zero, ref below } = *self.places;
         let height = (bottom - body.bottom() - 12.0).clamp(8.0, 24.0);
         let (name, part, coupled, load, words) = match *transducer {
             Transducer::None => return,
@@ -64,20 +68,19 @@ impl Pen<'_> {
         self.load(part, load, (name, right), shapes);
     }
 
-    /// How far from x = 0 the flexures below the mass get at a height over the clamp, with the mass at an end
-    /// of the picture: they leave it and come to the mass upright. Without flexures the room that a foot
-    /// takes.
+    /// Distance from x = 0 that the flexures below the mass reach at a height above the clamp, with the mass
+    /// at an end of the picture. Their shape is a cubic, upright at both ends. Without flexures: [`FOOT`].
     fn reach_at(&self, height: f32) -> f32 {
-        let Bench { rect, bottom, body, ref below, .. } = *self.bench;
+        let Places { rect, bottom, body, ref below, .. } = *self.places;
         let share = (height / (bottom - body.bottom()).max(1.0)).min(1.0);
         let bent = share * share * (3.0 - 2.0 * share);
         FOOT + if below.is_some() { 0.5 * rect.width() * bent } else { 0.0 }
     }
 
-    /// A flat winding around x = 0, cut through, of which `part` is the right half; over it the magnet of the
-    /// mass, where there is room and no other magnet hangs there.
+    /// Draws a flat coil around x = 0 in section, of which `part` is the right half, and above it the magnet
+    /// of the mass, if there is room and no other magnet hangs there.
     fn coil(&self, part: Rect, shapes: &mut Vec<Shape>) {
-        let Bench { bottom, body, zero, .. } = *self.bench;
+        let Places { bottom, body, zero, .. } = *self.places;
         let left = Rect::from_center_size(pos2(2.0 * zero - part.center().x, part.center().y), part.size());
         for half in [left, part] {
             shapes.push(Shape::rect_filled(half, 2.0, self.style.frame_colour()));
@@ -88,14 +91,14 @@ impl Pen<'_> {
             }
         }
         let pole = POLE.min(0.5 * (bottom - body.bottom() - WOUND) - 4.0);
-        if pole >= LEAST_POLE && !self.has_magnets {
+        if pole >= MIN_POLE && !self.has_magnets {
             self.magnet(pos2(body.center().x, body.bottom() + pole), pole, true);
         }
     }
 
-    /// Patches on the flexures; without these a layer between two electrodes.
+    /// Draws patches on the flexures, or without flexures a layer between two electrodes.
     fn patches(&self, part: Rect, shapes: &mut Vec<Shape>) {
-        if let Some(below) = &self.bench.below {
+        if let Some(below) = &self.places.below {
             let stroke = Stroke::new(PATCHES, self.style.frame_colour());
             shapes.extend(below.feet.iter().map(|foot| Shape::line(foot.clone(), stroke)));
             return;
@@ -108,7 +111,7 @@ impl Pen<'_> {
         }
     }
 
-    /// The load and its two wires: a resistor, a wire for a short circuit, a gap for an open one.
+    /// Draws the load and its two wires: a resistor, a wire for a short circuit, a gap for an open circuit.
     fn load(
         &self,
         part: Rect,
@@ -116,8 +119,8 @@ impl Pen<'_> {
         (name, right): (&str, f32),
         shapes: &mut Vec<Shape>,
     ) {
-        let y = WIRES.map(|height| self.bench.bottom - height);
-        let begin = (part.right() + 10.0).max(self.bench.zero + self.reach_at(LOAD_TOP));
+        let y = WIRES.map(|height| self.places.bottom - height);
+        let begin = (part.right() + 10.0).max(self.places.zero + self.reach_at(LOAD_TOP));
         let end = begin + LOAD + 9.0;
         if end > right {
             return;

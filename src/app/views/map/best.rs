@@ -12,8 +12,8 @@ use super::coordinates::Coordinates;
 /// Half the diagonal of the mark in points.
 const SIZE: f32 = 7.0;
 
-/// Draws a diamond where the scene would stand with its best stops, in mm; none where the map has no axis of
-/// them, or has them beyond its end.
+/// Draws a diamond where the scene would stand with its best stops, at `limit` in mm. Draws nothing if the
+/// map has no axis of the travel limit, or ends before it.
 pub fn draw(
     painter: &Painter,
     frame: &Coordinates,

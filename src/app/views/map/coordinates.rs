@@ -8,38 +8,45 @@ use crate::app::session::map::{Map, label};
 use crate::app::ui::style::Style;
 use crate::output::PlotAxis;
 
-/// Room for numbers and names beside the map, in points.
+/// Width in points of the numbers and the name left of the map.
 const LEFT: f32 = 52.0;
+/// Height in points of the numbers and the name below the map.
 const BOTTOM: f32 = 37.0;
+/// Margin in points above the map.
 const TOP: f32 = 6.0;
+/// Width in points of the colour bar.
 const BAR: f32 = 16.0;
+/// Margin in points right of the map with a colour bar.
 const BAR_ROOM: f32 = 84.0;
+/// Margin in points right of the map without a colour bar.
 const PLAIN_ROOM: f32 = 12.0;
 
-/// What the strips of cuts take of the width and of the height, at least and at most so many points, what
-/// lies between them and the map, and the height up to which both stand to the right.
+/// Share of the width or height that the strip of a cut takes.
 const STRIP: f32 = 0.24;
+/// Smallest and largest width of a strip in points.
 const STRIP_WIDTH: (f32, f32) = (96.0, 240.0);
+/// Smallest and largest height of a strip in points.
 const STRIP_HEIGHT: (f32, f32) = (56.0, 190.0);
+/// Gap in points between the map and a strip.
 const BETWEEN: f32 = 18.0;
+/// Height in points below which both strips stand right of the map.
 const LOW: f32 = 330.0;
 
 /// Length of a tick in points.
 const TICK: f32 = 4.0;
 
 pub struct Coordinates {
-    /// The cells.
+    /// The area of the cells.
     pub rect: Rect,
-    /// The colour bar, where there is one.
     pub bar: Option<Rect>,
-    /// The strips beside it: with the axis across, below or to the right, and to the right with the axis up.
+    /// The strips of the cuts along the horizontal axis (below or right of the map) and the vertical one.
     pub strips: Option<[Rect; 2]>,
     pub x: PlotAxis,
     pub y: PlotAxis,
 }
 
 impl Coordinates {
-    /// The map in `area`, with a colour bar and strips for cuts where these are to be there.
+    /// The layout of the map in `area`, with a colour bar if `bar` and with strips for cuts if `cuts`.
     pub fn new(area: Rect, map: &Map, bar: bool, cuts: bool) -> Self {
         let room = if bar { BAR_ROOM } else { PLAIN_ROOM };
         let size = STRIP * area.size();
@@ -78,25 +85,25 @@ impl Coordinates {
         }
     }
 
-    /// The place of a value on each axis.
+    /// Screen position of a value on each axis.
     pub fn screen_from_world(&self, (x, y): (f64, f64)) -> Pos2 {
         let share = vec2(self.x.share(x) as f32, 1.0 - self.y.share(y) as f32);
         self.rect.min + share * self.rect.size()
     }
 
-    /// The values at a place.
+    /// The values at a screen position.
     pub fn world_from_screen(&self, at: Pos2) -> (f64, f64) {
         let share = (at - self.rect.min) / self.rect.size();
         let between = |axis: &PlotAxis, share: f32| axis.low + f64::from(share) * (axis.high - axis.low);
         (between(&self.x, share.x), between(&self.y, 1.0 - share.y))
     }
 
-    /// Draws ticks, numbers and names around the map; the strip below has that of the quantity.
+    /// Draws ticks, numbers and names around the map; the lower strip has the name of the quantity.
     pub fn axes(&self, painter: &Painter, style: &Style, quantity: Option<&str>) {
         let stroke = Stroke::new(1.0, style.ink());
         painter.rect_stroke(self.rect, 0.0, stroke, StrokeKind::Outside);
         let number = |at, align, text: &str| painter.text(at, align, text, style.small(), style.ink());
-        // under the strip that is in line with the map, or under both
+        // below the lower strip, or below map and strip where these stand side by side
         let under = match self.strips {
             Some([across, _]) if across.top() > self.rect.bottom() => vec![across],
             Some([across, _]) => vec![self.rect, across],
@@ -129,7 +136,7 @@ impl Coordinates {
     }
 }
 
-/// Text that reads upwards, with its middle at a place; where it has not so much room it is written small, or
+/// Draws text that reads upwards, centred at a point. Where `room` is too short it is written small, or
 /// its unit alone.
 pub fn upright(painter: &Painter, style: &Style, (at, room): (Pos2, f32), text: &str) {
     let unit = text.rsplit_once('(').map_or("", |(_, unit)| unit.trim_end_matches(')'));

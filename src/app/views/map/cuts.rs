@@ -1,5 +1,4 @@
-//! Cuts through the map beside it: the quantity up in a column and across in a row, with regimes and both
-//! thresholds.
+//! Cuts through the map: the quantity along a column and a row, with regimes and both thresholds.
 
 use eframe::egui::{Align2, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, pos2, vec2};
 
@@ -12,22 +11,23 @@ use crate::study::line_meets;
 use super::coordinates::Coordinates;
 use super::quantity::ColourScale;
 
-/// Share of a strip that stays free at both ends of the quantity.
+/// Share of a strip that stays free at both ends of the scale.
 const MARGIN: f32 = 0.06;
 
-/// Radius of a mark in points, and how far marks of one kind are apart at least.
+/// Radius of a mark in points.
 const MARK: f32 = 3.2;
-const APART: f32 = 6.5;
+/// Smallest distance in points between marks of one kind.
+const MARK_GAP: f32 = 6.5;
 
-/// Points from number to number upward and across.
+/// Smallest distance in points between numbers, vertically and horizontally.
 const NUMBERS: (f32, f32) = (14.0, 34.0);
 
-/// How faint neighbours are that stand for cells to come.
+/// Opacity of the mark of a neighbour that stands for a cell that has not run yet.
 const FAINT: f32 = 0.4;
 
-/// A line through the map and its strip on the screen.
+/// A cut through the map and its strip on the screen.
 struct Strip<'a> {
-    /// Up in a column.
+    /// Whether it runs along a column.
     upright: bool,
     rect: Rect,
     frame: &'a Coordinates,
@@ -55,7 +55,7 @@ pub fn draw(
 }
 
 impl Strip<'_> {
-    /// Where a value of the axis along it and a share of the scale stand.
+    /// Screen position of a value of its axis and a share of the scale.
     fn place(&self, along: f64, share: f64) -> Pos2 {
         let share = MARGIN + (1.0 - 2.0 * MARGIN) * share as f32;
         let Rect { min, max } = self.rect;
@@ -66,7 +66,7 @@ impl Strip<'_> {
         }
     }
 
-    /// A line across it at a value of the axis along it.
+    /// The line across the strip at a value of its axis.
     fn across(&self, along: f64) -> [Pos2; 2] {
         let at = self.place(along, 0.0);
         match self.upright {
@@ -75,7 +75,7 @@ impl Strip<'_> {
         }
     }
 
-    /// The dotted line on the map.
+    /// Draws the dotted line on the map.
     fn place_on_map(&self, painter: &Painter) {
         let rect = self.frame.rect;
         let at = self.frame.screen_from_world((self.at.1, self.at.1));
@@ -93,30 +93,30 @@ impl Strip<'_> {
         self.thresholds(&inside, style);
         let values = &self.map.edges[usize::from(self.upright)].values;
         let cells = self.map.cut(self.upright, self.at.0);
-        let point = |own: &CutCell<'_>| Some(self.place(values[own.place], self.scale.height(own.cell)?));
-        // a line goes through what lies side by side and has numbers
+        let point = |cut: &CutCell<'_>| Some(self.place(values[cut.place], self.scale.height(cut.cell)?));
+        // the line connects neighbouring cells that have numbers
         let mut line: Vec<Pos2> = Vec::new();
         let mut last = None;
-        for own in cells.iter().filter(|own| own.own) {
-            let at = point(own).filter(|_| !self.scale.is_of_words());
-            if at.is_none() || last.is_some_and(|last| own.place != last + 1) {
+        for cut in cells.iter().filter(|cut| cut.own) {
+            let at = point(cut).filter(|_| !self.scale.is_of_words());
+            if at.is_none() || last.is_some_and(|last| cut.place != last + 1) {
                 inside.add(Shape::line(std::mem::take(&mut line), style.ghost_stroke()));
             }
             line.extend(at);
-            last = Some(own.place);
+            last = Some(cut.place);
         }
         inside.add(Shape::line(line, style.ghost_stroke()));
         let mut before: Option<(Pos2, Kind)> = None;
-        for own in &cells {
-            let Some(at) = point(own) else { continue };
-            let kind = own.cell.settled().map_or(Kind::Fault, |own| Kind::from(own.regime));
-            let is_scene = own.place == scene && own.own;
-            if !is_scene && before.is_some_and(|(last, alike)| alike == kind && last.distance(at) < APART) {
+        for cut in &cells {
+            let Some(at) = point(cut) else { continue };
+            let kind = cut.cell.settled().map_or(Kind::Fault, |settled| Kind::from(settled.regime));
+            let is_scene = cut.place == scene && cut.own;
+            if !is_scene && before.is_some_and(|(last, of)| of == kind && last.distance(at) < MARK_GAP) {
                 continue;
             }
             before = Some((at, kind));
             let colour = style.kind(kind);
-            let colour = if own.own { colour } else { colour.gamma_multiply(FAINT) };
+            let colour = if cut.own { colour } else { colour.gamma_multiply(FAINT) };
             inside.extend(kind_shapes(kind, at, MARK, colour));
             if is_scene {
                 for stroke in style.marker_strokes() {
@@ -131,7 +131,7 @@ impl Strip<'_> {
         painter.text(at, Align2::LEFT_BOTTOM, heading.trim_end(), style.small(), style.ink());
     }
 
-    /// The numbers of the quantity, with their lines.
+    /// Draws the numbers of the quantity and their lines.
     fn numbers(&self, painter: &Painter, style: &Style) {
         let Some(bar) = &self.scale.bar else { return };
         let mut last: Option<Pos2> = None;
@@ -139,8 +139,8 @@ impl Strip<'_> {
             let (low, high) = self.map.edges[usize::from(self.upright)].ends();
             let share = self.scale.share(*value, bar);
             let ends = [self.place(low, share), self.place(high, share)];
-            let apart = if self.upright { NUMBERS.1 } else { NUMBERS.0 };
-            if last.is_some_and(|last| last.distance(ends[0]) < apart) {
+            let distance = if self.upright { NUMBERS.1 } else { NUMBERS.0 };
+            if last.is_some_and(|last| last.distance(ends[0]) < distance) {
                 continue;
             }
             last = Some(ends[0]);
@@ -153,7 +153,7 @@ impl Strip<'_> {
         }
     }
 
-    /// Where the line meets the release and the first crossing.
+    /// Marks where the cut meets the release and the first crossing.
     fn thresholds(&self, painter: &Painter, style: &Style) {
         let (value, upright) = (self.at.1, self.upright);
         let [halo, release] = style.release_strokes();

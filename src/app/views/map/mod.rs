@@ -25,16 +25,16 @@ use super::{ViewContext, too_small_ui};
 
 use coordinates::Coordinates;
 use picture::{Picture, bar};
-use pointer::Hand;
+use pointer::Targets;
 use quantity::ColourScale;
 use surface::Surface;
 
-/// Height and width in points from which on there is room for cuts.
+/// Width and height in points above which there is room for cuts.
 const ROOM_FOR_CUTS: (f32, f32) = (440.0, 170.0);
 
-/// What was drawn of a map: seen from above, and as a surface.
+/// The drawings of a map: seen from above, and as a surface.
 #[derive(Clone)]
-struct Drawn {
+struct Drawings {
     picture: Picture,
     surface: Option<Arc<Surface>>,
 }
@@ -59,7 +59,7 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     }
     let quantity = context.session.map.quantity();
     let id = ui.scope_id().with("picture");
-    let old = ui.data(|data| data.get_temp::<Option<Drawn>>(id)).flatten();
+    let old = ui.data(|data| data.get_temp::<Option<Drawings>>(id)).flatten();
     let key = (context.session.map.version(), quantity.column, style, current);
     let (old, mut surface) = old.map_or((None, None), |old| (Some(old.picture), old.surface));
     let mut picture = Picture::of(ui, old, map, quantity, key);
@@ -76,32 +76,32 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         let spoken = ui.interact(rect, ui.scope_id().with(("cells", name)), Sense::hover());
         spoken.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, name));
     };
-    let hand = (&mut context.memory.map_pointer, context.session.map.is_enlarged());
+    let pointer_state = (&mut context.memory.map_pointer, context.session.map.is_enlarged());
     let wanted = if is_surface {
         let at = (area, painter.pixels_per_point());
-        surface = surface.filter(|own| own.is_at(at));
-        let own = surface.or_else(|| Surface::new(at, map, &scale, &style).map(Arc::new));
-        surface = own.clone();
-        let Some(own) = own else { return };
-        spoken("map as a surface", own.rect());
-        own.draw(&painter, &style);
+        surface = surface.filter(|surface| surface.is_at(at));
+        let drawn = surface.or_else(|| Surface::new(at, map, &scale, &style).map(Arc::new));
+        surface = drawn.clone();
+        let Some(drawn) = drawn else { return };
+        spoken("map as a surface", drawn.rect());
+        drawn.draw(&painter, &style);
         if look.cuts {
-            own.cuts(&painter, (map, &scale), scene);
+            drawn.cuts(&painter, (map, &scale), scene);
         }
-        veil(&painter, own.rect(), &style, (current, context.session.map.problem().is_some()));
-        let ball = own.place_of(map, &scale, scene);
+        veil(&painter, drawn.rect(), &style, (current, context.session.map.problem().is_some()));
+        let ball = drawn.place_of(map, &scale, scene);
         if let Some(ball) = ball.filter(|_| is_inside(map, place)) {
-            own.ball(&painter, &style, ball);
+            drawn.ball(&painter, &style, ball);
         }
-        let cell_at = |at: Pos2| own.cell_at(at);
+        let cell_at = |at: Pos2| drawn.cell_at(at);
         let outline = |(column, row)| {
-            let at = own.place_of(map, &scale, (column, row)).map_or(Pos2::ZERO, |own| own[0]);
+            let at = drawn.place_of(map, &scale, (column, row)).map_or(Pos2::ZERO, |ends| ends[0]);
             Shape::circle_stroke(at, 5.0, style.cell_stroke())
         };
         hover(&response, &painter, (map, &scale), &cell_at, &outline);
-        let at = ball.map_or(own.rect().left_top(), |own| own[0]);
-        let places = Hand { cell_at: &cell_at, frame: None, rect: area, scene: (at, scene) };
-        pointer::action_ui(ui, &response, map, hand, (&style, &places))
+        let at = ball.map_or(drawn.rect().left_top(), |ends| ends[0]);
+        let places = Targets { cell_at: &cell_at, frame: None, rect: area, scene: (at, scene) };
+        pointer::action_ui(ui, &response, map, pointer_state, (&style, &places))
     } else {
         let room = area.width() > ROOM_FOR_CUTS.0 && area.height() > ROOM_FOR_CUTS.1;
         let frame = Coordinates::new(area, map, scale.bar.is_some(), look.cuts && room);
@@ -122,14 +122,14 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         let cell_at = |at: Pos2| cell_at(&frame, map, scene, at);
         let outline = |(column, row)| outline(&frame, map, column, row, &style);
         hover(&response, &painter, (map, &scale), &cell_at, &outline);
-        let places = Hand { cell_at: &cell_at, frame: Some(&frame), rect: frame.rect, scene: (at, scene) };
-        pointer::action_ui(ui, &response, map, hand, (&style, &places))
+        let places = Targets { cell_at: &cell_at, frame: Some(&frame), rect: frame.rect, scene: (at, scene) };
+        pointer::action_ui(ui, &response, map, pointer_state, (&style, &places))
     };
-    ui.data_mut(|data| data.insert_temp(id, Some(Drawn { picture, surface })));
+    ui.data_mut(|data| data.insert_temp(id, Some(Drawings { picture, surface })));
     pointer::perform(context, wanted);
 }
 
-/// What is over a map that is not that of the scene.
+/// Draws a veil over a map that is not that of the scene.
 fn veil(painter: &egui::Painter, rect: Rect, style: &Style, (current, has_problem): (bool, bool)) {
     if current {
         return;
@@ -140,7 +140,7 @@ fn veil(painter: &egui::Painter, rect: Rect, style: &Style, (current, has_proble
     painter.text(at, Align2::CENTER_TOP, words, style.body(), style.ink());
 }
 
-/// What is said of the cell under the pointer.
+/// Outlines the cell under the pointer and describes it.
 fn hover(
     response: &Response,
     painter: &egui::Painter,
@@ -155,38 +155,36 @@ fn hover(
     over.on_hover_text_at_pointer(reading(map, scale, column, row));
 }
 
-/// Whether a scene stands on the map and not beside it.
+/// Whether a scene lies within the map.
 fn is_inside(map: &Map, place: [Option<f64>; 2]) -> bool {
-    place.iter().zip(&map.edges).all(|(own, edges)| own.is_some_and(|own| edges.cell(own).is_some()))
+    place.iter().zip(&map.edges).all(|(value, edges)| value.is_some_and(|value| edges.cell(value).is_some()))
 }
 
-/// The cell in which a scene stands, or the one at the edge beyond which it does: without a stop the mass
-/// goes as far as it would with one far out.
+/// The cell of a scene, or the nearest one at the edge. No stops count as stops far out.
 fn nearest_cell(map: &Map, place: [Option<f64>; 2]) -> (usize, usize) {
     let near = |i: usize| {
-        let (edges, own) = (&map.edges[i], place[i].unwrap_or(f64::INFINITY));
-        let outside = if own < edges.ends().0 { 0 } else { edges.values.len() - 1 };
-        edges.cell(own).unwrap_or(outside)
+        let (edges, value) = (&map.edges[i], place[i].unwrap_or(f64::INFINITY));
+        let outside = if value < edges.ends().0 { 0 } else { edges.values.len() - 1 };
+        edges.cell(value).unwrap_or(outside)
     };
     (near(0), near(1))
 }
 
-/// The cell at a place on the screen: of the map, or in the cuts through that of the `scene`.
+/// The cell at a screen position: of the map, or of the cuts through the cell of the `scene`.
 fn cell_at(frame: &Coordinates, map: &Map, scene: (usize, usize), at: Pos2) -> Option<(usize, usize)> {
     let (x, y) = frame.world_from_screen(at);
-    let own = (map.edges[0].cell(x), map.edges[1].cell(y));
+    let (column, row) = (map.edges[0].cell(x), map.edges[1].cell(y));
     match frame.strips {
         Some([across, _]) if across.contains(at) => {
             let share = f64::from((at.x - across.left()) / across.width());
             let x = frame.x.low + share * (frame.x.high - frame.x.low);
             map.edges[0].cell(x).map(|column| (column, scene.1))
         }
-        Some([_, beside]) if beside.contains(at) => own.1.map(|row| (scene.0, row)),
-        _ => own.0.zip(own.1),
+        Some([_, beside]) if beside.contains(at) => row.map(|row| (scene.0, row)),
+        _ => column.zip(row),
     }
 }
 
-/// The edge of a cell.
 fn outline(frame: &Coordinates, map: &Map, column: usize, row: usize, style: &Style) -> Shape {
     let (x, y) = (&map.edges[0].edges, &map.edges[1].edges);
     let corners =
@@ -195,18 +193,18 @@ fn outline(frame: &Coordinates, map: &Map, column: usize, row: usize, style: &St
     Shape::rect_stroke(rect, 0.0, style.cell_stroke(), egui::StrokeKind::Outside)
 }
 
-/// The columns of which every reading tells.
+/// The columns that every reading contains.
 const IN_EVERY_READING: [&str; 6] = [RMS, "regime", "max_abs_x_m", "impacts", "crossings", "period"];
 
-/// What a cell says.
+/// Text on a cell.
 fn reading(map: &Map, scale: &ColourScale, column: usize, row: usize) -> String {
     let names = map.grid().columns();
     let place = [map.edges[0].values[column], map.edges[1].values[row]];
     let mut lines: Vec<String> = names.iter().zip(place).map(|(name, value)| named(name, value)).collect();
     match map.cell(column, row) {
         None => lines.push("not run yet".to_owned()),
-        Some((cell, own)) => {
-            if !own {
+        Some((cell, has_run)) => {
+            if !has_run {
                 lines.push("not run yet; its neighbour:".to_owned());
             }
             if !cell.is_done() {
@@ -247,7 +245,7 @@ fn reading(map: &Map, scale: &ColourScale, column: usize, row: usize) -> String 
     lines.join("\n")
 }
 
-/// `travel limit 1.5 mm` of a column's name and 1.5.
+/// Name, value and unit of a column: `travel limit 1.5 mm`.
 fn named(column: &str, value: f64) -> String {
     let number = short(value);
     match name_and_unit(column) {
@@ -256,9 +254,9 @@ fn named(column: &str, value: f64) -> String {
     }
 }
 
-/// Where the scene is: a ring, or an arrow at the edge that it lies beyond. The place of either.
+/// Marks the scene by a ring, or by an arrow at the edge that it lies beyond. Returns the place.
 fn marker(painter: &egui::Painter, frame: &Coordinates, style: &Style, place: [Option<f64>; 2]) -> Pos2 {
-    // without a stop the mass goes as far as it would with one far out
+    // no stops count as stops far out
     let (x, y) = (place[0].unwrap_or(f64::INFINITY), place[1].unwrap_or(f64::INFINITY));
     let inside = |axis: &PlotAxis, value: f64| (axis.low..=axis.high).contains(&value);
     let at =
@@ -266,25 +264,25 @@ fn marker(painter: &egui::Painter, frame: &Coordinates, style: &Style, place: [O
     if inside(&frame.x, x) && inside(&frame.y, y) {
         for stroke in style.marker_strokes() {
             painter.circle_stroke(at, 8.0, stroke);
-            for way in [vec2(1.0, 0.0), vec2(-1.0, 0.0), vec2(0.0, 1.0), vec2(0.0, -1.0)] {
-                painter.line_segment([at + way * 5.0, at + way * 13.0], stroke);
+            for direction in [vec2(1.0, 0.0), vec2(-1.0, 0.0), vec2(0.0, 1.0), vec2(0.0, -1.0)] {
+                painter.line_segment([at + direction * 5.0, at + direction * 13.0], stroke);
             }
         }
         return at;
     }
-    let way = vec2(
+    let direction = vec2(
         if inside(&frame.x, x) { 0.0 } else { (x - frame.x.low).signum() as f32 },
         if inside(&frame.y, y) { 0.0 } else { -(y - frame.y.low).signum() as f32 },
     )
     .normalized();
-    let (tip, back, side) = (at - way * 2.0, at - way * 16.0, way.rot90() * 8.0);
+    let (tip, back, side) = (at - direction * 2.0, at - direction * 16.0, direction.rot90() * 8.0);
     let ([halo, line], points) = (style.marker_strokes(), vec![tip, back + side, back - side]);
     painter.add(Shape::convex_polygon(points, line.color, Stroke::new(1.5, halo.color)));
     let words = if place[0].is_none() { "no stops" } else { "now: further out" };
     let galley = painter.layout_no_wrap(words.to_owned(), style.body(), Color32::PLACEHOLDER);
     let room = frame.rect.shrink(4.0);
     let size = galley.size();
-    let wanted = back - way * (10.0 + 0.5 * size.x) - 0.5 * size;
+    let wanted = back - direction * (10.0 + 0.5 * size.x) - 0.5 * size;
     let corner = pos2(
         wanted.x.clamp(room.left(), (room.right() - size.x).max(room.left())),
         wanted.y.clamp(room.top(), (room.bottom() - size.y).max(room.top())),

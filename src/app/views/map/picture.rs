@@ -18,18 +18,20 @@ use crate::dynamics::Summary;
 use super::coordinates::{Coordinates, upright};
 use super::quantity::{ColourScale, Look};
 
-/// Points between lines of hatching, and between samples along one.
+/// Distance in points between lines of hatching.
 const HATCH: f32 = 7.0;
+/// Distance in points between samples along a line of hatching.
 const SAMPLE: f32 = 2.0;
 
-/// Radius in points of the dot of a motion that had not settled, and the least side of a cell that bears one.
+/// Radius in points of the dot of a motion that had not settled.
 const DOT: f32 = 1.3;
-const SMALLEST_DOTTED: f32 = 4.0;
+/// Smallest side in points of a cell that has a dot.
+const MIN_DOTTED: f32 = 4.0;
 
-/// Points between symbols of regimes.
+/// Distance in points between symbols of regimes.
 const SYMBOLS: f32 = 46.0;
 
-/// What was drawn, so that it is made again only where it would differ.
+/// The map as it was drawn, kept so that it is made anew only after a change.
 #[derive(Clone)]
 pub struct Picture {
     pub scale: Arc<ColourScale>,
@@ -41,7 +43,7 @@ pub struct Picture {
     unsettled: Arc<[bool]>,
     size: [usize; 2],
     key: Key,
-    /// What lies over the cells, and where it was made for.
+    /// The mesh of the shapes over the cells, and the place that it was made for.
     over: Option<(Place, Arc<Mesh>)>,
     is_new: bool,
 }
@@ -52,10 +54,9 @@ pub type Key = (u64, &'static str, Style, bool);
 /// The rectangle of a picture and its pixels in a point.
 pub type Place = (Rect, f32);
 
-/// Shapes as triangles, so that they are turned into these once and not in every frame. No texts are among
-/// them.
+/// Shapes as a mesh, so that they are tessellated once and not in every frame. They must not contain text.
 pub fn baked(pixels_per_point: f32, shapes: Vec<Shape>) -> Arc<Mesh> {
-    // the discs of the graphics have places in a texture that may change
+    // prerasterized discs lie in a texture that may change
     let options = TessellationOptions { prerasterized_discs: false, ..TessellationOptions::default() };
     let mut tessellator = Tessellator::new(pixels_per_point, options, [1, 1], Vec::new());
     let mut mesh = Mesh::default();
@@ -104,17 +105,15 @@ impl Picture {
         self.is_new
     }
 
-    /// Whether some cell shows this.
     pub fn shows(&self, look: Look) -> bool {
         self.looks.contains(&look)
     }
 
-    /// Whether some cell shows a motion at rest.
     pub fn shows_rest(&self) -> bool {
         self.resting.contains(&true)
     }
 
-    /// Whether some cell shows a motion that had not settled.
+    /// Whether any cell shows a motion that had not settled.
     pub fn shows_unsettled(&self) -> bool {
         self.unsettled.contains(&true)
     }
@@ -125,21 +124,21 @@ impl Picture {
         painter.image(self.texture.id(), frame.rect, all, Color32::WHITE);
         let place = (frame.rect, painter.pixels_per_point());
         let mesh = match &self.over {
-            Some((own, mesh)) if *own == place => Arc::clone(mesh),
+            Some((at, mesh)) if *at == place => Arc::clone(mesh),
             _ => baked(place.1, self.shapes(frame, map, style)),
         };
         painter.with_clip_rect(frame.rect).add(Shape::Mesh(Arc::clone(&mesh)));
         self.over = Some((place, mesh));
     }
 
-    /// What lies over the cells.
+    /// The shapes over the cells.
     fn shapes(&self, frame: &Coordinates, map: &Map, style: &Style) -> Vec<Shape> {
         let mut shapes = Vec::new();
         let rest = |i: usize| self.resting[i];
         let missing = |i: usize| self.looks[i] == Look::Missing;
         self.hatch(&mut shapes, frame.rect, rest, (1.0, style.hatch_stroke()));
-        for way in [1.0, -1.0] {
-            self.hatch(&mut shapes, frame.rect, missing, (way, style.missing_stroke()));
+        for slope in [1.0, -1.0] {
+            self.hatch(&mut shapes, frame.rect, missing, (slope, style.missing_stroke()));
         }
         self.symbols(&mut shapes, frame.rect, style);
         self.dots(&mut shapes, frame.rect, style);
@@ -147,11 +146,11 @@ impl Picture {
         shapes
     }
 
-    /// A dot on every cell whose motion had not settled, where cells are large enough to bear one.
+    /// Marks every cell whose motion had not settled by a dot, where cells are large enough.
     fn dots(&self, shapes: &mut Vec<Shape>, rect: Rect, style: &Style) {
         let [columns, rows] = self.size;
         let cell = rect.size() / vec2(columns as f32, rows as f32);
-        if cell.min_elem() < SMALLEST_DOTTED {
+        if cell.min_elem() < MIN_DOTTED {
             return;
         }
         for (i, _) in self.unsettled.iter().enumerate().filter(|(_, unsettled)| **unsettled) {
@@ -160,7 +159,7 @@ impl Picture {
         }
     }
 
-    /// The cell at a place on the screen.
+    /// The index of the cell at a screen position.
     fn cell_at(&self, rect: Rect, at: Pos2) -> usize {
         let [columns, rows] = self.size;
         let share = (at - rect.min) / rect.size();
@@ -168,13 +167,13 @@ impl Picture {
         place(share.y, rows) * columns + place(share.x, columns)
     }
 
-    /// Parallel lines over the cells that are `wanted`, rising to the right for `way` 1.
+    /// Hatches the cells that are `wanted`, rising to the right for `slope` 1 and to the left for -1.
     fn hatch(
         &self,
         shapes: &mut Vec<Shape>,
         rect: Rect,
         wanted: impl Fn(usize) -> bool,
-        (way, stroke): (f32, Stroke),
+        (slope, stroke): (f32, Stroke),
     ) {
         if !(0..self.looks.len()).any(&wanted) {
             return;
@@ -182,15 +181,15 @@ impl Picture {
         let count = ((rect.width() + rect.height()) / HATCH) as usize;
         let steps = (rect.height() / SAMPLE).ceil() as usize;
         for line in 0..=count {
-            // from the lower edge of the map upwards
-            let foot = if way > 0.0 {
+            // each line begins at the lower edge of the map
+            let foot = if slope > 0.0 {
                 rect.left() - rect.height() + line as f32 * HATCH
             } else {
                 rect.left() + line as f32 * HATCH
             };
             let at = |step: usize| {
                 let up = (step as f32 * SAMPLE).min(rect.height());
-                pos2(foot + way * up, rect.bottom() - up)
+                pos2(foot + slope * up, rect.bottom() - up)
             };
             let mut begin: Option<Pos2> = None;
             for step in 0..=steps {
@@ -211,7 +210,7 @@ impl Picture {
         }
     }
 
-    /// The symbol of the regime here and there, so that colour is not all that tells.
+    /// Draws symbols of the regimes at intervals, so that colour is not the only sign of them.
     fn symbols(&self, shapes: &mut Vec<Shape>, rect: Rect, style: &Style) {
         let (columns, rows) = ((rect.width() / SYMBOLS) as usize, (rect.height() / SYMBOLS) as usize);
         let look_at = |at: Pos2| self.looks[self.cell_at(rect, at)];
@@ -238,7 +237,7 @@ pub fn colour(style: &Style, look: Look) -> Color32 {
     }
 }
 
-/// Release and first crossing.
+/// Draws release and first crossing.
 fn lines(shapes: &mut Vec<Shape>, frame: &Coordinates, map: &Map, style: &Style) {
     let screen =
         |points: &[(f64, f64)]| -> Vec<Pos2> { points.iter().map(|p| frame.screen_from_world(*p)).collect() };
@@ -251,7 +250,7 @@ fn lines(shapes: &mut Vec<Shape>, frame: &Coordinates, map: &Map, style: &Style)
     shapes.extend(Shape::dashed_line(&points, release, 9.0, 6.0));
 }
 
-/// The colours and their values in a bar.
+/// Draws the colour bar and its values.
 pub fn bar(painter: &Painter, rect: Rect, scale: &ColourScale, style: &Style) {
     let Some(axis) = &scale.bar else { return };
     let mut mesh = Mesh::default();

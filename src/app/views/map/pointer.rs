@@ -1,4 +1,4 @@
-//! Pointer and keyboard input on the map: choose a cell, drag the cross-hair, enlarge a box.
+//! Pointer and keyboard input on the map: choosing a cell, dragging the cross-hair, enlarging a box.
 
 use eframe::egui::{self, CursorIcon, Key, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, Vec2};
 
@@ -10,52 +10,53 @@ use super::super::ViewContext;
 use super::super::memory::PointerState;
 use super::coordinates::Coordinates;
 
-/// The least side in points of a box that enlarges: less is a click of an unsteady state.
-const LEAST_BOX: f32 = 10.0;
+/// Smallest side in points of a box that enlarges the map; a smaller one is an unsteady click.
+const MIN_BOX: f32 = 10.0;
 
-/// What the pointer or the keyboard asks of the map.
+/// An action of pointer or keyboard on the map.
 #[derive(Debug, Clone, PartialEq)]
 pub enum MapAction {
-    /// The scene of a cell.
+    /// Take the scene to a cell.
     Cell(usize, usize),
-    /// The same on the way of a drag, and whether that has ended.
+    /// Take the scene to a cell during a drag, and whether the drag has ended.
     Drag(Option<(usize, usize)>, bool),
-    /// A part of it.
+    /// Enlarge a part of the map.
     Part([SweepAxis; 2]),
-    /// The half of each axis around a cell.
+    /// Enlarge the half of each axis around a cell.
     Closer(usize, usize),
-    /// What was there before the last part was enlarged.
+    /// Return to the map before the last enlargement.
     Larger,
     Whole,
 }
 
-/// Where things are on the screen.
-pub struct Hand<'a> {
+/// What pointer and keyboard act on.
+pub struct Targets<'a> {
+    /// The cell at a screen position.
     pub cell_at: &'a dyn Fn(Pos2) -> Option<(usize, usize)>,
-    /// The coordinates in which a box can be drawn; none for a surface.
+    /// The coordinates in which a box can be drawn. `None` for a surface.
     pub frame: Option<&'a Coordinates>,
-    /// What a place is kept inside.
+    /// Bounds of a drag of the cross-hair.
     pub rect: Rect,
-    /// Where the scene stands, and in or beside which cell.
+    /// Position of the scene, and its cell or the nearest one.
     pub scene: (Pos2, (usize, usize)),
 }
 
-/// Reads pointer and keyboard.
+/// Handles pointer and keyboard. Returns the action, if any.
 pub fn action_ui(
     ui: &Ui,
     response: &Response,
     map: &Map,
     (state, is_enlarged): (&mut PointerState, bool),
-    (style, hand): (&Style, &Hand<'_>),
+    (style, targets): (&Style, &Targets<'_>),
 ) -> Option<MapAction> {
-    // only on an enlarged map there is something that a second click means
+    // a double click has a meaning only on an enlarged map
     let second = ui.options(|options| options.input_options.max_double_click_delay);
     let wait = if is_enlarged { second } else { 0.0 };
-    if let Some(action) = cross_hair_ui(ui, map, (style, hand)) {
+    if let Some(action) = cross_hair_ui(ui, map, (style, targets)) {
         return Some(action);
     }
     let time = ui.input(|input| input.time);
-    if let Some(frame) = hand.frame {
+    if let Some(frame) = targets.frame {
         let pointer = response.interact_pointer_pos().map(|at| frame.rect.clamp(at));
         if response.drag_started() {
             let origin = ui.input(|input| input.pointer.press_origin());
@@ -68,7 +69,7 @@ pub fn action_ui(
             painter.rect_stroke(dragged, 0.0, Stroke::new(1.5, style.ink()), StrokeKind::Inside);
             if response.drag_stopped() {
                 state.corner = None;
-                let large = dragged.width() >= LEAST_BOX && dragged.height() >= LEAST_BOX;
+                let large = dragged.width() >= MIN_BOX && dragged.height() >= MIN_BOX;
                 return large.then(|| MapAction::Part(axes_of(frame, map, dragged)));
             }
         }
@@ -80,7 +81,7 @@ pub fn action_ui(
         return Some(MapAction::Whole);
     }
     if response.clicked() {
-        let cell = response.interact_pointer_pos().and_then(hand.cell_at)?;
+        let cell = response.interact_pointer_pos().and_then(targets.cell_at)?;
         state.clicked = Some((cell, time));
     }
     let ((column, row), since) = state.clicked?;
@@ -99,16 +100,16 @@ fn axes_of(frame: &Coordinates, map: &Map, dragged: Rect) -> [SweepAxis; 2] {
     [part(across, left, right), part(up, low, high)]
 }
 
-/// The cross-hair can be dragged, moved from cell to cell by the arrow keys, and enlarged around.
-fn cross_hair_ui(ui: &Ui, map: &Map, (style, hand): (&Style, &Hand<'_>)) -> Option<MapAction> {
-    let (at, (column, row)) = hand.scene;
+/// Handles the cross-hair: dragging, moving by the arrow keys, and enlarging around it.
+fn cross_hair_ui(ui: &Ui, map: &Map, (style, targets): (&Style, &Targets<'_>)) -> Option<MapAction> {
+    let (at, (column, row)) = targets.scene;
     let grab = Rect::from_center_size(at, Vec2::splat(2.0 * GRAB));
     let id = ui.scope_id().with("cross-hair");
     let response = ui.interact(grab, id, Sense::drag()).on_hover_and_drag_cursor(CursorIcon::Move);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "cross-hair"));
     if response.dragged() || response.drag_stopped() {
-        let inside = |at: Pos2| hand.rect.shrink(0.5).clamp(at);
-        let cell = response.interact_pointer_pos().and_then(|at| (hand.cell_at)(inside(at)));
+        let inside = |at: Pos2| targets.rect.shrink(0.5).clamp(at);
+        let cell = response.interact_pointer_pos().and_then(|at| (targets.cell_at)(inside(at)));
         return Some(MapAction::Drag(cell, response.drag_stopped()));
     }
     if !response.has_focus() {
@@ -131,7 +132,7 @@ fn cross_hair_ui(ui: &Ui, map: &Map, (style, hand): (&Style, &Hand<'_>)) -> Opti
         return None;
     }
     let [columns, rows] = map.size();
-    let moved = |own: usize, by: i64, count: usize| own.saturating_add_signed(by as isize).min(count - 1);
+    let moved = |i: usize, by: i64, count: usize| i.saturating_add_signed(by as isize).min(count - 1);
     Some(MapAction::Cell(moved(column, across, columns), moved(row, up, rows)))
 }
 
@@ -151,7 +152,7 @@ pub fn perform(context: &mut ViewContext<'_>, action: Option<MapAction>) {
         Some(MapAction::Part(axes)) if session.map_problem(&axes).is_none() => session.map.enlarge(axes),
         Some(MapAction::Closer(column, row)) => {
             let (Some(axes), Some((map, _))) = (session.map_axes(), session.map.shown()) else { return };
-            // those that were chosen last, be their map still to come
+            // the axes chosen last, even if their map is not computed yet
             let around = |i: usize, place: usize| {
                 let (axis, value) = (&axes[i], map.edges[i].values[place]);
                 let quarter = 0.25 * (axis.to - axis.from);

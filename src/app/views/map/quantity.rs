@@ -1,4 +1,4 @@
-//! Colours of a column of the map.
+//! Colour scale of a column of the map.
 
 use crate::app::session::map::Map;
 use crate::app::words::columns::{ColumnInfo, said};
@@ -8,7 +8,7 @@ use crate::dynamics::{Regime, Summary};
 use crate::output::PlotAxis;
 use crate::study::{Cell, Read, SummaryField};
 
-/// The most forcing periods after which a motion is found to repeat.
+/// Largest number of forcing periods after which a motion is found to repeat.
 const PERIODS: usize = 12;
 
 /// What one cell shows.
@@ -18,27 +18,25 @@ pub enum Look {
     Unknown,
     /// The run ended early, or there was no mechanism.
     Missing,
-    /// At rest, which is not little motion.
+    /// At rest, which is shown differently from little motion.
     Rest,
-    /// A value that there is none of: a period of motion that does not repeat, a first release that did not
-    /// come.
+    /// The run has no such value: no period of a motion that does not repeat, no release.
     None,
-    /// A kind of motion.
     Kind(Kind),
-    /// A word, by its place among those that the column can have.
+    /// A word, by its index among those of the column.
     Word(u8),
     /// A share of the scale, 0 to 1.
     Share(f32),
 }
 
-/// How numbers become places on a scale.
+/// Spacing of numbers on a scale.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Steps {
     /// Equal differences are equal steps.
     Even,
-    /// Counts, of which equal ratios are nearly equal steps.
+    /// For counts: equal ratios are nearly equal steps.
     Ratios,
-    /// Each whole number has a step of its own.
+    /// Each whole number has one step.
     Whole,
 }
 
@@ -49,14 +47,14 @@ pub struct ColourScale {
     field: Option<&'static SummaryField>,
     factor: f64,
     unit: &'static str,
-    /// The bar beside the map; none for words.
+    /// The bar beside the map. `None` for words.
     pub bar: Option<PlotAxis>,
     steps: Steps,
 }
 
-/// The number in a summary, for a word its place.
+/// The number in a summary; of a word, its index.
 fn number(field: &SummaryField, words: Option<&[&str]>, summary: &Summary) -> Option<f64> {
-    let place = |word: &str| words?.iter().position(|own| *own == word).map(|place| place as f64);
+    let place = |word: &str| words?.iter().position(|known| *known == word).map(|place| place as f64);
     match field.read {
         Read::Number(of) => of(summary).filter(|value| value.is_finite()),
         Read::Count(of) => of(summary).map(|count| count as f64),
@@ -66,7 +64,7 @@ fn number(field: &SummaryField, words: Option<&[&str]>, summary: &Summary) -> Op
 }
 
 impl ColourScale {
-    /// From 0, or from the least value where that is below, to the largest value that the map has so far.
+    /// A scale from 0, or from the smallest value if it is negative, to the largest value of the map so far.
     pub fn of(info: &'static ColumnInfo, map: &Map) -> Self {
         let (field, words) = (info.field(), info.words());
         let values = || {
@@ -96,7 +94,7 @@ impl ColourScale {
         Self { info, field, factor, unit, bar, steps }
     }
 
-    /// The number of a cell in the unit of the scale, for a word its place; none where it has none.
+    /// The number of a cell in the unit of the scale; of a word, its index. `None` if it has none.
     pub fn value(&self, cell: &Cell) -> Option<f64> {
         Some(number(self.field?, self.info.words(), cell.summary()?)? * self.factor)
     }
@@ -104,7 +102,7 @@ impl ColourScale {
     /// What a cell shows, and whether its motion is at rest.
     pub fn look(&self, cell: &Cell) -> (Look, bool) {
         let rests = is_at_rest(cell);
-        // nothing of a motion that there is not: that is not little of it
+        // the zeros of a mass at rest are shown as rest, not as small values
         let of_motion = |value: f64| value == 0.0 || ["regime", "period"].contains(&self.info.column);
         let look = match (self.value(cell), &self.bar) {
             (None, _) if cell.settled().is_none() => Look::Missing,
@@ -112,7 +110,7 @@ impl ColourScale {
             (None, _) if rests && ["regime", "period"].contains(&self.info.column) => Look::Rest,
             (Some(value), Some(bar)) => Look::Share(self.share(value, bar) as f32),
             _ if self.info.column == "regime" => {
-                cell.settled().map_or(Look::None, |own| Look::Kind(Kind::from(own.regime)))
+                cell.settled().map_or(Look::None, |settled| Look::Kind(Kind::from(settled.regime)))
             }
             (Some(place), None) => Look::Word(place as u8),
             (None, _) => Look::None,
@@ -120,7 +118,7 @@ impl ColourScale {
         (look, rests)
     }
 
-    /// Where a value stands on the bar, 0 to 1.
+    /// Position of a value on the bar, 0 to 1.
     pub fn share(&self, value: f64, bar: &PlotAxis) -> f64 {
         match self.steps {
             Steps::Ratios => (1.0 + value).ln() / (1.0 + bar.high).ln(),
@@ -128,7 +126,7 @@ impl ColourScale {
         }
     }
 
-    /// Where a cell stands on a scale upward, 0 to 1; words stand in the middle of equal parts.
+    /// Height of a cell on the scale, 0 to 1; words lie in the middle of equal parts.
     pub fn height(&self, cell: &Cell) -> Option<f64> {
         let value = self.value(cell)?;
         match (&self.bar, self.info.words()) {
@@ -138,7 +136,7 @@ impl ColourScale {
         }
     }
 
-    /// How many steps of colour the bar has; none for as many as there are pixels.
+    /// Number of colour steps of the bar. `None` if it is continuous.
     pub fn steps(&self) -> Option<usize> {
         (self.steps == Steps::Whole).then_some(PERIODS)
     }
@@ -147,18 +145,17 @@ impl ColourScale {
         self.info.column
     }
 
-    /// Whether it is a column of words.
     pub fn is_of_words(&self) -> bool {
         self.info.words().is_some()
     }
 
-    /// A word by its place, as it is said.
+    /// Text of the word with an index.
     pub fn word(&self, place: u8) -> String {
         let word = self.info.words().and_then(|words| words.get(usize::from(place)));
         said(self.info.column, word.copied().unwrap_or_default())
     }
 
-    /// What a cell says in words: `fastest impact 12.3 mm/s`.
+    /// Text on the value of a cell: `fastest impact 12.3 mm/s`.
     pub fn reading(&self, cell: &Cell) -> Option<String> {
         let value = self.value(cell)?;
         Some(match self.info.words() {
@@ -168,7 +165,7 @@ impl ColourScale {
         })
     }
 
-    /// Why a cell of a motion that went on to its end has no value.
+    /// Why a cell whose run lasted to its end has no value.
     pub fn without_value(&self) -> &'static str {
         match self.info.column {
             "period" | "settles_at_s" => "does not repeat",
@@ -182,14 +179,14 @@ impl ColourScale {
     }
 }
 
-/// Whether the settled motion of a cell is none.
+/// Whether the settled motion of a cell is rest.
 pub fn is_at_rest(cell: &Cell) -> bool {
-    cell.settled().is_some_and(|own| own.regime == Regime::Rest)
+    cell.settled().is_some_and(|settled| settled.regime == Regime::Rest)
 }
 
-/// A scale of counts, which go from two to a thousand: ticks at 1 and 3 times powers of ten.
-fn counts(most: f64, label: &str) -> PlotAxis {
-    let high = most.max(1.0);
+/// A scale of counts, which range from two to a thousand: ticks at 1 and 3 times powers of ten.
+fn counts(largest: f64, label: &str) -> PlotAxis {
+    let high = largest.max(1.0);
     let powers = (0..9).flat_map(|power| [1, 3].map(|digit| digit * 10_u64.pow(power)));
     let ticks = std::iter::once(0).chain(powers).map(|n| (n as f64, n.to_string()));
     PlotAxis { low: 0.0, high, ticks: ticks.filter(|tick| tick.0 <= high).collect(), label: label.to_owned() }
@@ -229,12 +226,12 @@ mod tests {
         assert_eq!(look("crossings", rest), (Look::Rest, true));
         assert_eq!(look("crossings", moves), (Look::Share(0.0), false));
         assert_eq!(look("crossings", crosses), (Look::Share(1.0), false));
-        // a number of a motion at rest is that number, and at rest
-        let (own, rests) = look("max_abs_x_m", rest);
+        // a number of a motion at rest is shown, and marked as rest
+        let (shown, rests) = look("max_abs_x_m", rest);
         let reach = scale("max_abs_x_m");
-        assert!(rests && own == Look::Share((1.5 / reach.bar.as_ref().unwrap().high) as f32), "{own:?}");
+        assert!(rests && shown == Look::Share((1.5 / reach.bar.as_ref().unwrap().high) as f32), "{shown:?}");
         assert_eq!(reach.reading(map.cell(0, 0).unwrap().0).unwrap(), "reach 1.50 mm");
-        // and what no run has is no zero
+        // a value that no run has is not zero
         assert_eq!(look("peak_contact_force_n", crosses), (Look::None, false));
         assert_eq!(look("work_j", crosses), (Look::None, false));
         assert_eq!(look("side", crosses), (Look::Word(2), false));

@@ -1,4 +1,4 @@
-//! The map as a surface in projection, its height and its colour the quantity.
+//! The map as a surface in projection, with the quantity as height and colour.
 
 use std::sync::Arc;
 
@@ -14,21 +14,24 @@ use super::coordinates::upright;
 use super::picture::{Place, baked};
 use super::quantity::{ColourScale, Look};
 
-/// Room in points for numbers and names around the box.
+/// Margin in points left of the box.
 const LEFT: f32 = 74.0;
+/// Margin in points right of the box.
 const RIGHT: f32 = 30.0;
+/// Margin in points above the box.
 const TOP: f32 = 12.0;
+/// Margin in points below the box.
 const BOTTOM: f32 = 48.0;
 
-/// The most columns and rows that are drawn; of more, each second or third.
-const MOST: usize = 128;
+/// Largest number of columns and rows drawn; of more, every n-th.
+const MAX_LINES: usize = 128;
 
 pub struct Surface {
     place: Place,
     projection: Projection,
-    /// Across, up on the map, and the quantity.
+    /// Horizontal and vertical axis of the map, and the quantity.
     axes: [PlotAxis; 3],
-    /// Each place of the scale on the axis of the quantity.
+    /// Positions of the ticks on the axis of the quantity, as shares of it.
     shares: Vec<f64>,
     /// The columns and rows that are drawn.
     drawn: [Vec<usize>; 2],
@@ -37,7 +40,7 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// The surface of a map of numbers at a place; none of one of words.
+    /// The surface of a map at a place. `None` if the map shows words.
     pub fn new(place: Place, map: &Map, scale: &ColourScale, style: &Style) -> Option<Self> {
         let area = place.0;
         let bar = scale.bar.clone()?;
@@ -49,7 +52,7 @@ impl Surface {
         let axes = [axis(0), axis(1), bar.clone()];
         let shares: Vec<f64> = bar.ticks.iter().map(|tick| scale.share(tick.0, &bar)).collect();
         let drawn = map.size().map(|count| {
-            let step = count.div_ceil(MOST).max(1);
+            let step = count.div_ceil(MAX_LINES).max(1);
             (0..count).step_by(step).collect::<Vec<usize>>()
         });
         let along = |i: usize| {
@@ -64,9 +67,9 @@ impl Surface {
         let [left, top] = [area.left() + LEFT, area.top() + TOP].map(f64::from);
         let [right, bottom] = [area.right() - RIGHT, area.bottom() - BOTTOM].map(f64::from);
         let projection = Projection { left, top, right, bottom };
-        let mut own = Self { place, projection, axes, shares, drawn, faces, mesh: Arc::default() };
-        own.mesh = baked(place.1, own.shapes(style));
-        Some(own)
+        let mut surface = Self { place, projection, axes, shares, drawn, faces, mesh: Arc::default() };
+        surface.mesh = baked(place.1, surface.shapes(style));
+        Some(surface)
     }
 
     /// Whether it was made for this place.
@@ -79,18 +82,18 @@ impl Surface {
         pos2(x as f32, y as f32)
     }
 
-    /// Walls, and the faces from back to front with their lines.
+    /// The walls, and the faces from back to front with their edges.
     fn shapes(&self, style: &Style) -> Vec<Shape> {
-        let ticks = |axis: &PlotAxis| axis.ticks.iter().map(|own| axis.share(own.0)).collect::<Vec<_>>();
+        let ticks = |axis: &PlotAxis| axis.ticks.iter().map(|tick| axis.share(tick.0)).collect::<Vec<_>>();
         let [x, y] = [&self.axes[0], &self.axes[1]].map(|axis| ticks(axis).into_iter());
         let line = |ends: (BoxPlace, BoxPlace), stroke: Stroke| {
             Shape::line_segment([self.screen(ends.0), self.screen(ends.1)], stroke)
         };
         let walls = wall_lines(x, y, self.shares.iter().copied()).into_iter();
-        let mut shapes: Vec<Shape> = walls.map(|own| line(own, style.grid_stroke())).collect();
-        shapes.extend(BACK_EDGES.map(|own| line(own, Stroke::new(1.0, style.faint()))));
+        let mut shapes: Vec<Shape> = walls.map(|ends| line(ends, style.grid_stroke())).collect();
+        shapes.extend(BACK_EDGES.map(|ends| line(ends, Stroke::new(1.0, style.faint()))));
         for face in &self.faces {
-            let at = face.corners.map(|own| self.screen(own));
+            let at = face.corners.map(|corner| self.screen(corner));
             let colour = if face.resting { style.rest_shade() } else { style.scale(face.share) };
             let mut mesh = Mesh::default();
             at.iter().for_each(|at| mesh.colored_vertex(*at, colour));
@@ -101,7 +104,7 @@ impl Surface {
                 true => style.hatch_stroke().color,
                 false => Style::scale_edge(face.share),
             };
-            for (side, _) in SIDES.iter().zip(face.lined).filter(|own| own.1) {
+            for (side, _) in SIDES.iter().zip(face.lined).filter(|side| side.1) {
                 shapes.push(Shape::line_segment(side.map(|i| at[i]), Stroke::new(0.7, edge)));
             }
         }
@@ -118,15 +121,15 @@ impl Surface {
         let number = |at: Pos2, align: Align2, text: &str| {
             painter.text(at, align, text, style.small(), style.ink()).size()
         };
-        let row = |axis: &PlotAxis, way: f32, place: &dyn Fn(f64) -> BoxPlace| {
+        let row = |axis: &PlotAxis, side: f32, place: &dyn Fn(f64) -> BoxPlace| {
             let mut last: Option<Pos2> = None;
             for (value, text) in &axis.ticks {
                 let at = self.screen(place(axis.share(*value)));
-                painter.line_segment([at, at + vec2(3.0 * way, 5.0)], stroke);
-                // as many numbers as stand apart
+                painter.line_segment([at, at + vec2(3.0 * side, 5.0)], stroke);
+                // numbers that would overlap are left out
                 if last.is_none_or(|last| (last.y - at.y).abs() >= 9.0 || (last.x - at.x).abs() >= 34.0) {
-                    let align = if way > 0.0 { Align2::LEFT_TOP } else { Align2::RIGHT_TOP };
-                    number(at + vec2(5.0 * way, 4.0), align, text);
+                    let align = if side > 0.0 { Align2::LEFT_TOP } else { Align2::RIGHT_TOP };
+                    number(at + vec2(5.0 * side, 4.0), align, text);
                     last = Some(at);
                 }
             }
@@ -155,7 +158,7 @@ impl Surface {
         }
     }
 
-    /// The place of a cell's value, and under it on the floor; none of one that has no value.
+    /// Screen positions of a cell's value and of the floor below it. `None` if the cell has no value.
     pub fn place_of(
         &self,
         map: &Map,
@@ -168,7 +171,7 @@ impl Surface {
         Some([self.screen((u, v, height)), self.screen((u, v, 0.0))])
     }
 
-    /// Draws the lines over it up in a column and across in a row.
+    /// Draws the lines of the cuts along a column and along a row.
     pub fn cuts(&self, painter: &Painter, (map, scale): (&Map, &ColourScale), (column, row): (usize, usize)) {
         let [columns, rows] = map.size();
         let lines: [Vec<(usize, usize)>; 2] = [
@@ -177,7 +180,7 @@ impl Surface {
         ];
         for line in lines {
             let places: Vec<Option<Pos2>> =
-                line.into_iter().map(|cell| self.place_of(map, scale, cell).map(|own| own[0])).collect();
+                line.into_iter().map(|cell| self.place_of(map, scale, cell).map(|ends| ends[0])).collect();
             for part in places.split(Option::is_none) {
                 let points: Vec<Pos2> = part.iter().flatten().copied().collect();
                 painter.add(Shape::line(points.clone(), Stroke::new(3.6, Style::over_map(false))));
@@ -186,7 +189,7 @@ impl Surface {
         }
     }
 
-    /// Draws where the scene is: a ball on the surface, over its place on the floor.
+    /// Draws the scene as a ball on the surface, above its place on the floor.
     pub fn ball(&self, painter: &Painter, style: &Style, [at, floor]: [Pos2; 2]) {
         for stroke in style.marker_strokes() {
             painter.line_segment([at, floor], Stroke::new(0.6 * stroke.width, stroke.color));
@@ -194,10 +197,10 @@ impl Surface {
         painter.circle(at, 6.5, style.mass(), Stroke::new(1.5, Color32::BLACK));
     }
 
-    /// The cell under a place on the screen: the one in front.
+    /// The frontmost cell at a screen position.
     pub fn cell_at(&self, at: Pos2) -> Option<(usize, usize)> {
         self.faces.iter().rev().find_map(|face| {
-            let corners = face.corners.map(|own| self.screen(own));
+            let corners = face.corners.map(|corner| self.screen(corner));
             let under = [[0, 1, 2], [0, 2, 3]].iter().any(|three| is_inside(three.map(|i| corners[i]), at));
             let nearest =
                 (0..4).min_by(|a, b| corners[*a].distance(at).total_cmp(&corners[*b].distance(at)))?;
@@ -207,16 +210,16 @@ impl Surface {
         })
     }
 
-    /// Where all of it stands.
+    /// Bounds of the drawing.
     pub fn rect(&self) -> Rect {
         let Projection { left, top, right, bottom } = self.projection;
         Rect::from_min_max(pos2(left as f32, top as f32), pos2(right as f32, bottom as f32))
     }
 }
 
-/// Whether a place lies in a triangle.
+/// Whether a point lies in a triangle.
 fn is_inside([a, b, c]: [Pos2; 3], at: Pos2) -> bool {
     let side = |from: Pos2, to: Pos2| (to - from).rot90().dot(at - from);
     let sides = [side(a, b), side(b, c), side(c, a)];
-    sides.iter().all(|own| *own >= 0.0) || sides.iter().all(|own| *own <= 0.0)
+    sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0)
 }

@@ -20,15 +20,15 @@ use super::quantity::Look;
 /// Width in points below which the choices take two rows.
 const NARROW: f32 = 1080.0;
 
-/// Width in points from which on the legend stands beside what was run.
+/// Width in points from which on the legend stands beside the description of the runs.
 const WIDE: f32 = 760.0;
 
-/// Height in points from which on it is said what was run.
+/// Height in points from which on the runs are described.
 const LOW: f32 = 220.0;
 
 /// Title, choices, progress.
 pub fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
-    // a low map needs the room more
+    // less spacing for a low map
     ui.spacing_mut().item_spacing.y = if ui.available_height() > LOW + 100.0 { 5.0 } else { 1.0 };
     ui.add_space(2.0);
     let narrow = ui.available_width() < NARROW;
@@ -54,7 +54,7 @@ pub fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     }
 }
 
-/// The choice of what the colour says, by groups of columns.
+/// Choice of the quantity, by groups of columns.
 fn quantity_ui(ui: &mut Ui, mapping: &mut Mapping) {
     let chosen = mapping.quantity();
     let title = RichText::new(chosen.title()).heading();
@@ -63,15 +63,15 @@ fn quantity_ui(ui: &mut Ui, mapping: &mut Mapping) {
         ui.set_min_width(230.0);
         for (group, columns) in &COLUMNS {
             ui.label(RichText::new(*group).small());
-            for own in *columns {
-                let entry = ui.selectable_label(own == chosen, own.title());
-                let cost = if own.field().is_some_and(|field| field.needs_ledger) {
+            for column in *columns {
+                let entry = ui.selectable_label(column == chosen, column.title());
+                let cost = if column.field().is_some_and(|field| field.needs_ledger) {
                     " The runs are made anew for it, one by one."
                 } else {
                     ""
                 };
-                if entry.on_hover_text(format!("{}{cost}", own.about)).clicked() {
-                    mapping.show(own);
+                if entry.on_hover_text(format!("{}{cost}", column.about)).clicked() {
+                    mapping.show(column);
                 }
             }
         }
@@ -81,7 +81,7 @@ fn quantity_ui(ui: &mut Ui, mapping: &mut Mapping) {
     inner.response.on_hover_text(chosen.about);
 }
 
-/// From above or as a surface, with cuts.
+/// Choice between the map from above and the surface, and of cuts.
 fn look_ui(ui: &mut Ui, look: &mut MapLook, quantity: &ColumnInfo) {
     ui.selectable_value(&mut look.surface, false, "From above")
         .on_hover_text("Each run is a cell, and its colour the quantity.");
@@ -103,9 +103,9 @@ fn axes_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let mut wanted: Option<(usize, String)> = None;
     for (i, (axis, word)) in axes.iter().zip(["over", "and"]).enumerate() {
         ui.label(word);
-        let others: Vec<String> = known.iter().filter(|path| **path != axes[1 - i].field).cloned().collect();
+        let choices: Vec<String> = known.iter().filter(|path| **path != axes[1 - i].field).cloned().collect();
         let role = if i == 0 { "across" } else { "up" };
-        wanted = field_ui(ui, axis, role, &others).map(|path| (i, path)).or(wanted);
+        wanted = field_ui(ui, axis, role, &choices).map(|path| (i, path)).or(wanted);
     }
     ranges_ui(ui, context, &axes);
     trail_ui(ui, context);
@@ -117,7 +117,7 @@ fn axes_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     }
 }
 
-/// A menu of the line where the scene has been.
+/// Menu of the trail of the scene.
 fn trail_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     let (button, _) = MenuButton::new("Trail").config(config).ui(ui, |ui| {
@@ -132,12 +132,12 @@ fn trail_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     button.on_hover_text("Where the live motion has been since the scene was opened, as a line that fades.");
 }
 
-/// A menu in which the ends and steps of both axes are typed.
+/// Menu with the ends and steps of both axes.
 fn ranges_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axes: &[SweepAxis; 2]) {
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     let menu = MenuButton::new("Range").config(config);
     let (button, _) = menu.ui(ui, |ui| {
-        // numbers that can be typed look so, which a menu's would not
+        // a menu style would hide that the numbers can be typed
         *ui.style_mut() = (*ui.ctx().global_style()).clone();
         let mut wanted = axes.clone();
         egui::Grid::new("ranges").num_columns(7).show(ui, |ui| {
@@ -194,7 +194,7 @@ fn progress_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     }
 }
 
-/// Draws what was run, and what hatching, lines and symbols mean. Returns its lower edge.
+/// Describes the runs and the meaning of hatching, lines and symbols. Returns the lower edge.
 pub fn legend(
     painter: &Painter,
     area: Rect,
@@ -208,7 +208,7 @@ pub fn legend(
     let left = area.left() + 12.0;
     let (mut x, mut y) = (left, area.top() + 0.5 * ROW);
     let text = |at, words: &str| painter.text(at, Align2::LEFT_CENTER, words, style.small(), style.faint());
-    // a low map needs the room more
+    // left out on a low map
     if area.height() > LOW {
         let after = text(pos2(x, y), about).right() + 18.0;
         if area.width() > WIDE {
@@ -228,10 +228,10 @@ pub fn legend(
     let patch = |rect: Rect, ground: egui::Color32, strokes: &[(f32, egui::Stroke)]| {
         painter.rect_filled(rect, 0.0, ground);
         let clipped = painter.with_clip_rect(rect);
-        for (way, stroke) in strokes {
+        for (slope, stroke) in strokes {
             for i in 0..6 {
                 let foot = pos2(rect.left() + (i as f32 - 1.0) * 7.0, rect.bottom());
-                let (from, to) = if *way > 0.0 {
+                let (from, to) = if *slope > 0.0 {
                     (foot, foot + vec2(12.0, -12.0))
                 } else {
                     (foot + vec2(0.0, -12.0), foot + vec2(12.0, 0.0))
