@@ -114,7 +114,6 @@ impl<'a> Walk<'a> {
             (task.tick)();
             self.keep_clear(&[]);
             let (found, beyond) = self.predicted(step);
-            let leaps = found.is_some() && self.at.0.forgets();
             let next = found.filter(|next| self.follows(next));
             let stretch = match &next {
                 Some(next) if !self.touches_otherwise(&next.0) => self.smooth(next, beyond.is_some()),
@@ -149,6 +148,7 @@ impl<'a> Walk<'a> {
             }
             step *= 0.5;
             if step < SHORTEST {
+                let leaps = self.at.0.forgets() && self.is_elsewhere_beyond();
                 // where chatter no longer ends in rest at both stops it may do so at one
                 if leaps && self.corrector.mirrored && self.forgets_its_mirror_image() {
                     step = FIRST;
@@ -380,6 +380,14 @@ impl<'a> Walk<'a> {
         {
             (self.corrector, self.at) = (corrector, (next, onward));
         }
+    }
+
+    /// Whether there is a motion just beyond the present value of the field, wherever it is.
+    fn is_elsewhere_beyond(&self) -> bool {
+        let (point, along) = &self.at;
+        let across = Vector3::z();
+        let beyond = point.at + across * along.z.signum() * UNLOCATED;
+        self.corrector.correct(beyond, &across).is_some()
     }
 
     /// Goes on from the present motion without the condition that motions are their own mirror images; false

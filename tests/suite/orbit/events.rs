@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use interwell::dynamics::{Model, STANDARD_GRAVITY, Side};
 use interwell::mechanics::Mechanism;
 use interwell::scene::{Document, Excitation, Files, Scene, Stops};
-use interwell::study::{Branch, BranchEnd, BranchEvent, Family, Orbit, Task, branch};
+use interwell::study::{Branch, BranchEnd, BranchEvent, Family, Orbit, Task, branch, settled};
 use proptest::prelude::*;
 
 use super::one_stop::OneStop;
@@ -66,6 +66,9 @@ fn holds(found: &Branch, model: &Model, range: (f64, f64)) -> Verdict {
 #[derive(Debug, Clone)]
 struct Drawn {
     closed: OneStop,
+    /// Distance of the stops from the middle in m, which the closed form has as 1: amplitudes and speeds go
+    /// in proportion.
+    gap: f64,
     /// Ends of the range over the amplitude of the grazing.
     ends: (f64, f64),
     upward: bool,
@@ -73,17 +76,21 @@ struct Drawn {
 
 fn drawn() -> impl Strategy<Value = Drawn> {
     let ends = (0.02..0.9f64, prop_oneof![1.001..1.1f64, 1.1..2.0f64], any::<bool>());
-    (0.3..2.5f64, 0.0..0.95f64, 0.02..1.0f64, any::<bool>(), ends).prop_map(
-        |(w, e, damping, mirrored, (low, high, upward))| {
-            let ends = if high < 1.1 { (1.0 - low * (high - 1.0) * 10.0, high) } else { (1.0 - low, high) };
-            Drawn { closed: OneStop { w, e, damping, mirrored }, ends, upward }
-        },
-    )
+    let oscillator = (0.3..2.5f64, 0.0..0.95f64, 0.02..1.0f64, any::<bool>());
+    (oscillator, -3.0..2.0f64, ends).prop_map(|((w, e, damping, mirrored), gap, (low, high, upward))| {
+        let ends = if high < 1.1 { (1.0 - low * (high - 1.0) * 10.0, high) } else { (1.0 - low, high) };
+        Drawn { closed: OneStop { w, e, damping, mirrored }, gap: 10f64.powf(gap), ends, upward }
+    })
 }
 
 impl Drawn {
+    /// Amplitude in g at which the swing without impacts reaches the stop.
+    fn grazing(&self) -> f64 {
+        self.gap * self.closed.grazing()
+    }
+
     fn range(&self) -> (f64, f64) {
-        let [low, high] = [self.ends.0, self.ends.1].map(|end| end * self.closed.grazing());
+        let [low, high] = [self.ends.0, self.ends.1].map(|end| end * self.grazing());
         if self.upward { (low, high) } else { (high, low) }
     }
 
@@ -93,10 +100,11 @@ impl Drawn {
         let from = self.range().0;
         let (size, lag) = response(w, damping);
         let size = size * from * STANDARD_GRAVITY;
-        let (x, v) = if size < 1.0 { (size * lag.sin(), size * w * lag.cos()) } else { (0.0, 0.0) };
+        let (x, v) = if size < self.gap { (size * lag.sin(), size * w * lag.cos()) } else { (0.0, 0.0) };
+        let limit = 1e3 * self.gap;
         let stops = match mirrored {
-            true => format!("Rigid(travel_limit_mm: 1000, restitution: {e:?})"),
-            false => format!("Uneven(right_mm: 1000, restitution_right: {e:?})"),
+            true => format!("Rigid(travel_limit_mm: {limit:?}, restitution: {e:?})"),
+            false => format!("Uneven(right_mm: {limit:?}, restitution_right: {e:?})"),
         };
         document(&format!(
             "mass_g: 1000, mechanism: Polynomial(coefficients_si: [0, 1]), \
@@ -138,7 +146,7 @@ impl Drawn {
         let missing = found.orbits.iter().any(|orbit| orbit.passage.impacts == 0);
         for (i, value) in found.values.iter().enumerate() {
             if found.events[i] == Some(BranchEvent::Grazing) && found.orbits[i].passage.impacts == 0 {
-                prop_assert!((value - self.closed.grazing()).abs() <= 1e-9 * unit, "grazing at {value}");
+                prop_assert!((value - self.grazing()).abs() <= 1e-9 * unit, "grazing at {value}");
             }
         }
         if missing {
@@ -154,6 +162,7 @@ impl Drawn {
         let at_minus_one = if self.closed.mirrored { BranchEvent::Symmetry } else { BranchEvent::Flip };
         for (multiplier, event) in [(1.0, BranchEvent::Fold), (-1.0, at_minus_one)] {
             let (speed, amplitude) = self.closed.critical(multiplier);
+            let (speed, amplitude) = (speed * self.gap, amplitude * self.gap);
             let rows = 0..found.values.len();
             let located = rows.clone().filter(|i| found.events[*i] == Some(event));
             let located: Vec<usize> = located.filter(|i| self.speed(&found.orbits[*i]).is_some()).collect();
@@ -174,7 +183,7 @@ impl Drawn {
             };
             let passed = speeds.windows(2).filter(passes).count();
             // nearer to a grazing than motions are looked at, which are farther with two impacts at once
-            let hidden = (speed < 1e-3 || self.closed.mirrored) && located.len() < passed;
+            let hidden = (speed < 1e-3 * self.gap || self.closed.mirrored) && located.len() < passed;
             let all = passed == located.len() || hidden;
             prop_assert!(all, "{event:?}: {passed} passed, {} located", located.len());
         }
@@ -221,9 +230,13 @@ fn bouncing_balls_have_their_events_where_formulas_say() {
 fn turns_at_the_stop(scene: &Scene, found: &Branch) -> Verdict {
     const FARTHER: f64 = 1e-3;
     let mut scene = scene.clone();
-    let Stops::Rigid { travel_limit_mm, .. } = &mut scene.stops else { return Ok(()) };
-    let farther = FARTHER * *travel_limit_mm / 1e3;
-    *travel_limit_mm *= 1.0 + FARTHER;
+    let (Stops::Rigid { travel_limit_mm: limit, .. } | Stops::Uneven { right_mm: Some(limit), .. }) =
+        &mut scene.stops
+    else {
+        return Ok(());
+    };
+    let farther = FARTHER * *limit / 1e3;
+    *limit *= 1.0 + FARTHER;
     for (i, orbit) in found.orbits.iter().enumerate() {
         if found.events[i] != Some(BranchEvent::Grazing) || orbit.passage.impacts > 0 {
             continue;
@@ -239,6 +252,91 @@ fn turns_at_the_stop(scene: &Scene, found: &Branch) -> Verdict {
         prop_assert!(exact && passage.impacts == 0, "at {}: {off:?}", found.values[i]);
     }
     Ok(())
+}
+
+/// A nonlinear oscillator, and how much farther than its swing without impacts reaches its stops are.
+#[derive(Debug, Clone)]
+struct Swing {
+    cubic: f64,
+    w: f64,
+    damping: f64,
+    amplitude: f64,
+    farther: f64,
+    e: f64,
+    /// Stops on both sides, or on the right alone.
+    both: bool,
+}
+
+fn swings() -> impl Strategy<Value = Swing> {
+    let oscillator = (-0.05..1.0f64, 0.3..1.7f64, 0.05..0.6f64, 0.005..0.1f64);
+    (oscillator, 1.001..1.1f64, 0.0..0.95f64, any::<bool>()).prop_map(
+        |((cubic, w, damping, amplitude), farther, e, both)| Swing {
+            cubic,
+            w,
+            damping,
+            amplitude,
+            farther,
+            e,
+            both,
+        },
+    )
+}
+
+impl Swing {
+    fn document(&self, stops: &str) -> Document {
+        let Self { cubic, w, damping, amplitude, .. } = self;
+        document(&format!(
+            "mass_g: 1000, mechanism: Polynomial(coefficients_si: [0, 1, 0, {cubic:?}]), \
+             damping: Coefficient(c_n_s_per_m: {damping:?}), stops: {stops}, \
+             excitation: Sine(frequency_hz: {:?}, amplitude_g: {amplitude:?}), run: (duration_s: {:?})",
+            w / TAU,
+            60.0 * TAU / w
+        ))
+    }
+
+    /// Whether its branch over the amplitude, up to twice, comes to a grazing of the swing without impacts.
+    fn check(&self) -> Result<bool, TestCaseError> {
+        let cancel = AtomicBool::new(false);
+        let free = self.document("None");
+        let free = Model::build(&free.scene, built(&free.scene.mechanism)).unwrap();
+        let Some(swing) = settled(&free, &cancel).filter(|swing| swing.period == Some(1)) else {
+            return Ok(false);
+        };
+        let Some((low, high)) = swing.range else { return Ok(false) };
+        let (limit, e) = (1e3 * self.farther * if self.both { high.max(-low) } else { high }, self.e);
+        let document = self.document(&match self.both {
+            true => format!("Rigid(travel_limit_mm: {limit:?}, restitution: {e:?})"),
+            false => format!("Uneven(right_mm: {limit:?}, restitution_right: {e:?})"),
+        });
+        let mechanism = built(&document.scene.mechanism);
+        let family = Family::new(&document.scene, &document.files, &mechanism, AMPLITUDE);
+        let task = Task { tick: &|| (), cancel: &cancel };
+        let range = (self.amplitude, 2.0 * self.amplitude);
+        let found = branch(&family, AMPLITUDE, range, (0.0, Some(1)), &task);
+        let found = found.map_err(|error| TestCaseError::fail(error.to_string()))?;
+        holds(&found, &family.model(range.0).unwrap(), range)?;
+        turns_at_the_stop(&document.scene, &found)?;
+        let touches =
+            |i: usize| found.events[i] == Some(BranchEvent::Grazing) && found.orbits[i].passage.impacts == 0;
+        let grazing = (0..found.values.len()).find(|i| touches(*i));
+        // without one the swing never reached its stop
+        let struck = found.orbits.iter().any(|orbit| orbit.passage.impacts > 0);
+        prop_assert!(grazing.is_some() || !struck, "no grazing: {:?} {:?}", found.end, found.values.last());
+        Ok(grazing.is_some())
+    }
+}
+
+/// Grazings of nonlinear oscillators, held by motions that are followed anew with the stops farther away.
+#[test]
+fn nonlinear_oscillators_graze_where_their_swing_reaches_the_stop() {
+    hold_for(
+        "branches_of_nonlinear_oscillators",
+        40,
+        0.8,
+        swings(),
+        |swing| format!("{swing:?}"),
+        Swing::check,
+    );
 }
 
 /// A scene of any kind between rigid stops, whose amplitude rises or falls by a fifth.

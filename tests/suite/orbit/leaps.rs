@@ -8,8 +8,8 @@ use crate::cli::{headless, refused, stdout};
 use crate::support::{changed, near};
 
 /// With stops at 1.3 or 1.4 mm the mass is released as ever, and from some amplitude down fails to pass the
-/// barrier: its state once a period is the same, and what it does is not. At 1.5 mm, from 1 g down, its chatter
-/// no longer ends before it is released, some 1e-4 g above that amplitude.
+/// barrier: its state once a period is the same, and what it does is not. At 1.5 mm, from 1 g down, its
+/// chatter no longer ends before it is released, some 1e-4 g above that amplitude.
 #[test]
 fn a_mass_that_rests_leaps_where_it_just_fails_to_cross() {
     for (limit, apart) in [(1.3, 2e-6), (1.4, 2e-6), (1.5, 5e-4)] {
