@@ -34,10 +34,10 @@ use super::step::stepper::Stepper;
 use super::step::work::Work;
 use crate::numeric::Scalar;
 
-pub(crate) struct Motion<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> {
+pub(crate) struct Motion<'a, T: Scalar, D: Drive<T>> {
     pub stepper: Stepper<'a, T, D>,
     pub state: MotionState<T>,
-    pub record: Recorder<'a, T, LEDGER>,
+    pub record: Recorder<'a, T>,
     /// The recorder calls since the first labelled release, where the run may recur.
     pub log: Option<Box<Log<T>>>,
     pub steps: u64,
@@ -54,7 +54,7 @@ pub(crate) struct Motion<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> {
     pub until_settled: Option<f64>,
 }
 
-impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
+impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
     pub fn new(
         model: &'a Model,
         request: &Request<'a>,
@@ -68,11 +68,12 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
         let mode = equation.mode_at(x, model.mechanism.curve.piece_index(model.start.0));
         let contact = if model.motionless { Contact::Motionless } else { Contact::Free };
         let settings = Settings::new(model, unit, tolerance);
-        let mut record = Recorder::new(model, clock, unit, settings.order, request, (x, v));
+        let mut record = Recorder::new(model, (clock, drive), unit, settings.order, request, (x, v));
         let until_settled = request.until_settled.filter(|_| model.can_settle());
         let end = if until_settled.is_some() { record.window_end() } else { clock.at(model.duration) };
         let mut state = MotionState::new((x, v), mode, contact);
-        state.circuit = T::of(model.circuit().map_or(0.0, |own| own.state(model.start_electrical) * unit));
+        state.circuit =
+            T::of(model.circuit().map_or(0.0, |circuit| circuit.state(model.start_electrical) * unit));
         let stepper = Stepper::new(equation, drive, clock, settings, end, Work::new(request.cancel));
         record.samples_per_look = stepper.costs.samples_per_look();
         Self {
@@ -111,10 +112,10 @@ impl<'a, T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'a, T, D, LEDGER> {
 
     /// Passes a call to the recorder, and to the log where there is one.
     #[inline(always)] // so that only what is kept of the call is made
-    pub fn tell(&mut self, told: Call<T>) {
+    pub fn tell(&mut self, call: Call<T>) {
         if let Some(log) = &mut self.log {
-            log.add(told);
+            log.add(call);
         }
-        self.record.tell(&told, self.stepper.base(self.state.segment));
+        self.record.tell(&call, self.state.segment);
     }
 }

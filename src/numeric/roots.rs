@@ -77,7 +77,7 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
     /// stays positive. Located to the rounding of its own evaluation, relative to s.
     pub fn first(&self) -> Option<T> {
         let mut found = None;
-        self.each_sign_change(|s| {
+        self.each_sign_change(&mut |s| {
             found = Some(s);
             false
         });
@@ -86,10 +86,10 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
 
     /// Calls `visit` with every s in (0, 1] where the polynomial changes sign, in ascending order, until
     /// it returns false.
-    pub fn each_sign_change(&self, mut visit: impl FnMut(T) -> bool) {
-        let own = self.without_a_root_at_0();
-        own.each_bracket(|above, bracket| {
-            let root = own.polish(above, bracket);
+    pub fn each_sign_change(&self, visit: &mut dyn FnMut(T) -> bool) {
+        let divided = self.without_a_root_at_0();
+        divided.each_bracket(&mut |above, bracket| {
+            let root = divided.polish(above, bracket);
             visit(T::at_root(root, |s| {
                 let (value, slope, _) = expansion(self.g, s);
                 (value, slope)
@@ -100,7 +100,7 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
     /// How often it changes sign in (0, 1]: what [`Self::each_sign_change`] visits, without locating it.
     pub fn count_sign_changes(&self) -> usize {
         let mut count = 0;
-        self.without_a_root_at_0().each_bracket(|_, _| {
+        self.without_a_root_at_0().each_bracket(&mut |_, _| {
             count += 1;
             true
         });
@@ -123,8 +123,7 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
     /// Calls `visit` for an interval around each sign change, in ascending order, until it returns false:
     /// with whether the polynomial has its first sign at the low end, and with the ends. Precondition: it is
     /// not 0 at 0.
-    #[inline]
-    fn each_bracket(&self, mut visit: impl FnMut(bool, (T, T)) -> bool) {
+    fn each_bracket(&self, visit: &mut dyn FnMut(bool, (T, T)) -> bool) {
         let zero = T::zero();
         let g = self.g;
         if g.len() < 2 {
@@ -162,7 +161,7 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
                 b[j] += below;
             }
         }
-        self.isolate(&b, zero, T::of(1.0), 0, &mut visit);
+        self.isolate(&b, zero, T::of(1.0), 0, visit);
     }
 
     /// Returns false once `visit` has.
@@ -172,7 +171,7 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         low: T,
         width: T,
         depth: u32,
-        visit: &mut impl FnMut(bool, (T, T)) -> bool,
+        visit: &mut dyn FnMut(bool, (T, T)) -> bool,
     ) -> bool {
         let zero = T::zero();
         let n = self.g.len() - 1;

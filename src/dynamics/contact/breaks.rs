@@ -6,7 +6,7 @@ use crate::dynamics::motion::Motion;
 use crate::dynamics::state::{BY_ACCELERATION, BY_SPEED, HELD, Touch};
 use crate::numeric::Scalar;
 
-impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
+impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// The mass passes the break at `end` of its mode.
     pub fn enter_neighbour(&mut self, end: End) {
         self.state.enter(end);

@@ -21,7 +21,7 @@ use crate::dynamics::state::{BY_SPEED, Contact, Depth, Flow, HELD, Touch};
 use crate::dynamics::step::choose_quasi_static::QuasiStaticStep;
 use crate::dynamics::step::contact::{ContactStep, Reached};
 use crate::dynamics::step::impact::{Impact, Separation};
-use crate::dynamics::step::path::StepView;
+use crate::dynamics::step::path::InStop;
 use crate::dynamics::step::penetration::Penetration;
 use crate::dynamics::step::quasi_static::QuasiStatic;
 use crate::numeric::Scalar;
@@ -31,7 +31,7 @@ use crate::numeric::Scalar;
 /// some e-foldings within one or two steps.
 const NUDGE: f64 = 1.0;
 
-impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
+impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// Whether the run begins with the mass beyond the surface of a stop, where it then is.
     pub fn start_inside_a_stop(&mut self) -> bool {
         for end in [End::Low, End::High] {
@@ -107,23 +107,9 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         let barrier = self.record.barrier;
         let found = self.stepper.choose_impact(&self.state, end, left, barrier, &mut path);
         if let Some(Separation { time, speed }) = found {
-            let (mode, whole) = (self.stepper.mode(&self.state), T::of(2.0));
+            let whole = T::of(2.0);
             let (x, v) = (self.state.x, end.sign::<T>() * speed);
-            self.steps += 1;
-            let view = StepView {
-                path: &*path,
-                origin: mode.origin,
-                at: self.state.at,
-                whole,
-                length: whole,
-                duration: time,
-                bound: path.most * path.most,
-                limits: (mode.low, mode.high),
-                x,
-                v,
-            };
-            self.record.step(&view, self.stepper.base(self.state.segment));
-            self.record.contact(&view);
+            self.record_contact(&*path, (whole, whole, time), path.most * path.most, (x, v));
             self.state.at = self.stepper.clock.advance(&self.state.at, time);
             self.state.v = v;
             self.leave_stop(end);
@@ -138,24 +124,10 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         let mut path = self.stepper.quasi_static.take().unwrap_or_else(new);
         let step = self.stepper.quasi_static_step(&self.state, end, left, &mut path);
         if let (Some(step), Some(surface)) = (&step, self.stepper.equation.surface(end)) {
-            let (mode, sign) = (self.stepper.mode(&self.state), end.sign::<T>());
+            let sign = end.sign::<T>();
             let &QuasiStaticStep { length, arrival, end: (root, speed), bound } = step;
             let (x, v) = (surface + sign * (root * root), sign * speed);
-            self.steps += 1;
-            let view = StepView {
-                path: &*path,
-                origin: mode.origin,
-                at: self.state.at,
-                whole: length,
-                length,
-                duration: length,
-                bound,
-                limits: (mode.low, mode.high),
-                x,
-                v,
-            };
-            self.record.step(&view, self.stepper.base(self.state.segment));
-            self.record.contact(&view);
+            self.record_contact(&*path, (length, length, length), bound, (x, v));
             self.state.at = arrival.unwrap_or_else(|| self.stepper.clock.advance(&self.state.at, length));
             (self.state.x, self.state.v) = (x, v);
             self.state.depth = Depth { root, clip_changed: false };
@@ -187,22 +159,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         if !(x.is_finite() && speed.is_finite()) {
             return Some(Outcome::NotFinite { at: self.stepper.seconds(&self.state) });
         }
-        self.steps += 1;
-        let view = StepView {
-            path: &*path,
-            origin: mode.origin,
-            at: self.state.at,
-            whole,
-            length,
-            duration,
-            bound,
-            limits: (mode.low, mode.high),
-            x,
-            v: sign * speed,
-        };
-        let base = self.stepper.base(self.state.segment);
-        self.record.step(&view, base);
-        self.record.contact(&view);
+        self.record_contact(path, (whole, length, duration), bound, (x, sign * speed));
         self.state.at = match arrival {
             Some(arrival) => arrival,
             None => self.stepper.clock.advance(&self.state.at, duration),
@@ -222,6 +179,15 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             Reached::End(at) => return self.reach_within(at),
         }
         None
+    }
+
+    /// Records a step of contact along a path: as chosen and as kept, the time that it takes, a bound of the
+    /// way, and the state at its end.
+    fn record_contact<P: InStop<T>>(&mut self, path: &P, lengths: (T, T, T), bound: T, end: (T, T)) {
+        self.steps += 1;
+        let view = self.stepper.view(&self.state, path, lengths, bound, end);
+        self.record.step(&view, self.state.segment);
+        self.record.contact(&view);
     }
 
     /// The root of the depth is 0 again.

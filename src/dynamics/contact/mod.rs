@@ -12,7 +12,7 @@ use crate::dynamics::result::Outcome;
 use crate::dynamics::state::{BY_ACCELERATION, BY_SPEED, Contact, Flow, HELD, Touch};
 use crate::numeric::Scalar;
 
-impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
+impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// Starts the motion: a mass that begins on a surface rests, strikes, leaves or passes it.
     pub fn place_at_start(&mut self) {
         if self.stepper.equation.compliant.is_some() && self.start_inside_a_stop() {

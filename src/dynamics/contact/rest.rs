@@ -15,7 +15,7 @@ use crate::numeric::{Scalar, decay};
 /// worth resolving.
 const PAST_A_TOUCH: f64 = 1e-6;
 
-impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
+impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// The mass stands at the stop of `end` with no speed: none where it is pressed on it, else the touch
     /// with which it leaves. The first derivative of the contact acceleration that is not 0 (to the rounding
     /// of its terms) decides; if all are 0, it stays there, free.
@@ -75,9 +75,9 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             from = self.stepper.clock.advance(&from, self.stepper.clock.period() * T::of(PAST_A_TOUCH));
         }
         let threshold = self.stepper.equation.stop(end).map_or(T::zero(), |s| s.acceleration);
-        let circuit = self.stepper.drive.circuit().map_or(T::zero(), |own| {
+        let circuit = self.stepper.drive.circuit().map_or(T::zero(), |circuit| {
             let time = self.stepper.clock.between(&self.state.at, &from);
-            self.state.circuit * decay(own.decay * time).0
+            self.state.circuit * decay(circuit.decay * time).0
         });
         let acceleration = ContactAcceleration { threshold, sign: end.sign::<T>(), circuit };
         let since = self.searched.take().filter(|(segment, _)| *segment == self.state.segment);

@@ -10,7 +10,7 @@ use crate::dynamics::result::Phase;
 use crate::dynamics::state::{BY_SPEED, Touch};
 use crate::numeric::Scalar;
 
-impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
+impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// The mass reaches the stop of `end` with outward speed `speed` > 0.
     pub fn strike(&mut self, end: End, speed: T) {
         let sign = end.sign::<T>();
@@ -50,7 +50,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             + damping * damping
             + stop.stiffness.abs()
             + snap.abs() / acceleration;
-        let squares = self.stepper.circuit_stiffness().map_or(squares, |own| squares + own);
+        let squares = self.stepper.circuit_stiffness().map_or(squares, |stiffness| squares + stiffness);
         let change = whole * whole * squares;
         if change > T::of(2.5e-3) || whole * change > T::of(0.1 * self.stepper.settings.tolerance) {
             return false;

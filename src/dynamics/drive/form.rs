@@ -1,4 +1,4 @@
-//! Builder of a model's drive: its simplest form, in kernel units.
+//! Builder of a model's drive, in kernel units.
 
 use std::sync::Arc;
 
@@ -6,8 +6,7 @@ use super::Still;
 use super::base_at;
 use super::chirp::Chirp;
 use super::circuit::Circuit;
-use super::composite::{Composite, FEW_TONES};
-use super::coupled::Coupled;
+use super::general::{FEW_TONES, General};
 use super::lines::Lines;
 use super::record::{Line, Record};
 use super::tone::{Ramp, Sine, Tone, TurnsPerCycle};
@@ -32,36 +31,71 @@ impl Model {
     pub fn base_acceleration(&self, t: f64) -> f64 {
         let unit = self.scales.unit();
         let clock = clock::<f64>(self, unit);
-        let drive = composite(self, unit, &clock);
+        let drive = sum(self, unit, &clock);
         let at = clock.at(t);
         let segment = drive.segment_ends.iter().filter(|end| clock.between(end, &at) >= 0.0).count();
         base_at(&drive, &clock, segment, &at, unit)
     }
 }
 
-/// The forms of a drive.
+/// A drive in the type that is fastest for it.
 #[derive(Debug)]
 pub(crate) enum Form<T> {
     Still(Still<T>),
     Sine(Sine<T>),
-    Composite(Composite<T>),
-    Coupled(Coupled<T>),
+    General(General<T>),
 }
 
-/// The simplest form that this model's drive has.
-pub(crate) fn form<T: Scalar>(model: &Model, clock: &Clock<T>) -> Form<T> {
-    let drive = &model.excitation;
-    let unit = clock.unit();
-    if let Some(circuit) = circuit(model, unit) {
-        return Form::Coupled(Coupled { drive: composite(model, unit, clock), circuit });
-    }
-    match drive.tones.as_slice() {
-        _ if !(drive.chirps.is_empty() && drive.records.is_empty()) => {
-            Form::Composite(composite(model, unit, clock))
+/// Evaluates an expression with the drive of a form in its own type.
+macro_rules! with_drive {
+    ($form:expr, $drive:ident => $call:expr) => {
+        match $form {
+            $crate::dynamics::drive::form::Form::Still($drive) => $call,
+            $crate::dynamics::drive::form::Form::Sine($drive) => $call,
+            $crate::dynamics::drive::form::Form::General($drive) => $call,
         }
-        [] => Form::Still(still(model, unit)),
-        [tone] if drive.constant == 0.0 && tone.ramp.is_none() => Form::Sine(sine(model, unit)),
-        _ => Form::Composite(composite(model, unit, clock)),
+    };
+}
+pub(crate) use with_drive;
+
+/// The type of a drive.
+#[derive(PartialEq)]
+enum Kind {
+    Still,
+    Sine,
+    General,
+}
+
+impl Kind {
+    fn of(model: &Model) -> Self {
+        let drive = &model.excitation;
+        let alone = drive.chirps.is_empty() && drive.records.is_empty() && model.circuit().is_none();
+        match drive.tones.as_slice() {
+            [] if alone => Self::Still,
+            [tone] if alone && drive.constant == 0.0 && tone.ramp.is_none() => Self::Sine,
+            _ => Self::General,
+        }
+    }
+}
+
+/// This model's drive in the type that is fastest for it.
+pub(crate) fn form<T: Scalar>(model: &Model, clock: &Clock<T>) -> Form<T> {
+    let unit = clock.unit();
+    match Kind::of(model) {
+        Kind::Still => Form::Still(Still { acceleration: T::of(model.excitation.constant * (unit * unit)) }),
+        Kind::Sine => Form::Sine(sine(model, unit)),
+        Kind::General => Form::General(general(model, clock)),
+    }
+}
+
+/// This model's drive in the one type that any drive has.
+pub(crate) fn general<T: Scalar>(model: &Model, clock: &Clock<T>) -> General<T> {
+    let (kind, unit) = (Kind::of(model), clock.unit());
+    General {
+        sine: (kind == Kind::Sine).then(|| sine(model, unit)),
+        still: kind == Kind::Still,
+        circuit: circuit(model, unit),
+        ..sum(model, unit, clock)
     }
 }
 
@@ -77,18 +111,14 @@ pub(crate) fn clock<T: Scalar>(model: &Model, unit: f64) -> Clock<T> {
 
 /// The circuit of the model's transducer, where that has a state.
 fn circuit<T: Scalar>(model: &Model, unit: f64) -> Option<Circuit<T>> {
-    let own = model.circuit()?;
-    let (coupling, decay) = (own.coupling * unit, own.decay * unit);
+    let circuit = model.circuit()?;
+    let (coupling, decay) = (circuit.coupling * unit, circuit.decay * unit);
     let Scales { speed, time, .. } = model.scales;
     let (speed, time) = (speed * unit, time / unit);
     // As large as the motion makes it: by what it moves, and by what it can give.
     let moved = speed * (coupling.abs() * time / (1.0 + decay * time)).min(1.0);
-    let scale = if moved > 0.0 { moved } else { own.state(model.start_electrical) * unit };
+    let scale = if moved > 0.0 { moved } else { circuit.state(model.start_electrical) * unit };
     Some(Circuit::new(T::of(coupling), T::of(decay), T::of(scale.abs())))
-}
-
-fn still<T: Scalar>(model: &Model, unit: f64) -> Still<T> {
-    Still { acceleration: T::of(model.excitation.constant * (unit * unit)) }
 }
 
 fn sine<T: Scalar>(model: &Model, unit: f64) -> Sine<T> {
@@ -113,13 +143,14 @@ fn tone<T: Scalar>(tone: &TonePart, fastest: f64, unit: f64, holds_from_segment:
     }
 }
 
-fn composite<T: Scalar>(model: &Model, unit: f64, clock: &Clock<T>) -> Composite<T> {
+/// The sum of a drive's parts.
+fn sum<T: Scalar>(model: &Model, unit: f64, clock: &Clock<T>) -> General<T> {
     let drive = &model.excitation;
     let square = unit * unit;
     let ramps = drive.tones.iter().filter_map(|t| t.ramp.map(|r| r.1));
     let chirps = drive.chirps.iter().map(|c| c.over);
-    let pieces: Vec<_> = drive.records.iter().map(|own| (own, pieces::<T>(model, own))).collect();
-    let samples = pieces.iter().flat_map(|(own, pieces)| corners(own, pieces));
+    let pieces: Vec<_> = drive.records.iter().map(|record| (record, pieces::<T>(model, record))).collect();
+    let samples = pieces.iter().flat_map(|(record, pieces)| corners(record, pieces));
     let outlasting = ramps.clone().any(|over| over > model.duration);
     let mut ends: Vec<f64> =
         ramps.chain(chirps).chain(samples).filter(|t| *t > 0.0 && *t <= model.duration).collect();
@@ -132,7 +163,7 @@ fn composite<T: Scalar>(model: &Model, unit: f64, clock: &Clock<T>) -> Composite
     let tones: Vec<Tone<T>> = drive
         .tones
         .iter()
-        .map(|own| tone(own, clocked, unit, own.ramp.map_or(0, |r| holds_from(r.1))))
+        .map(|part| tone(part, clocked, unit, part.ramp.map_or(0, |r| holds_from(r.1))))
         .collect();
     let is_line = |tone: &Tone<T>| !tone.quarter && tone.ramp.is_none();
     let many = tones.iter().filter(|tone| is_line(tone)).count() > FEW_TONES;
@@ -144,7 +175,8 @@ fn composite<T: Scalar>(model: &Model, unit: f64, clock: &Clock<T>) -> Composite
         over: chirp.over,
         holds_from_segment: holds_from(chirp.over),
     });
-    let records = pieces.iter().map(|(own, pieces)| record((own, Arc::clone(pieces)), model, clock, segment));
+    let records =
+        pieces.iter().map(|(source, pieces)| record((source, Arc::clone(pieces)), model, clock, segment));
     let largest = |tone: &TonePart| tone.amplitude.abs().max(tone.ramp.map_or(0.0, |r| r.0.abs()));
     let reach = drive.tones.iter().map(largest).sum::<f64>()
         + drive.chirps.iter().map(|c| c.amplitude.abs()).sum::<f64>()
@@ -152,7 +184,10 @@ fn composite<T: Scalar>(model: &Model, unit: f64, clock: &Clock<T>) -> Composite
     let moving = drive.tones.iter().filter(|t| largest(t) > 0.0).map(|t| t.frequency);
     let sweeping = drive.chirps.iter().filter(|c| c.amplitude != 0.0).map(|c| c.from.max(c.to));
     let fastest = moving.chain(sweeping).fold(0.0, f64::max) * unit;
-    Composite {
+    General {
+        sine: None,
+        still: false,
+        circuit: None,
         constant: T::of(drive.constant * square),
         tones,
         lines: Lines::new(&steady),

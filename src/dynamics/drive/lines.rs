@@ -59,7 +59,7 @@ impl<T: Scalar> Lines<T> {
                 omega: of(|tone| T::tau() * tone.frequency),
                 phase: of(|tone| tone.phase),
                 ratio: std::array::from_fn(|i| {
-                    tones.get(i).map_or(TurnsPerCycle::Rounded(0.0), |own| own.ratio)
+                    tones.get(i).map_or(TurnsPerCycle::Rounded(0.0), |tone| tone.ratio)
                 }),
             }
         };
@@ -82,7 +82,7 @@ impl<T: Scalar> Lines<T> {
             cursor.starts.extend(self.groups.iter().map(|group| group.starts(at.cycle)));
         }
         let zero = [T::zero(); BESIDE];
-        cursor.terms.iter_mut().for_each(|own| own.resize(self.groups.len(), zero));
+        cursor.terms.iter_mut().for_each(|term| term.resize(self.groups.len(), zero));
         let [even, odd] = &mut cursor.terms;
         let of_all = widest(
             #[inline(always)]
@@ -104,9 +104,9 @@ impl<T: Scalar> Lines<T> {
                         third[i] = curvature * slope[i] * T::of(1.0 / 6.0);
                     }
                     (*even, *odd) = (second, third);
-                    for (column, own) in columns.iter_mut().zip([value, slope, second, third]) {
+                    for (column, more) in columns.iter_mut().zip([value, slope, second, third]) {
                         for i in 0..BESIDE {
-                            column[i] += own[i];
+                            column[i] += more[i];
                         }
                     }
                 }
@@ -129,12 +129,12 @@ impl<T: Scalar> Lines<T> {
             || {
                 let mut columns = [T::zero(); BESIDE];
                 for (group, term) in self.groups.iter().zip(terms.iter_mut()) {
-                    let mut own = *term;
+                    let mut next = *term;
                     for i in 0..BESIDE {
-                        own[i] = -(group.omega[i] * group.omega[i]) * own[i] * share;
-                        columns[i] += own[i];
+                        next[i] = -(group.omega[i] * group.omega[i]) * next[i] * share;
+                        columns[i] += next[i];
                     }
-                    *term = own;
+                    *term = next;
                 }
                 columns
             },

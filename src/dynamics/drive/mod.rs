@@ -1,16 +1,14 @@
 //! Drive: acceleration of the base in kernel units, as a series about any instant.
 //!
-//! There are three forms, a constant, one sine and a sum of anything, and that with a circuit beside it; one
-//! is chosen per run, so that a
-//! scene pays only for what it names. A tone is evaluated from the clock's exact phase at the start of a step
+//! There are three types, a constant, one sine, and a sum of anything with or without a circuit beside it;
+//! one is chosen per run, so that a scene pays only for what it names. A tone is evaluated from the clock's exact phase at the start of a step
 //! and continued by its own series, d\[k+2\] = -w^2 d\[k\] / ((k+1)(k+2)), so nothing drifts and no library
 //! function is called.
 
 mod chirp;
 pub(crate) mod circuit;
-pub(crate) mod composite;
-pub(crate) mod coupled;
 pub(crate) mod form;
+pub(crate) mod general;
 pub(crate) mod lines;
 mod record;
 mod release;
@@ -21,10 +19,18 @@ use crate::dynamics::series::{ROOM, Tail};
 use crate::numeric::Scalar;
 use circuit::Circuit;
 
+/// Acceleration of the base at any instant, in kernel units: all that a record asks of a drive.
+pub(crate) trait Base<T> {
+    /// a(t) at `at`.
+    fn acceleration(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize) -> T;
+}
+
 /// Acceleration of the base, in kernel units.
-pub(crate) trait Drive<T: Scalar>: Tail<T> {
+pub(crate) trait Drive<T: Scalar>: Tail<T> + Base<T> {
     /// Whether half a cycle of the clock later it is always the opposite.
-    const ODD: bool = false;
+    fn is_odd(&self) -> bool {
+        false
+    }
 
     /// What it adds to the cost of a step with a series of this order, in units of
     /// [`work`](crate::dynamics::step::work).
@@ -40,7 +46,7 @@ pub(crate) trait Drive<T: Scalar>: Tail<T> {
 
     /// Coefficients of the circuit's state.
     #[inline(always)]
-    fn circuit_state(_: &Self::Cursor) -> Option<&[T; ROOM]> {
+    fn circuit_state<'a>(&self, _: &'a Self::Cursor) -> Option<&'a [T; ROOM]> {
         None
     }
 
@@ -67,13 +73,6 @@ pub(crate) trait Drive<T: Scalar>: Tail<T> {
         a: &mut [T; ROOM],
         cursor: &mut Self::Cursor,
     );
-
-    /// a(t) at `at`.
-    fn acceleration(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize) -> T {
-        let mut a = [T::zero(); ROOM];
-        self.seed(clock, at, segment, &mut a, &mut Self::Cursor::default());
-        a[0]
-    }
 
     /// a(t) at `at` by itself, not by the series: what a step is checked against. A drive of many tones may
     /// answer with `by_series`, the value of its series.
@@ -150,10 +149,20 @@ pub(crate) struct Still<T> {
 
 impl<T: Scalar> Tail<T> for Still<T> {
     type Cursor = ();
-    const ZERO_FROM: usize = 1;
+
+    #[inline(always)]
+    fn zero_from(&self) -> usize {
+        1
+    }
 
     #[inline]
     fn extend(&self, _: usize, _: &mut [T; ROOM], _: &[T; ROOM], (): &mut ()) {}
+}
+
+impl<T: Scalar> Base<T> for Still<T> {
+    fn acceleration(&self, _: &Clock<T>, _: &Instant<T>, _: usize) -> T {
+        self.acceleration
+    }
 }
 
 impl<T: Scalar> Drive<T> for Still<T> {
@@ -180,8 +189,8 @@ impl<T: Scalar> Drive<T> for Still<T> {
 }
 
 /// Acceleration of the base in m/s^2 at an instant; `unit` is the length of the kernel's time unit in s.
-pub(crate) fn base_at<T: Scalar, D: Drive<T>>(
-    drive: &D,
+pub(crate) fn base_at<T: Scalar>(
+    drive: &dyn Base<T>,
     clock: &Clock<T>,
     segment: usize,
     at: &Instant<T>,

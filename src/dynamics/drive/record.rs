@@ -79,7 +79,7 @@ impl<T: Scalar> Record<T> {
             Place::Before => T::zero(),
             Place::Line(line) => line.value + line.slope * self.clock.between(&line.at, at),
             Place::Piece(piece, s, _) => {
-                let coefficients = piece.polynomial.iter().flat_map(|own| own.iter().rev());
+                let coefficients = piece.polynomial.iter().flat_map(|all| all.iter().rev());
                 let value = coefficients.fold(T::zero(), |sum, c| sum * s + T::of(*c));
                 value * T::of(self.clock.unit() * self.clock.unit())
             }
@@ -121,20 +121,20 @@ impl<T: Scalar> Record<T> {
             Place::Before => return,
             Place::Line(line) => (line.value + line.slope * self.clock.between(&line.at, at), line.slope),
             Place::Piece(piece, s, half) => {
-                let mut own = [T::zero(); DEGREE + 1];
+                let mut about = [T::zero(); DEGREE + 1];
                 let coefficients = piece.polynomial.iter().flat_map(|all| all.iter());
-                own.iter_mut().zip(coefficients).for_each(|(own, c)| *own = T::of(*c));
+                about.iter_mut().zip(coefficients).for_each(|(about, c)| *about = T::of(*c));
                 // about s in place of 0
                 for k in 0..DEGREE {
                     for power in (k..DEGREE).rev() {
-                        let above = own[power + 1];
-                        own[power] += s * above;
+                        let above = about[power + 1];
+                        about[power] += s * above;
                     }
                 }
                 let (mut scale, unit) =
                     (T::of(self.clock.unit() * self.clock.unit()), T::of(self.clock.unit() / half));
-                for (sum, own) in series.a.iter_mut().zip(own) {
-                    *sum += own * scale;
+                for (sum, c) in series.a.iter_mut().zip(about) {
+                    *sum += c * scale;
                     scale = scale * unit;
                 }
                 series.known = DEGREE + 1;

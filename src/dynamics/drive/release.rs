@@ -131,9 +131,9 @@ impl<'a, T: Scalar, D: Drive<T>> Search<'a, T, D> {
                 at = clock.advance(&at, T::of(2.0) * rounding / slope * h);
             } else {
                 let root = clock.advance(&at, s * h);
-                let own = self.own_root(&root, cursor);
-                let own = own.filter(|(own, _)| clock.between(&from, own) > T::zero());
-                let (root, turn) = own.map_or((root, None), |(own, turn)| (own, Some(turn)));
+                let exact = self.exact_root(&root, cursor);
+                let exact = exact.filter(|(at, _)| clock.between(&from, at) > T::zero());
+                let (root, turn) = exact.map_or((root, None), |(at, turn)| (at, Some(turn)));
                 return (ReleaseRoot::within(clock, root, turn, &until), work);
             }
         }
@@ -155,11 +155,12 @@ impl<'a, T: Scalar, D: Drive<T>> Search<'a, T, D> {
             power = power * h;
         }
         g[0] += *threshold;
-        if let Some(own) = &self.decaying {
-            let mut term = *sign * own.push * decay(own.rate * self.clock.between(&own.since, at)).0;
+        if let Some(decaying) = &self.decaying {
+            let mut term =
+                *sign * decaying.push * decay(decaying.rate * self.clock.between(&decaying.since, at)).0;
             for (k, slot) in g[..=order].iter_mut().enumerate() {
                 *slot -= term;
-                term = -(term * (own.rate * h) / T::whole(k + 1));
+                term = -(term * (decaying.rate * h) / T::whole(k + 1));
             }
         }
         Stride { g, order }
@@ -168,7 +169,7 @@ impl<'a, T: Scalar, D: Drive<T>> Search<'a, T, D> {
     /// The root near `found`, computed from the drive alone, and the clock's cycle within the common period:
     /// it is the same number whenever the search began. None where the drive does not repeat, or by more than
     /// rounding.
-    fn own_root(&mut self, root: &Instant<T>, cursor: &mut D::Cursor) -> Option<(Instant<T>, i64)> {
+    fn exact_root(&mut self, root: &Instant<T>, cursor: &mut D::Cursor) -> Option<(Instant<T>, i64)> {
         let cycles = self.common_cycles?;
         if !(self.fastest > T::zero()) {
             return None;
@@ -181,13 +182,13 @@ impl<'a, T: Scalar, D: Drive<T>> Search<'a, T, D> {
         let Stride { g, order } = self.stride(&start, stride, cursor);
         let near = clock.between(&start, root) / stride;
         let mut found = None;
-        PolynomialRoots::new(&g[..=order]).each_sign_change(|s| {
+        PolynomialRoots::new(&g[..=order]).each_sign_change(&mut |s| {
             if (s - near).abs() <= T::of(SAME_ROOT) {
                 found = Some(s);
             }
             found.is_none()
         });
-        let own = clock.advance(&start, found? * stride);
-        Some((own, own.cycle.rem_euclid(cycles)))
+        let exact = clock.advance(&start, found? * stride);
+        Some((exact, exact.cycle.rem_euclid(cycles)))
     }
 }

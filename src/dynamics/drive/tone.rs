@@ -1,6 +1,6 @@
 //! Tone: one sine with an optional amplitude ramp, its series, and its release root.
 
-use super::{ContactAcceleration, Drive, ReleaseRoot, Span};
+use super::{Base, ContactAcceleration, Drive, ReleaseRoot, Span};
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::series::{ROOM, Tail};
 use crate::numeric::{DoubleDouble, Number, Ratio, Scalar};
@@ -153,8 +153,16 @@ impl<T: Scalar> Tail<T> for Sine<T> {
     }
 }
 
+impl<T: Scalar> Base<T> for Sine<T> {
+    fn acceleration(&self, _: &Clock<T>, at: &Instant<T>, _: usize) -> T {
+        self.tone.amplitude * self.unit(at).0
+    }
+}
+
 impl<T: Scalar> Drive<T> for Sine<T> {
-    const ODD: bool = true;
+    fn is_odd(&self) -> bool {
+        true
+    }
 
     fn bend(&self) -> Option<T> {
         Some((self.tone.amplitude * self.tone.curvature()).abs())

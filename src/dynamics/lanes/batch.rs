@@ -296,7 +296,8 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         let flow = if trial.holds[lane] && trial.length.0[lane] < left {
             copy_lane(&own.series, lane, own.order, &mut motion.stepper.series);
             let alone = &mut motion.stepper.series;
-            alone.measured = trial.measured[lane].then(|| (trial.length.0[lane], trial.squared.0[lane]));
+            let measured = (trial.length.0[lane], (trial.squared.0[lane], 0.0));
+            alone.measured.set(trial.measured[lane].then_some(measured));
             motion.stepper.evaluations += 1;
             motion.stepper.cursor = Some(trial.drive_at_end(lane));
             motion.take(&Step { length: trial.length.0[lane], arrival: None, end: trial.end(lane) })
@@ -342,7 +343,8 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         let mode = motion.stepper.mode(&motion.state);
         let (length, end) = (trial.length.0[lane], trial.end(lane));
         let state = (end.y + mode.origin, end.v);
-        let view = motion.stepper.view(&motion.state, (length, length), end.bound, state);
+        let path = &motion.stepper.series;
+        let view = motion.stepper.view(&motion.state, path, (length, length, length), end.bound, state);
         if let Some(log) = &mut motion.log {
             log.add_step(&view);
         }

@@ -4,7 +4,7 @@
 //! microseconds and keeps the integrator free of any thought of being continued.
 
 use crate::dynamics::clock::Clock;
-use crate::dynamics::drive::form::{Form, clock, form};
+use crate::dynamics::drive::form::{Form, clock, form, with_drive};
 use crate::dynamics::drive::{Drive, base_at};
 use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
@@ -58,18 +58,6 @@ pub(crate) struct Stretch {
     pub exhausted: bool,
 }
 
-/// Calls a method of the kernel with the drive in its own type.
-macro_rules! with_drive {
-    ($self:ident, $drive:ident => $call:expr) => {
-        match &*$self.drive {
-            Form::Still($drive) => $call,
-            Form::Sine($drive) => $call,
-            Form::Composite($drive) => $call,
-            Form::Coupled($drive) => $call,
-        }
-    };
-}
-
 impl Kernel {
     pub fn new(model: &Model) -> Self {
         let unit = model.scales.unit();
@@ -90,13 +78,13 @@ impl Kernel {
     /// Acceleration of the base in m/s^2.
     pub fn base(&self, carried: &Checkpoint<f64>) -> f64 {
         let MotionState { at, segment, .. } = &carried.state;
-        with_drive!(self, drive => base_at(drive, &self.clock, *segment, at, self.unit()))
+        with_drive!(&*self.drive, drive => base_at(drive, &self.clock, *segment, at, self.unit()))
     }
 
     /// Acceleration of the base in m/s^2 at a time in s.
     pub fn base_at(&self, t: f64) -> f64 {
         let at = self.clock.at(t);
-        with_drive!(self, drive => base_at(drive, &self.clock, self.segment(drive, t), &at, self.unit()))
+        with_drive!(&*self.drive, drive => base_at(drive, &self.clock, self.segment(drive, t), &at, self.unit()))
     }
 
     /// The segment of the drive at a time in s.
@@ -109,13 +97,13 @@ impl Kernel {
         segment
     }
 
-    fn motion<'a, D: Drive<f64>, const LEDGER: bool>(
+    fn motion<'a, D: Drive<f64>>(
         &'a self,
         model: &'a Model,
         drive: &'a D,
         request: &Request<'a>,
         from: Option<&Checkpoint<f64>>,
-    ) -> Motion<'a, f64, D, LEDGER> {
+    ) -> Motion<'a, f64, D> {
         let mut motion = Motion::new(model, request, model.tolerance, &self.equation, self.clock, drive);
         motion.record.next_strobe = None; // a live run is not judged
         if let Some(from) = from {
@@ -126,12 +114,12 @@ impl Kernel {
 
     /// The model's start put into the time `now` in s, and what happens there at once.
     pub fn start(&self, model: &Model, now: f64) -> (Checkpoint<f64>, Vec<Event>) {
-        with_drive!(self, drive => self.start_with(model, now, drive))
+        with_drive!(&*self.drive, drive => self.start_with(model, now, drive))
     }
 
     fn start_with<D: Drive<f64>>(&self, model: &Model, now: f64, drive: &D) -> (Checkpoint<f64>, Vec<Event>) {
         let request = Request { events: true, ..Request::default() };
-        let mut motion = self.motion::<D, false>(model, drive, &request, None);
+        let mut motion = self.motion(model, drive, &request, None);
         motion.state.at = self.clock.at(now);
         motion.state.segment = self.segment(drive, now);
         motion.place_at_start();
@@ -140,7 +128,7 @@ impl Kernel {
 
     /// Steps on from `head` until a step has passed `to` in s.
     pub fn proceed(&self, model: &Model, head: &Checkpoint<f64>, to: f64, times: &[f64]) -> Stretch {
-        with_drive!(self, drive => self.proceed_with(model, head, to, times, drive))
+        with_drive!(&*self.drive, drive => self.proceed_with(model, head, to, times, drive))
     }
 
     fn proceed_with<D: Drive<f64>>(
@@ -152,7 +140,7 @@ impl Kernel {
         drive: &D,
     ) -> Stretch {
         let request = Request { sample_times: times, events: true, ledger: true, ..Request::default() };
-        let mut motion = self.motion::<D, true>(model, drive, &request, Some(head));
+        let mut motion = self.motion(model, drive, &request, Some(head));
         let until = self.clock.at(to);
         let (mut last, mut ended) = (None, None);
         while ended.is_none()
@@ -189,7 +177,7 @@ impl Kernel {
         into: &mut Vec<Sample>,
     ) {
         if !times.is_empty() {
-            with_drive!(self, drive => self.look_with(model, tail, head, times, into, drive));
+            with_drive!(&*self.drive, drive => self.look_with(model, tail, head, times, into, drive));
         }
     }
 
@@ -208,17 +196,17 @@ impl Kernel {
             into.extend(times.iter().map(|&t| {
                 let base_accel =
                     base_at(drive, &self.clock, tail.state.segment, &self.clock.at(t), self.unit());
-                let electrical = model.circuit().map_or(0.0, |own| {
+                let electrical = model.circuit().map_or(0.0, |circuit| {
                     let time = self.clock.between(&tail.state.at, &self.clock.at(t)).max(0.0);
-                    let left = decay(own.decay * self.unit() * time).0;
-                    own.amount * (tail.state.circuit * left) / self.unit()
+                    let left = decay(circuit.decay * self.unit() * time).0;
+                    circuit.amount * (tail.state.circuit * left) / self.unit()
                 });
                 Sample { t, x, v: 0.0, base_accel, phase, electrical }
             }));
             return;
         }
         let request = Request { sample_times: times, ..Request::default() };
-        let mut motion = self.motion::<D, false>(model, drive, &request, Some(tail));
+        let mut motion = self.motion(model, drive, &request, Some(tail));
         while self.clock.between(&motion.state.at, &head.state.at) > 0.0
             && motion.stepper.work.done() < WORK_PER_CALL
         {
@@ -239,7 +227,7 @@ impl Kernel {
         head: &Checkpoint<f64>,
         now: f64,
     ) -> Option<(Checkpoint<f64>, Sums)> {
-        with_drive!(self, drive => self.present_with(model, tail, head, now, drive))
+        with_drive!(&*self.drive, drive => self.present_with(model, tail, head, now, drive))
     }
 
     fn present_with<D: Drive<f64>>(
@@ -255,7 +243,7 @@ impl Kernel {
             return None;
         }
         let request = Request { ledger: true, ..Request::default() };
-        let mut motion = self.motion::<D, true>(model, drive, &request, Some(tail));
+        let mut motion = self.motion(model, drive, &request, Some(tail));
         motion.stepper.end = at;
         while motion.stepper.work.done() < WORK_PER_CALL {
             let left = motion.stepper.left(&motion.state);
@@ -267,7 +255,7 @@ impl Kernel {
     }
 }
 
-fn sums<D: Drive<f64>>(motion: &Motion<'_, f64, D, true>) -> Sums {
+fn sums<D: Drive<f64>>(motion: &Motion<'_, f64, D>) -> Sums {
     let whole = &motion.record.whole;
     Sums {
         work: whole.work.value(),

@@ -193,7 +193,9 @@ impl Live {
 
     /// Electrical state of the transducer, in A or V; 0 where it has none.
     fn electrical(&self, carried: &Checkpoint<f64>) -> f64 {
-        self.model.circuit().map_or(0.0, |own| own.amount * carried.state.circuit / self.kernel.unit())
+        self.model
+            .circuit()
+            .map_or(0.0, |circuit| circuit.amount * carried.state.circuit / self.kernel.unit())
     }
 
     /// The state at the present time and the energies from the tail to there.
@@ -246,7 +248,7 @@ impl Live {
         self.past.add(&sums, &self.model);
         // Where a stop was pressed in, it stays so: only what a stop is moved over is carried along.
         let depth = self.model.pressed_depth(wanted.0).filter(|_| was != Phase::Free);
-        let depth = depth.filter(|_| next.compliant.is_some()).map_or(0.0, |own| own.0);
+        let depth = depth.filter(|_| next.compliant.is_some()).map_or(0.0, |depth| depth.0);
         next.start = next.held_within(wanted, depth);
         next.motionless = false;
         next.start_electrical = next.taken_over(&self.model, self.electrical(&carried));
@@ -333,12 +335,12 @@ impl LiveLedger {
         self.work_j += sums.work * energy;
         self.damping_j += model.damping * sums.squared_velocity / unit;
         self.impact_j += sums.impact * energy;
-        if let Some(own) = &model.transducer {
-            let squared = match &own.circuit {
+        if let Some(transducer) = &model.transducer {
+            let squared = match &transducer.circuit {
                 Some(circuit) => circuit.amount * circuit.amount * sums.circuit,
                 None => sums.squared_velocity,
             };
-            let (load, coil) = own.energies(squared / unit);
+            let (load, coil) = transducer.energies(squared / unit);
             self.harvested_j += load;
             self.coil_j += coil;
         }

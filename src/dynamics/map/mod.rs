@@ -12,7 +12,7 @@ mod jacobian;
 mod passage;
 
 use super::clock::{Clock, Instant};
-use super::drive::form::{Form, clock, form};
+use super::drive::form::{Form, clock, form, with_drive};
 use super::equation::Equation;
 use super::model::Model;
 use crate::numeric::{Dual, Scalar};
@@ -147,7 +147,7 @@ impl StroboscopicMap {
             return (passage, Jacobian { rows: [[0.0; 2]; 2] });
         }
         let in_si = [1.0, unit];
-        let row = |own: Dual, out: f64| std::array::from_fn(|j| own.slopes[j] / scales[j] * in_si[j] / out);
+        let row = |end: Dual, out: f64| std::array::from_fn(|j| end.slopes[j] / scales[j] * in_si[j] / out);
         (passage, Jacobian { rows: [row(end.0, 1.0), row(end.1, unit)] })
     }
 
@@ -163,11 +163,6 @@ impl StroboscopicMap {
             Length::Seconds(seconds) => clock.at(seconds * periods),
         };
         let span = (after(from), after(to));
-        match drive {
-            Form::Still(drive) => passage::trace(&self.model, equation, *clock, drive, start, span),
-            Form::Sine(drive) => passage::trace(&self.model, equation, *clock, drive, start, span),
-            Form::Composite(drive) => passage::trace(&self.model, equation, *clock, drive, start, span),
-            Form::Coupled(drive) => passage::trace(&self.model, equation, *clock, drive, start, span),
-        }
+        with_drive!(drive, drive => passage::trace(&self.model, equation, *clock, drive, start, span))
     }
 }

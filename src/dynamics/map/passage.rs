@@ -110,7 +110,7 @@ pub(super) fn trace<T: Scalar, D: Drive<T>>(
     (from, to): (Instant<T>, Instant<T>),
 ) -> Traced<T> {
     let request = Request { events: true, ..Request::default() };
-    let mut motion = Motion::<T, D, false>::new(model, &request, model.tolerance, equation, clock, drive);
+    let mut motion = Motion::new(model, &request, model.tolerance, equation, clock, drive);
     motion.stepper.end = to;
     motion.record.next_strobe = None;
     let mode = equation.mode_at(x, model.mechanism.curve.piece_index(x.to_f64()));
@@ -169,7 +169,7 @@ fn squared_restitutions(model: &Model, events: &[Event]) -> f64 {
 /// Adds the places before a stop at which the mass turned back on the step that was just taken from the state
 /// `before`.
 fn add_misses<T: Scalar, D: Drive<T>>(
-    motion: &Motion<'_, T, D, false>,
+    motion: &Motion<'_, T, D>,
     before: &MotionState<T>,
     misses: &mut Vec<Miss>,
 ) {
@@ -185,17 +185,17 @@ fn add_misses<T: Scalar, D: Drive<T>>(
     let multiplicity =
         before.touch.map_or(1, |touch| if touch.multiplicity == HELD { 1 } else { touch.multiplicity });
     let (mut velocity, mut power) = (Vec::with_capacity(series.known), 1.0);
-    for (k, c) in series.y[..series.known].iter().enumerate().skip(1) {
+    for (k, c) in series.coefficients().iter().enumerate().skip(1) {
         velocity.push(if k < multiplicity { 0.0 } else { k as f64 * c.to_f64() * power });
         power *= length;
     }
     // A mass that begins at rest has not turned there, and one that stands still to rounding turns nowhere.
     let Some(first) = velocity.iter().find(|coefficient| **coefficient != 0.0) else { return };
     let mut rises = *first > 0.0;
-    let place = |t: f64| series.y[..series.known].iter().rev().fold(0.0, |sum, c| sum * t + c.to_f64());
+    let place = |t: f64| series.coefficients().iter().rev().fold(0.0, |sum, c| sum * t + c.to_f64());
     let (first, last) = (place(0.0), place(length));
     let rounding = ROUNDINGS * f64::EPSILON * before.x.to_f64().abs();
-    PolynomialRoots::new(&velocity).each_sign_change(|s| {
+    PolynomialRoots::new(&velocity).each_sign_change(&mut |s| {
         let (end, side) = if rises { (End::High, Side::Right) } else { (End::Low, Side::Left) };
         rises = !rises;
         let y = place(s * length);

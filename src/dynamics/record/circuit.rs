@@ -7,10 +7,10 @@ use crate::dynamics::series::polynomial;
 use crate::dynamics::step::path::{Path, StepView};
 use crate::numeric::{GaussLegendre, Scalar, decay};
 
-impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
+impl<T: Scalar> Recorder<'_, T> {
     /// The electrical state of a sample in its own unit.
     pub(crate) fn electrical(&self, state: T) -> f64 {
-        self.model.circuit().map_or(0.0, |own| own.amount * state.to_f64() / self.unit)
+        self.model.circuit().map_or(0.0, |circuit| circuit.amount * state.to_f64() / self.unit)
     }
 
     /// Records the circuit's state over a step, where there is one.
@@ -21,9 +21,9 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         rule: &GaussLegendre<T>,
         overlap: Option<(T, T)>,
     ) {
-        let Some(state) = step.path.circuit() else { return };
+        let Some(state) = step.circuit else { return };
         let whole = || polynomial::squared(state, rule, T::zero(), step.length);
-        if LEDGER {
+        if self.ledger {
             self.whole.circuit.add(whole());
         }
         if let Some((from, to)) = overlap {
@@ -46,7 +46,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             let begin = state * decay(circuit.decay * from).0;
             begin * begin * (to - from) * decay(rate * (to - from)).1
         };
-        if LEDGER {
+        if self.ledger {
             self.whole.circuit.add(squared(T::zero(), length));
         }
         if let Some((from, to)) = self.overlap(at, length) {

@@ -9,14 +9,14 @@ use crate::dynamics::step::chord::Chord;
 use crate::dynamics::step::path::{Path, StepView};
 use crate::numeric::Scalar;
 
-impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
+impl<T: Scalar> Recorder<'_, T> {
     /// Records the crossings of the barrier within a step that starts `gap` to the right of it and ends on
     /// `end_side`.
     pub fn crossings<P: Path<T>>(&mut self, step: &StepView<T, P>, gap: T, end_side: i8) {
         // Where the velocity keeps its sign the ends decide.
         if end_side == self.barrier_side
             && end_side == side_of(gap, T::zero())
-            && let Some((y, _)) = step.path.in_time()
+            && let Some(y) = step.path.in_time()
             && Chord::new(y, (gap, step.x), (step.length, step.v), step.bound, step.limits).is_monotone()
         {
             return;
@@ -39,7 +39,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         }
         let mut found = [T::zero(); ROOM];
         let mut count = crossings.at_once;
-        crossings.roots.each_sign_change(|s| {
+        crossings.roots.each_sign_change(&mut |s| {
             let t = s * step.whole;
             if t > step.length || count == found.len() {
                 return false;

@@ -26,7 +26,7 @@ pub(crate) struct EventFree<T> {
     pub covered: CompensatedSum<T>,
 }
 
-impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
+impl<T: Scalar> Recorder<'_, T> {
     /// Whether event-free steps need not be recorded one by one: no samples are left to take.
     #[inline]
     pub fn needs_no_samples(&self) -> bool {
@@ -39,9 +39,9 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         let (from, to) = (&self.window.0, &self.window.1);
         let mut border = *end;
         let ahead = [from, to].into_iter().filter(|border| until(border) > T::zero());
-        for own in ahead.copied().chain(self.next_strobe).chain(self.listings.due()) {
-            if until(&own) < until(&border) {
-                border = own;
+        for next in ahead.copied().chain(self.next_strobe).chain(self.listings.due()) {
+            if until(&next) < until(&border) {
+                border = next;
             }
         }
         let inside = until(from) <= T::zero() && until(to) > T::zero();

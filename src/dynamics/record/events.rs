@@ -74,12 +74,12 @@ impl<T: Scalar> Call<T> {
     }
 }
 
-impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
-    /// Records a call; `base` is the acceleration of the base in m/s^2.
+impl<T: Scalar> Recorder<'_, T> {
+    /// Records a call, in this segment of the drive.
     #[inline(always)]
-    pub fn tell(&mut self, told: &Call<T>, base: impl FnMut(&Instant<T>) -> f64) {
-        match told {
-            Call::Stand { at, until, state, phase } => self.stand(at, until, *state, *phase, base),
+    pub fn tell(&mut self, call: &Call<T>, segment: usize) {
+        match call {
+            Call::Stand { at, until, state, phase } => self.stand((at, until), *state, *phase, segment),
             Call::Impact { at, side, v_in, v_out } => self.impact(at, *side, *v_in, *v_out),
             Call::Chatter { at, v } => self.chatter_sum(at, *v),
             Call::Rest { at, side } => self.rest(at, *side),
@@ -89,11 +89,10 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
 
     fn stand(
         &mut self,
-        at: &Instant<T>,
-        until: &Instant<T>,
+        (at, until): (&Instant<T>, &Instant<T>),
         (x, v): (T, T),
         phase: Phase,
-        mut base: impl FnMut(&Instant<T>) -> f64,
+        segment: usize,
     ) {
         let length = self.clock.between(at, until);
         if let Some((from, to)) = self.overlap(at, length) {
@@ -101,21 +100,21 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             if phase != Phase::Free {
                 self.settled.rested.add(to - from);
             }
-            if LEDGER {
+            if self.ledger {
                 self.settled.displacement.add(x * (to - from));
             }
             self.low = self.low.smaller(x);
             self.high = self.high.larger(x);
         }
-        let mut told = 0;
+        let mut recorded = 0;
         while let Some(strobe) = self.next_strobe {
             if self.clock.between(&strobe, until) <= T::zero() {
                 break;
             }
             self.strobe(x, T::zero());
-            told += 1;
-            if told == STILL {
-                told = 0;
+            recorded += 1;
+            if recorded == STILL {
+                recorded = 0;
                 self.skip_strobes(x, until);
             }
         }
@@ -123,7 +122,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         if self.next_time < self.times.len() {
             let (begin, end) = (self.clock.seconds(at), self.clock.seconds(until));
             while let Some(t) = self.next_sample(end) {
-                let base_accel = base(&self.clock.at(t));
+                let base_accel = self.base(&self.clock.at(t), segment);
                 let v = if t <= begin { v.to_f64() / self.unit } else { 0.0 };
                 self.samples.push(Sample { t, x: x.to_f64(), v, base_accel, phase, electrical: 0.0 });
                 self.next_time += 1;
@@ -134,7 +133,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
     fn impact(&mut self, at: &Instant<T>, side: Side, v_in: T, v_out: T) {
         let taken = (v_in * v_in - v_out * v_out) * T::of(0.5);
         self.whole.impact.add(taken);
-        if LEDGER {
+        if self.ledger {
             self.peak_kinetic = self.peak_kinetic.max(0.5 * (v_in * v_in).to_f64());
         }
         if self.in_window(at) {
@@ -162,7 +161,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         if strikes {
             self.count_impact(at, v);
         }
-        if LEDGER {
+        if self.ledger {
             self.peak_kinetic = self.peak_kinetic.max(0.5 * (v * v).to_f64());
         }
         let v = v.to_f64() / self.unit;

@@ -24,9 +24,9 @@ impl<'a> Goal<'a> {
             return;
         }
         let periods = judge.strobes().seen() - 1;
-        if let Some(which) = self.pursuit.known.iter().position(|own| own.is_reached(state)) {
+        if let Some(which) = self.pursuit.known.iter().position(|known| known.is_reached(state)) {
             self.reached = Some(Arrival::Captured { which, periods });
-        } else if let Some(which) = self.pursuit.regions.iter().position(|own| own.holds(state)) {
+        } else if let Some(which) = self.pursuit.regions.iter().position(|region| region.holds(state)) {
             self.reached = Some(Arrival::Entered { which, periods });
         } else if periods >= self.pursuit.repeats_from {
             let period = judge.strobes().repeats_for(MORE);

@@ -23,7 +23,7 @@ pub(crate) struct Totals<T> {
     listed: Listed<T>,
 }
 
-impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
+impl<T: Scalar> Recorder<'_, T> {
     pub fn totals(&self) -> Totals<T> {
         Totals {
             whole: self.whole,

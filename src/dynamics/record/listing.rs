@@ -123,33 +123,33 @@ impl<T: Scalar> Listings<T> {
     }
 
     pub fn listed(&self) -> Listed<T> {
-        let next = [&self.section, &self.carried].map(|own| own.as_ref().map(|own| own.next));
-        Listed { states: self.section.as_ref().map_or(0, |own| own.states.len()), next }
+        let next = [&self.section, &self.carried].map(|listing| listing.as_ref().map(|listing| listing.next));
+        Listed { states: self.section.as_ref().map_or(0, |section| section.states.len()), next }
     }
 
     /// Adds `laps` more laps of `cycles` cycles of the clock, each like the one from `before` to `after`.
     pub fn repeat(&mut self, before: &Listed<T>, after: &Listed<T>, laps: i64, cycles: i64) {
-        for (own, next) in [&mut self.section, &mut self.carried].into_iter().zip([0, 1]) {
-            let Some(own) = own else { continue };
+        for (listing, next) in [&mut self.section, &mut self.carried].into_iter().zip([0, 1]) {
+            let Some(listing) = listing else { continue };
             if before.next[next] == after.next[next] {
                 continue; // the lap lies before all of them
             }
-            own.next.cycle += laps * cycles;
-            if !own.last_only {
-                let lap = own.states.get(before.states..after.states).unwrap_or_default().to_vec();
-                let more = ((lap.len() as u64).saturating_mul(laps as u64)).min(own.left);
-                own.states.extend(lap.iter().cycle().take(more as usize));
-                own.left -= more;
+            listing.next.cycle += laps * cycles;
+            if !listing.last_only {
+                let lap = listing.states.get(before.states..after.states).unwrap_or_default().to_vec();
+                let more = ((lap.len() as u64).saturating_mul(laps as u64)).min(listing.left);
+                listing.states.extend(lap.iter().cycle().take(more as usize));
+                listing.left -= more;
             }
         }
     }
 
     /// The settled window of so many `periods` begins anew at its end.
     pub fn next_window(&mut self, periods: u64) {
-        if let Some(own) = &mut self.section {
-            own.states.clear();
-            own.first = own.next;
-            own.left = periods.min(MOST_STROBES.into());
+        if let Some(section) = &mut self.section {
+            section.states.clear();
+            section.first = section.next;
+            section.left = periods.min(MOST_STROBES.into());
         }
     }
 
@@ -161,6 +161,6 @@ impl<T: Scalar> Listings<T> {
                 SectionPoint { t: clock.seconds(&at), x, v }
             })
         });
-        (points.collect(), self.carried.and_then(|own| own.states.last().copied()))
+        (points.collect(), self.carried.and_then(|listing| listing.states.last().copied()))
     }
 }

@@ -6,10 +6,10 @@ use super::events::Call;
 use super::laps::Totals;
 use super::recorder::Recorder;
 use crate::dynamics::clock::{Clock, Instant};
-use crate::dynamics::series::polynomial;
+use crate::dynamics::series::Series;
 use crate::dynamics::state::{Checkpoint, Label, MotionState};
-use crate::dynamics::step::path::{InTime, Path, StepView};
-use crate::numeric::{GaussLegendre, Scalar};
+use crate::dynamics::step::path::StepView;
+use crate::numeric::Scalar;
 
 /// The most entries of a log: a motion whose period has more would hardly repeat within a run.
 const MOST_ENTRIES: usize = 1 << 15;
@@ -40,35 +40,6 @@ struct Kept<T: Copy> {
     integrals: usize,
 }
 
-/// A kept step with its coefficients.
-struct KeptPath<'a, T: Copy> {
-    y: &'a [T],
-    a: &'a [T],
-    length: T,
-    integrals: &'a Cell<Option<(T, T)>>,
-}
-
-impl<T: Scalar> InTime for KeptPath<'_, T> {
-    type Number = T;
-
-    fn coefficients(&self) -> &[T] {
-        self.y
-    }
-    fn base_coefficients(&self) -> &[T] {
-        self.a
-    }
-    fn integrals_in_time<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T) {
-        if from != T::zero() || to != self.length {
-            return polynomial::integrals::<T, WORK>(self.y, self.a, rule, from, to);
-        }
-        let known = self.integrals.get();
-        let integrals =
-            known.unwrap_or_else(|| polynomial::integrals::<T, WORK>(self.y, self.a, rule, from, to));
-        self.integrals.set(Some(integrals));
-        integrals
-    }
-}
-
 /// A checkpoint of the motion before a step or a rest.
 #[derive(Debug, Clone, Copy)]
 struct Mark<T> {
@@ -83,7 +54,7 @@ pub(crate) struct Log<T: Copy> {
     entries: Vec<Entry<T>>,
     coefficients: Vec<T>,
     /// Integrals over whole steps, once they have been taken.
-    integrals: Vec<Cell<Option<(T, T)>>>,
+    integrals: Vec<Cell<Option<(T, (T, T))>>>,
     marks: Vec<Mark<T>>,
     /// The releases with a label: where they stand, and what the recorder had then.
     labels: Vec<(Label<T>, usize, Totals<T>)>,
@@ -115,13 +86,13 @@ impl<T: Scalar> Log<T> {
         self.entries.len() < MOST_ENTRIES
     }
 
-    pub fn add(&mut self, told: Call<T>) {
-        self.entries.push(Entry::Call(told));
+    pub fn add(&mut self, call: Call<T>) {
+        self.entries.push(Entry::Call(call));
     }
 
-    /// Keeps a step, where it is one in time.
-    pub fn add_step<P: Path<T>>(&mut self, step: &StepView<T, P>) {
-        let Some((y, a)) = step.path.in_time() else { return };
+    /// Keeps a step of free flight.
+    pub fn add_step(&mut self, step: &StepView<T, Series<T>>) {
+        let (y, a) = (step.path.coefficients(), step.path.base_coefficients());
         let first = self.coefficients.len();
         self.coefficients.extend_from_slice(y);
         self.coefficients.extend_from_slice(a);
@@ -186,14 +157,14 @@ impl<T: Scalar> Log<T> {
         Checkpoint { state, barrier_side }
     }
 
-    /// Replays the recorder calls between two marks (to the end without a second), `later`; their number, and
-    /// that of the impacts among them.
-    pub fn play<const LEDGER: bool>(
+    /// Replays the recorder calls between two marks (to the end without a second), `later`, in this segment of
+    /// the drive; their number, and that of the impacts among them. The steps are put into `series`.
+    pub fn play(
         &self,
-        record: &mut Recorder<T, LEDGER>,
+        (record, series): (&mut Recorder<T>, &mut Series<T>),
         (from, to): (usize, Option<usize>),
         later: Later,
-        mut base: impl FnMut(&Instant<T>) -> f64,
+        segment: usize,
     ) -> (usize, u64) {
         let mut impacts = 0;
         let end = to.map_or(self.entries.len(), |mark| self.marks[mark].entries);
@@ -201,15 +172,16 @@ impl<T: Scalar> Log<T> {
         for entry in entries {
             match entry {
                 Entry::Step(step) => {
-                    let (y, a) =
-                        self.coefficients[step.first..][..step.known + step.base].split_at(step.known);
+                    let coefficients = &self.coefficients[step.first..][..step.known + step.base];
+                    let (y, a) = coefficients.split_at(step.known);
+                    series.y[..y.len()].copy_from_slice(y);
+                    series.a[..a.len()].copy_from_slice(a);
+                    series.known = y.len();
+                    let integrals = &self.integrals[step.integrals];
+                    series.measured.set(integrals.get());
                     let view = StepView {
-                        path: &KeptPath {
-                            y,
-                            a,
-                            length: step.length,
-                            integrals: &self.integrals[step.integrals],
-                        },
+                        path: &*series,
+                        circuit: None,
                         origin: step.origin,
                         at: later.instant(&step.at),
                         whole: step.whole,
@@ -220,11 +192,12 @@ impl<T: Scalar> Log<T> {
                         x: step.x,
                         v: step.v,
                     };
-                    record.step(&view, &mut base);
+                    record.step(&view, segment);
+                    integrals.set(series.measured.get());
                 }
                 Entry::Call(call) => {
                     impacts += u64::from(matches!(call, Call::Impact { .. }));
-                    record.tell(&call.when(|at| later.instant(at)), &mut base);
+                    record.tell(&call.when(|at| later.instant(at)), segment);
                 }
             }
         }
@@ -255,7 +228,7 @@ impl<T: Scalar> Log<T> {
                 Entry::Step(step) => {
                     let first = self.coefficients.len();
                     self.coefficients.extend_from_within(step.first..step.first + step.known + step.base);
-                    self.coefficients[first..].iter_mut().for_each(|own| *own = minus(*own));
+                    self.coefficients[first..].iter_mut().for_each(|c| *c = minus(*c));
                     Entry::Step(Kept {
                         origin: minus(step.origin),
                         at: instant(&step.at),
@@ -266,7 +239,7 @@ impl<T: Scalar> Log<T> {
                         ..step
                     })
                 }
-                Entry::Call(told) => Entry::Call(told.when(instant).mirrored()),
+                Entry::Call(call) => Entry::Call(call.when(instant).mirrored()),
             };
             self.entries.push(mirrored);
         }

@@ -9,7 +9,7 @@ use crate::numeric::Scalar;
 /// Forcing periods of the settled window of a pursuit.
 const WINDOW: u64 = 100;
 
-impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
+impl<'a, T: Scalar> Recorder<'a, T> {
     /// Pursues a goal: stroboscopic states from time 0 on, and a settled window of some last periods before
     /// `most`. The time at which that ends.
     pub fn pursue(&mut self, goal: Goal<'a>, most: u64) -> Instant<T> {

@@ -8,13 +8,17 @@ use super::listing::{Listings, MOST_STROBES};
 use super::regime::Judge;
 use super::sums::{Counts, Sums};
 use crate::dynamics::clock::{Clock, Instant};
+use crate::dynamics::drive::{Base, base_at};
 use crate::dynamics::model::Model;
 use crate::dynamics::result::{Event, EventKind, Request, Sample, Side};
 use crate::numeric::{CompensatedSum, Scalar};
 
-pub(crate) struct Recorder<'a, T: Copy, const LEDGER: bool> {
+pub(crate) struct Recorder<'a, T: Copy> {
     pub model: &'a Model,
     pub clock: Clock<T>,
+    pub base: &'a dyn Base<T>,
+    /// Whether work, damping, impacts and stored energy are summed over the whole run.
+    pub ledger: bool,
     pub unit: f64,
     pub times: &'a [f64],
     pub next_time: usize,
@@ -63,10 +67,10 @@ pub(crate) struct Recorder<'a, T: Copy, const LEDGER: bool> {
     pub order: usize,
 }
 
-impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
+impl<'a, T: Scalar> Recorder<'a, T> {
     pub fn new(
         model: &'a Model,
-        clock: Clock<T>,
+        (clock, base): (Clock<T>, &'a dyn Base<T>),
         unit: f64,
         order: usize,
         request: &Request<'a>,
@@ -92,6 +96,8 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
         Self {
             model,
             clock,
+            base,
+            ledger: request.ledger,
             unit,
             times: request.sample_times,
             next_time: 0,
@@ -126,6 +132,11 @@ impl<'a, T: Scalar, const LEDGER: bool> Recorder<'a, T, LEDGER> {
             peak_contact: T::zero(),
             order,
         }
+    }
+
+    /// Acceleration of the base in m/s^2 at an instant in this segment of the drive.
+    pub(crate) fn base(&self, at: &Instant<T>, segment: usize) -> f64 {
+        base_at(self.base, &self.clock, segment, at, self.unit)
     }
 
     /// The part of [at, at + length) inside the settled window, from the start of the step.

@@ -11,7 +11,7 @@ use crate::dynamics::step::chord::Chord;
 use crate::dynamics::step::path::{InStop, Path, StepView};
 use crate::numeric::{GaussLegendre, PolynomialRoots, Scalar, single_root};
 
-impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
+impl<T: Scalar> Recorder<'_, T> {
     /// What integrals over a step are taken with: half as many points as a full series has coefficients, and
     /// no more than a shorter one needs.
     #[inline]
@@ -20,13 +20,13 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         T::gauss_legendre(if P::IN_CONTACT { points } else { points.min(path.known() - 1) })
     }
 
-    /// Records a step of free flight, or of contact with a compliant stop.
+    /// Records a step of free flight, or of contact with a compliant stop, in this segment of the drive.
     #[inline]
-    pub fn step<P: Path<T>>(&mut self, step: &StepView<T, P>, mut base: impl FnMut(&Instant<T>) -> f64) {
+    pub fn step<P: Path<T>>(&mut self, step: &StepView<T, P>, segment: usize) {
         let overlap = self.overlap(&step.at, step.duration);
         let rule = self.rule_of(step.path);
         let full = overlap.is_some_and(|(from, to)| from == T::zero() && to == step.duration);
-        if LEDGER {
+        if self.ledger {
             let (squared, av) = step.path.integrals::<true>(rule, T::zero(), step.length);
             self.whole.squared_velocity.add(squared);
             self.whole.work.add(-av);
@@ -47,8 +47,11 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
                 true => (T::zero(), step.length),
                 false => (step.path.parameter(begin, step.length), step.path.parameter(end, step.length)),
             };
-            if !LEDGER || !full {
-                let (squared, av) = step.path.integrals::<LEDGER>(rule, from, to);
+            if !self.ledger || !full {
+                let (squared, av) = match self.ledger {
+                    true => step.path.integrals::<true>(rule, from, to),
+                    false => step.path.integrals::<false>(rule, from, to),
+                };
                 self.settled.squared_velocity.add(squared);
                 self.settled.work.add(-av);
             }
@@ -56,7 +59,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             if P::IN_CONTACT {
                 self.settled.rested.add(end - begin);
             }
-            if LEDGER {
+            if self.ledger {
                 let moment = step.path.moment(rule, from, to) + step.origin * (end - begin);
                 self.settled.displacement.add(moment);
             }
@@ -86,12 +89,9 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
                     t,
                     x: step.x_at(into).to_f64(),
                     v: step.path.velocity(into).to_f64() / self.unit,
-                    base_accel: base(&instant),
+                    base_accel: self.base(&instant, segment),
                     phase: step.path.phase(),
-                    electrical: step
-                        .path
-                        .circuit()
-                        .map_or(0.0, |w| self.electrical(polynomial::value(w, into))),
+                    electrical: step.circuit.map_or(0.0, |w| self.electrical(polynomial::value(w, into))),
                 });
                 self.next_time += 1;
             }
@@ -129,7 +129,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         (self.low, self.high) = (low, high);
         if turns
             && full
-            && let Some((y, _)) = step.path.in_time()
+            && let Some(y) = step.path.in_time()
         {
             let chord = Chord::new(y, (first, last), (step.length, step.v), bound, limits);
             (_, _, turns) = chord.extremes((low, high));
@@ -149,7 +149,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
             for (k, slot) in (1..n).zip(slope.iter_mut()) {
                 *slot = scaled[k] * T::whole(k);
             }
-            PolynomialRoots::new(&slope[..n - 1]).each_sign_change(|s| {
+            PolynomialRoots::new(&slope[..n - 1]).each_sign_change(&mut |s| {
                 let t = s * step.whole;
                 if t >= from && t <= to {
                     let x = step.x_at(t);
@@ -164,7 +164,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
     /// Records what a compliant stop dissipated, and its largest force, over a step of contact that has been
     /// recorded.
     pub fn contact<P: InStop<T>>(&mut self, step: &StepView<T, P>) {
-        if LEDGER {
+        if self.ledger {
             let rule = self.rule_of(step.path);
             let whole = step.path.loss(rule, T::zero(), step.length);
             self.whole.impact.add(whole);

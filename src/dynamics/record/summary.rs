@@ -20,15 +20,17 @@ pub(crate) struct Ending<T> {
     /// State of the circuit at time 0 and at the end.
     pub circuit: (T, T),
     pub phase: Phase,
+    /// Segment of the drive.
+    pub segment: usize,
     /// Change of the potential over the run in J.
     pub potential: f64,
     pub outcome: Outcome,
 }
 
-impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
+impl<T: Scalar> Recorder<'_, T> {
     /// Closes the record.
-    pub fn finish(mut self, ending: &Ending<T>, base: impl Fn(&Instant<T>) -> f64) -> Run {
-        let &Ending { at: end, state: (x, v), start_v, circuit, phase, potential, outcome } = ending;
+    pub fn finish(mut self, ending: &Ending<T>) -> Run {
+        let &Ending { at: end, state: (x, v), start_v, circuit, phase, segment, potential, outcome } = ending;
         let final_x = x.to_f64();
         let final_v = v.to_f64() / self.unit;
         // What was asked for at the very end (to rounding) is the final state.
@@ -41,7 +43,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
                 t,
                 x: final_x,
                 v: final_v,
-                base_accel: base(&self.clock.at(t)),
+                base_accel: self.base(&self.clock.at(t), segment),
                 phase,
                 electrical: self.electrical(circuit.1),
             });
@@ -55,7 +57,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         let covered = value(&self.covered);
         let seen = covered > 0.0;
         let transducer = self.model.transducer;
-        let ledger = LEDGER.then(|| {
+        let ledger = self.ledger.then(|| {
             let kinetic = |v: T| (v * v).to_f64() * 0.5;
             let work_j = value(&self.whole.work) * energy;
             let damping_j = self.model.damping * value(&self.whole.squared_velocity) / self.unit;
@@ -81,7 +83,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         let work = value(&self.settled.work);
         let harvest = transducer.map(|own| {
             let load = own.energies(self.squared_signal(&self.settled)).0;
-            let load_share = (LEDGER && seen && work.abs() > 0.0).then(|| load / (work * energy));
+            let load_share = (self.ledger && seen && work.abs() > 0.0).then(|| load / (work * energy));
             let squared = Some(self.squared_signal(&self.settled) / (covered * self.unit));
             let squared = squared.filter(|squared| seen && squared.is_finite());
             Harvest {
@@ -105,7 +107,8 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
         let pressure = force.and_then(pressed_by);
         let material = compliant.and_then(|own| own.material);
         let yields = pressure.zip(material).is_some_and(|(own, of)| own > of.yield_pressure());
-        let impact_share = (LEDGER && seen && work.abs() > 0.0).then(|| value(&self.settled.impact) / work);
+        let impact_share =
+            (self.ledger && seen && work.abs() > 0.0).then(|| value(&self.settled.impact) / work);
         let regime = if self.model.one_well {
             Regime::OneWell
         } else if !moved {
@@ -151,7 +154,7 @@ impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
                 releases: self.counts.releases,
                 max_abs_x: seen.then(|| high.abs().max(low.abs())),
                 range: seen.then_some((low, high)),
-                mean_x: (LEDGER && seen).then(|| value(&self.settled.displacement) / covered),
+                mean_x: (self.ledger && seen).then(|| value(&self.settled.displacement) / covered),
                 side,
                 window: self.window_seconds(&end),
                 periods: self.periods(),

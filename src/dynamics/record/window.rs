@@ -14,7 +14,7 @@ use crate::numeric::{CompensatedSum, Scalar};
 /// longest period that is looked for.
 pub(crate) const STILL: u32 = 32;
 
-impl<T: Scalar, const LEDGER: bool> Recorder<'_, T, LEDGER> {
+impl<T: Scalar> Recorder<'_, T> {
     pub(crate) fn strobes<P: Path<T>>(&mut self, step: &StepView<T, P>) {
         while let Some(strobe) = self.next_strobe {
             let into = self.clock.between(&step.at, &strobe);

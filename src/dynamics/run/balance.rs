@@ -57,7 +57,7 @@ pub(super) fn judged(model: &Model, run: &Run, reach: Excursion) -> Outcome {
         return Outcome::NotFinite { at: model.duration };
     }
     let moved = residual_j.abs() / energy_residual;
-    let strong = model.circuit().is_some_and(|own| own.coupling.abs() * model.scales.time > STRONG);
+    let strong = model.circuit().is_some_and(|circuit| circuit.coupling.abs() * model.scales.time > STRONG);
     if strong && residual_j.abs() > MISSING * moved {
         return Outcome::Inaccurate { residual: energy_residual };
     }

@@ -18,7 +18,7 @@ pub(crate) struct Begun<T> {
     place: (usize, f64, f64),
 }
 
-impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
+impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// Starts the motion.
     pub fn begin(&mut self, model: &Model) -> Begun<T> {
         let MotionState { v, circuit, .. } = self.state;
@@ -30,21 +30,19 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     pub fn finish(self, model: &Model, begun: &Begun<T>, outcome: Outcome) -> Run {
         let phase = self.state.phase();
         let (start_v, potential) = (begun.v, self.potential_since(model, begun.place));
-        let (base, unit) = (self.stepper.base(self.state.segment), self.stepper.equation.unit);
+        let unit = self.stepper.equation.unit;
         let (low, high) = self.record.places;
         let reach = Excursion { low, high, speed: (2.0 * self.record.peak_kinetic).sqrt() / unit };
-        let mut run = self.record.finish(
-            &Ending {
-                at: self.state.at,
-                state: (self.state.x, self.state.v),
-                start_v,
-                circuit: (begun.circuit, self.state.circuit),
-                phase,
-                potential,
-                outcome,
-            },
-            base,
-        );
+        let mut run = self.record.finish(&Ending {
+            at: self.state.at,
+            state: (self.state.x, self.state.v),
+            start_v,
+            circuit: (begun.circuit, self.state.circuit),
+            phase,
+            segment: self.state.segment,
+            potential,
+            outcome,
+        });
         run.summary.steps = self.steps;
         run.summary.evaluations = self.stepper.evaluations;
         run.summary.outcome = judged(model, &run, reach);

@@ -29,13 +29,13 @@ pub(crate) enum FastPath<T> {
     NotTaken,
 }
 
-impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
+impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// Takes steps as long as they are event-free.
     #[inline]
     pub fn event_free_steps(&mut self) -> FastPath<T> {
         let free = self.state.contact == Contact::Free && self.state.touch.is_none();
         let alone = self.stepper.drive.circuit().is_none();
-        if LEDGER || !alone || !free || self.log.is_some() || !self.record.needs_no_samples() {
+        if self.record.ledger || !alone || !free || self.log.is_some() || !self.record.needs_no_samples() {
             return FastPath::NotTaken;
         }
         let most = self.stepper.work.pieces_until_look(self.stepper.costs.step);
@@ -113,7 +113,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
                 let squared = polynomial::integrals::<_, false>(y, &[], rule, T::zero(), length).0;
                 event_free = now.record_step(&chord, deviations, (length, squared));
                 if !event_free {
-                    series.measured = Some((length, squared));
+                    series.measured.set(Some((length, (squared, T::zero()))));
                 }
             }
             if !event_free {

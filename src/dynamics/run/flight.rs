@@ -6,12 +6,11 @@ use crate::dynamics::equation::End;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::result::Outcome;
 use crate::dynamics::state::Flow;
-use crate::dynamics::step::circuit::CoupledPath;
 use crate::dynamics::step::stepper::Step;
 use crate::dynamics::step::work::ARRIVAL;
 use crate::numeric::Scalar;
 
-impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
+impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// Whether it may take `steps` more of free flight without its budget being spent.
     pub fn has_budget_for(&self, steps: u64) -> bool {
         self.stepper.work.has_room_for(steps * self.stepper.costs.step)
@@ -80,23 +79,18 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
         touched: Option<End>,
     ) -> Flow {
         let circuit = self.stepper.circuit_at(length);
-        if !(x.is_finite() && v.is_finite() && circuit.is_none_or(|own| own.is_finite())) {
+        if !(x.is_finite() && v.is_finite() && circuit.is_none_or(|state| state.is_finite())) {
             return Some(Outcome::NotFinite { at: self.stepper.seconds(&self.state) });
         }
         self.steps += 1;
         self.stepper.work.add(self.stepper.costs.step);
-        let view = self.stepper.view(&self.state, (h, length), bound, (x, v));
+        let path = &self.stepper.series;
+        let mut view = self.stepper.view(&self.state, path, (h, length, length), bound, (x, v));
+        view.circuit = self.stepper.circuit_series();
         if let Some(log) = &mut self.log {
             log.add_step(&view);
         }
-        let base = self.stepper.base(self.state.segment);
-        match self.stepper.circuit_series() {
-            None => self.record.step(&view, base),
-            Some(state) => {
-                let path = CoupledPath { series: &self.stepper.series, state };
-                self.record.step(&view.along(&path), base);
-            }
-        }
+        self.record.step(&view, self.state.segment);
         let at_once = length == T::zero();
         let state = &mut self.state;
         state.at = arrival.unwrap_or_else(|| self.stepper.clock.advance(&state.at, length));

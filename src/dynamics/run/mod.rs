@@ -7,9 +7,8 @@ mod flight;
 pub(crate) mod pursue;
 mod recurrence;
 
-use crate::dynamics::clock::Clock;
 use crate::dynamics::drive::Drive;
-use crate::dynamics::drive::form::{Form, clock, form};
+use crate::dynamics::drive::form::{clock, form, general, with_drive};
 use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
@@ -27,7 +26,16 @@ impl Model {
     /// Returns samples, events and statistics in SI. Never fails: a run that cannot go on says so in its
     /// outcome. The result does not depend on what is asked for or on threads.
     pub fn run(&self, request: &Request) -> Run {
-        run::<f64>(self, request, self.tolerance, self.recurrence)
+        let watch = ThreadClock::start();
+        let unit = self.scales.unit();
+        let (equation, clock) = (Equation::<f64>::new(self, unit), clock(self, unit));
+        let mut run = with_drive!(&form(self, &clock), drive => {
+            Motion::new(self, request, self.tolerance, &equation, clock, drive)
+                .with_recurrence(self.recurrence, self)
+                .run(self)
+        });
+        run.summary.cpu_s = watch.seconds();
+        run
     }
 
     /// What a step of free flight costs at a tolerance, and what of it the excitation does, in units of work.
@@ -38,58 +46,24 @@ impl Model {
         fn of<D: Drive<f64>>(order: usize, degree: usize, drive: &D) -> (u64, u64) {
             (Costs::new(order, degree, drive).step, drive.cost(order))
         }
-        match form(self, &clock(self, unit)) {
-            Form::Still(drive) => of(order, degree, &drive),
-            Form::Sine(drive) => of(order, degree, &drive),
-            Form::Composite(drive) => of(order, degree, &drive),
-            Form::Coupled(drive) => of(order, degree, &drive),
-        }
+        with_drive!(&form(self, &clock(self, unit)), drive => of(order, degree, drive))
     }
 
     /// Runs the model once in double-double arithmetic, some 31 digits, with its own `tolerance` (1e-28 is
     /// sensible): the reference that a run in doubles is measured against. About a hundred times slower;
     /// nothing of it is completed from a cycle.
     pub fn run_reference(&self, request: &Request, tolerance: f64) -> Run {
-        run::<DoubleDouble>(self, request, tolerance, false)
+        let watch = ThreadClock::start();
+        let unit = self.scales.unit();
+        let (equation, clock) = (Equation::new(self, unit), clock(self, unit));
+        let drive = general::<DoubleDouble>(self, &clock);
+        let mut run = Motion::new(self, request, tolerance, &equation, clock, &drive).run(self);
+        run.summary.cpu_s = watch.seconds();
+        run
     }
 }
 
-/// Runs the model in numbers of type `T`; where `recurs`, a cycle that comes back may complete the run.
-fn run<T: Scalar>(model: &Model, request: &Request, tolerance: f64, recurs: bool) -> Run {
-    let watch = ThreadClock::start();
-    let unit = model.scales.unit();
-    let equation = Equation::<T>::new(model, unit);
-    let clock = clock(model, unit);
-    let mut run = match form(model, &clock) {
-        Form::Still(drive) => with_drive(model, request, (tolerance, recurs), &equation, clock, &drive),
-        Form::Sine(drive) => with_drive(model, request, (tolerance, recurs), &equation, clock, &drive),
-        Form::Composite(drive) => with_drive(model, request, (tolerance, recurs), &equation, clock, &drive),
-        Form::Coupled(drive) => with_drive(model, request, (tolerance, recurs), &equation, clock, &drive),
-    };
-    run.summary.cpu_s = watch.seconds();
-    run
-}
-
-fn with_drive<T: Scalar, D: Drive<T>>(
-    model: &Model,
-    request: &Request,
-    (tolerance, recurs): (f64, bool),
-    equation: &Equation<T>,
-    clock: Clock<T>,
-    drive: &D,
-) -> Run {
-    if request.ledger {
-        Motion::<T, D, true>::new(model, request, tolerance, equation, clock, drive)
-            .with_recurrence(recurs, model)
-            .run(model)
-    } else {
-        Motion::<T, D, false>::new(model, request, tolerance, equation, clock, drive)
-            .with_recurrence(recurs, model)
-            .run(model)
-    }
-}
-
-impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
+impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// Runs from its start to its end.
     fn run(mut self, model: &Model) -> Run {
         let begun = self.begin(model);
@@ -160,9 +134,9 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
     /// How the run ends where a budget is spent or it is cancelled.
     #[inline]
     pub fn spent(&mut self) -> Flow {
-        let told = self.stepper.work.is_told_to_stop();
+        let cancelled = self.stepper.work.is_told_to_stop();
         let at = || self.stepper.seconds(&self.state);
-        if told {
+        if cancelled {
             return Some(Outcome::Cancelled { at: at() });
         }
         if self.stepper.work.impacts() >= IMPACT_BUDGET {

@@ -1,9 +1,8 @@
 //! Pursuit of a motion from a start of its own, until it is known what it goes to.
 
 use super::ending::Begun;
-use crate::dynamics::clock::Clock;
 use crate::dynamics::drive::Drive;
-use crate::dynamics::drive::form::{Form, clock, form};
+use crate::dynamics::drive::form::{clock, form, with_drive};
 use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
@@ -13,7 +12,7 @@ use crate::dynamics::result::{Arrival, Outcome, Pursued, Pursuit, Request};
 use crate::dynamics::state::{Contact, MotionState};
 use crate::numeric::Scalar;
 
-impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D, false> {
+impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
     /// Puts it at the start of a pursuit, whose end is its own. A release from rest ends it, so no recurrence
     /// completes it.
     pub fn pursuing(mut self, pursuit: &Pursuit<'a>, model: &Model) -> Self {
@@ -40,26 +39,12 @@ impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D, false> {
 /// Pursues a motion alone.
 pub(crate) fn pursue_alone(model: &Model, pursuit: &Pursuit, request: &Request) -> Pursued {
     let unit = model.scales.unit();
-    let (equation, clock) = (Equation::new(model, unit), clock(model, unit));
-    match form(model, &clock) {
-        Form::Still(drive) => with_drive(model, pursuit, request, &equation, clock, &drive),
-        Form::Sine(drive) => with_drive(model, pursuit, request, &equation, clock, &drive),
-        Form::Composite(drive) => with_drive(model, pursuit, request, &equation, clock, &drive),
-        Form::Coupled(drive) => with_drive(model, pursuit, request, &equation, clock, &drive),
-    }
-}
-
-fn with_drive<D: Drive<f64>>(
-    model: &Model,
-    pursuit: &Pursuit,
-    request: &Request,
-    equation: &Equation<f64>,
-    clock: Clock<f64>,
-    drive: &D,
-) -> Pursued {
-    let motion = Motion::<f64, D, false>::new(model, request, model.tolerance, equation, clock, drive);
-    let mut motion = motion.pursuing(pursuit, model);
-    let begun = motion.begin(model);
-    let outcome = motion.go_on();
-    motion.arrived(model, &begun, outcome)
+    let (equation, clock) = (Equation::<f64>::new(model, unit), clock(model, unit));
+    with_drive!(&form(model, &clock), drive => {
+        let motion = Motion::new(model, request, model.tolerance, &equation, clock, drive);
+        let mut motion = motion.pursuing(pursuit, model);
+        let begun = motion.begin(model);
+        let outcome = motion.go_on();
+        motion.arrived(model, &begun, outcome)
+    })
 }

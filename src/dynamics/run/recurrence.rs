@@ -53,7 +53,7 @@ struct Lap<T> {
     like: Option<Like<T>>,
 }
 
-impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
+impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// The mass has just been released with this label: completes the run where a release had the same label
     /// before. Where it is pursued, it has arrived.
     pub fn let_go(&mut self, label: Label<T>) {
@@ -72,7 +72,7 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
             self.complete(&log, Lap { first, cycles, like });
             self.record.judge.end_tape();
         } else if let Some((first, before)) = log.find(|known| known.end == label.end.other())
-            && D::ODD
+            && self.stepper.drive.is_odd()
             && self.symmetric
             && let Some(cycles) = self.half_cycles_since(&log.at(first))
         {
@@ -212,8 +212,8 @@ impl<T: Scalar, D: Drive<T>, const LEDGER: bool> Motion<'_, T, D, LEDGER> {
 
     /// Replays a part of the log; the number of impacts in it.
     fn replay(&mut self, log: &Log<T>, marks: (usize, Option<usize>), later: Later) -> u64 {
-        let base = self.stepper.base(self.state.segment);
-        let (calls, impacts) = log.play(&mut self.record, marks, later, base);
+        let recorded = (&mut self.record, &mut self.stepper.series);
+        let (calls, impacts) = log.play(recorded, marks, later, self.state.segment);
         self.stepper.work.add(TOLD * calls as u64);
         impacts
     }

@@ -10,6 +10,8 @@ mod force;
 mod order;
 pub(crate) mod polynomial;
 
+use std::cell::Cell;
+
 use crate::dynamics::equation::force::PieceForce;
 use crate::numeric::{Number, Scalar, fast_exp2, fast_log2};
 use force::ForceSeries;
@@ -19,15 +21,16 @@ pub(crate) use order::{MAX_ORDER, ROOM, SEEDED, Tail};
 
 /// The Taylor coefficients of one step and the workspace to extend them.
 #[derive(Debug, Clone)]
-pub(crate) struct Series<T> {
+pub(crate) struct Series<T: Copy> {
     /// Displacement from the piece's origin: y\[k\] is the coefficient of (time since the step's start)^k.
     pub y: [T; ROOM],
     /// Acceleration of the base.
     pub a: [T; ROOM],
     /// Number of coefficients of y that are known.
     pub known: usize,
-    /// The length of a step over which the integral of the squared velocity is known, and that.
-    pub measured: Option<(T, T)>,
+    /// A time since the step's start up to which the integrals of the squared velocity and of base
+    /// acceleration times velocity have been taken, and those; the latter only where it has been asked for.
+    pub measured: Cell<Option<(T, (T, T))>>,
     forces: ForceSeries<T>,
     inverse: [T; ROOM],
 }
@@ -51,7 +54,14 @@ impl<T: Number> Series<T> {
             *slot = T::ratio(1.0, (k * (k - 1)) as f64);
         }
         let zeros = [T::zero(); ROOM];
-        Self { y: zeros, a: zeros, known: 0, measured: None, forces: ForceSeries::new(degree), inverse }
+        Self {
+            y: zeros,
+            a: zeros,
+            known: 0,
+            measured: Cell::new(None),
+            forces: ForceSeries::new(degree),
+            inverse,
+        }
     }
 
     /// Starts from displacement `y` (from the piece's origin) and velocity `v`; the first
@@ -61,7 +71,7 @@ impl<T: Number> Series<T> {
         self.y[0] = y;
         self.y[1] = v;
         self.known = 2;
-        self.measured = None;
+        self.measured.set(None);
     }
 
     /// Adds coefficients up to `order`.
@@ -175,6 +185,12 @@ impl<T: Number> Series<T> {
         Endpoint { y: self.y[0] + (term + y), v, acceleration, bound: term.abs() + bound }
     }
 
+    /// The known coefficients of the displacement.
+    #[inline(always)]
+    pub fn coefficients(&self) -> &[T] {
+        &self.y[..self.known]
+    }
+
     /// The coefficients of the base's acceleration that go with those of the motion.
     #[inline]
     pub fn base_coefficients(&self) -> &[T] {
@@ -263,7 +279,7 @@ fn recur<T: Number, D: Tail<T>, const SIMPLE: bool>(
             if k >= SEEDED {
                 drive.extend(k, a, inverse, cursor);
             }
-            let base = if k < D::ZERO_FROM { Some(a[k]) } else { None };
+            let base = if k < drive.zero_from() { Some(a[k]) } else { None };
             let drag = damping * T::whole(k + 1) * y[k + 1];
             let drag = match drive.couple(k, y, cursor) {
                 Some(push) => drag + push,

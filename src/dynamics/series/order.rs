@@ -14,8 +14,11 @@ pub(crate) trait Tail<T: Number> {
     /// State carried along a series.
     type Cursor: Default;
 
-    /// From here on all coefficients are 0; a constant, so that their addition is compiled away.
-    const ZERO_FROM: usize = usize::MAX;
+    /// The order from which on all coefficients are 0; where it is a constant, their addition is compiled away.
+    #[inline(always)]
+    fn zero_from(&self) -> usize {
+        usize::MAX
+    }
 
     /// What a circuit takes from the acceleration at order `k`, from y\[0..=k+1\]; none without one. Asked
     /// for in ascending order; its own next coefficient becomes known with it.

@@ -42,8 +42,8 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     #[inline]
     fn natural_step(&self) -> T {
         let s = &self.settings;
-        let own = self.series.natural_step(s.speed_log2, s.tolerance_log2, s.longest);
-        T::of(self.circuit_step().map_or(own, |step| own.min(step)))
+        let natural = self.series.natural_step(s.speed_log2, s.tolerance_log2, s.longest);
+        T::of(self.circuit_step().map_or(natural, |step| natural.min(step)))
     }
 
     /// The step of up to length `h` that ends in time, and with which the equation of motion holds.
@@ -155,7 +155,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let series = &self.series;
         let base = self.drive.value(&self.clock, &at, state.segment, || series.base(h), &mut self.cursor);
         let sum = (acceleration + self.equation.damping * v) + base;
-        let push = self.drive.circuit().and_then(|own| Some(own.coupling * self.circuit_at(h)?));
+        let push = self.drive.circuit().and_then(|circuit| Some(circuit.coupling * self.circuit_at(h)?));
         let sum = push.map_or(sum, |push| sum + push);
         let residual = (mode.force.at(y) + sum).abs() * h;
         let order = self.series.known - 1;

@@ -1,30 +1,29 @@
 //! State of a circuit along a step of free flight, beside the motion's.
 
-use super::path::InTime;
 use super::settings::{RESIDUAL, ROUNDINGS};
 use super::stepper::Stepper;
 use crate::dynamics::drive::Drive;
-use crate::dynamics::series::{Series, natural_steps, polynomial};
-use crate::numeric::{GaussLegendre, Scalar, fast_log2};
+use crate::dynamics::series::{natural_steps, polynomial};
+use crate::numeric::{Scalar, fast_log2};
 
 impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     /// Coefficients of the circuit's state that go with those of the motion; none without a circuit.
     #[inline(always)]
     pub fn circuit_series(&self) -> Option<&[T]> {
-        D::circuit_state(&self.cursor).map(|state| &state[..self.series.known - 1])
+        self.drive.circuit_state(&self.cursor).map(|state| &state[..self.series.known - 1])
     }
 
     /// The circuit's state at time `t` into the step.
     #[inline(always)]
     pub fn circuit_at(&self, t: T) -> Option<T> {
-        self.circuit_series().map(|own| polynomial::value(own, t))
+        self.circuit_series().map(|state| polynomial::value(state, t))
     }
 
     /// What the circuit does to a mass that moves little, as a stiffness over mass: the square of the
     /// coupling.
     #[inline(always)]
     pub fn circuit_stiffness(&self) -> Option<T> {
-        self.drive.circuit().map(|own| own.coupling * own.coupling)
+        self.drive.circuit().map(|circuit| circuit.coupling * circuit.coupling)
     }
 
     /// The longest step whose first neglected term in the circuit's state stays below the tolerance.
@@ -58,28 +57,5 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         }
         let size = size + (circuit.coupling * v * h).abs();
         residual <= size * T::of(T::EPSILON * ROUNDINGS)
-    }
-}
-
-/// A step of free flight with the coefficients of a circuit's state.
-pub(crate) struct CoupledPath<'a, T: Scalar> {
-    pub series: &'a Series<T>,
-    pub state: &'a [T],
-}
-
-impl<T: Scalar> InTime for CoupledPath<'_, T> {
-    type Number = T;
-
-    fn coefficients(&self) -> &[T] {
-        InTime::coefficients(self.series)
-    }
-    fn base_coefficients(&self) -> &[T] {
-        InTime::base_coefficients(self.series)
-    }
-    fn circuit(&self) -> Option<&[T]> {
-        Some(self.state)
-    }
-    fn integrals_in_time<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T) {
-        self.series.integrals_in_time::<WORK>(rule, from, to)
     }
 }

@@ -157,7 +157,7 @@ impl<T: Scalar> InStop<T> for Penetration<T> {
         for k in 1..n {
             slope[k - 1] = scaled[k] * T::of(k as f64);
         }
-        PolynomialRoots::new(&slope[..n - 1]).each_sign_change(|s| {
+        PolynomialRoots::new(&slope[..n - 1]).each_sign_change(&mut |s| {
             if s < until {
                 peak = peak.larger(value(s));
             }

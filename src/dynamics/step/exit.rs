@@ -1,7 +1,6 @@
 //! The first surface that a step of free flight runs into.
 
 use super::chord::Chord;
-use super::path::Path;
 use super::stepper::Stepper;
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::End;
@@ -31,7 +30,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         if !(past(exit) && (returns || starts_inside)) {
             return None;
         }
-        let y = &self.series.y[..self.series.known];
+        let y = self.series.coefficients();
         let (v, last, to) = (state.v * h, end.v * h, to - level);
         let mut g = polynomial::scaled(y, h);
         let (g, ends) = if returns {
@@ -54,9 +53,10 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     /// of the step's end is known how it lies in the piece.
     #[inline(always)]
     pub fn find_exit(&self, state: &MotionState<T>, h: T, end: &Endpoint<T>) -> Option<(T, T, End)> {
+        let y = self.series.coefficients();
         let at = |(share, exit): (T, End)| {
             let length = share * h;
-            (length, self.series.velocity(length), exit)
+            (length, polynomial::slope(y, length), exit)
         };
         let Some(plain) = self.plain_exit(state, h, end) else {
             return self.first_exit(state, h, end).map(at);
@@ -80,7 +80,6 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         &Endpoint { y: end, v, acceleration, bound }: &Endpoint<T>,
     ) -> Option<(T, End)> {
         let mode = self.mode(state);
-        let n = self.series.known;
         let mut first: Option<(T, End)> = None;
         if state.touch.is_none() {
             let limits = (mode.low, mode.high);
@@ -88,7 +87,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             if !near {
                 return None;
             }
-            let (y, to) = (&self.series.y[..n], end + mode.origin);
+            let (y, to) = (self.series.coefficients(), end + mode.origin);
             let deviations = polynomial::chord_deviations(y, h);
             let square = h * h;
             let (ways, bends) = ((state.v * h, v * h), ((y[2] + y[2]) * square, acceleration * square));
@@ -116,7 +115,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         if touch.map_or(gap > bound, |touch| touch.multiplicity == HELD) {
             return None;
         }
-        let mut g = self.series.scaled(h);
+        let mut g = polynomial::scaled(self.series.coefficients(), h);
         if end == End::High {
             g[1..n].iter_mut().for_each(|c| *c = -*c);
         }

@@ -82,7 +82,7 @@ const MOST_GAIN: f64 = 1.1;
 
 /// An impact from touch to separation in y, and the workspace.
 #[derive(Debug, Clone)]
-pub(crate) struct Impact<T> {
+pub(crate) struct Impact<T: Copy> {
     /// The base's acceleration over time.
     pub series: Series<T>,
     /// The mechanism's force about the surface, and the mode that it is of.
@@ -288,12 +288,12 @@ impl<T: Scalar> Impact<T> {
         let none: Values<T> = [Lanes::zero(); MOST_GROUPS];
         let (mut passing, mut gains) = (none, none);
         for group in 0..self.rule.groups() {
-            let own = self.motion_at(group);
+            let place = self.motion_at(group);
             self.change[group] =
-                (own.amplitude_slope - self.amplitude_slope[group]).abs() * inverse_amplitude;
-            self.amplitude_slope[group] = own.amplitude_slope;
-            (self.root[group], self.speed[group]) = (own.root, own.speed);
-            (passing[group], gains[group]) = (own.time_slope, own.gain);
+                (place.amplitude_slope - self.amplitude_slope[group]).abs() * inverse_amplitude;
+            self.amplitude_slope[group] = place.amplitude_slope;
+            (self.root[group], self.speed[group]) = (place.root, place.speed);
+            (passing[group], gains[group]) = (place.time_slope, place.gain);
         }
         let last = self.amplitude;
         self.rule.integrals(self.first, &self.amplitude_slope, &mut self.amplitude);

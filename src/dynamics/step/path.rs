@@ -18,13 +18,8 @@ pub(crate) trait Path<T: Scalar> {
 
     /// What a sample on it is.
     fn phase(&self) -> Phase;
-    /// The coefficients of displacement and base, where they are of powers of time.
-    fn in_time(&self) -> Option<(&[T], &[T])> {
-        None
-    }
-    /// The coefficients of a circuit's state, where there is one.
-    #[inline(always)]
-    fn circuit(&self) -> Option<&[T]> {
+    /// The coefficients of the displacement, where they are of powers of time.
+    fn in_time(&self) -> Option<&[T]> {
         None
     }
     /// Number of coefficients of the displacement.
@@ -58,8 +53,10 @@ pub(crate) trait InStop<T: Scalar>: Path<T> {
 }
 
 /// One accepted step, as the recorder sees it.
-pub(crate) struct StepView<'a, T, P = Series<T>> {
+pub(crate) struct StepView<'a, T, P> {
     pub path: &'a P,
+    /// Coefficients of a circuit's state in free flight, where there is one.
+    pub circuit: Option<&'a [T]>,
     /// Origin that the series is about.
     pub origin: T,
     /// When the step starts.
@@ -80,12 +77,6 @@ pub(crate) struct StepView<'a, T, P = Series<T>> {
 }
 
 impl<T: Scalar, P: Path<T>> StepView<'_, T, P> {
-    /// The same step along another path.
-    pub fn along<'a, Q>(&self, path: &'a Q) -> StepView<'a, T, Q> {
-        let Self { origin, at, whole, length, duration, bound, limits, x, v, .. } = *self;
-        StepView { path, origin, at, whole, length, duration, bound, limits, x, v }
-    }
-
     /// Displacement at a parameter of the step, never beyond the mode by the rounding of its origin.
     pub fn x_at(&self, t: T) -> T {
         let x = self.path.position(t) + self.origin;
@@ -93,60 +84,8 @@ impl<T: Scalar, P: Path<T>> StepView<'_, T, P> {
     }
 }
 
-/// A step whose parameter is the time since its start.
-pub(crate) trait InTime {
-    /// The number that it is made of.
-    type Number: Scalar;
-
-    /// Coefficients of the displacement from the piece's origin.
-    fn coefficients(&self) -> &[Self::Number];
-    /// Coefficients of the base's acceleration.
-    fn base_coefficients(&self) -> &[Self::Number];
-    /// Those of a circuit's state, where there is one.
-    #[inline(always)]
-    fn circuit(&self) -> Option<&[Self::Number]> {
-        None
-    }
-
-    /// As [`Path::integrals`].
-    #[inline]
-    fn integrals_in_time<const WORK: bool>(
-        &self,
-        rule: &GaussLegendre<Self::Number>,
-        from: Self::Number,
-        to: Self::Number,
-    ) -> (Self::Number, Self::Number) {
-        polynomial::integrals::<_, WORK>(self.coefficients(), self.base_coefficients(), rule, from, to)
-    }
-}
-
-impl<T: Scalar> InTime for Series<T> {
-    type Number = T;
-
-    #[inline]
-    fn coefficients(&self) -> &[T] {
-        &self.y[..self.known]
-    }
-    #[inline]
-    fn base_coefficients(&self) -> &[T] {
-        Series::base_coefficients(self)
-    }
-    #[inline]
-    fn integrals_in_time<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T) {
-        match self.measured {
-            Some((length, squared)) if !WORK && from == T::zero() && to == length => (squared, T::zero()),
-            _ => polynomial::integrals::<_, WORK>(
-                self.coefficients(),
-                self.base_coefficients(),
-                rule,
-                from,
-                to,
-            ),
-        }
-    }
-}
-
-impl<T: Scalar, P: InTime<Number = T>> Path<T> for P {
+/// A step of free flight: its parameter is the time since its start.
+impl<T: Scalar> Path<T> for Series<T> {
     const IN_CONTACT: bool = false;
 
     #[inline]
@@ -154,20 +93,16 @@ impl<T: Scalar, P: InTime<Number = T>> Path<T> for P {
         Phase::Free
     }
     #[inline]
-    fn in_time(&self) -> Option<(&[T], &[T])> {
-        Some((self.coefficients(), self.base_coefficients()))
-    }
-    #[inline(always)]
-    fn circuit(&self) -> Option<&[T]> {
-        InTime::circuit(self)
+    fn in_time(&self) -> Option<&[T]> {
+        Some(self.coefficients())
     }
     #[inline]
     fn known(&self) -> usize {
-        self.coefficients().len()
+        self.known
     }
     #[inline]
     fn start(&self) -> T {
-        self.coefficients()[0]
+        self.y[0]
     }
     #[inline]
     fn scaled(&self, h: T) -> [T; ROOM] {
@@ -191,7 +126,16 @@ impl<T: Scalar, P: InTime<Number = T>> Path<T> for P {
     }
     #[inline]
     fn integrals<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T) {
-        self.integrals_in_time::<WORK>(rule, from, to)
+        let whole = from == T::zero();
+        if let Some((_, integrals)) = self.measured.get().filter(|(length, _)| whole && *length == to) {
+            return integrals;
+        }
+        let (y, a) = (self.coefficients(), self.base_coefficients());
+        let integrals = polynomial::integrals::<_, WORK>(y, a, rule, from, to);
+        if whole {
+            self.measured.set(Some((to, integrals)));
+        }
+        integrals
     }
     fn moment(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T {
         polynomial::moment(self.coefficients(), rule, from, to)

@@ -26,7 +26,7 @@ use crate::numeric::{Scalar, fast_exp2, fast_log2};
 
 /// Everything about one step of contact, in the parameter s, and the workspace.
 #[derive(Debug, Clone)]
-pub(crate) struct Penetration<T> {
+pub(crate) struct Penetration<T: Copy> {
     /// Displacement from the piece's origin over s, and the base's acceleration over *time*.
     pub inner: Series<T>,
     /// Root of the depth.
@@ -174,7 +174,7 @@ impl<T: Scalar> Penetration<T> {
         let [f0, f1, f2, f3, f4] = [0, 1, 2, 3, 4].map(|k| self.about[k]);
         let sign = self.sign;
         let stiffness = if start.clipped { T::zero() } else { self.stop.stiffness };
-        let own = Constants {
+        let constants = Constants {
             // As forces outward of the stop over depth: odd ones keep their sign.
             force: [sign * f0, f1, sign * f2, f3, sign * f4],
             stiffness,
@@ -187,15 +187,15 @@ impl<T: Scalar> Penetration<T> {
                 quick,
                 0..order,
                 #[inline(always)]
-                |k| self.extend::<false>(k, &own, None),
+                |k| self.extend::<false>(k, &constants, None),
             ),
             Terms::More => each_order::<0>(
                 quick,
                 0..order,
                 #[inline(always)]
-                |k| self.extend::<true>(k, &own, None),
+                |k| self.extend::<true>(k, &constants, None),
             ),
-            Terms::All(_) => (0..order).for_each(|k| self.extend::<true>(k, &own, Some(force))),
+            Terms::All(_) => (0..order).for_each(|k| self.extend::<true>(k, &constants, Some(force))),
         }
         self.inner.y[order] = sign * self.depth[order];
         self.inner.known = order + 1;
@@ -203,7 +203,7 @@ impl<T: Scalar> Penetration<T> {
 
     /// Adds the coefficients `k + 1`; with more terms of force and drive, or with all those of the force.
     #[inline(always)]
-    fn extend<const MORE: bool>(&mut self, k: usize, own: &Constants<T>, all: Option<&PieceForce<T>>) {
+    fn extend<const MORE: bool>(&mut self, k: usize, constants: &Constants<T>, all: Option<&PieceForce<T>>) {
         let displacement = self.sign * self.depth[k];
         self.inner.y[k] = if k == 0 { self.surface + displacement } else { displacement };
         self.square[k] = square(&self.depth, k);
@@ -215,7 +215,7 @@ impl<T: Scalar> Penetration<T> {
             }
             None => {
                 self.compose::<MORE>(k);
-                let [f0, f1, f2, f3, f4] = own.force;
+                let [f0, f1, f2, f3, f4] = constants.force;
                 let mut sum = f1 * self.depth[k] + f2 * self.square[k];
                 if MORE {
                     self.beyond[k] = f3 * self.depth[k] + f4 * self.square[k];
@@ -231,8 +231,9 @@ impl<T: Scalar> Penetration<T> {
         self.time[k + 1] = self.root[k] * next;
         self.depth[k + 1] = square(&self.root, k + 1);
         let change = (convolve(&self.root, &self.others, k)
-            + own.damping * T::whole(k + 1) * self.depth[k + 1])
-            + (own.stiffness * self.square[k] + own.loss * convolve(&self.square, &self.speed, k));
+            + constants.damping * T::whole(k + 1) * self.depth[k + 1])
+            + (constants.stiffness * self.square[k]
+                + constants.loss * convolve(&self.square, &self.speed, k));
         self.speed[k + 1] = -change * next;
     }
 
@@ -285,11 +286,12 @@ impl<T: Scalar> Penetration<T> {
     /// Speed that what is not composed of drive and force would make over `time` at up to this depth.
     pub fn neglected<D: Drive<T>>(&mut self, drive: &D, cursor: &mut D::Cursor, whole: (T, T)) -> T {
         let levels = self.terms.of_drive();
-        if levels < D::ZERO_FROM {
+        let zero_from = drive.zero_from();
+        if levels < zero_from {
             self.extend_drive(levels + 2, drive, cursor);
         }
         let first = if self.terms == Terms::Few { 3 } else { 5 };
-        let levels = if levels < D::ZERO_FROM { levels } else { ROOM };
+        let levels = if levels < zero_from { levels } else { ROOM };
         neglected(&self.inner.a, levels, (&self.about, first), whole)
     }
 

@@ -25,7 +25,7 @@ use crate::numeric::{GaussLegendre, PolynomialRoots, Scalar};
 
 /// One step of quasi-static motion, in the time since its start, and the workspace.
 #[derive(Debug, Clone)]
-pub(crate) struct QuasiStatic<T> {
+pub(crate) struct QuasiStatic<T: Copy> {
     /// Displacement from the piece's origin, and the base's acceleration.
     pub series: Series<T>,
     pub depth: [T; ROOM],
@@ -150,7 +150,7 @@ impl<T: Scalar> InStop<T> for QuasiStatic<T> {
         for k in 1..coefficients.len() {
             slope[k - 1] = scaled[k] * T::whole(k);
         }
-        PolynomialRoots::new(&slope[..coefficients.len() - 1]).each_sign_change(|s| {
+        PolynomialRoots::new(&slope[..coefficients.len() - 1]).each_sign_change(&mut |s| {
             peak = peak.larger(force(s * h));
             true
         });
@@ -164,8 +164,8 @@ impl<T: Scalar> Path<T> for QuasiStatic<T> {
     fn phase(&self) -> Phase {
         if self.sign < T::zero() { Phase::LeftStop } else { Phase::RightStop }
     }
-    fn in_time(&self) -> Option<(&[T], &[T])> {
-        Path::in_time(&self.series)
+    fn in_time(&self) -> Option<&[T]> {
+        Some(self.series.coefficients())
     }
     fn known(&self) -> usize {
         self.series.known
@@ -174,13 +174,13 @@ impl<T: Scalar> Path<T> for QuasiStatic<T> {
         self.series.y[0]
     }
     fn scaled(&self, h: T) -> [T; ROOM] {
-        Path::scaled(&self.series, h)
+        polynomial::scaled(self.series.coefficients(), h)
     }
     fn position(&self, parameter: T) -> T {
-        Path::position(&self.series, parameter)
+        polynomial::value(self.series.coefficients(), parameter)
     }
     fn velocity(&self, parameter: T) -> T {
-        Path::velocity(&self.series, parameter)
+        polynomial::slope(self.series.coefficients(), parameter)
     }
     fn time(&self, parameter: T) -> T {
         parameter
@@ -189,9 +189,15 @@ impl<T: Scalar> Path<T> for QuasiStatic<T> {
         time
     }
     fn integrals<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T) {
-        Path::integrals::<WORK>(&self.series, rule, from, to)
+        polynomial::integrals::<_, WORK>(
+            self.series.coefficients(),
+            self.series.base_coefficients(),
+            rule,
+            from,
+            to,
+        )
     }
     fn moment(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T {
-        Path::moment(&self.series, rule, from, to)
+        polynomial::moment(self.series.coefficients(), rule, from, to)
     }
 }

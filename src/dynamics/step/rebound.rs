@@ -56,7 +56,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let (speed, damping) = (state.v.abs(), self.equation.damping);
         let stiffness = self.equation.stop(end).map_or(T::zero(), |stop| stop.stiffness.abs());
         let flight = T::of(3.0) * speed / acceleration;
-        let stiffness = self.circuit_stiffness().map_or(stiffness, |own| stiffness + own);
+        let stiffness = self.circuit_stiffness().map_or(stiffness, |more| stiffness + more);
         let change = (jerk.abs() + stiffness * speed + damping * acceleration) * flight;
         (self.equation.compliant.is_some() || change < acceleration * T::of(1.5)).then_some(flight)
     }
@@ -74,7 +74,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         if !stop || !(flight < left) || !border.is_none_or(before) {
             return None;
         }
-        let (sign, y) = (end.sign(), &self.series.y[1..self.series.known]);
+        let (sign, y) = (end.sign(), &self.series.coefficients()[1..]);
         // (where their number is known, the loops over them are unrolled)
         let length = match y {
             [a, b, c, d] => parabola_like(&[*a, *b, *c, *d], sign, flight),

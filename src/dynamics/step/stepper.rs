@@ -7,7 +7,7 @@ use super::quasi_static::QuasiStatic;
 use super::settings::Settings;
 use super::work::{Costs, Work};
 use crate::dynamics::clock::{Clock, Instant};
-use crate::dynamics::drive::{Drive, base_at};
+use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::{End, Equation, Mode};
 use crate::dynamics::series::{Endpoint, Series};
 use crate::dynamics::state::MotionState;
@@ -84,26 +84,20 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
         D::begin_circuit(&mut self.cursor, state.circuit);
     }
 
-    /// Acceleration of the base in m/s^2 at instants within a segment of the drive.
+    /// A step along a path from this state as the recorder sees it: as chosen and as kept, the time that it
+    /// takes, a bound of the way, and the state at its end.
     #[inline]
-    pub fn base(&self, segment: usize) -> impl Fn(&Instant<T>) -> f64 + use<'a, T, D> {
-        let (drive, clock, unit) = (self.drive, self.clock, self.equation.unit);
-        move |at| base_at(drive, &clock, segment, at, unit)
-    }
-
-    /// A step of free flight from this state as the recorder sees it: as chosen and as kept, with a bound of
-    /// the way, and the state at its end.
-    #[inline]
-    pub fn view(
+    pub fn view<'p, P>(
         &self,
         state: &MotionState<T>,
-        (whole, length): (T, T),
+        path: &'p P,
+        (whole, length, duration): (T, T, T),
         bound: T,
         (x, v): (T, T),
-    ) -> StepView<'_, T> {
+    ) -> StepView<'p, T, P> {
         let Mode { origin, low, high, .. } = *self.mode(state);
-        let (path, at, limits) = (&self.series, state.at, (low, high));
-        StepView { path, origin, at, whole, length, duration: length, bound, limits, x, v }
+        let (at, limits) = (state.at, (low, high));
+        StepView { path, circuit: None, origin, at, whole, length, duration, bound, limits, x, v }
     }
 
     /// The time to the end of the run.
@@ -157,8 +151,8 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
     /// where the series begins.
     #[inline(always)]
     pub fn circuit_push(&self) -> Option<[T; 3]> {
-        let state = D::circuit_state(&self.cursor)?;
-        self.drive.circuit().map(|own| own.push(state[0]))
+        let state = self.drive.circuit_state(&self.cursor)?;
+        self.drive.circuit().map(|circuit| circuit.push(state[0]))
     }
 
     /// What rounding may make of it.

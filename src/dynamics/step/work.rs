@@ -48,13 +48,13 @@ impl Costs {
     /// Of series of this order, forces of up to this degree, and a drive.
     pub fn new<T: Scalar, D: Drive<T>>(order: usize, degree: usize, drive: &D) -> Self {
         let (order, products) = (order as u64, degree as u64 / 2);
-        let own = drive.cost(order as usize);
-        let step = 20 + order * order * (2 + 2 * products) / 80 + own;
+        let drive = drive.cost(order as usize);
+        let step = 20 + order * order * (2 + 2 * products) / 80 + drive;
         Self {
             step,
-            check: 5 + products + own / 2,
-            contact: 40 + order * order / 3 + own,
-            sample: SAMPLE + own,
+            check: 5 + products + drive / 2,
+            contact: 40 + order * order / 3 + drive,
+            sample: SAMPLE + drive,
         }
     }
 
@@ -144,7 +144,7 @@ impl<'a> Work<'a> {
 mod tests {
     use super::*;
     use crate::dynamics::drive::Still;
-    use crate::dynamics::drive::composite::Composite;
+    use crate::dynamics::drive::general::General;
     use crate::dynamics::drive::lines::Lines;
 
     #[test]
@@ -182,7 +182,10 @@ mod tests {
                 quarter: false,
                 ramp: None,
             };
-            Composite {
+            General {
+                sine: None,
+                still: false,
+                circuit: None,
                 constant: 0.0,
                 tones: vec![tone; lines],
                 lines: Lines::default(),

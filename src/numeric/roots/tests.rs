@@ -18,7 +18,7 @@ fn from_roots(roots: &[f64], scale: f64) -> Vec<f64> {
 
 fn all(g: &[f64]) -> Vec<f64> {
     let mut found = Vec::new();
-    PolynomialRoots::new(g).each_sign_change(|s| {
+    PolynomialRoots::new(g).each_sign_change(&mut |s| {
         found.push(s);
         true
     });

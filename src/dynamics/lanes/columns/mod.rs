@@ -12,8 +12,8 @@ use crate::dynamics::state::{BY_SPEED, Touch};
 use crate::dynamics::step::work::ARRIVAL;
 use crate::numeric::Lanes;
 
-/// One motion under a sine, without a ledger.
-pub(super) type LaneMotion<'a> = Motion<'a, f64, Sine<f64>, false>;
+/// One motion under a sine.
+pub(super) type LaneMotion<'a> = Motion<'a, f64, Sine<f64>>;
 
 /// The lanes, in columns.
 pub(crate) struct Columns<const W: usize> {
