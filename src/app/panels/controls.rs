@@ -12,7 +12,6 @@ use super::{advanced, best_stops, geometry};
 
 /// Width in points below which the row of controls has no room for headings.
 const NARROW: f32 = 640.0;
-
 /// Width in points of the search button in that row.
 const SEARCH: f32 = 96.0;
 /// Least width in points of a slider beside the search button.

@@ -34,7 +34,6 @@ fn is_balancing(path: &str) -> bool {
     [".n_per_m", ".strength_n_mm4", ".gap_mm"].iter().any(|end| path.ends_with(end))
 }
 
-/// The sliders of springs and magnets.
 pub fn balancing_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     let balancing = sliders(session).into_iter().filter(|path| is_balancing(path));
     balancing.for_each(|path| field_ui(ui, session, &path, width));

@@ -86,7 +86,7 @@ impl Hint {
     /// the present scene settles to; while that is not known, there are none.
     pub fn text(&self, session: &Session) -> (&'static str, String) {
         let (opened, crosses) = (grams(self.opened_g), session.crosses());
-        let (as_opened, only) = (self.is_as_opened(session), self.changed_only_shaking_and_stops(session));
+        let (as_opened, fair) = (self.is_as_opened(session), self.is_fair_comparison(session));
         let wait = "Wait for it, or press X to go there.";
         let outward = "Then move the stops outward: how far does that help?";
         let (first, then): (_, &str) = match (self.stage, limit_mm(session).is_some(), as_opened, crosses) {
@@ -97,7 +97,7 @@ impl Hint {
             ),
             (Stage::Compare | Stage::Move { .. }, false, false, _) => {
                 let (first, now) = match crosses {
-                    Some(true) if only => ("Harder shaking made it cross.", "Now go"),
+                    Some(true) if fair => ("Harder shaking made it cross.", "Now go"),
                     _ => ("Now with stops.", "Go"),
                 };
                 let then = "switch the stops on: what is gained, what does it cost?";
@@ -124,7 +124,7 @@ impl Hint {
             ),
             (Stage::Move { .. }, true, true, crosses) => {
                 let first = match crosses {
-                    Some(_) if only => "Between these stops it crossed, without more shaking.",
+                    Some(_) if fair => "Between these stops it crossed, without more shaking.",
                     Some(_) => "Between these stops it crosses.",
                     None => "Now with stops.",
                 };
@@ -136,8 +136,8 @@ impl Hint {
         (first, then.to_owned())
     }
 
-    /// Whether the shaking and the stops are all that differs from the scene as it was opened.
-    fn changed_only_shaking_and_stops(&self, session: &Session) -> bool {
+    /// Whether only the shaking and the stops differ from the scene as it was opened.
+    fn is_fair_comparison(&self, session: &Session) -> bool {
         let mut scene = session.scene().clone();
         let opened = session.editor.saved();
         scene.stops = opened.stops;

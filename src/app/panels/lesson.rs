@@ -16,7 +16,6 @@ use crate::scene::lesson::Step;
 
 /// Text size in points, unless the window is compact.
 const LARGE: f32 = 16.0;
-
 /// Width in points of the column with the dots of the steps and the navigation buttons.
 const NAVIGATION: f32 = 158.0;
 /// Width in points of that column in the last step, where it also leads to the next lesson.
@@ -27,15 +26,12 @@ const BUTTON_HEIGHT: f32 = 24.0;
 const DOT: f32 = 4.5;
 /// Distance in points between the dots.
 const DOT_SPACING: f32 = 15.0;
-
 /// Greatest number of characters of the reason that a student gives.
 const MAX_REASON: usize = 60;
 /// Width in points of the field for the reason.
 const REASON: f32 = 150.0;
-
 /// Greatest width in points of the meaning of a word.
 const MEANING: f32 = 320.0;
-
 /// Greatest number of options side by side.
 const SIDE_BY_SIDE: usize = 3;
 
@@ -48,7 +44,6 @@ pub enum LessonAction {
     NextLesson(&'static str),
 }
 
-/// The letter of an option.
 pub fn letter(option: usize) -> char {
     ('A'..='Z').nth(option).unwrap_or('?')
 }
@@ -86,7 +81,6 @@ pub fn lesson_ui(
     action
 }
 
-/// The heading before the text of a step.
 fn heading(step: &Step) -> &'static str {
     match step {
         Step::Say(_) => "",

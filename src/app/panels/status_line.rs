@@ -20,7 +20,6 @@ const LINE: f32 = 17.0;
 const SMALL_LINE: f32 = 13.0;
 /// Width in points of a window below which hover text replaces that column.
 const NARROW: f32 = 640.0;
-
 /// Least height in points of the status line.
 const LEAST: f32 = 44.0;
 /// Height in points that the status line leaves around its text.
@@ -43,7 +42,6 @@ fn is_narrow(ui: &Ui) -> bool {
     ui.ctx().content_rect().width() < NARROW
 }
 
-/// The line that says what the mass does.
 pub fn status_ui(
     ui: &mut Ui,
     session: &mut Session,

@@ -118,8 +118,7 @@ fn ticks(events: &VecDeque<Event>, begin: f64, end: f64, least: f64) -> Vec<Even
     shown.filter(is_first).copied().collect()
 }
 
-/// The sign of an event at a position: a line for an impact, a triangle for a release, a diamond for a
-/// crossing.
+/// The sign of an event at `at`: a line for an impact, a triangle for a release, a diamond for a crossing.
 fn sign(kind: EventKind, at: Pos2, style: &Style) -> Shape {
     let convex = |points: &[(f32, f32)], color: Color32| {
         let points = points.iter().map(|(x, y)| at + vec2(*x, *y)).collect();

@@ -128,7 +128,7 @@ pub(super) enum Part {
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Listed {
     No,
-    /// A row of its own: its heading, and what the command does.
+    /// A separate row: its heading, and what the command does.
     As(&'static str, &'static str),
     /// In the row of the preceding command.
     Joined,

@@ -12,7 +12,7 @@ use crate::system::files;
 use super::messages::WriteResult;
 
 /// Share of the traces' time window below which the whole run is offered instead.
-const LITTLE: f64 = 0.05;
+const LEAST_SHARE: f64 = 0.05;
 
 /// The requested figure. Its layout is kept for the next one.
 #[derive(Debug)]
@@ -58,12 +58,10 @@ impl Default for Figures {
 }
 
 impl Figures {
-    /// Whether a figure is requested.
     pub(super) fn is_open(&self) -> bool {
         self.view.is_some()
     }
 
-    /// Takes the file that was chosen.
     pub(super) fn choose(&mut self, path: &Path) {
         self.path = path.to_string_lossy().into_owned();
     }
@@ -75,7 +73,6 @@ impl Figures {
         self.problem = Some(text.to_owned());
     }
 
-    /// Why the last figure was not saved.
     pub fn problem(&self) -> Option<&str> {
         self.problem.as_deref()
     }
@@ -212,5 +209,5 @@ fn times(session: &Session, memory: &Memory) -> Option<(f64, f64)> {
     let now = session.player.time();
     let window = memory.timeline.window.unwrap_or_else(|| stretch(session.model()));
     let from = (now - window).max(0.0);
-    (!session.is_continued() && now - from > LITTLE * window).then(|| round_times((from, now))).flatten()
+    (!session.is_continued() && now - from > LEAST_SHARE * window).then(|| round_times((from, now))).flatten()
 }

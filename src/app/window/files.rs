@@ -62,7 +62,7 @@ impl Window {
         }
     }
 
-    /// Does what is next, once the changes of the present scene are saved or discarded.
+    /// Does `next`, once the changes of the present scene are saved or discarded.
     pub fn leave_for(&mut self, ctx: &egui::Context, next: Next) {
         self.session.end_gesture();
         // a lesson suspends the scene without losing its changes

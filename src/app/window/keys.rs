@@ -19,31 +19,30 @@ const SIDE_BY_SIDE: f32 = 800.0;
 
 /// The commands of the pressed keys; none while text is edited. To be called only while no dialog is open.
 pub fn pressed(ctx: &Context, filled: bool) -> Vec<Command> {
-    let mut pressed = Vec::new();
+    let mut commands = Vec::new();
     if ctx.text_edit_focused() {
-        return pressed;
+        return commands;
     }
     let speeds = SPEED_KEYS.into_iter().enumerate();
     let speeds = speeds.map(|(i, key)| (KeyboardShortcut::new(Modifiers::NONE, key), Command::Speed(i)));
-    let commands = parts().filter_map(|part| match part {
+    let keys = parts().filter_map(|part| match part {
         Part::Item(_, Some(key), command, _) => Some((*key, command.clone())),
         _ => None,
     });
-    let (shifted, others): (Vec<_>, Vec<_>) =
-        commands.chain(speeds).partition(|(key, _)| key.modifiers.shift);
+    let (shifted, others): (Vec<_>, Vec<_>) = keys.chain(speeds).partition(|(key, _)| key.modifiers.shift);
     // keys with Shift first: those without would consume them
     for (key, command) in shifted.into_iter().chain(others) {
         if is_free(ctx, &key, &command, filled) && ctx.input_mut(|input| input.consume_shortcut(&key)) {
-            pressed.push(command);
+            commands.push(command);
         }
     }
-    pressed
+    commands
 }
 
 /// Whether a key now triggers its command.
 fn is_free(ctx: &Context, key: &KeyboardShortcut, command: &Command, filled: bool) -> bool {
     match (command, key.logical_key) {
-        // these arrive as events of their own
+        // copy and paste arrive as separate events
         (Command::CopyScene | Command::PasteScene, _) => false,
         // the space bar presses the button that has the focus
         (_, Key::Space) => {
@@ -75,7 +74,6 @@ fn rows(ctx: &Context, heading: &str, projector: bool) -> Vec<(String, &'static 
     rows.into_iter().filter(|row| row.0 == heading).map(|(_, keys, text)| (keys, text)).collect()
 }
 
-/// A group of the list with its heading.
 fn group_ui(ui: &mut Ui, group: &str, projector: bool) {
     ui.label(RichText::new(group).heading());
     Grid::new(group).num_columns(2).spacing([16.0, 2.0]).show(ui, |ui| {

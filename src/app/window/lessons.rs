@@ -26,8 +26,8 @@ use super::layouts::{Arrangement, Tiling};
 /// Title of the alert about a lesson that cannot be opened.
 pub(super) const CANNOT_OPEN_LESSON: &str = "This lesson cannot be opened";
 
-/// Distance in points of the outline around what a lesson points at.
-const AROUND: f32 = 2.0;
+/// Distance in points between a control and the outline around it.
+const OUTLINE_DISTANCE: f32 = 2.0;
 
 #[derive(Default)]
 pub(super) struct Lessons {
@@ -160,12 +160,10 @@ impl Window {
         self.lessons.open.as_ref()
     }
 
-    /// The open lesson, to answer it.
     pub fn lesson_mut(&mut self) -> Option<&mut OpenLesson> {
         self.lessons.open.as_mut()
     }
 
-    /// The progress in all lessons.
     pub fn records(&self) -> Records {
         let mut records = self.lessons.records.clone();
         if let Some(lesson) = &self.lessons.open {
@@ -300,14 +298,13 @@ impl Window {
         for word in bold_words(lesson.step().text()) {
             let stroke = style.pointing_stroke();
             if let Some(control) = self.lessons.controls.iter().find(|shown| names_control(&word, &shown.0)) {
-                painter.rect_stroke(control.1.expand(AROUND), 4.0, stroke, StrokeKind::Outside);
+                painter.rect_stroke(control.1.expand(OUTLINE_DISTANCE), 4.0, stroke, StrokeKind::Outside);
             } else if let Some(rect) = view_named(&word).and_then(|view| self.tiling.place_of(view)) {
                 painter.rect_stroke(rect, 4.0, stroke, StrokeKind::Inside);
             }
         }
     }
 
-    /// The lecturer's notes, if they are open.
     pub(super) fn lecturer_ui(&mut self, ctx: &egui::Context) {
         let Some(lesson) = self.lessons.open.as_ref().filter(|_| self.lessons.notes) else { return };
         let (action, closed) = lecturer_ui(ctx, lesson);
@@ -315,7 +312,6 @@ impl Window {
         action.into_iter().for_each(|action| self.act_in_lesson(action));
     }
 
-    /// Copies the answers to all lessons as text.
     pub(super) fn copy_answers(&mut self, ctx: &egui::Context) {
         match answers_text(&self.records()) {
             Some(text) => {
@@ -327,8 +323,7 @@ impl Window {
     }
 }
 
-/// Whether a word in lower case names the control of a field: by the label beside it, or by the field's usual
-/// name.
+/// Whether a word in lower case names the control of a field: by its label, or by the field's usual name.
 fn names_control(word: &str, path: &str) -> bool {
     let name = name_and_unit(path).0;
     let label = name.trim_end_matches(" ±").to_lowercase();

@@ -32,11 +32,11 @@ pub fn menu_ui(
 ) -> Vec<Command> {
     let mut commands = Vec::new();
     egui::MenuBar::new().ui(ui, |ui| {
-        let shown = MenuState { session, tiling, settings, recent, lessons };
+        let state = MenuState { session, tiling, settings, recent, lessons };
         for (name, parts) in &MENUS {
             ui.menu_button(*name, |ui| match *name {
-                "View" | "Lessons" => scroll_ui(ui, |ui| parts_ui(ui, &mut commands, parts, &shown)),
-                _ => parts_ui(ui, &mut commands, parts, &shown),
+                "View" | "Lessons" => scroll_ui(ui, |ui| parts_ui(ui, &mut commands, parts, &state)),
+                _ => parts_ui(ui, &mut commands, parts, &state),
             });
         }
         ui.add_space(16.0);
@@ -72,29 +72,29 @@ struct MenuState<'a> {
     lessons: &'a Lessons,
 }
 
-fn parts_ui(ui: &mut Ui, commands: &mut Vec<Command>, parts: &[Part], shown: &MenuState<'_>) {
+fn parts_ui(ui: &mut Ui, commands: &mut Vec<Command>, parts: &[Part], state: &MenuState<'_>) {
     for part in parts {
         match part {
             Part::Item("", ..) | Part::Row(..) => {}
             Part::Item(name, key, command, _) => {
-                let enabled = is_enabled(command, shown);
+                let enabled = is_enabled(command, state);
                 item_ui(ui, commands, name, *key, enabled, command);
             }
-            Part::Menu(name, parts) => drop(ui.menu_button(*name, |ui| parts_ui(ui, commands, parts, shown))),
+            Part::Menu(name, parts) => drop(ui.menu_button(*name, |ui| parts_ui(ui, commands, parts, state))),
             Part::Line => drop(ui.separator()),
             Part::Presets => presets_ui(ui, commands),
-            Part::Recent => recent_ui(ui, commands, shown.recent),
-            Part::Settings => settings_ui(ui, commands, shown.settings),
-            Part::Views => views_ui(ui, commands, shown.tiling),
+            Part::Recent => recent_ui(ui, commands, state.recent),
+            Part::Settings => settings_ui(ui, commands, state.settings),
+            Part::Views => views_ui(ui, commands, state.tiling),
             Part::Speeds => speeds_ui(ui, commands),
-            Part::Lessons => lessons_ui(ui, commands, shown.lessons),
+            Part::Lessons => lessons_ui(ui, commands, state.lessons),
         }
     }
 }
 
 /// Whether a command can be chosen in a menu.
-fn is_enabled(command: &Command, shown: &MenuState<'_>) -> bool {
-    let MenuState { session, tiling, lessons, .. } = shown;
+fn is_enabled(command: &Command, state: &MenuState<'_>) -> bool {
+    let MenuState { session, tiling, lessons, .. } = state;
     let model = session.model();
     if lessons.open.as_ref().is_some_and(OpenLesson::is_covering) && command.reveals_motion() {
         return false;
@@ -250,7 +250,6 @@ static ABOUT_LESSONS: LazyLock<Vec<LessonFacts>> = LazyLock::new(|| {
     LESSONS.iter().map(facts).collect()
 });
 
-/// The titles of the built-in scenes.
 static TITLES: LazyLock<Vec<String>> = LazyLock::new(|| {
     let title = |name: &str| Document::load(name).map_or_else(|_| name.to_owned(), |found| found.scene.title);
     PRESETS.iter().map(|preset| title(preset.name)).collect()

@@ -31,12 +31,10 @@ pub(super) struct Messages {
 }
 
 impl Messages {
-    /// Shows an alert.
     pub fn alert(&mut self, title: impl Into<String>, text: impl Into<String>) {
         self.alert = Some((title.into(), text.into()));
     }
 
-    /// Shows a notice.
     pub fn notify(&mut self, text: impl Into<String>) {
         self.notice = Some(Notice { text: text.into(), since: None });
     }
@@ -60,12 +58,10 @@ impl Messages {
         }
     }
 
-    /// The text of the alert that is shown.
     pub fn alert_text(&self) -> Option<&str> {
         self.alert.as_ref().map(|alert| alert.1.as_str())
     }
 
-    /// The text of the notice that is shown.
     pub fn notice_text(&self) -> Option<&str> {
         self.notice.as_ref().map(|notice| notice.text.as_str())
     }

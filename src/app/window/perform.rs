@@ -219,7 +219,7 @@ impl Window {
         }
     }
 
-    /// Goes to the next event of a kind, at most the run length or [`TIMES_AHEAD`] ahead, if that is more.
+    /// Goes to the next event of a kind, as far ahead as the run length or, if that is more, `TIMES_AHEAD`.
     fn go_to_first(&mut self, kind: EventKind) {
         let model = self.session.model();
         let (name, is_possible) = match kind {

@@ -33,7 +33,7 @@ const MOST_RECENT: usize = 8;
 
 pub struct Window {
     pub session: Session,
-    /// What the user has set for all scenes.
+    /// The user's settings, which hold for all scenes.
     pub settings: Settings,
     pub tiling: Tiling,
     pub(super) arrangement: Arrangement,
@@ -116,7 +116,6 @@ impl Window {
         })
     }
 
-    /// A window on a scene that was read.
     pub(super) fn with_editor(editor: Editor, settings: Settings, wake: Wake) -> Result<Self, CannotRun> {
         let session = Session::new(editor, Arc::clone(&wake))?;
         let layout = session.scene().app.as_ref().and_then(|app| app.layout).unwrap_or(Layout::Look);

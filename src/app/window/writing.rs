@@ -33,7 +33,6 @@ impl Window {
         }
     }
 
-    /// Copies the scene as text.
     pub(super) fn copy_scene(&mut self, ctx: &egui::Context) {
         match self.session.editor.text() {
             Ok(text) => {

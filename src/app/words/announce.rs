@@ -21,7 +21,7 @@ pub struct Announcer {
 }
 
 impl Announcer {
-    /// Receives the sentence of the frame at `now` in s. Returns the time in s until it will be spoken.
+    /// Receives the sentence of the frame at `now` in s. Returns the time in s until it is spoken.
     pub fn take(&mut self, sentence: &Sentence, now: f64) -> Option<f64> {
         let text = sentence.whole();
         let Some((kind, spoken)) = &self.spoken else {

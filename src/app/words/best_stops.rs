@@ -11,7 +11,6 @@ use crate::study::{BestDesign, DesignRange, NoBest, Optimum};
 pub enum Found<'a> {
     /// The search is running: the number of runs so far, and the best stops of its coarse scan.
     Searching(u64, Option<&'a Optimum>),
-    /// The answer.
     Whole(&'a Result<BestDesign, NoBest>),
     /// The search has ended without an answer.
     Nothing,

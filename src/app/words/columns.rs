@@ -4,7 +4,6 @@ use crate::app::words::numbers::power_unit;
 use crate::output::{RMS, speed_unit, words_of};
 use crate::study::{Column, Read, SummaryField, Values};
 
-/// A column of a summary.
 #[derive(Debug, PartialEq, Eq)]
 pub struct ColumnInfo {
     /// Its name in a file.

@@ -43,9 +43,7 @@ pub struct FieldInfo {
 /// The range of a slider and the step of the arrow keys.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reach {
-    /// The left end.
     pub low: f64,
-    /// The right end.
     pub high: f64,
     /// The step of the arrow keys; on a logarithmic slider only of the number beside it.
     pub step: f64,

@@ -35,7 +35,6 @@ impl From<Regime> for Kind {
 }
 
 impl Kind {
-    /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Resting => "at rest",

@@ -27,7 +27,7 @@ pub fn decimals(step: f64) -> usize {
 /// Greatest number of significant digits that a field shows while it is not edited.
 const DIGITS: usize = 7;
 
-/// A number as a field shows it: with at least `least` decimals, and up to [`DIGITS`] significant digits.
+/// A number as a field shows it: with at least `least` decimals, and up to seven significant digits.
 pub fn shown(value: f64, least: usize) -> String {
     let rounded: f64 = format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value);
     exact(rounded, least)

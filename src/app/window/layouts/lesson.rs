@@ -20,8 +20,8 @@ fn is_wide(view: View) -> bool {
 
 impl Tiling {
     /// The tiles of a lesson with these views. The left column has the views along the displacement, with the
-    /// mechanism on top; if there are views with legends, such as a map, it has only these. In a compact window
-    /// all are side by side; the third and later of more than three, and those beside a map, share tabs.
+    /// mechanism on top; if there are views with legends, such as a map, it has only these. In a compact
+    /// window all are side by side; the third and later of four or more, and those beside a map, share tabs.
     pub fn of_lesson(views: &[View], room: Room) -> Self {
         let mut tiles = Tiles::default();
         let tree = match room {
