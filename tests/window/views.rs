@@ -69,13 +69,13 @@ fn layouts_switch() {
     press_with_ctrl(&mut harness, Key::Num4);
     let window = harness.state();
     assert!(window.tiling.shows(View::Velocity) && !window.tiling.shows(View::BeforeNow));
-    let kept = window.own.clone();
+    let kept = window.custom.clone();
     assert!(kept.is_some());
     // it outlives the scene and the program
     harness.state_mut().open_another("paper");
-    assert_eq!(harness.state().own, kept);
+    assert_eq!(harness.state().custom, kept);
     let mut again = self::window("paper", WIDE);
-    again.state_mut().own = kept;
+    again.state_mut().custom = kept;
     command(&mut again, Command::ArrangeOwn);
     assert!(again.state().tiling.shows(View::Velocity) && !again.state().tiling.shows(View::BeforeNow));
 }

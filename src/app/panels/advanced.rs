@@ -1,6 +1,6 @@
-//! Controls that are changed seldom: kind of shaking, uneven stops, run length and tolerance.
+//! Controls that are rarely used: kind of shaking, uneven stops, run length and tolerance.
 //!
-//! What cannot be is not offered, or is greyed with the reason.
+//! An impossible choice is left out, or greyed out with the reason.
 
 use eframe::egui::{self, ComboBox, Ui};
 
@@ -18,7 +18,7 @@ pub fn advanced_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     run_ui(ui, session, width);
 }
 
-/// Kinds that can be chosen, as they are called.
+/// Names of the kinds of shaking that can be chosen.
 const KINDS: [&str; 6] = ["none", "constant", "sine", "amplitude ramp", "chirp", "noise"];
 
 fn kind(excitation: &Excitation) -> &'static str {
@@ -34,10 +34,10 @@ fn kind(excitation: &Excitation) -> &'static str {
     }
 }
 
-/// Another kind of shaking, as strong and as fast as the present one where that has a meaning, else as
-/// `suiting`.
+/// Shaking of another kind, with the amplitude and frequency of the present shaking, or with those of
+/// `suiting` if it has none.
 fn of_kind(name: &str, from: &Excitation, suiting: &Excitation) -> Excitation {
-    let (own_f, own_g) = match suiting {
+    let (suiting_f, suiting_g) = match suiting {
         Excitation::Sine { frequency_hz, amplitude_g, .. } => (*frequency_hz, *amplitude_g),
         _ => (3.0, 0.5),
     };
@@ -46,8 +46,8 @@ fn of_kind(name: &str, from: &Excitation, suiting: &Excitation) -> Excitation {
         Excitation::AmplitudeRamp { frequency_hz, to_g, .. } => (*frequency_hz, *to_g),
         Excitation::Chirp { from_hz, to_hz, amplitude_g, .. } => (0.5 * (from_hz + to_hz), *amplitude_g),
         Excitation::Noise { rms_g, low_hz, high_hz, .. } => (0.5 * (low_hz + high_hz), *rms_g),
-        Excitation::Constant { accel_g } => (own_f, *accel_g),
-        _ => (own_f, own_g),
+        Excitation::Constant { accel_g } => (suiting_f, *accel_g),
+        _ => (suiting_f, suiting_g),
     };
     match name {
         "constant" => Excitation::Constant { accel_g: g },
@@ -66,10 +66,10 @@ fn kind_ui(ui: &mut Ui, session: &mut Session) {
     let mut wanted = present;
     let name = ui.label("kind of shaking");
     let combo = ComboBox::from_id_salt("kind of shaking").selected_text(present).show_ui(ui, |ui| {
-        for own in KINDS {
-            ui.selectable_value(&mut wanted, own, own);
+        for kind in KINDS {
+            ui.selectable_value(&mut wanted, kind, kind);
         }
-        for (own, why) in [
+        for (kind, why) in [
             (
                 "recorded",
                 "Open measured data with an acceleration (File menu), or name a record in the scene file: \
@@ -77,7 +77,8 @@ fn kind_ui(ui: &mut Ui, session: &mut Session) {
             ),
             ("sum", "A sum of several is written in the scene file: excitation: Sum([..])."),
         ] {
-            ui.add_enabled(false, egui::Button::selectable(own == present, own)).on_disabled_hover_text(why);
+            ui.add_enabled(false, egui::Button::selectable(kind == present, kind))
+                .on_disabled_hover_text(why);
         }
     });
     combo.response.labelled_by(name.id).on_hover_text("What moves the base.");
@@ -117,19 +118,19 @@ fn uneven_ui(ui: &mut Ui, session: &mut Session, width: f32) {
         session.edit_once(|scene| scene.stops = other_kind(scene.stops));
     }
     let Stops::Uneven { left_mm, right_mm, .. } = session.scene().stops else { return };
-    for (name, right, own, other) in
+    for (name, right, limit, other) in
         [("left stop is there", false, left_mm, right_mm), ("right stop is there", true, right_mm, left_mm)]
     {
-        let mut there = own.is_some();
-        // without either there would be no stops, and that has a switch of its own
-        let free = own.is_none() || other.is_some();
-        let response = ui.add_enabled(free, egui::Checkbox::new(&mut there, name));
+        let mut exists = limit.is_some();
+        // the last stop is removed only by the switch Stops
+        let enabled = limit.is_none() || other.is_some();
+        let response = ui.add_enabled(enabled, egui::Checkbox::new(&mut exists, name));
         let response = response.on_hover_text("An open side limits nothing.");
         let why = "One side has to have a stop; the switch Stops takes both away.";
         if response.on_disabled_hover_text(why).changed() {
             session.edit_once(|scene| {
                 if let Stops::Uneven { left_mm, right_mm, .. } = &mut scene.stops {
-                    *(if right { right_mm } else { left_mm }) = there.then_some(other.unwrap_or(1.5));
+                    *(if right { right_mm } else { left_mm }) = exists.then_some(other.unwrap_or(1.5));
                 }
             });
         }
@@ -137,7 +138,8 @@ fn uneven_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     fields_ui(ui, session, &["stops.restitution_left", "stops.restitution_right"], width);
 }
 
-/// Equal stops as stops that may differ, and back; back, both are as the right one, where it is there.
+/// Equal stops as stops that may differ, or the reverse. In reverse, both become like the right one, or like
+/// the left one if the right side is open.
 fn other_kind(stops: Stops) -> Stops {
     let ([left_mm, right_mm], [restitution_left, restitution_right]) =
         (stops.limits_mm(), stops.restitutions());
@@ -151,7 +153,7 @@ fn other_kind(stops: Stops) -> Stops {
     }
 }
 
-/// Tolerances that can be chosen, as they are called.
+/// Tolerances that can be chosen, with their names.
 const TOLERANCES: [(f64, &str); 4] = [(1e-6, "1e-6"), (1e-9, "1e-9"), (1e-12, "1e-12"), (1e-14, "1e-14")];
 
 fn run_ui(ui: &mut Ui, session: &mut Session, width: f32) {

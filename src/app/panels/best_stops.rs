@@ -1,15 +1,15 @@
-//! Search for the best stops: its button, and what it found.
+//! Button and answer of the search for the best stops.
 
 use eframe::egui::{self, RichText, Ui};
 
 use crate::app::session::Session;
 
-/// What the search does.
+/// Hover text of the button.
 const HOVER: &str = "Looks for the distance of the stops with which the scene as it stands, from rest, moves \
                      fastest, or where there is a transducer gives most power, and how far that is from \
                      where it is lost (B).";
 
-/// A button called `name` that begins it; in a lesson there is none.
+/// A button labelled `name` that starts the search; there is none in a lesson.
 pub fn button_ui(ui: &mut Ui, session: &mut Session, name: &str) {
     if session.best.is_off {
         return;
@@ -21,7 +21,7 @@ pub fn button_ui(ui: &mut Ui, session: &mut Session, name: &str) {
     }
 }
 
-/// What is known, and the way there.
+/// The answer of the search so far, and a button that moves the stops there.
 pub fn answer_ui(ui: &mut Ui, session: &mut Session) {
     ui.horizontal_wrapped(|ui| {
         ui.label(session.best.words());

@@ -1,4 +1,4 @@
-//! Controls of the scene: shaking, stops and, under More, what is changed less often.
+//! Controls of the scene: shaking, stops and, under More, fields that are changed less often.
 
 use eframe::egui::{self, Color32, Rect, RichText, Ui};
 
@@ -10,33 +10,36 @@ use crate::scene::{Damping, Excitation, Stops};
 use super::fields::{absent_ui, field_ui, fields_ui};
 use super::{advanced, best_stops, geometry};
 
-/// Width in points of a row of controls that has no room for a heading.
+/// Width in points below which the row of controls has no room for headings.
 const NARROW: f32 = 640.0;
-
-/// Width in points of the button of the search in that row, and of a slider beside it at least.
+/// Width in points of the search button in that row.
 const SEARCH: f32 = 96.0;
+/// Least width in points of a slider beside the search button.
 const LEAST_BESIDE: f32 = 70.0;
 
-/// How a lesson calls the switch of the stops, and the width in points that it takes.
+/// Name of the switch of the stops in a lesson's list of controls.
 const SWITCH: &str = "stops";
+/// Width in points of that switch.
 const SWITCH_WIDTH: f32 = 90.0;
-
-/// Widths in points of what stands beside a slider besides its name, and of the slider at least and at most.
+/// Width in points of a slider's control apart from the slider and its name.
 const BESIDE_SLIDER: f32 = 130.0;
+/// Least width in points of a slider.
 const LEAST_SLIDER: f32 = 60.0;
+/// Greatest width in points of a slider.
 const WIDEST_SLIDER: f32 = 280.0;
 
-/// What stands under More.
+/// Hover text of More.
 const MORE_HOVER: &str = "Restitution, preload, frequency, damping and mass; spring, magnets and \
                           transducer, where there are such.";
 
-/// The numbers of a transducer that stand first, and those under Advanced.
+/// Fields of a transducer at the top of More.
 const LOAD: [&str; 4] = [
     "transducer.load_ohm",
     "transducer.load_kohm",
     "transducer.coupling_v_s_per_m",
     "transducer.coupling_n_per_v",
 ];
+/// Fields of a transducer under Advanced.
 const CIRCUIT: [&str; 3] = ["transducer.coil_ohm", "transducer.inductance_mh", "transducer.capacitance_nf"];
 
 pub fn column_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
@@ -57,7 +60,7 @@ pub fn column_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
     }
 }
 
-/// Shaking and stops as one row, where room is short; the rest opens beside the views.
+/// Shaking and stops in one row, for a compact window; More opens a column beside the views.
 pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
         let button = ui.selectable_label(*more, "More").on_hover_text(MORE_HOVER);
@@ -70,13 +73,12 @@ pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
                 Stops::Uneven { left_mm, right_mm, .. } => left_mm.iter().chain(&right_mm).count(),
                 _ => 1,
             };
-            // where room is short the name of the number has to do
+            // a narrow row has no room for headings
             let is_narrow = ui.available_width() < NARROW;
             let names = if is_narrow { 330.0 } else { 395.0 } + 110.0 * sides as f32;
-            let each = |room: f32| (ui.available_width() - names - room) / (1 + sides) as f32;
-            // the search where the sliders stay long enough beside it
-            let has_search = !is_narrow && each(SEARCH) >= LEAST_BESIDE;
-            let width = each(if has_search { SEARCH } else { 0.0 }).clamp(30.0, 260.0);
+            let slider_width = |button: f32| (ui.available_width() - names - button) / (1 + sides) as f32;
+            let has_search = !is_narrow && slider_width(SEARCH) >= LEAST_BESIDE;
+            let width = slider_width(if has_search { SEARCH } else { 0.0 }).clamp(30.0, 260.0);
             if !is_narrow {
                 heading_ui(ui, "Shaking");
             }
@@ -91,7 +93,7 @@ pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
     });
 }
 
-/// The controls that a lesson names, in rows, each as wide as there is room; the place of each.
+/// The controls that a lesson names, in rows that fill the width. Returns the rectangle of each control.
 pub fn named_ui(ui: &mut Ui, session: &mut Session, controls: &[String]) -> Vec<(String, Rect)> {
     let font = egui::TextStyle::Body.resolve(ui.style());
     let name_width = |ui: &Ui, path: &str| {
@@ -104,17 +106,17 @@ pub fn named_ui(ui: &mut Ui, session: &mut Session, controls: &[String]) -> Vec<
         .map(|path| (path, if path == SWITCH { SWITCH_WIDTH } else { name_width(ui, path) + BESIDE_SLIDER }))
         .collect();
     let mut rows: Vec<Vec<(&String, f32)>> = Vec::new();
-    let least = |row: &[(&String, f32)]| row.iter().map(|own| own.1 + LEAST_SLIDER).sum::<f32>();
-    for own in shown {
+    let least = |row: &[(&String, f32)]| row.iter().map(|control| control.1 + LEAST_SLIDER).sum::<f32>();
+    for control in shown {
         match rows.last_mut() {
-            Some(row) if least(row) + own.1 + LEAST_SLIDER <= ui.available_width() => row.push(own),
-            _ => rows.push(vec![own]),
+            Some(row) if least(row) + control.1 + LEAST_SLIDER <= ui.available_width() => row.push(control),
+            _ => rows.push(vec![control]),
         }
     }
     let mut places = Vec::new();
     for row in rows {
-        let sliders = row.iter().filter(|own| own.0 != SWITCH).count().max(1) as f32;
-        let names: f32 = row.iter().map(|own| own.1).sum();
+        let sliders = row.iter().filter(|control| control.0 != SWITCH).count().max(1) as f32;
+        let names: f32 = row.iter().map(|control| control.1).sum();
         let width = ((ui.available_width() - names) / sliders).clamp(LEAST_SLIDER, WIDEST_SLIDER);
         ui.horizontal(|ui| {
             for (path, _) in row {
@@ -130,7 +132,7 @@ pub fn named_ui(ui: &mut Ui, session: &mut Session, controls: &[String]) -> Vec<
     places
 }
 
-/// What is changed less often, as a column beside the views.
+/// The controls under More, as a column beside the views.
 pub fn more_column_ui(ui: &mut Ui, session: &mut Session) {
     egui::ScrollArea::vertical().show(ui, |ui| more_ui(ui, session, 150.0));
 }
@@ -145,11 +147,11 @@ fn shaking_ui(ui: &mut Ui, session: &mut Session, width: f32) {
             return fields_ui(ui, session, &["excitation.amplitude_g", "excitation.rms_g"], width);
         }
         Excitation::None => {
-            let own = session.suiting_sine();
-            let Excitation::Sine { frequency_hz, amplitude_g, .. } = own else { return };
+            let sine = session.suiting_sine();
+            let Excitation::Sine { frequency_hz, amplitude_g, .. } = sine else { return };
             let hover = format!("A sine of {frequency_hz} Hz and {amplitude_g} g.");
             if ui.button("Shake it").on_hover_text(hover).clicked() {
-                session.edit_once(|scene| scene.excitation = own);
+                session.edit_once(|scene| scene.excitation = sine);
             }
             return;
         }
@@ -173,8 +175,8 @@ fn stops_switch_ui(ui: &mut Ui, session: &mut Session) {
     }
 }
 
-/// The distance of the stops, or of each of them; while they are off, of those that come: moving it switches
-/// them on.
+/// The travel limit of the stops, or of each stop. While the stops are off it shows the limit that they will
+/// have, and moving it switches them on.
 fn limit_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     fields_ui(ui, session, &["stops.travel_limit_mm", "stops.left_mm", "stops.right_mm"], width)
 }

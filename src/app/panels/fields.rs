@@ -1,4 +1,4 @@
-//! Controls of the numbers of a scene, by their paths.
+//! Controls of the numeric fields of a scene, by path.
 
 use eframe::egui::{Label, Ui};
 
@@ -8,8 +8,8 @@ use crate::app::words::fields::{self, Reach};
 use crate::app::words::numbers::{below, decimals, round_up, shown};
 use crate::scene::FieldPath;
 
-/// The control of a number of the scene, or of the stops that come when they are switched on; none where
-/// there is no such number. Another start begins the motion again.
+/// The control of a field of the scene, or of the stops that it gets when they are switched on. Draws nothing
+/// if there is no such field. A change of the start restarts the motion.
 pub(super) fn field_ui(ui: &mut Ui, session: &mut Session, path: &str, width: f32) {
     let Some(value) = session.number(path) else { return };
     let (name, unit) = fields::name_and_unit(path);
@@ -29,17 +29,17 @@ pub(super) fn field_ui(ui: &mut Ui, session: &mut Session, path: &str, width: f3
             refuse(ui, &name, format!("{value}{space}{unit} was not taken: {why}"));
         }
     }
-    let begins = path.starts_with("start.");
-    if turn.ended || turn.value.is_some() && (turn.how == How::Once || begins && turn.how == How::Pressed) {
+    let is_start = path.starts_with("start.");
+    if turn.ended || turn.value.is_some() && (turn.how == How::Once || is_start && turn.how == How::Pressed) {
         session.end_gesture();
-        if begins {
+        if is_start {
             session.restart();
             session.player.set_playing(true);
         }
     }
 }
 
-/// The slider of a number that has no range of its own: around the value that the scene was opened with.
+/// Slider range of a field that is not in the table: around the value that the scene was opened with.
 fn around(session: &Session, path: &str, value: f64) -> Reach {
     let opened = FieldPath::new(path).get(session.editor.saved()).unwrap_or(value);
     let size = if opened == 0.0 { 1.0 } else { opened.abs() };
@@ -47,12 +47,12 @@ fn around(session: &Session, path: &str, value: f64) -> Reach {
     Reach::even(if opened < 0.0 { -high } else { 0.0 }, high, below(high / 200.0))
 }
 
-/// The same for several numbers below each other.
+/// The controls of several fields, one below another.
 pub(super) fn fields_ui(ui: &mut Ui, session: &mut Session, paths: &[&str], width: f32) {
     paths.iter().for_each(|path| field_ui(ui, session, path, width));
 }
 
-/// The name of a control that the scene has no use for, greyed, with the reason.
+/// The name of a control that does not apply to the scene, greyed out, with the reason.
 pub(super) fn absent_ui(ui: &mut Ui, name: &str, why: &str) {
     ui.add_enabled(false, Label::new(name)).on_disabled_hover_text(why);
 }

@@ -1,11 +1,11 @@
-//! Glossary: the words of the field that lessons and sentences use.
+//! Glossary of the technical terms in lessons and sentences.
 
 use eframe::egui::{self, Modifiers, RichText, ScrollArea, Ui};
 
 use crate::app::ui::widgets::{close_ui, dialog, dialog_width};
 use crate::app::words::meanings::{GLOSSARY, meaning};
 
-/// Shows it; false once it is to be closed.
+/// Shows the glossary. Returns `false` once it is to be closed.
 pub fn glossary_ui(ui: &Ui) -> bool {
     let answer = dialog(ui.ctx(), "glossary").show(ui.ctx(), |ui| {
         ui.set_max_width(dialog_width(ui, 640.0));
@@ -22,6 +22,6 @@ pub fn glossary_ui(ui: &Ui) -> bool {
         ui.add_space(8.0);
         close_ui(ui)
     });
-    let again = ui.input_mut(|input| input.consume_key(Modifiers::NONE, egui::Key::F2));
-    !(answer.inner || answer.should_close() || again)
+    let toggled = ui.input_mut(|input| input.consume_key(Modifiers::NONE, egui::Key::F2));
+    !(answer.inner || answer.should_close() || toggled)
 }

@@ -1,4 +1,4 @@
-//! Lesson of the first minute: what to try next, and what it showed.
+//! Hint line of the first minute: what to try next, and what the last try showed.
 
 use eframe::egui::{RichText, Ui};
 
@@ -7,31 +7,31 @@ use crate::app::words::status::grams;
 use crate::dynamics::EventKind;
 use crate::scene::Excitation;
 
-/// How far in mm the stops are moved before the trade-off counts as tried.
+/// Distance in mm by which the stops have to be moved before the trade-off counts as tried.
 const TRIED_MM: f64 = 0.3;
 
-/// What stops do between any two wells.
+/// What stops between any two wells do.
 const MIDDLE: &str = "a stop near the middle holds the mass high on the barrier, so that a weaker push \
                       carries it over; but the mass travels less. Further out the mechanism presses the mass \
                       harder against the stop";
 
-/// What is to be tried.
+/// What the line asks the user to try.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Stage {
     Cross,
-    /// It has crossed by shaking: now with stops.
+    /// The mass has crossed by shaking: try it with stops.
     Compare,
-    /// It has crossed between stops at the shaking of the start, with the stops at so many mm: now move them.
+    /// It has crossed without more shaking than at the start, between stops at `from_mm`: move the stops.
     Move {
         from_mm: f64,
     },
-    /// The stops have been moved: what there was to see.
+    /// The stops have been moved: explain what that showed.
     Answer,
-    /// Nothing any more.
+    /// The line is no longer shown.
     Done,
 }
 
-/// Whether the line is there, and what it says.
+/// State of the hint line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hint {
     stage: Stage,
@@ -40,7 +40,7 @@ pub struct Hint {
 }
 
 impl Hint {
-    /// Where a scene begins in a well, with something to cross and stops to switch on.
+    /// The hint of a scene; shown only if there is a barrier, an amplitude to change, and stops to switch on.
     pub fn for_scene(session: &Session) -> Self {
         let offered = session.scene().app.as_ref().is_some_and(|app| app.stops_when_on.is_some());
         let barrier = session.model().mechanism().landscape.barrier.is_some();
@@ -50,12 +50,12 @@ impl Hint {
         }
     }
 
-    /// Whether it is to be shown; goes on to the next stage once one is done.
+    /// Whether the line is shown. Also advances to the next stage once the present one is done.
     pub fn is_shown(&mut self, session: &Session) -> bool {
         if self.stage == Stage::Done || session.model().mechanism().landscape.barrier.is_none() {
             return false;
         }
-        // Crossings are rare and recent: a look at the last events is enough. One by hand does not count.
+        // A new crossing is recent: the last 50 events are enough. A crossing by hand does not count.
         let since = session.changed_at();
         let mut last = session.player.watch().events().iter().rev().take(50);
         let crossed = since > 0.0
@@ -77,16 +77,16 @@ impl Hint {
         self.stage != Stage::Done
     }
 
-    /// Whether the shaking is no stronger than at the start.
+    /// Whether the shaking is no stronger than when the scene was opened.
     fn is_as_opened(&self, session: &Session) -> bool {
         session.amplitude_g().is_some_and(|g| g.abs() <= self.opened_g.abs() * (1.0 + 1e-9))
     }
 
-    /// What it says: what there is, and what to try. What it says of the motion is what the present scene
-    /// settles to; where that is not known, it says nothing of it.
+    /// Heading and text of the line: what happened, and what to try. Statements about the motion concern what
+    /// the present scene settles to; while that is not known, there are none.
     pub fn text(&self, session: &Session) -> (&'static str, String) {
         let (opened, crosses) = (grams(self.opened_g), session.crosses());
-        let (as_opened, alone) = (self.is_as_opened(session), self.is_alone(session));
+        let (as_opened, fair) = (self.is_as_opened(session), self.is_fair_comparison(session));
         let wait = "Wait for it, or press X to go there.";
         let outward = "Then move the stops outward: how far does that help?";
         let (first, then): (_, &str) = match (self.stage, limit_mm(session).is_some(), as_opened, crosses) {
@@ -97,7 +97,7 @@ impl Hint {
             ),
             (Stage::Compare | Stage::Move { .. }, false, false, _) => {
                 let (first, now) = match crosses {
-                    Some(true) if alone => ("Harder shaking made it cross.", "Now go"),
+                    Some(true) if fair => ("Harder shaking made it cross.", "Now go"),
                     _ => ("Now with stops.", "Go"),
                 };
                 let then = "switch the stops on: what is gained, what does it cost?";
@@ -124,7 +124,7 @@ impl Hint {
             ),
             (Stage::Move { .. }, true, true, crosses) => {
                 let first = match crosses {
-                    Some(_) if alone => "Between these stops it crossed, without more shaking.",
+                    Some(_) if fair => "Between these stops it crossed, without more shaking.",
                     Some(_) => "Between these stops it crosses.",
                     None => "Now with stops.",
                 };
@@ -136,21 +136,21 @@ impl Hint {
         (first, then.to_owned())
     }
 
-    /// Whether the shaking and the stops are all that differs from the scene as it was opened.
-    fn is_alone(&self, session: &Session) -> bool {
-        let mut own = session.scene().clone();
+    /// Whether only the shaking and the stops differ from the scene as it was opened.
+    fn is_fair_comparison(&self, session: &Session) -> bool {
+        let mut scene = session.scene().clone();
         let opened = session.editor.saved();
-        own.stops = opened.stops;
-        if let Excitation::Sine { amplitude_g, .. } = &mut own.excitation {
+        scene.stops = opened.stops;
+        if let Excitation::Sine { amplitude_g, .. } = &mut scene.excitation {
             *amplitude_g = self.opened_g;
         }
-        own == *opened
+        scene == *opened
     }
 
-    /// Draws it, with a way to the first lesson, called `lesson`. Whether that was asked for.
+    /// Draws the line, with a button labelled `lesson` that opens a lesson. Returns whether it was clicked.
     pub fn ui(&mut self, ui: &mut Ui, session: &Session, lesson: &str) -> bool {
         let (first, then) = self.text(session);
-        let mut asked = false;
+        let mut clicked = false;
         ui.horizontal_wrapped(|ui| {
             ui.label(RichText::new(first).heading());
             ui.label(then);
@@ -158,13 +158,13 @@ impl Hint {
                 self.stage = Stage::Done;
             }
             let hover = "Look, predict, try and explain, step by step. The scene waits as it is.";
-            asked = ui.small_button(lesson).on_hover_text(hover).clicked();
+            clicked = ui.small_button(lesson).on_hover_text(hover).clicked();
         });
-        asked
+        clicked
     }
 }
 
-/// What stops do between these wells, wherever they stand.
+/// What stops between these wells do, for any travel limit.
 fn answer(session: &Session) -> String {
     let mut text = MIDDLE.to_owned();
     text += &match hardest_mm(session) {
@@ -177,21 +177,21 @@ fn answer(session: &Session) -> String {
     text
 }
 
-/// Where between the middle and the wells the mechanism presses the mass outwards hardest, in mm, if on both
-/// sides alike.
+/// Distance in mm from the middle at which the mechanism presses the mass outwards hardest; `None` unless it
+/// is the same on both sides.
 fn hardest_mm(session: &Session) -> Option<f64> {
     let landscape = &session.model().mechanism().landscape;
     let barrier = landscape.barrier?;
     let side = |low: f64, high: f64| {
-        let between = landscape.extrema.iter().filter(|own| own.x > low && own.x < high);
-        let mut places = between.map(|own| own.x.abs() * 1e3);
+        let between = landscape.extrema.iter().filter(|extremum| extremum.x > low && extremum.x < high);
+        let mut places = between.map(|extremum| extremum.x.abs() * 1e3);
         places.next().filter(|_| places.next().is_none())
     };
     let (left, right) = (side(barrier.left_well, barrier.x)?, side(barrier.x, barrier.right_well)?);
     ((left - right).abs() < 0.01 * right).then_some(right)
 }
 
-/// The travel limit of stops alike on both sides.
+/// Travel limit in mm of stops that are equal on both sides.
 fn limit_mm(session: &Session) -> Option<f64> {
     session.scene().stops.travel_limit_mm()
 }

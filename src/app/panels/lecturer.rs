@@ -1,4 +1,4 @@
-//! Notes for the lecturer of the open lesson, in a window of their own.
+//! Lecturer's notes of the open lesson, in a separate window.
 
 use eframe::egui::{
     self, CentralPanel, Key, Modifiers, RichText, ScrollArea, Ui, ViewportBuilder, ViewportClass, ViewportId,
@@ -8,41 +8,41 @@ use crate::app::session::lesson::{OpenLesson, Outcome};
 use crate::app::words::lesson::plain;
 use crate::scene::lesson::Step;
 
-use super::lesson::{LessonAct, letter};
+use super::lesson::{LessonAction, letter};
 
-/// Shows them; what was asked for there, and whether they are to be closed.
-pub fn lecturer_ui(ctx: &egui::Context, lesson: &OpenLesson) -> (Option<LessonAct>, bool) {
+/// Shows the notes. Returns the action that was chosen there, and whether to close the notes.
+pub fn lecturer_ui(ctx: &egui::Context, lesson: &OpenLesson) -> (Option<LessonAction>, bool) {
     let builder =
         ViewportBuilder::default().with_title("Lecturer's notes - interwell").with_inner_size([520.0, 420.0]);
-    let (mut asked, mut closed) = (None, false);
+    let (mut action, mut closed) = (None, false);
     ctx.show_viewport_immediate(ViewportId::from_hash_of("lecturer"), builder, |ui, class| {
-        let is_own = class != ViewportClass::EmbeddedWindow;
-        if is_own {
+        let is_separate = class != ViewportClass::EmbeddedWindow;
+        if is_separate {
             CentralPanel::default_margins().show(ui, |ui| notes_ui(ui, lesson));
         } else {
             notes_ui(ui, lesson);
             closed |= ui.button("Close").clicked();
         }
-        closed |= ui.input(|input| input.viewport().close_requested()) && is_own;
+        closed |= ui.input(|input| input.viewport().close_requested()) && is_separate;
         ui.input_mut(|input| {
-            for (key, act) in [(Key::PageDown, LessonAct::Next), (Key::PageUp, LessonAct::Back)] {
-                if is_own && input.consume_key(Modifiers::NONE, key) {
-                    asked = Some(act);
+            for (key, chosen) in [(Key::PageDown, LessonAction::Next), (Key::PageUp, LessonAction::Back)] {
+                if is_separate && input.consume_key(Modifiers::NONE, key) {
+                    action = Some(chosen);
                 }
             }
-            closed |= is_own && input.consume_key(Modifiers::COMMAND, Key::L);
+            closed |= is_separate && input.consume_key(Modifiers::COMMAND, Key::L);
         });
     });
-    (asked, closed)
+    (action, closed)
 }
 
-fn notes_ui(ui: &mut Ui, lesson: &OpenLesson) {
-    let own = lesson.lesson();
+fn notes_ui(ui: &mut Ui, open: &OpenLesson) {
+    let lesson = open.lesson();
     ScrollArea::vertical().auto_shrink(false).max_height((ui.available_height() - 8.0).max(60.0)).show(
         ui,
         |ui| {
-            ui.label(RichText::new(format!("{}, {} min", own.title, own.minutes)).heading());
-            ui.label(&own.goal);
+            ui.label(RichText::new(format!("{}, {} min", lesson.title, lesson.minutes)).heading());
+            ui.label(&lesson.goal);
             let part_ui = |ui: &mut Ui, heading: &str, text: &str| {
                 if !text.trim().is_empty() {
                     ui.add_space(6.0);
@@ -50,18 +50,18 @@ fn notes_ui(ui: &mut Ui, lesson: &OpenLesson) {
                     ui.label(plain(text));
                 }
             };
-            part_ui(ui, "What students think before", &own.misconception);
-            part_ui(ui, "What to do", &own.lecturer);
-            let heading = format!("Step {} of {}", lesson.number() + 1, own.steps.len());
-            part_ui(ui, &heading, lesson.step().text());
-            match (lesson.step(), lesson.outcome()) {
+            part_ui(ui, "What students think before", &lesson.misconception);
+            part_ui(ui, "What to do", &lesson.lecturer);
+            let heading = format!("Step {} of {}", open.number() + 1, lesson.steps.len());
+            part_ui(ui, &heading, open.step().text());
+            match (open.step(), open.outcome()) {
                 (Step::Predict { .. }, Outcome::Holds(option)) => {
-                    let text = format!("{}: {}", letter(option), lesson.options()[option].text);
+                    let text = format!("{}: {}", letter(option), open.options()[option].text);
                     part_ui(ui, "What holds", &text);
                 }
                 (Step::Do { hint, .. }, _) => {
                     part_ui(ui, "Hint", hint.as_deref().unwrap_or_default());
-                    let solution = lesson.solution().iter().map(|own| format!("{} = {}", own.0, own.1));
+                    let solution = open.solution().iter().map(|(field, value)| format!("{field} = {value}"));
                     part_ui(ui, "A solution", &solution.collect::<Vec<_>>().join("\n"));
                 }
                 _ => {}

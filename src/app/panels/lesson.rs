@@ -1,4 +1,4 @@
-//! Strip of the open lesson: its step, what is asked, options, the state of a task, and the way on.
+//! Strip of the open lesson: its step, the options of a prediction, the state of a task, navigation.
 
 use eframe::egui::text::{LayoutJob, TextFormat};
 use eframe::egui::{
@@ -14,29 +14,29 @@ use crate::app::words::lesson::{expected, judged_by, not_yet, numbered, pieces, 
 use crate::app::words::meanings::{meaning, terms};
 use crate::scene::lesson::Step;
 
-/// Text sizes in points: where there is room, and where there is little.
+/// Text size in points, unless the window is compact.
 const LARGE: f32 = 16.0;
-
-/// Room in points for the steps and the ways back and on, and height of these, with the way to
-/// another lesson in the last step; size of the dot of a step, and their distance.
-const WAYS: f32 = 158.0;
-const WAY: f32 = 24.0;
-const LAST_WAYS: f32 = 190.0;
+/// Width in points of the column with the dots of the steps and the navigation buttons.
+const NAVIGATION: f32 = 158.0;
+/// Width in points of that column in the last step, where it also leads to the next lesson.
+const LAST_NAVIGATION: f32 = 190.0;
+/// Height in points of the navigation buttons.
+const BUTTON_HEIGHT: f32 = 24.0;
+/// Radius in points of the dot of a step.
 const DOT: f32 = 4.5;
-const APART: f32 = 15.0;
-
-/// Most characters and width in points of the word that a student gives as a reason.
-const MOST_LETTERS: usize = 60;
+/// Distance in points between the dots.
+const DOT_SPACING: f32 = 15.0;
+/// Greatest number of characters of the reason that a student gives.
+const MAX_REASON: usize = 60;
+/// Width in points of the field for the reason.
 const REASON: f32 = 150.0;
-
-/// Most width in points of what a word means.
+/// Greatest width in points of the meaning of a word.
 const MEANING: f32 = 320.0;
-
-/// The most options that stand side by side.
+/// Greatest number of options side by side.
 const SIDE_BY_SIDE: usize = 3;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LessonAct {
+pub enum LessonAction {
     Choose(usize),
     Back,
     Next,
@@ -44,45 +44,43 @@ pub enum LessonAct {
     NextLesson(&'static str),
 }
 
-/// The letter of an option.
 pub fn letter(option: usize) -> char {
     ('A'..='Z').nth(option).unwrap_or('?')
 }
 
-/// Draws it; what was asked for.
+/// Draws the strip. Returns the action that was chosen.
 pub fn lesson_ui(
     ui: &mut Ui,
     lesson: &mut OpenLesson,
     session: &Session,
     style: &Style,
     compact: bool,
-) -> Option<LessonAct> {
+) -> Option<LessonAction> {
     let size = if compact { BODY } else { LARGE };
-    let mut asked = None;
+    let mut action = None;
     ui.spacing_mut().item_spacing.y = 4.0;
     let text = spoken(lesson, session);
     spoken_ui(ui, Id::unique(("step of a lesson", lesson.number(), &text)), &text);
     ui.horizontal_top(|ui| {
-        let ways = if lesson.is_last() { LAST_WAYS } else { WAYS };
-        let width = (ui.available_width() - ways - 16.0).max(120.0);
+        let navigation = if lesson.is_last() { LAST_NAVIGATION } else { NAVIGATION };
+        let width = (ui.available_width() - navigation - 16.0).max(120.0);
         ui.allocate_ui_with_layout(vec2(width, 0.0), Layout::top_down(Align::Min), |ui| {
             ui.set_width(width);
             let step = lesson.step();
             text_ui(ui, style, heading(step), step.text(), size);
-            asked = below_ui(ui, lesson, session, style, size);
+            action = below_ui(ui, lesson, session, style, size);
         });
-        ui.allocate_ui_with_layout(vec2(ways, 0.0), Layout::top_down(Align::Max), |ui| {
+        ui.allocate_ui_with_layout(vec2(navigation, 0.0), Layout::top_down(Align::Max), |ui| {
             dots_ui(ui, lesson, style);
-            asked = asked.or(ways_ui(ui, lesson, ways));
+            action = action.or(navigation_ui(ui, lesson, navigation));
         });
     });
     if lesson.is_covering() {
-        asked = asked.or(options_ui(ui, lesson, size));
+        action = action.or(options_ui(ui, lesson, size));
     }
-    asked
+    action
 }
 
-/// What stands before the text of a step.
 fn heading(step: &Step) -> &'static str {
     match step {
         Step::Say(_) => "",
@@ -92,23 +90,23 @@ fn heading(step: &Step) -> &'static str {
     }
 }
 
-/// What a screen reader says of the step, and once more of what became of it.
+/// The text for a screen reader: the step, or its result once it has been answered or done.
 fn spoken(lesson: &OpenLesson, session: &Session) -> String {
-    let (number, of) = (lesson.number() + 1, lesson.lesson().steps.len());
+    let (number, count) = (lesson.number() + 1, lesson.lesson().steps.len());
     let step = lesson.step();
     if matches!(step, Step::Predict { .. }) && !lesson.is_covering() {
         return verdict(lesson);
     }
     if matches!(step, Step::Do { .. }) && lesson.task(session) == TaskState::Met {
-        return format!("Step {number} of {of}. Done.");
+        return format!("Step {number} of {count}. Done.");
     }
     let options = lesson.options().iter().enumerate();
-    let options: String = options.map(|(i, own)| format!(" {}: {}.", letter(i), own.text)).collect();
+    let options: String = options.map(|(i, option)| format!(" {}: {}.", letter(i), option.text)).collect();
     let hint = lesson.hint().map_or_else(String::new, |hint| format!(" Hint: {}", plain(hint)));
-    format!("Step {number} of {of}. {}{}{options}{hint}", heading(step), plain(step.text()))
+    format!("Step {number} of {count}. {}{}{options}{hint}", heading(step), plain(step.text()))
 }
 
-/// What was expected, and what came of it.
+/// The prediction and its outcome, in words.
 fn verdict(lesson: &OpenLesson) -> String {
     let outcome = match lesson.outcome() {
         Outcome::Holds(option) => Some(lesson.options()[option].text.as_str()),
@@ -119,7 +117,7 @@ fn verdict(lesson: &OpenLesson) -> String {
     expected(lesson.answer().choice.as_deref(), outcome)
 }
 
-/// A text with bold words; a word of the glossary has a line below it and says what it means.
+/// A text with bold words. Terms of the glossary are underlined; hovering or a click shows their meaning.
 fn text_ui(ui: &mut Ui, style: &Style, heading: &str, text: &str, size: f32) {
     let mut job = LayoutJob::default();
     let strong = FontId::new(size, strong_family());
@@ -148,11 +146,11 @@ fn text_ui(ui: &mut Ui, style: &Style, heading: &str, text: &str, size: f32) {
     ui.painter().galley(at, galley.clone(), style.ink());
     let word_at = |pointer: Pos2| {
         let letter = galley.cursor_from_pos(pointer - at).index.0;
-        let byte = whole.char_indices().nth(letter).map_or(whole.len(), |own| own.0);
-        let word = terms(&whole).into_iter().find(|own| own.0.contains(&byte)).map(|own| own.1)?;
+        let byte = whole.char_indices().nth(letter).map_or(whole.len(), |indexed| indexed.0);
+        let word = terms(&whole).into_iter().find(|term| term.0.contains(&byte)).map(|term| term.1)?;
         Some(format!("{word}: {}", meaning(word).unwrap_or_default()))
     };
-    // a click shows it at once and leaves it there
+    // a click shows the meaning at once and keeps it open
     let clicked = response.interact_pointer_pos().filter(|_| response.clicked()).map(word_at);
     if let Some(Some(text)) = &clicked {
         ui.data_mut(|data| data.insert_temp(response.id, text.clone()));
@@ -168,15 +166,15 @@ fn text_ui(ui: &mut Ui, style: &Style, heading: &str, text: &str, size: f32) {
     }
 }
 
-/// Below the text: what became of a prediction, or how far a task is.
+/// Below the text: the outcome of a prediction, or the state of a task.
 fn below_ui(
     ui: &mut Ui,
     lesson: &mut OpenLesson,
     session: &Session,
     style: &Style,
     size: f32,
-) -> Option<LessonAct> {
-    let mut asked = None;
+) -> Option<LessonAction> {
+    let mut action = None;
     match lesson.step() {
         Step::Say(_) | Step::Explain(_) => {}
         Step::Predict { .. } if lesson.is_covering() => {}
@@ -207,110 +205,113 @@ fn below_ui(
                 if lesson.offered_hint().is_some() && lesson.hint().is_none() {
                     let hover = "It comes by itself after 45 s (H)";
                     if ui.small_button("Hint (H)").on_hover_text(hover).clicked() {
-                        asked = Some(LessonAct::Hint);
+                        action = Some(LessonAction::Hint);
                     }
                 }
             });
-            // where there is room, its place is kept free: nothing moves when it comes by itself
-            let kept = lesson.offered_hint().filter(|_| size > BODY);
-            if let Some(hint) = lesson.hint().or(kept) {
-                let shown = UiBuilder::new();
-                let shown = if lesson.hint().is_some() { shown } else { shown.invisible() };
-                ui.scope_builder(shown, |ui| text_ui(ui, style, "Hint: ", hint, size));
+            // space is reserved for the hint if there is room: nothing moves when it appears by itself
+            let reserved = lesson.offered_hint().filter(|_| size > BODY);
+            if let Some(hint) = lesson.hint().or(reserved) {
+                let builder = UiBuilder::new();
+                let builder = if lesson.hint().is_some() { builder } else { builder.invisible() };
+                ui.scope_builder(builder, |ui| text_ui(ui, style, "Hint: ", hint, size));
             }
         }
     }
-    asked
+    action
 }
 
-/// The reason of a student, in a word of their own.
+/// Field in which a student may give a reason.
 fn reason_ui(ui: &mut Ui, lesson: &mut OpenLesson, style: &Style, size: f32) {
     let text = "Why, in one word?";
     let galley = ui.painter().layout_no_wrap(text.to_owned(), FontId::proportional(size), style.faint());
-    // the field stands beside its name
+    // the field stays in one row with its label
     if galley.size().x + REASON + 3.0 * ui.spacing().item_spacing.x > ui.available_size_before_wrap().x {
         ui.end_row();
     }
     let name = ui.label(RichText::new(text).size(size).color(style.faint()));
     let word = lesson.why_mut();
-    let field = TextEdit::singleline(word).desired_width(REASON).char_limit(MOST_LETTERS);
+    let field = TextEdit::singleline(word).desired_width(REASON).char_limit(MAX_REASON);
     ui.add(field.hint_text("if you like")).labelled_by(name.id);
 }
 
-/// The steps as dots: those that are behind filled, the present one larger with a ring.
+/// The steps as dots: filled once they are settled and behind, with a ring around the present one.
 fn dots_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style) {
     let count = lesson.lesson().steps.len();
-    let apart = APART.min((WAYS - 2.0 * DOT) / count as f32);
-    let (rect, response) = ui.allocate_exact_size(vec2(apart * count as f32, 18.0), Sense::hover());
+    let spacing = DOT_SPACING.min((NAVIGATION - 2.0 * DOT) / count as f32);
+    let (rect, response) = ui.allocate_exact_size(vec2(spacing * count as f32, 18.0), Sense::hover());
     let name = format!("step {} of {count}", lesson.number() + 1);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, name.as_str()));
     for number in 0..count {
-        let at = egui::pos2(rect.left() + (number as f32 + 0.5) * apart, rect.center().y);
+        let at = egui::pos2(rect.left() + (number as f32 + 0.5) * spacing, rect.center().y);
         let is_behind = number < lesson.number() || number == lesson.number() && lesson.may_go_on();
         let fill = if is_behind && lesson.is_settled(number) { style.ink() } else { Color32::TRANSPARENT };
-        ui.painter().circle(at, DOT.min(0.4 * apart), fill, Stroke::new(1.2, style.ink()));
+        ui.painter().circle(at, DOT.min(0.4 * spacing), fill, Stroke::new(1.2, style.ink()));
         if number == lesson.number() {
             let ring = Stroke::new(2.0, style.base());
-            ui.painter().circle_stroke(at, (DOT + 2.5).min(0.5 * apart), ring);
+            ui.painter().circle_stroke(at, (DOT + 2.5).min(0.5 * spacing), ring);
         }
     }
     response.on_hover_text(name);
 }
 
-fn ways_ui(ui: &mut Ui, lesson: &OpenLesson, width: f32) -> Option<LessonAct> {
-    let mut asked = None;
-    ui.allocate_ui_with_layout(vec2(width, WAY), Layout::right_to_left(Align::Center), |ui| {
-        let following = lesson.following().filter(|_| lesson.is_last() && lesson.may_go_on());
-        if let Some(name) = following
+fn navigation_ui(ui: &mut Ui, lesson: &OpenLesson, width: f32) -> Option<LessonAction> {
+    let mut action = None;
+    ui.allocate_ui_with_layout(vec2(width, BUTTON_HEIGHT), Layout::right_to_left(Align::Center), |ui| {
+        let next_lesson = lesson.following().filter(|_| lesson.is_last() && lesson.may_go_on());
+        if let Some(name) = next_lesson
             && ui.button(numbered(name)).on_hover_text("The lesson that comes after this one").clicked()
         {
-            asked = Some(LessonAct::NextLesson(name));
+            action = Some(LessonAction::NextLesson(name));
         }
         let name = if lesson.is_last() { "Finish" } else { "Next" };
-        let open = match lesson.step() {
+        let condition = match lesson.step() {
             Step::Predict { .. } => "First choose what you expect. A lecturer goes on with PageDown.",
             _ => "First the task. A lecturer goes on with PageDown.",
         };
-        let next = ui.add_enabled(lesson.may_go_on(), Button::new(name)).on_disabled_hover_text(open);
+        let next = ui.add_enabled(lesson.may_go_on(), Button::new(name)).on_disabled_hover_text(condition);
         if next.on_hover_text("The next step (PageDown)").clicked() {
-            asked = Some(LessonAct::Next);
+            action = Some(LessonAction::Next);
         }
         let back = ui.add_enabled(lesson.number() > 0, Button::new("Back"));
         if back.on_hover_text("The step before (PageUp)").clicked() {
-            asked = Some(LessonAct::Back);
+            action = Some(LessonAction::Back);
         }
     });
-    asked
+    action
 }
 
-/// The options, side by side and equally high.
-fn options_ui(ui: &mut Ui, lesson: &OpenLesson, size: f32) -> Option<LessonAct> {
-    let mut asked = None;
+/// The options side by side, all of one height.
+fn options_ui(ui: &mut Ui, lesson: &OpenLesson, size: f32) -> Option<LessonAction> {
+    let mut action = None;
     let options = lesson.options();
     let rows = options.len().div_ceil(SIDE_BY_SIDE).max(1);
-    let beside = options.len().div_ceil(rows);
+    let columns = options.len().div_ceil(rows);
     let (space, padding) = (ui.spacing().item_spacing.x, ui.spacing().button_padding);
-    let width = (ui.available_width() - space * (beside as f32 - 1.0)) / beside as f32;
-    let texts: Vec<String> =
-        options.iter().enumerate().map(|(i, own)| format!("{}   {}", letter(i), plain(&own.text))).collect();
+    let width = (ui.available_width() - space * (columns as f32 - 1.0)) / columns as f32;
+    let texts: Vec<String> = options
+        .iter()
+        .enumerate()
+        .map(|(i, option)| format!("{}   {}", letter(i), plain(&option.text)))
+        .collect();
     let font = FontId::proportional(size);
     let height = |text: &String| {
         let room = width - 2.0 * padding.x;
         ui.painter().layout(text.clone(), font.clone(), Color32::PLACEHOLDER, room).size().y
     };
-    let high = texts.iter().map(height).fold(0.0, f32::max) + 2.0 * padding.y + 4.0;
-    for (row, texts) in texts.chunks(beside.max(1)).enumerate() {
+    let tallest = texts.iter().map(height).fold(0.0, f32::max) + 2.0 * padding.y + 4.0;
+    for (row, texts) in texts.chunks(columns.max(1)).enumerate() {
         ui.horizontal(|ui| {
             for (i, text) in texts.iter().enumerate() {
-                let option = row * beside + i;
+                let option = row * columns + i;
                 let text = RichText::new(text).font(font.clone());
-                let button = ui.add_sized([width, high], Button::new(text).wrap());
+                let button = ui.add_sized([width, tallest], Button::new(text).wrap());
                 let hover = format!("Choose this: nothing is scored (key {})", letter(option));
                 if button.on_hover_text(hover).clicked() {
-                    asked = Some(LessonAct::Choose(option));
+                    action = Some(LessonAction::Choose(option));
                 }
             }
         });
     }
-    asked
+    action
 }

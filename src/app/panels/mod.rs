@@ -1,4 +1,4 @@
-//! Panels around the views: controls, status line, transport, notes, the hints of the first minute, lessons.
+//! Panels around the views: controls, status line, transport bar, notes, first-minute hint, lessons.
 
 mod advanced;
 pub mod best_stops;

@@ -1,16 +1,18 @@
-//! Notes of the scene below the controls, as far as there is room.
+//! Notes of the scene below the controls, as far as they fit.
 
 use eframe::egui::{Color32, FontSelection, RichText, Ui};
 
 use crate::scene::Scene;
 
-/// Heights in points: of the heading, of the line that offers the rest, and the least that is used.
+/// Height in points of the heading.
 const HEADING: f32 = 42.0;
+/// Height in points of the button that shows the rest.
 const MORE: f32 = 30.0;
+/// Least height in points in which notes are shown.
 const LEAST: f32 = 120.0;
 
-/// Draws them down to `bottom`; of a scene that was changed they tell what it was. Whether all of them are
-/// asked for.
+/// Draws the notes down to `bottom`. If the scene was changed, they describe it before the changes. Returns
+/// whether the user asks for all of the notes.
 pub fn notes_ui(ui: &mut Ui, scene: &Scene, is_changed: bool, bottom: f32) -> bool {
     let notes = scene.notes.trim();
     let room = bottom - ui.cursor().top();
@@ -34,7 +36,7 @@ pub fn notes_ui(ui: &mut Ui, scene: &Scene, is_changed: bool, bottom: f32) -> bo
         ui.label(notes);
         return false;
     }
-    // as many whole sentences as there is room for
+    // as many whole sentences as fit
     let ends = notes.match_indices('.').map(|(at, _)| at + 1);
     let ends: Vec<usize> = ends.filter(|at| notes[*at..].starts_with(char::is_whitespace)).collect();
     let count = ends.partition_point(|end| height(&notes[..*end]) <= room - HEADING - MORE);

@@ -8,24 +8,26 @@ use crate::app::ui::widgets::kind_shapes;
 use crate::app::words::announce::Announcer;
 use crate::app::words::meanings::meaning;
 
-/// What a part of the sentence means.
+/// Explanation of "to spare" in the sentence.
 const SPARE: &str =
     "\n\nTo spare: how much weaker the shaking may become before, from rest, it no longer crosses.";
 
-/// Widest and highest in points of a line beside the sentence, and the size of its letters.
+/// Width in points of the column beside the sentence.
 const BESIDE: f32 = 236.0;
+/// Height in points of a line in that column.
 const LINE: f32 = 17.0;
+/// Text size in points in that column.
 const SMALL_LINE: f32 = 13.0;
-
-/// Width in points of a window that has no room beside the sentence: what stands there is under the pointer.
+/// Width in points of a window below which hover text replaces that column.
 const NARROW: f32 = 640.0;
-
-/// Least height in points of the line; the room that it leaves around its text, and beside its icon.
+/// Least height in points of the status line.
 const LEAST: f32 = 44.0;
+/// Height in points that the status line leaves around its text.
 const MARGIN: f32 = 10.0;
+/// Space in points beside its icon.
 const ICON: f32 = 14.0;
 
-/// Height in points of the line: more where the sentence, as small as it may be, takes more than two rows.
+/// Height in points of the line: greater if the sentence takes more than two rows at its smallest text size.
 pub fn height(ui: &Ui, session: &Session, compact: bool) -> f32 {
     let size = if compact { STATUS_COMPACT } else { STATUS };
     let width = ui.available_width() - 24.0 - size - ICON;
@@ -40,7 +42,6 @@ fn is_narrow(ui: &Ui) -> bool {
     ui.ctx().content_rect().width() < NARROW
 }
 
-/// The line that says what the mass does.
 pub fn status_ui(
     ui: &mut Ui,
     session: &mut Session,
@@ -60,7 +61,7 @@ pub fn status_ui(
         ui.painter().extend(kind_shapes(kind, rect.center(), size * 0.42, color));
         let settling = match session.was_set_on_stop() {
             true => Some("The mass was set on the stop".to_owned()),
-            false => session.settling().map(|(gone, of)| format!("settling: {:.1} s to go", of - gone)),
+            false => session.settling().map(|(gone, total)| format!("settling: {:.1} s to go", total - gone)),
         };
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             stop_ui(ui, session);
@@ -83,7 +84,7 @@ pub fn status_ui(
     });
 }
 
-/// Offers to cancel what the background has worked on for long.
+/// Offers to cancel background work that has taken long.
 fn stop_ui(ui: &mut Ui, session: &mut Session) {
     let Some(worked) = session.working() else { return };
     if worked < OFFER_TO_STOP {
@@ -99,7 +100,7 @@ fn stop_ui(ui: &mut Ui, session: &mut Session) {
     }
 }
 
-/// Beside the sentence: how accurate the motion is and, below, how far it has settled.
+/// The column beside the sentence: how accurate the motion is and, below, how far it has settled.
 fn beside_ui(ui: &mut Ui, session: &Session, style: &Style, settling: Option<String>) {
     let trust = session.trust();
     if trust.is_none() && settling.is_none() {
@@ -110,7 +111,8 @@ fn beside_ui(ui: &mut Ui, session: &Session, style: &Style, settling: Option<Str
     ui.allocate_ui_with_layout(Vec2::new(BESIDE, height), egui::Layout::top_down(egui::Align::Max), |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         let mut line = |text: String, hover: &str| {
-            let hover = meaning(&text).map_or_else(|| hover.to_owned(), |own| format!("{own}\n\n{hover}"));
+            let hover =
+                meaning(&text).map_or_else(|| hover.to_owned(), |meaning| format!("{meaning}\n\n{hover}"));
             let text = RichText::new(text).size(SMALL_LINE).color(style.faint());
             ui.add(egui::Label::new(text).extend()).on_hover_text(hover);
         };
@@ -123,7 +125,7 @@ fn beside_ui(ui: &mut Ui, session: &Session, style: &Style, settling: Option<Str
     });
 }
 
-/// In place of the sentence while the results are covered, by a key or by a prediction.
+/// The text in place of the sentence while the results are covered, by a key or by a prediction.
 pub fn covered_ui(ui: &mut Ui, by_lesson: bool) {
     ui.horizontal_centered(|ui| {
         let text = match by_lesson {
@@ -134,7 +136,7 @@ pub fn covered_ui(ui: &mut Ui, by_lesson: bool) {
     });
 }
 
-/// The size at which a text stands in one line, or the smallest one, at which it takes two.
+/// The size at which a text fits into one line, or the smallest size, at which it takes two.
 fn fitted(ui: &Ui, text: &str, size: f32) -> f32 {
     let font = egui::FontId::proportional(size);
     let galley = ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::PLACEHOLDER);

@@ -1,4 +1,4 @@
-//! Transport: play, pause, step, events, speed and the bar of the remembered past.
+//! Transport bar: play, pause, step, events, speed and the time bar of the recorded motion.
 
 use std::collections::VecDeque;
 
@@ -14,41 +14,42 @@ use crate::app::words::meanings::explained;
 use crate::app::words::status::{Kind, speed};
 use crate::dynamics::{Event, EventKind};
 
-/// How far ahead in s of the motion an event is looked for.
+/// Time in s of the motion within which the next event is searched.
 pub const EVENT_AHEAD: f64 = 5.0;
 
 /// Size of a button in points.
 const BUTTON: f32 = 32.0;
 
-/// Room in points for the time with what happens then, and for a way back from the past.
+/// Greatest width in points of the time, with its event and the button that leads back to the present.
 const TIME: f32 = 250.0;
-
-/// Share of the room that the time has at most, where the window is narrow, and least room.
+/// Greatest share of the width that the time takes in a narrow window.
 const TIME_SHARE: f32 = 0.65;
+/// Least width in points of the time.
 const LEAST_TIME: f32 = 150.0;
-
-/// Height in points of the legend below the bar, and of a transport that has room for it.
-const LEGEND: f32 = 15.0;
-const HIGH: f32 = 46.0;
-
-/// Width in points that the way back from the past takes in full.
+/// Height in points of the time alone.
+const ONE_LINE: f32 = 20.0;
+/// Height in points of the time with a note below it.
+const TWO_LINES: f32 = 36.0;
+/// Width in points that the button back to the present takes with its full text.
 const BACK: f32 = 130.0;
 
-/// Heights in points of the time, and of it with the line below.
-const ONE_LINE: f32 = 20.0;
-const TWO_LINES: f32 = 36.0;
+/// Height in points of the legend below the bar.
+const LEGEND: f32 = 15.0;
+/// Height in points of a transport bar that has room for the legend.
+const HIGH: f32 = 46.0;
 
-/// Share of the bar by which an arrow key moves, with Shift ten of them.
+/// Share of the bar by which an arrow key moves; with Shift, ten times as much.
 const KEY_SHARE: f64 = 0.002;
 
-/// Least distance in points between two ticks of events, of a few.
+/// Least interval in points of the bar from which a row shows only its first event.
 const TICK: f32 = 5.0;
 
-/// Places in points below the top of the bar's room: of the three rows of signs, and of the bar.
+/// Distances in points of the three rows of signs from the top.
 const ROWS: [f32; 3] = [4.5, 13.5, 27.5];
+/// Distance in points of the bar from the top.
 const BAR: f32 = 20.0;
 
-/// Draws the transport; where results are covered, without what happened when.
+/// Draws the transport bar; it shows no events while results are covered.
 pub fn transport_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) {
     ui.horizontal_centered(|ui| {
         if icon_button_ui(ui, Icon::Restart, BUTTON, "restart", "From the start again").clicked() {
@@ -82,7 +83,7 @@ pub fn transport_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: 
 fn speed_ui(ui: &mut Ui, session: &mut Session) {
     let speed = session.player.speed;
     let name =
-        SPEEDS.iter().find(|own| own.0 == speed).map_or_else(|| format!("{speed}"), |own| own.1.to_owned());
+        SPEEDS.iter().find(|row| row.0 == speed).map_or_else(|| format!("{speed}"), |row| row.1.to_owned());
     let combo = ComboBox::from_id_salt("speed").width(96.0).selected_text(name).show_ui(ui, |ui| {
         for (key, (value, name)) in (1..).zip(SPEEDS) {
             let text = format!("{name}  ({key})");
@@ -93,7 +94,7 @@ fn speed_ui(ui: &mut Ui, session: &mut Session) {
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "speed"));
 }
 
-/// The row of the bar in which an event stands: crossings over releases over the bar, impacts below it.
+/// The row of an event's sign: crossings above releases above the bar, impacts below it.
 fn row(kind: EventKind) -> usize {
     match kind {
         EventKind::Crossing => 0,
@@ -102,24 +103,22 @@ fn row(kind: EventKind) -> usize {
     }
 }
 
-/// Of each row the first event in every stretch of time, at least `least` seconds long, that has some. The
-/// stretches are powers of two of a second and begin at multiples of themselves, so that the signs stay while
-/// time goes on.
+/// The first event of each row in every interval of time. The length of the intervals in s is the least power
+/// of two that is not below `least`, and they begin at its multiples, so that signs do not change with time.
 fn ticks(events: &VecDeque<Event>, begin: f64, end: f64, least: f64) -> Vec<Event> {
-    let stretch = least.max(f64::MIN_POSITIVE).log2().ceil().exp2();
+    let interval = least.max(f64::MIN_POSITIVE).log2().ceil().exp2();
     let mut last = [f64::NAN; 3];
     let is_first = |event: &&Event| {
-        let number = (event.t / stretch).floor();
+        let number = (event.t / interval).floor();
         number != std::mem::replace(&mut last[row(event.kind)], number)
     };
-    // (a rest is no impact: the row would say one where a mass rests from the start)
-    let told = |event: &&Event| event.kind != EventKind::Rest && (begin..=end).contains(&event.t);
-    let seen = events.iter().filter(told);
-    seen.filter(is_first).copied().collect()
+    // in the row of impacts a rest would look like an impact, even of a mass that rests from the start
+    let has_sign = |event: &&Event| event.kind != EventKind::Rest && (begin..=end).contains(&event.t);
+    let shown = events.iter().filter(has_sign);
+    shown.filter(is_first).copied().collect()
 }
 
-/// What stands for an event around a place: a line for an impact, a triangle for a release, a diamond for a
-/// crossing.
+/// The sign of an event at `at`: a line for an impact, a triangle for a release, a diamond for a crossing.
 fn sign(kind: EventKind, at: Pos2, style: &Style) -> Shape {
     let convex = |points: &[(f32, f32)], color: Color32| {
         let points = points.iter().map(|(x, y)| at + vec2(*x, *y)).collect();
@@ -135,7 +134,7 @@ fn sign(kind: EventKind, at: Pos2, style: &Style) -> Shape {
     }
 }
 
-/// What the signs mean, in a row.
+/// The signs and their meanings in a row.
 fn legend(painter: &Painter, style: &Style, row: Rect) {
     let mut x = row.left() + 10.0;
     let signs =
@@ -147,13 +146,13 @@ fn legend(painter: &Painter, style: &Style, row: Rect) {
     }
 }
 
-/// The remembered past as a bar with a sign for every event; dragging, or with the keyboard's focus the arrow
-/// keys, look at it.
+/// The recorded motion as a bar with signs of its events. Dragging, or the arrow keys while the bar has the
+/// focus, shows an earlier time.
 fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) {
     let time = (TIME_SHARE * ui.available_width()).clamp(LEAST_TIME, TIME);
     let width = (ui.available_width() - time).max(40.0);
-    let explains = !covered && ui.available_height() >= HIGH;
-    let height = if explains { BUTTON + LEGEND } else { BUTTON };
+    let has_legend = !covered && ui.available_height() >= HIGH;
+    let height = if has_legend { BUTTON + LEGEND } else { BUTTON };
     let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::drag());
     response.widget_info(|| egui::WidgetInfo::slider(true, session.player.time(), "time"));
     let watch = session.player.watch();
@@ -169,7 +168,7 @@ fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) {
             painter.add(sign(event.kind, at, style));
         }
     }
-    if explains {
+    if has_legend {
         legend(painter, style, rect.with_min_y(rect.bottom() - LEGEND));
     }
     let now = pos2(screen_from_time(session.player.time()), bar.center().y);
@@ -191,14 +190,14 @@ fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) {
     response.on_hover_text(hover);
 }
 
-/// The time that is shown, and below it what happens then or what is looked for; the way back from the past.
+/// The time that is shown, the event at that time or the goal below it, and the button back to the present.
 fn time_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) {
     let player = &session.player;
     let note = match player.goal() {
         Some(Goal::Time(_)) => "going on; any key stops".to_owned(),
         Some(Goal::First(kind, _)) => format!("looking for a {}; any key stops", kind.name()),
         None if covered => String::new(),
-        None => player.event().map_or_else(String::new, words),
+        None => player.event().map_or_else(String::new, event_words),
     };
     let time = format!("{:.3} s", player.time());
     let is_past = player.is_past();
@@ -227,8 +226,8 @@ fn time_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) {
     }
 }
 
-/// What happened, in words: which side, how fast.
-fn words(event: &Event) -> String {
+/// An event in words: kind, side and speed.
+fn event_words(event: &Event) -> String {
     let side = event.side.name();
     let speed = |v: f64| speed(v.abs());
     match event.kind {
@@ -256,12 +255,12 @@ mod tests {
         let all = (0..4000).map(|i| event(f64::from(i) * 0.01, kinds[i as usize % 4]));
         let all: VecDeque<Event> = all.collect();
         let few = ticks(&all, 0.0, 40.0, 0.3);
-        // stretches of half a second, in each of them one of every kind
+        // each interval of half a second has one event of every kind
         assert_eq!(few.len(), 240);
         for kind in [EventKind::Crossing, EventKind::Release, EventKind::Impact] {
-            let own: Vec<&Event> = few.iter().filter(|event| event.kind == kind).collect();
-            assert_eq!(own.len(), 80);
-            assert!(own.windows(2).all(|pair| pair[1].t - pair[0].t > 0.3));
+            let of_kind: Vec<&Event> = few.iter().filter(|event| event.kind == kind).collect();
+            assert_eq!(of_kind.len(), 80);
+            assert!(of_kind.windows(2).all(|pair| pair[1].t - pair[0].t > 0.3));
         }
         // later they are the same
         let later = ticks(&all, 3.2, 40.0, 0.4);

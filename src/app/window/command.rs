@@ -9,7 +9,7 @@ use crate::scene::Layout;
 
 use super::wanted::Wanted;
 
-/// What menus, keys and buttons ask for.
+/// A command of the menus, keys and buttons.
 #[derive(Debug, Clone, PartialEq)]
 #[expect(missing_docs, reason = "the table says what each one does")]
 pub enum Command {
@@ -20,7 +20,7 @@ pub enum Command {
     RemoveMeasured,
     Save,
     SaveAs(Wanted),
-    /// A figure of a view; none for the one under the pointer.
+    /// A figure of a view; `None` for the one under the pointer.
     Figure(Option<View>),
     CopyScene,
     PasteScene,
@@ -44,15 +44,15 @@ pub enum Command {
     KeepOwn,
     Show(View, bool),
     NextTab,
-    /// One view over the whole window, or all again.
+    /// Fill the window with one view, or show all again.
     Fill,
     Cover,
     /// Two cursors over time.
     Cursors,
-    /// Hold the axes of the view that is meant, or let go of them.
+    /// Hold the axes of the active view, or release them.
     HoldAxes,
     FreeAxes,
-    /// Zoom them: upwards or to the right, closer or not.
+    /// Zoom the vertical or the horizontal axis of the active view, in or out.
     Zoom {
         upwards: bool,
         closer: bool,
@@ -77,9 +77,9 @@ pub enum Command {
 }
 
 impl Command {
-    /// Whether it moves the motion or the scene, or hands out what the motion comes to: not while a
-    /// prediction covers that.
-    pub(super) fn tells_of_motion(&self) -> bool {
+    /// Whether it changes the motion or the scene, or reveals results; such a command is blocked while a
+    /// prediction covers the motion.
+    pub(super) fn reveals_motion(&self) -> bool {
         use Wanted::{Events, Map, Motion, Run};
         matches!(
             self,
@@ -105,31 +105,32 @@ impl Command {
 }
 
 pub(super) enum Part {
-    /// A command: its name, none where it stands in no menu; its key; its place in the list of keys.
+    /// A command: its name, which is empty if it is in no menu; its key; its entry in the list of keys.
     Item(&'static str, Option<KeyboardShortcut>, Command, Listed),
-    /// A row of the list of keys alone: its heading, the keys, and what they do.
+    /// A row that is only in the list of keys: its heading, the keys, and what they do.
     Row(&'static str, &'static str, &'static str),
     Menu(&'static str, &'static [Part]),
     Line,
     Presets,
     /// The scene files opened last.
     Recent,
-    /// The settings as boxes to tick.
+    /// The settings as checkboxes.
     Settings,
-    /// The views as boxes to tick.
+    /// The views as checkboxes.
     Views,
     /// The speeds, with the keys 1 to 7.
     Speeds,
-    /// The built-in lessons, with a mark at those that are done.
+    /// The built-in lessons, with a mark on those that are done.
     Lessons,
 }
 
+/// Entry of a command in the list of keys.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Listed {
     No,
-    /// By a row under a heading that says what it does.
+    /// A separate row: its heading, and what the command does.
     As(&'static str, &'static str),
-    /// In the row of the command before.
+    /// In the row of the preceding command.
     Joined,
 }
 
@@ -151,7 +152,7 @@ const fn control_shift(key: Key) -> Option<KeyboardShortcut> {
 
 pub const UNDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Z);
 
-/// What the way back to the scene as it was opened is called.
+/// Name of the command that returns to the scene as it was opened.
 pub(super) const DISCARD: &str = "Discard changes";
 
 use Command as C;
@@ -290,6 +291,6 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
 pub(super) fn parts() -> impl Iterator<Item = &'static Part> {
     MENUS.iter().flat_map(|menu| menu.1).flat_map(|part| match part {
         Part::Menu(_, parts) => parts.iter(),
-        own => std::slice::from_ref(own).iter(),
+        part => std::slice::from_ref(part).iter(),
     })
 }

@@ -1,19 +1,19 @@
 //! Deferral of input that follows the release of a pointer button.
 //!
-//! All that happens between two frames comes to the next frame at once, and a slider takes the last place of
-//! the pointer for the place where it was let go. Where a frame takes long, a hand that goes on after letting
-//! go would drag the slider along: what comes after a release waits for the frame after.
+//! All events between two frames arrive together in the next frame, and a slider takes the last position of
+//! the pointer as the one at which it was released. If a frame takes long, a pointer that moves on after the
+//! release would drag the slider along. Events after a release are therefore deferred by one more frame.
 
 use eframe::egui::{Event, RawInput};
 
-/// What waits for the next frame.
+/// Events that wait for the next frame.
 #[derive(Debug, Default)]
 pub struct DeferredInput {
     events: Vec<Event>,
 }
 
 impl DeferredInput {
-    /// Leaves in `input` the events up to the first release, those that waited first. Whether more wait.
+    /// Leaves in `input` the deferred and new events up to the first release. Returns whether more wait.
     pub fn hold_back(&mut self, input: &mut RawInput) -> bool {
         let mut events = std::mem::take(&mut self.events);
         events.append(&mut input.events);

@@ -1,4 +1,4 @@
-//! Figure of a view that is asked for: what it shows, how it is laid out, where it goes.
+//! Request for a figure of a view: its content, layout and file.
 
 use std::path::{Path, PathBuf};
 
@@ -9,15 +9,15 @@ use crate::app::views::{Memory, View, stretch};
 use crate::output::{Format, Panel, Sheet, SheetText};
 use crate::system::files;
 
-use super::messages::Written;
+use super::messages::WriteResult;
 
-/// Share of the stretch of time that traces show below which all of the run is offered.
-const LITTLE: f64 = 0.05;
+/// Share of the traces' time window below which the whole run is offered instead.
+const LEAST_SHARE: f64 = 0.05;
 
-/// The figure that is asked for; how it is laid out is kept for the next one.
+/// The requested figure. Its layout is kept for the next one.
 #[derive(Debug)]
 pub struct Figures {
-    /// The view; none while no figure is asked for.
+    /// The view; `None` while no figure is requested.
     pub(super) view: Option<View>,
     pub path: String,
     /// Width on paper in mm.
@@ -25,17 +25,17 @@ pub struct Figures {
     /// Size of the text in points.
     pub font: String,
     pub titled: bool,
-    /// The numbers that are drawn go beside the figure.
+    /// Whether the numbers that are drawn are saved beside the figure.
     pub data: bool,
     /// The times in s of a run; empty for all of it.
     pub times: [String; 2],
     /// The panels of a run, in the order of [`Panel::ALL`].
     pub panels: [bool; 4],
-    /// Why it was not saved.
+    /// Why the last figure was not saved.
     pub(super) problem: Option<String>,
-    /// The path has had the keyboard.
-    pub(super) begun: bool,
-    pub(super) job: Latest<Written>,
+    /// Whether the path has had the keyboard focus.
+    pub(super) had_focus: bool,
+    pub(super) job: Latest<WriteResult>,
 }
 
 impl Default for Figures {
@@ -51,52 +51,49 @@ impl Default for Figures {
             times: [text(), text()],
             panels: [false; 4],
             problem: None,
-            begun: false,
+            had_focus: false,
             job: Latest::default(),
         }
     }
 }
 
 impl Figures {
-    /// Whether a figure is asked for.
     pub(super) fn is_open(&self) -> bool {
         self.view.is_some()
     }
 
-    /// Takes the file that was chosen.
     pub(super) fn choose(&mut self, path: &Path) {
         self.path = path.to_string_lossy().into_owned();
     }
 
-    /// No file can be chosen but by its path.
-    pub(super) fn has_no_dialog(&mut self) {
+    /// Reports that the desktop has no file dialog, so that the path has to be typed.
+    pub(super) fn report_no_dialog(&mut self) {
         let text = "This desktop has no file dialog to offer (xdg-desktop-portal or zenity would be one): \
                     type the path.";
         self.problem = Some(text.to_owned());
     }
 
-    /// Why the last one was not saved.
     pub fn problem(&self) -> Option<&str> {
         self.problem.as_deref()
     }
 
-    /// Asks for a figure of `view`, with a name that would do.
+    /// Opens the dialog for a figure of `view`, with a suggested file.
     pub(super) fn open(&mut self, view: View, session: &Session, memory: &Memory) {
         let ending = Path::new(&self.path).extension().filter(|_| Format::of(Path::new(&self.path)).is_ok());
-        let ending = ending.map_or("pdf".to_owned(), |own| own.to_string_lossy().into_owned());
+        let ending = ending.map_or("pdf".to_owned(), |ending| ending.to_string_lossy().into_owned());
         let origin = session.editor.origin().unwrap_or_else(|| "scene".to_owned());
         let stem = Path::new(&origin).file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let folder = session.editor.path().and_then(Path::parent).map(Path::to_path_buf);
-        let folder = folder.filter(|own| !own.as_os_str().is_empty()).unwrap_or_else(files::working_folder);
+        let folder = folder.filter(|path| !path.as_os_str().is_empty()).unwrap_or_else(files::working_folder);
         let name = view.name().to_lowercase().replace(" / ", "-").replace(' ', "-");
         self.choose(&folder.join(format!("{stem}-{name}.{ending}")));
         self.times = times(session, memory)
             .map_or([String::new(), String::new()], |(from, to)| [from, to].map(|t| t.to_string()));
-        self.panels = Panel::ALL.map(|own| panel(view) == Some(own));
-        (self.view, self.problem, self.begun) = (Some(view), None, false);
+        self.panels = Panel::ALL.map(|shown| panel(view) == Some(shown));
+        (self.view, self.problem, self.had_focus) = (Some(view), None, false);
     }
 
-    /// The figure as it is asked for, or what is wrong with that.
+    /// The order for the requested figure, or what is wrong with the request.
     pub(super) fn order(
         &self,
         view: View,
@@ -122,7 +119,7 @@ impl Figures {
     fn subject(&self, view: View, session: &Session, memory: &Memory) -> Result<Subject, String> {
         match view {
             _ if panel(view).is_some() => {
-                let shown = Panel::ALL.into_iter().zip(self.panels).filter(|own| own.1).map(|own| own.0);
+                let shown = Panel::ALL.into_iter().zip(self.panels).filter(|pair| pair.1).map(|pair| pair.0);
                 let shown: Vec<Panel> = shown.collect();
                 let none = "Panels: at least one is needed.";
                 if shown.is_empty() {
@@ -152,14 +149,14 @@ impl Figures {
         if from.is_empty() && to.is_empty() {
             return Ok(None);
         }
-        let number = |text: &str| text.parse::<f64>().ok().filter(|own| own.is_finite());
+        let number = |text: &str| text.parse::<f64>().ok().filter(|number| number.is_finite());
         let times = number(from).zip(number(to)).filter(|(from, to)| 0.0 <= *from && from < to);
         times.map(Some).ok_or_else(|| {
             "Times: give two in s, the first one below the second, or none for the whole run.".to_owned()
         })
     }
 
-    /// What is said under the fields, and whether the figure can be saved as it is asked for.
+    /// Whether the figure can be saved as requested, and the remark under the fields.
     pub(super) fn remark(
         &self,
         order: Result<&FigureOrder, &String>,
@@ -207,10 +204,10 @@ pub(super) fn panel(view: View) -> Option<Panel> {
     }
 }
 
-/// The times in s that the traces show, where they are a part of the run from its start.
+/// The times in s that the traces show; `None` if that is too little, or not the run from its start.
 fn times(session: &Session, memory: &Memory) -> Option<(f64, f64)> {
     let now = session.player.time();
     let window = memory.timeline.window.unwrap_or_else(|| stretch(session.model()));
     let from = (now - window).max(0.0);
-    (!session.is_continued() && now - from > LITTLE * window).then(|| round_times((from, now))).flatten()
+    (!session.is_continued() && now - from > LEAST_SHARE * window).then(|| round_times((from, now))).flatten()
 }

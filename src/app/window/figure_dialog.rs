@@ -1,4 +1,4 @@
-//! Dialog of a figure: its fields, and what a hand asks of it.
+//! Dialog of a figure: its fields and buttons.
 
 use eframe::egui::{self, Button, ComboBox, Grid, Key, RichText, TextEdit, Ui};
 
@@ -8,30 +8,30 @@ use crate::app::views::{Memory, View};
 
 use super::figure::{Figures, panel};
 
-/// What a hand asks of the dialog.
-pub(super) enum Asked {
+/// What the user chooses in the dialog.
+pub(super) enum Action {
     Save,
-    /// The command that makes it, copied.
+    /// Copy the command that makes the figure.
     Copy,
-    /// A file from the desktop's dialog.
+    /// Choose the file in the desktop's dialog.
     Browse,
     Close,
 }
 
 impl Figures {
-    pub(super) fn ui(&mut self, ui: &Ui, view: View, session: &Session, memory: &Memory) -> Option<Asked> {
+    pub(super) fn ui(&mut self, ui: &Ui, view: View, session: &Session, memory: &Memory) -> Option<Action> {
         let answer = dialog(ui.ctx(), "figure").show(ui.ctx(), |ui| {
             ui.set_width(dialog_width(ui, 560.0));
             ui.heading("Save a figure");
             ui.add_space(4.0);
             self.fields_ui(ui, view, session, memory)
         });
-        let closed = answer.should_close().then_some(Asked::Close);
+        let closed = answer.should_close().then_some(Action::Close);
         answer.inner.or(closed)
     }
 
-    fn fields_ui(&mut self, ui: &mut Ui, view: View, session: &Session, memory: &Memory) -> Option<Asked> {
-        let mut asked = None;
+    fn fields_ui(&mut self, ui: &mut Ui, view: View, session: &Session, memory: &Memory) -> Option<Action> {
+        let mut action = None;
         let field = |ui: &mut Ui, name: &str, text: &mut String, width: f32, unit: &str| {
             let name = ui.label(name);
             let field = ui.add(TextEdit::singleline(text).desired_width(width)).labelled_by(name.id);
@@ -43,8 +43,8 @@ impl Figures {
             let mut chosen = view;
             let combo = ComboBox::from_id_salt("figure of").width(180.0).selected_text(view.name());
             let combo = combo.show_ui(ui, |ui| {
-                for own in View::ALL {
-                    ui.selectable_value(&mut chosen, own, own.name());
+                for choice in View::ALL {
+                    ui.selectable_value(&mut chosen, choice, choice.name());
                 }
             });
             combo.response.labelled_by(name.id);
@@ -53,12 +53,12 @@ impl Figures {
             }
             ui.end_row();
             let name = ui.label("File");
-            let own = ui.horizontal(|ui| {
+            let path = ui.horizontal(|ui| {
                 let path = TextEdit::singleline(&mut self.path);
                 let room = ui.available_width() - 84.0;
                 let path = ui.add(path.desired_width(room)).labelled_by(name.id);
                 if ui.button("Browse...").clicked() {
-                    asked = Some(Asked::Browse);
+                    action = Some(Action::Browse);
                 }
                 path
             });
@@ -71,13 +71,13 @@ impl Figures {
                 })
                 .inner;
             ui.end_row();
-            let mut fields = vec![own.inner, width, font];
+            let mut fields = vec![path.inner, width, font];
             if panel(view).is_some() {
                 ui.label("Panels");
                 ui.horizontal(|ui| {
                     let names = ["displacement", "velocity", "base acceleration", "phase portrait"];
-                    for (name, own) in names.into_iter().zip(&mut self.panels) {
-                        ui.checkbox(own, name);
+                    for (name, panel) in names.into_iter().zip(&mut self.panels) {
+                        ui.checkbox(panel, name);
                     }
                 });
                 ui.end_row();
@@ -95,7 +95,7 @@ impl Figures {
             ui.label("");
             ui.checkbox(&mut self.data, "Also the numbers that are drawn, as CSV beside it");
             ui.end_row();
-            if !std::mem::replace(&mut self.begun, true) {
+            if !std::mem::replace(&mut self.had_focus, true) {
                 fields[0].request_focus();
             }
             if fields.iter().any(|field| field.changed()) {
@@ -124,17 +124,17 @@ impl Figures {
                 return;
             }
             if ui.add_enabled(can_save, Button::new("Save")).clicked() || entered.inner && can_save {
-                asked = Some(Asked::Save);
+                action = Some(Action::Save);
             }
             let hover = "The command that makes the same file without a window.";
             let copy = ui.add_enabled(order.is_ok(), Button::new("Copy as command")).on_hover_text(hover);
             if copy.clicked() {
-                asked = Some(Asked::Copy);
+                action = Some(Action::Copy);
             }
             if ui.button("Cancel").clicked() {
-                asked = Some(Asked::Close);
+                action = Some(Action::Close);
             }
         });
-        asked
+        action
     }
 }

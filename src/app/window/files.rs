@@ -1,4 +1,4 @@
-//! Opening of scenes and choice of files: dialogs, drops, the clipboard, the questions on the way.
+//! Opening of scenes and choice of files: dialogs, dropped files, the clipboard, questions to the user.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -17,14 +17,14 @@ use super::leave::{self, Answer, Next};
 use super::lessons;
 use super::measured_dialog::{ENDINGS, is_measured};
 use super::messages::CANNOT_OPEN;
-use super::path_dialog::{Ended, PathDialog};
+use super::path_dialog::{PathAnswer, PathDialog};
 use super::wanted::{Chosen, Wanted};
 
-/// A dialog that is gone sooner than this in ms was never seen by anyone.
+/// Time in ms below which a dialog that is closed again has not been visible.
 const UNSEEN: u128 = 300;
 
 impl Window {
-    /// Opens another scene; one that cannot be opened leaves the present one and says why.
+    /// Opens another scene or lesson. If it cannot be opened, the present one stays and an alert says why.
     pub fn open_another(&mut self, spec: &str) {
         if lessons::is_lesson(spec) {
             return self.open_lesson(spec);
@@ -34,23 +34,23 @@ impl Window {
 
     fn open_editor(&mut self, editor: Result<Editor, CannotRun>) {
         let wake = Arc::clone(&self.wake);
-        match editor.and_then(|editor| Self::on(editor, self.settings, wake)) {
+        match editor.and_then(|editor| Self::with_editor(editor, self.settings, wake)) {
             Ok(window) => {
                 self.leave_lesson();
                 let measured = std::mem::take(&mut self.session.measured);
                 *self = Self {
-                    dialog: std::mem::take(&mut self.dialog),
-                    dialogs: self.dialogs,
+                    file_dialog: std::mem::take(&mut self.file_dialog),
+                    opens_dialogs: self.opens_dialogs,
                     recent: std::mem::take(&mut self.recent),
-                    own: self.own.take(),
-                    titled: std::mem::take(&mut self.titled),
-                    place: std::mem::take(&mut self.place),
+                    custom: self.custom.take(),
+                    shown_title: std::mem::take(&mut self.shown_title),
+                    window_size: std::mem::take(&mut self.window_size),
                     written: std::mem::replace(&mut self.written, channel()),
                     run: std::mem::take(&mut self.run),
                     figures: std::mem::take(&mut self.figures),
                     covered: self.covered,
                     lessons: std::mem::take(&mut self.lessons),
-                    messages: self.messages.short_only(),
+                    messages: self.messages.take_notice(),
                     applied: self.applied,
                     memory: self.memory.for_another_scene(),
                     ..window
@@ -58,32 +58,32 @@ impl Window {
                 self.session.measured = measured;
                 self.remember_file();
             }
-            Err(error) => self.messages.say(CANNOT_OPEN, error.to_string()),
+            Err(error) => self.messages.alert(CANNOT_OPEN, error.to_string()),
         }
     }
 
-    /// Goes on to what is next, once the changes of the present scene are saved or given up.
+    /// Does `next`, once the changes of the present scene are saved or discarded.
     pub fn leave_for(&mut self, ctx: &egui::Context, next: Next) {
         self.session.end_gesture();
-        // a lesson puts the scene aside, and loses nothing of it
-        let puts_aside = matches!(&next, Next::Open(spec) if lessons::is_lesson(spec));
-        if self.is_unsaved() && !puts_aside {
+        // a lesson suspends the scene without losing its changes
+        let suspends = matches!(&next, Next::Open(spec) if lessons::is_lesson(spec));
+        if self.is_unsaved() && !suspends {
             self.leave_lesson();
-            self.asked = Some(next);
+            self.pending = Some(next);
         } else {
-            self.go_on(ctx, next);
+            self.proceed(ctx, next);
         }
     }
 
-    /// Whether there is something to save; the scene of a lesson is none.
+    /// Whether the scene has unsaved changes; the scene of a lesson does not count.
     fn is_unsaved(&self) -> bool {
-        match self.lessons.aside() {
+        match self.lessons.suspended() {
             Some(session) => session.editor.is_dirty(),
             None => self.session.editor.is_dirty(),
         }
     }
 
-    fn go_on(&mut self, ctx: &egui::Context, next: Next) {
+    fn proceed(&mut self, ctx: &egui::Context, next: Next) {
         match next {
             Next::Open(spec) => self.open_another(&spec),
             Next::Text(text) => self.open_editor(Editor::from_text(&text).map_err(CannotRun::from)),
@@ -103,33 +103,34 @@ impl Window {
         }
     }
 
-    /// Saves to a file; one that was written by hand with comments only once it is said that they go.
+    /// Saves to a file; asks first if that is the scene's own file and drops its comments.
     pub fn save_to(&mut self, ctx: &egui::Context, path: &Path) {
-        let own = self.session.editor.path() == Some(path);
-        if own && self.session.editor.has_comments() {
+        let is_same = self.session.editor.path() == Some(path);
+        if is_same && self.session.editor.has_comments() {
             self.over_comments = Some(path.to_owned());
         } else {
             self.save_over(ctx, path);
         }
     }
 
-    /// Saves to a file, and goes on to what waited for that.
+    /// Saves to a file, and then does what waited for that.
     fn save_over(&mut self, ctx: &egui::Context, path: &Path) {
         if let Some(next) = self.write_scene(path) {
-            self.go_on(ctx, next);
+            self.proceed(ctx, next);
         }
     }
 
-    /// Takes in the answer of a dialog.
+    /// Receives the answer of a file dialog.
     pub(super) fn take_choice(&mut self, ctx: &egui::Context) {
-        if let Some(chosen) = self.dialog.take() {
+        if let Some(chosen) = self.file_dialog.take() {
             match chosen {
                 Chosen::File(wanted, path) => self.take_file(ctx, wanted, path),
-                Chosen::NoDialog(Wanted::Figure, _) => self.figures.has_no_dialog(),
-                Chosen::NoDialog(wanted, path) => self.typed = Some(PathDialog::new(wanted, &path)),
+                Chosen::NoDialog(Wanted::Figure, _) => self.figures.report_no_dialog(),
+                Chosen::NoDialog(wanted, path) => self.path_dialog = Some(PathDialog::new(wanted, &path)),
             }
-        } else if !self.dialog.is_running() && self.over_comments.is_none() && self.typed.is_none() {
-            // a dialog without a choice: nothing follows
+        } else if !self.file_dialog.is_running() && self.over_comments.is_none() && self.path_dialog.is_none()
+        {
+            // a dialog was cancelled, and with it what waited for the save
             self.after_save = None;
         }
     }
@@ -150,8 +151,8 @@ impl Window {
         }
     }
 
-    /// What came from outside: a closed window, dropped files, the clipboard.
-    pub(super) fn take_in(&mut self, ctx: &egui::Context) {
+    /// Takes input from outside the panels: closing of the window, dropped files, the clipboard.
+    pub(super) fn take_input(&mut self, ctx: &egui::Context) {
         if ctx.input(|input| input.viewport().close_requested()) && !self.leaving && self.is_unsaved() {
             ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
             self.leave_for(ctx, Next::Quit);
@@ -161,7 +162,7 @@ impl Window {
         match dropped.as_slice() {
             [] => {}
             [one] => self.take_dropped(ctx, one),
-            _ => self.messages.say(
+            _ => self.messages.alert(
                 "One file at a time",
                 "Drop a single scene or lesson (.ron), or a file of measured data (.csv), on the window.",
             ),
@@ -184,13 +185,13 @@ impl Window {
                 self.leave_for(ctx, Next::Text(text));
             }
         }
-        self.tell_written();
+        self.report_written();
         let dirty = if self.is_unsaved() { "* " } else { "" };
-        let name = self.lesson().map_or(&self.session.scene().title, |own| &own.lesson().title);
+        let name = self.lesson().map_or(&self.session.scene().title, |open| &open.lesson().title);
         let title = format!("{dirty}{name} - interwell");
-        if title != self.titled {
+        if title != self.shown_title {
             ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
-            self.titled = title;
+            self.shown_title = title;
         }
     }
 
@@ -198,23 +199,23 @@ impl Window {
     pub fn take_dropped(&mut self, ctx: &egui::Context, path: &Path) {
         match is_measured(path) {
             true if self.waits_for_answer() && self.columns.is_none() => {}
-            true if self.lesson().is_some() => self.messages.tell("Leave the lesson first"),
+            true if self.lesson().is_some() => self.messages.notify("Leave the lesson first"),
             true => self.open_measured(path),
             false => self.leave_for(ctx, Next::Open(path.to_string_lossy().into_owned())),
         }
     }
 
     pub(super) fn questions_ui(&mut self, ui: &Ui, ctx: &egui::Context) {
-        if self.asked.is_some()
+        if self.pending.is_some()
             && let Some(answer) = leave::question_ui(ui, &self.session.scene().title)
-            && let Some(next) = self.asked.take()
+            && let Some(next) = self.pending.take()
         {
             match answer {
                 Answer::Save => {
                     self.after_save = Some(next);
                     self.save(ctx);
                 }
-                Answer::DontSave => self.go_on(ctx, next),
+                Answer::DontSave => self.proceed(ctx, next),
                 Answer::Cancel => {}
             }
         }
@@ -229,12 +230,12 @@ impl Window {
                 Answer::Cancel => self.after_save = None,
             }
         }
-        if let Some(typed) = &mut self.typed
-            && let Some(ended) = typed.ui(ui)
+        if let Some(dialog) = &mut self.path_dialog
+            && let Some(answer) = dialog.ui(ui)
         {
-            let wanted = typed.wanted;
-            self.typed = None;
-            if let Ended::Chosen(path) = ended {
+            let wanted = dialog.wanted;
+            self.path_dialog = None;
+            if let PathAnswer::Chosen(path) = answer {
                 self.take_file(ctx, wanted, path);
             }
         }
@@ -249,19 +250,19 @@ impl Window {
         }
     }
 
-    /// From now on no file is asked for: a dialog is answered at once, by none.
+    /// Opens no file dialogs from now on: a request for one is ignored.
     pub fn without_dialogs(&mut self) {
-        self.dialogs = false;
+        self.opens_dialogs = false;
     }
 
-    /// Asks for the path of a file to open, as where the desktop has no dialog.
+    /// Opens the dialog in which a path is typed, as on a desktop without a file dialog.
     pub fn type_path(&mut self, wanted: Wanted) {
-        self.typed = Some(PathDialog::new(wanted, Path::new("")));
+        self.path_dialog = Some(PathDialog::new(wanted, Path::new("")));
     }
 
-    /// Asks for a file, without the window waiting for the answer.
+    /// Opens a file dialog in the background.
     pub(super) fn choose(&mut self, wanted: Wanted) {
-        if !self.dialogs {
+        if !self.opens_dialogs {
             return;
         }
         let (_, kind, ending) = wanted.words();
@@ -269,10 +270,10 @@ impl Window {
         let stem = path.as_ref().and_then(|path| path.file_stem());
         let stem = stem.map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned());
         let folder = path.as_ref().and_then(|path| path.parent()).map(Path::to_path_buf);
-        // what a path would begin with where there is no dialog
-        let begin = folder.clone().unwrap_or_else(files::working_folder);
-        let begin = if wanted.is_read() { begin.join("") } else { begin.join(format!("{stem}.{ending}")) };
-        self.dialog.ask(&self.wake, move |_| {
+        // the suggested path if the desktop has no dialog
+        let start = folder.clone().unwrap_or_else(files::working_folder);
+        let start = if wanted.is_read() { start.join("") } else { start.join(format!("{stem}.{ending}")) };
+        self.file_dialog.ask(&self.wake, move |_| {
             let endings = if wanted == Wanted::Measured { &ENDINGS[..] } else { &[ending][..] };
             let mut dialog = rfd::FileDialog::new().add_filter(kind, endings);
             if let Some(folder) = folder.filter(|folder| files::is_folder(folder)) {
@@ -285,7 +286,7 @@ impl Window {
                 dialog.set_file_name(format!("{stem}.{ending}")).save_file()
             };
             let Some(mut path) = chosen else {
-                return (since.elapsed().as_millis() < UNSEEN).then_some(Chosen::NoDialog(wanted, begin));
+                return (since.elapsed().as_millis() < UNSEEN).then_some(Chosen::NoDialog(wanted, start));
             };
             if !wanted.is_read() && path.extension().is_none() {
                 path.set_extension(ending);

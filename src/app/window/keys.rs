@@ -8,44 +8,43 @@ use crate::app::ui::widgets::{close_ui, dialog, dialog_width};
 
 use super::command::{Command, Listed, Part, parts};
 
-/// The keys of the speeds, the slowest first.
+/// The keys of the speeds, slowest first.
 pub(super) const SPEED_KEYS: [Key; SPEEDS.len()] =
     [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7];
 
-/// Headings of the list of keys in two columns, and the width in points from which on these stand side by
-/// side.
+/// Headings of the list of keys, in two columns.
 const GROUPS: [&[&str]; 2] = [&["Time", "Hands", "Lesson"], &["Views", "Scene"]];
+/// Width in points from which the two columns are side by side.
 const SIDE_BY_SIDE: f32 = 800.0;
 
-/// What the keyboard asks for; nothing while something is typed. To be called only where no dialog is open.
+/// The commands of the pressed keys; none while text is edited. To be called only while no dialog is open.
 pub fn pressed(ctx: &Context, filled: bool) -> Vec<Command> {
-    let mut asked = Vec::new();
+    let mut commands = Vec::new();
     if ctx.text_edit_focused() {
-        return asked;
+        return commands;
     }
     let speeds = SPEED_KEYS.into_iter().enumerate();
     let speeds = speeds.map(|(i, key)| (KeyboardShortcut::new(Modifiers::NONE, key), Command::Speed(i)));
-    let commands = parts().filter_map(|part| match part {
+    let keys = parts().filter_map(|part| match part {
         Part::Item(_, Some(key), command, _) => Some((*key, command.clone())),
         _ => None,
     });
-    let (longer, shorter): (Vec<_>, Vec<_>) =
-        commands.chain(speeds).partition(|(key, _)| key.modifiers.shift);
-    // the longer ones first: the shorter ones would take them for themselves
-    for (key, command) in longer.into_iter().chain(shorter) {
+    let (shifted, others): (Vec<_>, Vec<_>) = keys.chain(speeds).partition(|(key, _)| key.modifiers.shift);
+    // keys with Shift first: those without would consume them
+    for (key, command) in shifted.into_iter().chain(others) {
         if is_free(ctx, &key, &command, filled) && ctx.input_mut(|input| input.consume_shortcut(&key)) {
-            asked.push(command);
+            commands.push(command);
         }
     }
-    asked
+    commands
 }
 
-/// Whether a key is that of the command now.
+/// Whether a key now triggers its command.
 fn is_free(ctx: &Context, key: &KeyboardShortcut, command: &Command, filled: bool) -> bool {
     match (command, key.logical_key) {
-        // the system says so itself
+        // copy and paste arrive as separate events
         (Command::CopyScene | Command::PasteScene, _) => false,
-        // what has the keyboard's focus is pressed by it
+        // the space bar presses the button that has the focus
         (_, Key::Space) => {
             let focused = ctx.memory(egui::Memory::focused).and_then(|id| ctx.read_response(id));
             !focused.is_some_and(|response| response.sense.senses_click())
@@ -75,7 +74,6 @@ fn rows(ctx: &Context, heading: &str, projector: bool) -> Vec<(String, &'static 
     rows.into_iter().filter(|row| row.0 == heading).map(|(_, keys, text)| (keys, text)).collect()
 }
 
-/// A group of the list with its heading.
 fn group_ui(ui: &mut Ui, group: &str, projector: bool) {
     ui.label(RichText::new(group).heading());
     Grid::new(group).num_columns(2).spacing([16.0, 2.0]).show(ui, |ui| {
@@ -88,14 +86,14 @@ fn group_ui(ui: &mut Ui, group: &str, projector: bool) {
     ui.add_space(8.0);
 }
 
-/// Shows the list of keys, which was opened at the time `opened` in s; false once it is to be closed.
+/// Shows the list of keys, opened at time `opened` in s. Returns `false` once it is to be closed.
 pub fn list_ui(ui: &Ui, opened: f64, projector: bool) -> bool {
     let answer = dialog(ui.ctx(), "shortcuts").show(ui.ctx(), |ui| {
         ui.set_max_width(dialog_width(ui, 960.0));
         ui.heading("Keys");
         ui.add_space(4.0);
         let room = (ui.ctx().content_rect().height() - 130.0).max(120.0);
-        // every opening begins at the top
+        // the list is scrolled to its top whenever it is opened
         let list = egui::ScrollArea::vertical().id_salt(opened.to_bits());
         list.max_height(room).min_scrolled_height(room).show(ui, |ui| {
             if ui.available_width() < SIDE_BY_SIDE {
@@ -111,6 +109,6 @@ pub fn list_ui(ui: &Ui, opened: f64, projector: bool) -> bool {
         ui.add_space(8.0);
         close_ui(ui)
     });
-    let again = ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::F1));
-    !(answer.inner || answer.should_close() || again)
+    let toggled = ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::F1));
+    !(answer.inner || answer.should_close() || toggled)
 }

@@ -1,4 +1,4 @@
-//! Layouts: the tiles of each arrangement of the views.
+//! Tiles of the views in each arrangement.
 
 use eframe::egui::{self, Ui, Vec2, WidgetText};
 use egui_tiles::{Container, SimplificationOptions, Tile, TileId, Tiles, Tree, UiResponse};
@@ -13,24 +13,26 @@ use trees::{compact_tree, tabs_tree, views_of, wide_tree};
 mod lesson;
 mod trees;
 
-/// Room in points beside a title, for the buttons beside the titles, and the least size of a title.
+/// Space in points beside a title.
 const TITLE_MARGIN: f32 = 6.0;
-const BUTTON: f32 = 58.0;
+/// Width in points of the buttons beside the titles.
+const BUTTONS: f32 = 58.0;
+/// Least text size in points of a title.
 const LEAST_TITLE: f32 = 9.5;
 
-/// How much room there is.
+/// Size class of the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Room {
-    /// A projector's: two groups of tabs.
+    /// As on a projector: two groups of tabs.
     Compact,
     /// Four tiles, or six.
     Wide,
-    /// A tile more.
+    /// One more tile than a wide window.
     Large,
 }
 
 impl Room {
-    /// The room in a window of that many points.
+    /// The size class of a window of `size` in points.
     pub fn of(size: Vec2) -> Self {
         if size.x < COMPACT_BELOW {
             Self::Compact
@@ -46,8 +48,8 @@ impl Room {
 pub enum Arrangement {
     /// One that comes with the program.
     Layout(Layout),
-    /// The person's own.
-    Own,
+    /// The one that the user has made.
+    Custom,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -66,47 +68,45 @@ impl Tiling {
         Self { tree, room }
     }
 
-    /// The tiles of a person's own arrangement, as they were kept; where there is little room, the same views
-    /// as tabs.
-    pub fn own(kept: &Tree<View>, room: Room) -> Self {
+    /// The tiles of the custom arrangement as they were saved; in a compact window, the same views as tabs.
+    pub fn custom(saved: &Tree<View>, room: Room) -> Self {
         let tree = if room == Room::Compact {
-            let shown = |id: &TileId| kept.is_visible(*id);
-            let view = |own: (&TileId, &Tile<View>)| match own.1 {
-                Tile::Pane(view) => shown(own.0).then_some(*view),
+            let view = |(id, tile): (&TileId, &Tile<View>)| match tile {
+                Tile::Pane(view) => saved.is_visible(*id).then_some(*view),
                 Tile::Container(_) => None,
             };
-            let shown: Vec<View> = kept.tiles.iter().filter_map(view).collect();
+            let shown: Vec<View> = saved.tiles.iter().filter_map(view).collect();
             compact_tree(&View::ALL.into_iter().filter(|view| shown.contains(view)).collect::<Vec<_>>())
         } else {
-            kept.clone()
+            saved.clone()
         };
         Self { tree, room }
     }
 
-    /// The tiles as they stand, to be kept. None where they stand for a small window.
-    pub fn kept(&self) -> Option<&Tree<View>> {
+    /// The present tiles, to be saved; `None` in a compact window.
+    pub fn tree_to_save(&self) -> Option<&Tree<View>> {
         (self.room != Room::Compact).then_some(&self.tree)
     }
 
-    /// The room that it was made for.
+    /// The size class of the window that it was made for.
     pub fn room(&self) -> Room {
         self.room
     }
 
-    /// The place of a view on the screen, where it is seen.
+    /// The rectangle of a view on the screen; `None` if it is not visible.
     pub fn place_of(&self, view: View) -> Option<egui::Rect> {
         let id = self.tree.tiles.find_pane(&view)?;
-        let seen = self.tree.active_tiles().contains(&id);
-        seen.then(|| self.tree.tiles.rect(id)).flatten()
+        let is_visible = self.tree.active_tiles().contains(&id);
+        is_visible.then(|| self.tree.tiles.rect(id)).flatten()
     }
 
-    /// Whether a view is shown somewhere.
+    /// Whether a view is shown, if only as a tab behind another.
     pub fn shows(&self, view: View) -> bool {
         self.tree.tiles.find_pane(&view).is_some_and(|id| self.tree.is_visible(id))
     }
 
-    /// Shows or hides a view. One that has no place yet comes to those of its kind: below them, or where
-    /// there is little room as a tab.
+    /// Shows or hides a view. A view without a tile joins those of its kind: below them, or in a compact
+    /// window as a tab.
     pub fn show(&mut self, view: View, shown: bool) {
         match self.tree.tiles.find_pane(&view) {
             Some(id) => self.tree.set_visible(id, shown),
@@ -120,11 +120,11 @@ impl Tiling {
             None => return,
         }
         if shown && self.room == Room::Compact {
-            self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(own) if *own == view));
+            self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(pane) if *pane == view));
         }
     }
 
-    /// Shows a view; one that has no place yet comes as a tab to another one, where that is shown.
+    /// Shows a view. A view without a tile becomes a tab beside `other`, if that is shown among tabs.
     pub fn show_beside(&mut self, view: View, other: View) {
         let tiles = &mut self.tree.tiles;
         let shown = tiles.find_pane(&other).filter(|id| tiles.is_visible(*id));
@@ -139,11 +139,10 @@ impl Tiling {
             }
         }
         self.show(view, true);
-        self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(own) if *own == view));
+        self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(pane) if *pane == view));
     }
 
-    /// Brings the next of the tabs that share a place to the front: where `view` is, or the first place that
-    /// has several.
+    /// Brings the next tab to the front, in the group of `view` or else in the first group with several tabs.
     pub fn next_tab(&mut self, view: Option<View>) {
         let tiles = &self.tree.tiles;
         let next = view.into_iter().chain(View::ALL).find_map(|view| {
@@ -161,13 +160,14 @@ impl Tiling {
         }
     }
 
-    /// The container that holds views of the same kind. Where room is short the mechanism stands among the
-    /// others.
+    /// The container of the views of the same kind, along the displacement or not. In a compact window the
+    /// mechanism is among the others.
     fn place_for(&self, view: View) -> Option<TileId> {
         let tiles = &self.tree.tiles;
-        let apart = |own: &View| self.room == Room::Compact && *own == View::Mechanism;
-        let alike = |own: &View| (own.is_along_x() && !apart(own)) == (view.is_along_x() && !apart(&view));
-        let neighbour = View::ALL.iter().filter(|own| alike(own)).find_map(|own| tiles.find_pane(own))?;
+        let apart = |view: &View| self.room == Room::Compact && *view == View::Mechanism;
+        let is_along = |view: &View| view.is_along_x() && !apart(view);
+        let alike = |other: &&View| is_along(other) == is_along(&view);
+        let neighbour = View::ALL.iter().filter(alike).find_map(|other| tiles.find_pane(other))?;
         let mut place = tiles.parent_of(neighbour)?;
         while self.room != Room::Compact
             && let Some(Container::Tabs(_)) = tiles.get_container(place)
@@ -177,7 +177,7 @@ impl Tiling {
         Some(place)
     }
 
-    /// The size of the titles with which the tabs that share a place stand beside each other whole.
+    /// The greatest text size at which the titles of every group of tabs fit side by side.
     fn title_size(&self, ui: &Ui) -> f32 {
         let width = |id: &TileId| {
             let view = self.tree.tiles.get_pane(id).filter(|_| self.tree.is_visible(*id))?;
@@ -187,7 +187,7 @@ impl Tiling {
         let fitting = |(id, tile): (&TileId, &Tile<View>)| {
             let Tile::Container(Container::Tabs(tabs)) = tile else { return None };
             let widths: Vec<f32> = tabs.children.iter().filter_map(width).collect();
-            let buttons = if self.room == Room::Compact { BUTTON } else { 1.7 * BUTTON };
+            let buttons = if self.room == Room::Compact { BUTTONS } else { 1.7 * BUTTONS };
             let room =
                 self.tree.tiles.rect(*id)?.width() - buttons - 2.0 * TITLE_MARGIN * widths.len() as f32;
             Some(BODY * room / widths.iter().sum::<f32>().max(1.0))
@@ -196,7 +196,7 @@ impl Tiling {
         least.max(LEAST_TITLE)
     }
 
-    /// Draws the views; `fill` is set where a view asks for the whole window.
+    /// Draws the views; `fill` is set if a view is to fill the window.
     pub fn ui(&mut self, ui: &mut Ui, context: &mut ViewContext<'_>, fill: &mut Option<View>) {
         let title = self.title_size(ui);
         let mut behavior = Behavior { context, fill, title, room: self.room };
@@ -211,7 +211,7 @@ struct Behavior<'a, 'b> {
     room: Room,
 }
 
-/// The button that holds the axes of a view, where it has such.
+/// The button that holds the axes of a view; `None` if it has no axes.
 pub(super) fn hold_ui(ui: &mut Ui, view: View, memory: &mut Memory) -> Option<egui::Response> {
     let held = memory.are_axes_held(view)?;
     let (icon, name, hover) = match held {
@@ -276,8 +276,8 @@ impl egui_tiles::Behavior<View> for Behavior<'_, '_> {
             self.context.memory.figure = Some(*view);
         }
         let hold = hold_ui(ui, *view, self.context.memory);
-        // keys mean the view whose buttons have the focus
-        if fill.has_focus() || hold.is_some_and(|own| own.has_focus()) {
+        // keys act on the view whose buttons have the focus
+        if fill.has_focus() || hold.is_some_and(|button| button.has_focus()) {
             self.context.memory.hovered = Some(*view);
         }
     }

@@ -1,17 +1,17 @@
-//! Questions before a scene that is not saved gives way to another.
+//! Questions about unsaved changes and about comments that would be lost.
 
 use eframe::egui::Ui;
 
 use crate::app::ui::widgets::{dialog, dialog_width};
 
-/// What is to come once the present scene may go.
+/// What to do once the present scene may be closed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Next {
     /// A scene file or a built-in scene.
     Open(String),
     /// A scene as text.
     Text(String),
-    /// A file that is still to be chosen.
+    /// A file that the user has yet to choose.
     Choose,
     Quit,
 }
@@ -19,19 +19,19 @@ pub enum Next {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Answer {
     Save,
-    /// Let the changes go, or save to another file.
+    /// Discard the changes, or save to another file.
     DontSave,
     Cancel,
 }
 
-/// Asks; none while there is no answer. The keyboard begins on Save, Escape stays.
+/// Asks whether to save the changes. Returns `None` until there is an answer; Escape cancels.
 pub fn question_ui(ui: &Ui, title: &str) -> Option<Answer> {
     let text = format!("{title} has changes that are not saved.");
     choice_ui(ui, "unsaved", "Save the changes?", &text, "Don't save")
 }
 
-/// Asks before a file that was written by hand is written over; none while there is no answer. Its comments
-/// are no part of a scene, and go.
+/// Asks before a hand-written file is overwritten, which drops its comments: they are not part of a scene.
+/// Returns `None` until there is an answer.
 pub fn comments_ui(ui: &Ui, path: &str) -> Option<Answer> {
     let text = format!(
         "{path} has comments. They are no part of the scene, and saving over the file does not keep them; \
@@ -40,7 +40,7 @@ pub fn comments_ui(ui: &Ui, path: &str) -> Option<Answer> {
     choice_ui(ui, "comments", "Save without the comments?", &text, "Save as...")
 }
 
-/// A question with three answers, of which the second one is called `second`.
+/// A question with three answers. `second` is the label of the second one; Save has the focus first.
 fn choice_ui(ui: &Ui, id: &str, heading: &str, text: &str, second: &str) -> Option<Answer> {
     let answer = dialog(ui.ctx(), id).show(ui.ctx(), |ui: &mut Ui| {
         ui.set_max_width(dialog_width(ui, 460.0));
@@ -50,15 +50,15 @@ fn choice_ui(ui: &Ui, id: &str, heading: &str, text: &str, second: &str) -> Opti
         ui.add_space(10.0);
         ui.horizontal(|ui| {
             let mut chosen = None;
-            for (way, means) in
+            for (label, answer) in
                 [("Save", Answer::Save), (second, Answer::DontSave), ("Cancel", Answer::Cancel)]
             {
-                let button = ui.button(way);
-                if means == Answer::Save && ui.memory(|memory| memory.focused().is_none()) {
+                let button = ui.button(label);
+                if answer == Answer::Save && ui.memory(|memory| memory.focused().is_none()) {
                     button.request_focus();
                 }
                 if button.clicked() {
-                    chosen = Some(means);
+                    chosen = Some(answer);
                 }
             }
             chosen

@@ -1,4 +1,4 @@
-//! Lessons in the window: opened beside the scene that was there, gone through, and left.
+//! Lessons in the window: opening, navigation, and the return to the scene that was open before.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -8,14 +8,14 @@ use eframe::egui::{self, Id, Key, LayerId, Modifiers, Order, Rect, StrokeKind, U
 use crate::app::panels::controls;
 use crate::app::panels::hint::Hint;
 use crate::app::panels::lecturer::lecturer_ui;
-use crate::app::panels::lesson::{LessonAct, lesson_ui, letter};
+use crate::app::panels::lesson::{LessonAction, lesson_ui, letter};
 use crate::app::session::editor::Editor;
 use crate::app::session::lesson::{OpenLesson, Records, Turn, answers_text};
 use crate::app::session::{CannotRun, Session};
 use crate::app::ui::style::Style;
 use crate::app::views::{Cover, Memory, View};
 use crate::app::words::fields::name_and_unit;
-use crate::app::words::lesson::pointed;
+use crate::app::words::lesson::bold_words;
 use crate::scene::lesson::{LessonDocument, LessonError, Step};
 use crate::scene::{Document, PRESETS, SceneError};
 use crate::study::result_fields;
@@ -23,34 +23,34 @@ use crate::study::result_fields;
 use super::Window;
 use super::layouts::{Arrangement, Tiling};
 
-/// What is said of a lesson that cannot be opened.
+/// Title of the alert about a lesson that cannot be opened.
 pub(super) const CANNOT_OPEN_LESSON: &str = "This lesson cannot be opened";
 
-/// Distance in points of the outline around what a lesson points at.
-const AROUND: f32 = 2.0;
+/// Distance in points between a control and the outline around it.
+const OUTLINE_DISTANCE: f32 = 2.0;
 
 #[derive(Default)]
 pub(super) struct Lessons {
     pub open: Option<OpenLesson>,
-    /// What was there before.
-    aside: Option<Aside>,
-    /// What was done in all of them.
+    /// The state of the window before the lesson.
+    suspended: Option<Suspended>,
+    /// The progress in all lessons.
     pub records: Records,
-    /// The lecturer's notes are shown.
+    /// Whether the lecturer's notes are shown.
     pub notes: bool,
-    /// Places of the controls in this frame.
+    /// Rectangles of the controls in this frame.
     controls: Vec<(String, Rect)>,
 }
 
 impl Lessons {
-    /// The session that waits for the lesson to be left.
-    pub fn aside(&self) -> Option<&Session> {
-        self.aside.as_ref().map(|own| &own.session)
+    /// The session that comes back when the lesson is left.
+    pub fn suspended(&self) -> Option<&Session> {
+        self.suspended.as_ref().map(|state| &state.session)
     }
 }
 
-/// What a lesson leaves as it was.
-struct Aside {
+/// The state of the window that comes back when the lesson is left.
+struct Suspended {
     session: Session,
     tiling: Tiling,
     arrangement: Arrangement,
@@ -62,7 +62,7 @@ struct Aside {
     ways: bool,
 }
 
-/// Reads a lesson; a file of that name that is none is an error about it.
+/// Reads a lesson: a built-in one or a file.
 pub(super) fn read(spec: &str) -> Result<LessonDocument, CannotRun> {
     LessonDocument::load(spec, &result_fields()).map_err(|error| match error {
         LessonError::Wrong(error) => error.into(),
@@ -78,16 +78,16 @@ pub(super) fn is_lesson(spec: &str) -> bool {
 }
 
 impl Window {
-    /// Opens a lesson: a built-in one by its name or number, or a file. One that cannot be opened leaves what
-    /// is there and says why.
+    /// Opens a lesson: a built-in one by its name or number, or a file. If that fails, the window stays as it
+    /// is, and an alert says why.
     pub fn open_lesson(&mut self, spec: &str) {
         match read(spec).and_then(|document| self.begin_lesson(document)) {
             Ok(()) => {}
-            Err(error) => self.messages.say(CANNOT_OPEN_LESSON, error.to_string()),
+            Err(error) => self.messages.alert(CANNOT_OPEN_LESSON, error.to_string()),
         }
     }
 
-    /// Goes on with a lesson where it was left, and puts what is there aside.
+    /// Continues a lesson where it was left, and suspends the scene that is open.
     pub(super) fn begin_lesson(&mut self, document: LessonDocument) -> Result<(), CannotRun> {
         self.session.end_gesture();
         self.keep_progress();
@@ -100,8 +100,8 @@ impl Window {
         let (lesson, scene) = OpenLesson::open(document, self.lessons.records.get(&key), wake);
         let session = self.lesson_session(&lesson, *scene, !lesson.is_covering())?;
         let before = std::mem::replace(&mut self.session, session);
-        if self.lessons.aside.is_none() {
-            self.lessons.aside = Some(Aside {
+        if self.lessons.suspended.is_none() {
+            self.lessons.suspended = Some(Suspended {
                 session: before,
                 tiling: self.tiling.clone(),
                 arrangement: self.arrangement,
@@ -134,22 +134,22 @@ impl Window {
         session.player.set_playing(plays);
         session.explore.walks.chosen.clone_from(&lesson.lesson().walk);
         session.keeps_remedy = !lesson.tells_remedy();
-        // it may be the answer to a lesson's question
+        // the best stops may be the answer to a lesson's question
         session.best.is_off = true;
         Ok(session)
     }
 
-    /// Leaves the lesson: scene, motion, undo and views are what they were.
+    /// Leaves the lesson: the scene, its motion and undo, and the views are as they were before.
     pub fn leave_lesson(&mut self) {
         self.keep_progress();
-        let (lesson, aside) = (self.lessons.open.take(), self.lessons.aside.take());
+        let (lesson, suspended) = (self.lessons.open.take(), self.lessons.suspended.take());
         self.lessons.notes = false;
-        if let (Some(_), Some(aside)) = (lesson, aside) {
+        if let (Some(_), Some(before)) = (lesson, suspended) {
             let room = self.tiling.room();
-            self.session = aside.session;
-            (self.tiling, self.arrangement) = (aside.tiling, aside.arrangement);
-            (self.memory, self.more, self.filled) = (aside.memory, aside.more, aside.filled);
-            (self.hint, self.hint_row, self.ways) = (aside.hint, aside.hint_row, aside.ways);
+            self.session = before.session;
+            (self.tiling, self.arrangement) = (before.tiling, before.arrangement);
+            (self.memory, self.more, self.filled) = (before.memory, before.more, before.filled);
+            (self.hint, self.hint_row, self.ways) = (before.hint, before.hint_row, before.ways);
             if self.tiling.room() != room {
                 self.arrange(room);
             }
@@ -160,12 +160,10 @@ impl Window {
         self.lessons.open.as_ref()
     }
 
-    /// The lesson that is open, to choose in it.
     pub fn lesson_mut(&mut self) -> Option<&mut OpenLesson> {
         self.lessons.open.as_mut()
     }
 
-    /// What was done in all lessons.
     pub fn records(&self) -> Records {
         let mut records = self.lessons.records.clone();
         if let Some(lesson) = &self.lessons.open {
@@ -202,14 +200,14 @@ impl Window {
         }
     }
 
-    pub(super) fn act_in_lesson(&mut self, act: LessonAct) {
+    pub(super) fn act_in_lesson(&mut self, act: LessonAction) {
         let Some(lesson) = &mut self.lessons.open else { return };
         let turn = match act {
-            LessonAct::Choose(option) => lesson.choose(option),
-            LessonAct::Back => lesson.go_back(),
-            LessonAct::Next => lesson.go_on(),
-            LessonAct::NextLesson(name) => return self.open_lesson(name),
-            LessonAct::Hint => {
+            LessonAction::Choose(option) => lesson.choose(option),
+            LessonAction::Back => lesson.go_back(),
+            LessonAction::Next => lesson.go_on(),
+            LessonAction::NextLesson(name) => return self.open_lesson(name),
+            LessonAction::Hint => {
                 lesson.turn_hint();
                 Turn::Stay
             }
@@ -217,7 +215,7 @@ impl Window {
         self.take_turn(turn);
     }
 
-    /// The lesson that is open from its first step, without answers.
+    /// Restarts the open lesson from its first step, without answers.
     pub(super) fn begin_lesson_anew(&mut self) {
         let turn = self.lessons.open.as_mut().map(OpenLesson::begin_anew);
         turn.into_iter().for_each(|turn| self.take_turn(turn));
@@ -233,7 +231,7 @@ impl Window {
                     self.memory = Memory::default();
                 }
                 Err(error) => {
-                    self.messages.say("This step of the lesson cannot be shown", error.to_string());
+                    self.messages.alert("This step of the lesson cannot be shown", error.to_string());
                     self.leave_lesson();
                 }
             },
@@ -241,18 +239,18 @@ impl Window {
         }
     }
 
-    /// What the keyboard asks of the lesson.
+    /// Carries out the pressed keys of the open lesson.
     pub(super) fn lesson_keys(&mut self, ctx: &egui::Context) {
         let Some(lesson) = self.lessons.open.as_ref().filter(|_| !ctx.text_edit_focused()) else { return };
-        let mut keys = vec![(Key::PageDown, LessonAct::Next), (Key::PageUp, LessonAct::Back)];
+        let mut keys = vec![(Key::PageDown, LessonAction::Next), (Key::PageUp, LessonAction::Back)];
         if matches!(lesson.step(), Step::Do { .. }) {
-            keys.extend(lesson.offered_hint().map(|_| (Key::H, LessonAct::Hint)));
+            keys.extend(lesson.offered_hint().map(|_| (Key::H, LessonAction::Hint)));
         }
         if lesson.is_covering() {
             for option in 0..lesson.options().len() {
                 let names = [letter(option).to_string(), (option + 1).to_string()];
-                let own = names.iter().filter_map(|name| Key::from_name(name));
-                keys.extend(own.map(|key| (key, LessonAct::Choose(option))));
+                let pair = names.iter().filter_map(|name| Key::from_name(name));
+                keys.extend(pair.map(|key| (key, LessonAction::Choose(option))));
             }
         }
         let pressed =
@@ -262,7 +260,7 @@ impl Window {
         }
     }
 
-    /// Takes in what the runs say of the lesson; to be called once a frame.
+    /// Receives the verdicts of runs on the lesson; to be called once a frame.
     pub(super) fn follow_lesson(&mut self, ctx: &egui::Context) {
         let Some(lesson) = &mut self.lessons.open else { return };
         if let Some(left) = lesson.follow(&self.session, ctx.input(|input| input.time)) {
@@ -278,7 +276,7 @@ impl Window {
         }
     }
 
-    /// The controls that the lesson names; while a prediction covers the motion nothing moves.
+    /// The controls that the lesson names; disabled while a prediction covers the motion.
     pub(super) fn lesson_controls_ui(&mut self, ui: &mut Ui) {
         let Some(lesson) = &self.lessons.open else { return };
         if lesson.is_covering() {
@@ -288,60 +286,57 @@ impl Window {
     }
 
     pub(super) fn lesson_has_controls(&self) -> bool {
-        self.lessons.open.as_ref().is_some_and(|own| !own.lesson().controls.is_empty())
+        self.lessons.open.as_ref().is_some_and(|open| !open.lesson().controls.is_empty())
     }
 
-    /// Outlines around what the bold words of the step name: controls and views that are on the screen.
+    /// Outlines around the controls and views on the screen that are bold words in the text of the step.
     pub(super) fn pointing_ui(&self, ctx: &egui::Context, style: &Style) {
-        let shown = |own: &&OpenLesson| self.filled.is_none() && !own.is_covering();
+        let shown = |open: &&OpenLesson| self.filled.is_none() && !open.is_covering();
         let Some(lesson) = self.lessons.open.as_ref().filter(shown) else { return };
         let layer = LayerId::new(Order::Middle, Id::unique("pointing"));
         let painter = ctx.layer_painter(layer);
-        for word in pointed(lesson.step().text()) {
+        for word in bold_words(lesson.step().text()) {
             let stroke = style.pointing_stroke();
-            if let Some(own) = self.lessons.controls.iter().find(|own| names_control(&word, &own.0)) {
-                painter.rect_stroke(own.1.expand(AROUND), 4.0, stroke, StrokeKind::Outside);
+            if let Some(control) = self.lessons.controls.iter().find(|shown| names_control(&word, &shown.0)) {
+                painter.rect_stroke(control.1.expand(OUTLINE_DISTANCE), 4.0, stroke, StrokeKind::Outside);
             } else if let Some(rect) = view_named(&word).and_then(|view| self.tiling.place_of(view)) {
                 painter.rect_stroke(rect, 4.0, stroke, StrokeKind::Inside);
             }
         }
     }
 
-    /// The lecturer's notes, where they were asked for.
     pub(super) fn lecturer_ui(&mut self, ctx: &egui::Context) {
         let Some(lesson) = self.lessons.open.as_ref().filter(|_| self.lessons.notes) else { return };
-        let (asked, closed) = lecturer_ui(ctx, lesson);
+        let (action, closed) = lecturer_ui(ctx, lesson);
         self.lessons.notes &= !closed;
-        asked.into_iter().for_each(|act| self.act_in_lesson(act));
+        action.into_iter().for_each(|action| self.act_in_lesson(action));
     }
 
-    /// Copies the answers to all lessons as text.
     pub(super) fn copy_answers(&mut self, ctx: &egui::Context) {
         match answers_text(&self.records()) {
             Some(text) => {
                 ctx.copy_text(text);
-                self.messages.tell("Copied: your answers as text");
+                self.messages.notify("Copied: your answers as text");
             }
-            None => self.messages.tell("There are no answers yet"),
+            None => self.messages.notify("There are no answers yet"),
         }
     }
 }
 
-/// Whether a word in small letters names the control of a field: by the name that stands beside it, or by
-/// what it is called everywhere.
+/// Whether a word in lower case names the control of a field: by its label, or by the field's usual name.
 fn names_control(word: &str, path: &str) -> bool {
     let name = name_and_unit(path).0;
-    let own = name.trim_end_matches(" ±").to_lowercase();
+    let label = name.trim_end_matches(" ±").to_lowercase();
     match path {
         "stops" => ["stops", "stop"].contains(&word),
-        "excitation.amplitude_g" | "excitation.rms_g" => word == "shaking" || word == own,
+        "excitation.amplitude_g" | "excitation.rms_g" => word == "shaking" || word == label,
         "stops.travel_limit_mm" => ["travel limit", "position"].contains(&word),
-        "start.v_m_per_s" => ["flick", "start", "velocity", own.as_str()].contains(&word),
-        _ => word == own,
+        "start.v_m_per_s" => ["flick", "start", "velocity", label.as_str()].contains(&word),
+        _ => word == label,
     }
 }
 
-/// The view that a word in small letters names; the barrier is seen in the well, and so are stops.
+/// The view that a word in lower case names; the barrier and the stops are shown in the well.
 fn view_named(word: &str) -> Option<View> {
     match word {
         "barrier" | "stops" | "stop" => Some(View::Well),

@@ -1,4 +1,4 @@
-//! Measured data in the window: opened, dropped, laid over a view, taken as the drive.
+//! Measured data in the window: opening, display over a view, use as excitation.
 
 use std::path::Path;
 
@@ -9,16 +9,16 @@ use crate::app::views::View;
 use crate::scene::Quantity;
 
 use super::Window;
-use super::measured_dialog::{Ended, MeasuredDialog};
+use super::measured_dialog::{MeasuredAnswer, MeasuredDialog};
 
 impl Window {
-    /// Asks for the columns of a file of measured data.
+    /// Opens the dialog for the columns of a file of measured data.
     pub fn open_measured(&mut self, path: &Path) {
         self.columns = Some(MeasuredDialog::new(path, &self.wake));
     }
 
-    /// Lays a record over the computed, in the view of its quantity, with a card beside Before / now.
-    pub fn lay(&mut self, record: MeasuredRecord) {
+    /// Draws a record over the view of its quantity, with a card beside Before / now.
+    pub fn overlay(&mut self, record: MeasuredRecord) {
         let view = match record.values.quantity {
             Quantity::Velocity => View::Velocity,
             Quantity::Acceleration => View::BaseAcceleration,
@@ -28,21 +28,21 @@ impl Window {
         self.session.measured.lay(record);
         self.filled = None;
         self.tiling.show_beside(View::Measured, View::BeforeNow);
-        // where there is little room, in front of the card
+        // the view is in front if it shares tabs with the card
         self.tiling.show(view, true);
     }
 
-    /// Draws the question for the columns, and does what was answered.
+    /// Draws the dialog for the columns, and carries out its answer.
     pub(super) fn measured_ui(&mut self, ui: &Ui) {
-        let Some(ended) = self.columns.as_mut().and_then(|dialog| dialog.ui(ui, &self.wake)) else { return };
-        match ended {
-            Ended::Laid(record) => self.lay(*record),
-            Ended::Shaken(path, record) => match self.session.shake_with(&path, &record) {
+        let Some(answer) = self.columns.as_mut().and_then(|dialog| dialog.ui(ui, &self.wake)) else { return };
+        match answer {
+            MeasuredAnswer::Overlay(record) => self.overlay(*record),
+            MeasuredAnswer::Shake(path, record) => match self.session.shake_with(&path, &record) {
                 Ok(warnings) => {
                     let done = format!("The base is shaken with {}, from its start", record.name);
                     match warnings.is_empty() {
-                        true => self.messages.tell(done),
-                        false => self.messages.say(done, format!("The record {}.", warnings.join("; it "))),
+                        true => self.messages.notify(done),
+                        false => self.messages.alert(done, format!("The record {}.", warnings.join("; it "))),
                     }
                     self.tiling.show(View::BaseAcceleration, true);
                 }
@@ -53,7 +53,7 @@ impl Window {
                     return;
                 }
             },
-            Ended::Cancelled => {}
+            MeasuredAnswer::Cancelled => {}
         }
         self.columns = None;
     }

@@ -10,24 +10,26 @@ use crate::app::task::{Latest, Wake};
 use crate::app::ui::widgets::{dialog, dialog_width};
 use crate::scene::{ChosenColumn, MeasuredText, Quantity, Unit};
 
-/// The endings of files that are taken for measured data.
+/// Extensions of the files that are taken for measured data.
 pub(super) const ENDINGS: [&str; 4] = ["csv", "txt", "tsv", "dat"];
 
-/// What stands across, and what was measured over it.
+/// Rows of the dialog, with the quantities of each: the abscissa, and the measured values.
 const ROWS: [(&str, &[Quantity]); 2] = [
     ("across", &[Quantity::Time, Quantity::Displacement]),
     ("values", &[Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration, Quantity::Force]),
 ];
 
-/// Width in points of the dialog, of the names of columns, and of the units.
+/// Width in points of the dialog.
 const WIDTH: f32 = 560.0;
+/// Width in points of the choice of a column.
 const COLUMN: f32 = 190.0;
+/// Width in points of the choice of a unit.
 const UNIT: f32 = 70.0;
 
 /// Whether a file is taken for measured data.
 pub(super) fn is_measured(path: &Path) -> bool {
-    let ending = path.extension().map(|own| own.to_string_lossy().to_ascii_lowercase());
-    ending.is_some_and(|own| ENDINGS.contains(&own.as_str()))
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+    ending.is_some_and(|ending| ENDINGS.contains(&ending.as_str()))
 }
 
 /// A file of measured data whose columns are being chosen.
@@ -37,17 +39,17 @@ pub struct MeasuredDialog {
     text: Latest<Result<Arc<MeasuredText>, String>>,
     chosen: Option<[ChosenColumn; 2]>,
     /// The columns that are read.
-    asked: Option<[(usize, Unit); 2]>,
+    requested: Option<[(usize, Unit); 2]>,
     record: Latest<Result<MeasuredRecord, String>>,
-    /// Why the base is not shaken with it.
+    /// Why the base cannot be shaken with the record.
     refused: Option<String>,
 }
 
-pub(super) enum Ended {
-    /// The record lies over the computed.
-    Laid(Box<MeasuredRecord>),
-    /// It shakes the base: the file, and its columns.
-    Shaken(PathBuf, Box<MeasuredRecord>),
+pub(super) enum MeasuredAnswer {
+    /// Draw the record over the computed motion or curve.
+    Overlay(Box<MeasuredRecord>),
+    /// Shake the base with the record of the file.
+    Shake(PathBuf, Box<MeasuredRecord>),
     Cancelled,
 }
 
@@ -56,35 +58,35 @@ impl MeasuredDialog {
     pub fn new(path: &Path, wake: &Wake) -> Self {
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
         let mut text = Latest::default();
-        let own = path.to_owned();
+        let file = path.to_owned();
         text.ask(wake, move |_| {
-            let read = MeasuredText::read(&own).map(Arc::new);
+            let read = MeasuredText::read(&file).map(Arc::new);
             Some(read.map_err(|problem| sentence(&format!("the file {problem}"))))
         });
         let record = Latest::default();
-        Self { path: path.to_owned(), name, text, chosen: None, asked: None, record, refused: None }
+        Self { path: path.to_owned(), name, text, chosen: None, requested: None, record, refused: None }
     }
 
-    /// Says why the base is not shaken with it.
+    /// Says why the base cannot be shaken with the record.
     pub fn refuse(&mut self, why: String) {
         self.refused = Some(why);
     }
 
-    /// Chooses the column and the unit of a row, 0 across and 1 for the values.
+    /// Chooses the column and the unit of a row: 0 for the abscissa, 1 for the values.
     pub fn choose(&mut self, row: usize, chosen: ChosenColumn) {
-        if let Some(own) = self.chosen.as_mut().and_then(|own| own.get_mut(row)) {
-            *own = chosen;
+        if let Some(present) = self.chosen.as_mut().and_then(|rows| rows.get_mut(row)) {
+            *present = chosen;
             self.refused = None;
         }
     }
 
-    /// What is known: the record once it is read, or what keeps it from being read as a sentence.
+    /// The record once it is read, or a sentence that says what prevents that.
     pub fn known(&self) -> Option<Result<&MeasuredRecord, String>> {
         let names = match self.text.current()? {
             Ok(text) => &text.names,
             Err(problem) => return Some(Err(problem.clone())),
         };
-        let open = self.chosen?.into_iter().find(|own| own.1.is_none());
+        let open = self.chosen?.into_iter().find(|column| column.1.is_none());
         if let Some((at, _)) = open {
             let name = names.get(at).map_or("", String::as_str);
             return Some(Err(format!("Choose the unit of `{name}`: its name does not end with one.")));
@@ -92,25 +94,25 @@ impl MeasuredDialog {
         Some(self.record.current()?.as_ref().map_err(Clone::clone))
     }
 
-    /// Takes in what was read, and has the chosen columns read.
+    /// Receives what was read, and has the chosen columns read.
     pub fn poll(&mut self, wake: &Wake) {
         self.text.poll();
         self.record.poll();
         let Some(Ok(text)) = self.text.current() else { return };
         let [across, values] = *self.chosen.get_or_insert_with(|| text.guess());
-        let Some(wanted) = across.1.zip(values.1).map(|own| [(across.0, own.0), (values.0, own.1)]) else {
-            self.asked = None;
+        let Some(wanted) = across.1.zip(values.1).map(|pair| [(across.0, pair.0), (values.0, pair.1)]) else {
+            self.requested = None;
             return self.record.clear();
         };
-        if self.asked != Some(wanted) {
-            self.asked = Some(wanted);
+        if self.requested != Some(wanted) {
+            self.requested = Some(wanted);
             let (text, name) = (Arc::clone(text), self.name.clone());
             self.record.ask(wake, move |_| Some(MeasuredRecord::of(&name, &text, wanted)));
         }
     }
 
-    /// Draws the question; the answer once there is one.
-    pub(super) fn ui(&mut self, ui: &Ui, wake: &Wake) -> Option<Ended> {
+    /// Draws the dialog. Returns the answer once there is one.
+    pub(super) fn ui(&mut self, ui: &Ui, wake: &Wake) -> Option<MeasuredAnswer> {
         self.poll(wake);
         let answer = dialog(ui.ctx(), "measured").show(ui.ctx(), |ui| {
             ui.set_width(dialog_width(ui, WIDTH));
@@ -123,7 +125,7 @@ impl MeasuredDialog {
             ui.add_space(8.0);
             self.buttons_ui(ui)
         });
-        let closed = answer.should_close().then_some(Ended::Cancelled);
+        let closed = answer.should_close().then_some(MeasuredAnswer::Cancelled);
         answer.inner.or(closed)
     }
 
@@ -135,15 +137,17 @@ impl MeasuredDialog {
                 let (at, unit) = chosen[row];
                 let label = ui.label(name);
                 let mut wanted = chosen[row];
-                let own = |at: usize| text.names.get(at).map_or("", String::as_str);
-                let column =
-                    ComboBox::from_id_salt((name, "column")).width(COLUMN).selected_text(own(at)).truncate();
+                let title = |at: usize| text.names.get(at).map_or("", String::as_str);
+                let column = ComboBox::from_id_salt((name, "column"))
+                    .width(COLUMN)
+                    .selected_text(title(at))
+                    .truncate();
                 let shown = column.show_ui(ui, |ui| {
                     for (at, name) in text.names.iter().enumerate() {
-                        let is_own = at == chosen[row].0;
-                        if ui.selectable_label(is_own, name).clicked() {
-                            let told = Unit::of_name(name).filter(|own| quantities.contains(&own.quantity));
-                            wanted = (at, told);
+                        let is_chosen = at == chosen[row].0;
+                        if ui.selectable_label(is_chosen, name).clicked() {
+                            let unit = Unit::of_name(name).filter(|unit| quantities.contains(&unit.quantity));
+                            wanted = (at, unit);
                         }
                     }
                 });
@@ -152,10 +156,10 @@ impl MeasuredDialog {
                 let units = ComboBox::from_id_salt((name, "unit")).width(UNIT).selected_text(words);
                 let shown = units.show_ui(ui, |ui| {
                     for quantity in quantities {
-                        for own in Unit::all(*quantity) {
-                            let words = format!("{} ({})", own.word(), over(row, *quantity));
-                            if ui.selectable_label(unit == Some(own), words).clicked() {
-                                wanted.1 = Some(own);
+                        for choice in Unit::all(*quantity) {
+                            let words = format!("{} ({})", choice.word(), quantity_name(row, *quantity));
+                            if ui.selectable_label(unit == Some(choice), words).clicked() {
+                                wanted.1 = Some(choice);
                             }
                         }
                     }
@@ -163,15 +167,15 @@ impl MeasuredDialog {
                 let hover = "The unit of its numbers.";
                 let unit_name = format!("unit of {name}");
                 shown.response.widget_info(|| {
-                    let mut own = egui::WidgetInfo::labeled(egui::Role::ComboBox, true, &unit_name);
-                    own.current_text_value = Some(words.to_owned());
-                    own
+                    let mut info = egui::WidgetInfo::labeled(egui::Role::ComboBox, true, &unit_name);
+                    info.current_text_value = Some(words.to_owned());
+                    info
                 });
                 shown.response.on_hover_text(hover);
                 let how = match (chosen[row] == guess[row], unit) {
                     (_, None) => String::new(),
-                    (true, Some(unit)) => format!("{}, by its name", over(row, unit.quantity)),
-                    (false, Some(unit)) => over(row, unit.quantity).to_owned(),
+                    (true, Some(unit)) => format!("{}, by its name", quantity_name(row, unit.quantity)),
+                    (false, Some(unit)) => quantity_name(row, unit.quantity).to_owned(),
                 };
                 ui.label(RichText::new(how).small());
                 ui.end_row();
@@ -182,7 +186,7 @@ impl MeasuredDialog {
         });
     }
 
-    /// What was read, or why it is not.
+    /// The record that was read, or why it cannot be read.
     fn known_ui(&self, ui: &mut Ui) {
         ui.add_space(4.0);
         match self.known() {
@@ -197,16 +201,16 @@ impl MeasuredDialog {
         }
     }
 
-    fn buttons_ui(&mut self, ui: &mut Ui) -> Option<Ended> {
+    fn buttons_ui(&mut self, ui: &mut Ui) -> Option<MeasuredAnswer> {
         let ready = matches!(self.known(), Some(Ok(_)));
-        let taken = |dialog: &mut Self| dialog.record.take().and_then(Result::ok).map(Box::new);
+        let record = |dialog: &mut Self| dialog.record.take().and_then(Result::ok).map(Box::new);
         ui.horizontal(|ui| {
             let lay = ui.add_enabled(ready, Button::new("Lay it over"));
             if ready && ui.memory(|memory| memory.focused().is_none()) {
                 lay.request_focus();
             }
             let accelerates =
-                matches!(self.known(), Some(Ok(own)) if own.values.quantity == Quantity::Acceleration);
+                matches!(self.known(), Some(Ok(record)) if record.values.quantity == Quantity::Acceleration);
             let shaken = accelerates
                 && ui
                     .button("Shake the base with it")
@@ -217,23 +221,23 @@ impl MeasuredDialog {
                     .clicked();
             let cancelled = ui.button("Cancel").clicked();
             if lay.clicked() {
-                return taken(self).map(Ended::Laid);
+                return record(self).map(MeasuredAnswer::Overlay);
             }
             if shaken {
                 return self
                     .record
                     .current()
-                    .and_then(|own| own.clone().ok())
-                    .map(|own| Ended::Shaken(self.path.clone(), Box::new(own)));
+                    .and_then(|record| record.clone().ok())
+                    .map(|record| MeasuredAnswer::Shake(self.path.clone(), Box::new(record)));
             }
-            cancelled.then_some(Ended::Cancelled)
+            cancelled.then_some(MeasuredAnswer::Cancelled)
         })
         .inner
     }
 }
 
-/// What a quantity is called in a row: the displacement across is a position.
-fn over(row: usize, quantity: Quantity) -> &'static str {
+/// Name of a quantity in a row; a displacement as abscissa is a position.
+fn quantity_name(row: usize, quantity: Quantity) -> &'static str {
     match (row, quantity) {
         (0, Quantity::Displacement) => "position",
         (_, Quantity::Acceleration) => "acceleration of the base",

@@ -21,7 +21,7 @@ use super::layouts::{Room, Tiling};
 use super::lessons::Lessons;
 use super::wanted::Wanted;
 
-/// Draws the bar and says what was asked for.
+/// Draws the bar. Returns the commands that were chosen.
 pub fn menu_ui(
     ui: &mut Ui,
     session: &Session,
@@ -30,13 +30,13 @@ pub fn menu_ui(
     recent: &[String],
     lessons: &Lessons,
 ) -> Vec<Command> {
-    let mut asked = Vec::new();
+    let mut commands = Vec::new();
     egui::MenuBar::new().ui(ui, |ui| {
-        let shown = Shown { session, tiling, settings, recent, lessons };
+        let state = MenuState { session, tiling, settings, recent, lessons };
         for (name, parts) in &MENUS {
             ui.menu_button(*name, |ui| match *name {
-                "View" | "Lessons" => scroll_ui(ui, |ui| parts_ui(ui, &mut asked, parts, &shown)),
-                _ => parts_ui(ui, &mut asked, parts, &shown),
+                "View" | "Lessons" => scroll_ui(ui, |ui| parts_ui(ui, &mut commands, parts, &state)),
+                _ => parts_ui(ui, &mut commands, parts, &state),
             });
         }
         ui.add_space(16.0);
@@ -44,27 +44,27 @@ pub fn menu_ui(
             let hover = "The scene as it was opened or last saved, its views, and time 0 (Home). Undo brings \
                          the changes back.";
             if ui.button(DISCARD).on_hover_text(hover).clicked() {
-                asked.push(Command::BackToStart);
+                commands.push(Command::BackToStart);
             }
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 let dirty = if session.editor.is_dirty() { " *" } else { "" };
                 let (text, hover) = match &lessons.open {
-                    Some(own) => (format!("Lesson: {}", own.lesson().title), "What this lesson is about"),
+                    Some(open) => (format!("Lesson: {}", open.lesson().title), "What this lesson is about"),
                     None => (format!("{}{dirty}", session.scene().title), "What this scene is about"),
                 };
                 let title = egui::RichText::new(text).strong();
                 let title = ui.add(Button::new(title).frame_when_inactive(false).truncate());
                 if title.on_hover_text(hover).clicked() {
-                    asked.push(Command::Notes);
+                    commands.push(Command::Notes);
                 }
             });
         });
     });
-    asked
+    commands
 }
 
 /// What the menus show besides the commands.
-struct Shown<'a> {
+struct MenuState<'a> {
     session: &'a Session,
     tiling: &'a Tiling,
     settings: Settings,
@@ -72,31 +72,31 @@ struct Shown<'a> {
     lessons: &'a Lessons,
 }
 
-fn parts_ui(ui: &mut Ui, asked: &mut Vec<Command>, parts: &[Part], shown: &Shown<'_>) {
+fn parts_ui(ui: &mut Ui, commands: &mut Vec<Command>, parts: &[Part], state: &MenuState<'_>) {
     for part in parts {
         match part {
             Part::Item("", ..) | Part::Row(..) => {}
             Part::Item(name, key, command, _) => {
-                let enabled = is_enabled(command, shown);
-                item_ui(ui, asked, name, *key, enabled, command);
+                let enabled = is_enabled(command, state);
+                item_ui(ui, commands, name, *key, enabled, command);
             }
-            Part::Menu(name, parts) => drop(ui.menu_button(*name, |ui| parts_ui(ui, asked, parts, shown))),
+            Part::Menu(name, parts) => drop(ui.menu_button(*name, |ui| parts_ui(ui, commands, parts, state))),
             Part::Line => drop(ui.separator()),
-            Part::Presets => presets_ui(ui, asked),
-            Part::Recent => recent_ui(ui, asked, shown.recent),
-            Part::Settings => settings_ui(ui, asked, shown.settings),
-            Part::Views => views_ui(ui, asked, shown.tiling),
-            Part::Speeds => speeds_ui(ui, asked),
-            Part::Lessons => lessons_ui(ui, asked, shown.lessons),
+            Part::Presets => presets_ui(ui, commands),
+            Part::Recent => recent_ui(ui, commands, state.recent),
+            Part::Settings => settings_ui(ui, commands, state.settings),
+            Part::Views => views_ui(ui, commands, state.tiling),
+            Part::Speeds => speeds_ui(ui, commands),
+            Part::Lessons => lessons_ui(ui, commands, state.lessons),
         }
     }
 }
 
 /// Whether a command can be chosen in a menu.
-fn is_enabled(command: &Command, shown: &Shown<'_>) -> bool {
-    let Shown { session, tiling, lessons, .. } = shown;
+fn is_enabled(command: &Command, state: &MenuState<'_>) -> bool {
+    let MenuState { session, tiling, lessons, .. } = state;
     let model = session.model();
-    if lessons.open.as_ref().is_some_and(OpenLesson::is_covering) && command.tells_of_motion() {
+    if lessons.open.as_ref().is_some_and(OpenLesson::is_covering) && command.reveals_motion() {
         return false;
     }
     match command {
@@ -120,7 +120,7 @@ fn is_enabled(command: &Command, shown: &Shown<'_>) -> bool {
 
 fn item_ui(
     ui: &mut Ui,
-    asked: &mut Vec<Command>,
+    commands: &mut Vec<Command>,
     name: &str,
     key: Option<KeyboardShortcut>,
     enabled: bool,
@@ -131,18 +131,18 @@ fn item_ui(
         button = button.shortcut_text(ui.ctx().format_shortcut(&key));
     }
     if ui.add_enabled(enabled, button).clicked() {
-        asked.push(command.clone());
+        commands.push(command.clone());
         ui.close();
     }
 }
 
-fn presets_ui(ui: &mut Ui, asked: &mut Vec<Command>) {
+fn presets_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
     ui.menu_button("Open built-in scene", |ui| {
         scroll_ui(ui, |ui| {
             for (preset, title) in PRESETS.iter().zip(TITLES.iter()) {
                 let hover = format!("{}: {}", preset.name, preset.summary);
                 if ui.button(title).on_hover_text(hover).clicked() {
-                    asked.push(Command::OpenPreset(preset.name));
+                    commands.push(Command::OpenPreset(preset.name));
                     ui.close();
                 }
             }
@@ -150,13 +150,13 @@ fn presets_ui(ui: &mut Ui, asked: &mut Vec<Command>) {
     });
 }
 
-fn recent_ui(ui: &mut Ui, asked: &mut Vec<Command>, recent: &[String]) {
+fn recent_ui(ui: &mut Ui, commands: &mut Vec<Command>, recent: &[String]) {
     ui.add_enabled_ui(!recent.is_empty(), |ui| {
         ui.menu_button("Open recent", |ui| {
             for path in recent {
                 let name = path.rsplit(['/', '\\']).next().unwrap_or(path);
                 if ui.button(name).on_hover_text(path).clicked() {
-                    asked.push(Command::OpenRecent(path.clone()));
+                    commands.push(Command::OpenRecent(path.clone()));
                     ui.close();
                 }
             }
@@ -164,34 +164,34 @@ fn recent_ui(ui: &mut Ui, asked: &mut Vec<Command>, recent: &[String]) {
     });
 }
 
-fn settings_ui(ui: &mut Ui, asked: &mut Vec<Command>, mut settings: Settings) {
+fn settings_ui(ui: &mut Ui, commands: &mut Vec<Command>, mut settings: Settings) {
     for (setting, name, hover) in [
         (Setting::Projector, "Projector", "Light, larger, thicker lines (P)"),
         (Setting::Dark, "Dark", "Light letters on a dark ground (D)"),
         (Setting::ReduceMotion, "Reduce motion", "No rings at impacts"),
     ] {
-        let is_free = setting != Setting::Dark || !settings.projector;
-        let own = egui::Checkbox::new(settings.of(setting), name);
-        if ui.add_enabled(is_free, own).on_hover_text(hover).clicked() {
-            asked.push(Command::Toggle(setting));
+        let is_enabled = setting != Setting::Dark || !settings.projector;
+        let checkbox = egui::Checkbox::new(settings.of(setting), name);
+        if ui.add_enabled(is_enabled, checkbox).on_hover_text(hover).clicked() {
+            commands.push(Command::Toggle(setting));
         }
     }
 }
 
-fn views_ui(ui: &mut Ui, asked: &mut Vec<Command>, tiling: &Tiling) {
+fn views_ui(ui: &mut Ui, commands: &mut Vec<Command>, tiling: &Tiling) {
     ui.menu_button("Views", |ui| {
         scroll_ui(ui, |ui| {
             for view in View::ALL {
                 let mut shown = tiling.shows(view);
                 if ui.checkbox(&mut shown, view.name()).on_hover_text(view.about()).clicked() {
-                    asked.push(Command::Show(view, shown));
+                    commands.push(Command::Show(view, shown));
                 }
             }
         });
     });
 }
 
-fn speeds_ui(ui: &mut Ui, asked: &mut Vec<Command>) {
+fn speeds_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
     for (i, ((_, name), key)) in SPEEDS.into_iter().zip(SPEED_KEYS).enumerate() {
         let text = match name {
             "real time" => name.to_owned(),
@@ -199,59 +199,57 @@ fn speeds_ui(ui: &mut Ui, asked: &mut Vec<Command>) {
             _ => format!("{name} of real time"),
         };
         let key = KeyboardShortcut::new(Modifiers::NONE, key);
-        item_ui(ui, asked, &text, Some(key), true, &Command::Speed(i));
+        item_ui(ui, commands, &text, Some(key), true, &Command::Speed(i));
     }
 }
 
-/// The built-in lessons in their order; a mark stands before those that are done, and at the one that is
-/// open.
-fn lessons_ui(ui: &mut Ui, asked: &mut Vec<Command>, lessons: &Lessons) {
+/// The built-in lessons in order; those that are done have a mark, and the open one is selected.
+fn lessons_ui(ui: &mut Ui, commands: &mut Vec<Command>, lessons: &Lessons) {
     let open = lessons.open.as_ref().map(OpenLesson::key);
-    for (own, about) in LESSONS.iter().zip(ABOUT_LESSONS.iter()) {
-        let is_open = open.as_deref() == Some(own.name);
+    for (lesson, about) in LESSONS.iter().zip(ABOUT_LESSONS.iter()) {
+        let is_open = open.as_deref() == Some(lesson.name);
         let done = match (is_open, &lessons.open) {
-            (true, Some(lesson)) => lesson.progress().done,
-            _ => lessons.records.get(own.name).is_some_and(|own| own.done),
+            (true, Some(open)) => open.progress().done,
+            _ => lessons.records.get(lesson.name).is_some_and(|record| record.done),
         };
         let mark = if done { "done" } else { "" };
-        let name = format!("{}  {} ({} min)", numbered(own.name), about.title, about.minutes);
+        let name = format!("{}  {} ({} min)", numbered(lesson.name), about.title, about.minutes);
         let button = Button::selectable(is_open, name).right_text(mark);
         if ui.add(button).on_hover_text(&about.goal).clicked() {
-            asked.push(Command::OpenLesson(own.name));
+            commands.push(Command::OpenLesson(lesson.name));
             ui.close();
         }
     }
 }
 
-/// What may be longer than the window is high.
+/// Contents that are scrolled if they are taller than the window.
 fn scroll_ui(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
     let window = ui.ctx().content_rect();
     // a menu that opens low down is moved up
     let room = (window.bottom() - ui.cursor().top().min(0.3 * window.bottom()) - 16.0).max(120.0);
-    // a menu takes no more than 400 points by itself
+    // the height of a menu is limited to 400 points unless it is set
     ui.set_max_height(room);
     egui::ScrollArea::vertical().max_height(room).show(ui, contents);
 }
 
-/// What the menu says of a lesson.
-struct About {
+/// The facts about a lesson that its menu item shows.
+struct LessonFacts {
     title: String,
     minutes: u32,
     goal: String,
 }
 
-/// The same of all built-in lessons.
-static ABOUT_LESSONS: LazyLock<Vec<About>> = LazyLock::new(|| {
-    let about = |own: &BuiltInLesson| match LessonDocument::load(own.name, &result_fields()) {
+/// The facts about all built-in lessons.
+static ABOUT_LESSONS: LazyLock<Vec<LessonFacts>> = LazyLock::new(|| {
+    let facts = |built_in: &BuiltInLesson| match LessonDocument::load(built_in.name, &result_fields()) {
         Ok(LessonDocument { lesson, .. }) => {
-            About { title: lesson.title, minutes: lesson.minutes, goal: lesson.goal }
+            LessonFacts { title: lesson.title, minutes: lesson.minutes, goal: lesson.goal }
         }
-        Err(error) => About { title: own.name.to_owned(), minutes: 0, goal: error.to_string() },
+        Err(error) => LessonFacts { title: built_in.name.to_owned(), minutes: 0, goal: error.to_string() },
     };
-    LESSONS.iter().map(about).collect()
+    LESSONS.iter().map(facts).collect()
 });
 
-/// The titles of the built-in scenes.
 static TITLES: LazyLock<Vec<String>> = LazyLock::new(|| {
     let title = |name: &str| Document::load(name).map_or_else(|_| name.to_owned(), |found| found.scene.title);
     PRESETS.iter().map(|preset| title(preset.name)).collect()

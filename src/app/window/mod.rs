@@ -1,6 +1,6 @@
-//! The window: panels around the tiles, commands carried out, time passed on.
+//! Application window: its panels around the views, and the work of each frame.
 //!
-//! [`Window::ui`] needs no graphics and no display: tests drive it as it is.
+//! [`Window::ui`] needs no graphics and no display: tests call it directly.
 
 use eframe::egui::{self, CentralPanel, Frame, Margin, Panel, RichText, Ui};
 
@@ -16,14 +16,14 @@ use crate::scene::lesson::LESSONS;
 
 use layouts::{Arrangement, Room};
 
-/// Height in points of the controls as a row, and width of the column that opens beside the views.
+/// Height in points of the row of controls.
 const ROW: f32 = 28.0;
+/// Width in points of the column of controls that opens beside the views.
 const MORE: f32 = 276.0;
 
-/// Height in points of a window that has no room for a line that says little.
+/// Height in points of a window up to which the hint line is shown only with a hint.
 const LOW: f32 = 440.0;
-
-/// Height in points of the line of the first minute.
+/// Least height in points of the hint line.
 const HINT_ROW: f32 = 32.0;
 
 mod command;
@@ -55,7 +55,7 @@ pub use state::Window;
 pub use wanted::Wanted;
 
 impl Window {
-    /// What was done since the last frame, before it is drawn.
+    /// Updates the state before a frame is drawn: settings, input, results of the background, the motion.
     pub fn logic(&mut self, ctx: &egui::Context) {
         if self.applied != Some(self.settings) {
             let dark = self.settings.dark && !self.settings.projector;
@@ -68,10 +68,10 @@ impl Window {
             }
             self.applied = Some(self.settings);
         }
-        self.place.follow(ctx, if self.settings.projector { PROJECTOR_ZOOM } else { 1.0 });
+        self.window_size.follow(ctx, if self.settings.projector { PROJECTOR_ZOOM } else { 1.0 });
         self.take_choice(ctx);
-        self.take_in(ctx);
-        // a view that is gone cannot let go of the mass itself
+        self.take_input(ctx);
+        // a view that is no longer shown cannot release the mass itself
         let free =
             ctx.memory(|memory| memory.focused().is_none()) && !ctx.input(|input| input.pointer.any_down());
         if free && self.session.player.is_held() {
@@ -85,7 +85,7 @@ impl Window {
         let seconds = ctx.input(|input| f64::from(input.stable_dt));
         self.session.player.tick(seconds);
         if let Some(reached) = self.session.player.take_reached().filter(|_| !self.motion_is_covered()) {
-            self.messages.tell_reached(reached, self.session.player.time());
+            self.messages.report_reached(reached, self.session.player.time());
         }
         self.session.follow_pins();
         let present = self.session.player.watch().time();
@@ -108,9 +108,9 @@ impl Window {
         let fill = ui.visuals().panel_fill;
         let frame = |x: i8, y: i8| Frame::new().fill(fill).inner_margin(Margin::symmetric(x, y));
         let (bar, line) = (frame(8, 2), frame(12, 4));
-        let mut asked = Vec::new();
+        let mut commands = Vec::new();
         Panel::top("menu").frame(bar).exact_size(32.0).show(ui, |ui| {
-            asked =
+            commands =
                 menu::menu_ui(ui, &self.session, &self.tiling, self.settings, &self.recent, &self.lessons);
         });
         let height = status_line::height(ui, &self.session, compact);
@@ -130,14 +130,14 @@ impl Window {
         });
         self.follow_lesson(&ctx);
         if self.lessons.open.is_some() {
-            // as high as it is in this very frame, which a panel is only in the next
-            let apart = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
+            // not a panel, whose height would follow its contents one frame late
+            let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
             let strip = frame(12, 6).show(ui, |ui| {
-                ui.spacing_mut().item_spacing.y = apart;
+                ui.spacing_mut().item_spacing.y = spacing;
                 ui.set_min_width(ui.available_width());
                 self.lesson_strip_ui(ui, &style, compact);
             });
-            ui.spacing_mut().item_spacing.y = apart;
+            ui.spacing_mut().item_spacing.y = spacing;
             let edge = ui.visuals().widgets.noninteractive.bg_stroke;
             ui.painter().hline(strip.response.rect.x_range(), strip.response.rect.bottom(), edge);
             if self.lesson_has_controls() {
@@ -163,7 +163,7 @@ impl Window {
                     if !self.covered
                         && notes::notes_ui(ui, self.session.scene(), self.session.editor.is_dirty(), bottom)
                     {
-                        asked.push(Command::Notes);
+                        commands.push(Command::Notes);
                     }
                 });
             });
@@ -174,9 +174,9 @@ impl Window {
         let shows_ways = self.ways && !self.covered;
         let has_room = ctx.content_rect().height() > LOW;
         if in_lesson {
-            // its strip stands there
+            // the strip of the lesson is there
         } else if shows_ways || (self.hint_row && (has_room || hinted && !self.covered)) {
-            // its room stays when it goes: the views below do not jump
+            // the line stays when the hint is done, so that the views below do not jump
             let panel = Panel::top("hint").frame(line).min_size(HINT_ROW);
             panel.show(ui, |ui| match hinted && !self.covered {
                 _ if shows_ways => ways_ui(ui, &self.session.ways(), hinted, &style),
@@ -184,7 +184,7 @@ impl Window {
                     if let Some(next) = next_lesson(&self.lessons.records)
                         && self.hint.ui(ui, &self.session, &numbered(next))
                     {
-                        asked.push(Command::OpenLesson(next));
+                        commands.push(Command::OpenLesson(next));
                     }
                 }
                 false => {
@@ -201,15 +201,15 @@ impl Window {
         CentralPanel::no_frame().show(ui, |ui| self.views_ui(ui, style));
         self.pointing_ui(&ctx, &style);
         self.memory.grab = false;
-        asked.extend(self.memory.pin.take().map(Command::Pin));
-        asked.extend(self.memory.figure.take().map(|view| Command::Figure(Some(view))));
-        asked.extend(std::mem::take(&mut self.memory.open_measured).then_some(Command::OpenMeasured));
+        commands.extend(self.memory.pin.take().map(Command::Pin));
+        commands.extend(self.memory.figure.take().map(|view| Command::Figure(Some(view))));
+        commands.extend(std::mem::take(&mut self.memory.open_measured).then_some(Command::OpenMeasured));
         self.session.map.end_frame();
         self.session.measured.found.end_frame();
         self.session.explore.end_frame();
         self.session.accuracy.end_frame();
         self.session.player.end_frame();
-        for command in asked {
+        for command in commands {
             self.carry_out(&ctx, command);
         }
         self.lecturer_ui(&ctx);
@@ -225,7 +225,7 @@ impl Window {
     }
 
     fn views_ui(&mut self, ui: &mut Ui, style: Style) {
-        // a key may have taken the motion on
+        // a key may have advanced the motion
         self.session.follow_pins();
         let (span, cover) = (self.memory.span(&self.session), self.cover());
         let mut context = ViewContext {
@@ -241,13 +241,13 @@ impl Window {
         ui.painter().rect_filled(ui.max_rect(), 0.0, ui.visuals().panel_fill);
         let Some(view) = self.filled else {
             self.tiling.ui(ui, &mut context, &mut self.filled);
-            // what a person does to an arrangement of their own stays
-            if self.arrangement == Arrangement::Own
+            // changes to the custom arrangement are kept
+            if self.arrangement == Arrangement::Custom
                 && self.lessons.open.is_none()
-                && let Some(kept) = self.tiling.kept()
-                && self.own.as_ref() != Some(kept)
+                && let Some(tree) = self.tiling.tree_to_save()
+                && self.custom.as_ref() != Some(tree)
             {
-                self.own = Some(kept.clone());
+                self.custom = Some(tree.clone());
             }
             return;
         };
@@ -270,12 +270,12 @@ impl Window {
 
 /// The first lesson that is not done, or the first of all.
 fn next_lesson(records: &Records) -> Option<&'static str> {
-    let is_open = |name: &str| !records.get(name).is_some_and(|own| own.done);
-    let mut names = LESSONS.iter().map(|own| own.name);
+    let is_open = |name: &str| !records.get(name).is_some_and(|record| record.done);
+    let mut names = LESSONS.iter().map(|lesson| lesson.name);
     names.clone().find(|name| is_open(name)).or_else(|| names.next())
 }
 
-/// What it would take to cross; where it stands in place of the lesson, how that comes back.
+/// What it would take to cross, and how to get back to the hint that this line replaces.
 fn ways_ui(ui: &mut Ui, ways: &str, hinted: bool, style: &Style) {
     ui.horizontal_wrapped(|ui| {
         ui.label(ways);
@@ -285,7 +285,7 @@ fn ways_ui(ui: &mut Ui, ways: &str, hinted: bool, style: &Style) {
     });
 }
 
-/// A ring around what has the keyboard's focus, whatever it is: nothing has it unseen.
+/// A ring around the widget that has the keyboard focus, so that the focus can always be seen.
 fn focus_ui(ctx: &egui::Context, style: &Style) {
     let focused = ctx.memory(egui::Memory::focused).and_then(|id| ctx.read_response(id));
     if let Some(response) = focused.filter(|_| !ctx.text_edit_focused()) {
@@ -311,16 +311,16 @@ impl eframe::App for Window {
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
-        self.keep(storage);
+        self.save_state(storage);
     }
 
     fn persist_egui_memory(&self) -> bool {
-        // what is open comes from the scene, not from the last time
+        // the scene says what is open, not the last start of the program
         false
     }
 }
 
-/// Fonts and spacing; to be called once for a context.
+/// Installs fonts and spacing; to be called once for a context.
 pub fn prepare(ctx: &egui::Context) {
     style::install(ctx);
 }

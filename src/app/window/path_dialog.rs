@@ -1,4 +1,4 @@
-//! Dialog in which a path is typed, where the desktop has none of its own.
+//! Dialog in which a path is typed, for a desktop without a file dialog.
 
 use std::path::{Path, PathBuf};
 
@@ -9,28 +9,28 @@ use crate::system::files;
 
 use super::wanted::Wanted;
 
-/// A path that is being typed, and what for.
+/// A path that is being typed, and its purpose.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PathDialog {
     pub wanted: Wanted,
     pub path: String,
-    /// The field has had the keyboard.
-    begun: bool,
+    /// Whether the field has had the keyboard focus.
+    had_focus: bool,
 }
 
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Ended {
+pub(super) enum PathAnswer {
     Chosen(PathBuf),
     Cancelled,
 }
 
 impl PathDialog {
-    /// Begins with a path that would do.
+    /// A dialog with a suggested path.
     pub fn new(wanted: Wanted, path: &Path) -> Self {
-        Self { wanted, path: path.to_string_lossy().into_owned(), begun: false }
+        Self { wanted, path: path.to_string_lossy().into_owned(), had_focus: false }
     }
 
-    /// Why the path cannot be taken, or what taking it does.
+    /// Whether the path can be chosen, and a remark: why not, or what happens to the file.
     fn remark(&self) -> (bool, Option<&'static str>) {
         let path = Path::new(self.path.trim());
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
@@ -49,8 +49,8 @@ impl PathDialog {
         }
     }
 
-    /// Draws the question; the answer once there is one.
-    pub fn ui(&mut self, ui: &Ui) -> Option<Ended> {
+    /// Draws the dialog. Returns the answer once there is one.
+    pub fn ui(&mut self, ui: &Ui) -> Option<PathAnswer> {
         let answer = dialog(ui.ctx(), "path").show(ui.ctx(), |ui| {
             ui.set_width(dialog_width(ui, 520.0));
             ui.heading(self.wanted.words().0);
@@ -59,9 +59,9 @@ impl PathDialog {
             let name = ui.label("path of the file");
             let field = TextEdit::singleline(&mut self.path).desired_width(f32::INFINITY);
             let field = ui.add(field).labelled_by(name.id);
-            if !self.begun {
+            if !self.had_focus {
                 field.request_focus();
-                self.begun = true;
+                self.had_focus = true;
             }
             let (taken, remark) = self.remark();
             ui.label(RichText::new(remark.unwrap_or(" ")).small());
@@ -73,14 +73,14 @@ impl PathDialog {
                 let done = ui.add_enabled(taken, egui::Button::new(self.wanted.verb())).clicked();
                 let cancelled = ui.button("Cancel").clicked();
                 if taken && (done || entered) {
-                    Some(Ended::Chosen(PathBuf::from(self.path.trim())))
+                    Some(PathAnswer::Chosen(PathBuf::from(self.path.trim())))
                 } else {
-                    cancelled.then_some(Ended::Cancelled)
+                    cancelled.then_some(PathAnswer::Cancelled)
                 }
             })
             .inner
         });
-        let closed = answer.should_close().then_some(Ended::Cancelled);
+        let closed = answer.should_close().then_some(PathAnswer::Cancelled);
         answer.inner.or(closed)
     }
 }

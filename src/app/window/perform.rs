@@ -19,8 +19,8 @@ use super::layouts::Arrangement;
 use super::leave::Next;
 use super::wanted::Wanted;
 
-/// How many periods of the motion an event is looked for.
-const PERIODS_AHEAD: f64 = 300.0;
+/// Number of characteristic times of the motion within which an event is searched.
+const TIMES_AHEAD: f64 = 300.0;
 
 const ABOUT: &str = concat!(
     "Version ",
@@ -30,7 +30,7 @@ const ABOUT: &str = concat!(
 );
 
 impl Window {
-    /// Does what the keyboard asks for. On the way to a goal every key gives it up, and does nothing else.
+    /// Carries out the commands of the pressed keys. While the motion goes to a goal, a key only stops that.
     pub(super) fn keys(&mut self, ctx: &egui::Context) {
         let is_pressed = |event: &egui::Event| matches!(event, egui::Event::Key { pressed: true, .. });
         if self.session.player.goal().is_some() {
@@ -47,27 +47,27 @@ impl Window {
     }
 
     pub fn carry_out(&mut self, ctx: &egui::Context, command: Command) {
-        if self.lesson_covers() && command.tells_of_motion() {
-            return self.messages.tell("First choose what you expect");
+        if self.lesson_covers() && command.reveals_motion() {
+            return self.messages.notify("First choose what you expect");
         }
         match command {
-            // the views of a lesson are its own
+            // a lesson has fixed views
             Command::Arrange(_) | Command::ArrangeOwn | Command::KeepOwn if self.lesson().is_some() => {}
             Command::OpenPreset(name) => self.leave_for(ctx, Next::Open(name.to_owned())),
             Command::OpenRecent(path) => self.leave_for(ctx, Next::Open(path)),
             Command::Open => self.leave_for(ctx, Next::Choose),
             Command::OpenMeasured if self.lesson().is_none() => self.choose(Wanted::Measured),
             Command::RemoveMeasured => self.session.measured = MeasuredData::default(),
-            Command::OpenMeasured => self.messages.tell("Leave the lesson first"),
+            Command::OpenMeasured => self.messages.notify("Leave the lesson first"),
             Command::Save => self.save(ctx),
             Command::SaveAs(wanted) => self.choose(wanted),
-            Command::Figure(view) => self.ask_figure(view),
+            Command::Figure(view) => self.open_figure_dialog(view),
             Command::CopyScene => self.copy_scene(ctx),
             Command::PasteScene => ctx.send_viewport_cmd(egui::ViewportCommand::RequestPaste),
             Command::CopyCommand => match export::command_line(&self.session) {
                 Some((line, runs)) => {
                     ctx.copy_text(line);
-                    self.messages.tell(match runs {
+                    self.messages.notify(match runs {
                         Runs::Whole => "Copied: the command line of this motion, from its start",
                         Runs::FromNow => "Copied: the command line of this motion, from its present state on",
                         Runs::Another => {
@@ -76,14 +76,14 @@ impl Window {
                         }
                     });
                 }
-                None => self.say_nameless(),
+                None => self.alert_unnamed(),
             },
             Command::CopyMapCommand => match export::map_command_line(&self.session) {
                 Some(line) => {
                     ctx.copy_text(line);
-                    self.messages.tell("Copied: the command line of the map");
+                    self.messages.notify("Copied: the command line of the map");
                 }
-                None if self.session.map.map().is_some() => self.say_nameless(),
+                None if self.session.map.map().is_some() => self.alert_unnamed(),
                 None => {}
             },
             Command::Quit => self.leave_for(ctx, Next::Quit),
@@ -96,12 +96,12 @@ impl Window {
                 self.memory = Memory::default();
                 self.hint = hint::Hint::for_scene(&self.session);
                 self.ways = false;
-                if let Some(speed) = self.lesson().and_then(|own| own.lesson().speed) {
+                if let Some(speed) = self.lesson().and_then(|open| open.lesson().speed) {
                     self.session.player.speed = speed;
                 }
                 if changed {
                     let undo = ctx.format_shortcut(&UNDO);
-                    self.messages.tell(format!("Your changes are discarded; {undo} brings them back"));
+                    self.messages.notify(format!("Your changes are discarded; {undo} brings them back"));
                 }
                 self.arrange(self.tiling.room());
             }
@@ -113,7 +113,7 @@ impl Window {
             Command::NextCrossing => self.go_to_first(EventKind::Crossing),
             Command::RunToEnd => match self.session.end_of_run() {
                 end if end > self.session.player.time() => self.session.player.go_to(Goal::Time(end)),
-                end => self.messages.tell(format!("The run ends at {end:.2} s, which is behind")),
+                end => self.messages.notify(format!("The run ends at {end:.2} s, which is behind")),
             },
             Command::Speed(index) => {
                 if let Some(speed) = SPEEDS.get(index) {
@@ -126,21 +126,20 @@ impl Window {
                 self.arrange(self.tiling.room());
             }
             Command::ArrangeOwn => {
-                // the first time it is what is there
-                if self.own.is_none() {
-                    self.own = self.tiling.kept().cloned();
+                // the custom arrangement begins as a copy of the present tiles
+                if self.custom.is_none() {
+                    self.custom = self.tiling.tree_to_save().cloned();
                 }
-                self.arrangement = Arrangement::Own;
+                self.arrangement = Arrangement::Custom;
                 self.filled = None;
                 self.arrange(self.tiling.room());
             }
             Command::KeepOwn => {
-                self.own = self.tiling.kept().cloned().or(self.own.take());
-                self.arrangement = Arrangement::Own;
+                self.custom = self.tiling.tree_to_save().cloned().or(self.custom.take());
+                self.arrangement = Arrangement::Custom;
             }
             Command::Show(view, shown) => self.tiling.show(view, shown),
             Command::NextTab => self.tiling.next_tab(self.memory.hovered),
-            // the view under the pointer
             Command::Cursors => {
                 self.memory.switch_cursors(&self.session);
                 let over_time = |view: &View| view.is_over_time() && self.tiling.place_of(*view).is_some();
@@ -149,16 +148,16 @@ impl Window {
                 }
             }
             Command::HoldAxes => {
-                let view = self.view_meant();
+                let view = self.active_view();
                 if view.has_axes() {
                     let held = self.memory.hold_axes(view);
                     let what = if held { "held: L again lets go of them" } else { "by themselves again" };
-                    self.messages.tell(format!("{}: its axes are {what}", view.name()));
+                    self.messages.notify(format!("{}: its axes are {what}", view.name()));
                 }
             }
-            Command::FreeAxes => self.memory.free_axes(self.view_meant()),
+            Command::FreeAxes => self.memory.free_axes(self.active_view()),
             Command::Zoom { upwards, closer } => {
-                self.memory.zoom_by_key(self.view_meant(), upwards, closer);
+                self.memory.zoom_by_key(self.active_view(), upwards, closer);
             }
             Command::Fill => {
                 let wanted = self.memory.hovered.unwrap_or(View::Well);
@@ -170,19 +169,19 @@ impl Window {
                 ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(!full));
             }
             Command::Toggle(Setting::Dark) if self.settings.projector => {
-                self.messages.tell("The projector is light: P leaves it");
+                self.messages.notify("The projector is light: P leaves it");
             }
             Command::Toggle(setting) => {
-                let own = self.settings.of(setting);
-                *own = !*own;
+                let value = self.settings.of(setting);
+                *value = !*value;
             }
             Command::Grab => self.memory.grab = true,
-            // the motion beside the present one may be the answer to a lesson's question
+            // a pinned motion may be the answer to a lesson's question
             Command::Pin(_) if self.lesson().is_some() => {}
             Command::Pin(kind) => self.pin(kind),
-            // in a lesson it is the answer
+            // in a lesson this would be the answer
             Command::Ways => self.ways = !self.ways && self.lesson().is_none(),
-            Command::BestStops if self.lesson().is_some() => self.messages.tell("Leave the lesson first"),
+            Command::BestStops if self.lesson().is_some() => self.messages.notify("Leave the lesson first"),
             Command::BestStops => self.session.find_best_stops(),
             Command::OpenLesson(name) => self.open_lesson(name),
             Command::OpenLessonFile => self.choose(Wanted::Lesson),
@@ -191,15 +190,15 @@ impl Window {
             Command::CopyAnswers => self.copy_answers(ctx),
             Command::LecturerNotes => self.lessons.notes = !self.lessons.notes && self.lesson().is_some(),
             Command::Glossary => self.glossary = true,
-            Command::Notes => self.say_notes(),
+            Command::Notes => self.show_notes(),
             Command::Shortcuts => self.shortcuts = Some(ctx.input(|input| input.time)),
-            Command::About => self.messages.say("interwell", ABOUT),
+            Command::About => self.messages.alert("interwell", ABOUT),
         }
     }
 
-    /// The view that keys mean: the one that fills the window, or the one under the pointer or with the
-    /// keyboard's focus.
-    fn view_meant(&self) -> View {
+    /// The view that keys act on: the one that fills the window, or the one under the pointer or with the
+    /// keyboard focus.
+    fn active_view(&self) -> View {
         self.filled.or(self.memory.hovered).unwrap_or(View::Displacement)
     }
 
@@ -212,44 +211,44 @@ impl Window {
                     PinKind::OtherStops => "this motion from here on with its stops switched",
                     PinKind::Twin => "a twin that begins a micrometre beside the mass",
                 };
-                self.messages.tell(format!("Pinned as {letter}, dashed: {what}"));
+                self.messages.notify(format!("Pinned as {letter}, dashed: {what}"));
                 let view = if kind == PinKind::Twin { View::Distance } else { View::Compare };
                 self.tiling.show_beside(view, View::BeforeNow);
             }
-            Err(why) => self.messages.tell(why),
+            Err(why) => self.messages.notify(why),
         }
     }
 
-    /// Goes on to the first event of a kind, as far ahead as the run is long, and some periods at least.
+    /// Goes to the next event of a kind, as far ahead as the run length or, if that is more, `TIMES_AHEAD`.
     fn go_to_first(&mut self, kind: EventKind) {
         let model = self.session.model();
-        let (name, can_be) = match kind {
+        let (name, is_possible) = match kind {
             EventKind::Crossing => ("crossing", model.mechanism().landscape.barrier.is_some()),
             _ => ("release", model.stop_positions() != (None, None)),
         };
-        if !can_be {
+        if !is_possible {
             let why = if name == "crossing" { "there is no barrier" } else { "there are no stops" };
-            return self.messages.tell(format!("No {name} can come: {why}"));
+            return self.messages.notify(format!("No {name} can come: {why}"));
         }
-        let ahead = model.duration().max(PERIODS_AHEAD * model.characteristic_time());
+        let ahead = model.duration().max(TIMES_AHEAD * model.characteristic_time());
         let until = self.session.player.watch().time() + ahead;
         self.session.player.go_to(Goal::First(kind, until));
     }
 
-    fn say_notes(&mut self) {
-        if let Some(lesson) = self.lesson().map(|own| own.lesson()) {
+    fn show_notes(&mut self) {
+        if let Some(lesson) = self.lesson().map(|open| open.lesson()) {
             let (title, goal) = (lesson.title.clone(), lesson.goal.clone());
-            return self.messages.say(title, goal);
+            return self.messages.alert(title, goal);
         }
         let scene = self.session.scene();
         let notes = scene.notes.trim();
         let notes = if notes.is_empty() { "This scene has no notes." } else { notes };
         let changed = if self.session.editor.is_dirty() { " (before changes)" } else { "" };
-        self.messages.say(format!("{}{changed}", scene.title), notes);
+        self.messages.alert(format!("{}{changed}", scene.title), notes);
     }
 
-    fn say_nameless(&mut self) {
-        self.messages.say(
+    fn alert_unnamed(&mut self) {
+        self.messages.alert(
             "There is no command line yet",
             "This scene has no name that the command line could open: save it first.",
         );

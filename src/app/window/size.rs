@@ -1,31 +1,31 @@
 //! Size of the window on the screen, kept from one start of the program to the next.
 //!
-//! What eframe keeps is in points of the zoom of then, and is read before a zoom is set: a window of the
-//! projector mode would come back smaller with every start. The size is therefore kept here, in points of the
-//! zoom 1.
+//! eframe saves the size in points at the zoom of that time and restores it before a zoom is set, so that a
+//! window in projector mode would become smaller with every start. The size is therefore saved here, in
+//! points at zoom 1.
 
 use eframe::egui::{Context, Vec2, ViewportCommand, vec2};
 
-/// Frames after which sizes are those of the present zoom, and until which the screen tells how large the
-/// window's own frame is.
+/// Number of frames after which sizes are those of the present zoom.
 const SETTLED: u32 = 3;
-const FRAMED: u32 = 90;
+/// Number of frames within which the window system reports the size of the window's decoration.
+const DECORATED: u32 = 90;
 
-/// Where the window is on its way to its size.
+/// Size of the window, and how far it has been restored.
 #[derive(Debug, Clone, Default)]
 pub(super) struct WindowSize {
-    /// The size that it is to have, until it was asked for.
+    /// The size to restore; `None` once it has been requested.
     wanted: Option<Vec2>,
-    /// Frames with the zoom that is wanted.
+    /// Number of frames with the wanted zoom.
     frames: u32,
-    /// It was larger than the screen, and is no longer asked to fit.
+    /// Whether the window was larger than the screen and has been maximized.
     fitted: bool,
-    /// The last size that is worth keeping.
+    /// The last size of the window that was neither maximized nor full-screen.
     size: Option<Vec2>,
 }
 
 impl WindowSize {
-    /// A window of a size that was kept; none at the first start.
+    /// A window that is to get a saved size; `None` at the first start.
     pub fn restored(size: Option<[f32; 2]>) -> Self {
         let sane = |size: &Vec2| size.is_finite() && size.min_elem() >= 1.0;
         Self { wanted: size.map(|[x, y]| vec2(x, y)).filter(sane), ..Self::default() }
@@ -35,19 +35,19 @@ impl WindowSize {
         self.size.map(|size| [size.x, size.y])
     }
 
-    /// To be called in every frame with the zoom that is wanted.
+    /// To be called in every frame, with the wanted zoom.
     pub fn follow(&mut self, ctx: &Context, zoom: f32) {
         self.frames = if (ctx.zoom_factor() - zoom).abs() < 1e-3 { self.frames.saturating_add(1) } else { 0 };
         if self.frames < SETTLED {
             ctx.request_repaint();
             return;
         }
-        let (inner, outer, screen, whole) = ctx.input(|input| {
+        let (inner, outer, screen, fills_screen) = ctx.input(|input| {
             let view = input.viewport();
-            let whole = view.maximized == Some(true) || view.fullscreen == Some(true);
-            (view.inner_rect, view.outer_rect, view.monitor_size, whole)
+            let fills_screen = view.maximized == Some(true) || view.fullscreen == Some(true);
+            (view.inner_rect, view.outer_rect, view.monitor_size, fills_screen)
         });
-        let Some(inner) = inner.map(|rect| rect.size()).filter(|_| !whole) else { return };
+        let Some(inner) = inner.map(|rect| rect.size()).filter(|_| !fills_screen) else { return };
         if let Some(wanted) = self.wanted.take() {
             if (inner * zoom - wanted).abs().max_elem() > 1.0 {
                 ctx.send_viewport_cmd(ViewportCommand::InnerSize(wanted / zoom));
@@ -55,8 +55,8 @@ impl WindowSize {
             }
             return;
         }
-        // with its frame it may be larger than the screen, whose edge then cuts the lowest bar
-        if let Some(screen) = screen.filter(|_| !self.fitted && self.frames < FRAMED) {
+        // with its decoration it may be larger than the screen, which then cuts off the lowest bar
+        if let Some(screen) = screen.filter(|_| !self.fitted && self.frames < DECORATED) {
             let outer = outer.map_or(inner, |rect| rect.size()).max(inner);
             if outer.x > screen.x + 1.0 || outer.y > screen.y + 1.0 {
                 self.fitted = true;

@@ -1,4 +1,4 @@
-//! State of the window, and what can be read of it.
+//! State of the window, and the methods that read it.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -23,101 +23,100 @@ use super::leave::Next;
 use super::lessons::CANNOT_OPEN_LESSON;
 use super::lessons::{self, Lessons};
 use super::measured_dialog::{MeasuredDialog, is_measured};
-use super::messages::{CANNOT_OPEN, Messages, Written};
+use super::messages::{CANNOT_OPEN, Messages, WriteResult};
 use super::path_dialog::PathDialog;
 use super::size::WindowSize;
 use super::wanted::Chosen;
 
-/// How many of the scenes opened last are kept.
+/// Number of recently opened files that are remembered.
 const MOST_RECENT: usize = 8;
 
 pub struct Window {
     pub session: Session,
-    /// What a person wants whatever the scene.
+    /// The user's settings, which hold for all scenes.
     pub settings: Settings,
     pub tiling: Tiling,
     pub(super) arrangement: Arrangement,
-    /// A person's own arrangement, kept between two starts.
-    pub own: Option<Tree<View>>,
+    /// The arrangement that the user has made, kept between two starts.
+    pub custom: Option<Tree<View>>,
     pub memory: Memory,
     pub(super) more: bool,
     pub(super) filled: Option<View>,
     pub(super) covered: bool,
     pub(super) messages: Messages,
-    /// Scene files that were opened or saved, the latest first.
+    /// Files that were opened or saved, the latest first.
     pub recent: Vec<String>,
-    /// What waits for an answer about unsaved changes.
-    pub(super) asked: Option<Next>,
-    /// What comes once the scene is saved.
+    /// What to do once the question about unsaved changes is answered.
+    pub(super) pending: Option<Next>,
+    /// What to do once the scene is saved.
     pub(super) after_save: Option<Next>,
-    /// A file with comments that is about to be written over.
+    /// A file with comments that is about to be overwritten.
     pub(super) over_comments: Option<PathBuf>,
-    /// The list of keys is shown, since this time in s.
+    /// Time in s at which the list of keys was opened; `None` while it is closed.
     pub(super) shortcuts: Option<f64>,
-    /// What it would take to cross is shown.
+    /// Whether the line says what it would take to cross.
     pub(super) ways: bool,
     pub(super) announcer: Announcer,
-    /// The changes may go: the window closes without another question.
+    /// Whether the window may close without a question about unsaved changes.
     pub(super) leaving: bool,
-    /// What became of what is written elsewhere than in this thread: what was written, or the error.
-    pub(super) written: (Sender<Written>, Receiver<Written>),
-    /// A whole run that is computed and written.
-    pub(super) run: Latest<Written>,
-    pub(super) place: WindowSize,
-    pub(super) titled: String,
-    pub(super) dialog: Latest<Chosen>,
-    /// Whether files are asked for.
-    pub(super) dialogs: bool,
-    /// A path that is typed where there is no dialog.
-    pub(super) typed: Option<PathDialog>,
-    /// The figure that is asked for, and how figures are laid out.
+    /// Results of the files that other threads write.
+    pub(super) written: (Sender<WriteResult>, Receiver<WriteResult>),
+    /// A whole run that is computed and written in the background.
+    pub(super) run: Latest<WriteResult>,
+    pub(super) window_size: WindowSize,
+    pub(super) shown_title: String,
+    pub(super) file_dialog: Latest<Chosen>,
+    /// Whether file dialogs are opened.
+    pub(super) opens_dialogs: bool,
+    /// The dialog in which a path is typed, if the desktop has no file dialog.
+    pub(super) path_dialog: Option<PathDialog>,
+    /// The requested figure, and the layout of figures.
     pub figures: Figures,
-    /// Measured data whose columns are being chosen.
+    /// The dialog in which the columns of measured data are chosen.
     pub columns: Option<MeasuredDialog>,
-    /// Input that waits for the next frame.
+    /// Input that is deferred to the next frame.
     pub(super) deferred: DeferredInput,
     pub(super) hint: hint::Hint,
-    /// The line of the first minute has been there.
+    /// Whether the hint line has been shown.
     pub(super) hint_row: bool,
     pub(super) lessons: Lessons,
     pub(super) glossary: bool,
     pub(super) wake: Wake,
-    /// What was applied last, to be applied again only where it changes.
+    /// The settings that were applied last; they are applied again only if they change.
     pub(super) applied: Option<Settings>,
 }
 
 impl Window {
-    /// A window on a scene file or a built-in scene, on the file of a lesson, or with measured data over the
-    /// first preset; on that where nothing is given.
+    /// A window on a scene file, a built-in scene or a lesson file, or with a file of measured data over the
+    /// first preset. Without `spec` it opens the first preset.
     pub fn open(spec: Option<&str>, settings: Settings, wake: Wake) -> Result<Self, CannotRun> {
         let first = PRESETS.first().map_or("paper", |preset| preset.name);
         if let Some(spec) = spec.filter(|spec| lessons::is_lesson(spec)) {
             let lesson = lessons::read(spec)?;
-            let mut window = Self::on(Editor::open(first)?, settings, wake)?;
+            let mut window = Self::with_editor(Editor::open(first)?, settings, wake)?;
             window.begin_lesson(lesson)?;
             return Ok(window);
         }
         if let Some(path) = spec.map(Path::new).filter(|path| is_measured(path)) {
-            let mut window = Self::on(Editor::open(first)?, settings, wake)?;
+            let mut window = Self::with_editor(Editor::open(first)?, settings, wake)?;
             window.open_measured(path);
             return Ok(window);
         }
-        Self::on(Editor::open(spec.unwrap_or(first))?, settings, wake)
+        Self::with_editor(Editor::open(spec.unwrap_or(first))?, settings, wake)
     }
 
-    /// The same; where the scene cannot be opened, on the first preset, with a message that says why.
+    /// Like [`Self::open`]; if that fails, a window on the first preset with an alert that says why.
     pub fn start(spec: Option<&str>, settings: Settings, wake: Wake) -> Result<Self, CannotRun> {
         Self::open(spec, settings, Arc::clone(&wake)).or_else(|error| {
             let mut window = Self::open(None, settings, wake)?;
             let is_lesson = spec.is_some_and(lessons::is_lesson);
             let title = if is_lesson { CANNOT_OPEN_LESSON } else { CANNOT_OPEN };
-            window.messages.say(title, error.to_string());
+            window.messages.alert(title, error.to_string());
             Ok(window)
         })
     }
 
-    /// A window on a scene that was read.
-    pub(super) fn on(editor: Editor, settings: Settings, wake: Wake) -> Result<Self, CannotRun> {
+    pub(super) fn with_editor(editor: Editor, settings: Settings, wake: Wake) -> Result<Self, CannotRun> {
         let session = Session::new(editor, Arc::clone(&wake))?;
         let layout = session.scene().app.as_ref().and_then(|app| app.layout).unwrap_or(Layout::Look);
         Ok(Self {
@@ -126,14 +125,14 @@ impl Window {
             settings,
             tiling: Tiling::new(layout, Room::Wide),
             arrangement: Arrangement::Layout(layout),
-            own: None,
+            custom: None,
             memory: Memory::default(),
             more: false,
             filled: None,
             covered: false,
             messages: Messages::default(),
             recent: Vec::new(),
-            asked: None,
+            pending: None,
             after_save: None,
             over_comments: None,
             leaving: false,
@@ -142,11 +141,11 @@ impl Window {
             announcer: Announcer::default(),
             written: channel(),
             run: Latest::default(),
-            place: WindowSize::default(),
-            titled: String::new(),
-            dialog: Latest::default(),
-            dialogs: true,
-            typed: None,
+            window_size: WindowSize::default(),
+            shown_title: String::new(),
+            file_dialog: Latest::default(),
+            opens_dialogs: true,
+            path_dialog: None,
             figures: Figures::default(),
             columns: None,
             deferred: DeferredInput::default(),
@@ -167,44 +166,44 @@ impl Window {
 
     /// Puts a file first among the recent ones.
     pub(super) fn remember(&mut self, path: &Path) {
-        let whole = files::canonical(path).unwrap_or_else(|| path.to_owned()).to_string_lossy().into_owned();
-        self.recent.retain(|own| *own != whole);
-        self.recent.insert(0, whole);
+        let full = files::canonical(path).unwrap_or_else(|| path.to_owned()).to_string_lossy().into_owned();
+        self.recent.retain(|recent| *recent != full);
+        self.recent.insert(0, full);
         self.recent.truncate(MOST_RECENT);
     }
 
-    /// The message that waits to be read.
+    /// The text of the alert that is shown.
     pub fn message(&self) -> Option<&str> {
-        self.messages.waiting()
+        self.messages.alert_text()
     }
 
-    /// The short message that was shown last, while it stands.
+    /// The text of the notice that is shown.
     pub fn told(&self) -> Option<&str> {
-        self.messages.told()
+        self.messages.notice_text()
     }
 
-    /// Whether something over the window waits for an answer: no key acts behind it.
+    /// Whether a dialog is open, so that keys do not act on the window behind it.
     pub(super) fn waits_for_answer(&self) -> bool {
         self.message().is_some()
-            || self.asked.is_some()
+            || self.pending.is_some()
             || self.over_comments.is_some()
-            || self.typed.is_some()
+            || self.path_dialog.is_some()
             || self.figures.is_open()
             || self.columns.is_some()
             || self.shortcuts.is_some()
             || self.glossary
     }
 
-    /// Puts the views where the arrangement has them.
+    /// Builds the tiles of the arrangement for a window of the size class `room`.
     pub(super) fn arrange(&mut self, room: Room) {
         if let Some(lesson) = &self.lessons.open {
             let views: Vec<View> = lesson.lesson().views.iter().map(|view| View::from(*view)).collect();
             self.tiling = Tiling::of_lesson(&views, room);
             return;
         }
-        self.tiling = match (self.arrangement, &self.own) {
-            (Arrangement::Own, Some(own)) => Tiling::own(own, room),
-            (Arrangement::Own, None) => Tiling::new(Layout::Look, room),
+        self.tiling = match (self.arrangement, &self.custom) {
+            (Arrangement::Custom, Some(saved)) => Tiling::custom(saved, room),
+            (Arrangement::Custom, None) => Tiling::new(Layout::Look, room),
             (Arrangement::Layout(layout), _) => Tiling::new(layout, room),
         };
     }

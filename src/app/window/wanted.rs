@@ -1,4 +1,4 @@
-//! Files that are asked for: what each is wanted for, and how the question was answered.
+//! Purposes of the files that the user chooses, and answers of the file dialog.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,7 @@ use std::path::PathBuf;
 pub enum Wanted {
     Open,
     Lesson,
-    /// Measured data to be laid over the computed.
+    /// Measured data, to be drawn over the computed motion or curve.
     Measured,
     /// The scene.
     Save,
@@ -26,7 +26,7 @@ pub enum Wanted {
 }
 
 impl Wanted {
-    /// What is asked where a path is typed; the kind of the file, and how its name ends.
+    /// The question where a path is typed, the kind of file, and its extension.
     pub(super) fn words(self) -> (&'static str, &'static str, &'static str) {
         match self {
             Self::Open => ("Open which scene?", "scene", "ron"),
@@ -43,22 +43,22 @@ impl Wanted {
         }
     }
 
-    /// What is then done.
+    /// Label of the button that confirms the choice.
     pub(super) fn verb(self) -> &'static str {
         if self.is_read() { "Open" } else { "Save" }
     }
 
-    /// Whether a file is read and not written.
+    /// Whether the file is read, not written.
     pub(super) fn is_read(self) -> bool {
         matches!(self, Self::Open | Self::Lesson | Self::Measured)
     }
 }
 
-/// How a question for a file was answered.
+/// The answer of a file dialog.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Chosen {
-    /// By a file.
+    /// The chosen file.
     File(Wanted, PathBuf),
-    /// The desktop has no dialog to offer: the file that it would have begun with.
+    /// The desktop has no dialog; the path that it would have suggested.
     NoDialog(Wanted, PathBuf),
 }

@@ -6,25 +6,25 @@ use crate::app::words::status::speed;
 use crate::numeric::short;
 use crate::study::{Basins, BestDesign, DesignRange, NoBest, Optimum};
 
-/// What a search has come to.
+/// State of a search for the best stops.
 #[derive(Debug, Clone, Copy)]
 pub enum Found<'a> {
-    /// It goes on after so many runs; what the coarse scan had.
+    /// The search is running: the number of runs so far, and the best stops of its coarse scan.
     Searching(u64, Option<&'a Optimum>),
     Whole(&'a Result<BestDesign, NoBest>),
-    /// It has ended without an answer.
+    /// The search has ended without an answer.
     Nothing,
 }
 
-/// A value of what is made large, with its unit.
+/// A value of the column that is maximized, with its unit.
 fn value_of(column: &str, value: f64) -> String {
     if column.ends_with("_w") { power(value) } else { format!("{} mm/s", speed(value)) }
 }
 
-/// What is found in runs from rest of `duration_s` seconds; without that they are followed until the motion
-/// repeats.
+/// The answer of a search with runs from rest. Each run lasts `duration_s` seconds or, if that is `None`,
+/// until its motion repeats.
 pub fn sentence(found: &Found<'_>, column: &str, range: &DesignRange, duration_s: Option<f64>) -> String {
-    let name = column_info(column).map_or(column, |own| own.name);
+    let name = column_info(column).map_or(column, |info| info.name);
     let mm = |value: f64| format!("{} mm", short(value));
     let design = match found {
         Found::Searching(runs, None) => return format!("Looking for the best stops: {runs} runs."),

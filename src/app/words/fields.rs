@@ -2,37 +2,37 @@
 
 use crate::scene::{Mechanism, Scene};
 
-/// What sets how far a slider goes.
+/// What the range of a slider depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scale {
-    /// Nothing of the scene.
+    /// Nothing: every scene has the range of the table.
     Fixed,
     /// The value that the scene was opened with.
     Value,
     /// The acceleration that the mechanism itself gives the mass.
     Push,
-    /// The rate at which the mass swings by itself.
+    /// The frequency at which the mass swings without a drive.
     Rate,
-    /// The distance of the wells; without one that of the stops.
+    /// The distance of the wells, or of the stops if there is none.
     Travel,
     /// The length of the shorter flexure; beyond a quarter of it the stable branch may end.
     Preload,
-    /// Powers of ten around the value that the scene was opened with, in equal ratios.
+    /// Powers of ten around the value that the scene was opened with, on a logarithmic slider.
     Ratio,
 }
 
-/// A number of a scene and its control.
+/// A numeric field of a scene and its control.
 #[derive(Debug)]
 pub struct FieldInfo {
-    /// Dotted path in the scene; a part of a sum has its index left out.
+    /// Dotted path in the scene, without the indices of parts of a sum.
     pub path: &'static str,
-    /// What its control is called.
+    /// Name of its control.
     pub name: &'static str,
-    /// Its unit; none for a ratio.
+    /// Its unit; empty for a ratio.
     pub unit: &'static str,
     /// Smallest and largest value and step of the slider, for a scene of the prototype's size.
     pub slider: (f64, f64, f64),
-    /// What sets that range in another scene.
+    /// What that range depends on in another scene.
     pub scale: Scale,
     /// Smallest and largest value that may be typed.
     pub typed: (f64, f64),
@@ -43,18 +43,16 @@ pub struct FieldInfo {
 /// The range of a slider and the step of the arrow keys.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reach {
-    /// The left end.
     pub low: f64,
-    /// The right end.
     pub high: f64,
-    /// The step of the arrow keys; of a slider in equal ratios that of its number.
+    /// The step of the arrow keys; on a logarithmic slider only of the number beside it.
     pub step: f64,
-    /// Whether equal ways on the slider are equal ratios; then `low` is above 0.
+    /// Whether the slider is logarithmic; then `low` is above 0.
     pub ratios: bool,
 }
 
 impl Reach {
-    /// A slider on which equal ways are equal differences.
+    /// The range of a linear slider.
     pub const fn even(low: f64, high: f64, step: f64) -> Self {
         Self { low, high, step, ratios: false }
     }
@@ -103,7 +101,7 @@ const COUPLING_HOVER: &str = "Increase: the same speed gives more voltage, and t
                               harder. That is more power at first, and less once the mass crosses no longer.";
 const FASTER_HOVER: &str = "Increase: the pushes follow each other faster and last less long.";
 
-/// All of them, in the order of a scene.
+/// All fields that have a control, in the order of a scene.
 #[rustfmt::skip]
 pub static FIELDS: &[FieldInfo] = &[
     field("mass_g", "mass", "g", ((1.0, 50.0, 0.1), Scale::Value), (1e-6, 1e9),
@@ -182,8 +180,8 @@ pub static FIELDS: &[FieldInfo] = &[
          what comes after the settling time of the scene."),
 ];
 
-/// Fields that have no slider: what they are called.
-const OTHERS: &[(&str, &str, &str)] = &[
+/// Path, name and unit of fields that have no control.
+const WITHOUT_CONTROL: &[(&str, &str, &str)] = &[
     ("mechanism.young_gpa", "Young's modulus", "GPa"),
     ("mechanism.linear_n_per_m", "linear stiffness", "N/m"),
     ("mechanism.cubic_n_per_m3", "cubic stiffness", "N/m³"),
@@ -211,10 +209,10 @@ pub fn mechanism_name(mechanism: &Mechanism) -> String {
     }
 }
 
-/// The control of a field; none where it has none.
+/// The control of a field; `None` if it has none.
 pub fn info(path: &str) -> Option<&'static FieldInfo> {
     let plain = without_index(path);
-    FIELDS.iter().find(|own| own.path == plain)
+    FIELDS.iter().find(|field| field.path == plain)
 }
 
 /// A path without the indices of parts of a sum.
@@ -222,20 +220,20 @@ fn without_index(path: &str) -> String {
     path.split('.').filter(|part| part.parse::<usize>().is_err()).collect::<Vec<_>>().join(".")
 }
 
-/// What a field is called on the screen, and its unit.
+/// Name of a field on the screen, and its unit.
 pub fn name_and_unit(path: &str) -> (String, &'static str) {
     let plain = without_index(path);
-    let known = info(path).map(|own| (own.name, own.unit));
-    let other = || OTHERS.iter().find(|own| own.0 == plain).map(|own| (own.1, own.2));
+    let known = info(path).map(|field| (field.name, field.unit));
+    let other = || WITHOUT_CONTROL.iter().find(|row| row.0 == plain).map(|row| (row.1, row.2));
     let Some((name, unit)) = known.or_else(other) else { return (path.to_owned(), "") };
     let part = path.split('.').find_map(|part| part.parse::<usize>().ok());
     (part.map_or_else(|| name.to_owned(), |index| format!("{name} of part {}", index + 1)), unit)
 }
 
-/// A sentence about a scene, in which each field is called what it is called on the screen.
+/// A sentence about a scene, with the paths of fields replaced by their names on the screen.
 pub fn in_words(text: &str, scene: &Scene) -> String {
     let mut paths = crate::scene::all_fields(scene);
-    // the longer ones first: one may be the beginning of another
+    // longer paths first: one path may be the beginning of another
     paths.sort_by_key(|path| std::cmp::Reverse(path.len()));
     let mut text = text.to_owned();
     for path in paths.iter().filter(|path| path.contains('.') || *path == "mass_g") {
@@ -255,8 +253,8 @@ mod tests {
         for preset in crate::scene::PRESETS {
             let scene = crate::scene::Document::load(preset.name).unwrap().scene;
             for path in crate::scene::numeric_fields(&scene) {
-                let own = name_and_unit(&path).0;
-                let seldom = [
+                let name = name_and_unit(&path).0;
+                let unnamed = [
                     "poisson",
                     "initial_bow",
                     "yield",
@@ -267,7 +265,7 @@ mod tests {
                     "tolerance",
                 ];
                 assert!(
-                    own != path || seldom.iter().any(|part| path.contains(part)),
+                    name != path || unnamed.iter().any(|part| path.contains(part)),
                     "{}: {path}",
                     preset.name
                 );

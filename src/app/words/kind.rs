@@ -1,21 +1,21 @@
-//! Kinds of motion, which have a colour, a shape and a name each.
+//! Kinds of motion, each with a colour, a shape and a name.
 
 use crate::dynamics::Regime;
 
-/// What kind of motion a sentence is about: its colour and its shape.
+/// The kind of motion that a sentence is about; it sets colour and shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// At rest, or pressed on a stop.
     Resting,
     /// Stays in a well.
     Intrawell,
-    /// Crosses without rhythm.
+    /// Crosses, and the crossings do not repeat.
     Irregular,
-    /// Crosses and repeats.
+    /// Crosses, and the crossings repeat.
     Interwell,
     /// Crosses under a drive that has no period.
     Crossing,
-    /// Anything that has no such name.
+    /// Any other motion.
     Other,
     /// The scene cannot be run, or the run has ended.
     Fault,
@@ -35,7 +35,6 @@ impl From<Regime> for Kind {
 }
 
 impl Kind {
-    /// What it is called.
     pub fn name(self) -> &'static str {
         match self {
             Self::Resting => "at rest",
@@ -43,7 +42,7 @@ impl Kind {
             Self::Irregular => "irregular",
             Self::Interwell => "interwell",
             Self::Crossing => "crossing",
-            // no wells or one: there is nothing to cross
+            // with one well or none
             Self::Other | Self::Fault => "no barrier",
         }
     }

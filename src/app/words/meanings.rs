@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-/// Words in small letters, and what they mean.
+/// Terms in lower case, and their meanings.
 const MEANINGS: &[(&str, &str)] = &[
     (
         "barrier",
@@ -119,28 +119,28 @@ const MEANINGS: &[(&str, &str)] = &[
     ),
 ];
 
-/// What a label means, by its first words: whatever follows, such as a number, does not count.
+/// The meaning of a label by the term at its beginning; what follows, such as a number, is ignored.
 pub fn meaning(label: &str) -> Option<&'static str> {
     let label = label.to_lowercase();
     let begins = |word: &str| {
         label.strip_prefix(word).is_some_and(|rest| !rest.starts_with(|c: char| c.is_alphanumeric()))
     };
-    MEANINGS.iter().find(|(word, _)| begins(word)).map(|own| own.1)
+    MEANINGS.iter().find(|(word, _)| begins(word)).map(|term| term.1)
 }
 
-/// The words of the glossary, in the order of the alphabet; each has a meaning.
+/// The terms of the glossary in alphabetical order; each has a meaning.
 pub const GLOSSARY: [&str; 8] =
     ["barrier", "basin", "interwell", "intrawell", "period", "release", "restitution", "RMS velocity"];
 
-/// Where a text uses a word of the glossary, in bytes, with the word.
+/// The byte ranges of glossary terms in a text, each with its term.
 pub fn terms(text: &str) -> Vec<(Range<usize>, &'static str)> {
-    // letters outside ASCII keep their length
+    // the ranges hold in `text` too: only ASCII letters change
     let small = text.to_ascii_lowercase();
     let is_letter = |c: Option<char>| c.is_some_and(char::is_alphanumeric);
     let mut found = Vec::new();
     for word in GLOSSARY {
-        for (at, own) in small.match_indices(&word.to_ascii_lowercase()) {
-            let mut end = at + own.len();
+        for (at, matched) in small.match_indices(&word.to_ascii_lowercase()) {
+            let mut end = at + matched.len();
             end += usize::from(small[end..].starts_with('s'));
             let before = small[..at].chars().next_back();
             if !is_letter(before) && !is_letter(small[end..].chars().next()) {
@@ -148,11 +148,11 @@ pub fn terms(text: &str) -> Vec<(Range<usize>, &'static str)> {
             }
         }
     }
-    found.sort_by_key(|own| own.0.start);
+    found.sort_by_key(|term| term.0.start);
     found
 }
 
-/// A label's response that shows what its words mean.
+/// The response of a label, with the meaning of the label as hover text.
 pub fn explained(response: eframe::egui::Response, label: &str) -> eframe::egui::Response {
     match meaning(label) {
         Some(text) => response.on_hover_text(text),
@@ -195,7 +195,7 @@ mod tests {
     fn words_of_the_glossary_are_found_in_a_text() {
         let text = "Its RMS velocity falls: two basins, one Barrier, periodic, a release.";
         let found: Vec<(&str, &str)> = terms(text).into_iter().map(|(at, word)| (&text[at], word)).collect();
-        let own = [("RMS velocity", "RMS velocity"), ("basins", "basin"), ("Barrier", "barrier")];
-        assert_eq!(found, [own.as_slice(), &[("release", "release")]].concat());
+        let expected = [("RMS velocity", "RMS velocity"), ("basins", "basin"), ("Barrier", "barrier")];
+        assert_eq!(found, [expected.as_slice(), &[("release", "release")]].concat());
     }
 }

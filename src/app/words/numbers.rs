@@ -1,46 +1,46 @@
-//! Formats of numbers in fields and on axes, and round numbers for their ends and steps.
+//! Formats of numbers in fields and on axes, and round numbers for ranges and steps.
 
 use crate::numeric::{self, round};
 
-/// The least number of one or two digits that is not below `value`.
+/// The least round number, of one or two significant digits, that is not below `value`.
 pub fn round_up(value: f64) -> f64 {
     let digits = [1.0, 1.2, 1.5, 2.0, 2.4, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0];
     round::round_up(value, &digits)
 }
 
-/// 1, 2 or 5 times a power of ten, not above `value`.
+/// The greatest 1, 2 or 5 times a power of ten that is not above `value`.
 pub fn below(value: f64) -> f64 {
     round::round_down(value, &round::ONE_TWO_FIVE)
 }
 
-/// The number of six digits: what products of round numbers are meant to be.
+/// The value rounded to seven significant digits, which removes the rounding errors of products.
 pub fn decimal(value: f64) -> f64 {
     format!("{value:.6e}").parse().unwrap_or(value)
 }
 
-/// Decimals that tell multiples of a step apart.
+/// Number of decimals that distinguishes multiples of a step.
 pub fn decimals(step: f64) -> usize {
     let text = format!("{}", decimal(step));
     text.split_once('.').map_or(0, |(_, after)| after.len()).min(12)
 }
 
-/// The most significant digits that a field shows while nobody types in it.
+/// Greatest number of significant digits that a field shows while it is not edited.
 const DIGITS: usize = 7;
 
-/// A number as a field shows it: at least so many decimals, and all digits that it has up to seven.
+/// A number as a field shows it: with at least `least` decimals, and up to seven significant digits.
 pub fn shown(value: f64, least: usize) -> String {
     let rounded: f64 = format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value);
     exact(rounded, least)
 }
 
-/// The same with every digit that the number has.
+/// The same, with all digits of the number.
 pub fn exact(value: f64, least: usize) -> String {
     if value != 0.0 && !(1e-6..1e9).contains(&value.abs()) {
         return format!("{value:e}");
     }
     let text = format!("{}", value + 0.0);
-    let own = text.split_once('.').map_or(0, |(_, after)| after.len());
-    if own >= least { text } else { format!("{:.least$}", value + 0.0) }
+    let decimals = text.split_once('.').map_or(0, |(_, after)| after.len());
+    if decimals >= least { text } else { format!("{:.least$}", value + 0.0) }
 }
 
 /// A number with at least three significant digits, and no more decimals than these take.
@@ -52,25 +52,25 @@ pub fn three(value: f64) -> String {
     format!("{value:.0$}", numeric::decimals(size, 3))
 }
 
-/// The unit in which powers up to `most` in W are short, and how many of it a watt is.
-pub fn power_unit(most: f64) -> (f64, &'static str) {
-    match most {
-        _ if most >= 1.0 => (1.0, "W"),
-        _ if most >= 1e-3 || most == 0.0 => (1e3, "mW"),
-        _ if most >= 1e-6 => (1e6, "µW"),
+/// The factor from W to the unit that suits powers up to `largest` in W, and the name of that unit.
+pub fn power_unit(largest: f64) -> (f64, &'static str) {
+    match largest {
+        _ if largest >= 1.0 => (1.0, "W"),
+        _ if largest >= 1e-3 || largest == 0.0 => (1e3, "mW"),
+        _ if largest >= 1e-6 => (1e6, "µW"),
         _ => (1e9, "nW"),
     }
 }
 
-/// A power in W in words.
+/// A power in W as text with a unit.
 pub fn power(watt: f64) -> String {
     let (factor, unit) = power_unit(watt.abs());
     format!("{} {unit}", three(watt * factor))
 }
 
-/// Decimals with which numbers up to `most` have three significant digits.
-pub fn decimals_for(most: f64) -> usize {
-    if most > 0.0 && most.is_finite() { numeric::decimals(most, 3) } else { 2 }
+/// Number of decimals with which numbers up to `largest` have three significant digits.
+pub fn decimals_for(largest: f64) -> usize {
+    if largest > 0.0 && largest.is_finite() { numeric::decimals(largest, 3) } else { 2 }
 }
 
 #[cfg(test)]
@@ -78,7 +78,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_have_the_digits_that_they_have() {
+    fn numbers_keep_their_digits() {
         let all = [
             (0.9, 2),
             (1.137, 2),

@@ -2,7 +2,7 @@
 
 use crate::mechanics::Landscape;
 
-/// The name of a well by its number from the left, from 0, among so many: "right-hand well".
+/// The name of a well by its number from the left, from 0, among `count` wells: "right-hand well".
 pub fn well_name(number: usize, count: usize) -> String {
     match (number, count) {
         (0, 2..=3) => "left-hand well".to_owned(),
@@ -20,7 +20,7 @@ pub fn well_name(number: usize, count: usize) -> String {
     }
 }
 
-/// The name of the well in which a motion between two places is, or of the outer two that it goes between.
+/// The name of the well of a motion between `low` and `high`, or of the outermost two wells that it reaches.
 pub fn wells_between(landscape: &Landscape, low: f64, high: f64) -> String {
     let wells = landscape.wells();
     let at = |x: f64| wells.iter().take_while(|well| well.right_top.is_some_and(|top| x >= top)).count();

@@ -1,4 +1,4 @@
-//! Tiles of a lesson: its views alone, two or three beside each other.
+//! Tiles of a lesson: only its views, two or three of them side by side.
 
 use eframe::egui;
 use egui_tiles::{LinearDir, TileId, Tiles, Tree};
@@ -8,9 +8,9 @@ use crate::app::views::View;
 use super::trees::{LEFT_SHARE, MAP_SHARE, MECHANISM_SHARE, pair};
 use super::{Room, Tiling};
 
-/// Shares of the width that the first of two views has where room is short, and that a view has which needs
-/// much of it.
+/// Share of the width that the first of two views has in a compact window.
 const HALF: f32 = 0.5;
+/// Share of the width that views with legends have in a compact window.
 const MUCH: f32 = 0.62;
 
 /// Whether a view has legends that need room.
@@ -19,15 +19,15 @@ fn is_wide(view: View) -> bool {
 }
 
 impl Tiling {
-    /// The tiles of a lesson with these views. What has the displacement along it stands on the left, the
-    /// mechanism over the others; a map has the left for itself. Where room is short all stand side by side,
-    /// from the fourth on, and beside a map, as tabs.
+    /// The tiles of a lesson with these views. The left column has the views along the displacement, with the
+    /// mechanism on top; if there are views with legends, such as a map, it has only these. In a compact
+    /// window all are side by side; the third and later of four or more, and those beside a map, share tabs.
     pub fn of_lesson(views: &[View], room: Room) -> Self {
         let mut tiles = Tiles::default();
         let tree = match room {
             Room::Compact => beside(tiles, views),
             Room::Wide | Room::Large => {
-                let is_left = |view: &&View| match views.iter().any(|own| is_wide(*own)) {
+                let is_left = |view: &&View| match views.iter().any(|view| is_wide(*view)) {
                     true => is_wide(**view),
                     false => view.is_along_x(),
                 };
@@ -36,15 +36,15 @@ impl Tiling {
                 if left.is_empty() {
                     std::mem::swap(&mut left, &mut right);
                 }
-                // two alone stand side by side, but the mechanism over what it shares its axis with
+                // two views are side by side, except that the mechanism is above a view with the same axis
                 if right.is_empty() && left.len() == 2 && left[0] != View::Mechanism {
                     right = left.split_off(1);
                 }
-                let share = if left.iter().any(|own| is_wide(*own)) { MAP_SHARE } else { LEFT_SHARE };
+                let share = if left.iter().any(|view| is_wide(*view)) { MAP_SHARE } else { LEFT_SHARE };
                 let columns: Vec<TileId> = [left, right]
                     .into_iter()
-                    .filter(|own| !own.is_empty())
-                    .map(|own| column(&mut tiles, &own))
+                    .filter(|views| !views.is_empty())
+                    .map(|views| column(&mut tiles, &views))
                     .collect();
                 let root = match columns[..] {
                     [left, right] => pair(&mut tiles, LinearDir::Horizontal, left, right, share),
@@ -57,7 +57,7 @@ impl Tiling {
     }
 }
 
-/// Views below each other; the mechanism, which is first, is lower than the other.
+/// Views one below another. The mechanism, if it is the first of two, gets less than half of the height.
 fn column(tiles: &mut Tiles<View>, views: &[View]) -> TileId {
     let panes: Vec<TileId> = views.iter().map(|view| tiles.insert_pane(*view)).collect();
     match (views, &panes[..]) {
@@ -69,10 +69,10 @@ fn column(tiles: &mut Tiles<View>, views: &[View]) -> TileId {
     }
 }
 
-/// Views side by side, from the fourth on behind the third; beside one that needs much room, all others
-/// behind each other.
+/// Views side by side; the third and later ones share tabs if there are more than three. Beside views with
+/// legends all others share tabs.
 fn beside(mut tiles: Tiles<View>, views: &[View]) -> Tree<View> {
-    let (wide, others): (Vec<View>, Vec<View>) = views.iter().partition(|own| is_wide(**own));
+    let (wide, others): (Vec<View>, Vec<View>) = views.iter().partition(|view| is_wide(**view));
     if !wide.is_empty() && !others.is_empty() {
         let mut tabs = |views: Vec<View>| {
             let panes = views.into_iter().map(|view| tiles.insert_pane(view)).collect();

@@ -6,20 +6,20 @@ use egui_tiles::{Container, Linear, LinearDir, TileId, Tiles, Tree};
 use crate::app::views::View;
 use crate::scene::Layout;
 
-/// Shares of the window in the layout Look: left of 1030 points 590, of 584 points of height 340 on the
-/// right.
+/// Share of the width that the left column has in the layout Look: 590 of 1030 points.
 pub(super) const LEFT_SHARE: f32 = 590.0 / 1030.0;
+/// Share of the height that the displacement has in the right column: 340 of 584 points.
 const DISPLACEMENT_SHARE: f32 = 340.0 / 584.0;
 
 /// Share of the width that the map has in the layout Map.
 pub(super) const MAP_SHARE: f32 = 640.0 / 1030.0;
 
-/// Share of the height that the mechanism has over the well.
+/// Share of the height that the mechanism has above the well.
 pub(super) const MECHANISM_SHARE: f32 = 0.4;
 
-/// Share of the width that the first column of the layout Study has, and that one of two views has where room
-/// is short.
+/// Share of the width that the first column has in the layout Study.
 const STUDY_COLUMN: f32 = 0.34;
+/// Share of the width that the first of two groups has in a compact window.
 const COMPACT_SHARE: f32 = 0.5;
 
 pub(super) fn views_of(layout: Layout) -> Vec<View> {
@@ -66,7 +66,7 @@ fn look_tree(large: bool) -> Tree<View> {
     Tree::new(egui::Id::unique("wide"), root, tiles)
 }
 
-/// What has the displacement along it in two columns, what has not in the third.
+/// Views along the displacement in two columns, the others in a third.
 fn study_tree(large: bool) -> Tree<View> {
     let mut tiles = Tiles::default();
     let mut pane = |view| tiles.insert_pane(view);
@@ -86,8 +86,8 @@ fn study_tree(large: bool) -> Tree<View> {
     Tree::new(egui::Id::unique("wide"), root, tiles)
 }
 
-/// Two groups of tabs: the well and what else has the displacement along it, and the mechanism before what
-/// has not.
+/// Two groups of tabs: the views along the displacement except the mechanism, and the mechanism with the
+/// other views.
 pub(super) fn compact_tree(views: &[View]) -> Tree<View> {
     let mut tiles = Tiles::default();
     let is_first = |view: &&View| view.is_along_x() && **view != View::Mechanism;
@@ -124,7 +124,7 @@ fn map_tree() -> Tree<View> {
     Tree::new(egui::Id::unique("map"), root, tiles)
 }
 
-/// What the studies say, with the motion beside it.
+/// The views of studies, with the motion beside them.
 fn explore_tree() -> Tree<View> {
     let mut tiles = Tiles::default();
     let mut pane = |view| tiles.insert_pane(view);

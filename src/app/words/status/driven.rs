@@ -1,4 +1,4 @@
-//! Sentence about a shaken mass.
+//! Sentence about a driven motion.
 
 use crate::dynamics::{First, Firsts, Model, Outcome, Place, Regime, STANDARD_GRAVITY, Summary};
 use crate::scene::{Excitation, Scene, Stops};
@@ -9,12 +9,13 @@ use super::numbers::{between, grams, limit_mm, mm_beside, seconds, speed, times}
 use super::remedy::{amplitude, remedy};
 use super::{Kind, Sentence, ended};
 
-/// Forcing periods of a motion without a period that are seen before it is told of in the present tense.
+/// Forcing periods after which a motion that does not repeat is described in the present tense.
 const SEEN_PERIODS: f64 = 5.0;
 
-/// A motion that settles within so many forcing periods does so at once, to the eye.
+/// Forcing periods within which a motion seems to settle at once.
 const AT_ONCE: f64 = 5.0;
 
+/// The facts for the sentence about a driven motion.
 #[derive(Debug, Clone, Copy)]
 pub struct Told<'a> {
     pub scene: &'a Scene,
@@ -22,7 +23,7 @@ pub struct Told<'a> {
     pub model: &'a Model,
     /// What its motion settles to.
     pub summary: &'a Summary,
-    /// How much shaking it takes, where that is known.
+    /// Its thresholds; `None` until they are known.
     pub thresholds: Option<&'a Thresholds>,
     /// Live time in s at which the run of the summary began.
     pub origin: f64,
@@ -31,7 +32,7 @@ pub struct Told<'a> {
 }
 
 impl Told<'_> {
-    /// Live time in s from which on the motion has been seen to do what is told of.
+    /// Live time in s from which on the described motion has been on the screen.
     pub fn seen_from(&self) -> f64 {
         let summary = self.summary;
         let Some(period) = self.model.forcing_period().filter(|_| self.model.repeats()) else {
@@ -49,8 +50,8 @@ impl Told<'_> {
         self.now >= self.seen_from()
     }
 
-    /// Since when the motion settles, in words, where that is worth a word and still to come.
-    fn from(&self) -> String {
+    /// From when on the motion is settled, in words; empty if it already is or settles at once.
+    fn settling_time(&self) -> String {
         let period = self.model.forcing_period().unwrap_or(0.0);
         let late = |at: &f64| *at > AT_ONCE * period && self.now < self.origin + *at;
         match self.summary.settles_at.filter(late) {
@@ -59,7 +60,7 @@ impl Told<'_> {
         }
     }
 
-    /// What is known and not known of a motion that has not settled.
+    /// What is known of a motion that has not settled; empty if it has.
     fn unsettled(&self) -> String {
         let Summary { settled, regime, steady, window, .. } = self.summary;
         let after = seconds(window.1);
@@ -73,6 +74,7 @@ impl Told<'_> {
     }
 }
 
+/// Words of the sentence in one tense.
 struct Words {
     stays: &'static str,
     settles: &'static str,
@@ -85,7 +87,7 @@ struct Words {
     frees: &'static str,
 }
 
-const NOW: Words = Words {
+const PRESENT: Words = Words {
     stays: "stays",
     settles: "stays",
     leaves: "leaves",
@@ -96,9 +98,9 @@ const NOW: Words = Words {
     moves: "moves",
     frees: "never frees it",
 };
-const SOON: Words = Words {
+const FUTURE: Words = Words {
     stays: "will stay",
-    // (it may come from the other well)
+    // the mass may come from the other well
     settles: "will settle",
     leaves: "will leave",
     falls: "fall",
@@ -109,22 +111,22 @@ const SOON: Words = Words {
     frees: "will never free it",
 };
 
-/// A shaken mass, by what its motion settles to.
-pub fn driven(told: &Told) -> Sentence {
-    let Told { scene, model, summary, .. } = *told;
+/// The sentence about a driven motion, by what it settles to.
+pub fn driven(facts: &Told) -> Sentence {
+    let Told { scene, model, summary, .. } = *facts;
     if summary.outcome != Outcome::Done {
         return ended(model, summary.outcome);
     }
     if let (Excitation::AmplitudeRamp { .. }, Some(firsts)) = (&scene.excitation, &summary.firsts) {
-        return ramped(told, firsts);
+        return ramped(facts, firsts);
     }
-    let words = if told.is_seen() { &NOW } else { &SOON };
+    let words = if facts.is_seen() { &PRESENT } else { &FUTURE };
     let (Some(rms), Some(reach), Some((low, high))) =
         (summary.rms_velocity, summary.max_abs_x, summary.range)
     else {
         return Sentence::new(Kind::Other, "The run is too short to settle.");
     };
-    // averages over a window of a motion that does not repeat are no last word
+    // the averages of a motion that does not repeat depend on the window
     let about = if summary.period.is_some() || summary.regime == Regime::Rest { "" } else { "about " };
     let rms = format!("RMS velocity {about}{} mm/s", speed(rms));
     let stops = model.stop_positions();
@@ -138,7 +140,7 @@ pub fn driven(told: &Told) -> Sentence {
     let never = if summary.is_transient() { "without" } else { "never" };
     let periods = summary.periods as f64;
     let per_period = |count: u64| count as f64 / periods.max(1.0);
-    let from = told.from();
+    let from = facts.settling_time();
     let (kind, text) = match summary.regime {
         Regime::OneWell if model.mechanism().landscape.right_stable().is_none() => {
             (Kind::Other, format!("No barrier: {} {range}; {rms}.", words.moves))
@@ -159,7 +161,7 @@ pub fn driven(told: &Told) -> Sentence {
             (Kind::Resting, text)
         }
         Regime::Crossing | Regime::Intrawell if !model.repeats() => {
-            return unrepeated(told, &rms, &range, &well);
+            return unrepeated(facts, &rms, &range, &well);
         }
         Regime::Intrawell if summary.releases > 0 => {
             let every = match summary.release_periods {
@@ -199,18 +201,18 @@ pub fn driven(told: &Told) -> Sentence {
             );
             (Kind::Irregular, text)
         }
-        Regime::Interwell | Regime::Crossing => (Kind::Interwell, interwell(told, words, &rms, &range)),
+        Regime::Interwell | Regime::Crossing => (Kind::Interwell, interwell(facts, words, &rms, &range)),
     };
-    let mut sentence = Sentence::new(kind, format!("{text}{}{}", told.unsettled(), untouched(told)));
-    if let Some(found) = told.thresholds {
+    let mut sentence = Sentence::new(kind, format!("{text}{}{}", facts.unsettled(), untouched(facts)));
+    if let Some(found) = facts.thresholds {
         sentence.remedy = remedy(scene, summary, found);
     }
     sentence
 }
 
-/// A motion that crosses and repeats.
-fn interwell(told: &Told, words: &Words, rms: &str, range: &str) -> String {
-    let Told { model, summary, .. } = *told;
+/// The sentence about a motion that crosses and repeats.
+fn interwell(facts: &Told, words: &Words, rms: &str, range: &str) -> String {
+    let Told { model, summary, .. } = *facts;
     let rate = summary.crossings as f64 / summary.periods.max(1) as f64;
     let crosses = words.crosses;
     let how = match summary.period {
@@ -226,7 +228,7 @@ fn interwell(told: &Told, words: &Words, rms: &str, range: &str) -> String {
     let (left, right) = model.stop_positions();
     let equal = left.zip(right).filter(|(left, right)| *left == -*right);
     let share = summary.impact_share.filter(|_| summary.impacts > 0).map(|share| share * 100.0);
-    let from = told.from();
+    let from = facts.settling_time();
     match (equal, share) {
         (Some((_, limit)), Some(share)) => format!(
             "Interwell{from}: {how}, from stop to stop at ±{} mm; {rms}, impacts take {share:.0} % of the \
@@ -243,11 +245,11 @@ fn interwell(told: &Told, words: &Words, rms: &str, range: &str) -> String {
     }
 }
 
-/// A motion under a drive that has no period: what it does in the settled window.
-fn unrepeated(told: &Told, rms: &str, range: &str, well: &str) -> Sentence {
-    let summary = told.summary;
-    let (from, to) = (told.origin + summary.window.0, told.origin + summary.window.1);
-    let (seen, when) = (told.is_seen(), format!("from {} to {}", seconds(from), seconds(to)));
+/// The sentence about a motion under a drive without a period: what it does in the settled window.
+fn unrepeated(facts: &Told, rms: &str, range: &str, well: &str) -> Sentence {
+    let summary = facts.summary;
+    let (from, to) = (facts.origin + summary.window.0, facts.origin + summary.window.1);
+    let (seen, when) = (facts.is_seen(), format!("from {} to {}", seconds(from), seconds(to)));
     let (kind, text) = if summary.crossings == 0 {
         let stays = if seen { "stayed" } else { "will stay" };
         (Kind::Intrawell, format!("Intrawell: {stays} in the {well} {when}, {range}; {rms}."))
@@ -259,23 +261,23 @@ fn unrepeated(told: &Told, rms: &str, range: &str, well: &str) -> Sentence {
         };
         (Kind::Crossing, format!("{crosses} {count} {when}; {rms}."))
     };
-    Sentence::new(kind, format!("{text}{}", untouched(told)))
+    Sentence::new(kind, format!("{text}{}", untouched(facts)))
 }
 
-/// A mass under an amplitude ramp: when it is freed, crosses, and crosses always.
-fn ramped(told: &Told, firsts: &Firsts) -> Sentence {
-    let Told { model, summary, origin, now, .. } = *told;
+/// The sentence about an amplitude ramp: when the mass is released, first crosses, crosses in every period.
+fn ramped(facts: &Told, firsts: &Firsts) -> Sentence {
+    let Told { model, summary, origin, now, .. } = *facts;
     let end = origin + summary.window.1;
     let place = |first: &First, at: &str| {
-        let amplitude = first.amplitude.map(|own| own / STANDARD_GRAVITY);
+        let amplitude = first.amplitude.map(|accel| accel / STANDARD_GRAVITY);
         amplitude.map_or(String::new(), |g| format!("{at}{} g, ", grams(g)))
     };
     let time = |first: &First| seconds(origin + first.t);
     let at = |first: &First| format!("{}after {}", place(first, "at "), time(first));
     let passed = |first: &Option<First>| first.is_some_and(|first| now >= origin + first.t);
     let kind = match firsts {
-        own if passed(&own.crossing) => Kind::Crossing,
-        own if own.release.is_some() && !passed(&own.release) => Kind::Resting,
+        _ if passed(&firsts.crossing) => Kind::Crossing,
+        _ if firsts.release.is_some() && !passed(&firsts.release) => Kind::Resting,
         _ if summary.regime == Regime::Rest => Kind::Resting,
         _ => Kind::Intrawell,
     };
@@ -294,8 +296,8 @@ fn ramped(told: &Told, firsts: &Firsts) -> Sentence {
         }
         (Some(first), always) => {
             parts.push(format!("first crosses {}", at(first)));
-            let always = always.as_ref().map(|own| format!("{}{}", place(own, ""), time(own)));
-            parts.extend(always.map(|own| format!("in every period from {own} on")));
+            let always = always.as_ref().map(|first| format!("{}{}", place(first, ""), time(first)));
+            parts.extend(always.map(|start| format!("in every period from {start} on")));
         }
         (None, _) => parts.push("never crosses".to_owned()),
     }
@@ -307,15 +309,15 @@ fn ramped(told: &Told, firsts: &Firsts) -> Sentence {
     Sentence::new(kind, format!("Growing shaking: {}{until}.", parts.join("; ")))
 }
 
-/// Stops that the motion never reaches.
-fn untouched(told: &Told) -> String {
-    let summary = told.summary;
+/// The sentence that the motion never touches the stops; empty if it does or there are none.
+fn untouched(facts: &Told) -> String {
+    let summary = facts.summary;
     let touched = summary.impacts > 0 || summary.rested_share.is_none_or(|share| share > 0.0);
     let rests = summary.regime == Regime::Rest;
-    if touched || rests || told.model.stop_positions() == (None, None) {
+    if touched || rests || facts.model.stop_positions() == (None, None) {
         return String::new();
     }
-    match told.scene.stops.limits_mm() {
+    match facts.scene.stops.limits_mm() {
         [Some(left), Some(right)] if left == right => {
             format!(" Stops at ±{} mm are not touched.", limit_mm(right))
         }

@@ -1,7 +1,8 @@
-//! The sentence about what the mass does.
+//! Sentence about what the mass does.
 //!
-//! Its form is: name: what the mass does; number; what it would take. Every number comes from a run. What has
-//! not been seen on the screen yet is told in the future tense, and what is not known is said to be unknown.
+//! Its form is: name of the motion: what the mass does; a number; what it would take to cross. Every number
+//! comes from a run. Motion that has not been on the screen yet is described in the future tense, and what is
+//! not known is said to be unknown.
 
 mod driven;
 mod numbers;
@@ -22,7 +23,7 @@ pub use remedy::ways;
 pub struct Sentence {
     pub kind: Kind,
     pub text: String,
-    /// What it would take, said once it has been searched for; a lesson may keep it to itself.
+    /// What it would take to cross; empty until that is known, or while a lesson hides it.
     pub remedy: String,
 }
 
@@ -31,13 +32,13 @@ impl Sentence {
         Self { kind, text: text.into(), remedy: String::new() }
     }
 
-    /// A scene that cannot be run; the first of its faults.
+    /// The sentence about a scene that cannot be run, with its first fault.
     pub fn fault(error: &str) -> Self {
         let first = error.lines().next().unwrap_or(error);
         Self::new(Kind::Fault, format!("This scene cannot run: {first}"))
     }
 
-    /// While the first answer is still to come.
+    /// The sentence until it is known what the motion settles to.
     pub fn waiting() -> Self {
         Self::new(Kind::Other, "Working out what this settles to.")
     }
@@ -47,22 +48,23 @@ impl Sentence {
     }
 }
 
-fn hand(phase: Phase) -> &'static str {
+fn side_name(phase: Phase) -> &'static str {
     if phase == Phase::LeftStop { "left-hand" } else { "right-hand" }
 }
 
-/// Share of the scene's accelerations below which a mass without speed is at rest.
+/// Share of the scene's acceleration scale below which a mass without speed is at rest.
 const STILL_PULL: f64 = 1e-3;
 
 /// Share of the mechanism's largest force below which it is said not to pull.
 const NO_PULL: f64 = 2e-3;
 
-/// The mass held by hand.
+/// The sentence while the mass is held by hand.
 pub fn held(model: &Model, state: &Sample) -> Sentence {
     let force = model.mechanism().curve.force(state.x);
     let middle = model.mechanism().landscape.barrier.map_or(0.0, |barrier| barrier.x);
     let outward = (state.x - middle) * force < 0.0;
-    let largest = model.mechanism().landscape.extrema.iter().map(|own| own.force.abs()).fold(0.0, f64::max);
+    let largest =
+        model.mechanism().landscape.extrema.iter().map(|extremum| extremum.force.abs()).fold(0.0, f64::max);
     let (place, size) = (mm(state.x), force.abs());
     let text = if size <= NO_PULL * largest || size == 0.0 {
         format!("Held at {place} mm: nothing pulls.")
@@ -73,7 +75,7 @@ pub fn held(model: &Model, state: &Sample) -> Sentence {
     Sentence::new(Kind::Other, text)
 }
 
-/// A run that has ended by itself.
+/// The sentence about a run that has ended early.
 pub fn ended(model: &Model, outcome: Outcome) -> Sentence {
     let at = outcome.ended_at().unwrap_or(0.0);
     let domain = model.mechanism().curve.domain();
@@ -108,7 +110,7 @@ pub fn ended(model: &Model, outcome: Outcome) -> Sentence {
     Sentence::new(Kind::Fault, format!("The run ended at {at:.2} s: {why}"))
 }
 
-/// Nothing shakes the base.
+/// The sentence while nothing shakes the base.
 pub fn unshaken(model: &Model, state: &Sample) -> Sentence {
     let base = model.base_acceleration(state.t);
     let pull = model.acceleration(state.x, state.v, base).abs() * model.scales().time / model.scales().speed;
@@ -128,7 +130,7 @@ pub fn unshaken(model: &Model, state: &Sample) -> Sentence {
     match pressed_n {
         Some(force) => Sentence::new(
             Kind::Resting,
-            format!("Pressed on the {} stop with {}; {lift}", hand(state.phase), newtons(force)),
+            format!("Pressed on the {} stop with {}; {lift}", side_name(state.phase), newtons(force)),
         ),
         None if still && energy_j < 1e-3 * needed_j => {
             Sentence::new(Kind::Resting, format!("At rest in the {well}; {lift}"))

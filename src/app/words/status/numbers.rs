@@ -1,6 +1,6 @@
 //! Formats of the numbers in the sentences.
 
-/// A number with so many significant digits, written out.
+/// A number with `digits` significant digits, without an exponent unless it is very small or large.
 fn significant(value: f64, digits: i32) -> String {
     let size = value.abs();
     if !(size > 0.0) || !size.is_finite() {
@@ -11,7 +11,7 @@ fn significant(value: f64, digits: i32) -> String {
     if !(1e-6..1e7).contains(&size) {
         return format!("{rounded:e}");
     }
-    // rounding may have carried into another place
+    // rounding may have reached the next power of ten
     let place = if rounded.abs().log10().floor() > size.log10().floor() { place - 1 } else { place };
     format!("{rounded:.*}", place.max(0) as usize)
 }
@@ -21,7 +21,7 @@ pub fn grams(g: f64) -> String {
     significant(g, 3)
 }
 
-/// A threshold in g, rounded up to three significant digits: less than it says is not enough.
+/// A threshold in g, rounded up to three significant digits, so that the amplitude in the text is enough.
 pub fn grams_up(g: f64) -> String {
     let unit = 10_f64.powf(g.log10().floor() - 2.0);
     grams(((g / unit - 1e-6).ceil() * unit).max(g))
@@ -48,12 +48,12 @@ pub fn speed(m_per_s: f64) -> String {
 
 /// Length in mm: one decimal, two below 1 mm.
 pub fn mm(m: f64) -> String {
-    // -0.0 is no place
+    // the sum with 0.0 turns -0.0 into 0.0
     let tenths = (m * 1e4).round() / 10.0 + 0.0;
     if tenths == 0.0 || m.abs() >= 0.95e-3 { format!("{tenths:.1}") } else { format!("{:.2}", m * 1e3) }
 }
 
-/// A travel limit in mm as it was set: one decimal, or the two that a slider has.
+/// A travel limit in mm: two decimals, as on a slider, or one if the second is 0.
 pub fn limit_mm(mm: f64) -> String {
     let text = format!("{mm:.2}");
     match text.strip_suffix('0') {
@@ -68,21 +68,21 @@ pub fn energy(j: f64) -> String {
     if mj == 0.0 || mj >= 0.1 { format!("{mj:.2} mJ") } else { format!("{} mJ", significant(mj, 3)) }
 }
 
-/// A length in mm beside the stops, left and right, in m: as `mm`, or with as many more decimals as keep it
-/// on its side of them.
+/// A displacement in m near the left and right stops in m, as text in mm: as `mm` formats it, or with more
+/// decimals if rounding would move it to the other side of a stop.
 pub fn mm_beside(m: f64, stops: (Option<f64>, Option<f64>)) -> String {
     let (left, right) = stops;
-    let all = [left.map(f64::abs), right.map(f64::abs)];
+    let limits = [left.map(f64::abs), right.map(f64::abs)];
     let is_beyond = |m: f64, stop: &f64| m.abs() > stop * (1.0 + 1e-6);
-    let is_true = |text: &str| {
+    let keeps_side = |text: &str| {
         let written = text.parse::<f64>().unwrap_or(m * 1e3) * 1e-3;
-        all.iter().flatten().all(|stop| is_beyond(written, stop) == is_beyond(m, stop))
+        limits.iter().flatten().all(|stop| is_beyond(written, stop) == is_beyond(m, stop))
     };
     let longer = (2..=6).map(|decimals| format!("{:.decimals$}", m * 1e3 + 0.0));
-    std::iter::once(mm(m)).chain(longer).find(|text| is_true(text)).unwrap_or_else(|| mm(m))
+    std::iter::once(mm(m)).chain(longer).find(|text| keeps_side(text)).unwrap_or_else(|| mm(m))
 }
 
-/// A range in mm between stops in m, `5.6 and 7.3 mm`, with as many decimals as tell its ends apart.
+/// A range in m near stops in m as text, `between 5.6 and 7.3 mm`; its decimals distinguish the ends.
 pub fn between(low: f64, high: f64, stops: (Option<f64>, Option<f64>)) -> String {
     let text = |m: f64, decimals: usize| format!("{:.decimals$}", m * 1e3 + 0.0);
     let apart = |decimals: &usize| text(low, *decimals) != text(high, *decimals);
@@ -93,12 +93,12 @@ pub fn between(low: f64, high: f64, stops: (Option<f64>, Option<f64>)) -> String
     }
 }
 
-/// A time in s: whole from ten on.
+/// A time in s: one decimal, or none from ten on.
 pub fn seconds(s: f64) -> String {
     if s >= 9.95 || s == 0.0 { format!("{s:.0} s") } else { format!("{s:.1} s") }
 }
 
-/// How often a period.
+/// A number of events per forcing period in words.
 pub fn times(count: f64) -> String {
     if count < 0.1 {
         return "less than once in ten periods".to_owned();
@@ -158,7 +158,7 @@ mod tests {
             (mm_beside(-2.25e-3, stops(2.25)), mm_beside(1.5e-3, stops(1.5))),
             ("-2.25".into(), "1.5".into())
         );
-        // a compliant stop gives way
+        // beyond a compliant stop
         assert_eq!(
             (mm_beside(1.52e-3, stops(1.5)), mm_beside(7.9e-3, (None, None))),
             ("1.52".into(), "7.9".into())

@@ -1,4 +1,4 @@
-//! What it would take to cross, and how much there is to spare.
+//! Sentences about what it would take to cross, and how much amplitude there is to spare.
 
 use crate::dynamics::{Regime, Summary};
 use crate::scene::{Excitation, Scene, Stops};
@@ -14,10 +14,10 @@ pub(super) fn amplitude(scene: &Scene) -> Option<f64> {
     }
 }
 
-/// A gap that ends below this multiple of the least amplitude that crosses is not worth a word.
+/// Gaps that end below this multiple of the least amplitude that crosses are not mentioned.
 const NARROW: f64 = 1.03;
 
-/// How far above the least amplitude that crosses the gaps end, where there are any.
+/// The clause that says how far gaps reach above the least amplitude that crosses; empty without gaps.
 fn gaps(found: &Thresholds, from: f64) -> String {
     match found.crossing.without_gap {
         Some(whole) if whole > NARROW * from => format!(", with gaps up to {} g", grams(whole)),
@@ -64,7 +64,7 @@ pub(super) fn remedy(scene: &Scene, summary: &Summary, found: &Thresholds) -> St
     capital(&text)
 }
 
-/// A text with a capital at its beginning.
+/// The text with an initial capital.
 fn capital(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
@@ -104,7 +104,7 @@ pub fn ways(scene: &Scene, settled: &Summary, thresholds: &Thresholds, stops_mm:
     }
 }
 
-/// A decimal with one place, or as many as it has.
+/// A number with all of its decimals, and at least one.
 fn at_least_one_decimal(mm: f64) -> String {
     let text = format!("{mm}");
     if text.contains('.') { text } else { format!("{mm:.1}") }
