@@ -1,22 +1,22 @@
-//! Bistable mechanisms with hard travel limits: what they do when they are shaken.
+//! Simulation of bistable mechanisms with hard travel limits under base excitation.
 //!
 //! # The question
 //!
-//! A proof mass on a buckled flexure mechanism has two stable positions and a barrier between them. Shaken
-//! gently it rattles in one well (*intrawell*), shaken hard it crosses (*interwell*). Rigid stops set inside
-//! the stable positions press the mass up towards the barrier, so that it crosses at lower acceleration and
-//! travels less. Where should the stops be?
+//! A proof mass on a buckled flexure mechanism has two stable positions and a barrier between them. Under
+//! weak excitation it stays in one well (*intrawell*), under strong excitation it crosses the barrier
+//! (*interwell*). Rigid stops inside the stable positions hold the mass closer to the barrier, so that it
+//! crosses at lower acceleration and travels less. Where should the stops be?
 //!
 //! # The equation of motion
 //!
 //! ```text
 //! m x'' + c x' + F(x) = -m a_b(t)     between the stops
-//! v+ = -e v-                          at a stop, at once
+//! v+ = -e v-                          at an impact on a stop
 //! x = +-D, v = 0                      while the net force presses on the stop
 //! ```
 //!
 //! x is the displacement of the proof mass relative to its base, a_b the base's acceleration. F is the
-//! derivative of a potential with two wells; every mechanism, however described, becomes one piecewise
+//! derivative of a potential with two wells; the force of every mechanism is represented by one piecewise
 //! polynomial ([`mechanics::ForceCurve`]).
 //!
 //! # From a scene to a result
@@ -37,22 +37,22 @@
 //!     run: (duration_s: 10.0, tolerance: 1e-9),
 //! )"#;
 //!
-//! // As written: parsed, then checked; all faults come at once, each with field, line, range and remedy.
+//! // Parse and check the scene; an error lists all faults with field, line, range and remedy.
 //! let document = Document::from_text("example.ron", text, Files::default())?;
 //! document.check()?;
 //!
-//! // As run: SI units, one force curve, nothing left to check.
+//! // Build the model: SI units, one force curve, always valid.
 //! let mechanism = Mechanism::build(&document.scene.mechanism, &document.files)?;
 //! let model = Model::build(&document.scene, Arc::new(mechanism))
 //!     .map_err(|faults| document.error_from(faults))?;
 //!
-//! // One run: pressed on the right-hand stop, released in every half period, across, and to rest again.
+//! // Run it: in every half period the mass leaves one stop, crosses, and comes to rest on the other stop.
 //! let run = model.run(&Request { events: true, ledger: true, ..Request::default() });
 //! assert_eq!(run.summary.regime, Regime::Interwell);
 //! assert_eq!(run.summary.period, Some(1));
 //! assert!((run.summary.rms_velocity.unwrap() - 0.114_697_633_346).abs() < 1e-9);
 //!
-//! // Where the energy went: each term is integrated on its own, and they must add up.
+//! // The energy balance: each term is integrated separately, and they must add up.
 //! let ledger = run.summary.ledger.unwrap();
 //! assert!(ledger.impact_j > 0.9 * ledger.work_j);
 //! assert!(ledger.energy_residual < 1e-9);
@@ -61,26 +61,26 @@
 //!
 //! # The layers
 //!
-//! Each may use what stands above it, nothing below:
+//! Each layer may use the layers above it in this table, and none below:
 //!
 //! | layer | holds |
 //! | --- | --- |
 //! | [`system`] | threads, clocks and files of the machine |
-//! | [`numeric`] | mathematics that knows no mechanics |
-//! | [`scene`] | what a person writes: fields, units, ranges, files, presets |
+//! | [`numeric`] | mathematics without mechanics |
+//! | [`scene`] | scene files: fields, units, ranges, tables, presets |
 //! | [`mechanics`] | the restoring force and its landscape of wells and barrier |
 //! | [`dynamics`] | motion: Taylor steps, contacts, rest, release, statistics, ledger |
-//! | [`study`] | questions: one run, a sweep, thresholds, accuracy; a table comes out |
-//! | [`output`] | a table in, bytes out |
+//! | [`study`] | studies that return a table: one run, a sweep, thresholds, accuracy |
+//! | [`output`] | conversion of tables to files |
 //!
-//! The command line is the binary's own, and the window is the feature `app`; neither computes anything.
+//! The command line is a part of the binary, and the window is the feature `app`; neither computes anything.
 //!
 //! # Accuracy
 //!
-//! The tolerance of a scene is the one setting: the local error of a step, relative to the scene's own
-//! length, speed and time ([`dynamics::Scales`]). Contacts are roots of the step's polynomial, found with
-//! none missed and located to rounding. A run can be repeated in some 31 digits
-//! ([`dynamics::Model::run_reference`]) to see what its error was.
+//! The tolerance of a scene is the only setting: the local error of a step, relative to the scene's scales of
+//! length, speed and time ([`dynamics::Scales`]). Contacts are roots of the step's polynomial; none is
+//! missed, and each is located to rounding. A run can be repeated with about 31 digits
+//! ([`dynamics::Model::run_reference`]) to measure its error.
 
 #[cfg(feature = "app")]
 #[doc(hidden)]
@@ -93,7 +93,7 @@ pub mod scene;
 pub mod study;
 pub mod system;
 
-/// The README's program compiles.
+/// Compiles the program in the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

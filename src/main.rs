@@ -1,4 +1,4 @@
-//! The binary: reads the arguments, hands them to the command line or the window, prints an error once.
+//! Entry point of the binary: parses the arguments, runs a command or the window, and prints an error once.
 
 mod cli;
 
@@ -10,9 +10,9 @@ fn main() -> ExitCode {
         Ok(options) => options,
         Err(exit) => return exit,
     };
-    let refused = Cell::new(None);
-    match cli::run(options, |scene| window(scene, &refused)) {
-        Ok(()) => refused.take().unwrap_or(ExitCode::SUCCESS),
+    let scene_failure = Cell::new(None);
+    match cli::run(options, |scene| window(scene, &scene_failure)) {
+        Ok(()) => scene_failure.take().unwrap_or(ExitCode::SUCCESS),
         Err(failure) => {
             cli::say(&format!("error: {failure}"));
             failure.exit_code()
@@ -20,10 +20,10 @@ fn main() -> ExitCode {
     }
 }
 
-/// Opens the window; a scene that cannot be opened is said here and there, and leaves its exit status in
-/// `refused`.
+/// Opens the window. If the scene cannot be opened, the error is shown in the window and printed, and its
+/// exit code is stored in `scene_failure`.
 #[cfg(feature = "app")]
-fn window(scene: Option<&str>, refused: &Cell<Option<ExitCode>>) -> Result<(), cli::Failure> {
+fn window(scene: Option<&str>, scene_failure: &Cell<Option<ExitCode>>) -> Result<(), cli::Failure> {
     use interwell::app::{AppError, CannotRun, run};
     let failure = |error: CannotRun| match error {
         CannotRun::Wrong(error) => cli::Failure::from(error),
@@ -32,7 +32,7 @@ fn window(scene: Option<&str>, refused: &Cell<Option<ExitCode>>) -> Result<(), c
     let say = |error| {
         let failure = failure(error);
         cli::say(&format!("error: {failure}"));
-        refused.set(Some(failure.exit_code()));
+        scene_failure.set(Some(failure.exit_code()));
     };
     run(scene, say).map_err(|error| match error {
         AppError::Scene(error) => failure(error),

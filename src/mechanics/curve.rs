@@ -1,9 +1,9 @@
-//! Restoring force as a piecewise polynomial, the one representation for every mechanism.
+//! Restoring force as a piecewise polynomial, the common representation of every mechanism.
 //!
-//! The force is a piecewise polynomial: breaks where smoothness ends, between them one polynomial
-//! each, written about its own origin. Potential and stiffness follow exactly, by integration and
-//! differentiation of the same coefficients. The piece is a *mode* of the motion: a run changes it
-//! only at a located crossing of a break, never by looking x up again (rounding would flip it).
+//! Each piece between two breaks is a polynomial about its own origin. Potential and stiffness follow
+//! exactly, by integration and differentiation of the same coefficients. The piece is a *mode* of the motion:
+//! a run changes it only at a located crossing of a break and never looks it up by x, which rounding could
+//! put on the wrong side.
 
 /// One polynomial piece: `F(x) = sum coefficients[i] (x - origin)^i`.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,7 +17,7 @@ pub struct Piece {
 }
 
 impl Piece {
-    /// Force dV/dx at `x` in N (what must be applied to hold the mass there).
+    /// Force dV/dx at `x` in N (the force that holds the mass there).
     pub fn force(&self, x: f64) -> f64 {
         let y = x - self.origin;
         self.coefficients.iter().rev().fold(0.0, |sum, c| sum * y + c)
@@ -39,9 +39,9 @@ impl Piece {
         self.potential_at_origin + self.potential_from_origin(y)
     }
 
-    /// Potential at `b` less that at `a`, in J: as the divided difference times the way, so that a mass that
-    /// hardly moves far from the origin has its change to as many digits as the force has there, and one that
-    /// stays has none.
+    /// Potential at `b` less that at `a`, in J. It is computed as a divided difference times `b - a`, so that
+    /// a small change far from the origin has as many correct digits as the force there, and the change is
+    /// exactly 0 if `a` and `b` are equal.
     pub fn potential_change(&self, a: f64, b: f64) -> f64 {
         let (from, to) = (a - self.origin, b - self.origin);
         let (mut value, mut slope) = (0.0, 0.0);
@@ -54,7 +54,7 @@ impl Piece {
         if a == b { 0.0 } else { slope * (b - a) }
     }
 
-    /// The piece of -F(-x): what this one looks like on the other side of an odd curve, bit for bit.
+    /// The piece of -F(-x): the mirror image of this one in an odd curve, bit for bit.
     pub fn mirrored(&self) -> Self {
         let sign = |i: usize| if i.is_multiple_of(2) { -1.0 } else { 1.0 };
         Self {
@@ -78,13 +78,13 @@ impl Piece {
 pub struct FitReport {
     /// Largest |fit - data| over the samples in N.
     pub worst_n: f64,
-    /// Where that is, in m.
+    /// Position of that sample in m.
     pub worst_at_m: f64,
     /// The force that the tolerance is relative to, in N.
     pub scale_n: f64,
     /// Number of samples in the data.
     pub samples: usize,
-    /// Remarks a person should see, each a sentence.
+    /// Warnings for the user, each a sentence.
     pub warnings: Vec<String>,
 }
 
@@ -107,13 +107,13 @@ impl ForceCurve {
     /// Preconditions: finite coefficients, at most [`Self::MAX_COEFFICIENTS`] after trimming.
     pub fn polynomial(coefficients: &[f64]) -> Self {
         let keep = coefficients.iter().rposition(|c| *c != 0.0).map_or(1, |i| i + 1);
-        let mut own: Vec<f64> = coefficients.iter().take(keep).copied().collect();
-        if own.is_empty() {
-            own.push(0.0);
+        let mut coefficients: Vec<f64> = coefficients.iter().take(keep).copied().collect();
+        if coefficients.is_empty() {
+            coefficients.push(0.0);
         }
-        let odd = own.iter().step_by(2).all(|c| *c == 0.0);
+        let odd = coefficients.iter().step_by(2).all(|c| *c == 0.0);
         Self {
-            pieces: vec![Piece { origin: 0.0, coefficients: own, potential_at_origin: 0.0 }],
+            pieces: vec![Piece { origin: 0.0, coefficients, potential_at_origin: 0.0 }],
             breaks: Vec::new(),
             domain: (f64::NEG_INFINITY, f64::INFINITY),
             odd,
@@ -121,12 +121,12 @@ impl ForceCurve {
         }
     }
 
-    /// A curve of several pieces; `pieces[i]` reaches from `breaks[i - 1]` to `breaks[i]`, the
-    /// outermost ones to the ends of `domain`. The potentials of the pieces are set here, so that
-    /// the potential is continuous and 0 at x = 0 (at the nearer end where 0 is outside).
+    /// A curve of several pieces; `pieces[i]` reaches from `breaks[i - 1]` to `breaks[i]`, the outermost ones
+    /// to the ends of `domain`. This sets the potentials of the pieces so that the potential is continuous
+    /// and 0 at x = 0 (at the nearer end of the domain if 0 is outside).
     ///
-    /// Preconditions: `breaks` strictly increasing inside `domain`, one more piece than breaks,
-    /// values continuous at the breaks; `odd` only where the pieces mirror each other bit for bit.
+    /// Preconditions: `breaks` strictly increasing inside `domain`, one more piece than breaks, values
+    /// continuous at the breaks; `odd` only if the pieces mirror each other bit for bit.
     pub fn from_pieces(
         mut pieces: Vec<Piece>,
         breaks: Vec<f64>,
@@ -190,12 +190,12 @@ impl ForceCurve {
         self.odd
     }
 
-    /// How well the curve follows its data, where it was fitted.
+    /// How well the curve follows its data, if it was fitted.
     pub fn fit(&self) -> Option<&FitReport> {
         self.fit.as_ref()
     }
 
-    /// Index of the piece that holds `x`; on a break, the one towards x = 0.
+    /// Index of the piece that contains `x`; on a break, the one towards x = 0.
     pub fn piece_index(&self, x: f64) -> usize {
         if x >= 0.0 {
             self.breaks.partition_point(|b| *b < x)

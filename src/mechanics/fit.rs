@@ -1,23 +1,24 @@
-//! Smooth piecewise polynomial through the points of a table.
+//! Fit of a smooth piecewise polynomial to the points of a table.
 //!
-//! The curve is a chain of least-squares polynomials that interpolate the samples at their ends (so it
-//! is continuous whatever the data), found from left to right, or for odd data from the middle outwards: each
-//! piece reaches as far as the tolerance allows. At a break that is not a corner of the data a piece
-//! begins with the slope with which the one before it ended, so that the curve has no kinks of its own.
+//! The curve is a chain of least-squares polynomials that interpolate the samples at their ends, so that it
+//! is continuous for any data. The chain is built from left to right, or for odd data from the middle
+//! outwards, and each piece is as long as the tolerance allows. At a break that is not a corner of the data a
+//! piece starts with the final slope of the previous piece, so that the fit adds no kinks.
 //!
-//! Why a greedy chain: pieces that share nothing but a sample and a slope can be tried one at a time, so
-//! that a table of some hundred points takes milliseconds; shifting all breaks at once would save
-//! perhaps one piece in ten.
+//! The chain is greedy because pieces that share only a sample and a slope can be tried one at a time: a
+//! table of about a hundred points takes milliseconds. Optimising all breaks together would save perhaps one
+//! piece in ten.
 //!
-//! **Degree against number of pieces.** A run pays for both: the Taylor coefficients of a piece of
-//! degree n cost about n series products a step (an odd polynomial half of that), and each crossing of a
-//! break ends a step early and starts another. The chain is therefore made for several limits of the degree
-//! and the cheapest by [`running_cost`] is kept.
+//! **Degree against number of pieces.** Both slow a run: the Taylor coefficients of a piece of degree n cost
+//! about n series products per step (half of that for an odd polynomial), and each crossing of a break ends a
+//! step early and starts another. The chain is therefore built for several limits of the degree, and the one
+//! with the lowest [`running_cost`] is kept.
 //!
-//! **No wiggles.** A least-squares polynomial over m roughly even intervals is tame up to a degree of about 2
-//! sqrt(m) (Rakhmanov 2007, "Bounds for polynomials with a unit discrete norm"). Rather than trust this
-//! alone, every piece is compared half-way between its samples with the local interpolant through six
-//! neighbours; it may be off by a few times the tolerance and by what six neighbours say that four do not.
+//! **Oscillations.** A least-squares polynomial over m roughly even intervals does not oscillate up to a
+//! degree of about 2 sqrt(m) (Rakhmanov 2007, "Bounds for polynomials with a unit discrete norm"). In
+//! addition every piece is compared half-way between its samples with the local interpolant through six
+//! neighbours. It may differ by a few tolerances plus the difference between the interpolants through six
+//! and four neighbours.
 
 mod chain;
 mod piece;
@@ -28,48 +29,47 @@ use super::curve::{FitReport, ForceCurve, Piece};
 use super::local::{between, corners, roughness, slopes};
 use super::table::ForceTable;
 
-/// The limits of the degree that are tried. Above 13 the monomial form begins to lose digits and a
-/// step costs more than the restart that a longer piece saves.
+/// Limits of the degree that are tried. Above 13 the monomial form loses digits, and a step costs more than
+/// the restart that a longer piece saves.
 const DEGREES: [usize; 5] = [5, 7, 9, 11, 13];
 
-/// Steps that a traversal of the whole curve is taken to need when no break is in the way; a break adds
-/// about one. An estimate, not measured.
-const STEPS_OF_A_TRAVERSAL: f64 = 20.0;
+/// Estimated number of steps of a traversal of the whole curve without breaks; each break adds about one.
+const STEPS_PER_TRAVERSAL: f64 = 20.0;
 
-/// What a step costs beside the force, in series products of the same order: the drive's sine, the step size,
-/// the looking for events. An estimate as well.
+/// Estimated cost of a step apart from the force, in series products of the same order: the sine of the
+/// drive, the step size and the search for events.
 const OTHER_PRODUCTS: f64 = 3.0;
 
-/// Share of the tolerance that the two halves of odd data may differ by; the rest is left to the fit.
+/// Share of the tolerance by which odd data may deviate from symmetry; the rest is left to the fit.
 const ODD_SHARE: f64 = 0.5;
 
-/// More breaks than this draw a warning: a run pays for each.
+/// Number of pieces above which a warning is given, since each break slows a run.
 const MANY_PIECES: usize = 24;
 
 /// Fits a curve to a table.
 ///
-/// Returns the curve with its [`FitReport`]; every sample is met within `tolerance` times [`force_scale`], or
-/// to rounding where that is larger. Breaks lie on samples; the domain is the first to the last sample. Data
-/// that are odd within half the tolerance give a curve that is odd bit for bit.
+/// Returns the curve with its [`FitReport`]; it is within `tolerance` times [`force_scale`] of every sample,
+/// or within rounding if that is larger. Breaks lie on samples; the domain is from the first to the last
+/// sample. Data that are odd to within half the tolerance give a curve that is odd bit for bit.
 ///
 /// Preconditions: a table as [`ForceTable::parse`] guarantees it, `tolerance` above 0.
 ///
-/// Fails only where the magnitudes leave the range of double precision; says so in a sentence.
+/// Fails only if the magnitudes leave the range of double precision; the error is a sentence.
 ///
-/// `tolerance` trades pieces (and so the speed of every run) for closeness; below the roughness of the
-/// data it makes the curve follow the roughness.
+/// A smaller `tolerance` gives a closer fit with more pieces, which slow every run; below the roughness of
+/// the data the curve follows the roughness.
 pub fn fit(table: &ForceTable, tolerance: f64) -> Result<ForceCurve, String> {
     fit_unless(table, tolerance, None)
 }
 
-/// As [`fit`]; once `cancel` is set, it soon fails with any sentence.
+/// Like [`fit`], but fails with an arbitrary message soon after `cancel` is set.
 pub fn fit_unless(
     table: &ForceTable,
     tolerance: f64,
     cancel: Option<&AtomicBool>,
 ) -> Result<ForceCurve, String> {
     let scale = force_scale(table);
-    let allowed = vec![within(table, tolerance); table.x.len()];
+    let allowed = vec![allowed_error(table, tolerance); table.x.len()];
     let curve = fit_within(table, &allowed, &DEGREES, cancel)?;
     let mut warnings = table.warnings();
     if curve.pieces().len() > MANY_PIECES {
@@ -84,14 +84,14 @@ pub fn fit_unless(
     Ok(curve.with_fit(report))
 }
 
-/// How far in N a curve may be from the samples of a table with this tolerance: it times [`force_scale`], or
-/// some roundings.
-pub(super) fn within(table: &ForceTable, tolerance: f64) -> f64 {
+/// Allowed error in N at the samples of a table: `tolerance` times [`force_scale`] plus a few
+/// units of rounding.
+pub(super) fn allowed_error(table: &ForceTable, tolerance: f64) -> f64 {
     tolerance * force_scale(table) + 8.0 * f64::EPSILON * largest(&table.force)
 }
 
-/// The curve, without a report, that is no farther from each sample of a table than what is `allowed` there,
-/// in N, with the cheapest of these limits of the degree. Fails as [`fit_unless`] does.
+/// Fits a curve, without a report, that differs from each sample of a table by at most the `allowed` error in
+/// N, using the limit among `degrees` with the lowest running cost. Fails like [`fit_unless`].
 pub(super) fn fit_within(
     table: &ForceTable,
     allowed: &[f64],
@@ -103,7 +103,7 @@ pub(super) fn fit_within(
     for degree in degrees.iter().copied() {
         let Some((pieces, ends)) = samples.chain(degree) else { continue };
         let cost = running_cost(&samples, &pieces, &ends);
-        if best.as_ref().is_none_or(|(least, ..)| cost < *least) {
+        if best.as_ref().is_none_or(|(lowest, ..)| cost < *lowest) {
             best = Some((cost, pieces, ends));
         }
     }
@@ -118,10 +118,10 @@ pub(super) fn fit_within(
 
 /// The force in N that the tolerance is relative to.
 ///
-/// The largest |F| between the outermost stable equilibria of the samples (where the force changes from below
-/// to above 0), which a wall outside the wells does not touch. Where there are not two of them, or the force
-/// between them does not stand out ten-fold from the roughness of the data (noise about 0 makes "wells" of
-/// its own): the largest |F| of all.
+/// This is the largest |F| between the outermost stable equilibria of the samples (where the force changes
+/// from below to above 0), which does not depend on a steep wall outside the wells. If there are fewer than
+/// two such equilibria, or the force between them is less than ten times the roughness of the data (noise
+/// about 0 looks like wells), it is the largest |F| of all samples.
 pub fn force_scale(table: &ForceTable) -> f64 {
     let force = &table.force;
     let rising = |i: &usize| force[*i] < 0.0 && force[*i + 1] >= 0.0;
@@ -138,10 +138,10 @@ pub fn force_scale(table: &ForceTable) -> f64 {
 }
 
 fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |most, v| most.max(v.abs()))
+    values.iter().fold(0.0, |largest, v| largest.max(v.abs()))
 }
 
-/// Largest distance of a curve from the samples in N, and where.
+/// Largest distance of a curve from the samples in N, and its position.
 fn worst(curve: &ForceCurve, table: &ForceTable) -> (f64, f64) {
     let (low, high) = curve.domain();
     let mut worst = (0.0, table.x[0]);
@@ -154,7 +154,7 @@ fn worst(curve: &ForceCurve, table: &ForceTable) -> (f64, f64) {
     worst
 }
 
-/// What a traversal of the whole curve costs, in series products: see the module's head.
+/// Cost of a traversal of the whole curve in series products; see the module's documentation.
 fn running_cost(samples: &Samples, pieces: &[Piece], ends: &[usize]) -> f64 {
     let (from, to) = (samples.x[0], samples.x[samples.x.len() - 1]);
     let (mut left, mut products) = (if samples.odd { 0.0 } else { from }, 0.0);
@@ -165,23 +165,22 @@ fn running_cost(samples: &Samples, pieces: &[Piece], ends: &[usize]) -> f64 {
         left = samples.x[*end];
     }
     let breaks = (pieces.len() - 1) * if samples.odd { 2 } else { 1 };
-    products * (STEPS_OF_A_TRAVERSAL + breaks as f64)
+    products * (STEPS_PER_TRAVERSAL + breaks as f64)
 }
 
-/// The samples as the chain sees them: all of them, or the right half of odd data.
+/// The samples that the chain is built from: all of them, or the right half of odd data.
 struct Samples<'a> {
-    /// Set from elsewhere to end it: there is then no chain.
+    /// Building the chain stops without a result if another thread sets this.
     cancel: Option<&'a AtomicBool>,
     x: Vec<f64>,
     force: Vec<f64>,
-    /// How far the curve may be from `force` at each sample in N.
+    /// Allowed error of the curve at each sample in N.
     allowed: Vec<f64>,
     /// Whether the slope jumps at each sample.
     corner: Vec<bool>,
-    /// Slope at each sample in N/m, as its neighbours up to the next corner have it.
+    /// Slope in N/m at each sample, from its neighbours up to the next corner.
     slope: Vec<f64>,
-    /// Force half-way from each sample to the next by local interpolation, and how far the curve may be from
-    /// it.
+    /// Force half-way from each sample to the next by local interpolation, and the allowed error there.
     between: Vec<(f64, f64)>,
     odd: bool,
 }
@@ -205,7 +204,7 @@ impl Samples<'_> {
             let (x, force) = (table.x.clone(), table.force.clone());
             return Self { cancel: None, x, force, allowed: allowed.to_vec(), corner, slope, between, odd };
         }
-        // The right half, from 0 on whether or not there is a sample.
+        // The right half, starting at 0 whether or not there is a sample.
         let mut half = Self {
             cancel: None,
             x: vec![0.0],
@@ -216,7 +215,7 @@ impl Samples<'_> {
             between: Vec::new(),
             odd,
         };
-        // Between 0 and the first sample there is nothing to compare with where 0 is no sample itself.
+        // If 0 is not a sample, there is nothing to compare with between 0 and the first sample.
         half.between.push(if n % 2 == 1 { between[n / 2] } else { (0.0, f64::INFINITY) });
         for i in n.div_ceil(2)..n {
             let j = mirror(i);
@@ -232,7 +231,7 @@ impl Samples<'_> {
         half
     }
 
-    /// The curve of the chain's pieces, mirrored bit for bit where the data are odd.
+    /// The curve from the pieces of the chain, mirrored bit for bit if the data are odd.
     fn assemble(&self, pieces: Vec<Piece>, ends: &[usize]) -> ForceCurve {
         let last = self.x[self.x.len() - 1];
         let right: Vec<f64> = ends[..ends.len() - 1].iter().map(|i| self.x[*i]).collect();

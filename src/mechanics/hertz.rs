@@ -1,11 +1,11 @@
 //! Impact of a mass on a compliant stop, without other forces.
 //!
-//! A point contact by Hertz with the loss of Hunt and Crossley (1975, "Coefficient of restitution interpreted
-//! as damping in vibroimpact", eq. 9): the stop pushes back with k d^1.5 (1 + a d'), d the depth by which the
-//! mass has pressed it in, and never pulls. Closed forms of one contact without other forces; with them the
-//! contact is integrated, by [`dynamics`](crate::dynamics).
+//! A Hertzian point contact with the loss of Hunt and Crossley (1975, "Coefficient of restitution interpreted
+//! as damping in vibroimpact", eq. 9): the stop pushes back with k d^1.5 (1 + a d'), where d is the depth of
+//! the contact, and never pulls. This module has the closed forms of one contact without other forces;
+//! [`dynamics`](crate::dynamics) integrates a contact with other forces.
 //!
-//! Over the contact the speed is a function of the depth. With z = a d', the kinetic side of
+//! During the contact the speed is a function of the depth. With z = a d', the kinetic side of
 //! m d'' = -k d^1.5 (1 + z) integrates to gamma(z) = z - ln(1 + z), and
 //!
 //! ```text
@@ -13,7 +13,7 @@
 //! ```
 //!
 //! With gamma(z) = gamma(a v) cos^2(angle), z has the sign of the cosine and is analytic in it, so that the
-//! angle from 0 (touch) over pi/2 (deepest) to pi (separation) parametrises the whole contact without a
+//! angle from 0 (touch) over pi/2 (largest depth) to pi (separation) parametrises the whole contact without a
 //! singular speed.
 
 use std::f64::consts::PI;
@@ -21,41 +21,39 @@ use std::f64::consts::PI;
 use crate::numeric::{bisect, even_half};
 use crate::scene::Stops;
 
-/// Poisson's ratio where a scene gives none: aluminium's, as for flexures.
+/// Default of Poisson's ratio: that of aluminium, as for flexures.
 const POISSON: f64 = 0.34;
 
-/// Yield strength in Pa where a scene gives none: that of the common wrought alloy 6061-T6.
+/// Default of the yield strength in Pa: that of the common wrought alloy 6061-T6.
 const YIELD: f64 = 0.276e9;
 
-/// A point contact yields first, below its surface, where the pressure at its centre reaches this multiple of
-/// the yield strength in tension (Johnson 1985, "Contact Mechanics", section 6.1, for a Poisson's ratio of
-/// 0.3).
+/// Pressure at the centre of a point contact at which it begins to yield (below its surface), relative to the
+/// yield strength in tension (Johnson 1985, "Contact Mechanics", section 6.1, for a Poisson's ratio of 0.3).
 const PRESSURE_OVER_YIELD: f64 = 1.6;
 
-/// Half the points of the rule for the contact time. Its integrand is analytic in the fifth root of the
-/// angle, and this many take it to rounding.
+/// Half the number of points of the rule for the contact time. Its integrand is analytic in the fifth root of
+/// the angle, and this many points integrate it to rounding.
 const TIME_POINTS: usize = 40;
 
-/// Halvings of the search for the largest force: the force is flat there, so that half the digits of its
-/// place are all of its value.
-const PEAK_HALVINGS: usize = 60;
+/// Golden-section steps of the search for the largest force. The force is flat there, so that half the digits
+/// of its position give all digits of its value.
+const PEAK_STEPS: usize = 60;
 
-/// A compliant stop. SI.
+/// A compliant stop, in SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hertz {
-    /// k in N/m^1.5.
+    /// Stiffness k in N/m^1.5.
     pub stiffness: f64,
-    /// a in s/m.
+    /// Loss a in s/m.
     pub loss: f64,
-    /// What it is made of, where that is known.
+    /// Material of the contact, if known.
     pub material: Option<ContactMaterial>,
 }
 
-/// Two equal cylinders, crossed at a right angle, of one material. SI.
+/// Two equal cylinders of one material, crossed at a right angle, in SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactMaterial {
-    /// Radius in m; crossed at a right angle, two such cylinders touch like a ball of this radius and a
-    /// plane.
+    /// Radius in m; the contact is that of a ball of this radius on a plane.
     pub radius: f64,
     /// Contact modulus in Pa: 1/E* = 2 (1 - nu^2)/E.
     pub modulus: f64,
@@ -64,8 +62,7 @@ pub struct ContactMaterial {
 }
 
 impl Hertz {
-    /// The compliant stop that a scene describes; none where its stops are rigid or it has none.
-    /// Precondition: the scene has passed its check.
+    /// The compliant stop of a scene that has passed its check; `None` if its stops are rigid or absent.
     pub fn of(stops: &Stops) -> Option<Self> {
         let Stops::Hertz {
             stiffness_n_per_m1_5, loss_s_per_m, radius_mm, young_gpa, poisson, yield_gpa, ..
@@ -87,17 +84,17 @@ impl Hertz {
 
     /// Rebound speed over impact speed at `speed` in m/s, 0 or above; without other forces.
     ///
-    /// The root of ln((1 + a v)/(1 - a v e)) = a v (1 + e); it depends on a v alone, is 1 - (2/3) a v for
-    /// slow impacts and falls to 1/(a v) for fast ones. To some roundings.
+    /// The root e of ln((1 + a v)/(1 - a v e)) = a v (1 + e), to a few units of rounding. It depends on a v
+    /// alone, is 1 - (2/3) a v for slow impacts and falls to 1/(a v) for fast ones.
     pub fn restitution(&self, speed: f64) -> f64 {
-        let struck = self.loss * speed;
-        if struck > 0.0 { -rebound(gamma(struck)) / struck } else { 1.0 }
+        let impact = self.loss * speed;
+        if impact > 0.0 { -rebound(gamma(impact)) / impact } else { 1.0 }
     }
 
-    /// Loss times impact speed at which [`restitution`](Self::restitution) is this, which depends on that
-    /// product alone; 0 at a restitution of 1, and none at 0 and outside 0 to 1.
+    /// Loss times impact speed at a given [`restitution`](Self::restitution), which depends on that product
+    /// alone. It is 0 at a restitution of 1; `None` at 0 and outside 0 to 1.
     ///
-    /// By halving of its logarithm, to some roundings: the restitution falls with it.
+    /// Method: bisection of its logarithm, to a few units of rounding; the restitution falls monotonically.
     pub fn struck_for(restitution: f64) -> Option<f64> {
         if restitution == 1.0 {
             return Some(0.0);
@@ -106,8 +103,8 @@ impl Hertz {
         }
         // The restitution lies between 1 - (2/3) a v and 1/(a v).
         let (low, high) = ((0.5 * (1.0 - restitution)).ln(), -restitution.ln());
-        let one = |struck: f64| Self { stiffness: 1.0, loss: struck, material: None }.restitution(1.0);
-        let (low, high) = bisect(low, high, 80, |logarithm| one(logarithm.exp()) > restitution);
+        let at = |impact: f64| Self { stiffness: 1.0, loss: impact, material: None }.restitution(1.0);
+        let (low, high) = bisect(low, high, 80, |logarithm| at(logarithm.exp()) > restitution);
         Some((0.5 * (low + high)).exp())
     }
 
@@ -116,22 +113,22 @@ impl Hertz {
         (2.5 * mass * self.energy_speed(speed).powi(2) / (2.0 * self.stiffness)).powf(0.4)
     }
 
-    /// How long in s the impact of `mass` in kg at `speed` in m/s lasts; without other forces. Infinite at
-    /// speed 0.
+    /// Duration in s of the impact of `mass` in kg at `speed` in m/s; without other forces. Infinite
+    /// at speed 0.
     ///
-    /// Without loss (4/5) B(2/5, 1/2) d/v = 2.943 d/v, d the largest depth; with loss by Gauss' rule over the
-    /// angle, to some 1e-13.
+    /// Without loss it is (4/5) B(2/5, 1/2) d/v = 2.943 d/v, where d is the largest depth; with loss it is
+    /// integrated by Gauss' rule over the angle, to about 1e-13.
     pub fn contact_time(&self, mass: f64, speed: f64) -> f64 {
         let scale = self.energy_speed(speed);
-        let whole = self.loss * scale; // sqrt(2 gamma(a v))
+        let q_max = self.loss * scale; // sqrt(2 gamma(a v))
         let mut integral = 0.0;
         for (node, weight) in even_half(TIME_POINTS) {
             for node in [0.5 - 0.5 * node, 0.5 + 0.5 * node] {
                 // angle^(-1/5) is integrated as a polynomial in the fifth root of the angle
                 let angle = 0.5 * PI * node.powi(5);
                 let measure = 0.5 * PI * 5.0 * node.powi(4) * 0.5 * weight * angle.sin().powf(-0.2);
-                let q = whole * angle.cos();
-                integral += measure * (1.0 / speed_over_angle(q) + 1.0 / speed_over_angle(-q));
+                let q = q_max * angle.cos();
+                integral += measure * (1.0 / z_over_q(q) + 1.0 / z_over_q(-q));
             }
         }
         0.8 * self.depth(mass, speed) / scale * integral
@@ -139,16 +136,16 @@ impl Hertz {
 
     /// Largest force in N of the impact of `mass` in kg at `speed` in m/s; without other forces.
     pub fn peak_force(&self, mass: f64, speed: f64) -> f64 {
-        let whole = self.loss * self.energy_speed(speed);
+        let q_max = self.loss * self.energy_speed(speed);
         let deepest = self.stiffness * self.depth(mass, speed).powf(1.5);
         let force = |angle: f64| {
-            let q = whole * angle.cos();
-            deepest * angle.sin().powf(1.2) * (1.0 + q * speed_over_angle(q))
+            let q = q_max * angle.cos();
+            deepest * angle.sin().powf(1.2) * (1.0 + q * z_over_q(q))
         };
-        // Golden section: it has one maximum on the way in.
+        // Golden section: the force has one maximum on the way in.
         let ratio = 0.5 * (5.0_f64.sqrt() - 1.0);
         let (mut low, mut high) = (0.0, 0.5 * PI);
-        for _ in 0..PEAK_HALVINGS {
+        for _ in 0..PEAK_STEPS {
             let inner = (high - ratio * (high - low), low + ratio * (high - low));
             if force(inner.0) < force(inner.1) {
                 low = inner.0;
@@ -159,26 +156,25 @@ impl Hertz {
         force(0.5 * (low + high))
     }
 
-    /// Pressure in Pa at the centre of the contact under `force` in N; none where the material is not known.
+    /// Pressure in Pa at the centre of the contact under `force` in N; `None` if the material is not known.
     pub fn pressure(&self, force: f64) -> Option<f64> {
         self.material.map(|material| material.pressure(force))
     }
 
-    /// Depth in m to which a steady `force` in N, 0 or above, presses the stop.
+    /// Depth in m of the contact under a static `force` in N, 0 or above.
     pub fn static_depth(&self, force: f64) -> f64 {
         (force / self.stiffness).powf(2.0 / 3.0)
     }
 
-    /// Energy in J that a stop pressed in by `depth` in m gives back.
+    /// Elastic energy in J stored in the contact at `depth` in m.
     pub fn energy(&self, depth: f64) -> f64 {
         0.4 * self.stiffness * depth * depth * depth.sqrt()
     }
 
-    /// The speed whose kinetic energy goes into the elastic depth: sqrt(2 gamma(a v))/a, which is v without
-    /// loss.
+    /// The impact speed that reaches the same depth without loss: sqrt(2 gamma(a v))/a.
     fn energy_speed(&self, speed: f64) -> f64 {
-        let struck = self.loss * speed;
-        if struck > 0.0 { (2.0 * gamma(struck)).sqrt() / self.loss } else { speed }
+        let impact = self.loss * speed;
+        if impact > 0.0 { (2.0 * gamma(impact)).sqrt() / self.loss } else { speed }
     }
 }
 
@@ -193,13 +189,13 @@ impl ContactMaterial {
         (6.0 * force / (PI * self.radius * self.radius)).cbrt() * (self.modulus / PI).powf(2.0 / 3.0)
     }
 
-    /// The pressure in Pa from which on the material yields.
+    /// The pressure in Pa at which the material begins to yield.
     pub fn yield_pressure(&self) -> f64 {
         PRESSURE_OVER_YIELD * self.yield_strength
     }
 }
 
-/// z - ln(1 + z), z above -1; near 0 by its series, where the difference would lose digits.
+/// z - ln(1 + z) for z above -1; by its series near 0, where the difference would cancel.
 fn gamma(z: f64) -> f64 {
     if z.abs() > 0.1 {
         return z - z.ln_1p();
@@ -217,8 +213,8 @@ fn rebound(value: f64) -> f64 {
     inverse(-(2.0 * value).sqrt())
 }
 
-/// z over q, where gamma(z) = q^2/2 and z has the sign of q.
-fn speed_over_angle(q: f64) -> f64 {
+/// z/q, where gamma(z) = q^2/2 and z has the sign of q.
+fn z_over_q(q: f64) -> f64 {
     if q.abs() < 1e-3 {
         // z = q + q^2/3 + q^3/36 - q^4/270 + ..
         return 1.0 + q * (1.0 / 3.0 + q * (1.0 / 36.0 - q * (1.0 / 270.0 - q / 4320.0)));
@@ -226,14 +222,14 @@ fn speed_over_angle(q: f64) -> f64 {
     inverse(q) / q
 }
 
-/// The z of the sign of `q` with gamma(z) = q^2/2: with z = e^y - 1 this is e^y - 1 - y = q^2/2, convex in y,
-/// and Newton's method comes down to it from beyond.
+/// The z with the sign of `q` and gamma(z) = q^2/2. With z = e^y - 1 this is e^y - 1 - y = q^2/2, which is
+/// convex in y, so that Newton's method converges monotonically from the outer side.
 fn inverse(q: f64) -> f64 {
     let value = 0.5 * q * q;
     let mut y = if q > 0.0 { q.min((1.0 + 2.0 * value).ln() + 1.0) } else { -(value - q) };
     for _ in 0..100 {
         let slope = y.exp_m1();
-        let excess = exponential_rest(y) - value;
+        let excess = exp_minus_tangent(y) - value;
         if slope == 0.0 || !(excess > 0.0) {
             break;
         }
@@ -247,7 +243,7 @@ fn inverse(q: f64) -> f64 {
 }
 
 /// e^y - 1 - y.
-fn exponential_rest(y: f64) -> f64 {
+fn exp_minus_tangent(y: f64) -> f64 {
     if y.abs() > 0.1 {
         return y.exp_m1() - y;
     }
@@ -269,18 +265,18 @@ mod tests {
 
     #[test]
     fn restitution_solves_its_equation_and_has_its_limits() {
-        for struck in [1e-9, 1e-6, 1e-3, 0.05, 0.3, 2.427, 30.0, 1e4] {
-            let e = stop(1.0).restitution(struck);
-            assert!((0.0..1.0).contains(&e), "{struck} {e}");
+        for impact in [1e-9, 1e-6, 1e-3, 0.05, 0.3, 2.427, 30.0, 1e4] {
+            let e = stop(1.0).restitution(impact);
+            assert!((0.0..1.0).contains(&e), "{impact} {e}");
             // gamma on both sides, relative: the equation itself loses all digits at low speed
-            let sides = (gamma(struck), gamma(-struck * e));
-            if struck < 10.0 {
-                assert!((sides.0 / sides.1 - 1.0).abs() < 1e-12, "{struck} {sides:?}");
+            let sides = (gamma(impact), gamma(-impact * e));
+            if impact < 10.0 {
+                assert!((sides.0 / sides.1 - 1.0).abs() < 1e-12, "{impact} {sides:?}");
             } else {
                 // 1 + z = e^(z - gamma), and z has become -1
-                assert!((1.0 - struck * e - (-1.0 - sides.0).exp()).abs() < 1e-14, "{struck} {e}");
+                assert!((1.0 - impact * e - (-1.0 - sides.0).exp()).abs() < 1e-14, "{impact} {e}");
             }
-            assert!(struck > 1e-3 || ((1.0 - e) / (2.0 / 3.0 * struck) - 1.0).abs() < 2.0 * struck + 1e-6);
+            assert!(impact > 1e-3 || ((1.0 - e) / (2.0 / 3.0 * impact) - 1.0).abs() < 2.0 * impact + 1e-6);
         }
         assert!((stop(2.427).restitution(1.0) - 0.36).abs() < 1e-4);
         assert!((stop(1.0).restitution(1e4) * 1e4 - 1.0).abs() < 1e-9);

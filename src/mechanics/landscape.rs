@@ -1,33 +1,34 @@
 //! Potential landscape: equilibria, barrier, force extrema and kinks of a force curve.
 //!
 //! Everything follows from the real roots of each piece's force and of its derivative
-//! ([`real_roots`](crate::numeric::real_roots)). What a root is (stable or not, an extremum or a mere
-//! touching) is told by the sign half-way to its neighbours, not by a derivative at it: this also holds at a
-//! break, where there are two derivatives, and at a double root, where there is none to go by.
+//! ([`real_roots`](crate::numeric::real_roots)). A root is classified (stable or unstable, extremum or mere
+//! touching) by the signs half-way to its neighbours and not by a derivative at the root. This also works at
+//! a break, where there are two derivatives, and at a double root, where the derivative is 0.
 
 use super::curve::{ForceCurve, Piece};
 use crate::numeric::real_roots::{derivative, real_roots, rounding, value_and_magnitude};
 use crate::numeric::{Turn, turns};
 
-/// A jump of the slope counts as a kink from this part of the slope's own terms on. Pieces that were made to
-/// meet smoothly do so to some 1e-12.
-const KINK: f64 = 1e-6;
+/// Smallest jump of the slope at a kink, relative to the terms of the slope. Pieces that meet smoothly agree
+/// to about 1e-12.
+const KINK_JUMP: f64 = 1e-6;
 
-/// Roots nearer to a break than this part of the piece are the break, where the force vanishes there to
-/// rounding or an extremum is looked for: two pieces that meet place such a root up to rounding, one inside
-/// and one outside its interval, or both.
+/// Roots closer to a break than this share of the piece's length are merged with the break, if the force is 0
+/// there to rounding or if extrema are searched. Two adjacent pieces locate such a root only to rounding, so
+/// that it may fall inside either interval, both or neither.
 const AT_BREAK: f64 = 1e-10;
 
-/// A kink is beside a well up to this part of the well's distance from the barrier (from x = 0 where there is
-/// none): a pluck that is small against the well then swings over both sides of it.
-const BESIDE: f64 = 0.01;
+/// Largest distance of a kink from a well that it belongs to, relative to the well's distance from the
+/// barrier (from x = 0 without a barrier): a motion that is small against the well still swings over
+/// both its sides.
+const KINK_NEAR_WELL: f64 = 0.01;
 
-/// A place where the restoring force vanishes.
+/// A position where the restoring force is 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Equilibrium {
     /// Position in m.
     pub x: f64,
-    /// Whether the force drives back on both sides; not where one side is outside the domain.
+    /// Whether the force is restoring on both sides; false if one side is outside the domain.
     pub stable: bool,
     /// Stiffness just left of it in N/m; NaN at the left end of the domain.
     pub stiffness_left: f64,
@@ -35,7 +36,7 @@ pub struct Equilibrium {
     pub stiffness_right: f64,
 }
 
-/// The top between two wells.
+/// The potential maximum between two wells.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Barrier {
     /// Position in m.
@@ -50,15 +51,15 @@ pub struct Barrier {
     pub from_right_j: f64,
 }
 
-/// A well of the potential: a stable equilibrium and what lies around it.
+/// A well of the potential: a stable equilibrium and the barriers on both sides.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Well {
     /// Position of the equilibrium in m.
     pub x: f64,
-    /// Top of the barrier to the well on its left in m; none where there is no such well.
+    /// Position in m of the barrier towards the well on its left; `None` if there is no such well.
     pub left_top: Option<f64>,
-    /// The same to the right.
+    /// Position in m of the barrier towards the well on its right; `None` if there is no such well.
     pub right_top: Option<f64>,
 }
 
@@ -82,13 +83,13 @@ pub struct Kink {
     pub stiffness_right: f64,
 }
 
-/// A kink so near to a well that a small pluck swings over both of its sides.
+/// A kink so close to a well that even a small motion swings over both sides of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KinkAtWell {
     /// Position of the kink in m.
     pub x: f64,
-    /// Stiffness in N/m on the side towards the barrier, above 0; of a kink in the middle of a single well
-    /// the smaller.
+    /// Stiffness in N/m on the side towards the barrier, above 0; for a kink in the middle of a single well,
+    /// the smaller of the two.
     pub inner: f64,
     /// Stiffness in N/m on the other side, above 0.
     pub outer: f64,
@@ -97,36 +98,36 @@ pub struct KinkAtWell {
 /// Equilibria, barrier, force extrema and kinks of one force curve, each from left to right.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Landscape {
-    /// Every place where the force vanishes; an interval on which it does, ends and all, counts for none.
+    /// Every isolated position where the force is 0; intervals of zero force are left out, with their ends.
     pub equilibria: Vec<Equilibrium>,
-    /// The barrier between the wells: with more than two wells the one nearest to x = 0, of two as near the
-    /// right one.
+    /// The barrier between the wells; with more than two wells the one nearest to x = 0, and of two equally
+    /// near ones the right one.
     pub barrier: Option<Barrier>,
-    /// Position in m of the left one of two barriers that are as near to x = 0.
+    /// Position in m of the left one of two barriers that are equally near to x = 0.
     pub left_barrier: Option<f64>,
-    /// Local extrema of the force inside the domain, smooth or corners; of a fitted curve those that stand
-    /// out from the error of the fit.
+    /// Local extrema of the force inside the domain, smooth or corners; for a fitted curve only those that
+    /// exceed the error of the fit.
     pub extrema: Vec<ForceExtremum>,
     /// Corners of the force: breaks at which the slope jumps by more than a millionth.
     pub kinks: Vec<Kink>,
 }
 
 impl Landscape {
-    /// The landscape of a curve; exactly symmetric where the curve is odd.
+    /// The landscape of a curve; exactly symmetric if the curve is odd.
     ///
-    /// Guarantee: complete (the root finder misses none); positions to rounding as far as their conditioning
-    /// allows; a pair of roots that rounding cannot tell from a touching counts as one.
+    /// Guarantee: complete (the root finder misses no root); positions are accurate to rounding times their
+    /// condition number; a pair of roots that rounding cannot separate counts as one.
     pub fn of(curve: &ForceCurve) -> Self {
-        Self::within(curve, curve.fit().map_or(0.0, |fit| fit.worst_n))
+        Self::with_error(curve, curve.fit().map_or(0.0, |fit| fit.worst_n))
     }
 
-    /// As [`of`](Self::of), for a curve that may be off by `error` in N.
-    pub(super) fn within(curve: &ForceCurve, error: f64) -> Self {
+    /// Like [`of`](Self::of), for a curve with an error of up to `error` in N.
+    pub(super) fn with_error(curve: &ForceCurve, error: f64) -> Self {
         let mut landscape = Self {
             equilibria: equilibria(curve),
             barrier: None,
             left_barrier: None,
-            extrema: clear_of(curve, extrema(curve), 2.0 * error),
+            extrema: prominent(curve, extrema(curve), 2.0 * error),
             kinks: kinks(curve),
         };
         if curve.is_odd() {
@@ -163,8 +164,8 @@ impl Landscape {
         self.equilibria.iter().rev().find(|e| e.stable)
     }
 
-    /// Position that the mass passes in a crossing, in m: the top of the barrier, or the equilibrium of the
-    /// only well.
+    /// Position in m that the mass passes when it crosses: the top of the barrier, or the equilibrium of a
+    /// single well.
     pub fn crossing_position(&self) -> Option<f64> {
         match &self.barrier {
             Some(barrier) => Some(barrier.x),
@@ -175,19 +176,20 @@ impl Landscape {
     /// The stiffness in N/m that a damping ratio refers to: the [`inner_stiffness`](Self::inner_stiffness) of
     /// the right-most stable equilibrium.
     ///
-    /// None where no equilibrium is stable or this stiffness is not above 0.
+    /// Returns `None` if no equilibrium is stable or this stiffness is not above 0.
     pub fn damping_stiffness(&self) -> Option<f64> {
         let stiffness = self.inner_stiffness(self.right_stable()?);
         (stiffness > 0.0).then_some(stiffness)
     }
 
     /// The stiffness in N/m of a stable equilibrium on its inner side (towards the barrier, or towards x = 0
-    /// where there is none).
+    /// without a barrier).
     ///
-    /// Where the equilibrium lies at or beyond a kink, seen from there, it is the slope just inside that
-    /// kink, so that it does not jump while the equilibrium moves across: of several kinks the nearest one
-    /// with a slope above 0 (one on the way down from the barrier says nothing about the well). At a kink
-    /// without an inner side (a single well with its corner at x = 0) it is the smaller of the two.
+    /// If the equilibrium lies at a kink or on its outer side, this is the slope just inside that kink, so
+    /// that it does not jump when the equilibrium moves across the kink. Of several kinks the nearest one
+    /// with a slope above 0 counts (one on the slope down from the barrier does not characterise the
+    /// well). At a kink without an inner side (a single well with its corner at x = 0) it is the smaller
+    /// of both slopes.
     pub fn inner_stiffness(&self, well: &Equilibrium) -> f64 {
         let middle = self.middle();
         match self.kink_inside(well) {
@@ -199,13 +201,13 @@ impl Landscape {
         }
     }
 
-    /// The kink whose inner slope [`damping_stiffness`](Self::damping_stiffness) is; none where that is the
-    /// slope at the equilibrium itself.
+    /// The kink whose inner slope is the [`damping_stiffness`](Self::damping_stiffness); `None` if that is
+    /// the slope at the equilibrium itself.
     pub fn damping_kink(&self) -> Option<&Kink> {
         self.kink_inside(self.right_stable()?)
     }
 
-    /// The kink whose inner slope [`inner_stiffness`](Self::inner_stiffness) is, where there is one.
+    /// The kink whose inner slope is the [`inner_stiffness`](Self::inner_stiffness), if any.
     fn kink_inside(&self, well: &Equilibrium) -> Option<&Kink> {
         let middle = self.middle();
         let beyond = |kink: &&Kink| {
@@ -215,13 +217,13 @@ impl Landscape {
         nearest(self.kinks.iter().filter(beyond), well.x)
     }
 
-    /// The kink beside the right-most stable equilibrium, on either side of it, where there is one within 1 %
-    /// of its distance from the barrier, and the force rises on both sides of that kink: there *the*
-    /// stiffness of the well is a matter of definition.
+    /// The kink on either side of the right-most stable equilibrium within 1 % of its distance from
+    /// the barrier, if the force rises on both sides of that kink. The stiffness of such a well is a
+    /// matter of definition.
     pub fn kink_at_right_well(&self) -> Option<KinkAtWell> {
         let well = self.right_stable()?;
         let middle = self.middle();
-        let near = BESIDE * (well.x - middle).abs();
+        let near = KINK_NEAR_WELL * (well.x - middle).abs();
         let beside = |kink: &&Kink| {
             (kink.x - well.x).abs() <= near && kink.stiffness_left > 0.0 && kink.stiffness_right > 0.0
         };
@@ -235,15 +237,15 @@ impl Landscape {
         Some(KinkAtWell { x: kink.x, inner, outer })
     }
 
-    /// Position in m of the barrier, or 0 where there is none: what a well's inner side looks towards.
+    /// Position in m of the barrier, or 0 without one: the side of a well towards it is the inner side.
     fn middle(&self) -> f64 {
         self.barrier.map_or(0.0, |barrier| barrier.x)
     }
 
-    /// Takes rounding out of the symmetry of an odd curve: the left half becomes the mirror image of the
-    /// right.
+    /// Makes the landscape of an odd curve exactly symmetric: the left half becomes the mirror image of the
+    /// right half.
     fn mirror(&mut self) {
-        fold(
+        mirror_right_half(
             &mut self.equilibria,
             |e| e.x,
             |e| Equilibrium {
@@ -253,8 +255,8 @@ impl Landscape {
                 ..*e
             },
         );
-        fold(&mut self.extrema, |e| e.x, |e| ForceExtremum { x: -e.x, force: -e.force });
-        fold(
+        mirror_right_half(&mut self.extrema, |e| e.x, |e| ForceExtremum { x: -e.x, force: -e.force });
+        mirror_right_half(
             &mut self.kinks,
             |k| k.x,
             |k| Kink { x: -k.x, stiffness_left: k.stiffness_right, stiffness_right: k.stiffness_left },
@@ -266,23 +268,27 @@ fn nearest<'a>(kinks: impl Iterator<Item = &'a Kink>, x: f64) -> Option<&'a Kink
     kinks.min_by(|a, b| (a.x - x).abs().total_cmp(&(b.x - x).abs()))
 }
 
-/// Keeps what stands at x >= 0 and puts its mirror image before it.
-fn fold<T: Clone>(all: &mut Vec<T>, x: impl Fn(&T) -> f64, mirrored: impl Fn(&T) -> T) {
+/// Replaces the elements at x < 0 with mirror images of those at x > 0.
+fn mirror_right_half<T: Clone>(all: &mut Vec<T>, x: impl Fn(&T) -> f64, mirrored: impl Fn(&T) -> T) {
     let right: Vec<T> = all.iter().filter(|t| x(t) >= 0.0).cloned().collect();
     *all = right.iter().rev().filter(|t| x(t) > 0.0).map(mirrored).chain(right.iter().cloned()).collect();
 }
 
-/// Places at which `of` a piece (its force, or its stiffness) may change sign: its roots inside, and
-/// every break, ascending. A break that is `one` itself takes the place of the roots beside it.
-fn candidates(curve: &ForceCurve, of: impl Fn(&Piece) -> Vec<f64>, one: impl Fn(f64) -> bool) -> Vec<f64> {
+/// Positions at which a polynomial of each piece (its force or its stiffness) may change sign, ascending: its
+/// roots inside the piece and every break. A break for which `is_root` holds replaces the roots beside it.
+fn candidates(
+    curve: &ForceCurve,
+    polynomial: impl Fn(&Piece) -> Vec<f64>,
+    is_root: impl Fn(f64) -> bool,
+) -> Vec<f64> {
     let mut found: Vec<f64> = curve.breaks().to_vec();
     for (i, piece) in curve.pieces().iter().enumerate() {
         let (left, right) = curve.piece_interval(i);
         let length = right - left;
         let near = if length.is_finite() { AT_BREAK * length } else { 0.0 };
-        let roots = real_roots(&of(piece), left - piece.origin, right - piece.origin);
+        let roots = real_roots(&polynomial(piece), left - piece.origin, right - piece.origin);
         found.extend(roots.into_iter().map(|y| y + piece.origin).filter(|x| {
-            let beside = |end: f64, is_break: bool| is_break && (x - end).abs() <= near && one(end);
+            let beside = |end: f64, is_break: bool| is_break && (x - end).abs() <= near && is_root(end);
             *x >= left && *x <= right && !beside(left, i > 0) && !beside(right, i + 1 < curve.pieces().len())
         }));
     }
@@ -291,10 +297,10 @@ fn candidates(curve: &ForceCurve, of: impl Fn(&Piece) -> Vec<f64>, one: impl Fn(
     found
 }
 
-/// The signs just left and just right of each candidate, told half-way to its neighbours or to the end of
-/// the domain; 0 beyond it.
+/// The signs on the left and on the right of each candidate, evaluated half-way to its neighbour or to the
+/// end of the domain; 0 outside the domain.
 fn signs_beside(candidates: &[f64], domain: (f64, f64), sign: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
-    let far = candidates.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
+    let far = candidates.iter().fold(0.0_f64, |largest, c| largest.max(c.abs()));
     let ends = (domain.0.max(-2.0 * far - 1.0), domain.1.min(2.0 * far + 1.0));
     let inside = |a: f64, b: f64| {
         let middle = 0.5 * a + 0.5 * b;
@@ -314,7 +320,7 @@ fn sign_of(value: f64) -> f64 {
     if value == 0.0 || value.is_nan() { 0.0 } else { value.signum() }
 }
 
-/// Whether one of the pieces that meet at `x` has a force there that is 0 to rounding.
+/// Whether the force at `x` is 0 to rounding in one of the pieces that meet there.
 fn vanishes(curve: &ForceCurve, x: f64) -> bool {
     let i = curve.piece_index(x);
     [i.checked_sub(1), Some(i), Some(i + 1)].into_iter().flatten().any(|i| {
@@ -331,7 +337,8 @@ fn equilibria(curve: &ForceCurve) -> Vec<Equilibrium> {
     let (low, high) = curve.domain();
     let mut found = Vec::new();
     for (x, (before, after)) in zeros.into_iter().zip(signs) {
-        // A break is a candidate whatever the force there; and beside an interval of zeros the sign is 0.
+        // Every break is a candidate, so check that the force is 0 there. Next to an interval of zero force
+        // the sign is 0.
         let is_break = curve.breaks().contains(&x);
         if is_break && before * after >= 0.0 && !vanishes(curve, x) {
             continue;
@@ -377,18 +384,18 @@ fn extrema(curve: &ForceCurve) -> Vec<ForceExtremum> {
         .collect()
 }
 
-/// The extrema from which the force goes back by more than `least` in N, before the next one or the end of
-/// the domain: an error of half of that may have made the others.
-fn clear_of(curve: &ForceCurve, extrema: Vec<ForceExtremum>, least: f64) -> Vec<ForceExtremum> {
-    if least == 0.0 {
+/// The extrema from which the force retreats by more than `prominence` in N before the next one or the end of
+/// the domain. An error of half that size could produce the other extrema.
+fn prominent(curve: &ForceCurve, extrema: Vec<ForceExtremum>, prominence: f64) -> Vec<ForceExtremum> {
+    if prominence == 0.0 {
         return extrema;
     }
     let (low, high) = curve.domain();
     let between = extrema.iter().map(|extremum| extremum.force);
     let forces: Vec<f64> = [curve.force(low)].into_iter().chain(between).chain([curve.force(high)]).collect();
-    // the first turning point is where the force begins, or no farther from it than that
-    let clear = |turn: &&Turn| (forces[turn.at] - forces[0]).abs() > least;
-    let all = turns(&forces, least);
+    // the first turning point may be the end of the domain, or too close to the force there
+    let clear = |turn: &&Turn| (forces[turn.at] - forces[0]).abs() > prominence;
+    let all = turns(&forces, prominence);
     let first = all.first().filter(clear);
     first.into_iter().chain(all.iter().skip(1)).map(|turn| extrema[turn.at - 1]).collect()
 }
@@ -399,7 +406,7 @@ fn kinks(curve: &ForceCurve) -> Vec<Kink> {
         let slope = |piece: &Piece| value_and_magnitude(&derivative(&piece.coefficients), x - piece.origin);
         let (stiffness_left, terms_left) = slope(&curve.pieces()[i]);
         let (stiffness_right, terms_right) = slope(&curve.pieces()[i + 1]);
-        if (stiffness_right - stiffness_left).abs() > KINK * terms_left.max(terms_right) {
+        if (stiffness_right - stiffness_left).abs() > KINK_JUMP * terms_left.max(terms_right) {
             found.push(Kink { x, stiffness_left, stiffness_right });
         }
     }

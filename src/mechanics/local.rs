@@ -1,19 +1,20 @@
-//! Local properties of samples: corners, slopes, interpolation and roughness.
+//! Local properties of sampled forces: corners, slopes, interpolation and roughness.
 
 use std::ops::Range;
 
 use super::table::ForceTable;
 
-/// A corner is a jump of the slope that is this many times the uncertainty of the two one-sided slopes.
-/// Smooth data stay below 1 (the jump is of second order in the spacing, the uncertainty of first); a corner
-/// within a quarter of an interval from a sample is still recognised at 4.
+/// Smallest jump of the slope at a corner, relative to the uncertainty of the two one-sided slopes. Smooth
+/// data stay below 1 (the jump is of second order in the spacing, the uncertainty of first order); with 4, a
+/// corner within a quarter of an interval from a sample is still recognised.
 const CORNER_OVER_UNCERTAINTY: f64 = 4.0;
 
-/// How far, in tolerances, a piece may be from the local interpolant half-way between two samples. That
-/// interpolant passes on the errors of its samples some 1.5-fold, the piece has one tolerance of its own.
+/// Allowed distance, in tolerances, of a piece from the local interpolant half-way between two
+/// samples. The interpolant amplifies the errors of its samples about 1.5 times, and the piece may be
+/// off by one tolerance.
 const BETWEEN_SAMPLES: f64 = 3.0;
 
-/// Typical distance in N of a sample from the cubic through its four neighbours: the median over the table.
+/// Median distance in N of a sample from the cubic through its four neighbours.
 pub(super) fn roughness(table: &ForceTable) -> f64 {
     let mut misses: Vec<f64> = (2..table.x.len().saturating_sub(2))
         .map(|i| {
@@ -33,13 +34,13 @@ pub(super) fn roughness(table: &ForceTable) -> f64 {
     misses.get(misses.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// At which samples does the slope jump?
+/// Whether the slope jumps at each sample.
 ///
-/// One-sided slopes from the parabola through a sample and its two neighbours on that side; their uncertainty
-/// is what the parabola changes against the chord. A corner stands out from it ([`CORNER_OVER_UNCERTAINTY`])
-/// and is large enough to matter: over half the nearest interval it makes more force than twice what is
-/// `allowed`. A corner between two samples is not placed here; the chain then breaks on both sides of it by
-/// itself.
+/// A one-sided slope is that of the parabola through a sample and its two neighbours on that side; its
+/// uncertainty is its difference from the slope of the chord. A corner exceeds the uncertainty
+/// ([`CORNER_OVER_UNCERTAINTY`]) and is large enough to matter: over half the nearest interval it changes the
+/// force by more than twice the `allowed` error. A corner between two samples is not located here; the chain
+/// then breaks on both sides of it.
 pub(super) fn corners(x: &[f64], force: &[f64], allowed: &[f64]) -> Vec<bool> {
     let chord = |i: usize, j: usize| (force[j] - force[i]) / (x[j] - x[i]);
     let one_sided = |at: usize, near: usize, far: usize| {
@@ -49,18 +50,18 @@ pub(super) fn corners(x: &[f64], force: &[f64], allowed: &[f64]) -> Vec<bool> {
     };
     let mut corner = vec![false; x.len()];
     for i in 2..x.len().saturating_sub(2) {
-        let (left, unsure_left) = one_sided(i, i - 1, i - 2);
-        let (right, unsure_right) = one_sided(i, i + 1, i + 2);
+        let (left, uncertainty_left) = one_sided(i, i - 1, i - 2);
+        let (right, uncertainty_right) = one_sided(i, i + 1, i + 2);
         let jump = (right - left).abs();
         let nearest = (x[i + 1] - x[i]).min(x[i] - x[i - 1]);
-        corner[i] = jump > CORNER_OVER_UNCERTAINTY * (unsure_left + unsure_right)
+        corner[i] = jump > CORNER_OVER_UNCERTAINTY * (uncertainty_left + uncertainty_right)
             && 0.5 * jump * nearest > 2.0 * allowed[i];
     }
     corner
 }
 
-/// Samples `first..=last` and up to `each` more on either side, not beyond a corner (a single sample that is
-/// a corner itself looks to both sides).
+/// Samples `first..=last` and up to `each` more on either side, not beyond a corner (around a single sample
+/// that is itself a corner, both sides are included).
 fn neighbours(first: usize, last: usize, each: usize, corner: &[bool]) -> Range<usize> {
     let (mut low, mut high) = (first, last);
     for _ in 0..each {
@@ -70,11 +71,11 @@ fn neighbours(first: usize, last: usize, each: usize, corner: &[bool]) -> Range<
     low..high + 1
 }
 
-/// Slope at each sample: that of the polynomial through it and up to two neighbours on each side, not
-/// beyond a corner. At a corner itself, of no use.
+/// Slope at each sample of the polynomial through it and up to two neighbours on each side, not beyond a
+/// corner. The slope at a corner itself is meaningless.
 pub(super) fn slopes(x: &[f64], force: &[f64], corner: &[bool]) -> Vec<f64> {
     let slope_at = |i: usize| {
-        // Derivative of Lagrange's form at one of its own nodes.
+        // derivative of Lagrange's form at one of its nodes
         let near = neighbours(i, i, 2, corner);
         let mut slope = 0.0;
         for a in near.clone().filter(|a| *a != i) {
@@ -89,8 +90,8 @@ pub(super) fn slopes(x: &[f64], force: &[f64], corner: &[bool]) -> Vec<f64> {
     (0..x.len()).map(slope_at).collect()
 }
 
-/// The force half-way between each sample and the next, and how far a curve may be from it: the tolerance a
-/// few times, and the difference between the interpolants through six and through four neighbours.
+/// The force half-way between each sample and the next, and the allowed distance of a curve from it: a few
+/// tolerances plus the difference between the interpolants through six and through four neighbours.
 pub(super) fn between(x: &[f64], force: &[f64], corner: &[bool], allowed: &[f64]) -> Vec<(f64, f64)> {
     let interpolant = |near: Range<usize>, at: f64| {
         let mut sum = 0.0;

@@ -1,28 +1,30 @@
-//! Force between two magnets that pass each other, as dipoles in closed form and as a piecewise polynomial.
+//! Force between two dipole magnets that pass each other, in closed form and as a piecewise polynomial.
 //!
-//! Both magnets are magnetised along the line that joins them where they face each other, at x = 0, the gap g
-//! apart; one moves with the mass, across that line. As point dipoles with parallel moments they have the
-//! energy U = K (1/r^3 - 3 g^2/r^5) with r^2 = x^2 + g^2 (Griffiths 1999, "Introduction to Electrodynamics",
-//! third edition, equation 6.35), where K = mu_0 m_1 m_2/(4 pi) is the strength. So the force dU/dx that
-//! holds the mass is F = 3 K x (4 g^2 - x^2)/r^7, with the stiffness 12 K/g^5 in the middle and zeros
-//! at x = +-2 g. K above 0 is attraction at the middle, below 0 (antiparallel moments) repulsion.
+//! The magnets face each other at x = 0 across the gap g and are magnetised along the line that joins them
+//! there; one moves with the mass, perpendicular to that line. As point dipoles with parallel moments they
+//! have the energy U = K (1/r^3 - 3 g^2/r^5) with r^2 = x^2 + g^2 (Griffiths 1999, "Introduction to
+//! Electrodynamics", third edition, equation 6.35), where K = mu_0 m_1 m_2/(4 pi) is the strength. The
+//! force dU/dx that holds the mass is F = 3 K x (4 g^2 - x^2)/r^7, with the stiffness 12 K/g^5 at x = 0 and
+//! zeros at x = +-2 g. The magnets attract each other at x = 0 for K above 0 and repel each other for K
+//! below 0 (antiparallel moments).
 //!
-//! Left out is the size of the magnets: those longer or wider than the gap are weaker than their dipoles.
+//! The size of the magnets is neglected: magnets longer or wider than the gap are weaker than their dipoles.
 
 use std::sync::OnceLock;
 
 use super::curve::{FitReport, ForceCurve, Piece};
-use super::fit::{fit_within, within};
+use super::fit::{allowed_error, fit_within};
 use super::table::ForceTable;
 
-/// How far the pieces reach, in gaps: the force beyond is a hundred millionth of its maximum, or less.
+/// Half the length of the curve's domain in gaps; the force beyond is at most 1e-8 of its maximum.
 const REACH: f64 = 100.0;
 
-/// Error allowed to the pieces, relative to the largest force, up to the last extremum of the force. Beyond
-/// it the error allowed falls as the force does, so that the far field keeps its digits: 2e-6 of itself.
+/// Allowed error of the pieces relative to the largest force, up to the last extremum of the force.
+/// Beyond it the allowed error falls in proportion to the force, so that the far field stays accurate to
+/// 2e-6 of itself.
 const TOLERANCE: f64 = 1e-8;
 
-/// The limit of the degree: the cheapest one where the mass is near the other magnet.
+/// Largest degree of a piece: the one that makes a run near the other magnet the cheapest.
 const DEGREE: usize = 9;
 
 /// The square of the last extremum of the force in gaps, a root of 4 s^2 - 27 s + 4.
@@ -30,16 +32,16 @@ fn last_extremum_squared() -> f64 {
     (27.0 + 665_f64.sqrt()) / 8.0
 }
 
-/// Samples that the pieces are made from: enough for a local interpolant to know the force between them
-/// better than the tolerance.
+/// Number of samples that the pieces are fitted to: enough for local interpolation between them to be more
+/// accurate than the tolerance.
 const SAMPLES: usize = 801;
 
-/// Places between two samples where the error is measured.
-const BETWEEN: usize = 16;
+/// Number of intervals between two samples at whose ends the error is measured.
+const CHECKS_PER_SAMPLE: usize = 16;
 
-/// How much larger than the largest measured error the true one may be: the error is a polynomial with some
-/// fifteen extrema a piece, each of which is met by tens of places.
-const BETWEEN_PLACES: f64 = 1.01;
+/// Ratio of the true largest error to the largest measured one, at most: the error has about fifteen extrema
+/// per piece, each of which is sampled by tens of checks.
+const CHECK_MARGIN: f64 = 1.01;
 
 /// F in units of K/g^4 at x = u g.
 fn unit_force(u: f64) -> f64 {
@@ -54,15 +56,15 @@ pub fn magnet_force(strength: f64, gap: f64, x: f64) -> f64 {
 
 /// Energy in J at `x` in m over that at x = 0, of a magnet of `strength` in N m^4 at a `gap` in m.
 pub fn magnet_potential(strength: f64, gap: f64, x: f64) -> f64 {
-    // 1/r^3 - 3/r^5 + 2 without the difference of numbers near each other: with s = r^2 - 1 and p = r^5 it
-    // is (s - 2 + 2 p)/p, and 2 p - 2 = 2 ((1 + s)^5 - 1)/(p + 1)
+    // 1/r^3 - 3/r^5 + 2 without cancellation: with s = r^2 - 1 and p = r^5 it is (s - 2 + 2 p)/p, and
+    // 2 p - 2 = 2 ((1 + s)^5 - 1)/(p + 1)
     let s = (x / gap).powi(2);
     let p = (1.0 + s).powi(2) * (1.0 + s).sqrt();
     let grown = s * (5.0 + s * (10.0 + s * (10.0 + s * (5.0 + s))));
     strength / gap.powi(3) * ((s + 2.0 * grown / (p + 1.0)) / p)
 }
 
-/// The curve of strength and gap 1, made once. Its report has the error in the same units.
+/// The curve for strength 1 and gap 1, computed once. Its report has the error in the same units.
 fn unit_curve() -> Result<&'static ForceCurve, String> {
     static UNIT: OnceLock<Result<ForceCurve, String>> = OnceLock::new();
     UNIT.get_or_init(|| {
@@ -74,32 +76,32 @@ fn unit_curve() -> Result<&'static ForceCurve, String> {
         let x: Vec<f64> = (0..SAMPLES).map(|i| place(i as f64)).collect();
         let force = x.iter().map(|u| unit_force(*u)).collect();
         let table = ForceTable { x, force };
-        let (near, last) = (within(&table, TOLERANCE), last_extremum_squared().sqrt());
-        let far = |u: &f64| if u.abs() > last { unit_force(*u) / unit_force(last) } else { 1.0 };
-        let allowed: Vec<f64> = table.x.iter().map(|u| near * far(u).abs()).collect();
+        let (near, last) = (allowed_error(&table, TOLERANCE), last_extremum_squared().sqrt());
+        let falloff = |u: &f64| if u.abs() > last { unit_force(*u) / unit_force(last) } else { 1.0 };
+        let allowed: Vec<f64> = table.x.iter().map(|u| near * falloff(u).abs()).collect();
         let curve = fit_within(&table, &allowed, &[DEGREE], None)?;
-        let places = BETWEEN * (SAMPLES - 1);
+        let checks = CHECKS_PER_SAMPLE * (SAMPLES - 1);
         let reach = curve.domain().1;
         let (mut worst_n, mut worst_at_m, mut scale_n) = (0.0_f64, 0.0, 0.0_f64);
-        for i in 0..=places {
-            let u = place(i as f64 / BETWEEN as f64).clamp(-reach, reach);
-            let error = BETWEEN_PLACES * (curve.force(u) - unit_force(u)).abs();
+        for i in 0..=checks {
+            let u = place(i as f64 / CHECKS_PER_SAMPLE as f64).clamp(-reach, reach);
+            let error = CHECK_MARGIN * (curve.force(u) - unit_force(u)).abs();
             scale_n = scale_n.max(unit_force(u).abs());
             if error > worst_n {
                 (worst_n, worst_at_m) = (error, u);
             }
         }
         let warnings = Vec::new();
-        Ok(curve.with_fit(FitReport { worst_n, worst_at_m, scale_n, samples: places + 1, warnings }))
+        Ok(curve.with_fit(FitReport { worst_n, worst_at_m, scale_n, samples: checks + 1, warnings }))
     })
     .as_ref()
     .map_err(Clone::clone)
 }
 
 /// The curve of a magnet of `strength` in N m^4 at a `gap` in m above 0, up to 100 gaps to either side. Its
-/// report has the largest error against the closed form. A strength of 0 is no force anywhere.
+/// report has the largest error against the closed form. The force is 0 everywhere for a strength of 0.
 ///
-/// Fails with a sentence where the numbers leave the range of double precision.
+/// The error, if the numbers leave the range of double precision, is a sentence.
 pub fn magnet(strength: f64, gap: f64) -> Result<ForceCurve, String> {
     if strength == 0.0 {
         return Ok(ForceCurve::polynomial(&[0.0]));

@@ -1,4 +1,4 @@
-//! Statics: restoring forces and their potential landscapes.
+//! Static mechanics: restoring forces and their potential landscapes.
 
 mod curve;
 mod fit;
@@ -16,7 +16,7 @@ pub use flexure::{FlexureError, Flexures};
 pub use hertz::{ContactMaterial, Hertz};
 pub use landscape::{Barrier, Equilibrium, ForceExtremum, Kink, KinkAtWell, Landscape, Well};
 pub use magnet::{magnet_force, magnet_potential};
-pub use table::{FEWEST_POINTS, ForceTable, MOST_POINTS, TableError};
+pub use table::{ForceTable, MAX_POINTS, MIN_POINTS, TableError};
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -25,22 +25,23 @@ use self::fit::fit_unless;
 use self::flexure::{Geometry, Group};
 use crate::scene::{self, Fault, Files, FlexureGroup};
 
-/// A mechanism as run: its force curve and what follows from it.
+/// A mechanism in SI units: its force curve and what follows from it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mechanism {
     /// The force curve.
     pub curve: ForceCurve,
     /// Its equilibria, barrier, extrema and kinks.
     pub landscape: Landscape,
-    /// The flexures behind the curve, where there are such; of a sum those of its only part with flexures.
+    /// The flexures that the curve was computed from, if any; for a sum, those of its only
+    /// part with flexures.
     pub flexures: Option<Arc<Flexures>>,
-    /// The spring or the magnets behind the curve, where it is one of these; of a sum none.
+    /// The spring or the magnets that the curve describes, if it is one of these; `None` for a sum.
     pub element: Option<Element>,
-    /// The parts of a sum; of any other mechanism none.
+    /// The parts of a sum; empty for any other mechanism.
     pub parts: Vec<Self>,
 }
 
-/// A part that is more than its curve. SI.
+/// Parameters of a mechanism that is a spring or a pair of magnets, in SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Element {
     /// A spring without force at x = 0.
@@ -48,7 +49,7 @@ pub enum Element {
         /// In N/m.
         stiffness: f64,
     },
-    /// Two magnets that face each other at x = 0, as dipoles.
+    /// Two dipole magnets that face each other at x = 0.
     Magnets {
         /// In N m^4; above 0 they attract each other at x = 0.
         strength: f64,
@@ -57,13 +58,13 @@ pub enum Element {
     },
 }
 
-/// Why a mechanism has no force curve.
+/// Reason why a mechanism has no force curve.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BuildError {
     /// The scene or a file that it names is wrong.
     #[error("{} = {}: {}", .0.field, .0.value, .0.problem)]
     Wrong(Fault),
-    /// The scene is right, and its flexures were not solved.
+    /// The scene is valid, but the solver failed on its flexures.
     #[error(transparent)]
     Unsolved(#[from] FlexureError),
 }
@@ -74,22 +75,22 @@ impl From<Fault> for BuildError {
     }
 }
 
-/// Error of the force of flexures, relative to its maximum between the wells. The same for every
-/// study: far below what a beam leaves out of a real flexure, so that nobody need think of it.
+/// Error of the force of flexures, relative to its maximum between the wells. It is the same for every study
+/// and far below the difference between a beam model and a real flexure.
 pub const FLEXURE_TOLERANCE: f64 = 1e-8;
 
 impl Mechanism {
-    /// Builds the curve that a scene describes; the scene has passed its range check.
+    /// Builds the curve of the mechanism in a scene that has passed its range check.
     ///
     /// Polynomials enter exactly, as one piece; a table is read from `files` and fitted; flexures are solved,
-    /// which takes the longest by far. The fault of a table names `mechanism.path`; that of a polynomial with
-    /// too many terms `mechanism.coefficients_si`.
+    /// which takes by far the longest. The fault of a table names `mechanism.path`; that of a polynomial with
+    /// too many terms names `mechanism.coefficients_si`.
     pub fn build(described: &scene::Mechanism, files: &Files) -> Result<Self, BuildError> {
         Self::build_with(described, files, FLEXURE_TOLERANCE)
     }
 
-    /// As [`build`](Self::build), with flexures solved to `flexure_tolerance` (1e-6 to 1e-9; see
-    /// [`Flexures::solve`]): a geometry that a hand is still changing is solved sooner than one that stays.
+    /// Like [`build`](Self::build), with flexures solved to `flexure_tolerance` (1e-6 to 1e-9; see
+    /// [`Flexures::solve`]). A larger tolerance is faster, for a geometry that is being dragged.
     pub fn build_with(
         described: &scene::Mechanism,
         files: &Files,
@@ -98,8 +99,8 @@ impl Mechanism {
         Self::built(described, files, flexure_tolerance, None)
     }
 
-    /// As [`build`](Self::build), unless `cancel` is set meanwhile: then soon none. Of flexures each state is
-    /// some milliseconds or less, and of a table each piece; the rest of building takes no time.
+    /// Like [`build`](Self::build), but returns `None` soon after `cancel` is set. The flag is checked at
+    /// each state of flexures and each piece of a table, which take a few milliseconds at most.
     pub fn build_unless(
         described: &scene::Mechanism,
         files: &Files,
@@ -180,11 +181,11 @@ impl Mechanism {
             }
             scene::Mechanism::Sum(parts) => {
                 let part = |(index, part): (usize, &scene::Mechanism)| {
-                    let within =
+                    let indexed =
                         |field: &str| field.replacen("mechanism.", &format!("mechanism.{index}."), 1);
                     Self::built(part, files, flexure_tolerance, cancel).map_err(|error| match error {
                         BuildError::Wrong(fault) => {
-                            BuildError::Wrong(Fault { field: within(&fault.field), ..fault })
+                            BuildError::Wrong(Fault { field: indexed(&fault.field), ..fault })
                         }
                         other => other,
                     })
@@ -197,15 +198,13 @@ impl Mechanism {
     /// Reads and fits the text of a table: CSV with the columns `x_m,force_n`. See [`ForceTable::parse`] and
     /// [`fit()`].
     ///
-    /// Fails with a sentence that continues "the table ...".
+    /// The error is a sentence that continues "the table ...".
     pub fn from_table(text: &str, tolerance: f64) -> Result<Self, String> {
         let table = ForceTable::parse(text).map_err(|e| e.to_string())?;
         fit(&table, tolerance).map(Self::new)
     }
 
-    /// Solves flexures; all in SI.
-    ///
-    /// Fails where the solver does not converge.
+    /// Solves flexures given in SI units. Fails if the solver does not converge.
     fn from_flexures(
         geometry: &Geometry,
         tolerance: f64,
@@ -221,9 +220,7 @@ impl Mechanism {
         Self { curve, landscape, flexures: None, element: None, parts: Vec::new() }
     }
 
-    /// These mechanisms side by side; at least one.
-    ///
-    /// Fails where their curves have no displacement in common.
+    /// The sum of at least one mechanism in parallel. Fails if the domains of their curves do not overlap.
     fn sum(parts: Vec<Self>) -> Result<Self, BuildError> {
         let curves: Vec<&ForceCurve> = parts.iter().map(|part| &part.curve).collect();
         let curve = sum::sum(&curves)
@@ -239,19 +236,19 @@ impl Mechanism {
         let mut flexures = parts.iter().filter_map(|part| part.flexures.clone());
         let only = flexures.next().filter(|_| flexures.next().is_none());
         let error = parts.iter().filter_map(|part| part.curve.fit()).map(|fit| fit.worst_n).sum();
-        let landscape = Landscape::within(&curve, error);
+        let landscape = Landscape::with_error(&curve, error);
         Ok(Self { curve, landscape, flexures: only, element: None, parts })
     }
 
-    /// The parts of a sum; of any other mechanism itself.
+    /// The parts of a sum; for any other mechanism, the mechanism itself.
     pub fn side_by_side(&self) -> &[Self] {
         if self.parts.is_empty() { std::slice::from_ref(self) } else { &self.parts }
     }
 
-    /// What a person should know of the tables behind the curve, each a sentence.
+    /// Warnings about the tables that the curve was fitted to, each a sentence.
     pub fn warnings(&self) -> impl Iterator<Item = &str> {
         let all = std::iter::once(self).chain(&self.parts);
-        all.filter_map(|own| own.curve.fit()).flat_map(|fit| &fit.warnings).map(String::as_str)
+        all.filter_map(|mechanism| mechanism.curve.fit()).flat_map(|fit| &fit.warnings).map(String::as_str)
     }
 
     /// The stiffness in N/m that a damping ratio refers to; see [`Landscape::damping_stiffness`].
@@ -262,11 +259,11 @@ impl Mechanism {
 
 fn group(described: &FlexureGroup) -> Group {
     let FlexureGroup { count, length_mm, width_mm } = *described;
-    // The range of the count is far below any limit of an index.
+    // the range of the count is far below the limit of `usize`
     Group { count: count as usize, length: length_mm / 1e3, width: width_mm / 1e3 }
 }
 
-/// The quartic potential barrier ((x/x_e)^2 - 1)^2 up to a constant, both in SI.
+/// The quartic potential barrier ((x/x_e)^2 - 1)^2 up to a constant, from SI values.
 fn double_well(equilibrium: f64, barrier: f64) -> ForceCurve {
     let linear = 4.0 * barrier / (equilibrium * equilibrium);
     ForceCurve::polynomial(&[0.0, -linear, 0.0, linear / (equilibrium * equilibrium)])

@@ -1,28 +1,28 @@
-//! Sum of force curves: forces side by side on one mass.
+//! Sum of force curves that act in parallel on one mass.
 
 use super::curve::{ForceCurve, Piece};
 
-/// Breaks nearer to each other than this share of their distance from x = 0 are one.
-const SAME: f64 = 8.0 * f64::EPSILON;
+/// Breaks closer together than this share of their distance from x = 0 are merged.
+const SAME_BREAK: f64 = 8.0 * f64::EPSILON;
 
-/// The sum of these curves where all of them are known: it breaks wherever one of them does, and between its
-/// breaks its polynomial is theirs together. None where they have no displacement in common.
+/// The sum of `parts` on the intersection of their domains; `None` if that is empty. Its breaks are those of
+/// all parts, and each of its pieces is the sum of their polynomials.
 ///
 /// Guarantee: exact but for rounding. Polynomials about the same origin are added coefficient by coefficient;
-/// others are written about a common origin first. Odd bit for bit where every part is.
+/// others are first expanded about a common origin. The sum is odd bit for bit if every part is.
 ///
 /// Precondition: at least one curve.
 pub fn sum(parts: &[&ForceCurve]) -> Option<ForceCurve> {
-    let low = parts.iter().map(|own| own.domain().0).fold(f64::NEG_INFINITY, f64::max);
-    let high = parts.iter().map(|own| own.domain().1).fold(f64::INFINITY, f64::min);
+    let low = parts.iter().map(|part| part.domain().0).fold(f64::NEG_INFINITY, f64::max);
+    let high = parts.iter().map(|part| part.domain().1).fold(f64::INFINITY, f64::min);
     if low >= high {
         return None;
     }
-    let odd = parts.iter().all(|own| own.is_odd());
+    let odd = parts.iter().all(|part| part.is_odd());
     let inside = |x: &f64| *x > low && *x < high;
-    let mut breaks: Vec<f64> = parts.iter().flat_map(|own| own.breaks()).copied().filter(inside).collect();
+    let mut breaks: Vec<f64> = parts.iter().flat_map(|part| part.breaks()).copied().filter(inside).collect();
     breaks.sort_by(f64::total_cmp);
-    breaks.dedup_by(|next, own| *next - *own <= SAME * own.abs());
+    breaks.dedup_by(|next, kept| *next - *kept <= SAME_BREAK * kept.abs());
     if !odd {
         let ends: Vec<f64> = [&[low], &breaks[..], &[high]].concat();
         let pieces = ends.windows(2).map(|pair| piece(parts, pair[0], pair[1])).collect();
@@ -32,15 +32,15 @@ pub fn sum(parts: &[&ForceCurve]) -> Option<ForceCurve> {
     let right: Vec<f64> = breaks.into_iter().filter(|x| *x > 0.0).collect();
     let first = if in_middle { 0.0 } else { -right.first().copied().unwrap_or(high) };
     let ends: Vec<f64> = [&[first], &right[..], &[high]].concat();
-    let own: Vec<Piece> = ends.windows(2).map(|pair| piece(parts, pair[0], pair[1])).collect();
-    let mirrored = own.iter().skip(usize::from(!in_middle)).rev().map(Piece::mirrored);
-    let pieces: Vec<Piece> = mirrored.chain(own.iter().cloned()).collect();
+    let half: Vec<Piece> = ends.windows(2).map(|pair| piece(parts, pair[0], pair[1])).collect();
+    let mirrored = half.iter().skip(usize::from(!in_middle)).rev().map(Piece::mirrored);
+    let pieces: Vec<Piece> = mirrored.chain(half.iter().cloned()).collect();
     let middle = if in_middle { &[0.0][..] } else { &[] };
     let breaks = right.iter().rev().map(|x| -x).chain(middle.iter().copied()).chain(right.iter().copied());
     Some(ForceCurve::from_pieces(pieces, breaks.collect(), (-high, high), true, None))
 }
 
-/// The sum from `left` to `right`, between which no part breaks.
+/// The sum from `left` to `right`, an interval without a break of any part.
 fn piece(parts: &[&ForceCurve], left: f64, right: f64) -> Piece {
     let middle = match (left.is_finite(), right.is_finite()) {
         (true, true) => 0.5 * left + 0.5 * right,
@@ -48,17 +48,17 @@ fn piece(parts: &[&ForceCurve], left: f64, right: f64) -> Piece {
         (false, true) => right - right.abs().max(1.0),
         (false, false) => 0.0,
     };
-    let own: Vec<&Piece> = parts.iter().map(|part| &part.pieces()[part.piece_index(middle)]).collect();
-    // A line is the same about any origin, to rounding; a curved piece, far from its own, is not.
-    let mut curved = own.iter().filter(|piece| piece.coefficients.len() > 2);
+    let pieces: Vec<&Piece> = parts.iter().map(|part| &part.pieces()[part.piece_index(middle)]).collect();
+    // A line can be written about any origin to rounding; a curved piece loses digits far from its own.
+    let mut curved = pieces.iter().filter(|piece| piece.coefficients.len() > 2);
     let origin = match curved.next() {
-        None => own[0].origin,
+        None => pieces[0].origin,
         Some(first) if curved.all(|piece| piece.origin == first.origin) => first.origin,
         Some(_) => middle,
     };
     let mut coefficients = vec![0.0];
-    for piece in own {
-        let moved = about(piece, origin);
+    for piece in pieces {
+        let moved = shifted_to(piece, origin);
         coefficients.resize(coefficients.len().max(moved.len()), 0.0);
         coefficients.iter_mut().zip(moved).for_each(|(sum, c)| *sum += c);
     }
@@ -67,16 +67,16 @@ fn piece(parts: &[&ForceCurve], left: f64, right: f64) -> Piece {
     Piece { origin, coefficients, potential_at_origin: 0.0 }
 }
 
-/// The coefficients of a piece about another origin, by synthetic division.
-fn about(piece: &Piece, origin: f64) -> Vec<f64> {
-    let mut own = piece.coefficients.clone();
+/// The coefficients of a piece expanded about another origin, by synthetic division.
+fn shifted_to(piece: &Piece, origin: f64) -> Vec<f64> {
+    let mut shifted = piece.coefficients.clone();
     let step = origin - piece.origin;
     if step != 0.0 {
-        for i in 0..own.len().saturating_sub(1) {
-            for j in (i..own.len() - 1).rev() {
-                own[j] += step * own[j + 1];
+        for i in 0..shifted.len().saturating_sub(1) {
+            for j in (i..shifted.len() - 1).rev() {
+                shifted[j] += step * shifted[j + 1];
             }
         }
     }
-    own
+    shifted
 }

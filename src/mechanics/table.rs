@@ -1,15 +1,15 @@
 //! Points of a force curve, read from CSV.
 //!
-//! Nothing is repaired silently: what cannot be meant is refused with its line and value; a table from right
-//! to left is read as the same curve from left to right.
+//! Nothing is repaired silently: an invalid row is rejected with its line and value. A table from right to
+//! left is reversed and gives the same curve.
 
 use crate::scene::{ColumnsError, read_columns};
 
-/// The fewest points a table may have: below, a corner and a bend look the same.
-pub const FEWEST_POINTS: usize = 4;
+/// Smallest number of points in a table: with fewer, a corner cannot be distinguished from a bend.
+pub const MIN_POINTS: usize = 4;
 
-/// The most points a table may have; fitting takes some seconds there.
-pub const MOST_POINTS: usize = 100_000;
+/// Largest number of points in a table; fitting that many takes a few seconds.
+pub const MAX_POINTS: usize = 100_000;
 
 const X: &str = "x_m";
 const FORCE: &str = "force_n";
@@ -23,16 +23,16 @@ pub struct ForceTable {
     pub force: Vec<f64>,
 }
 
-/// What is wrong with the text of a table.
+/// Error in the text of a table.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TableError {
     /// The columns cannot be read.
     #[error(transparent)]
     Columns(#[from] ColumnsError),
     /// Fewer points than a curve needs.
-    #[error("has {0} rows of numbers; a force curve needs at least {FEWEST_POINTS}")]
+    #[error("has {0} rows of numbers; a force curve needs at least {MIN_POINTS}")]
     TooFew(usize),
-    /// A position that is there twice.
+    /// A position that occurs twice.
     #[error("line {line}: {X} = {x:e} is there twice; each position needs one force")]
     Repeated {
         /// Line of the second of the two.
@@ -40,30 +40,30 @@ pub enum TableError {
         /// The position.
         x: f64,
     },
-    /// Positions that go up and down.
+    /// Positions that are not monotone.
     #[error(
         "line {line}: {X} = {x:e} turns back after {before:e}; positions must run in one direction (sort the \
          rows; of a hysteresis loop keep one branch)"
     )]
     TurnsBack {
-        /// Line of the first row against the direction.
+        /// Line of the first row that reverses the direction.
         line: usize,
-        /// Its position.
+        /// Position in that row.
         x: f64,
-        /// The position before it.
+        /// Position in the row before it.
         before: f64,
     },
 }
 
 impl ForceTable {
-    /// Reads the text of a CSV table; rows from right to left are reversed.
+    /// Parses a CSV table; rows from right to left are reversed.
     ///
-    /// Guarantee: at least [`FEWEST_POINTS`] finite points with strictly increasing `x`.
+    /// Guarantee: at least [`MIN_POINTS`] finite points with strictly increasing `x`.
     pub fn parse(text: &str) -> Result<Self, TableError> {
-        let columns = read_columns(text, [X, FORCE], MOST_POINTS, true)?;
+        let columns = read_columns(text, [X, FORCE], MAX_POINTS, true)?;
         let (mut x, mut force): (Vec<f64>, Vec<f64>) =
             columns.rows.iter().map(|row| (row[0], row[1])).unzip();
-        if x.len() < FEWEST_POINTS {
+        if x.len() < MIN_POINTS {
             return Err(TableError::TooFew(x.len()));
         }
         let falling = x[1] < x[0];
@@ -83,7 +83,7 @@ impl ForceTable {
         Ok(Self { x, force })
     }
 
-    /// Remarks about values that are possible but unlikely, each a sentence.
+    /// Warnings about values that are possible but unlikely, each a sentence.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         let (first, last) = (self.x[0], self.x[self.x.len() - 1]);

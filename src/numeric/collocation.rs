@@ -1,4 +1,4 @@
-//! Collocation at Gauss-Legendre points: integrals of a function up to each point, from its values there.
+//! Collocation at Gauss-Legendre points: integrals of a function up to each point from its values.
 
 use std::sync::OnceLock;
 
@@ -7,19 +7,19 @@ use super::number::Number;
 use super::quadrature::even_half;
 use super::scalar::Scalar;
 
-/// Points come in groups of so many, as many as the widest registers hold.
+/// Number of points in a group, as many as the widest registers hold.
 pub const GROUP: usize = 8;
 
-/// The most groups.
+/// Largest number of groups.
 pub const MOST_GROUPS: usize = 6;
 
-/// Values at the points, group by group; those beyond the last are not used.
+/// Values at the points, group by group; values beyond the last point are not used.
 pub type Values<T> = [Lanes<GROUP, T>; MOST_GROUPS];
 
-/// Gauss-Legendre points on \[-1, 1], ascending, and what integrates over them.
+/// Gauss-Legendre points on \[-1, 1], ascending, with their weights and integration matrices.
 ///
-/// A function that is analytic in the ellipse about -1 and 1 with half axes of sum r is interpolated with an
-/// error that falls like r^-points, and integrated from -1 to 1 with one that falls like its square.
+/// For a function that is analytic in the ellipse with foci -1 and 1 and half axes of sum r, the error of the
+/// interpolation falls like r^-points, and that of the integral from -1 to 1 like its square.
 #[derive(Debug)]
 pub struct Collocation {
     groups: usize,
@@ -29,12 +29,12 @@ pub struct Collocation {
     legendre: Vec<Values<f64>>,
     /// Integrals from -1 to each point of the interpolating polynomial that is 1 at point k, 0 at the others.
     integrals: Vec<Values<f64>>,
-    /// The same from -1 to 0.
+    /// Integrals of the same polynomials from -1 to 0.
     halves: Values<f64>,
 }
 
 impl Collocation {
-    /// At least this many points, up to the most; made once each.
+    /// The rule with at least `points` points, up to the largest number; each rule is computed once.
     pub fn of(points: usize) -> &'static Self {
         static ALL: [OnceLock<Collocation>; MOST_GROUPS] = [const { OnceLock::new() }; MOST_GROUPS];
         let groups = points.div_ceil(GROUP).clamp(1, MOST_GROUPS);
@@ -46,33 +46,33 @@ impl Collocation {
         let points = groups * GROUP;
         let all = || vec![none; points];
         let (legendre, integrals) = (all(), all());
-        let mut own = Self { groups, places: none, weights: none, legendre, integrals, halves: none };
+        let mut rule = Self { groups, places: none, weights: none, legendre, integrals, halves: none };
         for (i, (place, weight)) in even_half(points / 2).into_iter().enumerate() {
             for (i, place) in [(i, -place), (points - 1 - i, place)] {
-                own.places[i / GROUP].0[i % GROUP] = place;
-                own.weights[i / GROUP].0[i % GROUP] = weight;
+                rule.places[i / GROUP].0[i % GROUP] = place;
+                rule.weights[i / GROUP].0[i % GROUP] = weight;
             }
         }
         for group in 0..groups {
             let (mut before, mut value) = (Lanes::zero(), Lanes::of(1.0));
             for k in 0..points {
-                own.legendre[k][group] = value * own.weights[group] * Lanes::of(0.5);
-                (before, value) = (value, next(k, own.places[group], (before, value)));
+                rule.legendre[k][group] = value * rule.weights[group] * Lanes::of(0.5);
+                (before, value) = (value, next(k, rule.places[group], (before, value)));
             }
         }
         for k in 0..points {
             let mut one = none;
             one[k / GROUP].0[k % GROUP] = 1.0;
-            let one = own.coefficients(&one);
+            let one = rule.coefficients(&one);
             for group in 0..groups {
-                own.integrals[k][group] = own.integral(&one, own.places[group], Lanes::all).0;
+                rule.integrals[k][group] = rule.integral(&one, rule.places[group], Lanes::all).0;
             }
-            own.halves[k / GROUP].0[k % GROUP] = own.integral(&one, 0.0, |own| own).0;
+            rule.halves[k / GROUP].0[k % GROUP] = rule.integral(&one, 0.0, |value| value).0;
         }
-        own
+        rule
     }
 
-    /// Groups of points.
+    /// Number of groups of points.
     #[inline(always)]
     pub fn groups(&self) -> usize {
         self.groups
@@ -95,7 +95,7 @@ impl Collocation {
         self.product(&self.halves, values)
     }
 
-    /// What is `first` at -1 and has these slopes, at each point.
+    /// Integrates `slopes` from -1, starting with `first`, to each point.
     #[inline(always)]
     pub fn integrals<T: Scalar>(&self, first: T, slopes: &Values<T>, into: &mut Values<T>) {
         for (group, into) in into[..self.groups].iter_mut().enumerate() {
@@ -109,7 +109,7 @@ impl Collocation {
         }
     }
 
-    /// The interpolating polynomial in those of Legendre: the coefficient of each over 2 k + 1, k its degree.
+    /// The coefficients of the interpolating polynomial in Legendre polynomials of degree k, over 2 k + 1.
     pub fn coefficients<T: Scalar>(&self, values: &Values<T>) -> Values<T> {
         let mut coefficients = [Lanes::zero(); MOST_GROUPS];
         for (k, row) in self.legendre.iter().enumerate() {
@@ -118,8 +118,8 @@ impl Collocation {
         coefficients
     }
 
-    /// The integral of the polynomial of these coefficients from -1 to `place`, and its value there: at one
-    /// place or, with `all` to repeat a number, at several.
+    /// The integral from -1 to `place` of the polynomial with these coefficients, and its value at `place`.
+    /// `place` may be several positions in lanes; `all` copies a coefficient to every lane.
     #[inline(always)]
     pub fn integral<T: Scalar, N: Number>(
         &self,
@@ -140,8 +140,8 @@ impl Collocation {
         (sum, value)
     }
 
-    /// The error of the interpolating polynomial's integrals, by the larger one of the last two coefficients
-    /// in the polynomials of Legendre.
+    /// An estimate of the error of the interpolating polynomial's integrals: the larger of the last two
+    /// coefficients in Legendre polynomials.
     #[inline(always)]
     pub fn unresolved<T: Scalar>(&self, values: &Values<T>) -> T {
         let last = |k: usize| self.product(&self.legendre[k], values).abs();
@@ -149,7 +149,7 @@ impl Collocation {
         last(points - 1).larger(last(points - 2)) * T::of(2.0)
     }
 
-    /// The scalar product of a row and the values, in as many sums as a group has points.
+    /// The scalar product of a row and the values, accumulated in as many sums as a group has points.
     #[inline(always)]
     fn product<T: Scalar>(&self, row: &Values<f64>, values: &Values<T>) -> T {
         let mut sums = Lanes::all(T::zero());
@@ -174,33 +174,33 @@ mod tests {
     #[test]
     fn integrals_of_powers_are_exact_and_those_of_a_pole_fall_with_its_ellipse() {
         for points in [8, 16, 24, 48] {
-            let own = Collocation::of(points);
-            assert_eq!(own.groups() * GROUP, points);
-            let at = |of: &dyn Fn(f64) -> f64| own.places.map(|places| places.map(of));
+            let rule = Collocation::of(points);
+            assert_eq!(rule.groups() * GROUP, points);
+            let at = |f: &dyn Fn(f64) -> f64| rule.places.map(|places| places.map(f));
             for power in [0, 1, 2, points as i32 - 1] {
                 let values = at(&|x| x.powi(power));
                 let exact = |x: f64| (x.powi(power + 1) - (-1.0_f64).powi(power + 1)) / f64::from(power + 1);
                 let mut sums = values;
-                own.integrals(0.5, &values, &mut sums);
+                rule.integrals(0.5, &values, &mut sums);
                 for i in 0..points {
-                    let (sum, place) = (sums[i / GROUP].0[i % GROUP], own.places[i / GROUP].0[i % GROUP]);
+                    let (sum, place) = (sums[i / GROUP].0[i % GROUP], rule.places[i / GROUP].0[i % GROUP]);
                     assert!((sum - 0.5 - exact(place)).abs() < 1e-14, "{points} {power} {i}");
                 }
-                assert!((own.total(&values) - exact(1.0)).abs() < 1e-14);
-                assert!((own.half(&values) - exact(0.0)).abs() < 1e-14);
-                let (integral, value) = own.integral(&own.coefficients(&values), 0.3, |own| own);
+                assert!((rule.total(&values) - exact(1.0)).abs() < 1e-14);
+                assert!((rule.half(&values) - exact(0.0)).abs() < 1e-14);
+                let (integral, value) = rule.integral(&rule.coefficients(&values), 0.3, |value| value);
                 assert!((integral - exact(0.3)).abs() < 1e-14 && (value - 0.3_f64.powi(power)).abs() < 1e-13);
             }
             // 1/(1 + x^2), whose pole i lies on the ellipse of sum 1 + sqrt 2
             let values = at(&|x| 1.0 / (1.0 + x * x));
             let fall = (1.0 + 2.0_f64.sqrt()).powi(-(points as i32));
-            let off = (own.total(&values) - std::f64::consts::FRAC_PI_2).abs();
+            let off = (rule.total(&values) - std::f64::consts::FRAC_PI_2).abs();
             assert!(off < 10.0 * fall * fall + 1e-15, "{points} {off:e}");
-            // an even function: the last term but one is the last
-            let (unresolved, last) = (own.unresolved(&values), fall * (1.0 + 2.0_f64.sqrt()).powi(2));
+            // the function is even: the last nonzero term is the last but one
+            let (unresolved, last) = (rule.unresolved(&values), fall * (1.0 + 2.0_f64.sqrt()).powi(2));
             let one = fall / points as f64;
             assert!(unresolved < last + 1e-15 && unresolved > 0.1 * last - 1e-15, "{points} {unresolved:e}");
-            let (integral, value) = own.integral(&own.coefficients(&values), 0.4, |own| own);
+            let (integral, value) = rule.integral(&rule.coefficients(&values), 0.4, |value| value);
             let off = integral - (0.4_f64.atan() + std::f64::consts::FRAC_PI_4);
             assert!(off.abs() < 10.0 * one + 1e-15, "{points} {off:e}");
             assert!((value - 1.0 / 1.16).abs() < 10.0 * fall + 1e-14);

@@ -1,26 +1,27 @@
-//! Lag at which two evenly spaced records differ least.
+//! Alignment of two evenly spaced records: the lag at which they differ least.
 
 use realfft::RealFftPlanner;
 
-/// Where one record lies over another.
+/// Position of one record relative to another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Alignment {
-    /// Steps by which the second record is shifted to later, to a part of a step.
+    /// Number of steps by which the second record is delayed; not necessarily whole.
     pub lag: f64,
-    /// Whether another lag, on the other side of a worse one, fits as well.
+    /// Whether another local minimum of the difference fits as well.
     pub ambiguous: bool,
 }
 
-/// A mean square this many times the least, and this part of that of the first record more, fits as well.
-const AS_WELL: (f64, f64) = (1.05, 1e-4);
+/// Lags fit equally well up to this factor on the smallest mean square difference, plus this share of the
+/// first record's mean square.
+const EQUAL_FIT: (f64, f64) = (1.05, 1e-4);
 
-/// The lag by which `other` lies over `one` with the least mean square of their difference, where at least
-/// `least` values overlap; both evenly spaced by one step. Of lags that fit as well the smallest counts.
+/// The lag of `other` against `one` with the smallest mean square difference, among lags at which at least
+/// `min_overlap` values overlap. Both records are spaced by one step. Of equally good lags the smallest wins.
 ///
-/// Method: the sum of squares is that of the parts which overlap less twice the correlation, which is had for
-/// all lags at once by the fast Fourier transform; between steps a parabola. `None` where nothing overlaps so
-/// far.
-pub fn alignment(one: &[f64], other: &[f64], least: usize) -> Option<Alignment> {
+/// Method: the sum of squared differences is the sum of squares of the overlapping parts less twice the
+/// correlation, which a fast Fourier transform gives for all lags at once; a parabola interpolates between
+/// steps. Returns `None` if no lag has enough overlap.
+pub fn alignment(one: &[f64], other: &[f64], min_overlap: usize) -> Option<Alignment> {
     let size = (one.len() + other.len()).next_power_of_two();
     let mut planner = RealFftPlanner::<f64>::new();
     let (forward, inverse) = (planner.plan_fft_forward(size), planner.plan_fft_inverse(size));
@@ -32,7 +33,7 @@ pub fn alignment(one: &[f64], other: &[f64], least: usize) -> Option<Alignment> 
     };
     let mut product = transformed(one)?;
     product.iter_mut().zip(transformed(other)?).for_each(|(a, b)| *a *= b.conj());
-    // rounding leaves imaginary parts at the ends, where there must be none
+    // the first and last line must be real; rounding leaves an imaginary part
     let last = product.len() - 1;
     (product[0].im, product[last].im) = (0.0, 0.0);
     let mut correlation = inverse.make_output_vec();
@@ -40,25 +41,25 @@ pub fn alignment(one: &[f64], other: &[f64], least: usize) -> Option<Alignment> 
     let squares = |values: &[f64]| {
         let mut sums = Vec::with_capacity(values.len() + 1);
         sums.push(0.0);
-        values.iter().zip(0..).for_each(|(own, k)| sums.push(sums[k] + own * own));
+        values.iter().zip(0..).for_each(|(value, k)| sums.push(sums[k] + value * value));
         sums
     };
-    let (own, others) = (squares(one), squares(other));
+    let (one_squares, other_squares) = (squares(one), squares(other));
     let mean = |lag: i64| -> Option<f64> {
         let from = lag.max(0);
         let to = (one.len() as i64).min(other.len() as i64 + lag);
         let count = to - from;
-        if count < least.max(1) as i64 {
+        if count < min_overlap.max(1) as i64 {
             return None;
         }
         let part = |sums: &[f64], low: i64, high: i64| sums[high as usize] - sums[low as usize];
         let crossed = correlation[lag.rem_euclid(size as i64) as usize] / size as f64;
-        let sum = part(&own, from, to) + part(&others, from - lag, to - lag) - 2.0 * crossed;
+        let sum = part(&one_squares, from, to) + part(&other_squares, from - lag, to - lag) - 2.0 * crossed;
         Some(sum.max(0.0) / count as f64)
     };
     let (low, high) = (1 - other.len() as i64, one.len() as i64 - 1);
     let best = (low..=high).filter_map(mean).fold(f64::INFINITY, f64::min);
-    let good = AS_WELL.0 * best + AS_WELL.1 * own[one.len()] / one.len() as f64;
+    let good = EQUAL_FIT.0 * best + EQUAL_FIT.1 * one_squares[one.len()] / one.len() as f64;
     let minimum = |lag: &i64| {
         let here = mean(*lag)?;
         let lower = [lag - 1, lag + 1].into_iter().filter_map(mean).all(|near| here <= near);
@@ -66,12 +67,12 @@ pub fn alignment(one: &[f64], other: &[f64], least: usize) -> Option<Alignment> 
     };
     let minima: Vec<i64> = (low..=high).filter_map(|lag| minimum(&lag)).collect();
     let lag = minima.iter().copied().min_by_key(|lag| lag.abs())?;
-    let bent = || {
+    let vertex = || {
         let (before, here, after) = (mean(lag - 1)?, mean(lag)?, mean(lag + 1)?);
         let step = 0.5 * (before - after) / (before - 2.0 * here + after);
         Some(step).filter(|step| step.abs() <= 1.0)
     };
-    Some(Alignment { lag: lag as f64 + bent().unwrap_or(0.0), ambiguous: minima.len() > 1 })
+    Some(Alignment { lag: lag as f64 + vertex().unwrap_or(0.0), ambiguous: minima.len() > 1 })
 }
 
 #[cfg(test)]
@@ -80,16 +81,16 @@ mod tests {
 
     #[test]
     fn a_shifted_record_is_found() {
-        let of = |t: f64| (0.2 * t).sin() * (-((t - 150.0) / 60.0).powi(2)).exp();
-        let one: Vec<f64> = (0..400).map(|i| of(f64::from(i))).collect();
+        let signal = |t: f64| (0.2 * t).sin() * (-((t - 150.0) / 60.0).powi(2)).exp();
+        let one: Vec<f64> = (0..400).map(|i| signal(f64::from(i))).collect();
         for lag in [-40.0, 0.0, 12.25, 60.0] {
-            let other: Vec<f64> = (0..300).map(|i| of(f64::from(i) + lag)).collect();
+            let other: Vec<f64> = (0..300).map(|i| signal(f64::from(i) + lag)).collect();
             let found = alignment(&one, &other, 100).unwrap();
             assert!((found.lag - lag).abs() < 0.02 && !found.ambiguous, "{found:?} {lag}");
         }
         let wave: Vec<f64> = (0..400).map(|i| (std::f64::consts::TAU * f64::from(i) / 50.0).sin()).collect();
         let found = alignment(&wave, &wave[20..], 200).unwrap();
-        // the parts that overlap are no whole periods, so the parabola is a little skew
+        // the overlap is not a whole number of periods, so the parabola is slightly skewed
         assert!((found.lag - 20.0).abs() < 1e-3 && found.ambiguous, "{found:?}");
         assert_eq!(alignment(&wave, &wave[..10], 20), None);
     }

@@ -1,17 +1,17 @@
-//! Decimal numbers, exact, as a person writes them.
+//! Exact decimal numbers as written by a person.
 
 /// An exact decimal number: digits times 10^exponent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Decimal {
     /// The digits, as a whole number.
     pub digits: i128,
-    /// The power of ten that they are counted in.
+    /// The power of ten that multiplies the digits.
     pub exponent: i32,
 }
 
 impl Decimal {
-    /// Reads `-12.5e-3` and the like; `None` for anything else, NaN and the infinities included, and
-    /// for more than 36 digits.
+    /// Parses a number such as `-12.5e-3`. Returns `None` for any other text, including NaN and infinities,
+    /// and for more than 36 digits.
     pub fn parse(text: &str) -> Option<Self> {
         let (negative, rest) = match text.strip_prefix('-') {
             Some(rest) => (true, rest),
@@ -26,17 +26,17 @@ impl Decimal {
         if digits.is_empty() || !digits.bytes().all(|byte| byte.is_ascii_digit()) {
             return None;
         }
-        let kept = digits.trim_start_matches('0');
-        if kept.len() > 36 {
+        let significant = digits.trim_start_matches('0');
+        if significant.len() > 36 {
             return None;
         }
-        let size: i128 = if kept.is_empty() { 0 } else { kept.parse().ok()? };
+        let size: i128 = if significant.is_empty() { 0 } else { significant.parse().ok()? };
         let exponent = exponent.checked_sub(i32::try_from(fraction.len()).ok()?)?;
         let digits = if negative { -size } else { size };
         Some(Self { digits, exponent: if digits == 0 { 0 } else { exponent } }.trimmed())
     }
 
-    /// The shortest decimal that parses back to this double; `None` where it is not finite.
+    /// The shortest decimal that parses back to this double; `None` if it is not finite.
     pub fn shortest(value: f64) -> Option<Self> {
         Self::parse(&format!("{value:e}"))
     }
@@ -51,7 +51,7 @@ impl Decimal {
         self
     }
 
-    /// The digits when counted in units of 10^exponent, which is no larger than the own one.
+    /// The number in units of 10^`exponent`; `None` if `exponent` is above its own exponent, or on overflow.
     pub fn in_units(self, exponent: i32) -> Option<i128> {
         if self.digits == 0 {
             return Some(0);
@@ -60,9 +60,9 @@ impl Decimal {
         self.digits.checked_mul(10_i128.checked_pow(shift)?)
     }
 
-    /// The nearest double; infinite where it is too large for one.
+    /// The nearest double; infinite if the number is too large for one.
     pub fn value(self) -> f64 {
-        // Clinger 1990: both factors are exact doubles, so one rounding is all there is.
+        // Clinger 1990: both factors are exact doubles, so the result is rounded only once.
         const EXACT: [f64; 23] = [
             1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17,
             1e18, 1e19, 1e20, 1e21, 1e22,

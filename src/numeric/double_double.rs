@@ -1,9 +1,8 @@
-//! Double-double arithmetic, some 31 digits.
+//! Double-double arithmetic with about 31 digits.
 //!
-//! A number as the unevaluated sum of two doubles, some 31 decimal digits (Dekker 1971, "A
-//! floating-point technique for extending the available precision"; Knuth's two-sum). No fused
-//! multiply-add: products are split, so the result does not depend on the processor. It is the
-//! reference number type of the integrator, not a fast one.
+//! A number is the unevaluated sum of two doubles (Dekker 1971, "A floating-point technique for extending the
+//! available precision"; Knuth's two-sum). Products are split instead of using a fused multiply-add, so that
+//! the result does not depend on the processor. It is the integrator's reference number type, and slow.
 
 use std::cmp::Ordering;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
@@ -54,7 +53,7 @@ impl DoubleDouble {
         self.high
     }
 
-    /// What the leading double lacks.
+    /// The trailing double.
     pub fn low(self) -> f64 {
         self.low
     }
@@ -179,7 +178,7 @@ impl Scalar for DoubleDouble {
             let y = TAU * r;
             let z = y * y;
             let series = |first: i32| {
-                // sum of (-z)^i first!/(first + 2 i)!, innermost factor first
+                // sum of (-z)^i first!/(first + 2 i)!, from the innermost factor
                 let mut sum = Self::of(1.0);
                 for i in (1..=15).rev() {
                     let d = f64::from((first + 2 * i) * (first + 2 * i - 1));

@@ -1,8 +1,8 @@
-//! Dual numbers: a value with its derivatives by two quantities.
+//! Dual numbers: a value with its derivatives with respect to two quantities.
 //!
-//! A number x + x1 e1 + x2 e2 with e1^2 = e1 e2 = e2^2 = 0 (Clifford 1873). What is computed with such
-//! numbers comes with its derivatives, exact to rounding. The value is computed as in doubles alone, bit for
-//! bit, and decides every comparison.
+//! A number x + x1 e1 + x2 e2 with e1^2 = e1 e2 = e2^2 = 0 (Clifford 1873). Every result comes with its
+//! derivatives, exact to rounding. The value has the same bits as in plain double arithmetic and
+//! decides every comparison.
 
 use std::cmp::Ordering;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
@@ -12,7 +12,7 @@ use super::number::Number;
 use super::quadrature::{GaussLegendre, Rules};
 use super::scalar::Scalar;
 
-/// A value and its derivatives by two quantities.
+/// A value and its derivatives with respect to two quantities.
 #[derive(Debug, Clone, Copy)]
 pub struct Dual {
     /// The value.
@@ -22,7 +22,7 @@ pub struct Dual {
 }
 
 impl Dual {
-    /// The derivatives of `a` times it and `b` times another number, `a` and `b` held.
+    /// The derivatives of `a self + b other` for constant `a` and `b`.
     #[inline(always)]
     fn slopes_of(self, a: f64, other: Self, b: f64) -> [f64; 2] {
         std::array::from_fn(|i| a * self.slopes[i] + b * other.slopes[i])
@@ -134,7 +134,7 @@ impl Scalar for Dual {
     fn floor(self) -> Self {
         Self::of(self.value.floor())
     }
-    /// That of 0 has no derivatives here.
+    /// The derivatives at 0, which are infinite, are set to 0.
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
         let by = if root > 0.0 { 0.5 / root } else { 0.0 };
@@ -144,12 +144,12 @@ impl Scalar for Dual {
     fn sin_cos_turns(u: Self) -> (Self, Self) {
         let (s, c) = f64::sin_cos_turns(u.value);
         let angle = u.slopes.map(|slope| slope * std::f64::consts::TAU);
-        let sine = Self { value: s, slopes: angle.map(|own| c * own) };
-        (sine, Self { value: c, slopes: angle.map(|own| -s * own) })
+        let sine = Self { value: s, slopes: angle.map(|slope| c * slope) };
+        (sine, Self { value: c, slopes: angle.map(|slope| -s * slope) })
     }
 
-    /// The largest of value and derivatives, which change as fast where the value is small or 0; without
-    /// derivatives that are infinite, as those of a grazing impact.
+    /// The largest magnitude of the value and its derivatives, since the derivatives still change where the
+    /// value is near 0. The value alone counts if a derivative is infinite, as after a grazing impact.
     #[inline(always)]
     fn magnitude(self) -> f64 {
         let all = self.slopes.iter().fold(self.value.abs(), |largest, slope| largest.max(slope.abs()));
@@ -161,8 +161,8 @@ impl Scalar for Dual {
         RULES.of(points)
     }
 
-    /// An iteration ends when the value stands still, its derivatives possibly one step before: one more
-    /// step of Newton's method at the root gives theirs.
+    /// An iteration stops when its value no longer changes, when the derivatives may lag by one step. One
+    /// more step of Newton's method at the root computes them.
     #[inline(always)]
     fn at_root(root: Self, value_and_slope: impl FnOnce(Self) -> (Self, Self)) -> Self {
         let (value, slope) = value_and_slope(Self::of(root.value));
@@ -183,9 +183,9 @@ mod tests {
     fn derivatives_follow_the_rules_of_calculus() {
         let x = Dual { value: 0.7, slopes: [1.0, 0.0] };
         let y = Dual { value: -1.3, slopes: [0.0, 1.0] };
-        let check = |own: Dual, value: f64, by_x: f64, by_y: f64| {
-            assert_eq!(own.value, value);
-            assert!(near(own.slopes[0], by_x) && near(own.slopes[1], by_y), "{own:?} {by_x} {by_y}");
+        let check = |dual: Dual, value: f64, by_x: f64, by_y: f64| {
+            assert_eq!(dual.value, value);
+            assert!(near(dual.slopes[0], by_x) && near(dual.slopes[1], by_y), "{dual:?} {by_x} {by_y}");
         };
         check(x + y, 0.7 + -1.3, 1.0, 1.0);
         check(x - y, 0.7 - -1.3, 1.0, -1.0);

@@ -1,7 +1,7 @@
-//! The least and the greatest of some values.
+//! Smallest and largest of a set of values.
 
-/// Both, NaN passed over; of none `(inf, -inf)`.
+/// The smallest and the largest value, ignoring NaN; `(inf, -inf)` if there are none.
 pub fn extent(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
     let none = (f64::INFINITY, f64::NEG_INFINITY);
-    values.into_iter().fold(none, |(low, high), own| (low.min(own), high.max(own)))
+    values.into_iter().fold(none, |(low, high), value| (low.min(value), high.max(value)))
 }

@@ -1,27 +1,27 @@
 //! Polynomial of the lowest degree that follows given points closely enough.
 //!
-//! Least squares through polynomials orthogonal over the points themselves (Forsythe 1957, "Generation
-//! and use of orthogonal polynomials for data-fitting with a digital computer"): each further degree
-//! costs one pass over the points and leaves the lower ones as they are, so that all degrees are tried
-//! for the price of one. A QR factorisation a degree would cost `degree` times as much.
+//! Least squares with polynomials orthogonal over the points themselves (Forsythe 1957, "Generation and use
+//! of orthogonal polynomials for data-fitting with a digital computer"): each further degree costs one pass
+//! over the points and keeps the lower coefficients, so that trying all degrees costs as much as fitting the
+//! highest. A QR factorisation per degree would cost `degree` times as much.
 
-/// The polynomial q of lowest degree for which `accept` likes what is left of the values.
+/// The polynomial q of lowest degree that `accept` accepts.
 ///
 /// Returns the monomial coefficients of q in the variable of `points`, from the constant up, where q
-/// minimises sum (`weights` q(`points`) - `values`)^2 among the polynomials of its degree. `accept` is
-/// shown the coefficients of each degree in turn, from "no polynomial at all" (an empty slice) to
-/// `terms` coefficients; the first that it accepts is returned.
+/// minimises sum (`weights` q(`points`) - `values`)^2 among the polynomials of its degree. `accept` gets the
+/// coefficients of each degree in turn, from the zero polynomial (an empty slice) to `terms` coefficients;
+/// the first polynomial that it accepts is returned.
 ///
-/// Method: Forsythe 1957, three-term recurrence; the values are reduced as the degrees rise (as in
-/// modified Gram-Schmidt), which keeps the residual honest where orthogonality is slowly lost.
+/// Method: Forsythe 1957, three-term recurrence. Each term is subtracted from the values before the next one
+/// is fitted (as in modified Gram-Schmidt), so that the residual stays accurate as orthogonality degrades.
 ///
-/// Preconditions: the three slices are equally long; `points` lie in about [-1, 1] (monomial
-/// coefficients grow like 2.4^degree there, so that degree 15 loses some five digits).
+/// Preconditions: the three slices are equally long; `points` lie in about [-1, 1] (monomial coefficients
+/// grow like 2.4^degree there, so that degree 15 loses some five digits).
 ///
-/// Guarantee: none about the largest error, which is for `accept` to judge; `None` where it never
-/// accepts or where the points with a weight are fewer than the terms.
+/// The largest error has no bound; `accept` judges it. Returns `None` if `accept` never accepts, or if fewer
+/// points have a weight than there are terms.
 ///
-/// `terms` trades cost and wiggles for closeness: keep it well below the number of points.
+/// More `terms` fit closer, but cost more and oscillate more: keep them well below the number of points.
 pub fn lowest_degree(
     points: &[f64],
     weights: &[f64],
@@ -34,7 +34,7 @@ pub fn lowest_degree(
         return Some(sum);
     }
     let mut rest = values.to_vec();
-    // The last two orthogonal polynomials: times the weights at the points, and as coefficients.
+    // The last two orthogonal polynomials, as weighted values at the points and as coefficients.
     let mut now = weights.to_vec();
     let mut before = vec![0.0; points.len()];
     let mut now_monomials = vec![1.0];
@@ -46,8 +46,8 @@ pub fn lowest_degree(
         if term == 0 {
             first_norm = norm;
         }
-        // Monic orthogonal polynomials on [-1, 1] shrink like 4^-degree in the squared norm; one that
-        // is smaller by another twelve digits vanishes on every point and is made of rounding.
+        // The squared norm of monic orthogonal polynomials on [-1, 1] falls like 4^-degree. One that is
+        // smaller by another twelve digits vanishes at every point and consists of rounding errors.
         if norm <= first_norm * 1e-12 * 0.25_f64.powi(term as i32) || !norm.is_finite() {
             return None;
         }

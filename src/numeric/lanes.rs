@@ -1,9 +1,8 @@
-//! Several numbers side by side, for the same arithmetic at once.
+//! Vectors of numbers for the same arithmetic on each lane.
 //!
-//! A bundle of numbers, each with its own value and all with the same operations. The loops are over a fixed
-//! width and without a branch, so that the compiler makes them instructions on whole registers, as wide as
-//! the processor's where the caller is compiled for it. Each lane gets the bits that it would get alone:
-//! nothing is fused or reordered.
+//! The loops have a fixed width and no branch, so that the compiler turns them into vector instructions, as
+//! wide as the target features of the caller allow. Each lane gets the bits that it would get alone: nothing
+//! is fused or reordered.
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
@@ -15,13 +14,13 @@ use super::number::Number;
 pub struct Lanes<const W: usize, T = f64>(pub [T; W]);
 
 impl<const W: usize, T: Number> Lanes<W, T> {
-    /// The number of each lane.
+    /// The vector whose lane i is `f(i)`.
     #[inline(always)]
-    pub fn from_fn(of: impl FnMut(usize) -> T) -> Self {
-        Self(std::array::from_fn(of))
+    pub fn from_fn(f: impl FnMut(usize) -> T) -> Self {
+        Self(std::array::from_fn(f))
     }
 
-    /// The same number in all.
+    /// The same number in all lanes.
     #[inline(always)]
     pub fn all(value: T) -> Self {
         Self([value; W])
@@ -29,10 +28,10 @@ impl<const W: usize, T: Number> Lanes<W, T> {
 }
 
 impl<const W: usize, T> Lanes<W, T> {
-    /// The same with each number.
+    /// Applies `f` to each lane.
     #[inline(always)]
-    pub fn map<U>(self, of: impl FnMut(T) -> U) -> Lanes<W, U> {
-        Lanes(self.0.map(of))
+    pub fn map<U>(self, f: impl FnMut(T) -> U) -> Lanes<W, U> {
+        Lanes(self.0.map(f))
     }
 }
 
@@ -43,8 +42,8 @@ macro_rules! lane_by_lane {
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
                 let mut result = self;
-                for (result, (own, other)) in result.0.iter_mut().zip(self.0.iter().zip(&other.0)) {
-                    *result = *own $operator *other;
+                for (result, (left, right)) in result.0.iter_mut().zip(self.0.iter().zip(&other.0)) {
+                    *result = *left $operator *right;
                 }
                 result
             }
@@ -62,8 +61,8 @@ impl<const W: usize, T: Number> Neg for Lanes<W, T> {
     #[inline(always)]
     fn neg(self) -> Self {
         let mut result = self;
-        for own in &mut result.0 {
-            *own = -*own;
+        for value in &mut result.0 {
+            *value = -*value;
         }
         result
     }
@@ -97,8 +96,8 @@ impl<const W: usize, T: Number> Number for Lanes<W, T> {
     #[inline(always)]
     fn abs(self) -> Self {
         let mut result = self;
-        for own in &mut result.0 {
-            *own = own.abs();
+        for value in &mut result.0 {
+            *value = value.abs();
         }
         result
     }

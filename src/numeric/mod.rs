@@ -41,7 +41,7 @@ pub use extent::extent;
 pub use lanes::Lanes;
 pub use number::Number;
 pub use periodogram::{Periodogram, Taper, periodogram};
-pub use quadrature::{GaussLegendre, MOST_POINTS, even_half};
+pub use quadrature::{GaussLegendre, MAX_POINTS, even_half};
 pub(crate) use quick::{fast_exp2, fast_log2};
 pub use ratio::Ratio;
 pub(crate) use ratio::greatest_common_divisor;

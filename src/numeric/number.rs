@@ -1,9 +1,9 @@
-//! Arithmetic that a power series needs: without a branch, so that the numbers of several motions can be one.
+//! Branch-free arithmetic for power series, so that the numbers of several motions can share one vector.
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-/// Arithmetic without a branch.
+/// A number type whose arithmetic has no branches.
 pub trait Number:
     'static
     + Copy
@@ -16,7 +16,7 @@ pub trait Number:
     + AddAssign
     + SubAssign
 {
-    /// Whether an operation takes so little that the bookkeeping of a short loop costs as much.
+    /// Whether one operation is so cheap that the overhead of a short loop costs as much.
     const QUICK: bool = false;
 
     /// The number nearest to `value`.
@@ -26,10 +26,10 @@ pub trait Number:
     /// Magnitude.
     fn abs(self) -> Self;
 
-    /// A whole number below 2^32, a degree as a rule.
+    /// Converts a whole number below 2^32, usually a degree.
     #[inline(always)]
     fn whole(number: usize) -> Self {
-        Self::of(f64::from(number as u32)) // (one instruction, where 64 bits without a sign take several)
+        Self::of(f64::from(number as u32)) // one instruction; a conversion from u64 takes several
     }
 
     /// 0.

@@ -1,20 +1,22 @@
-//! Polynomials of all degrees through samples, with the errors of their values and slopes.
+//! Least-squares polynomials of several degrees through samples, with the errors of their values and slopes.
 
-/// The most coefficients.
+/// Largest number of coefficients.
 pub const MOST_TERMS: usize = 7;
 
-/// Polynomials of up to [`MOST_TERMS`] coefficients that fit samples in the sense of least squares.
+/// Least-squares polynomials with up to [`MOST_TERMS`] coefficients.
 ///
 /// Method: a sum of polynomials orthonormal over the samples (Forsythe 1957), whose coefficients are
-/// independent: with errors of variance 1 in the samples each has variance 1, and leaving out the last ones
-/// gives the fit of a lower degree.
+/// independent. If the errors of the samples have variance 1, so has each coefficient; dropping the last
+/// coefficients gives the fit of a lower degree.
 #[derive(Debug, Clone)]
 pub struct Orthogonal {
     centre: f64,
     scale: f64,
-    /// Of the recurrence b p_next = (u - a) p - b_before p_before, and p_0.
+    /// Coefficients a of the recurrence b p_next = (u - a) p - b_before p_before.
     a: [f64; MOST_TERMS],
+    /// Coefficients b of the recurrence.
     b: [f64; MOST_TERMS],
+    /// The constant polynomial p_0.
     first: f64,
     coefficients: [f64; MOST_TERMS],
     squares: [f64; MOST_TERMS],
@@ -22,8 +24,8 @@ pub struct Orthogonal {
     samples: usize,
 }
 
-/// Value and derivatives of a polynomial at a place. The variances are those for errors of variance 1 in
-/// the samples.
+/// Value and derivatives of a polynomial at one position. The variances hold for samples whose errors have
+/// variance 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tangent {
     /// The value.
@@ -41,7 +43,7 @@ pub struct Tangent {
 }
 
 impl Orthogonal {
-    /// The fit to `values` at `places`, which increase.
+    /// Fits `values` at ascending `places`.
     pub fn fit(places: &[f64], values: &[f64]) -> Self {
         let samples = places.len();
         let (from, to) = (places.first().map_or(0.0, |x| *x), places.last().map_or(0.0, |x| *x));
@@ -70,23 +72,23 @@ impl Orthogonal {
         Self { centre, scale, a, b, first, coefficients, squares, terms, samples }
     }
 
-    /// How many samples are fitted.
+    /// Number of samples.
     pub fn samples(&self) -> usize {
         self.samples
     }
 
-    /// The sum of the squared residuals of the polynomial with so many coefficients; `None` where there are
-    /// fewer samples.
+    /// The sum of the squared residuals of the polynomial with `terms` coefficients; `None` if there
+    /// are fewer samples.
     pub fn square(&self, terms: usize) -> Option<f64> {
         (1..=self.terms).contains(&terms).then(|| self.squares[terms - 1])
     }
 
-    /// The polynomial with so many coefficients, of which there are no more than samples, at a place.
+    /// The polynomial with `terms` coefficients, at most the number of samples, at `place`.
     pub fn at(&self, place: f64, terms: usize) -> Tangent {
         let u = (place - self.centre) / self.scale;
         let mut tangent =
             Tangent { value: 0.0, slope: 0.0, bend: 0.0, of_value: 0.0, of_slope: 0.0, of_both: 0.0 };
-        // value and two derivatives of a polynomial and the one before it
+        // value and two derivatives of the current polynomial and of the previous one
         let (mut p, mut before) = ([self.first, 0.0, 0.0], [0.0; 3]);
         for k in 0..terms.min(self.terms) {
             let c = self.coefficients[k];

@@ -10,48 +10,48 @@ use super::sum::CompensatedSum;
 /// How values are weighted before they are transformed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Taper {
-    /// All alike. A part whose period divides the length is one line; any other leaks into all lines.
+    /// Equal weights. A component with a whole number of periods is one line; any other leaks into all lines.
     None,
-    /// The window of von Hann, sin^2(pi k/n): a part of any period is told within four lines, and leaks
-    /// little beyond.
+    /// The von Hann window, sin^2(pi k/n). A component of any period is concentrated in four lines and leaks
+    /// little into the others.
     Hann,
 }
 
-/// One-sided spectrum of n values a step apart, at the frequencies k/(n step) for k from 0 to n/2.
+/// One-sided spectrum of n values one step apart, at the frequencies k/(n step) for k from 0 to n/2.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Periodogram {
-    /// Amplitude of the sine at each frequency, in the unit of the values; at 0 the size of the mean.
+    /// Amplitude of the sine at each frequency, in the unit of the values; at 0 the magnitude of the mean.
     pub amplitude: Vec<f64>,
-    /// Power spectral density, in the unit of the values squared times that of the step.
+    /// Power spectral density, in the square of the values' unit times the step's unit.
     pub density: Vec<f64>,
 }
 
-/// The periodogram of `values`, `step` apart.
+/// The periodogram of `values`, spaced by `step`.
 ///
-/// The mean is taken out before the values are weighted, so that it does not leak, and stands in line 0
-/// alone. With weights w the amplitude is 2 |X|/sum w (the coherent gain corrected) and the density 2 step
-/// |X|^2/sum w^2 (the noise bandwidth corrected); line n/2 has no mirror image and no factor 2, and line 0 is
-/// the mean and its density (G. Heinzel, A. Ruediger and R. Schilling 2002, "Spectrum and spectral density
-/// estimation by the discrete Fourier transform"). Without a taper the density times 1/(n step), summed over
-/// all lines, is the mean square of the values (Parseval); with one, summed over all lines but line 0, it is
-/// the mean square of the weighted values less what they have in line 0.
+/// The mean is subtracted before the values are weighted, so that it does not leak; it appears in line 0
+/// only. With weights w the amplitude is 2 |X|/sum w (corrected for the coherent gain) and the density 2 step
+/// |X|^2/sum w^2 (corrected for the noise bandwidth). Line n/2 has no mirror image and hence no factor 2;
+/// line 0 is the mean and its density (G. Heinzel, A. Ruediger and R. Schilling 2002, "Spectrum and spectral
+/// density estimation by the discrete Fourier transform"). Without a taper the density times 1/(n step),
+/// summed over all lines, is the mean square of the values (Parseval). With a taper, summed over all lines
+/// but line 0, it is the mean square of the weighted values less their contribution to line 0.
 ///
-/// A sine of k whole periods is line k alone without a taper. With that of von Hann it has its amplitude in
-/// line k, half of it in both neighbours (but for line 0, which is the mean), and 0 elsewhere. The error is
-/// some rounding units of the largest value. No values give no lines.
+/// A sine of k whole periods is line k alone without a taper. With the von Hann window it has its amplitude
+/// in line k, half of it in both neighbours (except line 0, which is the mean), and 0 elsewhere. The error is
+/// a few units of rounding of the largest value. An empty `values` gives no lines.
 pub fn periodogram(mut values: Vec<f64>, step: f64, taper: Taper) -> Periodogram {
     let n = values.len();
     if n == 0 {
         return Periodogram { amplitude: Vec::new(), density: Vec::new() };
     }
     let weight = |k: usize| match taper {
-        // of one or two values the window of von Hann leaves nothing or one
+        // the von Hann window would leave none of one value and only one of two
         Taper::Hann if n > 2 => (PI * k as f64 / n as f64).sin().powi(2),
         _ => 1.0,
     };
-    let total = |of: &dyn Fn(usize) -> f64| {
+    let total = |term: &dyn Fn(usize) -> f64| {
         let mut sum = CompensatedSum::<f64>::new();
-        (0..n).for_each(|k| sum.add(of(k)));
+        (0..n).for_each(|k| sum.add(term(k)));
         sum.value()
     };
     let weights = total(&weight);
@@ -119,7 +119,7 @@ mod tests {
 
     #[test]
     fn line_0_is_the_mean_also_beside_the_first_line() {
-        // the window of von Hann weighs a sine of one period so that its weighted mean is half its amplitude
+        // with the von Hann window the weighted mean of a sine of one period is half its amplitude
         for (n, phase) in [(64, 0.0), (1000, 0.7), (1001, 2.0)] {
             let value = |k: usize| 0.5 + 3.0 * (TAU * k as f64 / n as f64 + phase).cos();
             for taper in [Taper::None, Taper::Hann] {
@@ -163,15 +163,15 @@ mod tests {
 
     #[test]
     fn a_taper_tells_a_sine_that_is_no_line() {
-        // halfway between two lines: without a taper all lines show it, with one four
+        // halfway between two lines: it leaks into all lines without a taper, into four with one
         let (n, at) = (1000, 100.5);
         let values: Vec<f64> = (0..n).map(|k| (TAU * at * k as f64 / n as f64).sin()).collect();
         let far = |taper| periodogram(values.clone(), 1.0, taper).amplitude[120];
         assert!(far(Taper::None) > 1e-2 && far(Taper::Hann) < 1e-4);
-        // the density of white noise is the same with and without
+        // the density of white noise is the same with and without a taper
         let level = |taper| {
-            let own = periodogram(noise(1 << 16), 0.5, taper).density;
-            own[1..own.len() - 1].iter().sum::<f64>() / (own.len() - 2) as f64
+            let density = periodogram(noise(1 << 16), 0.5, taper).density;
+            density[1..density.len() - 1].iter().sum::<f64>() / (density.len() - 2) as f64
         };
         let white = 2.0 * 0.5 / 12.0; // twice the step times the variance
         assert!((level(Taper::None) / white - 1.0).abs() < 0.02, "{}", level(Taper::None));

@@ -1,21 +1,21 @@
-//! Polynomials that stand for many straight lines between samples at once.
+//! Piecewise polynomials that replace many straight lines between samples.
 //!
-//! An acceleration that is given by samples, with straight lines between them, changes its slope at each. An
-//! integrator that steps from corner to corner takes one step a sample, however smooth the samples are. What
-//! it moves sees the acceleration through two integrals. The projection of the lines on Legendre polynomials
-//! has the integral and the first moment of the lines, so speed and place, the first and the second integral,
-//! are the same at both ends of each piece; in between they must differ by no more than the limits say.
+//! An acceleration given by samples and interpolated linearly changes its slope at each sample. An integrator
+//! that steps from corner to corner takes one step per sample, however smooth the samples are. The moving
+//! mass sees the acceleration only through two integrals. The projection of the lines on Legendre polynomials
+//! has the same integral and first moment as the lines, so speed and position (the first and the second
+//! integral) agree at both ends of each piece; in between they may differ by no more than the given limits.
 
 /// Degree of the polynomials.
 pub const DEGREE: usize = 10;
 
-/// Fewer lines than this are not worth a polynomial.
-const FEWEST: usize = 12;
+/// Smallest number of lines that a polynomial replaces.
+const MIN_LINES: usize = 12;
 
-/// Lines of the first polynomial that is tried.
-const FIRST: usize = 64;
+/// Number of lines of the first polynomial tried.
+const FIRST_LINES: usize = 64;
 
-/// A polynomial of the place from -1 to 1 between two samples, by ascending powers.
+/// Coefficients, constant first, of a polynomial in the position from -1 to 1 between two samples.
 pub type Polynomial = [f64; DEGREE + 1];
 
 /// Consecutive lines.
@@ -23,15 +23,15 @@ pub type Polynomial = [f64; DEGREE + 1];
 pub struct Piece {
     /// The sample at which the first line begins.
     pub first: usize,
-    /// How many lines there are.
+    /// Number of lines.
     pub lines: usize,
-    /// What stands for them, where something does.
+    /// The polynomial that replaces them, if any.
     pub polynomial: Option<Box<Polynomial>>,
 }
 
-/// Pieces for the lines between samples at ascending times: the first integral of each polynomial differs
-/// from that of the lines by up to `limits.0` and the second one by up to `limits.1` anywhere, and at both
-/// ends by rounding alone.
+/// Pieces for the lines between samples at ascending times. The first integral of each polynomial differs
+/// from that of the lines by at most `limits.0` and the second integral by at most `limits.1`; at both ends
+/// they differ only by rounding.
 pub fn pieces(times: &[f64], values: &[f64], limits: (f64, f64)) -> Vec<Piece> {
     let last = times.len() - 1;
     let fitted = |first: usize, lines: usize| {
@@ -39,7 +39,7 @@ pub fn pieces(times: &[f64], values: &[f64], limits: (f64, f64)) -> Vec<Piece> {
         fitted(&times[samples.clone()], &values[samples], limits).map(Box::new)
     };
     let mut all: Vec<Piece> = Vec::new();
-    let (mut first, mut guess) = (0, FIRST);
+    let (mut first, mut guess) = (0, FIRST_LINES);
     while first < last {
         let left = last - first;
         let mut lines = guess.min(left);
@@ -52,11 +52,11 @@ pub fn pieces(times: &[f64], values: &[f64], limits: (f64, f64)) -> Vec<Piece> {
                 (lines, polynomial, more) = (longer, Some(found), 2 * more);
             }
         }
-        while polynomial.is_none() && lines / 2 >= FEWEST {
+        while polynomial.is_none() && lines / 2 >= MIN_LINES {
             lines /= 2;
             polynomial = fitted(first, lines);
         }
-        guess = lines.max(2 * FEWEST);
+        guess = lines.max(2 * MIN_LINES);
         match all.last_mut() {
             Some(before) if polynomial.is_none() && before.polynomial.is_none() => before.lines += lines,
             _ => all.push(Piece { first, lines, polynomial }),
@@ -66,10 +66,10 @@ pub fn pieces(times: &[f64], values: &[f64], limits: (f64, f64)) -> Vec<Piece> {
     all
 }
 
-/// The polynomial for these lines; none where it differs by more than the limits.
+/// The polynomial for these lines; `None` if it differs by more than the limits.
 fn fitted(times: &[f64], values: &[f64], limits: (f64, f64)) -> Option<Polynomial> {
     let n = times.len() - 1;
-    if n < FEWEST {
+    if n < MIN_LINES {
         return None;
     }
     let half = 0.5 * (times[n] - times[0]);
@@ -85,11 +85,11 @@ fn fitted(times: &[f64], values: &[f64], limits: (f64, f64)) -> Option<Polynomia
         let length = next - s;
         legendre[0] += 0.25 * length * (a + b);
         legendre[1] += 0.25 * length * (a * (2.0 * s + next) + b * (s + 2.0 * next));
-        let onward = (b - a) / length;
+        let next_slope = (b - a) / length;
         if i > 0 {
-            // The lines are a straight one and a bend at each sample, whose integral with each polynomial is
-            // a second integral of that.
-            let bend = onward - slope;
+            // The lines are the sum of one straight line and a bend at each inner sample. The integral of a
+            // bend times a Legendre polynomial is a second integral of that polynomial.
+            let bend = next_slope - slope;
             let p = legendre_at(s);
             for k in 2..=DEGREE {
                 let two = 2.0 * k as f64;
@@ -97,13 +97,13 @@ fn fitted(times: &[f64], values: &[f64], limits: (f64, f64)) -> Option<Polynomia
                 legendre[k] += 0.5 * bend * outer;
             }
         }
-        (s, slope) = (next, onward);
+        (s, slope) = (next, next_slope);
     }
     let polynomial = by_powers(&legendre);
     holds(times, values, (half, &polynomial), limits).then_some(polynomial)
 }
 
-/// Legendre polynomials up to two degrees more at `s`.
+/// The Legendre polynomials up to degree [`DEGREE`] + 2 at `s`.
 fn legendre_at(s: f64) -> [f64; DEGREE + 3] {
     let mut p = [1.0; DEGREE + 3];
     p[1] = s;
@@ -114,13 +114,13 @@ fn legendre_at(s: f64) -> [f64; DEGREE + 3] {
     p
 }
 
-/// A sum of Legendre polynomials by ascending powers.
+/// Converts coefficients of Legendre polynomials to coefficients of ascending powers.
 fn by_powers(legendre: &Polynomial) -> Polynomial {
     let (mut before, mut now) = ([0.0; DEGREE + 1], [0.0; DEGREE + 1]);
     now[0] = 1.0;
     let mut sum = [0.0; DEGREE + 1];
     for (k, c) in legendre.iter().enumerate() {
-        sum.iter_mut().zip(&now).for_each(|(sum, own)| *sum += c * own);
+        sum.iter_mut().zip(&now).for_each(|(sum, term)| *sum += c * term);
         let n = k as f64;
         let mut next = [0.0; DEGREE + 1];
         for power in 0..=DEGREE {
@@ -132,8 +132,9 @@ fn by_powers(legendre: &Polynomial) -> Polynomial {
     sum
 }
 
-/// Whether both integrals of a polynomial are within the limits of those of the lines, at each sample and
-/// twice between two, where a parabola's excess over its chord has its largest integral.
+/// Whether both integrals of a polynomial agree with those of the lines to within the limits. They are
+/// compared at each sample and at two points between samples, where the integral of a parabola's excess over
+/// its chord is large.
 fn holds(times: &[f64], values: &[f64], (half, polynomial): (f64, &Polynomial), limits: (f64, f64)) -> bool {
     let (mut once, mut twice) = ([0.0; DEGREE + 2], [0.0; DEGREE + 3]);
     for (k, c) in polynomial.iter().enumerate() {
@@ -141,7 +142,7 @@ fn holds(times: &[f64], values: &[f64], (half, polynomial): (f64, &Polynomial), 
         twice[k + 2] = once[k + 1] / (k + 2) as f64;
     }
     let at = |coefficients: &[f64], s: f64| coefficients.iter().rev().fold(0.0, |sum, c| sum * s + c);
-    // both vanish where the piece begins
+    // both integrals are 0 at the start of the piece
     once[0] = -at(&once, -1.0);
     twice[1] = once[0];
     twice[0] = -at(&twice, -1.0);
@@ -151,10 +152,10 @@ fn holds(times: &[f64], values: &[f64], (half, polynomial): (f64, &Polynomial), 
         let (a, b) = (values[i - 1], values[i]);
         let (from, length) = ((times[i - 1] - times[0]) / half - 1.0, (times[i] - times[i - 1]) / half);
         for share in [0.25, 0.75, 1.0] {
-            let (way, end) = (share * length, a + share * (b - a));
-            let first = sum + 0.5 * way * (a + end);
-            let next = second + way * (sum + way * (2.0 * a + end) / 6.0);
-            let s = from + way;
+            let (distance, end) = (share * length, a + share * (b - a));
+            let first = sum + 0.5 * distance * (a + end);
+            let next = second + distance * (sum + distance * (2.0 * a + end) / 6.0);
+            let s = from + distance;
             let near = (at(&once, s) - first).abs() <= limit && (at(&twice, s) - next).abs() <= second_limit;
             if !near {
                 return false;
@@ -170,9 +171,9 @@ fn holds(times: &[f64], values: &[f64], (half, polynomial): (f64, &Polynomial), 
 mod tests {
     use super::*;
 
-    fn sampled(rate: f64, of: impl Fn(f64) -> f64) -> (Vec<f64>, Vec<f64>) {
+    fn sampled(rate: f64, f: impl Fn(f64) -> f64) -> (Vec<f64>, Vec<f64>) {
         let times: Vec<f64> = (0..=(2.0 * rate) as usize).map(|i| i as f64 / rate).collect();
-        let values = times.iter().map(|t| of(*t)).collect();
+        let values = times.iter().map(|t| f(*t)).collect();
         (times, values)
     }
 
@@ -189,7 +190,7 @@ mod tests {
                 next += piece.lines;
                 let polynomial = piece.polynomial.as_ref().unwrap();
                 let half = 0.5 * (times[next] - times[piece.first]);
-                // by Simpson's rule on the difference, ten steps a line
+                // Simpson's rule on the difference, ten steps per line
                 let (mut sum, mut second) = (0.0, 0.0);
                 for i in piece.first..next {
                     let step = (times[i + 1] - times[i]) / 10.0;
@@ -198,8 +199,8 @@ mod tests {
                             let share = (f64::from(part) + share) / 10.0;
                             let t = times[i] + share * (times[i + 1] - times[i]);
                             let s = (t - times[piece.first]) / half - 1.0;
-                            let own = polynomial.iter().rev().fold(0.0, |sum, c| sum * s + c);
-                            own - (values[i] + share * (values[i + 1] - values[i]))
+                            let value = polynomial.iter().rev().fold(0.0, |sum, c| sum * s + c);
+                            value - (values[i] + share * (values[i + 1] - values[i]))
                         };
                         let before = sum;
                         sum += step * (differs(0.0) + 4.0 * differs(0.5) + differs(1.0)) / 6.0;
@@ -212,7 +213,7 @@ mod tests {
             assert_eq!(next, times.len() - 1);
             assert!(speed < 1.2 * limits.0 && place < 1.2 * limits.1, "{speed:e} {place:e}");
             let each = next as f64 / all.len() as f64;
-            assert!(each > fewest, "{each} lines a piece");
+            assert!(each > fewest, "{each} lines per piece");
         }
     }
 

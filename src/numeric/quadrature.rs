@@ -1,21 +1,21 @@
-//! Gauss-Legendre quadrature.
+//! Gauss-Legendre quadrature rules.
 
 use std::sync::OnceLock;
 
 use super::number::Number;
 
-/// The most points of a rule.
-pub const MOST_POINTS: usize = 20;
+/// Largest number of points of a rule.
+pub const MAX_POINTS: usize = 20;
 
 /// Gauss-Legendre points and weights on \[0, 1].
 ///
-/// Exact for polynomials up to degree 2 points - 1; for a series whose terms fall by a factor r the error
+/// Exact for polynomials up to degree 2 points - 1. For a series whose terms fall by a factor r, the error
 /// falls like (r/4)^(2 points).
 #[derive(Debug, Clone)]
 pub struct GaussLegendre<T> {
     points: usize,
-    nodes: [T; MOST_POINTS],
-    weights: [T; MOST_POINTS],
+    nodes: [T; MAX_POINTS],
+    weights: [T; MAX_POINTS],
 }
 
 impl<T: Number> GaussLegendre<T> {
@@ -31,18 +31,18 @@ impl<T: Number> GaussLegendre<T> {
         &self.weights[..self.points]
     }
 
-    /// The same rule in other numbers.
-    pub fn map<U: Number>(&self, of: impl Fn(T) -> U) -> GaussLegendre<U> {
-        GaussLegendre { points: self.points, nodes: self.nodes.map(&of), weights: self.weights.map(&of) }
+    /// The same rule in another number type.
+    pub fn map<U: Number>(&self, f: impl Fn(T) -> U) -> GaussLegendre<U> {
+        GaussLegendre { points: self.points, nodes: self.nodes.map(&f), weights: self.weights.map(&f) }
     }
 }
 
 impl<T: Number> GaussLegendre<T> {
-    /// The rule with 1 to [`MOST_POINTS`] points (clamped), to the rounding of `T`: Newton's method on the
+    /// The rule with 1 to [`MAX_POINTS`] points (clamped), to the rounding of `T`: Newton's method on the
     /// Legendre polynomials from the usual cosine guess.
     pub fn new(points: usize) -> Self {
-        let points = points.clamp(1, MOST_POINTS);
-        let mut rule = Self { points, nodes: [T::zero(); MOST_POINTS], weights: [T::zero(); MOST_POINTS] };
+        let points = points.clamp(1, MAX_POINTS);
+        let mut rule = Self { points, nodes: [T::zero(); MAX_POINTS], weights: [T::zero(); MAX_POINTS] };
         let (x, slope) = roots::<T>(points, 0, points);
         let (one, half) = (T::of(1.0), T::of(0.5));
         for i in 0..points {
@@ -53,36 +53,36 @@ impl<T: Number> GaussLegendre<T> {
     }
 }
 
-/// The rules of all numbers of points, each made when it is first asked for.
-pub struct Rules<T>([OnceLock<GaussLegendre<T>>; MOST_POINTS]);
+/// The rules for every number of points, each computed when first used.
+pub struct Rules<T>([OnceLock<GaussLegendre<T>>; MAX_POINTS]);
 
 impl<T: Number> Rules<T> {
-    /// None yet.
+    /// Starts with no rule computed.
     pub const fn new() -> Self {
-        Self([const { OnceLock::new() }; MOST_POINTS])
+        Self([const { OnceLock::new() }; MAX_POINTS])
     }
 
-    /// The rule with 1 to [`MOST_POINTS`] points (clamped).
+    /// The rule with 1 to [`MAX_POINTS`] points (clamped).
     #[inline]
     pub fn of(&self, points: usize) -> &GaussLegendre<T> {
-        let points = points.clamp(1, MOST_POINTS);
+        let points = points.clamp(1, MAX_POINTS);
         self.0[points - 1].get_or_init(|| GaussLegendre::new(points))
     }
 }
 
-/// The `count` roots from number `first` of the Legendre polynomial of degree `points`, descending from 1 to
-/// -1, and its slope at each. At most [`MOST_POINTS`] at a time.
-fn roots<T: Number>(points: usize, first: usize, count: usize) -> ([T; MOST_POINTS], [T; MOST_POINTS]) {
+/// Roots of the Legendre polynomial of degree `points`, and its slope at each: `count` of them, from index
+/// `first` in the order from 1 down to -1. At most [`MAX_POINTS`] at a time.
+fn roots<T: Number>(points: usize, first: usize, count: usize) -> ([T; MAX_POINTS], [T; MAX_POINTS]) {
     let one = T::of(1.0);
-    let mut x = [one; MOST_POINTS];
+    let mut x = [one; MAX_POINTS];
     for (i, x) in x[..count].iter_mut().enumerate() {
         let place = (first + i) as f64 + 0.75;
         *x = T::of((std::f64::consts::PI * place / (points as f64 + 0.5)).cos());
     }
-    // All at once: one by one, each division waits for the last.
-    let mut slope = [one; MOST_POINTS];
+    // All roots together: for one root each division would wait for the previous one.
+    let mut slope = [one; MAX_POINTS];
     for _ in 0..8 {
-        let (mut value, mut before) = ([one; MOST_POINTS], [T::zero(); MOST_POINTS]);
+        let (mut value, mut before) = ([one; MAX_POINTS], [T::zero(); MAX_POINTS]);
         for n in 1..=points {
             let (twice, less, whole) = (T::of((2 * n - 1) as f64), T::of((n - 1) as f64), T::of(n as f64));
             for ((value, before), x) in value[..count].iter_mut().zip(&mut before).zip(&x) {
@@ -98,12 +98,12 @@ fn roots<T: Number>(points: usize, first: usize, count: usize) -> ([T; MOST_POIN
     (x, slope)
 }
 
-/// The half of a rule with 2 `half` points on \[-1, 1] that lies at x > 0: its points, descending, and
-/// weights, whose sum is 1. It integrates an even function from 0 to 1, exactly up to degree 4 `half` - 1.
+/// The half at x > 0 of the rule with 2 `half` points on \[-1, 1]: descending points and their weights, whose
+/// sum is 1. It integrates an even polynomial from 0 to 1 exactly up to degree 4 `half` - 1.
 pub fn even_half(half: usize) -> Vec<(f64, f64)> {
     let mut rule = Vec::with_capacity(half);
-    for first in (0..half).step_by(MOST_POINTS) {
-        let count = MOST_POINTS.min(half - first);
+    for first in (0..half).step_by(MAX_POINTS) {
+        let count = MAX_POINTS.min(half - first);
         let (x, slope) = roots::<f64>(2 * half, first, count);
         rule.extend((0..count).map(|i| (x[i], 2.0 / ((1.0 - x[i] * x[i]) * slope[i] * slope[i]))));
     }
@@ -117,7 +117,7 @@ mod tests {
 
     #[test]
     fn powers_are_integrated_exactly() {
-        for points in 1..=MOST_POINTS {
+        for points in 1..=MAX_POINTS {
             let rule = GaussLegendre::<f64>::new(points);
             for power in 0..2 * points as i32 {
                 let sum: f64 = rule.nodes().iter().zip(rule.weights()).map(|(x, w)| w * x.powi(power)).sum();

@@ -1,9 +1,9 @@
-//! Quick base-2 logarithm and power, the same bits on every processor, unlike those of a library.
+//! Fast approximate base-2 logarithm and power, with the same bits on every processor.
 
-/// log2 to 0.01; of a positive normal number.
+/// log2 of a positive normal number, to 0.01.
 #[inline(always)]
 pub fn fast_log2(x: f64) -> f64 {
-    // 2^52 with the exponent in its last bits: whole numbers are made and taken apart where the others are.
+    // 2^52 with the exponent in its last bits: the conversion from integer stays in the vector registers.
     const WHOLE: u64 = 0x4330_0000_0000_0000;
     const BIAS: f64 = 4_503_599_627_370_496.0 + 1023.0;
     let bits = x.to_bits();
@@ -18,7 +18,7 @@ pub fn fast_exp2(x: f64) -> f64 {
     const NO_FRACTION: f64 = 6_755_399_441_055_744.0; // 1.5 2^52
     let shifted = x + NO_FRACTION;
     let f = x - (shifted - NO_FRACTION);
-    let mantissa = 1.0 + f * (0.7035 + 0.2402 * f); // of -1/2 to 1/2
+    let mantissa = 1.0 + f * (0.7035 + 0.2402 * f); // 2^f for |f| <= 1/2
     f64::from_bits((shifted.to_bits() << 52).wrapping_add(1023 << 52)) * mantissa
 }
 

@@ -12,14 +12,14 @@ pub struct Ratio {
 }
 
 impl Ratio {
-    /// The ratio of two positive finite numbers, each taken as the shortest decimal text that parses
-    /// back to it (3.1 is 31/10). None where a term of the lowest form would pass 2^53: such
-    /// numbers are best taken as having no common measure.
+    /// The ratio of two positive finite numbers, each taken as the shortest decimal text that parses back to
+    /// it (3.1 is 31/10). Returns `None` if the numerator or denominator in lowest terms exceeds 2^53: such
+    /// numbers are treated as incommensurable.
     pub fn of_decimals(a: f64, b: f64) -> Option<Self> {
         if a == b && a > 0.0 && a.is_finite() {
-            return Some(Self { numerator: 1, denominator: 1 }); // as a rule: a sine is the clock
+            return Some(Self { numerator: 1, denominator: 1 }); // the usual case: one sine is the clock
         }
-        let positive = |value| Decimal::shortest(value).filter(|own| own.digits > 0);
+        let positive = |value| Decimal::shortest(value).filter(|decimal| decimal.digits > 0);
         let (a, b) = (positive(a)?, positive(b)?);
         let shift = a.exponent - b.exponent;
         if shift.abs() > 17 {

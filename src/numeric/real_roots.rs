@@ -1,13 +1,13 @@
 //! All real roots of a polynomial, in an interval or on the whole line.
 //!
-//! For building things, not for the loop of a run: it allocates. The roots of the derivative, found
-//! first, cut the interval into pieces on which the polynomial is monotone; on each a change of sign is
-//! bracketed and closed to rounding. Slower than an eigenvalue or Bernstein method, but it cannot miss a
-//! root or report one twice, and a double root is simply a root of the derivative at which the
+//! This allocates, so it is meant for setup and not for the loop of a run. The roots of the derivative, found
+//! first, divide the interval into pieces on which the polynomial is monotone; a sign change on such a piece
+//! is bracketed and refined to rounding. This is slower than an eigenvalue or Bernstein method, but it cannot
+//! miss a root or report one twice, and a double root is simply a root of the derivative at which the
 //! polynomial vanishes to rounding.
 
-/// Value of the polynomial with `coefficients` from the constant up (Horner), and the sum of the
-/// magnitudes of its terms, which is what its rounding error is relative to.
+/// Value of the polynomial with `coefficients` from the constant up (Horner), and the sum of the magnitudes
+/// of its terms, to which its rounding error is proportional.
 pub fn value_and_magnitude(coefficients: &[f64], x: f64) -> (f64, f64) {
     let size = x.abs();
     coefficients
@@ -18,8 +18,8 @@ pub fn value_and_magnitude(coefficients: &[f64], x: f64) -> (f64, f64) {
 
 /// The sign -1, 0 or 1 of the polynomial at `x`; 0 where it vanishes to rounding.
 ///
-/// Rounding is taken as 2 n units in the last place of the sum of the magnitudes of the n terms:
-/// Horner's own bound (Higham, "Accuracy and Stability of Numerical Algorithms", eq. 5.3).
+/// Rounding is taken as 2 n units of the last place of the sum of the magnitudes of the n terms, the bound
+/// for Horner's scheme (Higham, "Accuracy and Stability of Numerical Algorithms", eq. 5.3).
 pub fn sign(coefficients: &[f64], x: f64) -> f64 {
     let (value, magnitude) = value_and_magnitude(coefficients, x);
     if value.abs() <= rounding(coefficients.len()) * magnitude { 0.0 } else { value.signum() }
@@ -43,9 +43,9 @@ pub fn derivative(coefficients: &[f64]) -> Vec<f64> {
 ///
 /// Preconditions: finite coefficients, `left <= right`.
 ///
-/// Guarantee: every root whose neighbourhood is resolved by double precision, to a few units in the last
-/// place of its conditioning; a multiple root, or a cluster that rounding cannot tell from one, once. Empty
-/// for the zero polynomial, which vanishes everywhere.
+/// Guarantee: every root that double precision resolves is found, to a few units in the last place times its
+/// condition number. A multiple root, or a cluster that rounding does not resolve, is returned once. The
+/// result is empty for the zero polynomial, which vanishes everywhere.
 pub fn real_roots(coefficients: &[f64], left: f64, right: f64) -> Vec<f64> {
     let Some(last) = coefficients.iter().rposition(|c| *c != 0.0) else { return Vec::new() };
     let first = coefficients.iter().position(|c| *c != 0.0).unwrap_or(0);
@@ -57,9 +57,9 @@ pub fn real_roots(coefficients: &[f64], left: f64, right: f64) -> Vec<f64> {
         if core.iter().skip(1).step_by(2).all(|c| *c == 0.0) {
             let squares: Vec<f64> = core.iter().copied().step_by(2).collect();
             let reach = low.abs().max(high.abs());
-            // A little beyond, so that a root on an end is not lost to the rounding of the square.
-            let most = (reach * reach * (1.0 + 4.0 * f64::EPSILON)).min(f64::MAX);
-            for square in scaled_roots(&squares, 0.0, most) {
+            // slightly beyond, so that a root at an end is not lost to the rounding of the square
+            let limit = (reach * reach * (1.0 + 4.0 * f64::EPSILON)).min(f64::MAX);
+            for square in scaled_roots(&squares, 0.0, limit) {
                 let root = square.sqrt();
                 roots.extend([-root, root].into_iter().filter(|r| (low..=high).contains(r)));
             }
@@ -75,18 +75,18 @@ pub fn real_roots(coefficients: &[f64], left: f64, right: f64) -> Vec<f64> {
     roots
 }
 
-/// No root lies further from 0: Fujiwara 1916, twice the largest |a_(n-i)/a_n|^(1/i), taken in
-/// logarithms so that it does not overflow, with a little room for their rounding.
+/// A bound on the magnitude of every root: twice the largest |a_(n-i)/a_n|^(1/i) (Fujiwara 1916). Logarithms
+/// avoid overflow; the factor includes a margin for their rounding.
 fn root_bound(core: &[f64]) -> f64 {
     let degree = core.len() - 1;
     let lead = core[degree].abs().log2();
-    let most = core[..degree]
+    let largest = core[..degree]
         .iter()
         .enumerate()
         .filter(|(_, c)| **c != 0.0)
         .map(|(i, c)| (c.abs().log2() - lead) / (degree - i) as f64)
         .fold(f64::NEG_INFINITY, f64::max);
-    (most + 1.001).exp2().min(f64::MAX)
+    (largest + 1.001).exp2().min(f64::MAX)
 }
 
 /// Roots in a finite interval, after scaling variable and values by powers of two (exact).
@@ -109,7 +109,7 @@ fn scaled_roots(core: &[f64], low: f64, high: f64) -> Vec<f64> {
     monotone_roots(&scaled, low / unit, high / unit).into_iter().map(|r| r * unit).collect()
 }
 
-/// c 2^power without overflow on the way; what is too small becomes 0.
+/// c 2^power without intermediate overflow; a result too small for a double becomes 0.
 fn times_power_of_two(mut c: f64, mut power: i32) -> f64 {
     while power != 0 && c != 0.0 && c.is_finite() {
         let part = power.clamp(-900, 900);
@@ -119,34 +119,34 @@ fn times_power_of_two(mut c: f64, mut power: i32) -> f64 {
     c
 }
 
-/// Distinct roots within [low, high]; the recursion over the derivatives.
+/// Distinct roots within [low, high], by recursion over the derivatives.
 fn monotone_roots(coefficients: &[f64], low: f64, high: f64) -> Vec<f64> {
     let Some(last) = coefficients.iter().rposition(|c| *c != 0.0) else { return Vec::new() };
-    let own = &coefficients[..=last];
+    let coefficients = &coefficients[..=last];
     if last == 0 {
         return Vec::new();
     }
     if last == 1 {
-        let root = -own[0] / own[1];
+        let root = -coefficients[0] / coefficients[1];
         return if (low..=high).contains(&root) { vec![root] } else { Vec::new() };
     }
-    let slope = derivative(own);
+    let slope = derivative(coefficients);
     let mut cuts = vec![low];
     cuts.extend(monotone_roots(&slope, low, high).into_iter().filter(|c| *c > low && *c < high));
     cuts.push(high);
     let mut roots: Vec<f64> = Vec::new();
-    let mut sign_before = sign(own, low);
+    let mut sign_before = sign(coefficients, low);
     if sign_before == 0.0 {
         roots.push(low);
     }
     for pair in cuts.windows(2) {
-        let sign_here = sign(own, pair[1]);
+        let sign_here = sign(coefficients, pair[1]);
         if sign_before * sign_here < 0.0 {
-            roots.push(bracketed(own, &slope, pair[0], pair[1], sign_before));
+            roots.push(bracketed(coefficients, &slope, pair[0], pair[1], sign_before));
         }
         if sign_here == 0.0 {
-            // Neighbouring cuts that both vanish to rounding are one cluster, unless they are the two ends.
-            let same_cluster = sign_before == 0.0 && sign(own, 0.5 * (pair[0] + pair[1])) == 0.0;
+            // Neighbouring cuts with values of 0 to rounding, also between them, are one cluster of roots.
+            let same_cluster = sign_before == 0.0 && sign(coefficients, 0.5 * (pair[0] + pair[1])) == 0.0;
             if !same_cluster {
                 roots.push(pair[1]);
             }
@@ -156,8 +156,8 @@ fn monotone_roots(coefficients: &[f64], low: f64, high: f64) -> Vec<f64> {
     roots
 }
 
-/// The root between `low` and `high`, where the sign changes from `sign_low`; Newton's step where it
-/// stays inside the bracket and the bracket keeps shrinking, else the middle.
+/// The root between `low` and `high`, where the sign changes from `sign_low`. It takes Newton's step if that
+/// stays inside the bracket and the bracket keeps shrinking, and otherwise bisects.
 fn bracketed(coefficients: &[f64], slope: &[f64], mut low: f64, mut high: f64, sign_low: f64) -> f64 {
     let mut x = 0.5 * (low + high);
     let mut width = high - low;
@@ -173,8 +173,8 @@ fn bracketed(coefficients: &[f64], slope: &[f64], mut low: f64, mut high: f64, s
             high = x;
         }
         let newton = x - value / value_and_magnitude(slope, x).0;
-        // Newton's steps come from one side near the end, leaving the other end of the bracket far away:
-        // accept a step below rounding as the end.
+        // Newton's steps finally approach the root from one side, so that the other end of the bracket stays
+        // far away: a step below rounding ends the iteration.
         if (newton - x).abs() <= 0.5 * f64::EPSILON * x.abs() && newton >= low && newton <= high {
             return newton;
         }
@@ -186,12 +186,12 @@ fn bracketed(coefficients: &[f64], slope: &[f64], mut low: f64, mut high: f64, s
         }
         let middle = 0.5 * (low + high);
         if middle <= low || middle >= high {
-            // The better of the two; of equals the one nearer to 0, so that a mirrored polynomial has
-            // mirrored roots.
+            // The end with the smaller value; of equals the one nearer to 0, so that a mirrored polynomial
+            // has mirrored roots.
             let miss = |x: f64| (value_and_magnitude(coefficients, x).0.abs(), x.abs());
             return if miss(low) <= miss(high) { low } else { high };
         }
-        // Five Newton steps that do not halve the bracket are converging or lost; one bisection tells.
+        // After five Newton steps that do not halve the bracket, bisect once.
         x = if newton > low && newton < high && since < 5 {
             newton
         } else {
@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn an_interval_keeps_its_own_and_its_ends() {
+    fn an_interval_includes_its_ends() {
         let p = product(&[-1.0, 2.0, 3.0]);
         assert_eq!(real_roots(&p, -1.0, 2.5).len(), 2);
         assert_eq!(real_roots(&p, 0.0, 1.0), Vec::<f64>::new());
@@ -241,10 +241,11 @@ mod tests {
     #[test]
     fn a_mirrored_polynomial_has_mirrored_roots() {
         // the polynomial is as small on one side of the root as on the other
-        let mut own = [1.1902863311193113, 0.9015141295019665, -0.6060376420249709, 0.0, 0.0, 1.0];
-        let roots = real_roots(&own, LINE.0, LINE.1);
-        own.iter_mut().step_by(2).for_each(|c| *c = -*c);
-        assert_eq!(real_roots(&own, LINE.0, LINE.1), roots.iter().map(|root| -root).collect::<Vec<_>>());
+        let mut polynomial = [1.1902863311193113, 0.9015141295019665, -0.6060376420249709, 0.0, 0.0, 1.0];
+        let roots = real_roots(&polynomial, LINE.0, LINE.1);
+        polynomial.iter_mut().step_by(2).for_each(|c| *c = -*c);
+        let mirrored: Vec<f64> = roots.iter().map(|root| -root).collect();
+        assert_eq!(real_roots(&polynomial, LINE.0, LINE.1), mirrored);
     }
 
     #[test]

@@ -1,9 +1,9 @@
-//! Least squares with the uncertainty of what is fitted.
+//! Least-squares fits with the uncertainty of their coefficients.
 
 use nalgebra::{SMatrix, SVector};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// Coefficients that fit values in the sense of least squares.
+/// Coefficients of a least-squares fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fit<const N: usize> {
     /// The coefficients.
@@ -14,7 +14,7 @@ pub struct Fit<const N: usize> {
     pub inverse: SMatrix<f64, N, N>,
     /// The variance of the residuals.
     pub variance: f64,
-    /// Degrees of freedom of that variance: values less coefficients.
+    /// Degrees of freedom of that variance: number of values less number of coefficients.
     pub freedom: usize,
 }
 
@@ -27,11 +27,11 @@ impl<const N: usize> Fit<N> {
 
 /// The coefficients c that minimise sum (row . c - value)^2 over `rows`, each with its value.
 ///
-/// Method: normal equations by Cholesky; with columns of one size their condition is that of the rows
-/// squared, so polynomials want a variable within \[-1, 1]. The covariance takes the errors of the values as
-/// independent and of one size, which is estimated from the residuals.
+/// Method: normal equations by Cholesky, whose condition number is the square of that of the rows, so that
+/// the variable of a polynomial should lie within \[-1, 1]. The covariance assumes that the errors of the
+/// values are independent and have the same variance, which is estimated from the residuals.
 ///
-/// `None` where there are no more values than coefficients, or where they do not determine them.
+/// Returns `None` if there are no more values than coefficients, or if they do not determine the fit.
 pub fn least_squares<const N: usize>(rows: &[([f64; N], f64)]) -> Option<Fit<N>> {
     let freedom = rows.len().checked_sub(N).filter(|freedom| *freedom > 0)?;
     let mut normal = SMatrix::<f64, N, N>::zeros();
@@ -45,7 +45,7 @@ pub fn least_squares<const N: usize>(rows: &[([f64; N], f64)]) -> Option<Fit<N>>
     let mut coefficients = factors.solve(&right);
     let residual =
         |c: &SVector<f64, N>, (row, value): &([f64; N], f64)| value - SVector::<f64, N>::from(*row).dot(c);
-    // one step of refinement, after which the residuals are those of the rounded coefficients
+    // one step of iterative refinement
     let mut rest = SVector::<f64, N>::zeros();
     rows.iter().for_each(|row| rest += SVector::<f64, N>::from(row.0) * residual(&coefficients, row));
     coefficients += factors.solve(&rest);
@@ -56,29 +56,29 @@ pub fn least_squares<const N: usize>(rows: &[([f64; N], f64)]) -> Option<Fit<N>>
     finite.then_some(Fit { coefficients, covariance, inverse, variance, freedom })
 }
 
-/// The powers 1, u, u^2, .. of a row of a polynomial.
+/// The powers 1, u, u^2, .. as a row for the fit of a polynomial.
 pub fn powers<const N: usize>(u: f64) -> [f64; N] {
     std::array::from_fn(|k| u.powi(k as i32))
 }
 
-/// The factor on a standard error with which an interval holds the true value in 95 of 100 cases, where the
-/// error was estimated with so many degrees of freedom: the quantile 0.975 of Student's distribution.
+/// The half-width of a 95 % confidence interval in standard errors, if the error was estimated with `freedom`
+/// degrees of freedom: the 0.975 quantile of Student's distribution.
 pub fn student(freedom: usize) -> f64 {
     StudentsT::new(0.0, 1.0, freedom.max(1) as f64).map_or(f64::NAN, |law| law.inverse_cdf(0.975))
 }
 
-/// The most steps of Gauss and Newton.
-const MOST_STEPS: usize = 60;
+/// Largest number of Gauss-Newton steps.
+const MAX_STEPS: usize = 60;
 
-/// The coefficients c, a, q for which c + a q^k follows `values` (k = 0, 1, ..) best.
+/// The least-squares fit of c + a q^k to `values` (k = 0, 1, ..), with coefficients in the order c, a, q.
 ///
-/// Method: Gauss-Newton from q as the ratio of successive differences, with steps halved until the residual
-/// shrinks; the covariance is that of the linearised problem. `None` for fewer than four values, or where no
-/// such law fits better than a constant does.
+/// Method: Gauss-Newton, starting with q as the ratio of successive differences and halving each step until
+/// the residual falls; the covariance is that of the linearised problem. Returns `None` for fewer than four
+/// values, or if the values do not determine the coefficients, as when they are constant.
 pub fn geometric(values: &[f64]) -> Option<Fit<3>> {
     let differences: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let product: f64 = differences.windows(2).map(|pair| pair[0] * pair[1]).sum();
-    let square: f64 = differences.iter().rev().skip(1).map(|own| own * own).sum();
+    let square: f64 = differences.iter().rev().skip(1).map(|difference| difference * difference).sum();
     if values.len() < 4 || !(square > 0.0) {
         return None;
     }
@@ -93,7 +93,7 @@ pub fn geometric(values: &[f64]) -> Option<Fit<3>> {
         values.iter().enumerate().map(|(k, value)| (value - law(c, k)).powi(2)).sum()
     };
     let mut fit = None;
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         let rows: Vec<([f64; 3], f64)> = values
             .iter()
             .enumerate()
@@ -115,7 +115,7 @@ pub fn geometric(values: &[f64]) -> Option<Fit<3>> {
             break;
         }
     }
-    fit.filter(|own| own.coefficients.iter().all(|own| own.is_finite()))
+    fit.filter(|fit| fit.coefficients.iter().all(|coefficient| coefficient.is_finite()))
 }
 
 #[cfg(test)]
@@ -137,16 +137,16 @@ mod tests {
             .map(|u| (powers(u), powers::<4>(u).iter().zip(cubic).map(|(p, c)| p * c).sum()))
             .collect();
         let fit = least_squares(&rows).unwrap();
-        for (own, exact) in fit.coefficients.iter().zip(cubic) {
-            assert!((own - exact).abs() < 1e-14, "{fit:?}");
+        for (fitted, exact) in fit.coefficients.iter().zip(cubic) {
+            assert!((fitted - exact).abs() < 1e-14, "{fit:?}");
         }
         assert!(fit.covariance[(3, 3)] < 1e-26 && fit.freedom == 36);
         for q in [0.36, -0.93] {
             let values: Vec<f64> = (0..12).map(|k| 0.2 + 3.0 * f64::powi(q, k)).collect();
             let fit = geometric(&values).unwrap();
             let exact = [0.2, 3.0, q];
-            for (own, exact) in fit.coefficients.iter().zip(exact) {
-                assert!((own - exact).abs() < 1e-12, "{fit:?}");
+            for (fitted, exact) in fit.coefficients.iter().zip(exact) {
+                assert!((fitted - exact).abs() < 1e-12, "{fit:?}");
             }
         }
         assert!(geometric(&[1.0; 9]).is_none() && geometric(&[1.0, 2.0, 3.0]).is_none());

@@ -1,13 +1,13 @@
-//! Sign changes of a polynomial between 0 and 1, in order, with none missed.
+//! Sign changes of a polynomial between 0 and 1, found in ascending order without missing any.
 //!
-//! Contacts are roots of a polynomial on (0, 1]. Comparing signs at the ends of a step misses pairs of
-//! roots inside it, so the search bounds the polynomial instead: first by nested bounds of its
-//! value, then of its slope, and only where both leave room by its Bernstein coefficients, whose sign changes
-//! bound the number of roots (Descartes' rule in the Bernstein basis, Lane and Riesenfeld 1981). An
-//! interval with one sign change holds one root, one with none holds none, any other is halved.
+//! Contacts are roots of a polynomial on (0, 1]. Comparing signs at the ends of a step misses pairs of roots
+//! inside it, so the search bounds the polynomial instead: first its value and its slope by nested bounds,
+//! and if neither excludes a pair of roots, by its Bernstein coefficients, whose sign changes bound the
+//! number of roots (Descartes' rule in the Bernstein basis, Lane and Riesenfeld 1981). An interval with one
+//! sign change has one root, an interval without sign changes has none, and any other interval is halved.
 //!
-//! A double root touches and does not cross: a pair of roots closer than 2^-36 of the step, which is below
-//! what the rounding of the coefficients can tell, counts as none.
+//! A double root touches 0 without crossing it. A pair of roots closer than 2^-36 of the step cannot be
+//! resolved given the rounding of the coefficients and is not reported.
 
 use super::scalar::Scalar;
 use super::single_root::{expansion, step};
@@ -34,12 +34,12 @@ static BINOMIALS: [[f64; COEFFICIENTS]; COEFFICIENTS] = {
     rows
 };
 
-/// A polynomial on [0, 1], sum g\[k\] s^k, as something to find sign changes in.
+/// Search for the sign changes of a polynomial on [0, 1], sum g\[k\] s^k.
 ///
-/// Its sign at 0 is that right after it: a root at 0 is no change. From there on a value of exactly 0 counts
-/// as of the other sign: a root at the very end of an interval is found once, that at 1 where the polynomial
-/// comes to it with its first sign, and a polynomial and its negative have the same ones. A touch at the very
-/// end of a halved interval is found as a pair.
+/// The sign at 0 is the sign just after 0, so that a root at 0 is not a sign change. Elsewhere a value of
+/// exactly 0 counts as the opposite of this first sign. Hence a root at an end of an interval is found once,
+/// a root at 1 is found if the polynomial has its first sign just before 1, and a polynomial and its negative
+/// have the same sign changes. A touch exactly at the end of a halved interval is found as a pair.
 #[derive(Debug, Clone, Copy)]
 pub struct PolynomialRoots<'a, T> {
     g: &'a [T],
@@ -73,8 +73,8 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         (value, slope, half_curvature + half_curvature)
     }
 
-    /// The first s in (0, 1] where the polynomial, positive at 0, ceases to be positive; none where it
-    /// stays positive. Located to the rounding of its own evaluation, relative to s.
+    /// The first s in (0, 1] at which the polynomial changes sign, to within the rounding of its evaluation,
+    /// relative to s; `None` if it does not change sign.
     pub fn first(&self) -> Option<T> {
         let mut found = None;
         self.each_sign_change(&mut |s| {
@@ -87,9 +87,9 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
     /// Calls `visit` with every s in (0, 1] where the polynomial changes sign, in ascending order, until
     /// it returns false.
     pub fn each_sign_change(&self, visit: &mut dyn FnMut(T) -> bool) {
-        let divided = self.without_a_root_at_0();
-        divided.each_bracket(&mut |above, bracket| {
-            let root = divided.polish(above, bracket);
+        let reduced = self.without_a_root_at_0();
+        reduced.each_bracket(&mut |above, bracket| {
+            let root = reduced.polish(above, bracket);
             visit(T::at_root(root, |s| {
                 let (value, slope, _) = expansion(self.g, s);
                 (value, slope)
@@ -97,7 +97,7 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         });
     }
 
-    /// How often it changes sign in (0, 1]: what [`Self::each_sign_change`] visits, without locating it.
+    /// The number of sign changes in (0, 1], without locating them.
     pub fn count_sign_changes(&self) -> usize {
         let mut count = 0;
         self.without_a_root_at_0().each_bracket(&mut |_, _| {
@@ -107,45 +107,45 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         count
     }
 
-    /// The same sign on (0, 1], divided by the power of s that makes it 0 at 0.
+    /// The polynomial reduced by the highest power of s that divides it, which has the same sign on (0, 1].
     #[inline]
     fn without_a_root_at_0(&self) -> Self {
         let first = self.g.iter().position(|c| *c != T::zero()).unwrap_or(0);
         Self { g: &self.g[first..] }
     }
 
-    /// Whether a value is on the side of 0 on which the polynomial begins.
+    /// Whether a value has the polynomial's sign at 0.
     #[inline(always)]
-    fn is_as_at_first(&self, value: T) -> bool {
+    fn has_first_sign(&self, value: T) -> bool {
         if self.g[0] > T::zero() { value > T::zero() } else { value < T::zero() }
     }
 
-    /// Calls `visit` for an interval around each sign change, in ascending order, until it returns false:
-    /// with whether the polynomial has its first sign at the low end, and with the ends. Precondition: it is
-    /// not 0 at 0.
+    /// Calls `visit` for an interval around each sign change, in ascending order, until it returns false. Its
+    /// arguments are whether the polynomial has its first sign at the lower end, and both ends. Precondition:
+    /// the polynomial is not 0 at 0.
     fn each_bracket(&self, visit: &mut dyn FnMut(bool, (T, T)) -> bool) {
         let zero = T::zero();
         let g = self.g;
         if g.len() < 2 {
             return;
         }
-        // Nested bounds: for s in [0, 1] the tail g[k] + s (g[k+1] + s ..) lies between g[k] plus the smaller
-        // of 0 and the bound of the next tail, and g[k] plus the larger; likewise for the slope.
-        let (mut least, mut most) = (zero, zero);
-        let (mut least_slope, mut most_slope) = (zero, zero);
+        // Nested bounds: for s in [0, 1] the tail g[k] + s (g[k+1] + s ..) is at least g[k] plus the smaller
+        // of 0 and the lower bound of the next tail, and likewise for the upper bound and for the slope.
+        let (mut lower, mut upper) = (zero, zero);
+        let (mut lower_slope, mut upper_slope) = (zero, zero);
         for (k, c) in g.iter().enumerate().skip(1).rev() {
-            least = *c + least.smaller(zero);
-            most = *c + most.larger(zero);
+            lower = *c + lower.smaller(zero);
+            upper = *c + upper.larger(zero);
             let slope = *c * T::whole(k);
-            least_slope = slope + least_slope.smaller(zero);
-            most_slope = slope + most_slope.larger(zero);
+            lower_slope = slope + lower_slope.smaller(zero);
+            upper_slope = slope + upper_slope.larger(zero);
         }
-        if if g[0] > zero { g[0] + least.smaller(zero) > zero } else { g[0] + most.larger(zero) < zero } {
+        if if g[0] > zero { g[0] + lower.smaller(zero) > zero } else { g[0] + upper.larger(zero) < zero } {
             return;
         }
-        if most_slope < zero || least_slope > zero {
-            // Monotone: the end decides.
-            if !self.is_as_at_first(self.value(T::of(1.0))) {
+        if upper_slope < zero || lower_slope > zero {
+            // Monotone: there is one root if the sign at 1 differs from that at 0.
+            if !self.has_first_sign(self.value(T::of(1.0))) {
                 visit(true, (zero, T::of(1.0)));
             }
             return;
@@ -164,7 +164,8 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         self.isolate(&b, zero, T::of(1.0), 0, visit);
     }
 
-    /// Returns false once `visit` has.
+    /// Visits the sign changes from `low` to `low + width`, where the Bernstein coefficients are `b`. Returns
+    /// false as soon as `visit` does.
     fn isolate(
         &self,
         b: &[T; COEFFICIENTS],
@@ -175,14 +176,14 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
     ) -> bool {
         let zero = T::zero();
         let n = self.g.len() - 1;
-        let as_at_first = |c: T| self.is_as_at_first(c);
-        let changes = b[..=n].windows(2).filter(|w| as_at_first(w[0]) != as_at_first(w[1])).count();
+        let first_sign = |c: T| self.has_first_sign(c);
+        let changes = b[..=n].windows(2).filter(|w| first_sign(w[0]) != first_sign(w[1])).count();
         if changes == 0 {
             return true;
         }
         if changes == 1 || depth == MAX_DEPTH {
             if changes % 2 == 1 {
-                return visit(as_at_first(b[0]), (low, low + width));
+                return visit(first_sign(b[0]), (low, low + width));
             }
             return true; // a touch
         }
@@ -201,8 +202,8 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
     }
 
     /// The root between `low` and `high`, by Chebyshev's steps (third order) kept inside a shrinking bracket.
-    /// The sign at `low` is that which the interval was found by: where `low` is a root to rounding, another
-    /// way to the value there may give the other sign.
+    /// `above` is the sign at `low` by which the bracket was found: if `low` is a root to within rounding,
+    /// another way to evaluate the polynomial there may give the opposite sign.
     fn polish(&self, above: bool, (mut low, mut high): (T, T)) -> T {
         let half = T::of(0.5);
         let mut s = self.guess(low, high).unwrap_or_else(|| (low + high) * half);
@@ -211,23 +212,24 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         for _ in 0..120 {
             let expansion = expansion(self.g, s);
             let (step, bent) = step(expansion);
-            // Another change, the other way, at the very end of the bracket: its sign is rounding alone.
+            // The step leads to a sign change of the opposite direction at the end of the bracket, where the
+            // sign is determined by rounding.
             let falls = (expansion.1 > T::zero()) != (self.g[0] > T::zero());
             let middle = (low + high) * half;
             if falls != above && step.abs() <= close && s != middle {
                 (s, last_move) = (middle, high - low);
                 continue;
             }
-            if self.is_as_at_first(expansion.0) == above {
+            if self.has_first_sign(expansion.0) == above {
                 low = s
             } else {
                 high = s
             }
             let next = s - step;
-            // A step must stay inside and at least halve the last move; else halve the bracket.
+            // A step must stay inside the bracket and be at most half the last move; otherwise bisect.
             let inside = next >= low && next <= high && step.abs() * T::of(2.0) <= last_move;
             if inside && step.abs() <= s.abs() * close && bent.abs() <= close {
-                return next; // what is left is the third power of that
+                return next; // the remaining error is the third power of the last one
             }
             if !inside && step.abs() <= s.abs() * T::of(T::EPSILON) {
                 return s;
@@ -242,8 +244,8 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         s
     }
 
-    /// Where the parabola that shares value and slope at 0 and the value at 1 changes sign, where the bracket
-    /// is all of it.
+    /// The sign change of the parabola with the polynomial's value and slope at 0 and its value at 1; `None`
+    /// unless the bracket is all of [0, 1].
     fn guess(&self, low: T, high: T) -> Option<T> {
         if low != T::zero() || high != T::of(1.0) || self.g.len() < 2 {
             return None;
@@ -251,7 +253,7 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
         let end = self.g.iter().map(|c| c.to_f64()).sum::<f64>();
         let (a, b) = (self.g[0].to_f64(), self.g[1].to_f64());
         let c = end - a - b;
-        // (a slope of 0 has no sign of its own: the polynomial and its negative are to have the same guess)
+        // a slope of 0 takes the sign of the value, so that a polynomial and its negative have the same guess
         let root = (b * b - 4.0 * a * c).sqrt().copysign(if b == 0.0 { a } else { b });
         let near = -2.0 * a / (b + root);
         let far = -(b + root) / (2.0 * c);

@@ -3,7 +3,7 @@
 /// Leading digits of the steps of an axis.
 pub const ONE_TWO_FIVE: [f64; 3] = [1.0, 2.0, 5.0];
 
-/// Share by which a number may miss a round one and still be it.
+/// Relative difference within which a number counts as round.
 const ROUNDING: f64 = 1e-9;
 
 /// Exponent of the largest power of ten that is not above `value`, which is above 0.
@@ -11,19 +11,19 @@ pub fn decade(value: f64) -> i32 {
     value.log10().floor() as i32
 }
 
-/// The least of `digits`, which ascend from 1 to below 10, times a power of ten that is not below `value`,
-/// which is above 0.
+/// The smallest product of one of `digits` and a power of ten that is not below `value`. `digits` ascend from
+/// 1 to below 10; `value` is above 0.
 pub fn round_up(value: f64, digits: &[f64]) -> f64 {
     let power = decade(value);
     let found = digits.iter().map(|digit| nearest(*digit, power));
-    found.into_iter().find(|own| *own >= value * (1.0 - ROUNDING)).unwrap_or(nearest(10.0, power))
+    found.into_iter().find(|round| *round >= value * (1.0 - ROUNDING)).unwrap_or(nearest(10.0, power))
 }
 
-/// The greatest of `digits` times a power of ten that is not above `value`; see [`round_up`].
+/// The largest product of one of `digits` and a power of ten that is not above `value`; see [`round_up`].
 pub fn round_down(value: f64, digits: &[f64]) -> f64 {
     let power = decade(value);
     let found = digits.iter().rev().map(|digit| nearest(*digit, power));
-    found.into_iter().find(|own| *own <= value * (1.0 + ROUNDING)).unwrap_or(nearest(1.0, power))
+    found.into_iter().find(|round| *round <= value * (1.0 + ROUNDING)).unwrap_or(nearest(1.0, power))
 }
 
 /// The double nearest to a decimal.

@@ -1,4 +1,4 @@
-//! Single real numbers of the integrator: order and a few functions, for the decisions between steps.
+//! Scalar number types of the integrator, with comparison and a few functions.
 //!
 //! `f64` is the working type, [`DoubleDouble`](super::DoubleDouble) the reference.
 
@@ -6,23 +6,23 @@ use super::double_double::DoubleDouble;
 use super::number::Number;
 use super::quadrature::{GaussLegendre, Rules};
 
-/// A single real number: order, division, a few functions.
+/// A real number with comparison and a few functions.
 pub trait Scalar: Number + PartialOrd {
-    /// Spacing of the numbers just above 1, relative.
+    /// Relative spacing of the numbers just above 1.
     const EPSILON: f64;
 
-    /// A relative error whose third power is below rounding by far.
+    /// A relative error whose third power is far below rounding.
     const ROUGH: f64;
 
     /// 2 pi.
     fn tau() -> Self;
     /// The nearest `f64`.
     fn to_f64(self) -> f64;
-    /// As a sum of two doubles: exact for both number types.
+    /// The number as a sum of two doubles, exact for `f64` and `DoubleDouble`.
     fn to_pair(self) -> DoubleDouble;
     /// The nearest number to a sum of two doubles.
     fn of_pair(pair: DoubleDouble) -> Self;
-    /// Largest whole number that is not above.
+    /// Largest whole number that is not above this one.
     fn floor(self) -> Self;
     /// Square root of a number that is 0 or above.
     fn sqrt(self) -> Self;
@@ -30,10 +30,10 @@ pub trait Scalar: Number + PartialOrd {
     /// sin(-u) = -sin(u) bit for bit. Precondition: |u| well below 2^52.
     fn sin_cos_turns(u: Self) -> (Self, Self);
 
-    /// The Gauss-Legendre rule of 1 to 20 points (clamped), made once.
+    /// The Gauss-Legendre rule with 1 to 20 points (clamped), computed once.
     fn gauss_legendre(points: usize) -> &'static GaussLegendre<Self>;
 
-    /// The root of a function that an iteration has found, with what this number type asks of it beyond the
+    /// Completes the root of a function that an iteration has found, if this number type needs more than the
     /// iteration's last step.
     #[inline(always)]
     fn at_root(root: Self, _value_and_slope: impl FnOnce(Self) -> (Self, Self)) -> Self {
@@ -50,11 +50,11 @@ pub trait Scalar: Number + PartialOrd {
     fn is_finite(self) -> bool {
         self.to_f64().is_finite()
     }
-    /// The larger of two; the first where they do not compare.
+    /// The larger of two; `self` if they do not compare.
     fn larger(self, other: Self) -> Self {
         if other > self { other } else { self }
     }
-    /// The smaller of two; the first where they do not compare.
+    /// The smaller of two; `self` if they do not compare.
     fn smaller(self, other: Self) -> Self {
         if other < self { other } else { self }
     }
@@ -86,7 +86,7 @@ impl Scalar for f64 {
     }
     #[inline(always)]
     fn floor(self) -> Self {
-        // The library's is a call on a processor that is only promised SSE2.
+        // The library function is not inlined for a target with SSE2 only.
         if self.abs() < 4.0e18 {
             let whole = self as i64 as f64;
             if whole > self { whole - 1.0 } else { whole }
@@ -98,17 +98,17 @@ impl Scalar for f64 {
     fn sqrt(self) -> Self {
         f64::sqrt(self)
     }
-    /// As `sin_cos_by_octant`, every choice a selection, so that several can be made at once, and as little
-    /// as can be that waits for something else: a step of the motion begins with it.
+    /// Like `sin_cos_by_octant`, but without branches, so that several can be evaluated at once, and with
+    /// short chains of dependent operations, since a step of the motion begins with it.
     #[inline(always)]
     fn sin_cos_turns(u: Self) -> (Self, Self) {
-        // 1.5 2^52: of its sum with a number below 2^50 the last bits are the whole
+        // 1.5 2^52: the last bits of its sum with a number below 2^50 are that number's nearest integer
         const NO_FRACTION: f64 = 6_755_399_441_055_744.0;
         let shifted = u * 4.0 + NO_FRACTION;
         let quarter = shifted.to_bits();
         let r = u - (shifted - NO_FRACTION) * 0.25; // exact
-        // Taylor series in (2 pi r)^2 for |2 pi r| <= pi/4: the first omitted term is 4e-18 of
-        // the leading one. By pairs, and pairs of pairs.
+        // Taylor series in (2 pi r)^2 for |2 pi r| <= pi/4, summed by pairs and pairs of pairs (Estrin): the
+        // first omitted term is 4e-18 of the leading one.
         let y = std::f64::consts::TAU * r;
         let z = y * y;
         let (z2, reciprocal) = (z * z, |d: f64| 1.0 / d);
@@ -126,7 +126,7 @@ impl Scalar for f64 {
     }
 }
 
-/// Reduces `u` exactly to |r| <= 1/8 turn, asks `small` for (sin, cos) there and puts the octants back.
+/// Reduces `u` exactly to |r| <= 1/8 turn, calls `small` for (sin, cos) there and restores the octant.
 #[inline(always)]
 pub(super) fn sin_cos_by_octant<T: Scalar>(u: T, small: impl Fn(T) -> (T, T)) -> (T, T) {
     let negative = u < T::zero();

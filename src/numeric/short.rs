@@ -1,4 +1,4 @@
-//! Short numbers for sentences.
+//! Formatting of numbers with few digits for use in sentences.
 
 use super::round::decade;
 
@@ -13,7 +13,7 @@ pub fn short(value: f64) -> String {
     }
 }
 
-/// Decimals with which a number of this size has so many significant digits; 12 at most.
+/// The number of decimals that shows a number of this size with `digits` significant digits; at most 12.
 pub fn decimals(value: f64, digits: i32) -> usize {
     (digits - 1 - decade(value.abs())).clamp(0, 12) as usize
 }

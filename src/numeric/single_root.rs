@@ -1,31 +1,32 @@
 //! The root of a polynomial that changes its sign once between 0 and 1.
 //!
-//! For one polynomial or, side by side, for several: each gets the root that it would get alone, to the bit.
+//! It works on one polynomial or on several in lanes; each lane gets exactly the root that it
+//! would get alone.
 
 use super::number::Number;
 use super::scalar::Scalar;
 
-/// The most steps to the root; each takes the error to its third power.
+/// Largest number of steps to the root; each cubes the error.
 pub(crate) const MOST_STEPS: usize = 3;
 
-/// A root of the cubic that has these values and slopes at 0 and at 1, roughly, where the values differ in
-/// sign.
+/// An approximate root of the cubic with these values and slopes at 0 and at 1. The values must
+/// differ in sign.
 #[inline(always)]
 pub(crate) fn guess((g0, slope0): (f64, f64), (g1, slope1): (f64, f64)) -> f64 {
     let rise = g1 - g0;
-    // of the parabola that has the first slope
+    // start from the parabola with both values and the slope at 0
     let bend = rise - slope0;
     let root = (slope0 * slope0 - 4.0 * g0 * bend).sqrt();
     let s = -2.0 * g0 / (slope0 + root.copysign(slope0));
-    // one step of third order along the cubic
+    // one step of third order on the cubic
     let (c, d) = (3.0 * rise - 2.0 * slope0 - slope1, slope0 + slope1 - 2.0 * rise);
     let value = g0 + s * (slope0 + s * (c + s * d));
     let slope = slope0 + s * (2.0 * c + 3.0 * d * s);
     s - step((value, slope, c + 3.0 * d * s)).0
 }
 
-/// Chebyshev's step (third order) from value, slope and half the curvature, and what the bend adds to one of
-/// Newton, as a share of that.
+/// Chebyshev's step (third order) from value, slope and half the curvature, and by which share it exceeds
+/// Newton's step.
 #[inline(always)]
 pub(crate) fn step<T: Scalar>((value, slope, half_curvature): (T, T, T)) -> (T, T) {
     let newton = value / slope;
@@ -33,16 +34,16 @@ pub(crate) fn step<T: Scalar>((value, slope, half_curvature): (T, T, T)) -> (T, 
     (newton + newton * bent, bent)
 }
 
-/// One step towards the root from `s`: the next place, and whether it is the root.
+/// One step from `s`: the next estimate of the root, and whether it has converged.
 #[inline(always)]
 pub(crate) fn next<T: Scalar>(s: T, expansion: (T, T, T)) -> (T, bool) {
     let (step, bent) = step(expansion);
     let close = T::of(T::ROUGH);
-    // what is left is the third power of that
+    // the remaining error is the third power of the last one
     (s - step, (step.abs() <= s.abs() * close) & (bent.abs() <= close))
 }
 
-/// The root near `guess`; none where it is not found at once, or not between 0 and 1.
+/// The root near `guess`; `None` if it does not converge in a few steps, or is not between 0 and 1.
 #[inline]
 pub(crate) fn single_root<T: Scalar>(g: &[T], guess: T) -> Option<T> {
     let mut s = guess;
@@ -60,13 +61,13 @@ pub(crate) fn single_root<T: Scalar>(g: &[T], guess: T) -> Option<T> {
     None
 }
 
-/// Value, first and half the second derivative of a polynomial at `s`. Even and odd powers apart: one long
-/// chain of products would wait for itself.
+/// Value, first and half the second derivative of a polynomial at `s`. Even and odd powers are summed
+/// separately to shorten the chain of dependent products.
 #[inline(always)]
 pub(crate) fn expansion<T: Number>(g: &[T], s: T) -> (T, T, T) {
     let zero = T::zero();
     let square = s * s;
-    // of each part: value, and first and half the second derivative by the square
+    // of each part: value, first and half the second derivative with respect to `square`
     let (mut e0, mut e1, mut e2, mut o0, mut o1, mut o2) = (zero, zero, zero, zero, zero, zero);
     let mut pairs = g.rchunks_exact(2);
     macro_rules! add {
@@ -101,10 +102,10 @@ mod tests {
     use super::super::{DoubleDouble, Lanes};
     use super::*;
 
-    /// The product of (s - root) and a polynomial without roots near [0, 1], falling or rising.
-    fn with_root(root: f64, others: &[f64]) -> Vec<f64> {
-        let mut g = vec![0.0; others.len() + 1];
-        for (k, c) in others.iter().enumerate() {
+    /// The product of (s - root) and another polynomial.
+    fn with_root(root: f64, factor: &[f64]) -> Vec<f64> {
+        let mut g = vec![0.0; factor.len() + 1];
+        for (k, c) in factor.iter().enumerate() {
             g[k] -= root * c;
             g[k + 1] += c;
         }
@@ -119,10 +120,10 @@ mod tests {
     #[test]
     fn the_root_is_found_to_rounding_wherever_it_lies() {
         for root in [1e-9, 1e-4, 0.01, 0.3, 0.5, 0.9, 0.9999] {
-            for others in [&[1.0, 0.4, 0.1, -0.05][..], &[-3.0, 0.5, -0.2], &[2.0, -0.7, 0.0, 0.0, 0.03]] {
-                let g = with_root(root, others);
+            for factor in [&[1.0, 0.4, 0.1, -0.05][..], &[-3.0, 0.5, -0.2], &[2.0, -0.7, 0.0, 0.0, 0.03]] {
+                let g = with_root(root, factor);
                 let found = single_root(&g, guessed(&g)).unwrap();
-                assert!((found - root).abs() <= 4e-16 * root.max(0.25), "{root} {others:?} {found:e}");
+                assert!((found - root).abs() <= 4e-16 * root.max(0.25), "{root} {factor:?} {found:e}");
                 let negative = g.iter().map(|c| -c).collect::<Vec<_>>();
                 assert_eq!(single_root(&negative, guessed(&negative)), Some(found));
             }

@@ -24,13 +24,13 @@ impl<T: Scalar> CompensatedSum<T> {
         self.sum = sum;
     }
 
-    /// The sum that [`parts`](Self::parts) were of.
+    /// The sum with these [`parts`](Self::parts).
     #[inline(always)]
     pub fn of_parts(sum: T, carry: T) -> Self {
         Self { sum, carry }
     }
 
-    /// The rounded sum, and what rounding has left of it.
+    /// The rounded sum and its accumulated rounding error.
     #[inline(always)]
     pub fn parts(&self) -> (T, T) {
         (self.sum, self.carry)

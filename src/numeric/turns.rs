@@ -1,34 +1,34 @@
-//! Turning points of values in a row.
+//! Turning points of a sequence of values.
 
-/// A turning point: a sample from which the values go back by more than noise does.
+/// A turning point: a maximum or minimum from which the values retreat by more than the noise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Turn {
-    /// Which sample.
+    /// Index of the sample.
     pub at: usize,
     /// Whether it is a maximum.
     pub maximum: bool,
 }
 
-/// The turning points of `values`, maxima and minima in turn: where they go back by more than `back`. The
-/// first is where they begin.
+/// The alternating maxima and minima of `values` from which they retreat by more than `back`. The first one
+/// is the extremum at the beginning, which may be the first sample.
 pub fn turns(values: &[f64], back: f64) -> Vec<Turn> {
     let mut turns = Vec::new();
-    let (mut least, mut greatest) = (0, 0);
-    // whether the values rise, once that is known
+    let (mut lowest, mut highest) = (0, 0);
+    // whether the values rise; `None` until the first turning point
     let mut rising: Option<bool> = None;
     for (i, value) in values.iter().enumerate() {
-        if *value > values[greatest] {
-            greatest = i;
+        if *value > values[highest] {
+            highest = i;
         }
-        if *value < values[least] {
-            least = i;
+        if *value < values[lowest] {
+            lowest = i;
         }
-        if rising != Some(false) && values[greatest] - value > back {
-            turns.push(Turn { at: greatest, maximum: true });
-            (rising, least) = (Some(false), i);
-        } else if rising != Some(true) && value - values[least] > back {
-            turns.push(Turn { at: least, maximum: false });
-            (rising, greatest) = (Some(true), i);
+        if rising != Some(false) && values[highest] - value > back {
+            turns.push(Turn { at: highest, maximum: true });
+            (rising, lowest) = (Some(false), i);
+        } else if rising != Some(true) && value - values[lowest] > back {
+            turns.push(Turn { at: lowest, maximum: false });
+            (rising, highest) = (Some(true), i);
         }
     }
     turns

@@ -1,7 +1,7 @@
-//! The widest instructions that the processor at hand has.
+//! Run-time selection of the processor's widest vector instructions.
 
-/// What `work` gives, computed by the widest instructions there are; not fused, so the bits are the same.
-/// Everything that it calls has to be inlined into it.
+/// Runs `work` with the widest vector instructions of this processor. Nothing is fused, so the bits are the
+/// same on every processor. Everything that `work` calls must be inlined into it.
 #[inline]
 pub(crate) fn widest<R>(work: impl FnOnce() -> R) -> R {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]

@@ -6,9 +6,9 @@ use super::data::Scene;
 use super::fields::{FieldPath, numeric_fields};
 use super::text;
 
-/// `FIELD=VALUE` for each field in which `to` differs from `from`, as `--set` takes them: numbers one by one
-/// where both scenes have the same fields, else whole parts. Title, notes, own sweep and hints for the window
-/// do not count.
+/// `FIELD=VALUE` for each field in which `to` differs from `from`, as `--set` takes them: single numbers
+/// if both scenes have the same fields, otherwise whole parts. Title, notes, sweep and hints for the
+/// window are ignored.
 pub fn arguments(from: &Scene, to: &Scene) -> Vec<String> {
     let mut all = Vec::new();
     let mut part = |name: &str, equal: bool, whole: String| {
@@ -30,16 +30,16 @@ pub fn arguments(from: &Scene, to: &Scene) -> Vec<String> {
     all
 }
 
-/// The numbers inside one part that differ; none where they are not all of the difference.
+/// The numbers inside one part that differ; `None` if the part differs in anything else.
 fn numbers(from: &Scene, to: &Scene, part: &str) -> Option<Vec<String>> {
     let inside = |path: &String| path.strip_prefix(part).is_some_and(|r| r.is_empty() || r.starts_with('.'));
-    let mut made = from.clone();
+    let mut changed = from.clone();
     let mut found = Vec::new();
     for path in numeric_fields(to).into_iter().filter(inside) {
         let field = FieldPath::new(&path);
         let (old, new) = (field.get(from), field.get(to));
         if let Some(new) = new.filter(|_| old != new) {
-            if !field.set(&mut made, new) {
+            if !field.set(&mut changed, new) {
                 return None;
             }
             found.push(format!("{path}={new}"));
@@ -47,12 +47,12 @@ fn numbers(from: &Scene, to: &Scene, part: &str) -> Option<Vec<String>> {
     }
     let same = match part {
         "mass_g" => true,
-        "mechanism" => made.mechanism == to.mechanism,
-        "damping" => made.damping == to.damping,
-        "stops" => made.stops == to.stops,
-        "excitation" => made.excitation == to.excitation,
-        "start" => made.start == to.start,
-        "run" => made.run == to.run,
+        "mechanism" => changed.mechanism == to.mechanism,
+        "damping" => changed.damping == to.damping,
+        "stops" => changed.stops == to.stops,
+        "excitation" => changed.excitation == to.excitation,
+        "start" => changed.start == to.start,
+        "run" => changed.run == to.run,
         _ => false,
     };
     same.then_some(found)
@@ -61,7 +61,7 @@ fn numbers(from: &Scene, to: &Scene, part: &str) -> Option<Vec<String>> {
 /// A value as RON on one line.
 fn ron(value: &impl Serialize) -> String {
     let text = text::options().without_recursion_limit().to_string(value).unwrap_or_default();
-    // RON would write the choice `None` so as to tell it from an absent option.
+    // RON writes the choice `None` as `r#None`, to distinguish it from an absent option
     text.strip_prefix("r#").map_or(text.clone(), str::to_owned)
 }
 
@@ -70,21 +70,21 @@ mod tests {
     use super::*;
     use crate::scene::{Damping, Document, PRESETS, Stops};
 
-    /// Every preset is made of every other one, and of itself with a few things changed.
+    /// Turns every preset into every other one, and "paper" also into presets with a few changes.
     #[test]
-    fn they_make_the_one_of_the_other() {
+    fn arguments_turn_one_scene_into_another() {
         for from in PRESETS {
             for to in PRESETS {
-                let mut made = Document::load(from.name).unwrap();
+                let mut changed = Document::load(from.name).unwrap();
                 let mut to = Document::load(to.name).unwrap().scene;
                 if from.name == "paper" {
                     (to.stops, to.damping, to.mass_g) = (Stops::None, Damping::None, 17.25);
                 }
-                let arguments = arguments(&made.scene, &to);
+                let arguments = arguments(&changed.scene, &to);
                 for argument in &arguments {
-                    made.set(argument).unwrap();
+                    changed.set(argument).unwrap();
                 }
-                assert!(super::arguments(&made.scene, &to).is_empty(), "{}: {arguments:?}", from.name);
+                assert!(super::arguments(&changed.scene, &to).is_empty(), "{}: {arguments:?}", from.name);
             }
         }
         let paper = Document::load("paper").unwrap().scene;

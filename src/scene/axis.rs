@@ -1,4 +1,4 @@
-//! Axes of a sweep: their values, and the names of their columns.
+//! Axes of a sweep: their values and the names of their columns.
 
 use std::collections::HashSet;
 
@@ -9,28 +9,28 @@ use super::ranges::{Spec, number_text};
 use super::steps::EvenSteps;
 use crate::numeric::Decimal;
 
-/// The most values that one axis may have. A map is refused by its number of cells, long before; this
-/// keeps the list of values itself within 80 MB.
-pub const LARGEST_AXIS: usize = 10_000_000;
+/// Largest number of values of one axis, which limits the list of values to 80 MB. The number of cells of a
+/// map is limited more tightly.
+pub const MAX_AXIS_VALUES: usize = 10_000_000;
 
-/// The most axes that a sweep may have.
-pub const MOST_AXES: usize = 10;
+/// Largest number of axes of a sweep.
+pub const MAX_AXES: usize = 10;
 
-/// One axis of a sweep, written out: a numeric field and the values that it takes, in its own unit.
+/// One axis of a sweep with all its values: a numeric field and the values that it takes, in its unit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
     /// Dotted path of the field.
     pub field: String,
     /// The values, each within the field's range; at least one.
     pub values: Vec<f64>,
-    /// First value, last value and step that they were written out from, where they were.
+    /// First value, last value and step, if the axis was given by them.
     steps: Option<[f64; 3]>,
     path: FieldPath,
 }
 
 impl Axis {
-    /// Reads `FIELD=FROM:TO:STEP` or `FIELD=a,b,c` for a scene. Values are decimal-exact (see
-    /// `steps`); the error is a sentence without the argument, which the caller knows.
+    /// Parses `FIELD=FROM:TO:STEP` or `FIELD=a,b,c` for a scene. Values are exact decimals (see `steps`); the
+    /// error is a sentence without the argument, which the caller knows.
     pub fn parse(argument: &str, scene: &Scene) -> Result<Self, String> {
         let Some((field, values)) = argument.split_once('=') else {
             return Err(
@@ -41,7 +41,7 @@ impl Axis {
         let spec = numeric(scene, field)?;
         let read = |text: &str| {
             let text = text.trim();
-            let finite = Decimal::parse(text).filter(|own| own.value().is_finite());
+            let finite = Decimal::parse(text).filter(|decimal| decimal.value().is_finite());
             let endless = if spec.range.high == f64::INFINITY { "; inf stands in a list alone" } else { "" };
             finite.ok_or_else(|| {
                 let text = clip(text);
@@ -56,9 +56,9 @@ impl Axis {
             };
             let parts = [read(from)?, read(to)?, read(step)?];
             steps = Some(parts.map(Decimal::value));
-            write_out(EvenSteps::new(parts[0], parts[1], parts[2])?)?
+            expand(EvenSteps::new(parts[0], parts[1], parts[2])?)?
         } else {
-            // (infinity is a value where the field takes it: an open circuit)
+            // infinity is valid for some fields, as for an open circuit
             let endless = |text: &str| text.trim() == "inf" && spec.range.high == f64::INFINITY;
             let listed = values.split(',').map(|text| match endless(text) {
                 true => Ok(f64::INFINITY),
@@ -69,21 +69,21 @@ impl Axis {
         Self { field: field.to_owned(), values, steps, path: FieldPath::new(field) }.within(spec)
     }
 
-    /// Writes out an axis of a scene's own `sweep`, through the shortest decimals of its numbers. The
-    /// error is the part of the axis at fault (`field`, `from`, `to`, `step` or `values`) and a sentence.
+    /// Expands an axis of a scene's `sweep`, using the shortest decimals of its numbers. The error is the
+    /// part of the axis at fault (`field`, `from`, `to`, `step` or `values`) and a sentence.
     pub fn from_scene(axis: &SweepAxis, scene: &Scene) -> Result<Self, (&'static str, String)> {
         let spec = numeric(scene, &axis.field).map_err(|problem| ("field", problem))?;
-        let own = |values, steps| Self {
+        let with = |values, steps| Self {
             field: axis.field.clone(),
             values,
             steps,
             path: FieldPath::new(&axis.field),
         };
         if !axis.values.is_empty() {
-            if axis.values.len() > LARGEST_AXIS {
+            if axis.values.len() > MAX_AXIS_VALUES {
                 return Err(("values", too_long(axis.values.len())));
             }
-            return own(axis.values.clone(), None).within(spec).map_err(|problem| ("values", problem));
+            return with(axis.values.clone(), None).within(spec).map_err(|problem| ("values", problem));
         }
         let read = |part, value| {
             let problem = || (part, format!("{} is not a finite number", number_text(value)));
@@ -93,13 +93,12 @@ impl Axis {
         let below = axis.to < axis.from;
         let part = if axis.step > 0.0 && below { "to" } else { "step" };
         let grid = EvenSteps::new(parts.0, parts.1, parts.2).map_err(|problem| (part, problem.to_owned()))?;
-        let values = write_out(grid).map_err(|problem| ("step", problem))?;
+        let values = expand(grid).map_err(|problem| ("step", problem))?;
         let part = if spec.range.contains(axis.from) { "to" } else { "from" };
-        own(values, Some([axis.from, axis.to, axis.step])).within(spec).map_err(|problem| (part, problem))
+        with(values, Some([axis.from, axis.to, axis.step])).within(spec).map_err(|problem| (part, problem))
     }
 
-    /// The axis as a scene's own `sweep` has it: [`from_scene`](Self::from_scene) gives the same values
-    /// again, to the bit.
+    /// The axis for a scene's `sweep`: [`from_scene`](Self::from_scene) gives exactly the same values again.
     pub fn to_scene(&self, scene: &Scene) -> SweepAxis {
         let even = self.steps.map(|[from, to, step]| SweepAxis {
             field: self.field.clone(),
@@ -108,9 +107,9 @@ impl Axis {
             step,
             values: Vec::new(),
         });
-        // More digits than a double has may stand in an argument.
+        // An argument may have more digits than a double, so the steps may not reproduce the values.
         let same =
-            |axis: &SweepAxis| Self::from_scene(axis, scene).is_ok_and(|own| own.values == self.values);
+            |axis: &SweepAxis| Self::from_scene(axis, scene).is_ok_and(|read| read.values == self.values);
         even.filter(same).unwrap_or_else(|| SweepAxis {
             field: self.field.clone(),
             values: self.values.clone(),
@@ -118,8 +117,8 @@ impl Axis {
         })
     }
 
-    /// Puts the axis's value number `index` into a scene that has the field; out of range, nothing
-    /// happens. Allocates nothing.
+    /// Sets the field of a scene to value `index` of the axis; does nothing if `index` is out of range. This
+    /// does not allocate.
     pub fn apply(&self, scene: &mut Scene, index: usize) {
         if let Some(value) = self.values.get(index) {
             let known = self.path.set(scene, *value);
@@ -141,7 +140,7 @@ impl Axis {
     }
 }
 
-/// What is known of a numeric field, or the sentence that lists those that there are.
+/// The specification of a numeric field, or a sentence that lists the numeric fields of the scene.
 fn numeric(scene: &Scene, field: &str) -> Result<&'static Spec, String> {
     let found = FieldPath::new(field).follow(&mut scene.clone(), |found| match found {
         Field::Number(spec, _) => Some(spec),
@@ -155,27 +154,27 @@ fn numeric(scene: &Scene, field: &str) -> Result<&'static Spec, String> {
 
 /// The sentence for a path that does not exist.
 pub(super) fn unknown(kind: &str, field: &str, known: &[String]) -> String {
-    const SHOWN: usize = 60;
-    let more = known.len().saturating_sub(SHOWN);
+    const MAX_SHOWN: usize = 60;
+    let more = known.len().saturating_sub(MAX_SHOWN);
     let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-    let known = known.iter().take(SHOWN).map(String::as_str).collect::<Vec<_>>().join(", ");
+    let known = known.iter().take(MAX_SHOWN).map(String::as_str).collect::<Vec<_>>().join(", ");
     format!("the scene has no {kind} `{}`; it has: {known}{more}", clip(field))
 }
 
-fn write_out(grid: EvenSteps) -> Result<Vec<f64>, String> {
+fn expand(grid: EvenSteps) -> Result<Vec<f64>, String> {
     match usize::try_from(grid.count()) {
-        Ok(count) if count <= LARGEST_AXIS => Ok((0..count as u128).map(|i| grid.at(i).value()).collect()),
+        Ok(count) if count <= MAX_AXIS_VALUES => Ok((0..count as u128).map(|i| grid.at(i).value()).collect()),
         _ => Err(too_long(grid.count())),
     }
 }
 
 fn too_long(count: impl std::fmt::Display) -> String {
-    format!("{count} values are more than an axis may have ({LARGEST_AXIS}); give a larger step")
+    format!("{count} values are more than an axis may have ({MAX_AXIS_VALUES}); give a larger step")
 }
 
-/// Column names for swept fields: of each path the shortest ending that no other one shares and that
-/// holds a name (`travel_limit_mm`; for two amplitudes `0.amplitude_g` and `1.amplitude_g`; for one
-/// coefficient `coefficients_si.2`, because `2` would say nothing).
+/// Column names for swept fields: the shortest ending of each path that no other path shares and that
+/// contains a name (`travel_limit_mm`; for two amplitudes `0.amplitude_g` and `1.amplitude_g`; for one
+/// coefficient `coefficients_si.2`, because `2` alone is not a name).
 pub fn column_names<S: AsRef<str>>(fields: &[S]) -> Vec<String> {
     let ending = |field: &str, parts: usize| -> String {
         let all: Vec<&str> = field.split('.').collect();
@@ -184,18 +183,18 @@ pub fn column_names<S: AsRef<str>>(fields: &[S]) -> Vec<String> {
     let named = |text: &str| text.split('.').any(|part| part.parse::<usize>().is_err());
     let column = |field: &S| {
         let field = field.as_ref();
-        let most = field.split('.').count();
+        let part_count = field.split('.').count();
         let unique = |parts: &usize| {
-            let own = ending(field, *parts);
-            let same = fields.iter().filter(|other| ending(other.as_ref(), *parts) == own).count();
-            named(&own) && same == 1
+            let short = ending(field, *parts);
+            let same = fields.iter().filter(|other| ending(other.as_ref(), *parts) == short).count();
+            named(&short) && same == 1
         };
-        (1..=most).find(unique).map_or_else(|| field.to_owned(), |parts| ending(field, parts))
+        (1..=part_count).find(unique).map_or_else(|| field.to_owned(), |parts| ending(field, parts))
     };
     fields.iter().map(column).collect()
 }
 
-/// The first field that stands on two axes.
+/// The first field that occurs twice.
 pub(super) fn repeated<'a>(fields: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let mut seen = HashSet::new();
     fields.into_iter().find(|field| !seen.insert(*field))

@@ -1,10 +1,10 @@
 //! Validation of a scene.
 //!
-//! All that can be said from the scene's own numbers is said here, all at once. What needs the
-//! mechanism (an equilibrium to rest at, a stiffness for a damping ratio) is said where the model is
-//! built; after both nothing downstream checks again.
+//! This reports all faults that follow from the numbers of the scene alone, all at once. Faults that need the
+//! mechanism (an equilibrium to rest at, a stiffness for a damping ratio) are reported when the model is
+//! built. No later code checks again.
 
-use super::axis::{Axis, MOST_AXES, repeated};
+use super::axis::{Axis, MAX_AXES, repeated};
 use super::data::*;
 use super::error::Fault;
 use super::fields::{Field, FieldPath, for_each};
@@ -14,19 +14,19 @@ use super::shape;
 use super::stops::Stops;
 use super::transducer::Transducer;
 
-/// The most sines that an excitation may have, the lines of noises included: four noises of the most lines.
-/// Each takes part in every step of a run.
-const MOST_SINES: u64 = 16_384;
+/// Largest number of sines of an excitation, including the lines of noises: four noises with the largest
+/// number of lines. Each sine adds to the cost of every step of a run.
+const MAX_SINES: u64 = 16_384;
 
-/// The most parts that the sum of a mechanism may have: flexures among them are solved one by one.
+/// Largest number of parts of a sum of mechanisms, since flexures are solved one by one.
 const MAX_PARTS: usize = 16;
 
-/// What a check found.
+/// Result of a check.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Checked {
-    /// What is wrong, in the order of the scene's fields; empty where the scene can be run.
+    /// Faults, in the order of the scene's fields; empty if the scene can be run.
     pub faults: Vec<Fault>,
-    /// What is valid and probably not meant, each a sentence that names its field.
+    /// Warnings about values that are valid but probably not intended, each a sentence that names its field.
     pub warnings: Vec<String>,
 }
 
@@ -70,8 +70,8 @@ fn ranges(scene: &Scene, checked: &mut Checked) {
     });
 }
 
-fn mechanism(field: &str, own: &Mechanism, checked: &mut Checked) {
-    match own {
+fn mechanism(field: &str, described: &Mechanism, checked: &mut Checked) {
+    match described {
         Mechanism::Polynomial { coefficients_si } => {
             let count = coefficients_si.len();
             if !(1..=MAX_COEFFICIENTS).contains(&count) {
@@ -99,7 +99,7 @@ fn mechanism(field: &str, own: &Mechanism, checked: &mut Checked) {
                 mechanism(&format!("{field}.{i}"), part, checked);
             }
         }
-        _ => shape::check(field, own, checked),
+        _ => shape::check(field, described, checked),
     }
 }
 
@@ -127,7 +127,7 @@ fn stops(field: &str, stops: &Stops, checked: &mut Checked) {
     }
 }
 
-/// A compliant stop has a stiffness, or cylinders that it follows from, and not both.
+/// Checks that a compliant stop has either a stiffness or cylinders that determine it.
 fn hertz(field: &str, stops: &Stops, checked: &mut Checked) {
     let Stops::Hertz { stiffness_n_per_m1_5, radius_mm, young_gpa, poisson, yield_gpa, .. } = *stops else {
         return;
@@ -146,7 +146,7 @@ fn hertz(field: &str, stops: &Stops, checked: &mut Checked) {
         }
         None => {
             let missing: Vec<&str> =
-                cylinders[..2].iter().filter(|own| own.1.is_none()).map(|own| own.0).collect();
+                cylinders[..2].iter().filter(|(_, value)| value.is_none()).map(|(name, _)| *name).collect();
             if !missing.is_empty() {
                 let problem = format!(
                     "needs {}; give radius_mm and young_gpa of the cylinders, or stiffness_n_per_m1_5 alone",
@@ -158,7 +158,8 @@ fn hertz(field: &str, stops: &Stops, checked: &mut Checked) {
     }
 }
 
-/// A current needs a resistance or an inductance, and an electrical state rigid stops.
+/// Checks that a resistance or an inductance limits the current, that an electrical state has no compliant
+/// stops, and that only a transducer with a state has a start value.
 fn transducer(scene: &Scene, checked: &mut Checked) {
     if let Transducer::Electromagnetic { coil_ohm: 0.0, load_ohm: 0.0, inductance_mh: 0.0, .. } =
         scene.transducer
@@ -183,7 +184,7 @@ fn transducer(scene: &Scene, checked: &mut Checked) {
     if let Start::At { electrical, .. } = scene.start
         && electrical != 0.0
         && !has_state
-        && !known_bad("start.electrical", checked)
+        && !has_fault("start.electrical", checked)
     {
         checked.fault(
             "start.electrical",
@@ -194,17 +195,17 @@ fn transducer(scene: &Scene, checked: &mut Checked) {
     }
 }
 
-/// Whether a field has been found at fault already: it is not blamed twice.
-pub(super) fn known_bad(field: &str, checked: &Checked) -> bool {
+/// Whether a field already has a fault, so that it gets no second one.
+pub(super) fn has_fault(field: &str, checked: &Checked) -> bool {
     checked.faults.iter().any(|fault| fault.field == field)
 }
 
-/// What two fields say together. A value that is out of its own range is not blamed twice.
+/// Checks relations between two fields, unless one of them is already outside its range.
 fn relations(scene: &Scene, checked: &mut Checked) {
     if let Start::At { x_mm, .. } = scene.start {
         let [left, right] = scene.stops.limits_mm().map(|mm| mm.unwrap_or(f64::INFINITY));
         let bad_stop = checked.faults.iter().any(|fault| fault.field.starts_with("stops"));
-        if (x_mm > right || x_mm < -left) && !bad_stop && !known_bad("start.x_mm", checked) {
+        if (x_mm > right || x_mm < -left) && !bad_stop && !has_fault("start.x_mm", checked) {
             let (side, at) = if x_mm > right { ("right", right) } else { ("left", -left) };
             let field = match scene.stops {
                 Stops::Uneven { .. } => format!("stops.{side}_mm"),
@@ -223,8 +224,8 @@ fn relations(scene: &Scene, checked: &mut Checked) {
     let RunSettings { duration_s, settle_s, .. } = scene.run;
     if let Some(settle) = settle_s
         && settle > duration_s
-        && !known_bad("run.settle_s", checked)
-        && !known_bad("run.duration_s", checked)
+        && !has_fault("run.settle_s", checked)
+        && !has_fault("run.duration_s", checked)
     {
         checked.fault(
             "run.settle_s",
@@ -237,7 +238,7 @@ fn relations(scene: &Scene, checked: &mut Checked) {
     }
 }
 
-/// The bands of noise, wherever in a sum.
+/// Checks the bands of noises, also inside sums.
 fn bands(excitation: &Excitation, path: &str, checked: &mut Checked) {
     match excitation {
         Excitation::Noise { low_hz, high_hz, .. }
@@ -258,7 +259,7 @@ fn bands(excitation: &Excitation, path: &str, checked: &mut Checked) {
     }
 }
 
-/// A text of some megabytes holds enough noises of the most lines to fill any memory.
+/// Checks the number of sines: a text of a few megabytes could have enough noises to exhaust the memory.
 fn sines(excitation: &Excitation, checked: &mut Checked) {
     fn count(excitation: &Excitation) -> u64 {
         match excitation {
@@ -269,15 +270,14 @@ fn sines(excitation: &Excitation, checked: &mut Checked) {
         }
     }
     let count = count(excitation);
-    if count > MOST_SINES && !checked.faults.iter().any(|fault| fault.field.starts_with("excitation")) {
-        let problem = format!(
-            "must have at most {MOST_SINES}, the lines of noises included; take fewer terms or lines"
-        );
+    if count > MAX_SINES && !checked.faults.iter().any(|fault| fault.field.starts_with("excitation")) {
+        let problem =
+            format!("must have at most {MAX_SINES}, the lines of noises included; take fewer terms or lines");
         checked.fault("excitation", format!("a sum of {count} sines"), problem);
     }
 }
 
-/// What is valid and looks like a slip of units or of a zero.
+/// Warnings about valid values that look like an error of units or of a factor of ten.
 fn hints(scene: &Scene, checked: &mut Checked) {
     if !checked.faults.is_empty() {
         return;
@@ -319,7 +319,7 @@ fn hints(scene: &Scene, checked: &mut Checked) {
         _ => {}
     };
     let mut terms = vec![&scene.excitation];
-    // A sum may have thousands of terms; the first few warnings say it.
+    // A sum may have thousands of terms; the first few warnings are enough.
     while let Some(term) = terms.pop().filter(|_| checked.warnings.len() < 8) {
         match term {
             Excitation::Sum(inner) => terms.extend(inner.iter().rev()),
@@ -330,16 +330,16 @@ fn hints(scene: &Scene, checked: &mut Checked) {
 }
 
 fn sweep(scene: &Scene, checked: &mut Checked) {
-    if scene.sweep.len() > MOST_AXES {
+    if scene.sweep.len() > MAX_AXES {
         let value = format!("a list of {}", scene.sweep.len());
-        checked.fault("sweep", value, format!("must have at most {MOST_AXES} axes"));
+        checked.fault("sweep", value, format!("must have at most {MAX_AXES} axes"));
         return;
     }
     if let Some(field) = repeated(scene.sweep.iter().map(|axis| axis.field.as_str())) {
         checked.fault("sweep", field, "is swept twice; give each field one axis");
     }
-    // Relations between fields at the values of a sweep belong to `corners`: `simulate` of a scene
-    // must not fail over a map that nobody asked for, but an axis that can never be used is a fault.
+    // `corners` checks relations between fields at the values of a sweep: `simulate` must not fail because of
+    // a sweep that is not run. An axis that can never be used is a fault here.
     for (i, axis) in scene.sweep.iter().enumerate() {
         let path = format!("sweep.{i}.");
         if checked.faults.iter().any(|fault| fault.field.starts_with(&path)) {
@@ -358,15 +358,15 @@ fn sweep(scene: &Scene, checked: &mut Checked) {
     }
 }
 
-/// Checks the scene at the corners of a sweep of at most [`MOST_AXES`] axes. The relations between
-/// fields are linear, so that they hold in every cell where they hold in the corners.
+/// Checks the scene at the corners of a sweep of at most [`MAX_AXES`] axes. The relations between fields are
+/// linear, so that they hold in every cell if they hold at the corners.
 pub fn corners(scene: &Scene, axes: &[Axis]) -> Vec<Fault> {
     let ends: Vec<[usize; 2]> = axes.iter().map(extremes).collect();
-    let corners = 1_usize << axes.len().min(MOST_AXES);
+    let corners = 1_usize << axes.len().min(MAX_AXES);
     let mut cell = Scene { sweep: Vec::new(), ..scene.clone() };
     for corner in 0..corners {
         for (i, axis) in axes.iter().enumerate() {
-            axis.apply(&mut cell, ends[i][(corner >> i.min(MOST_AXES)) & 1]);
+            axis.apply(&mut cell, ends[i][(corner >> i.min(MAX_AXES)) & 1]);
         }
         let mut faults = check(&cell).faults;
         if !faults.is_empty() {

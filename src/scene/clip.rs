@@ -1,11 +1,11 @@
-//! Text from a file as part of a message.
+//! Clipping of text from a file for a message.
 
-/// The text on one line, not too long, with nothing that moves a cursor.
+/// The text shortened to one line without control characters.
 pub(super) fn clip(text: &str) -> String {
-    const LONGEST: usize = 200;
+    const MAX_LENGTH: usize = 200;
     let clean = |c: char| if c.is_control() { ' ' } else { c };
-    let mut clipped: String = text.chars().take(LONGEST).map(clean).collect();
-    if text.chars().nth(LONGEST).is_some() {
+    let mut clipped: String = text.chars().take(MAX_LENGTH).map(clean).collect();
+    if text.chars().nth(MAX_LENGTH).is_some() {
         clipped.push_str("..");
     }
     clipped

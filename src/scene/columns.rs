@@ -1,15 +1,15 @@
-//! Numbers of named columns of a CSV text.
+//! Numbers in named columns of a CSV text.
 //!
-//! Comma separated (where it is asked for, by semicolons or tabulators too), a header row with the wanted
-//! columns in any order among others, lines that begin with `#` are comments. Nothing is repaired silently:
-//! what cannot be meant is refused with its line and value.
+//! The text is comma separated (optionally also by semicolons or tabs) and has a header row with the needed
+//! columns in any order, possibly among others. Lines that begin with `#` are comments. Nothing is repaired
+//! silently: an invalid value is rejected with its line.
 
 use super::clip::clip;
 
-/// The most rows that are read.
+/// Largest number of rows that are read.
 pub const MOST_ROWS: usize = 1_000_000;
 
-/// What is wrong with a CSV text.
+/// Error in a CSV text.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ColumnsError {
     /// No header row.
@@ -23,14 +23,14 @@ pub enum ColumnsError {
     MissingColumn {
         /// Line of the header.
         line: usize,
-        /// Name of the column that is needed.
+        /// Name of the needed column.
         missing: String,
-        /// The names that the header has.
+        /// The names in the header.
         found: String,
         /// The columns that are needed.
         wanted: String,
     },
-    /// Where the names of the columns should be, there are numbers.
+    /// The first row has numbers in place of column names.
     #[error("line {line}: a row of numbers; put a row with the columns' names above it, such as {wanted}")]
     NoHeader {
         /// Line of the first row.
@@ -38,7 +38,7 @@ pub enum ColumnsError {
         /// The columns that are needed.
         wanted: String,
     },
-    /// A needed column is there twice.
+    /// A needed column occurs twice.
     #[error("line {line}: column {column} is there more than once")]
     RepeatedColumn {
         /// Line of the header.
@@ -49,7 +49,7 @@ pub enum ColumnsError {
     /// A row is not readable as CSV.
     #[error("is not a CSV table: {0}")]
     Unreadable(String),
-    /// A text in quotation marks that goes on beyond its line, with all the rows that it would swallow.
+    /// A text in quotation marks that extends beyond its line, so that it would include further rows.
     #[error(
         "line {line}: a quotation mark opens a text that does not end on this line; close it or leave it out"
     )]
@@ -57,7 +57,7 @@ pub enum ColumnsError {
         /// Line of the row.
         line: usize,
     },
-    /// A value that is no finite number.
+    /// A value that is not a finite number.
     #[error(
         "line {line}: {column} is `{value}`; it must be a finite number with a decimal point (a row without \
          a value is to be left out)"
@@ -67,7 +67,7 @@ pub enum ColumnsError {
         line: usize,
         /// Name of the column.
         column: String,
-        /// The value as written, empty where the row is too short.
+        /// The value as written, empty if the row is too short.
         value: String,
     },
     /// More values than the header has names.
@@ -78,20 +78,20 @@ pub enum ColumnsError {
     TooManyValues {
         /// Line of the row.
         line: usize,
-        /// Values in it.
+        /// Number of values in the row.
         found: usize,
-        /// Names in the header.
+        /// Number of names in the header.
         names: usize,
     },
-    /// More rows than are sensible.
+    /// More rows than are read.
     #[error("has more than {0} rows, the most that are read: thin it out, or cut it to what the run needs")]
     TooMany(usize),
 }
 
-/// Some columns of a table, and where their rows stand.
+/// Columns of a table with the line numbers of their rows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Columns<const N: usize> {
-    /// The numbers of each row in the order of the names asked for; all finite.
+    /// The numbers of each row in the order of the requested names; all finite.
     pub rows: Vec<[f64; N]>,
     /// The line of each row in the text, from 1.
     pub lines: Vec<usize>,
@@ -99,18 +99,18 @@ pub struct Columns<const N: usize> {
     pub decimal_commas: bool,
 }
 
-/// Reads the columns `names` of a CSV text with at most `most` rows.
+/// Reads the columns `names` of a CSV text with at most `max_rows` rows.
 ///
 /// Accepts a byte order mark, line ends of any system, blank lines, blanks around values and further columns;
-/// where it is `ragged` also rows of more values than the header has names.
+/// if `ragged`, also rows with more values than the header has names.
 pub fn read_columns<const N: usize>(
     text: &str,
     names: [&str; N],
-    most: usize,
+    max_rows: usize,
     ragged: bool,
 ) -> Result<Columns<N>, ColumnsError> {
     let wanted = names.join(",");
-    let sheet = Sheet { ragged, ..Sheet::open(text, &wanted, Separators::Comma, most)? };
+    let sheet = Sheet { ragged, ..Sheet::open(text, &wanted, Separators::Comma, max_rows)? };
     let mut at = [0; N];
     for (at, name) in at.iter_mut().zip(names) {
         *at = sheet.column(name)?;
@@ -118,22 +118,21 @@ pub fn read_columns<const N: usize>(
     sheet.numbers(at)
 }
 
-/// What may stand between two values.
+/// Separators between values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Separators {
     /// A comma.
     Comma,
-    /// A semicolon or a tabulator where the header has one, with decimal points or commas in the numbers;
-    /// else a comma. A header of numbers is refused, and a
-    /// row of more values than it has names.
+    /// A semicolon or a tab if the header has one, with decimal points or commas in the numbers; otherwise a
+    /// comma. A header of numbers is rejected, as is a row with more values than the header has names.
     Any,
 }
 
-/// A CSV text whose header is read.
+/// A CSV text with its header parsed.
 pub(super) struct Sheet {
     /// The text without comments and blank lines.
     body: String,
-    /// The line of each row of it, from 1, that of the header first.
+    /// The line of each row of the body, from 1, beginning with the header.
     lines: Vec<usize>,
     separator: u8,
     /// Whether a row may have more values than the header has names.
@@ -144,16 +143,21 @@ pub(super) struct Sheet {
 }
 
 impl Sheet {
-    /// Reads the header; `wanted` are the columns that messages ask for.
-    pub fn open(text: &str, wanted: &str, may_be: Separators, most: usize) -> Result<Self, ColumnsError> {
+    /// Parses the header; `wanted` are the needed columns for messages.
+    pub fn open(
+        text: &str,
+        wanted: &str,
+        allowed: Separators,
+        max_rows: usize,
+    ) -> Result<Self, ColumnsError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        // Comments and blank lines go first, so that row k is known to stand on line `lines[k]`.
+        // Comments and blank lines are removed first, so that row k is on line `lines[k]`.
         let mut numbers = Vec::new();
         let mut body = String::with_capacity(text.len());
         for (i, line) in lines(text).enumerate() {
             if !line.starts_with('#') && !line.trim().is_empty() {
-                if numbers.len() > most {
-                    return Err(ColumnsError::TooMany(most));
+                if numbers.len() > max_rows {
+                    return Err(ColumnsError::TooMany(max_rows));
                 }
                 numbers.push(i + 1);
                 body.push_str(line);
@@ -161,28 +165,28 @@ impl Sheet {
             }
         }
         let header = body.split('\n').next().unwrap_or_default();
-        let separator = match may_be {
+        let separator = match allowed {
             Separators::Any if header.contains(';') => b';',
             Separators::Any if header.contains('\t') => b'\t',
             _ => b',',
         };
-        let ragged = may_be == Separators::Comma;
+        let ragged = allowed == Separators::Comma;
         let mut sheet =
             Self { body, lines: numbers, separator, ragged, names: Vec::new(), wanted: wanted.to_owned() };
         let header = sheet.reader().headers().map_err(unreadable)?.clone();
         if sheet.lines.is_empty() || header.is_empty() {
             return Err(ColumnsError::Empty { wanted: wanted.to_owned() });
         }
-        sheet.closed(&header, 0)?;
+        sheet.check_quotes(&header, 0)?;
         sheet.names = header.iter().map(|name| name.trim().to_owned()).collect();
         let numeric = |name: &String| name.replace(',', ".").parse::<f64>().is_ok();
-        if may_be == Separators::Any && sheet.names.iter().all(numeric) {
+        if allowed == Separators::Any && sheet.names.iter().all(numeric) {
             return Err(ColumnsError::NoHeader { line: sheet.lines[0], wanted: wanted.to_owned() });
         }
         Ok(sheet)
     }
 
-    // Blanks are taken off later: here they would take the line's end with them.
+    // Blanks are trimmed later: the CSV reader would trim the line's end with them.
     fn reader(&self) -> csv::Reader<&[u8]> {
         let mut builder = csv::ReaderBuilder::new();
         builder.flexible(true).delimiter(self.separator).from_reader(self.body.as_bytes())
@@ -193,17 +197,17 @@ impl Sheet {
         self.lines.get(row).copied().unwrap_or(0)
     }
 
-    /// One line, one row: as long as no text in quotation marks holds a line's end.
-    fn closed(&self, record: &csv::StringRecord, row: usize) -> Result<(), ColumnsError> {
+    /// Fails if a text in quotation marks contains a line end, so that the row is longer than its line.
+    fn check_quotes(&self, record: &csv::StringRecord, row: usize) -> Result<(), ColumnsError> {
         match record.iter().any(|value| value.contains('\n')) {
             false => Ok(()),
             true => Err(ColumnsError::OpenQuote { line: self.line(row) }),
         }
     }
 
-    /// Where the column called `name` stands.
+    /// Index of the column called `name`.
     pub fn column(&self, name: &str) -> Result<usize, ColumnsError> {
-        let mut at = self.names.iter().enumerate().filter(|(_, own)| *own == name).map(|(i, _)| i);
+        let mut at = self.names.iter().enumerate().filter(|(_, other)| *other == name).map(|(i, _)| i);
         let first = at.next().ok_or_else(|| ColumnsError::MissingColumn {
             line: self.line(0),
             missing: clip(name),
@@ -216,7 +220,7 @@ impl Sheet {
         }
     }
 
-    /// The numbers of the columns that stand there.
+    /// The numbers in the columns with these indices.
     pub fn numbers<const N: usize>(&self, at: [usize; N]) -> Result<Columns<N>, ColumnsError> {
         let mut rows = Vec::with_capacity(self.lines.len());
         let (mut points, mut commas) = (false, false);
@@ -224,8 +228,8 @@ impl Sheet {
         let mut record = csv::StringRecord::new();
         while reader.read_record(&mut record).map_err(unreadable)? {
             let place = rows.len() + 1;
-            self.closed(&record, place)?;
-            // empty values at the end of a row are none
+            self.check_quotes(&record, place)?;
+            // empty values at the end of a row are ignored
             let names = self.names.len();
             let beyond = record.iter().skip(names).any(|value| !value.trim().is_empty());
             if !self.ragged && beyond {
@@ -233,18 +237,18 @@ impl Sheet {
                 return Err(ColumnsError::TooManyValues { line, found, names });
             }
             let mut row = [0.0; N];
-            for (own, at) in row.iter_mut().zip(at) {
+            for (cell, at) in row.iter_mut().zip(at) {
                 let value = record.get(at).unwrap_or("").trim();
                 let comma = self.separator != b',' && value.contains(',');
                 (points, commas) = (points || value.contains('.'), commas || comma);
                 let number = match comma {
                     false => value.parse::<f64>().ok(),
-                    // both in one file could be thousands and decimals
+                    // with both in one file, one could be a thousands separator
                     true if points => None,
                     true => value.replacen(',', ".", 1).parse().ok(),
                 };
                 let mixed = commas && points;
-                *own = number.filter(|v| v.is_finite() && !mixed).ok_or_else(|| ColumnsError::NoNumber {
+                *cell = number.filter(|v| v.is_finite() && !mixed).ok_or_else(|| ColumnsError::NoNumber {
                     line: self.line(place),
                     column: clip(&self.names[at]),
                     value: clip(value),
@@ -260,7 +264,7 @@ fn unreadable(error: csv::Error) -> ColumnsError {
     ColumnsError::Unreadable(error.to_string())
 }
 
-/// The lines of a text, whichever system ended them: by a line feed, a carriage return or both.
+/// The lines of a text with line ends of any system: a line feed, a carriage return or both.
 fn lines(text: &str) -> impl Iterator<Item = &str> {
     text.split('\n').flat_map(|line| line.strip_suffix('\r').unwrap_or(line).split('\r'))
 }

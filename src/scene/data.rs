@@ -1,13 +1,11 @@
 //! Fields of a scene file, with their units.
 //!
-//! Every field carries its unit in its name and the units are those a person sets on a slider
-//! (mm, g, Hz, degrees). Nothing here is checked: [`check`](super::check()) does that, and
-//! `dynamics::Model` converts to SI once.
+//! Every field has its unit in its name; the units are practical ones (mm, g, Hz, degrees). This module
+//! checks nothing: [`check`](super::check()) does, and `dynamics::Model` converts to SI once.
 //!
-//! Where a range stands below, both of its ends are valid; it is the very text of the range that is
-//! checked, and a test compares the two. The ends are wide on purpose: a scene stays valid when its
-//! masses, lengths and times are scaled by anything from 1e-9 to 1e9 (a duration by 1e8), yet no
-//! product of them overflows.
+//! Both ends of the ranges stated below are valid; a test compares their text with the checked range. The
+//! ends are wide on purpose: a scene stays valid if its masses, lengths and times are scaled by anything from
+//! 1e-9 to 1e9 (a duration by 1e8), yet no product of them overflows.
 
 use std::sync::Arc;
 
@@ -22,16 +20,16 @@ use super::transducer::Transducer;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
-    /// One line that names the scene; left out in a file, the file's name without its ending.
+    /// One line that names the scene; the default is the file's name without its extension.
     #[serde(default)]
     pub title: String,
-    /// What to look for; free text. In a file a line break is a space, as wide as it may be indented,
-    /// and an empty line begins a paragraph.
+    /// What to look for; free text. In a file, a line break with its indentation is a space and an empty line
+    /// begins a paragraph.
     #[serde(default, skip_serializing_if = "String::is_empty", deserialize_with = "paragraphs")]
     pub notes: String,
     /// Proof mass in grams, 1e-15 to 1e15.
     pub mass_g: f64,
-    /// Where the restoring force comes from.
+    /// Source of the restoring force.
     pub mechanism: Mechanism,
     /// Viscous damping.
     #[serde(default, skip_serializing_if = "is_default")]
@@ -39,7 +37,7 @@ pub struct Scene {
     /// Travel limits.
     #[serde(default, skip_serializing_if = "is_default")]
     pub stops: Stops,
-    /// What turns motion into electrical power.
+    /// Transducer that converts motion into electrical power.
     #[serde(default, skip_serializing_if = "is_default")]
     pub transducer: Transducer,
     /// Acceleration of the base.
@@ -50,7 +48,7 @@ pub struct Scene {
     pub start: Start,
     /// Duration, settled window and tolerance.
     pub run: RunSettings,
-    /// The grid that `sweep` runs over, slowest field first.
+    /// The grid of the command `sweep`, slowest field first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sweep: Vec<SweepAxis>,
     /// Hints for the window; the command line ignores them.
@@ -82,7 +80,7 @@ pub enum Excitation {
     /// The base stands still.
     #[default]
     None,
-    /// Constant acceleration, as of a tilted base.
+    /// Constant acceleration, as on a tilted base.
     Constant {
         /// Acceleration in g, -1e30 to 1e30.
         accel_g: f64,
@@ -141,7 +139,7 @@ pub enum Excitation {
     Recorded {
         /// Path relative to the scene file, or the name of an embedded record.
         path: String,
-        /// What the file holds, once a document has read it; no part of the text.
+        /// Contents of the file, once a document has read it; not a part of the text.
         #[serde(skip)]
         record: Option<Arc<Record>>,
     },
@@ -153,7 +151,7 @@ pub enum Excitation {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Start {
-    /// At the right-hand stable equilibrium, or on the stop where that lies beyond one.
+    /// At the right-hand stable equilibrium, or on the stop if the equilibrium lies beyond it.
     #[default]
     Rest,
     /// A given state.
@@ -175,10 +173,10 @@ pub enum Start {
 pub struct RunSettings {
     /// Duration in s, 1e-15 to 1e9.
     pub duration_s: f64,
-    /// Begin of the settled window in s, 0 to 1e9 and at most the duration; left out, half of it.
+    /// Beginning of the settled window in s, 0 to 1e9 and at most the duration; left out, half of it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub settle_s: Option<f64>,
-    /// Local error allowed, relative to the scene's scales, 1e-14 to 0.001.
+    /// Allowed local error, relative to the scene's scales, 1e-14 to 0.001.
     #[serde(default = "default_tolerance")]
     pub tolerance: f64,
     /// Whether a run that repeats exactly may be completed from its first cycle.
@@ -194,16 +192,15 @@ pub struct SweepAxis {
     pub field: String,
     /// First value, in the field's unit, -1e200 to 1e200.
     pub from: f64,
-    /// Last value, -1e200 to 1e200, included where the step reaches it; not below the first.
+    /// Last value, -1e200 to 1e200, included if a step reaches it; not below the first.
     pub to: f64,
     /// Step, 1e-200 to 1e200.
     pub step: f64,
-    /// The values one by one, each -1e200 to inf; where there are any, the three numbers above have no
-    /// meaning.
+    /// The values one by one, each -1e200 to inf; if there are any, the three numbers above are ignored.
     pub values: Vec<f64>,
 }
 
-/// A [`SweepAxis`] as a file has it.
+/// A [`SweepAxis`] in the form of a file.
 #[derive(Serialize, Deserialize)]
 #[serde(rename = "SweepAxis", deny_unknown_fields)]
 struct WrittenAxis {
@@ -250,7 +247,7 @@ impl TryFrom<WrittenAxis> for SweepAxis {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AppHints {
-    /// The layout that opens.
+    /// The layout to open.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layout: Option<Layout>,
     /// Playing speed relative to real time, 1e-15 to 1000.
@@ -270,21 +267,22 @@ pub enum Layout {
     Study,
     /// The map of RMS velocity.
     Map,
-    /// One setting turned up and down, beside the motion.
+    /// One field walked up and down, with the motion.
     Explore,
 }
 
-/// RON would write the choice `None` as `r#None`, to tell it from an absent option.
+/// Whether a field is left out when written: RON would write the choice `None` as `r#None`, to distinguish it
+/// from an absent option.
 pub(super) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
-/// Joins the lines of a text that was wrapped by hand; paragraphs stay, one empty line apart.
+/// Joins the lines of a manually wrapped text; paragraphs stay separated by one empty line.
 fn paragraphs<'de, D: Deserializer<'de>>(from: D) -> Result<String, D::Error> {
     String::deserialize(from).map(|text| joined(&text))
 }
 
-/// The text with its lines joined to paragraphs.
+/// The text with the lines of each paragraph joined.
 pub(super) fn joined(text: &str) -> String {
     let mut joined = String::with_capacity(text.len());
     for line in text.lines().map(str::trim) {
@@ -303,8 +301,8 @@ pub(super) fn joined(text: &str) -> String {
     joined
 }
 
-/// `Some(Stops::None)` says no more than leaving the field out, and could not be told apart from it
-/// once written: both read as `None`.
+/// Reads `Some(Stops::None)` as `None`: it has the same meaning as an absent field and would
+/// be written alike.
 fn some_stops<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Stops>, D::Error> {
     Ok(Option::<Stops>::deserialize(from)?.filter(|stops| *stops != Stops::None))
 }

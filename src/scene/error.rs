@@ -1,4 +1,4 @@
-//! Errors of scenes.
+//! Error types of scenes.
 
 use std::fmt;
 
@@ -12,7 +12,7 @@ pub struct Fault {
     pub field: String,
     /// The value as written.
     pub value: String,
-    /// What is wrong with it and what would be right.
+    /// The problem and its remedy.
     pub problem: String,
 }
 
@@ -27,7 +27,7 @@ pub enum Origin {
     Unwritten,
 }
 
-/// A fault and where it comes from.
+/// A fault and the origin of its value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlacedFault {
     /// The fault.
@@ -36,16 +36,16 @@ pub struct PlacedFault {
     pub origin: Origin,
 }
 
-/// Why a scene cannot be used. Displays as one line for each thing that is wrong, each naming file,
-/// line, field, value and what would be right.
+/// Reason why a scene cannot be used. The message has one line per fault, each with file, line, field, value
+/// and remedy.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SceneError {
     /// Neither a file nor a preset.
     #[error("{spec}: no such file, and no built-in scene of that name; built in: {presets}")]
     NoSuchScene {
-        /// What was asked for.
+        /// The name or path as given.
         spec: String,
-        /// The names of the presets, with commas.
+        /// The names of the presets, separated by commas.
         presets: String,
     },
     /// The file cannot be read as text.
@@ -53,7 +53,7 @@ pub enum SceneError {
     Unreadable {
         /// The file.
         name: String,
-        /// Why, and what would be right.
+        /// The reason and its remedy.
         problem: String,
     },
     /// The text is not a scene.
@@ -63,20 +63,19 @@ pub enum SceneError {
         name: String,
         /// Where the parser stopped.
         place: Place,
-        /// Why, with the names that are known there.
+        /// The reason, with the names that are known there.
         problem: String,
-        /// What else is wrong, a line each, where it is a name that nothing knows and the rest can be read
-        /// without it.
+        /// Further errors, a line each, found by parsing the text without the unknown name.
         more: Vec<String>,
     },
-    /// Values that cannot be used, all of them.
+    /// All invalid values.
     #[error("{}", Lines { name, faults, more: *more })]
     Faults {
         /// The file.
         name: String,
         /// The faults in the order of the scene's fields.
         faults: Vec<PlacedFault>,
-        /// How many more there are beyond those, where nobody would read them all.
+        /// Number of further faults that are not listed.
         more: usize,
     },
     /// An argument that names a field is wrong.
@@ -84,17 +83,17 @@ pub enum SceneError {
     Argument(#[from] ArgumentError),
 }
 
-/// What is wrong with a `--set` or an `--over`.
+/// Error in a `--set` or `--over` argument.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{argument}: {problem}")]
 pub struct ArgumentError {
     /// The argument as it was given, with its option.
     pub argument: String,
-    /// What is wrong with it and what would be right.
+    /// The problem and its remedy.
     pub problem: String,
 }
 
-/// Further lines below a first one.
+/// Further lines of a message, each on a new line.
 fn further(lines: &[String]) -> String {
     lines.iter().map(|line| format!("\n{line}")).collect()
 }

@@ -1,7 +1,7 @@
 //! Access to a scene's fields by path.
 //!
-//! Paths are compared on the way down the [walk](super::walk) and other branches are not entered: setting a
-//! number costs some ten string comparisons and allocates nothing, which a sweep of a million cells needs.
+//! Paths are compared during the [traversal](super::walk), which skips branches that do not match. Setting a
+//! number takes about ten string comparisons and no allocation, which matters for a sweep of a million cells.
 
 use super::data::Scene;
 use super::ranges::number_text;
@@ -50,16 +50,16 @@ enum PathPart {
 impl PathPart {
     fn is(&self, segment: Segment) -> bool {
         match (self, segment) {
-            (Self::Name(own), Segment::Name(name)) => own == name,
-            (Self::Index(own), Segment::Index(index)) => *own == index,
+            (Self::Name(part), Segment::Name(name)) => part == name,
+            (Self::Index(part), Segment::Index(index)) => *part == index,
             _ => false,
         }
     }
 }
 
 impl FieldPath {
-    /// Splits `stops.travel_limit_mm` at its dots. Any text is a path; whether a scene has such a
-    /// field shows when the path is followed.
+    /// Splits a path such as `stops.travel_limit_mm` at its dots. Any text is accepted; whether a scene has
+    /// the field is found when the path is followed.
     pub fn new(path: &str) -> Self {
         let step = |part: &str| match part.parse::<usize>() {
             Ok(index) if index.to_string() == part => PathPart::Index(index),
@@ -68,8 +68,8 @@ impl FieldPath {
         Self { steps: path.split('.').map(step).collect() }
     }
 
-    /// Puts `value` into the number at this path, whatever its range; false where the scene has no
-    /// such number.
+    /// Sets the number at this path without checking its range; returns false if the scene has
+    /// no such number.
     #[must_use]
     pub fn set(&self, scene: &mut Scene, value: f64) -> bool {
         self.follow(scene, |field| match field {
@@ -82,9 +82,9 @@ impl FieldPath {
         .unwrap_or(false)
     }
 
-    /// The number at this path; `None` where the scene has none or leaves it out.
+    /// The number at this path; `None` if the scene does not have it or leaves it out.
     pub fn get(&self, scene: &Scene) -> Option<f64> {
-        // The walk hands out mutable fields only; reading is rare and a scene is small.
+        // The traversal needs a mutable scene; a clone is cheap enough since reading is rare.
         self.follow(&mut scene.clone(), |field| match field {
             Field::Number(_, slot) => slot.get(),
             _ => None,
@@ -92,8 +92,8 @@ impl FieldPath {
         .flatten()
     }
 
-    /// The value at this path as one word: a number, a text, or the name of a choice; `None` where the scene
-    /// has none, leaves it out, or has the choice `None`.
+    /// The value at this path as one word: a number, a text, or the name of a choice; `None` if the scene
+    /// does not have it, leaves it out, or has the choice `None`.
     pub fn word(&self, scene: &Scene) -> Option<String> {
         self.follow(&mut scene.clone(), |field| match field {
             Field::Number(_, slot) => slot.get().map(number_text),
@@ -103,7 +103,7 @@ impl FieldPath {
         .flatten()
     }
 
-    /// Hands the field at this path to `found`, once; `None` where the scene has no such field.
+    /// Calls `found` with the field at this path; returns `None` if the scene has no such field.
     pub(super) fn follow<R>(&self, scene: &mut Scene, found: impl FnOnce(Field<'_>) -> R) -> Option<R> {
         struct Seek<'p, F, R> {
             steps: &'p [PathPart],
@@ -135,8 +135,8 @@ impl FieldPath {
     }
 }
 
-/// The paths of all numbers that this scene has, left-out optional ones included: what `--over` takes.
-/// The scene's own sweep is not among them.
+/// The paths of all numbers of a scene, as `--over` takes them. They include optional numbers that are left
+/// out, but not the numbers of the scene's `sweep`.
 pub fn numeric_fields(scene: &Scene) -> Vec<String> {
     let mut paths = Vec::new();
     for_each(&mut scene.clone(), |path, field| {
@@ -147,13 +147,13 @@ pub fn numeric_fields(scene: &Scene) -> Vec<String> {
     paths
 }
 
-/// Whether the number at this path is a whole one, such as a count or a seed; false where the scene has none.
+/// Whether the number at this path is whole, such as a count or a seed; false if the scene does not have it.
 pub fn is_whole(scene: &Scene, path: &str) -> bool {
     let whole = |field: Field<'_>| matches!(field, Field::Number(spec, _) if spec.range.whole);
     FieldPath::new(path).follow(&mut scene.clone(), whole).unwrap_or(false)
 }
 
-/// The paths of all fields that this scene has, numbers and whole values: what `--set` takes.
+/// The paths of all fields of a scene, numbers and other values, as `--set` takes them.
 pub fn all_fields(scene: &Scene) -> Vec<String> {
     let mut paths = Vec::new();
     for_each(&mut scene.clone(), |path, _| paths.push(path.to_owned()));

@@ -1,4 +1,4 @@
-//! Files that a scene names.
+//! Access to the files that a scene names.
 
 use std::collections::BTreeMap;
 use std::io::Read;
@@ -8,23 +8,23 @@ use super::clip::clip;
 use super::presets;
 use crate::system::files;
 
-/// The largest table that is read, 64 MB: some two million rows.
-pub const LARGEST_TABLE: usize = 64 << 20;
+/// Largest size of a table in bytes, 64 MB: about two million rows.
+pub const MAX_TABLE_BYTES: usize = 64 << 20;
 
-/// Where the files that a scene names are read from: the folder of the scene file, or, for a preset
-/// or a pasted scene, the embedded names (and absolute paths).
+/// Source of the files that a scene names: the folder of the scene file or, for a preset or a pasted scene,
+/// the embedded tables (and absolute paths).
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Files {
-    /// Folder that relative paths start from; none for a preset or a pasted scene.
+    /// Folder of relative paths; `None` for a preset or a pasted scene.
     pub folder: Option<PathBuf>,
-    /// Texts that are at hand already, by the path that the scene names them by.
+    /// Texts of files that are already in memory, by the path in the scene.
     pub held: BTreeMap<String, String>,
 }
 
-/// Why a file that a scene names cannot be read. The messages name the file as it was looked for.
+/// Reason why a file that a scene names cannot be read. The messages give the path that was tried.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum FileError {
-    /// No file there.
+    /// The file does not exist.
     #[error(
         "no such file: {path}; {}",
         if *.embedded { "a scene file takes its tables from its own folder: `presets --write` puts this one \
@@ -33,10 +33,10 @@ pub enum FileError {
     Missing {
         /// The path that was tried.
         path: String,
-        /// Whether an embedded table has the name that was asked for.
+        /// Whether there is an embedded table of this name.
         embedded: bool,
     },
-    /// A relative path, but no folder to start from.
+    /// A relative path in a scene without a folder.
     #[error(
         "no embedded table is called {path} (there are: {embedded}), and a built-in or pasted scene has no \
          folder: give an absolute path"
@@ -47,24 +47,24 @@ pub enum FileError {
         /// The names of the embedded tables.
         embedded: String,
     },
-    /// The file is there and cannot be used.
+    /// The file exists but cannot be used.
     #[error("{path}: {problem}")]
     Unreadable {
         /// The path that was tried.
         path: String,
-        /// Why, and what would be right.
+        /// The reason and its remedy.
         problem: String,
     },
 }
 
 impl Files {
-    /// The files of a scene file: relative paths start at its folder.
+    /// The files of a scene file; relative paths start at its folder.
     pub fn beside(scene_file: &Path) -> Self {
         let folder = scene_file.parent().map_or_else(PathBuf::new, Path::to_path_buf);
         Self { folder: Some(folder), ..Self::default() }
     }
 
-    /// Where a file that a scene names lies; none for an embedded one.
+    /// The location of a file that a scene names; `None` for an embedded one.
     pub fn place(&self, path: &str) -> Option<PathBuf> {
         match &self.folder {
             _ if Path::new(path).is_absolute() => Some(PathBuf::from(path)),
@@ -73,10 +73,10 @@ impl Files {
         }
     }
 
-    /// The text of a file that a scene names, held or read.
+    /// The text of a file that a scene names, from memory if it is held there.
     ///
-    /// An absolute path is read as it is. A relative one starts at the folder of the scene; where there is no
-    /// folder, it is the name of an embedded table.
+    /// An absolute path is read as it is. A relative path starts at the folder of the scene; without a folder
+    /// it is the name of an embedded table.
     pub fn read(&self, path: &str) -> Result<String, FileError> {
         if let Some(text) = self.held.get(path) {
             return Ok(text.clone());
@@ -88,7 +88,7 @@ impl Files {
             return embedded().map(|table| table.text.to_owned()).ok_or_else(missing);
         };
         let shown = clip(&tried.display().to_string());
-        match read_text(&tried, LARGEST_TABLE) {
+        match read_text(&tried, MAX_TABLE_BYTES) {
             Ok(text) => Ok(text),
             Err(ReadError::Missing) => {
                 Err(FileError::Missing { path: shown, embedded: embedded().is_some() })
@@ -98,14 +98,13 @@ impl Files {
     }
 }
 
-/// Why a file is no text.
+/// Reason why a file cannot be read as text.
 pub(super) enum ReadError {
     Missing,
     Unusable(String),
 }
 
-/// Reads at most `largest` bytes of UTF-8. Pipes and devices are read as files are, but never further
-/// than that.
+/// Reads a file of at most `largest` bytes of UTF-8. Pipes and devices are read like files up to that size.
 pub(super) fn read_text(path: &Path, largest: usize) -> Result<String, ReadError> {
     let unusable = |problem: String| Err(ReadError::Unusable(problem));
     if files::is_folder(path) {

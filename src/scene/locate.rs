@@ -1,14 +1,14 @@
 //! Places of the fields in a scene's text.
 //!
-//! serde keeps no positions. On text that RON accepts the [scanner](super::scanner) names every field by the
-//! same path as the walk in `fields`; on other text it names what it can, which is enough to say near which
-//! field a parser stopped.
+//! serde keeps no positions. In a text that RON accepts, the [scanner](super::scanner) finds every field by
+//! the same path as the traversal in `fields`. In other text it finds what it can, which is enough to tell
+//! near which field a parser stopped.
 
 use std::ops::Range;
 
 use super::scanner::{Found, Part, Scanner};
 
-/// A place in a text, both counted from 1, the column in characters.
+/// A place in a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Place {
     /// Line, from 1.
@@ -19,19 +19,19 @@ pub struct Place {
 
 /// The fields of a text with their places, in the order of the text.
 ///
-/// Each knows the one around it and its own part of the path alone: whole paths would make of a hostile text
-/// of a few megabytes, long names around a million fields, more than fits into memory.
+/// Each field stores only the index of the field around it and the last part of its path. Whole paths could
+/// exceed the memory for a hostile text of a few megabytes with long names around a million fields.
 #[derive(Debug, Clone, Default)]
 pub struct Places(Vec<Named>);
 
-/// A field, as a text names it.
+/// A field of a text.
 #[derive(Debug, Clone)]
 struct Named {
-    /// The field around it, by its number.
+    /// Index of the field around it.
     around: Option<usize>,
     part: Part,
     place: Place,
-    /// Its bytes, name and value.
+    /// The bytes of its name and value.
     bytes: Range<usize>,
 }
 
@@ -45,7 +45,7 @@ impl Places {
             for byte in &text.as_bytes()[passed..at] {
                 match byte {
                     b'\n' => place = Place { line: place.line + 1, column: 1 },
-                    // The further bytes of a character.
+                    // continuation bytes of a character
                     0x80..=0xBF => {}
                     _ => place.column += 1,
                 }
@@ -56,18 +56,19 @@ impl Places {
         Self(places)
     }
 
-    /// The place of a field, or of the nearest one around it that the text names.
+    /// The place of a field, or of the innermost field around it that the text has.
     pub fn find(&self, path: &str) -> Option<Place> {
         let parts: Vec<Part> = path.split('.').map(Part::of).collect();
         let place =
-            |parts: &[Part]| self.0.iter().find(|named| self.is_at(named, parts)).map(|own| own.place);
+            |parts: &[Part]| self.0.iter().find(|named| self.is_at(named, parts)).map(|named| named.place);
         (1..=parts.len()).rev().find_map(|length| place(&parts[..length]))
     }
 
-    /// The bytes of the field called `name` that begins at a place, its value among them.
+    /// The bytes of the field called `name` that begins at a place, including its value.
     pub(super) fn bytes_at(&self, place: Place, name: &str) -> Option<Range<usize>> {
-        let named = |own: &&Named| own.place == place && matches!(&own.part, Part::Name(own) if own == name);
-        self.0.iter().find(named).map(|own| own.bytes.clone())
+        let is_name = |part: &Part| matches!(part, Part::Name(part) if part == name);
+        let field = self.0.iter().find(|named| named.place == place && is_name(&named.part));
+        field.map(|named| named.bytes.clone())
     }
 
     /// The path of the last field that begins at or before a place.
@@ -84,7 +85,7 @@ impl Places {
         Some(parts.join("."))
     }
 
-    /// Whether a field has this path; compared from its end, where most differ.
+    /// Whether a field has this path, compared from its end, where most paths differ.
     fn is_at(&self, named: &Named, path: &[Part]) -> bool {
         let Some((last, around)) = path.split_last() else { return false };
         named.part == *last

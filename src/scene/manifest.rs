@@ -1,4 +1,4 @@
-//! Manifest of a sweep as a scene: what ran, with its grid as `sweep`, and the files that it read.
+//! Manifest of a sweep, read as a scene with its grid as `sweep` and the files that it used.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -8,15 +8,15 @@ use serde::Deserialize;
 use super::clip::clip;
 use super::document::Document;
 use super::error::SceneError;
-use super::files::{Files, LARGEST_TABLE, read_text};
+use super::files::{Files, MAX_TABLE_BYTES, read_text};
 
-/// What the manifests of this program say in their key `program`.
+/// Value of the key `program` in manifests of this program.
 pub const PROGRAM: &str = "interwell";
 
-/// The largest manifest that is read: it holds tables, and its grid.
-pub(super) const LARGEST: usize = 2 * LARGEST_TABLE;
+/// Largest size of a manifest in bytes: it contains tables and its grid.
+pub(super) const MAX_BYTES: usize = 2 * MAX_TABLE_BYTES;
 
-/// The keys that make a sweep run again; a manifest has more of them.
+/// The keys of a manifest that are needed to repeat a sweep; a manifest has further keys.
 #[derive(Deserialize)]
 struct Manifest {
     program: String,
@@ -24,7 +24,7 @@ struct Manifest {
     #[serde(default)]
     files: BTreeMap<String, String>,
     #[serde(default)]
-    plan: Swept,
+    plan: SweepRequest,
     #[serde(default)]
     shard: Option<String>,
     #[serde(default)]
@@ -33,23 +33,23 @@ struct Manifest {
     version: String,
 }
 
-/// How a sweep was asked for, besides its scene; empty where nothing is known.
+/// Options of a sweep besides its scene; empty if not known.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(default)]
-pub struct Swept {
-    /// The names of its columns, after those of its fields.
+pub struct SweepRequest {
+    /// The names of its columns after those of the swept fields.
     pub columns: Vec<String>,
-    /// Time in s up to which runs went on to settle.
+    /// Time in s up to which runs were extended until they settled.
     pub until_settled: Option<f64>,
-    /// In which directions the last field was walked.
+    /// Directions in which the last field was walked.
     pub carry: Option<String>,
-    /// Which shard it was, where it was one of several.
+    /// The shard, if the sweep was divided into several.
     #[serde(skip)]
     pub shard: Option<String>,
     /// The name of the file with its rows.
     #[serde(skip)]
     pub data: String,
-    /// The version of the program that made them.
+    /// The version of the program that computed the rows.
     #[serde(skip)]
     pub version: String,
 }
@@ -61,11 +61,11 @@ fn parse(text: &str) -> Result<Manifest, String> {
 
 /// Whether the file at `path` is a manifest of this program.
 pub fn is_manifest(path: &Path) -> bool {
-    read_text(path, LARGEST).is_ok_and(|text| parse(&text).is_ok())
+    read_text(path, MAX_BYTES).is_ok_and(|text| parse(&text).is_ok())
 }
 
-/// The scene of a manifest's text, which messages call `name`. The files that it names come from the
-/// manifest, others from where `files` says.
+/// The scene in the text of a manifest, which messages call `name`. Files come from the manifest, or from
+/// `files` if they are not in it.
 pub(super) fn read(name: &str, text: &str, files: Files) -> Result<Document, SceneError> {
     let manifest = parse(text).map_err(|problem| {
         let problem = clip(&problem);
@@ -75,7 +75,7 @@ pub(super) fn read(name: &str, text: &str, files: Files) -> Result<Document, Sce
     })?;
     let files = Files { held: manifest.files, ..files };
     let Manifest { shard, data, version, .. } = manifest;
-    let swept = Swept { shard: shard.filter(|own| own != "1/1"), data, version, ..manifest.plan };
+    let swept = SweepRequest { shard: shard.filter(|shard| shard != "1/1"), data, version, ..manifest.plan };
     let mut document = Document::from_text(&format!("{name} (scene_ron)"), &manifest.scene_ron, files)?;
     document.swept = Some(swept);
     Ok(document)

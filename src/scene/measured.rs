@@ -1,7 +1,7 @@
 //! Measured records: channels with quantity and SI unit, read from CSV.
 //!
-//! A column is chosen by its name, or by the unit that its name ends with. What cannot be meant is refused
-//! with its line, column and value.
+//! A column is chosen by its name, or by the unit that its name ends with. An invalid value is rejected with
+//! its line and column.
 
 use std::path::Path;
 
@@ -10,21 +10,21 @@ use super::columns::{ColumnsError, Separators, Sheet};
 use super::files::{ReadError, read_text};
 use super::unit::{Quantity, Unit};
 
-/// The most rows of a measured record, and the most bytes.
-pub const MOST_MEASURED: usize = 10_000_000;
-/// See [`MOST_MEASURED`].
-pub const LARGEST_MEASURED: usize = 1 << 30;
+/// Largest number of rows of a measured record.
+pub const MAX_MEASURED_ROWS: usize = 10_000_000;
+/// Largest size of a measured record in bytes.
+pub const MAX_MEASURED_BYTES: usize = 1 << 30;
 
-/// A column that is asked for.
+/// Request for a column.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ask {
-    /// What it may be measured of: where no name is given, the first of them that a column's unit tells.
+    /// Accepted quantities. Without a column name, the first quantity of which a column has a unit is chosen.
     pub quantities: Vec<Quantity>,
-    /// Its name; left out, the column whose unit is one of such a quantity.
+    /// Name of the column; if `None`, the column is chosen by its unit.
     pub column: Option<String>,
-    /// Its unit; left out, the one that its name ends with.
+    /// Unit of the column; if `None`, the unit at the end of its name.
     pub unit: Option<String>,
-    /// What gives the name and what gives the unit, for messages; empty where the header alone does.
+    /// The options that give name and unit, for messages; empty if only the header can.
     pub options: (&'static str, &'static str),
 }
 
@@ -39,7 +39,7 @@ pub struct Channel {
     pub values: Vec<f64>,
 }
 
-/// Channels of one length, in the order in which they were asked for; a channel of times increases.
+/// Channels of equal length, in the order of the requests; a channel of times is increasing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured<const N: usize> {
     /// The channels.
@@ -48,16 +48,16 @@ pub struct Measured<const N: usize> {
     pub decimal_commas: bool,
 }
 
-/// What is wrong with a measured record.
+/// Error in a measured record.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MeasuredError {
-    /// The file is not there, or no text.
+    /// The file does not exist or is not text.
     #[error("{0}")]
     Unreadable(String),
     /// The columns cannot be read.
     #[error(transparent)]
     Columns(#[from] ColumnsError),
-    /// No column has a unit of what is needed.
+    /// No column has a unit of the quantity.
     #[error(
         "line {line}: no column of {name} ({name} in {units}, as in `{example}`); the header has: {found}. \
          {remedy}. The header is the first line that does not begin with #: put that before what stands \
@@ -68,55 +68,55 @@ pub enum MeasuredError {
     NoColumn {
         /// Line of the header.
         line: usize,
-        /// What is needed.
+        /// Requested quantity.
         quantity: Quantity,
-        /// Such a name.
+        /// Example of a column name.
         example: String,
-        /// The names that the header has.
+        /// The names in the header.
         found: String,
-        /// What to do, a sentence.
+        /// Advice, a sentence.
         remedy: String,
     },
-    /// Several columns have such a unit.
+    /// Several columns have a unit of the quantity.
     #[error("line {line}: {found} are all columns of {quantity}: {remedy}")]
     SeveralColumns {
         /// Line of the header.
         line: usize,
-        /// What is needed.
+        /// Requested quantity.
         quantity: &'static str,
         /// The names of the columns.
         found: String,
-        /// What to do, a clause.
+        /// Advice, a clause.
         remedy: String,
     },
     /// The unit of a column is not known.
     #[error("{option}: `{unit}` is no unit of {quantity}; known are {units}")]
     UnknownUnit {
-        /// What gives it.
+        /// Option that gave the unit.
         option: &'static str,
-        /// As it was given.
+        /// The unit as given.
         unit: String,
-        /// What is needed.
+        /// Requested quantity.
         quantity: String,
-        /// The units that are known.
+        /// The known units.
         units: String,
     },
     /// A column whose name has no unit.
     #[error("column {column}: its name ends with no unit of {quantity}; give it by {option} ({units})")]
     UnitNeeded {
-        /// Its name.
+        /// Name of the column.
         column: String,
-        /// What is needed.
+        /// Requested quantity.
         quantity: String,
-        /// What gives the unit.
+        /// Option that gives the unit.
         option: &'static str,
-        /// The units that are known.
+        /// The known units.
         units: String,
     },
     /// Fewer rows than a record needs.
     #[error("has {0} rows of numbers; a record needs at least 2")]
     TooFew(usize),
-    /// A time that is not after the one before it.
+    /// A time that is not after the previous one.
     #[error(
         "line {line}: {column} = {time} does not come after {before}; times must increase from row to row \
          (sort the rows; of several with one time keep one)"
@@ -128,18 +128,18 @@ pub enum MeasuredError {
         column: String,
         /// The time as written.
         time: f64,
-        /// The time before it.
+        /// The time in the row before it.
         before: f64,
     },
 }
 
 /// Reads the record in the file at `path`.
-pub fn read_measured<const N: usize>(path: &Path, asks: &[Ask; N]) -> Result<Measured<N>, MeasuredError> {
-    Measured::parse(&text_of(path)?, asks)
+pub fn read_measured<const N: usize>(path: &Path, requests: &[Ask; N]) -> Result<Measured<N>, MeasuredError> {
+    Measured::parse(&text_of(path)?, requests)
 }
 
 fn text_of(path: &Path) -> Result<String, MeasuredError> {
-    read_text(path, LARGEST_MEASURED).map_err(|error| {
+    read_text(path, MAX_MEASURED_BYTES).map_err(|error| {
         MeasuredError::Unreadable(match error {
             ReadError::Missing => {
                 "is not there (no such file); give the path of a CSV with a header".to_owned()
@@ -149,7 +149,7 @@ fn text_of(path: &Path) -> Result<String, MeasuredError> {
     })
 }
 
-/// The text of a record whose header is read, so that its columns can be chosen.
+/// The text of a record with its header parsed, so that columns can be chosen.
 #[derive(Debug)]
 pub struct MeasuredText {
     text: String,
@@ -157,62 +157,64 @@ pub struct MeasuredText {
     pub names: Vec<String>,
 }
 
-/// A column by its place, and its unit where that is known.
+/// Index of a column, and its unit if known.
 pub type ChosenColumn = (usize, Option<Unit>);
 
 impl MeasuredText {
     /// Reads the file at `path`.
     pub fn read(path: &Path) -> Result<Self, MeasuredError> {
         let text = text_of(path)?;
-        let names = Sheet::open(&text, "t_s,x_m", Separators::Any, MOST_MEASURED)?.names;
+        let names = Sheet::open(&text, "t_s,x_m", Separators::Any, MAX_MEASURED_ROWS)?.names;
         Ok(Self { text, names })
     }
 
-    /// The columns that are meant, as far as the units at the ends of their names tell: force over position,
-    /// or else displacement, velocity or acceleration over time. What no unit tells is the first column
-    /// across, and the first other one for the values.
+    /// Guesses the abscissa and the values from the units of the columns: force over position, or else
+    /// displacement, velocity or acceleration over time. Without such units it takes the first column as the
+    /// abscissa and the first other column for the values.
     pub fn guess(&self) -> [ChosenColumn; 2] {
-        let of = |quantity: Quantity| {
+        let column_of = |quantity: Quantity| {
             let unit = |name: &String| Unit::of_name(name).filter(|unit| unit.quantity == quantity);
             self.names.iter().enumerate().find_map(|(at, name)| Some((at, Some(unit(name)?))))
         };
-        let position = of(Quantity::Displacement);
-        if let (Some(position), Some(force)) = (position, of(Quantity::Force)) {
+        let position = column_of(Quantity::Displacement);
+        if let (Some(position), Some(force)) = (position, column_of(Quantity::Force)) {
             return [position, force];
         }
-        let across = of(Quantity::Time).unwrap_or((0, None));
-        let values = position.or_else(|| of(Quantity::Velocity)).or_else(|| of(Quantity::Acceleration));
-        let other = usize::from(across.0 == 0 && self.names.len() > 1);
-        [across, values.unwrap_or((other, None))]
+        let abscissa = column_of(Quantity::Time).unwrap_or((0, None));
+        let values =
+            position.or_else(|| column_of(Quantity::Velocity)).or_else(|| column_of(Quantity::Acceleration));
+        let other = usize::from(abscissa.0 == 0 && self.names.len() > 1);
+        [abscissa, values.unwrap_or((other, None))]
     }
 
-    /// The values of two columns, each with its unit; messages say where a column or a unit is given.
+    /// The values of two columns with the given units.
     pub fn channels(&self, chosen: [(usize, Unit); 2]) -> Result<Measured<2>, MeasuredError> {
-        let sheet = Sheet::open(&self.text, "t_s,x_m", Separators::Any, MOST_MEASURED)?;
+        let sheet = Sheet::open(&self.text, "t_s,x_m", Separators::Any, MAX_MEASURED_ROWS)?;
         Measured::of(&sheet, chosen)
     }
 }
 
 impl<const N: usize> Measured<N> {
-    /// Reads a record: CSV with a header, values separated by commas, or by semicolons or tabulators with
+    /// Parses a record: CSV with a header and values separated by commas, or by semicolons or tabs with
     /// decimal points or decimal commas.
-    pub fn parse(text: &str, asks: &[Ask; N]) -> Result<Self, MeasuredError> {
-        let wanted: Vec<String> = asks.iter().map(Ask::wanted).collect();
-        let sheet = Sheet::open(text, &wanted.join(","), Separators::Any, MOST_MEASURED)?;
+    pub fn parse(text: &str, requests: &[Ask; N]) -> Result<Self, MeasuredError> {
+        let wanted: Vec<String> = requests.iter().map(Ask::wanted).collect();
+        let sheet = Sheet::open(text, &wanted.join(","), Separators::Any, MAX_MEASURED_ROWS)?;
         let mut chosen = Vec::with_capacity(N);
-        for ask in asks {
+        for ask in requests {
             chosen.push(ask.choose(&sheet)?);
         }
         Self::of(&sheet, std::array::from_fn(|k| chosen[k]))
     }
 
-    /// The columns that stand there, in these units.
+    /// The columns with these indices and units.
     fn of(sheet: &Sheet, chosen: [(usize, Unit); N]) -> Result<Self, MeasuredError> {
-        let columns = sheet.numbers(chosen.map(|own| own.0))?;
+        let columns = sheet.numbers(chosen.map(|(at, _)| at))?;
         if columns.rows.len() < 2 {
             return Err(MeasuredError::TooFew(columns.rows.len()));
         }
-        for (k, (at, unit)) in chosen.iter().enumerate().filter(|own| own.1.1.quantity == Quantity::Time) {
+        let times = chosen.iter().enumerate().filter(|(_, (_, unit))| unit.quantity == Quantity::Time);
+        for (k, (at, unit)) in times {
             let turn = columns.rows.windows(2).position(|pair| unit.si(pair[1][k]) <= unit.si(pair[0][k]));
             if let Some(row) = turn {
                 return Err(MeasuredError::NotAfter {
@@ -233,7 +235,7 @@ impl<const N: usize> Measured<N> {
 }
 
 impl Ask {
-    /// A name of such a column, for messages.
+    /// The requested name, or an example of one, for messages.
     fn wanted(&self) -> String {
         self.column.clone().unwrap_or_else(|| {
             let name = match self.quantities[0] {
@@ -248,17 +250,17 @@ impl Ask {
     }
 
     fn quantity_names(&self) -> String {
-        self.quantities.iter().map(|own| own.name()).collect::<Vec<_>>().join(" or ")
+        self.quantities.iter().map(|quantity| quantity.name()).collect::<Vec<_>>().join(" or ")
     }
 
     fn known_units(&self) -> String {
-        self.quantities.iter().map(|own| own.units()).collect::<Vec<_>>().join(", ")
+        self.quantities.iter().map(|quantity| quantity.units()).collect::<Vec<_>>().join(", ")
     }
 
-    /// The column's place and its unit.
+    /// The column's index and unit.
     fn choose(&self, sheet: &Sheet) -> Result<(usize, Unit), MeasuredError> {
         let of_word = |word: &str| {
-            let found = self.quantities.iter().find_map(|own| Unit::of_word(word, *own));
+            let found = self.quantities.iter().find_map(|quantity| Unit::of_word(word, *quantity));
             found.ok_or_else(|| MeasuredError::UnknownUnit {
                 option: self.options.1,
                 unit: clip(word),
@@ -269,8 +271,8 @@ impl Ask {
         let given = self.unit.as_deref().map(of_word).transpose()?;
         if let Some(name) = &self.column {
             let at = sheet.column(name)?;
-            let own = Unit::of_name(name).filter(|unit| self.quantities.contains(&unit.quantity));
-            let unit = given.or(own).ok_or_else(|| MeasuredError::UnitNeeded {
+            let in_name = Unit::of_name(name).filter(|unit| self.quantities.contains(&unit.quantity));
+            let unit = given.or(in_name).ok_or_else(|| MeasuredError::UnitNeeded {
                 column: clip(name),
                 quantity: self.quantity_names(),
                 option: self.options.1,
@@ -279,11 +281,11 @@ impl Ask {
             return Ok((at, unit));
         }
         for quantity in &self.quantities {
-            let of = |(at, name): (usize, &String)| {
+            let with_unit = |(at, name): (usize, &String)| {
                 let unit = Unit::of_name(name).filter(|unit| unit.quantity == *quantity)?;
                 Some((at, unit))
             };
-            let found: Vec<(usize, Unit)> = sheet.names.iter().enumerate().filter_map(of).collect();
+            let found: Vec<(usize, Unit)> = sheet.names.iter().enumerate().filter_map(with_unit).collect();
             match found[..] {
                 [] => {}
                 [(at, unit)] => return Ok((at, given.unwrap_or(unit))),

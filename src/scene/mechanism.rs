@@ -1,16 +1,16 @@
-//! Mechanisms, and their fields.
+//! Mechanisms and their fields.
 
 use serde::{Deserialize, Serialize};
 
-/// Where the restoring force comes from.
+/// Source of the restoring force.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Mechanism {
     /// Flexures: thin strips, clamped at both ends, between the frame and a shuttle that carries the proof
-    /// mass. The parallel ones guide the shuttle; the buckling ones lie in line with them and are compressed
-    /// by the preload until they buckle, which makes the two wells.
+    /// mass. The parallel flexures guide the shuttle. The buckling flexures are in line with them and are
+    /// compressed by the preload until they buckle, which makes two wells.
     Flexures {
-        /// Shortening in mm that parallel and buckling flexures share where the shuttle is at x = 0, 0 to
+        /// Shortening in mm that parallel and buckling flexures share if the shuttle is at x = 0, 0 to
         /// 1e15 and at most half of the shorter flexure. 0 makes one well.
         preload_mm: f64,
         /// Thickness of every flexure in mm, 1e-15 to 1e15, at most a tenth of the shorter flexure.
@@ -24,16 +24,16 @@ pub enum Mechanism {
         /// Poisson's ratio, 0 to 0.49.
         #[serde(default = "default_poisson")]
         poisson: f64,
-        /// Whether E/(1 - poisson^2) takes the place of E in stretching and bending, as for strips much wider
-        /// than thick; the shear modulus stays.
+        /// Whether E/(1 - poisson^2) replaces E in stretching and bending, as for strips much wider than
+        /// thick; the shear modulus is unchanged.
         #[serde(default)]
         plane_strain: bool,
         /// Stress-free bow of the buckling flexures at their middle in mm, 0 to 1e15 and at most a twentieth
         /// of their length.
         #[serde(default)]
         initial_bow_mm: f64,
-        /// Bending stress in GPa above which `curve --full` warns, 1e-60 to 1e60; it has no part in the
-        /// force.
+        /// Bending stress in GPa above which `curve --full` warns, 1e-60 to 1e60; it does not
+        /// affect the force.
         #[serde(default = "default_yield")]
         yield_gpa: f64,
     },
@@ -44,7 +44,7 @@ pub enum Mechanism {
         /// Cubic stiffness in N/m^3, -1e200 to 1e200.
         cubic_n_per_m3: f64,
     },
-    /// The quartic potential with two wells at +-equilibrium, a barrier between them.
+    /// The quartic potential with two wells at +-equilibrium and a barrier between them.
     DoubleWell {
         /// Distance of the stable equilibria from the middle in mm, 1e-15 to 1e15.
         equilibrium_mm: f64,
@@ -61,18 +61,18 @@ pub enum Mechanism {
     Table {
         /// Path relative to the scene file, or the name of an embedded table.
         path: String,
-        /// Error allowed to the fitted curve, relative to the force maximum between the wells, 1e-10
+        /// Allowed error of the fitted curve, relative to the force maximum between the wells, 1e-10
         /// to 0.1.
         #[serde(default = "default_table_tolerance")]
         tolerance: f64,
     },
-    /// F = stiffness x: a spring, such as one that balances part of a negative stiffness beside it.
+    /// F = stiffness x: a spring, such as one that compensates part of a negative stiffness in parallel.
     Linear {
         /// Stiffness in N/m, -1e200 to 1e200.
         n_per_m: f64,
     },
-    /// Two axially magnetised magnets that face each other across a gap at x = 0, one of them on the mass, as
-    /// dipoles.
+    /// Two axially magnetised dipole magnets, one of them on the mass, that face each other across a gap at
+    /// x = 0.
     Magnet {
         /// mu_0 m_1 m_2/(4 pi) of the two moments in N mm^4, -1e60 to 1e60; above 0 they attract each other
         /// at x = 0, below 0 they repel.
@@ -80,12 +80,12 @@ pub enum Mechanism {
         /// Distance of the two dipoles at x = 0 in mm, 1e-15 to 1e15.
         gap_mm: f64,
     },
-    /// Forces side by side on the same mass: 1 to 16 parts, none of them a sum.
+    /// Forces in parallel on the same mass: 1 to 16 parts, none of them a sum.
     Sum(Vec<Mechanism>),
 }
 
 impl Mechanism {
-    /// The paths of the tables that it names.
+    /// The paths of its tables.
     pub(super) fn paths_mut(&mut self) -> Vec<&mut String> {
         match self {
             Self::Table { path, .. } => vec![path],
@@ -95,11 +95,11 @@ impl Mechanism {
     }
 }
 
-/// Equal flexures side by side.
+/// Equal flexures in parallel.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FlexureGroup {
-    /// How many there are; whole, 1 to 64.
+    /// Number of flexures; whole, 1 to 64.
     pub count: u64,
     /// Length of each between its clamps in mm, 1e-15 to 1e15.
     pub length_mm: f64,

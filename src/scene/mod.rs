@@ -1,8 +1,8 @@
 //! Scenes: their fields, checks and files, and the presets.
 //!
-//! A scene is read by [`Document::load`], changed by [`Document::set`], checked by [`Document::check`];
-//! what passes is turned into a `dynamics::Model`, which cannot be wrong. Faults that only show there go
-//! back through [`Document::error_from`] to get their file and line.
+//! A scene is read by [`Document::load`], changed by [`Document::set`] and checked by [`Document::check`]. A
+//! scene that passes becomes a `dynamics::Model`, which is always valid. [`Document::error_from`] adds file
+//! and line to faults that only the model can find.
 //!
 //! ```
 //! use interwell::scene::Document;
@@ -46,18 +46,18 @@ mod unit;
 mod walk;
 
 pub use arguments::arguments;
-pub use axis::{Axis, LARGEST_AXIS, MOST_AXES, column_names};
+pub use axis::{Axis, MAX_AXES, MAX_AXIS_VALUES, column_names};
 pub use check::{Checked, check, corners};
 pub use columns::{Columns, ColumnsError, MOST_ROWS, read_columns};
 pub use data::*;
 pub use document::{Document, Source, is_scene_file, named_paths};
 pub use error::{ArgumentError, Fault, Origin, PlacedFault, SceneError};
 pub use fields::{FieldPath, all_fields, is_whole, numeric_fields};
-pub use files::{FileError, Files, LARGEST_TABLE};
+pub use files::{FileError, Files, MAX_TABLE_BYTES};
 pub use locate::{Place, Places};
-pub use manifest::{PROGRAM, Swept, is_manifest};
+pub use manifest::{PROGRAM, SweepRequest, is_manifest};
 pub use measured::{
-    Ask, Channel, ChosenColumn, LARGEST_MEASURED, MOST_MEASURED, Measured, MeasuredError, MeasuredText,
+    Ask, Channel, ChosenColumn, MAX_MEASURED_BYTES, MAX_MEASURED_ROWS, Measured, MeasuredError, MeasuredText,
     read_measured,
 };
 pub use mechanism::{FlexureGroup, Mechanism};
@@ -67,7 +67,7 @@ pub use ranges::{MAX_COEFFICIENTS, TOLERANCES};
 pub use record::{Record, RecordError, read_record};
 pub use scanner::has_comments;
 pub use stops::Stops;
-pub use text::{LARGEST_SCENE, write};
+pub use text::{MAX_SCENE_BYTES, write};
 pub use timing::Timing;
 pub use transducer::Transducer;
 pub use unit::{Quantity, STANDARD_GRAVITY, Unit};

@@ -1,14 +1,14 @@
 //! Built-in scenes and their tables.
 //!
-//! Each is a file in `presets/` and embedded, with the tables that it names, so that every command works
-//! from any folder. The first is what the program opens with.
+//! Each scene is a file in `presets/` that is embedded with the tables that it names, so that every command
+//! works from any folder. The program opens with the first one.
 
 /// A built-in scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Preset {
     /// The name that a command takes.
     pub name: &'static str,
-    /// What it is, in one line.
+    /// One line that describes it.
     pub summary: &'static str,
     /// The scene's text.
     pub text: &'static str,
@@ -17,15 +17,15 @@ pub struct Preset {
 /// An embedded table or record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct EmbeddedTable {
-    /// The name by which a scene calls it.
+    /// The name that a scene gives as its path.
     pub name: &'static str,
-    /// CSV.
+    /// The text, in CSV.
     pub text: &'static str,
 }
 
 macro_rules! presets {
     ($($name:literal: $summary:literal;)*) => {
-        /// The built-in scenes, in the order of a first walk.
+        /// The built-in scenes, in the order in which a beginner should look at them.
         pub static PRESETS: &[Preset] = &[$(Preset {
             name: $name,
             summary: $summary,
@@ -63,13 +63,12 @@ pub static TABLES: &[EmbeddedTable] = &[
     EmbeddedTable { name: "walking.csv", text: include_str!("../../assets/walking.csv") },
 ];
 
-/// Names of all presets, with commas.
+/// Names of all presets, separated by commas.
 pub(super) fn names() -> String {
     PRESETS.iter().map(|preset| preset.name).collect::<Vec<_>>().join(", ")
 }
 
-/// All presets and the tables that they use, as file names and contents, to be written into one folder
-/// where each scene then finds its table.
+/// File names and contents of all presets and their tables. In one folder each scene finds its table.
 pub fn export() -> Vec<(String, &'static str)> {
     let scenes = PRESETS.iter().map(|preset| (format!("{}.ron", preset.name), preset.text));
     scenes.chain(TABLES.iter().map(|table| (table.name.to_owned(), table.text))).collect()

@@ -1,16 +1,16 @@
 //! Valid ranges of the numbers in a scene, with a remedy for each.
 //!
-//! One row a field. The field's documentation repeats the range; a test compares them.
+//! There is one row per field. The field's documentation repeats the range; a test compares them.
 
 use std::fmt;
 
-/// The most coefficients that a `Polynomial` may have; the force curve's own limit.
+/// Largest number of coefficients of a `Polynomial`, the limit of the force curve.
 pub const MAX_COEFFICIENTS: usize = 16;
 
-/// The smallest and the largest tolerance of a run.
+/// Smallest and largest tolerance of a run.
 pub const TOLERANCES: (f64, f64) = (1e-14, 1e-3);
 
-/// A closed range: both ends are valid, NaN never is.
+/// A closed range; NaN is never inside.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Range {
     pub low: f64,
@@ -35,8 +35,7 @@ impl fmt::Display for Range {
     }
 }
 
-/// A number as a person would write it: plain digits where they are few, else with an exponent; it
-/// parses back to the same double.
+/// A number in plain digits if they are few, otherwise with an exponent. It parses back to the same double.
 pub(crate) fn number_text(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 || !size.is_finite() || (1e-4..1e6).contains(&size) {
@@ -46,13 +45,13 @@ pub(crate) fn number_text(value: f64) -> String {
     }
 }
 
-/// What is known of one numeric field.
+/// Specification of a numeric field.
 #[derive(Debug)]
 pub(super) struct Spec {
     /// Last part of its path; for a list the name of the list.
     pub name: &'static str,
     pub range: Range,
-    /// What to do where the value is outside the range; a clause.
+    /// Advice for a value outside the range, as a clause.
     pub remedy: &'static str,
 }
 
@@ -212,7 +211,7 @@ mod tests {
         for spec in ALL {
             let Range { low, high, .. } = spec.range;
             assert!(spec.range.contains(low) && spec.range.contains(high));
-            // (beyond an end that is infinite there is nothing)
+            // nothing lies beyond an infinite end
             let above = [f64::INFINITY, high.next_up()].into_iter().filter(|above| *above > high);
             for outside in [f64::NAN, f64::NEG_INFINITY, low.next_down()].into_iter().chain(above) {
                 assert!(!spec.range.contains(outside), "{} takes {outside}", spec.name);

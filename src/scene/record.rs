@@ -1,6 +1,6 @@
 //! Recorded base acceleration.
 //!
-//! A record is read once, when a document is read or changed, and then travels with its scene, so that the
+//! A record is read once, when a document is read or changed, and is then a part of the scene, so that all
 //! cells of a sweep share it.
 
 use std::path::Path;
@@ -25,48 +25,48 @@ pub struct Record {
     pub times: Vec<f64>,
     /// Accelerations in m/s^2, one for each time.
     pub accelerations: Vec<f64>,
-    made: Made,
+    derived: Derived,
 }
 
-/// What has been made of a record, for all runs that share it.
+/// Data derived from a record, shared by all runs of it.
 #[derive(Debug, Default)]
-struct Made {
+struct Derived {
     peak: OnceLock<f64>,
     pieces: Mutex<Vec<(Limits, Arc<Vec<Piece>>)>>,
 }
 
-/// Exponents of the powers of two that limits were rounded down to.
+/// Exponents of the powers of two to which limits were rounded down.
 type Limits = (i32, i32);
 
-/// Pieces for other limits than these first ones are not kept: a sweep needs a few.
-const MOST_KEPT: usize = 16;
+/// Largest number of limits for which pieces are cached; a sweep needs a few.
+const MAX_CACHED: usize = 16;
 
-impl Clone for Made {
+impl Clone for Derived {
     fn clone(&self) -> Self {
         Self::default()
     }
 }
 
-impl PartialEq for Made {
-    /// It follows from the samples.
+impl PartialEq for Derived {
+    /// Always equal, since the samples determine it.
     fn eq(&self, _: &Self) -> bool {
         true
     }
 }
 
-/// What is wrong with the text of a record.
+/// Error in the text of a record.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RecordError {
     /// The columns cannot be read.
     #[error(transparent)]
     Columns(#[from] ColumnsError),
-    /// The columns are chosen by their units, and cannot be read.
+    /// The columns, chosen by their units, cannot be read.
     #[error(transparent)]
     Measured(#[from] MeasuredError),
     /// Fewer than two samples.
     #[error("has {0} rows of numbers; a record needs at least 2")]
     TooFew(usize),
-    /// A time that is not after the one before it.
+    /// A time that is not after the previous one.
     #[error(
         "line {line}: {TIME} = {time:e} does not come after {before:e}; times must increase from row to row"
     )]
@@ -75,12 +75,12 @@ pub enum RecordError {
         line: usize,
         /// Its time.
         time: f64,
-        /// The time before it.
+        /// Time of the row before it.
         before: f64,
     },
 }
 
-/// Reads the record in the file at `path`, as a scene that names it does; the error is a clause.
+/// Reads the record in the file at `path` in the same way as for a scene; the error is a clause.
 pub fn read_record(path: &Path) -> Result<Record, String> {
     let files = Files::default();
     let text = files.read(&path.to_string_lossy()).map_err(|error| error.to_string())?;
@@ -88,35 +88,35 @@ pub fn read_record(path: &Path) -> Result<Record, String> {
 }
 
 impl Record {
-    /// Of samples at times in s, strictly increasing and at least two, with accelerations in m/s^2.
+    /// A record from at least two strictly increasing times in s and accelerations in m/s^2.
     pub fn new(times: Vec<f64>, accelerations: Vec<f64>) -> Self {
-        Self { times, accelerations, made: Made::default() }
+        Self { times, accelerations, derived: Derived::default() }
     }
 
-    /// Polynomials in place of its lines whose integrals, in m/s and m, differ by no more than these limits
-    /// (rounded down to powers of two); made once and shared.
+    /// Polynomials that replace the lines between samples. Their integrals, in m/s and m, differ from those
+    /// of the lines by at most `limits` (rounded down to powers of two). They are computed once and shared.
     pub(crate) fn pieces(&self, limits: (f64, f64)) -> Arc<Vec<Piece>> {
         let exponent = |limit: f64| limit.log2().floor().max(-1000.0) as i32;
         let key = (exponent(limits.0), exponent(limits.1));
-        let mut made = self.made.pieces.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, found)) = made.iter().find(|own| own.0 == key) {
+        let mut cached = self.derived.pieces.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, found)) = cached.iter().find(|entry| entry.0 == key) {
             return Arc::clone(found);
         }
         let limits = (f64::from(key.0).exp2(), f64::from(key.1).exp2());
         let new = Arc::new(pieces(&self.times, &self.accelerations, limits));
-        if made.len() < MOST_KEPT {
-            made.push((key, Arc::clone(&new)));
+        if cached.len() < MAX_CACHED {
+            cached.push((key, Arc::clone(&new)));
         }
         new
     }
 
-    /// Reads the text of a record: CSV with the columns `t_s,accel_m_per_s2` among others, or with one column
-    /// of time and one of acceleration by the units at the ends of their names, as a measured record has it.
+    /// Parses a record: CSV with the columns `t_s` and `accel_m_per_s2`, or with one column of time and one
+    /// of acceleration identified by the units in their names, like a measured record.
     pub fn parse(text: &str) -> Result<Self, RecordError> {
         let columns = match read_columns(text, [TIME, ACCELERATION], MOST_ROWS, false) {
             Err(problem @ ColumnsError::MissingColumn { .. }) => {
                 return match Self::by_units(text) {
-                    // no unit tells anything
+                    // no column has a unit of time: report the missing standard column
                     Err(RecordError::Measured(MeasuredError::NoColumn {
                         quantity: Quantity::Time, ..
                     })) => Err(problem.into()),
@@ -140,22 +140,22 @@ impl Record {
 
     fn by_units(text: &str) -> Result<Self, RecordError> {
         let ask = |quantity| Ask { quantities: vec![quantity], column: None, unit: None, options: ("", "") };
-        let asks = [ask(Quantity::Time), ask(Quantity::Acceleration)];
-        let [times, accelerations] = Measured::parse(text, &asks)?.channels.map(|own| own.values);
+        let requests = [ask(Quantity::Time), ask(Quantity::Acceleration)];
+        let [times, accelerations] = Measured::parse(text, &requests)?.channels.map(|channel| channel.values);
         if times.len() > MOST_ROWS {
             return Err(ColumnsError::TooMany(MOST_ROWS).into());
         }
         Ok(Self::new(times, accelerations))
     }
 
-    /// Remarks for a run of `duration` s, each a clause that continues the file's name.
+    /// Warnings for a run of `duration` s, each a clause that continues the file's name.
     pub fn warnings(&self, duration: f64) -> Vec<String> {
         let mut warnings = Vec::new();
         let (first, last) = (self.times[0], self.times[self.times.len() - 1]);
         if first > 0.0 {
             warnings.push(format!("begins at {first} s; the base stands still until then"));
         }
-        // a time that was counted up in steps is some roundings short
+        // allow for the rounding of a time that was accumulated in steps
         if last < duration * (1.0 - 4.0 * f64::EPSILON) {
             warnings.push(format!(
                 "ends at {last} s, before the run does at {duration} s; the base stands still from there"
@@ -174,12 +174,12 @@ impl Record {
 
     /// The largest magnitude in m/s^2.
     pub fn peak(&self) -> f64 {
-        *self.made.peak.get_or_init(|| self.accelerations.iter().fold(0.0, |peak, a| a.abs().max(peak)))
+        *self.derived.peak.get_or_init(|| self.accelerations.iter().fold(0.0, |peak, a| a.abs().max(peak)))
     }
 }
 
-/// Reads the records that an excitation names and attaches them to it; what cannot be read is a fault and
-/// stays without a record. `path` is the excitation's own.
+/// Reads the records that an excitation names and attaches them to it. A record that cannot be read is
+/// returned as a fault and is not attached. `path` is the path of the excitation.
 pub(super) fn attach(excitation: &mut Excitation, path: &str, files: &Files) -> Vec<Fault> {
     match excitation {
         Excitation::Recorded { path: file, record } => {
@@ -204,7 +204,7 @@ pub(super) fn attach(excitation: &mut Excitation, path: &str, files: &Files) -> 
     }
 }
 
-/// Remarks on the records of an excitation in a run of `duration` s.
+/// Warnings about the records of an excitation in a run of `duration` s.
 pub(super) fn warnings(excitation: &Excitation, duration: f64) -> Vec<String> {
     match excitation {
         Excitation::Recorded { path, record: Some(record) } => record

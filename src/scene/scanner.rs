@@ -1,7 +1,7 @@
-//! Scanner of RON texts: fields, comments and numbers by their places.
+//! Scanner for RON texts that finds fields, comments and overflowing numbers.
 //!
-//! A second parser would be a second truth: this one only follows brackets, strings, comments and `name:`,
-//! and never fails. One pass, linear in the text.
+//! This is not a second parser, which could disagree with RON: it only follows brackets, strings, comments
+//! and `name:`, and never fails. It makes one pass and takes linear time.
 
 use std::ops::Range;
 
@@ -18,43 +18,44 @@ impl Part {
     }
 }
 
-/// RON gives up at 128 levels; what lies deeper is skipped.
-const DEEPEST: usize = 200;
+/// Depth from which fields are skipped; RON fails at 128 levels.
+const MAX_DEPTH: usize = 200;
 
-/// Whether a scene's text has comments: `//` or `/*` outside of its strings, raw ones included.
+/// Whether a scene's text has comments: `//` or `/*` outside of strings and raw strings.
 pub fn has_comments(text: &str) -> bool {
     Scanner::over(text).comments
 }
 
-/// A field, with the bytes at which it begins and ends.
+/// A field with the bytes at which it begins and ends.
 pub(super) struct Found {
-    /// The field around it, by its number.
+    /// Index of the field around it.
     pub around: Option<usize>,
     pub part: Part,
     pub at: usize,
     pub end: usize,
 }
 
-/// What follows a text.
+/// Scanner of a text and its results.
 pub(super) struct Scanner<'t> {
     text: &'t [u8],
     at: usize,
-    /// In the order of the text.
+    /// The fields in the order of the text.
     pub found: Vec<Found>,
-    /// Whether a comment was passed.
+    /// Whether there is a comment.
     comments: bool,
-    /// The bytes of the first number in digits that is beyond the largest double.
-    pub beyond: Option<Range<usize>>,
+    /// The bytes of the first decimal number that exceeds the largest double.
+    pub overflow: Option<Range<usize>>,
 }
 
 impl<'t> Scanner<'t> {
     /// Scans a text to its end.
     pub fn over(text: &'t str) -> Self {
-        let mut own = Self { text: text.as_bytes(), at: 0, found: Vec::new(), comments: false, beyond: None };
-        own.header();
-        own.value(None, 0);
-        own.blank();
-        own
+        let text = text.as_bytes();
+        let mut scanner = Self { text, at: 0, found: Vec::new(), comments: false, overflow: None };
+        scanner.header();
+        scanner.value(None, 0);
+        scanner.blank();
+        scanner
     }
 
     fn peek(&self) -> Option<u8> {
@@ -72,7 +73,7 @@ impl<'t> Scanner<'t> {
         self.at = (self.at + end.len()).min(self.text.len());
     }
 
-    /// `#![enable(..)]`, the one attribute that RON knows.
+    /// Skips `#![enable(..)]`, the only attribute of RON.
     fn header(&mut self) {
         loop {
             self.blank();
@@ -83,6 +84,7 @@ impl<'t> Scanner<'t> {
         }
     }
 
+    /// Skips blanks and comments.
     fn blank(&mut self) {
         while let Some(byte) = self.peek() {
             if byte.is_ascii_whitespace() {
@@ -119,7 +121,7 @@ impl<'t> Scanner<'t> {
         }
     }
 
-    /// `r"..."`, `r#"..."#` and so on; false where none begins here.
+    /// Skips `r"..."`, `r#"..."#` and so on; returns false if there is no raw string here.
     fn raw_string(&mut self) -> bool {
         let hashes = self.text[self.at + 1..].iter().take_while(|byte| **byte == b'#').count();
         if self.text.get(self.at + 1 + hashes) != Some(&b'"') {
@@ -166,10 +168,10 @@ impl<'t> Scanner<'t> {
                     while self.peek().is_some_and(|byte| !b",()[]{}/\" \t\r\n".contains(&byte)) {
                         self.at += 1;
                     }
-                    if self.beyond.is_none()
-                        && is_beyond(&String::from_utf8_lossy(&self.text[begin..self.at]))
+                    if self.overflow.is_none()
+                        && overflows(&String::from_utf8_lossy(&self.text[begin..self.at]))
                     {
-                        self.beyond = Some(begin..self.at);
+                        self.overflow = Some(begin..self.at);
                     }
                 }
             }
@@ -194,7 +196,7 @@ impl<'t> Scanner<'t> {
                 }
                 Some(_) => {}
             }
-            if depth >= DEEPEST {
+            if depth >= MAX_DEPTH {
                 self.at += 1;
                 continue;
             }
@@ -203,19 +205,19 @@ impl<'t> Scanner<'t> {
             } else if let Some(name) = self.key() {
                 Some(Part::Name(name))
             } else {
-                // The only positional number; in `Sum([..])` and `Some(..)` the bracket adds nothing.
+                // `Ratio` has the only number without a name; `Sum([..])` and `Some(..)` add no part.
                 (variant == "Ratio").then(|| Part::Name("xi".to_owned()))
             };
-            let mut own = around;
+            let mut field = around;
             if let Some(part) = part {
-                own = Some(self.found.len());
+                field = Some(self.found.len());
                 self.found.push(Found { around, part, at: begin, end: begin });
             }
-            self.value(own, depth + 1);
-            if own != around
-                && let Some(own) = own
+            self.value(field, depth + 1);
+            if field != around
+                && let Some(field) = field
             {
-                self.found[own].end = self.at;
+                self.found[field].end = self.at;
             }
             index += 1;
             if self.at == begin {
@@ -224,7 +226,7 @@ impl<'t> Scanner<'t> {
         }
     }
 
-    /// A `name:`, or nothing consumed.
+    /// Consumes `name:` and returns the name; consumes nothing if there is none.
     fn key(&mut self) -> Option<String> {
         let begin = self.at;
         if let Some(name) = self.identifier() {
@@ -239,8 +241,8 @@ impl<'t> Scanner<'t> {
     }
 }
 
-/// Whether a text is a number in digits that is beyond the largest double; `inf` is what it says.
-pub(super) fn is_beyond(text: &str) -> bool {
+/// Whether a text is a decimal number that exceeds the largest double; `inf` is not.
+pub(super) fn overflows(text: &str) -> bool {
     text.contains(|c: char| c.is_ascii_digit())
         && text.trim().replace('_', "").parse().is_ok_and(f64::is_infinite)
 }
@@ -258,21 +260,21 @@ mod tests {
         assert!(!has_comments("(notes: r#\"she said \"no\" // not a comment\"#, mass_g: 1)"));
         assert!(has_comments(r#"(notes: r"C:\" /* here */)"#));
         assert!(has_comments("(notes: r##\"a \"# b\"## // here\n)"));
-        // a name that ends in r is no raw string
+        // a name that ends in r does not begin a raw string
         assert!(has_comments("(r: \"a\\\"b\", // here\n)"));
     }
 
     #[test]
     fn numbers_beyond_the_largest_are_found() {
-        let beyond = |text: &str| Scanner::over(text).beyond.map(|bytes| text[bytes].to_owned());
+        let overflow = |text: &str| Scanner::over(text).overflow.map(|bytes| text[bytes].to_owned());
         for text in ["(a: 1, b: [2, -1e400])", "-1e400", "X(a: -1e400 /* 1e500 */)", "[(-1e400)]"] {
-            assert_eq!(beyond(text).as_deref(), Some("-1e400"), "{text}");
+            assert_eq!(overflow(text).as_deref(), Some("-1e400"), "{text}");
         }
-        assert_eq!(beyond("(a: 1_0e400)").as_deref(), Some("1_0e400"));
+        assert_eq!(overflow("(a: 1_0e400)").as_deref(), Some("1_0e400"));
         for text in
             ["(a: inf, b: -inf, c: +inf)", "(a: \"1e400\", /* 1e400 */ b: 1e308)", "(a: 1e-400)", "1e"]
         {
-            assert_eq!(beyond(text), None, "{text}");
+            assert_eq!(overflow(text), None, "{text}");
         }
     }
 }

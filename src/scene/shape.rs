@@ -1,36 +1,37 @@
-//! Limits on the sizes of flexures.
+//! Limits on the dimensions of flexures.
 //!
-//! Every limit is linear in the fields that it joins, as the check of a sweep's corners needs, and none is an
-//! absolute size: a drawing that is scaled stays valid.
+//! Every limit is linear in its fields, as the check of a sweep's corners requires, and none is an absolute
+//! size, so that a scaled geometry stays valid.
 
-use super::check::{Checked, known_bad};
+use super::check::{Checked, has_fault};
 use super::mechanism::{FlexureGroup, Mechanism};
 use super::ranges::number_text;
 
-/// The shorter flexure over the largest preload. Not far beyond it the loops of a flexure touch each other.
+/// Smallest length of the shorter flexure relative to the preload. At slightly larger preloads the loops of a
+/// flexure touch each other.
 const LENGTH_OVER_PRELOAD: f64 = 2.0;
 
-/// The shorter flexure over the largest preload that is known to be solved.
-const LENGTH_OVER_SURE_PRELOAD: f64 = 4.0;
+/// Length of the shorter flexure relative to the largest preload that is known to be solvable.
+const LENGTH_OVER_SOLVED_PRELOAD: f64 = 4.0;
 
-/// The shorter flexure over the largest thickness: a thicker strip is no beam.
+/// Smallest length of the shorter flexure relative to the thickness: a thicker strip is not a beam.
 const LENGTH_OVER_THICKNESS: f64 = 10.0;
 
-/// The buckling flexure over its largest stress-free bow: a larger one is an arch, whose length along the
-/// curve is no longer that between its clamps.
+/// Smallest length of the buckling flexure relative to its stress-free bow: with a larger bow it is an arch,
+/// whose arc length differs from the distance between its clamps.
 const LENGTH_OVER_BOW: f64 = 20.0;
 
-/// A limit counts as reached and not as passed within the rounding of what a person wrote in decimals.
+/// Tolerance of the limits, for the rounding of decimal input.
 const ROUNDING: f64 = 1.0 + 1e-12;
 
-/// The relations between the sizes of flexures, each a fault of the field that is most likely meant. Sizes
-/// outside their own range are not blamed twice.
+/// Checks the relations between the dimensions of flexures. Each fault names the most likely field; fields
+/// that already have a fault are skipped.
 pub(super) fn check(at: &str, mechanism: &Mechanism, checked: &mut Checked) {
     let Mechanism::Flexures { preload_mm, thickness_mm, parallel, buckling, initial_bow_mm, .. } = mechanism
     else {
         return;
     };
-    let bad = |checked: &Checked, field: &str| known_bad(&format!("{at}.{field}"), checked);
+    let bad = |checked: &Checked, field: &str| has_fault(&format!("{at}.{field}"), checked);
     let no_length = |checked: &Checked, group: &str| bad(checked, &format!("{group}.length_mm"));
     if no_length(checked, "buckling") {
         return;
@@ -70,17 +71,18 @@ pub(super) fn check(at: &str, mechanism: &Mechanism, checked: &mut Checked) {
     }
 }
 
-/// What is valid and hardly meant, or beyond what is sure to be solved; for sizes without a fault.
+/// Warnings about valid but unlikely dimensions, and about preloads that may not be solvable. The dimensions
+/// have no faults.
 pub(super) fn hints(at: &str, mechanism: &Mechanism, warnings: &mut Vec<String>) {
     let Mechanism::Flexures { preload_mm, thickness_mm, parallel, buckling, .. } = mechanism else { return };
     let (shorter, field) = shorter(at, parallel, buckling);
-    let sure = shorter / LENGTH_OVER_SURE_PRELOAD;
-    if *preload_mm > sure * ROUNDING {
+    let solved = shorter / LENGTH_OVER_SOLVED_PRELOAD;
+    if *preload_mm > solved * ROUNDING {
         warnings.push(format!(
             "{at}.preload_mm = {}: beyond {} mm, a quarter of the shorter flexure ({field} = {}), the \
              flexures may not be solved",
             number_text(*preload_mm),
-            number_text(sure),
+            number_text(solved),
             number_text(shorter)
         ));
     }
@@ -96,7 +98,7 @@ pub(super) fn hints(at: &str, mechanism: &Mechanism, warnings: &mut Vec<String>)
     }
 }
 
-/// The length of the shorter flexure in mm, and its field.
+/// Length of the shorter flexure in mm, and its field.
 fn shorter(at: &str, parallel: &FlexureGroup, buckling: &FlexureGroup) -> (f64, String) {
     if buckling.length_mm < parallel.length_mm {
         (buckling.length_mm, format!("{at}.buckling.length_mm"))

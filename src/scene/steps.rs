@@ -1,12 +1,12 @@
 //! Evenly spaced values between decimal ends.
 //!
-//! Steps are counted in whole units of the last decimal of the three numbers, in 128-bit integers, and every
-//! value is the double nearest to its decimal: 0.58 is 0.58, where adding 0.02 to 0 would give
-//! 0.5800000000000001.
+//! Steps are counted in whole units of the last decimal of the three numbers, in 128-bit integers, and
+//! every value is the double nearest to its decimal: 0.58 is 0.58, whereas repeated addition of 0.02
+//! would give 0.5800000000000001.
 
 use crate::numeric::Decimal;
 
-/// Evenly spaced values, not yet written out.
+/// Evenly spaced values, computed on demand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct EvenSteps {
     from: i128,
@@ -15,12 +15,12 @@ pub(super) struct EvenSteps {
     count: u128,
 }
 
-/// Why three numbers are no even steps; a clause.
-pub(super) type NoSteps = &'static str;
+/// Reason why three numbers do not define even steps, as a clause.
+pub(super) type StepsError = &'static str;
 
 impl EvenSteps {
-    /// From `from` in steps of `step` up to `to`, which is included where a step reaches it.
-    pub(super) fn new(from: Decimal, to: Decimal, step: Decimal) -> Result<Self, NoSteps> {
+    /// Values from `from` in steps of `step` up to `to`, which is included if a step reaches it.
+    pub(super) fn new(from: Decimal, to: Decimal, step: Decimal) -> Result<Self, StepsError> {
         let parts = [from, to, step];
         let exponents = parts.iter().filter(|part| part.digits != 0).map(|part| part.exponent);
         let exponent = exponents.min().unwrap_or(0);
@@ -42,7 +42,7 @@ impl EvenSteps {
         Ok(Self { from, step, exponent, count: (span / step) as u128 + 1 })
     }
 
-    /// How many values there are; nothing is written out for it.
+    /// Number of values.
     pub(super) fn count(&self) -> u128 {
         self.count
     }
@@ -58,7 +58,7 @@ impl EvenSteps {
 mod tests {
     use super::*;
 
-    fn grid(from: &str, to: &str, step: &str) -> Result<Vec<f64>, NoSteps> {
+    fn grid(from: &str, to: &str, step: &str) -> Result<Vec<f64>, StepsError> {
         let [from, to, step] = [from, to, step].map(|text| Decimal::parse(text).unwrap());
         let grid = EvenSteps::new(from, to, step)?;
         Ok((0..grid.count()).map(|i| grid.at(i).value()).collect())

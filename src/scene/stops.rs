@@ -1,4 +1,4 @@
-//! Travel limits.
+//! Stops that limit the travel.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Stops {
-    /// Nothing in the way.
+    /// No stops.
     #[default]
     None,
     /// Equal rigid stops on both sides.
@@ -24,20 +24,20 @@ pub enum Stops {
         /// Distance of the right stop from x = 0 in mm, 1e-15 to 1e15.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         right_mm: Option<f64>,
-        /// Restitution of the left stop, 0 to 1; left out, the right stop's.
+        /// Restitution of the left stop, 0 to 1; left out, that of the right stop.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         restitution_left: Option<f64>,
-        /// Restitution of the right stop, 0 to 1; left out, the left stop's.
+        /// Restitution of the right stop, 0 to 1; left out, that of the left stop.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         restitution_right: Option<f64>,
     },
-    /// Equal compliant stops on both sides: point contacts by Hertz, with the loss of Hunt and Crossley.
-    /// Pressed in by d, one pushes back with k d^1.5 (1 + a d'), and it never pulls. k is given, or follows
-    /// from the two equal cylinders of one material, crossed at a right angle, that each stop is made of.
+    /// Equal compliant stops on both sides: Hertzian point contacts with the loss of Hunt and Crossley. At
+    /// depth d a stop pushes back with k d^1.5 (1 + a d') and never pulls. k is given, or follows from the
+    /// two equal cylinders of one material, crossed at a right angle, that form each contact.
     Hertz {
         /// Distance of each stop from x = 0 in mm, 1e-15 to 1e15.
         travel_limit_mm: f64,
-        /// Stiffness k in N/m^1.5, 1e-60 to 1e60; left out where the cylinders are given.
+        /// Stiffness k in N/m^1.5, 1e-60 to 1e60; left out if the cylinders are given.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         stiffness_n_per_m1_5: Option<f64>,
         /// Loss a in s/m, 0 to 1e30. The restitution depends on loss times impact speed alone: 2.427 gives
@@ -52,15 +52,15 @@ pub enum Stops {
         /// Poisson's ratio of the cylinders, 0 to 0.49; left out, 0.34.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         poisson: Option<f64>,
-        /// Yield strength of the cylinders in GPa, 1e-60 to 1e60; left out, 0.276 (aluminium 6061-T6). It has
-        /// no part in the motion; a run warns where the contact's pressure passes 1.6 times it.
+        /// Yield strength of the cylinders in GPa, 1e-60 to 1e60; left out, 0.276 (aluminium 6061-T6). It
+        /// does not affect the motion; a run warns if the contact pressure exceeds 1.6 times this strength.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         yield_gpa: Option<f64>,
     },
 }
 
 impl Stops {
-    /// Distances of the left and the right stop from x = 0 in mm; none on an open side.
+    /// Distances of the left and the right stop from x = 0 in mm; `None` for an open side.
     pub fn limits_mm(&self) -> [Option<f64>; 2] {
         match *self {
             Self::None => [None; 2],
@@ -71,13 +71,13 @@ impl Stops {
         }
     }
 
-    /// The distance in mm that both stops share.
+    /// The distance in mm of both stops, if they have one common field.
     pub fn travel_limit_mm(&self) -> Option<f64> {
         if matches!(self, Self::Uneven { .. }) { None } else { self.limits_mm()[0] }
     }
 
-    /// Coefficients of restitution on the left and on the right, the other one's where one is left out; none
-    /// for compliant stops.
+    /// Coefficients of restitution on the left and on the right; one that is left out equals the other.
+    /// `None` for compliant stops.
     pub fn restitutions(&self) -> [Option<f64>; 2] {
         match *self {
             Self::None | Self::Hertz { .. } => [None; 2],
@@ -88,7 +88,7 @@ impl Stops {
         }
     }
 
-    /// Moves the stop of one side; equal stops both. An open side stays open.
+    /// Moves the stop of one side, or both stops if they share one distance. An open side stays open.
     pub fn set_limit(&mut self, right: bool, mm: f64) {
         match self {
             Self::None => {}
@@ -96,8 +96,8 @@ impl Stops {
                 *travel_limit_mm = mm
             }
             Self::Uneven { left_mm, right_mm, .. } => {
-                let own = if right { right_mm } else { left_mm };
-                *own = own.map(|_| mm);
+                let limit = if right { right_mm } else { left_mm };
+                *limit = limit.map(|_| mm);
             }
         }
     }

@@ -1,7 +1,7 @@
-//! Scenes as RON text, read and written.
+//! Reading and writing of scenes as RON text.
 //!
-//! RON with `implicit_some` on, so that `settle_s: 5` needs no `Some`. What the parser refuses is
-//! reported with its place, the field it stood in and, where a name is unknown, the known ones.
+//! The extension `implicit_some` is on, so that `settle_s: 5` needs no `Some`. A parse error is reported with
+//! its place, its field and, for an unknown name, the known names.
 
 use ron::error::{Error as Ron, SpannedError};
 use ron::extensions::Extensions;
@@ -14,32 +14,32 @@ use super::mechanism::Mechanism;
 use super::scanner::Scanner;
 use super::stops::Stops;
 
-/// The largest scene text that is read: some thousand times a long scene, and parsed at once.
-pub const LARGEST_SCENE: usize = 4 << 20;
+/// Largest size of a scene's text: about a thousand times that of a long scene, and still parsed immediately.
+pub const MAX_SCENE_BYTES: usize = 4 << 20;
 
-/// RON's own limit; a sum within a sum takes three levels.
-const DEEPEST: usize = 128;
+/// Largest depth of brackets, the default of RON; a sum within a sum takes three levels.
+const MAX_DEPTH: usize = 128;
 
 pub(super) fn options() -> ron::Options {
-    ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME).with_recursion_limit(DEEPEST)
+    ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME).with_recursion_limit(MAX_DEPTH)
 }
 
-/// What a parser refused.
+/// Error of parsing a text.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Refusal {
+pub(super) struct ParseError {
     pub place: Place,
     pub problem: String,
-    /// The name, where it is a field that nothing knows.
+    /// The name of an unknown field, if that is the error.
     pub unknown: Option<String>,
 }
 
-impl Refusal {
-    /// The text without the unknown field that it was refused for, every other thing where it was: what else
-    /// is wrong can be said too.
+impl ParseError {
+    /// The text with the unknown field replaced by blanks, so that further errors can be found
+    /// at their places.
     pub(super) fn without_unknown(&self, text: &str) -> Option<String> {
-        /// A text so long is not looked through again and again.
-        const LONGEST: usize = 1 << 17;
-        let name = self.unknown.as_deref().filter(|_| text.len() <= LONGEST)?;
+        /// A longer text is not parsed again.
+        const MAX_LENGTH: usize = 1 << 17;
+        let name = self.unknown.as_deref().filter(|_| text.len() <= MAX_LENGTH)?;
         let bytes = Places::of(text).bytes_at(self.place, name)?;
         let after = &text[bytes.end..];
         let comma = after.len() - after.trim_start().strip_prefix(',').map_or(after.len(), str::len);
@@ -49,39 +49,39 @@ impl Refusal {
     }
 }
 
-/// Parses a scene; ranges are not looked at.
-pub(super) fn parse(text: &str) -> Result<Scene, Refusal> {
+/// Parses a scene without checking ranges.
+pub(super) fn parse(text: &str) -> Result<Scene, ParseError> {
     let start = Place { line: 1, column: 1 };
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     if text.trim().is_empty() {
         let problem = "the file is empty; a scene begins with `(title: \"..\", mass_g: 15.2, ..`".to_owned();
-        return Err(Refusal { place: start, problem, unknown: None });
+        return Err(ParseError { place: start, problem, unknown: None });
     }
     if is_json(text) {
         let problem = "this is JSON; a scene begins with `(`. The manifest of a sweep is taken by every \
                        command that takes a scene"
             .to_owned();
-        return Err(Refusal { place: start, problem, unknown: None });
+        return Err(ParseError { place: start, problem, unknown: None });
     }
     read(text)
 }
 
-/// Reads a text that may be long.
-pub(super) fn read<T: DeserializeOwned>(text: &str) -> Result<T, Refusal> {
-    if text.len() > LARGEST_SCENE {
-        let problem = format!("{} bytes are more than are read ({LARGEST_SCENE})", text.len());
-        return Err(Refusal { place: Place { line: 1, column: 1 }, problem, unknown: None });
+/// Parses a text of limited size.
+pub(super) fn read<T: DeserializeOwned>(text: &str) -> Result<T, ParseError> {
+    if text.len() > MAX_SCENE_BYTES {
+        let problem = format!("{} bytes are more than are read ({MAX_SCENE_BYTES})", text.len());
+        return Err(ParseError { place: Place { line: 1, column: 1 }, problem, unknown: None });
     }
-    let read = options().from_str(text).map_err(|error| refusal(text, &error))?;
-    beyond(text).map_or(Ok(read), Err)
+    let read = options().from_str(text).map_err(|error| parse_error(text, &error))?;
+    overflow(text).map_or(Ok(read), Err)
 }
 
-/// What is said of a number in digits that a double cannot hold.
-pub(super) const BEYOND: &str = "is beyond the largest number, 1.8e308";
+/// Message about a decimal number that overflows a double.
+pub(super) const TOO_LARGE: &str = "is beyond the largest number, 1.8e308";
 
-/// The refusal of a text that is read, but for a number in digits that would be infinite; none of another.
-pub(super) fn beyond(text: &str) -> Option<Refusal> {
-    let bytes = Scanner::over(text).beyond?;
+/// The error for a decimal number that overflows a double; `None` if the text has none.
+pub(super) fn overflow(text: &str) -> Option<ParseError> {
+    let bytes = Scanner::over(text).overflow?;
     let before = &text[..bytes.start];
     let line = 1 + before.matches('\n').count();
     let column = 1 + before.rsplit('\n').next().unwrap_or_default().chars().count();
@@ -89,12 +89,13 @@ pub(super) fn beyond(text: &str) -> Option<Refusal> {
     let field = Places::of(text).last_before(place);
     let field = field.map_or(String::new(), |field| format!("{}: ", clip(&field)));
     let number = clip(&text[bytes]);
-    let problem = format!("{field}{number} {BEYOND}; write a smaller one, or inf where a field takes that");
-    Some(Refusal { place, problem, unknown: None })
+    let problem =
+        format!("{field}{number} {TOO_LARGE}; write a smaller one, or inf where a field takes that");
+    Some(ParseError { place, problem, unknown: None })
 }
 
-/// The refusal of a text, from the parser's error.
-pub(super) fn refusal(text: &str, error: &SpannedError) -> Refusal {
+/// Converts an error of the RON parser.
+pub(super) fn parse_error(text: &str, error: &SpannedError) -> ParseError {
     let trailing = error.code == Ron::TrailingCharacters;
     let place = Place { line: error.span.start.line, column: error.span.start.col };
     let place = token_at(text, place, trailing);
@@ -122,10 +123,10 @@ pub(super) fn refusal(text: &str, error: &SpannedError) -> Refusal {
         _ => None,
     };
     let problem = field.map_or(problem.clone(), |field| format!("{}: {problem}", clip(&field)));
-    Refusal { unknown, place, problem }
+    ParseError { unknown, place, problem }
 }
 
-/// A choice of one number without the name that stands before that at a place: `Ratio(0.1)` of
+/// For a named number at `place` in a choice whose number has no name, the correct text: `Ratio(0.1)` for
 /// `Ratio(xi: 0.1)`.
 fn unnamed(text: &str, place: Place) -> Option<String> {
     let (before, named) = split_at(text, place);
@@ -137,14 +138,14 @@ fn unnamed(text: &str, place: Place) -> Option<String> {
     (from < outer.len()).then(|| format!("{}({})", clip(&outer[from..]), clip(number)))
 }
 
-/// The line of a place before it and from it on.
+/// Splits the line of a place at that place.
 fn split_at(text: &str, place: Place) -> (&str, &str) {
     let line = text.lines().nth(place.line - 1).unwrap_or_default();
     let at = line.char_indices().nth(place.column - 1).map_or(line.len(), |(at, _)| at);
     line.split_at(at)
 }
 
-/// Whether a word stands at a place, behind a number, that is no name of a field.
+/// Whether there is a word behind a number at a place that is not the name of a field.
 fn is_unit(text: &str, place: Place) -> bool {
     let (before, word) = split_at(text, place);
     let after = word.trim_start_matches(|c: char| c.is_alphanumeric() || c == '_');
@@ -153,12 +154,12 @@ fn is_unit(text: &str, place: Place) -> bool {
         && !after.trim_start().starts_with(':')
 }
 
-/// Whether a text begins as JSON does, and no scene.
+/// Whether a text begins like JSON, unlike any scene.
 pub(super) fn is_json(text: &str) -> bool {
     text.trim_start_matches('\u{feff}').trim_start().starts_with('{')
 }
 
-/// The parser's cursor may stand on the blanks before the token that it means.
+/// The place of the token at or after `place`: the parser's cursor may be on the blanks before it.
 fn token_at(text: &str, place: Place, further_lines: bool) -> Place {
     let lines = text.lines().enumerate().skip(place.line - 1);
     let mut column = place.column;
@@ -175,7 +176,7 @@ fn token_at(text: &str, place: Place, further_lines: bool) -> Place {
     place
 }
 
-/// The variants that a field chooses from.
+/// The choices of a field.
 fn choices(field: &str) -> Option<&'static [&'static str]> {
     fn of<T: DeserializeOwned>() -> Option<&'static [&'static str]> {
         match options().from_str::<T>("Unknown").err()?.code {
@@ -198,7 +199,7 @@ fn names(known: &[&str]) -> String {
     if known.is_empty() { "none".to_owned() } else { known.join(", ") }
 }
 
-/// A parser's error in words, without its place.
+/// The message of a parser's error, without its place.
 pub(super) fn explain(error: &SpannedError) -> String {
     let inside =
         |outer: &Option<String>| outer.as_ref().map_or(String::new(), |outer| format!(" in {outer}"));

@@ -2,27 +2,27 @@
 
 use crate::numeric::short;
 
-/// A step longer than this many times the usual one is called a gap.
+/// Smallest length of a gap, in usual steps.
 const GAP: f64 = 5.0;
 
-/// How a record was sampled. Times in s.
+/// Sampling of a record, with times in s.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Timing {
     /// Number of samples.
     pub samples: usize,
     /// First and last time.
     pub span: (f64, f64),
-    /// The usual step: the median of all.
+    /// The usual step: the median of all steps.
     pub step: f64,
-    /// Standard deviation of the steps about their mean, gaps left out.
+    /// Standard deviation of the steps about their mean, without gaps.
     pub jitter: f64,
-    /// The gaps in order of time: the last time before each, and its length. A gap is a step of more than
-    /// five usual ones.
+    /// The gaps in order of time: the last time before each, and its length. A gap is a step longer than five
+    /// usual steps.
     pub gaps: Vec<(f64, f64)>,
 }
 
 impl Timing {
-    /// The sampling at these times in s, of which there are at least two and which increase.
+    /// The sampling at at least two increasing times in s.
     pub fn of(times: &[f64]) -> Self {
         let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
         let middle = steps.len() / 2;
@@ -32,10 +32,10 @@ impl Timing {
         };
         let gaps = times.windows(2).filter(|pair| pair[1] - pair[0] > GAP * step);
         let gaps = gaps.map(|pair| (pair[0], pair[1] - pair[0])).collect();
-        steps.retain(|own| *own <= GAP * step);
+        steps.retain(|length| *length <= GAP * step);
         let count = steps.len().max(1) as f64;
         let mean = steps.iter().sum::<f64>() / count;
-        let jitter = (steps.iter().map(|own| (own - mean).powi(2)).sum::<f64>() / count).sqrt();
+        let jitter = (steps.iter().map(|length| (length - mean).powi(2)).sum::<f64>() / count).sqrt();
         let span = (times.first().copied().unwrap_or(0.0), times.last().copied().unwrap_or(0.0));
         Self { samples: times.len(), span, step, jitter, gaps }
     }
@@ -47,9 +47,9 @@ impl Timing {
 
     /// The first of the longest gaps: the last time before it, and its length.
     pub fn longest_gap(&self) -> Option<(f64, f64)> {
-        let longer = |best: Option<(f64, f64)>, own: &(f64, f64)| match best {
-            Some(best) if best.1 >= own.1 => Some(best),
-            _ => Some(*own),
+        let longer = |best: Option<(f64, f64)>, gap: &(f64, f64)| match best {
+            Some(best) if best.1 >= gap.1 => Some(best),
+            _ => Some(*gap),
         };
         self.gaps.iter().fold(None, longer)
     }
@@ -59,7 +59,7 @@ impl Timing {
         let Self { samples, span: (from, to), step, jitter, .. } = *self;
         let [from, to, rate] = [from, to, 1.0 / step].map(short);
         let mut text = format!("{samples} samples from {from} to {to} s, {rate} a second");
-        // times are written in decimals: what is below a thousandth of a step is their rounding
+        // times are rounded decimals: a jitter below a thousandth of a step is rounding
         if jitter > 1e-3 * step {
             text += &format!(", steps scatter by {} % (standard deviation)", short(100.0 * jitter / step));
         }

@@ -1,12 +1,12 @@
-//! Transducers, and their fields.
+//! Transducers and their fields.
 
 use serde::{Deserialize, Serialize};
 
-/// What turns motion into electrical power, and the load that takes it.
+/// Converter of motion into electrical power, with its load.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Transducer {
-    /// None.
+    /// No transducer.
     #[default]
     None,
     /// A magnet that moves in a coil: L i' + (coil + load) i = k v, force -k i on the mass.
@@ -17,7 +17,7 @@ pub enum Transducer {
         coil_ohm: f64,
         /// Resistance of the load in ohm, 0 to inf; 0 is a short circuit, inf an open one.
         load_ohm: f64,
-        /// Inductance L of the coil in mH, 0 to 1e30; 0 makes the transducer a damping.
+        /// Inductance L of the coil in mH, 0 to 1e30; 0 makes the transducer a damper.
         #[serde(default)]
         inductance_mh: f64,
     },
@@ -33,8 +33,8 @@ pub enum Transducer {
 }
 
 impl Transducer {
-    /// Whether a current or a voltage goes on with the motion: one that is not 0 and does not follow from
-    /// the velocity.
+    /// Whether a current or a voltage is a state variable of the motion, because it is not 0 and does not
+    /// follow from the velocity.
     pub fn has_state(&self) -> bool {
         match *self {
             Self::None => false,

@@ -1,14 +1,14 @@
-//! Units in the names of measured columns, and their size in SI.
+//! Units in the names of measured columns, and their conversion to SI.
 
 /// Standard gravity in m/s^2.
 pub const STANDARD_GRAVITY: f64 = 9.80665;
 
-/// What a column was measured of.
+/// Physical quantity of a measured column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// Time, s.
     Time,
-    /// Displacement, or position of a slow pull, m.
+    /// Displacement, or position in a quasi-static test, m.
     Displacement,
     /// Velocity, m/s.
     Velocity,
@@ -19,7 +19,7 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// Its name.
+    /// Name of the quantity.
     pub fn name(self) -> &'static str {
         match self {
             Self::Time => "time",
@@ -30,7 +30,7 @@ impl Quantity {
         }
     }
 
-    /// The end of a column's name that says its SI unit.
+    /// The ending of a column's name for its SI unit.
     pub fn ending(self) -> &'static str {
         match self {
             Self::Time => "_s",
@@ -41,23 +41,24 @@ impl Quantity {
         }
     }
 
-    /// The units that are known of it, with commas.
+    /// The known units of the quantity, separated by commas.
     pub fn units(self) -> String {
-        let own = UNITS.iter().filter(|unit| unit.quantity == self && unit.listed);
-        own.map(|unit| unit.word).collect::<Vec<_>>().join(", ")
+        let known = UNITS.iter().filter(|unit| unit.quantity == self && unit.listed);
+        known.map(|unit| unit.word).collect::<Vec<_>>().join(", ")
     }
 }
 
 /// A unit of measurement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unit {
-    /// What it measures.
+    /// Quantity that it measures.
     pub quantity: Quantity,
     word: &'static str,
-    /// Its size in SI, as a product and a quotient that are exact.
+    /// Numerator of its size in SI, an exact double.
     times: f64,
+    /// Denominator of its size in SI, an exact double.
     over: f64,
-    /// Whether messages name it: the other words are spellings of the same.
+    /// Whether messages list it; other spellings of the same unit are not listed.
     listed: bool,
 }
 
@@ -65,75 +66,75 @@ const fn unit(word: &'static str, quantity: Quantity, times: f64, over: f64) -> 
     Unit { quantity, word, times, over, listed: true }
 }
 
-const fn also(word: &'static str, quantity: Quantity, times: f64, over: f64) -> Unit {
+const fn alias(word: &'static str, quantity: Quantity, times: f64, over: f64) -> Unit {
     Unit { quantity, word, times, over, listed: false }
 }
 
-/// The units, with the words for each. Upper and lower case differ only where both stand here.
+/// The known units with all spellings. Upper and lower case are different spellings.
 const UNITS: [Unit; 30] = [
     unit("s", Quantity::Time, 1.0, 1.0),
     unit("ms", Quantity::Time, 1.0, 1e3),
     unit("us", Quantity::Time, 1.0, 1e6),
-    also("\u{b5}s", Quantity::Time, 1.0, 1e6),
+    alias("\u{b5}s", Quantity::Time, 1.0, 1e6),
     unit("m", Quantity::Displacement, 1.0, 1.0),
     unit("cm", Quantity::Displacement, 1.0, 1e2),
     unit("mm", Quantity::Displacement, 1.0, 1e3),
     unit("um", Quantity::Displacement, 1.0, 1e6),
-    also("\u{b5}m", Quantity::Displacement, 1.0, 1e6),
+    alias("\u{b5}m", Quantity::Displacement, 1.0, 1e6),
     unit("m/s", Quantity::Velocity, 1.0, 1.0),
-    also("m_per_s", Quantity::Velocity, 1.0, 1.0),
+    alias("m_per_s", Quantity::Velocity, 1.0, 1.0),
     unit("mm/s", Quantity::Velocity, 1.0, 1e3),
-    also("mm_per_s", Quantity::Velocity, 1.0, 1e3),
+    alias("mm_per_s", Quantity::Velocity, 1.0, 1e3),
     unit("m/s2", Quantity::Acceleration, 1.0, 1.0),
-    also("m/s^2", Quantity::Acceleration, 1.0, 1.0),
-    also("m/s\u{b2}", Quantity::Acceleration, 1.0, 1.0),
-    also("m_per_s2", Quantity::Acceleration, 1.0, 1.0),
+    alias("m/s^2", Quantity::Acceleration, 1.0, 1.0),
+    alias("m/s\u{b2}", Quantity::Acceleration, 1.0, 1.0),
+    alias("m_per_s2", Quantity::Acceleration, 1.0, 1.0),
     unit("mm/s2", Quantity::Acceleration, 1.0, 1e3),
-    also("mm/s^2", Quantity::Acceleration, 1.0, 1e3),
-    also("mm/s\u{b2}", Quantity::Acceleration, 1.0, 1e3),
-    also("mm_per_s2", Quantity::Acceleration, 1.0, 1e3),
+    alias("mm/s^2", Quantity::Acceleration, 1.0, 1e3),
+    alias("mm/s\u{b2}", Quantity::Acceleration, 1.0, 1e3),
+    alias("mm_per_s2", Quantity::Acceleration, 1.0, 1e3),
     unit("g", Quantity::Acceleration, STANDARD_GRAVITY, 1.0),
     unit("mg", Quantity::Acceleration, STANDARD_GRAVITY, 1e3),
     unit("N", Quantity::Force, 1.0, 1.0),
-    also("n", Quantity::Force, 1.0, 1.0),
+    alias("n", Quantity::Force, 1.0, 1.0),
     unit("mN", Quantity::Force, 1.0, 1e3),
-    also("mn", Quantity::Force, 1.0, 1e3),
-    also("\u{3bc}N", Quantity::Force, 1.0, 1e6),
+    alias("mn", Quantity::Force, 1.0, 1e3),
+    alias("\u{3bc}N", Quantity::Force, 1.0, 1e6),
     unit("uN", Quantity::Force, 1.0, 1e6),
     unit("kN", Quantity::Force, 1e3, 1.0),
 ];
 
 impl Unit {
-    /// The units that are offered of a quantity, each in one spelling.
+    /// The units of a quantity, each in one spelling.
     pub fn all(quantity: Quantity) -> impl Iterator<Item = Self> {
         UNITS.into_iter().filter(move |unit| unit.quantity == quantity && unit.listed)
     }
 
-    /// How it is written.
+    /// The spelling of the unit.
     pub fn word(self) -> &'static str {
         self.word
     }
 
-    /// The unit of `quantity` that is written as `word`.
+    /// The unit of `quantity` with the spelling `word`.
     pub fn of_word(word: &str, quantity: Quantity) -> Option<Self> {
         UNITS.into_iter().find(|unit| unit.word == word && unit.quantity == quantity)
     }
 
-    /// The unit that ends the name of a column: `x_mm`, `x [mm]`, `x (mm)` or `x, mm`.
+    /// The unit at the end of a column's name, as in `x_mm`, `x [mm]`, `x (mm)` or `x, mm`.
     pub fn of_name(name: &str) -> Option<Self> {
         let ends = |word: &str| {
             let rest = |end: &str, before: &[&str]| {
                 let rest = name.strip_suffix(end).and_then(|rest| rest.strip_suffix(word));
-                // of `stiffness_n_per_m` the m is no unit of its own
+                // the m in `stiffness_n_per_m` is only a part of the unit
                 let whole = |rest: &&str| !rest.trim_end_matches('_').ends_with("_per");
-                rest.filter(whole).is_some_and(|rest| before.iter().any(|own| rest.ends_with(own)))
+                rest.filter(whole).is_some_and(|rest| before.iter().any(|mark| rest.ends_with(mark)))
             };
             rest("", &["_", ", "]) || rest("]", &["["]) || rest(")", &["("])
         };
         UNITS.into_iter().filter(|unit| ends(unit.word)).max_by_key(|unit| unit.word.len())
     }
 
-    /// A value in this unit, in SI.
+    /// Converts a value in this unit to SI.
     pub fn si(self, value: f64) -> f64 {
         value * self.times / self.over
     }
@@ -164,7 +165,7 @@ mod tests {
         for name in ["t", "phase", "Position", "x m", "F_MN", "force_kgf", "stiffness_n_per_m", ""] {
             assert_eq!(Unit::of_name(name), None, "{name}");
         }
-        // the double nearest to the decimal
+        // rounded correctly from the decimal
         assert_eq!(Unit::of_name("x_mm").unwrap().si(0.3), 3e-4);
     }
 }

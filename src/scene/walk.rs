@@ -1,9 +1,8 @@
 //! Traversal of a scene's fields.
 //!
-//! One walk over the typed scene names every field by its dotted path (variant names left out:
-//! `stops.travel_limit_mm`) and hands it out mutably. Checking, `--set`, `--over`, a sweep's cells and
-//! the lists in error messages all go through it, so that none of them can know a field that another
-//! does not.
+//! One traversal of the typed scene visits every field with its dotted path (without variant names:
+//! `stops.travel_limit_mm`) and a mutable reference. Checking, `--set`, `--over`, the cells of a sweep and
+//! the lists in error messages all use it, so that all of them know the same fields.
 
 use std::fmt;
 
@@ -17,7 +16,7 @@ use super::stops::Stops;
 use super::text;
 use super::transducer::Transducer;
 
-/// One step of a path, as the walk knows it.
+/// One part of a path during the traversal.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Segment {
     Name(&'static str),
@@ -33,7 +32,7 @@ impl fmt::Display for Segment {
     }
 }
 
-/// Where a number lives; an optional one may be left out.
+/// Reference to a number; an optional number may be left out.
 pub(super) enum Slot<'a> {
     Required(&'a mut f64),
     Optional(&'a mut Option<f64>),
@@ -53,16 +52,16 @@ impl Slot<'_> {
         match self {
             Self::Required(number) => *number = value,
             Self::Optional(number) => *number = Some(value),
-            Self::Whole(number) => *number = value as u64, // checked to be whole where it came from
+            Self::Whole(number) => *number = value as u64, // the caller has checked that it is whole
         }
     }
 }
 
-/// Something that can be replaced from its RON text.
+/// A value that can be replaced from RON text.
 pub(super) trait Assign {
     fn assign(&mut self, ron: &str) -> ron::error::SpannedResult<()>;
 
-    /// Its value as a word: of a choice its name; none for the choice `None`, an option left out, and a list.
+    /// The value as a word, for a choice its name; `None` for the choice `None`, an absent option and a list.
     fn word(&self) -> Option<String>;
 }
 
@@ -80,17 +79,17 @@ impl<T: DeserializeOwned + Serialize> Assign for T {
     }
 }
 
-/// A field found by the walk.
+/// A field found by the traversal.
 pub(super) enum Field<'a> {
     Number(&'static Spec, Slot<'a>),
     Text(&'a mut String),
     Value(&'a mut dyn Assign),
 }
 
-/// What the walk reports to.
+/// Receiver of the fields of a traversal.
 pub(super) trait Visitor {
-    /// A field; answers whether the fields inside it are wanted. `leave` follows where it says so and
-    /// `inner` is set.
+    /// Visits a field; returns whether to visit the fields inside it. If so and `inner` is set, `leave` is
+    /// called after them.
     fn field(&mut self, segment: Segment, inner: bool, field: Field<'_>) -> bool;
     fn leave(&mut self);
 }
@@ -131,7 +130,7 @@ fn within<V: Visitor, T: Assign>(
     }
 }
 
-/// Reports every field of a scene, in the order in which a scene is written.
+/// Visits every field of a scene, in the order in which a scene is written.
 pub(super) fn walk(scene: &mut Scene, v: &mut impl Visitor) {
     v.field(Segment::Name("title"), false, Field::Text(&mut scene.title));
     v.field(Segment::Name("notes"), false, Field::Text(&mut scene.notes));

@@ -1,10 +1,10 @@
-//! Checksums of bytes: SHA-256, as `sha256sum` prints it.
+//! SHA-256 checksums in the format of `sha256sum`.
 
 use std::fmt;
 
 use sha2::{Digest, Sha256};
 
-/// A checksum that bytes are added to.
+/// A checksum to which bytes are added.
 #[derive(Clone, Default)]
 pub struct Checksum(Sha256);
 
@@ -28,9 +28,9 @@ impl fmt::Debug for Checksum {
 
 /// The checksum of these bytes, in hexadecimal digits.
 pub fn checksum(bytes: &[u8]) -> String {
-    let mut own = Checksum::default();
-    own.add(bytes);
-    own.text()
+    let mut sum = Checksum::default();
+    sum.add(bytes);
+    sum.text()
 }
 
 #[cfg(test)]
@@ -42,9 +42,9 @@ mod tests {
         // FIPS 180-2, appendix B.1 and B.2
         let abc = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
         assert_eq!(checksum(b"abc"), abc);
-        let mut own = Checksum::default();
-        own.add(b"abcdbcdecdefdefgefghfghighij");
-        own.add(b"hijkijkljklmklmnlmnomnopnopq");
-        assert_eq!(own.text(), "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+        let mut sum = Checksum::default();
+        sum.add(b"abcdbcdecdefdefgefghfghighij");
+        sum.add(b"hijkijkljklmklmnlmnomnopnopq");
+        assert_eq!(sum.text(), "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
     }
 }

@@ -1,4 +1,4 @@
-//! Clocks.
+//! Wall, thread and process clocks.
 
 use std::time::{Duration, Instant};
 
@@ -11,7 +11,7 @@ macro_rules! clocks {
         pub struct $name($inner);
 
         impl $name {
-            /// Begins now.
+            /// Starts the clock.
             pub fn start() -> Self {
                 Self($inner::now())
             }
@@ -25,11 +25,11 @@ macro_rules! clocks {
 }
 
 clocks! {
-    /// The time that passes.
+    /// Wall-clock time.
     WallClock(Instant);
-    /// The time that this thread works.
+    /// Processor time of this thread.
     ThreadClock(ThreadTime);
-    /// The time that all threads of the program work.
+    /// Processor time of all threads of the program.
     ProcessClock(ProcessTime);
 }
 

@@ -1,15 +1,15 @@
-//! Files to be read.
+//! Read access to files.
 
 use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-/// The file, device or pipe at `path`, opened.
+/// Opens the file, device or pipe at `path`.
 pub fn open(path: &Path) -> io::Result<impl Read + use<>> {
     File::open(path)
 }
 
-/// The file at `path`, opened at this byte.
+/// Opens the file at `path` for reading from byte `offset`.
 pub fn open_at(path: &Path, offset: u64) -> io::Result<impl Read> {
     let mut file = File::open(path)?;
     file.seek(SeekFrom::Start(offset))?;
@@ -21,27 +21,27 @@ pub fn bytes(path: &Path) -> io::Result<Vec<u8>> {
     fs::read(path)
 }
 
-/// Whether anything is there.
+/// Whether anything exists at `path`.
 pub fn exists(path: &Path) -> bool {
     path.exists()
 }
 
-/// Whether a regular file is there.
+/// Whether there is a regular file at `path`.
 pub fn is_file(path: &Path) -> bool {
     path.is_file()
 }
 
-/// Whether a folder is there.
+/// Whether there is a folder at `path`.
 pub fn is_folder(path: &Path) -> bool {
     path.is_dir()
 }
 
-/// The folder that the program was started in; an empty path where there is none.
+/// The working folder of the program; an empty path if there is none.
 pub fn working_folder() -> PathBuf {
     std::env::current_dir().unwrap_or_default()
 }
 
-/// The absolute path of what is there, without links.
+/// The absolute path without links; `None` if nothing exists at `path`.
 pub fn canonical(path: &Path) -> Option<PathBuf> {
     path.canonicalize().ok()
 }

@@ -1,8 +1,8 @@
-//! Journal of a file that is written in blocks: what it was begun with, and the checksum of each block.
+//! Journal of a file that is written in blocks: its head and the checksum of each block.
 //!
-//! A line is a checksum of the rest of the line, a space, and JSON. The first one is what the file was begun
-//! with, each further one a block. A line that was being written when the power went does not have its
-//! checksum; where it is the last one, it is dropped.
+//! A line is a checksum of the rest of the line, a space, and JSON. The first line is the head that the file
+//! was begun with, and each further line is a block. A line that was being written during a power failure
+//! does not match its checksum; it is dropped if it is the last line.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,37 +11,37 @@ use super::checksum::checksum;
 /// A block that was written and synced.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Block {
-    /// Its rows and bytes.
+    /// Number of rows.
     pub rows: u64,
-    /// Its bytes.
+    /// Number of bytes.
     pub bytes: u64,
-    /// Their checksum.
+    /// Checksum of the bytes.
     pub sha256: String,
-    /// What the writer of the rows has to say of them.
+    /// Note by the writer of the rows.
     pub note: String,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct Journal {
-    /// What the file was begun with; none where not even that was written.
+    /// The head that the file was begun with; `None` if it was not completely written.
     pub head: Option<String>,
-    /// The blocks, and how long the journal is up to the end of each.
+    /// The blocks, each with the length of the journal up to its end.
     pub blocks: Vec<(Block, u64)>,
-    /// The length up to the end of the head.
+    /// The length of the journal up to the end of the head.
     pub head_length: u64,
-    /// Whether something is wrong that is no torn last line.
+    /// Whether there is an error other than an incomplete last line.
     pub damaged: bool,
 }
 
-/// Digits of a line's checksum.
+/// Number of hexadecimal digits of a line's checksum.
 const DIGITS: usize = 16;
 
-/// A line that holds this JSON.
+/// The line for this JSON.
 pub(super) fn line(json: &str) -> String {
     format!("{} {json}\n", &checksum(json.as_bytes())[..DIGITS])
 }
 
-/// The JSON of a line.
+/// The JSON of a line; `None` if its checksum is wrong.
 fn json(line: &[u8]) -> Option<&str> {
     let text = str::from_utf8(line).ok()?;
     let (sum, json) = text.strip_suffix('\n')?.split_once(' ')?;
@@ -80,7 +80,7 @@ mod tests {
 
     fn text() -> String {
         let blocks = [1, 2, 3].map(|rows| line(&serde_json::to_string(&block(rows)).unwrap()));
-        line("{\"head\":\"own\"}") + &blocks.concat()
+        line("{\"head\":\"plan\"}") + &blocks.concat()
     }
 
     #[test]
@@ -93,8 +93,8 @@ mod tests {
             assert!(!journal.damaged, "{length}");
             let rows: Vec<u64> = journal.blocks.iter().map(|(block, _)| block.rows).collect();
             assert_eq!(rows, [1, 2, 3][..whole.saturating_sub(1)]);
-            for (own, end) in &journal.blocks {
-                assert_eq!((own, text.as_bytes()[*end as usize - 1]), (&block(own.rows), b'\n'));
+            for (read, end) in &journal.blocks {
+                assert_eq!((read, text.as_bytes()[*end as usize - 1]), (&block(read.rows), b'\n'));
             }
         }
     }
@@ -103,7 +103,8 @@ mod tests {
     fn a_byte_that_was_changed_is_found() {
         let text = text();
         let last = text.trim_end().rfind('\n').unwrap() + 1;
-        // without the end of the last line but one, the last one looks torn
+        // the last two lines are left out: without the line end between them they look like
+        // one incomplete line
         for at in 0..last - 1 {
             let mut bytes = text.clone().into_bytes();
             bytes[at] ^= 1;

@@ -1,4 +1,4 @@
-//! Threads, clocks and files of the machine; no other folder uses the standard library's own.
+//! Access to threads, clocks and files of the machine; no other folder uses those of the standard library.
 
 pub mod checksum;
 pub mod clock;

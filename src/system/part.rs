@@ -1,9 +1,9 @@
-//! File that is written in blocks, with a journal beside it, so that what was written is never lost.
+//! File that is written in blocks, with a journal, so that an interruption loses no complete block.
 //!
-//! `map.csv` is written as `map.csv.part`, its journal is `map.csv.part.journal`. A block counts once its
-//! bytes are on the disk and its line in the journal is too: a thread of its own writes and syncs, so that
-//! nobody waits for the disk. The file gets its name when it is whole. Who has the journal locked has the
-//! file.
+//! `map.csv` is written as `map.csv.part` with the journal `map.csv.part.journal`. A block is complete when
+//! its bytes and its line in the journal are on the disk. A separate thread writes and syncs, so that the
+//! caller does not wait for the disk. The file gets its name when it is complete. The lock on the journal
+//! protects the file against other processes.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
@@ -17,108 +17,109 @@ use super::checksum::Checksum;
 use super::journal::{self, Block, Journal};
 use super::sink::{follow_links, inode};
 
-/// What the thread is told: bytes to be written, or the end of a block of so many rows, with a note on it.
+/// A message to the writing thread: bytes to write, or the end of a block with its number of rows and a note.
 enum Message {
     Bytes(String),
     Block(u64, String),
 }
 
-/// Messages that may wait for the disk.
-const WAITING: usize = 256;
+/// Largest number of messages that wait for the disk.
+const MAX_WAITING: usize = 256;
 
-/// A file of which no one else writes, and what was found of it.
+/// A locked file with the rows and the journal found in it.
 #[derive(Debug)]
 pub struct Opened {
-    places: Places,
+    paths: Paths,
     lock: File,
     journal: Journal,
     exists: bool,
 }
 
 #[derive(Debug, Clone)]
-struct Places {
+struct Paths {
     target: PathBuf,
     part: PathBuf,
     journal: PathBuf,
 }
 
-/// Why a file cannot be begun or gone on with.
+/// Reason why a file cannot be begun or continued.
 #[derive(Debug, thiserror::Error)]
 pub enum PartError {
-    /// Another process writes it.
+    /// Another process is writing it.
     #[error("another process is writing {}: wait for it, or name another file", .0.display())]
     Busy(PathBuf),
-    /// A block is not as it was written.
+    /// A block has been changed since it was written.
     #[error("{part}: {what}")]
     Damaged {
         /// The file.
         part: String,
-        /// What is wrong, as a clause.
+        /// The damage, as a clause.
         what: String,
-        /// The rows before the damage.
+        /// Number of rows before the damage.
         rows: u64,
     },
-    /// The operating system refuses.
+    /// The operating system reports an error.
     #[error("cannot write {}: {problem}", path.display())]
     Refused {
         /// The file.
         path: PathBuf,
-        /// What it says.
+        /// The error.
         problem: io::Error,
     },
 }
 
-/// A file in work.
+/// A file that is being written.
 #[derive(Debug)]
 pub struct Part {
-    places: Places,
+    paths: Paths,
     kept: Arc<AtomicU64>,
     sender: Option<SyncSender<Message>>,
     thread: Option<JoinHandle<io::Result<Checksum>>>,
-    /// Held for its lock.
+    /// Keeps the journal locked.
     _lock: File,
 }
 
-/// `path` with more behind its name.
-fn beside(path: &Path, ending: &str) -> PathBuf {
+/// `path` with `ending` appended to its name.
+fn with_ending(path: &Path, ending: &str) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(ending);
     name.into()
 }
 
 impl Opened {
-    /// Locks the file that is to become `target`, and reads what there is of it. Changes nothing but that
-    /// there is a journal.
+    /// Locks the file that will become `target` and reads its journal. This creates a journal if there is
+    /// none and changes nothing else.
     pub fn new(target: &Path) -> Result<Self, PartError> {
         let target = follow_links(target);
-        let part = beside(&target, ".part");
-        let places = Places { journal: beside(&part, ".journal"), part, target };
-        let refused = |problem| PartError::Refused { path: places.journal.clone(), problem };
+        let part = with_ending(&target, ".part");
+        let paths = Paths { journal: with_ending(&part, ".journal"), part, target };
+        let refused = |problem| PartError::Refused { path: paths.journal.clone(), problem };
         let mut lock = loop {
             let mut open = OpenOptions::new();
-            let lock = open.read(true).append(true).create(true).open(&places.journal).map_err(refused)?;
+            let lock = open.read(true).append(true).create(true).open(&paths.journal).map_err(refused)?;
             match lock.try_lock() {
                 Ok(()) => {}
-                Err(TryLockError::WouldBlock) => return Err(PartError::Busy(places.target)),
-                // A file system that knows no locks.
+                Err(TryLockError::WouldBlock) => return Err(PartError::Busy(paths.target)),
+                // a file system without locks
                 Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => {}
                 Err(TryLockError::Error(error)) => return Err(refused(error)),
             }
-            // Whoever had it may have removed it since.
-            let there = fs::metadata(&places.journal);
-            if there.is_ok_and(|there| lock.metadata().is_ok_and(|own| inode(&own) == inode(&there))) {
+            // The previous owner of the lock may have removed the journal meanwhile.
+            let current = fs::metadata(&paths.journal);
+            if current.is_ok_and(|current| lock.metadata().is_ok_and(|ours| inode(&ours) == inode(&current)))
+            {
                 break lock;
             }
         };
         let mut bytes = Vec::new();
         lock.read_to_end(&mut bytes).map_err(refused)?;
-        let exists = fs::metadata(&places.part).is_ok_and(|there| there.len() > 0);
-        Ok(Self { journal: journal::read(&bytes), places, lock, exists })
+        let exists = fs::metadata(&paths.part).is_ok_and(|existing| existing.len() > 0);
+        Ok(Self { journal: journal::read(&bytes), paths, lock, exists })
     }
 
-    /// The file of the rows so far.
+    /// The path of the file with the rows so far.
     pub fn part(&self) -> &Path {
-        &self.places.part
+        &self.paths.part
     }
 
     /// Whether there are rows of an earlier process.
@@ -126,32 +127,32 @@ impl Opened {
         self.exists
     }
 
-    /// What an earlier process began it with; none where its journal is gone or cannot be read.
+    /// The head that an earlier process began it with; `None` if its journal is missing or cannot be read.
     pub fn head(&self) -> Option<&str> {
         self.journal.head.as_deref()
     }
 
-    /// The rows that the journal has.
+    /// The number of rows in the journal.
     pub fn rows(&self) -> u64 {
         self.journal.blocks.iter().map(|(block, _)| block.rows).sum()
     }
 
-    /// Leaves all as it was: removes a journal that belongs to nothing.
+    /// Closes the file unchanged; a journal that is empty or has no file is removed.
     pub fn leave(self) {
-        let empty = self.lock.metadata().is_ok_and(|own| own.len() == 0);
+        let empty = self.lock.metadata().is_ok_and(|journal| journal.len() == 0);
         if !self.exists || empty {
-            let _ = fs::remove_file(&self.places.journal);
+            let _ = fs::remove_file(&self.paths.journal);
         }
     }
 
-    /// Begins anew, with the line `first` in the file and `head` in the journal.
+    /// Starts the file again, with the line `first` in the file and `head` in the journal.
     pub fn begin(self, head: &str, first: &str) -> Result<Part, PartError> {
-        let Self { places, mut lock, .. } = self;
-        let path = places.part.clone();
+        let Self { paths, mut lock, .. } = self;
+        let path = paths.part.clone();
         let mut begin = || -> io::Result<File> {
-            let part = OpenOptions::new().write(true).create(true).truncate(true).open(&places.part)?;
-            if let Ok(there) = fs::metadata(&places.target) {
-                part.set_permissions(there.permissions())?;
+            let part = OpenOptions::new().write(true).create(true).truncate(true).open(&paths.part)?;
+            if let Ok(existing) = fs::metadata(&paths.target) {
+                part.set_permissions(existing.permissions())?;
             }
             lock.set_len(0)?;
             lock.write_all(journal::line(head).as_bytes())?;
@@ -159,36 +160,36 @@ impl Opened {
             Ok(part)
         };
         let part = begin().map_err(|problem| {
-            let _ = (fs::remove_file(&places.part), fs::remove_file(&places.journal));
+            let _ = (fs::remove_file(&paths.part), fs::remove_file(&paths.journal));
             PartError::Refused { path, problem }
         })?;
-        let mut own = Part::new(places, lock, part, Checksum::default(), 0)?;
-        own.put(first.to_owned())
-            .and_then(|()| own.end_block(0, String::new()))
-            .map_err(|problem| PartError::Refused { path: own.places.part.clone(), problem })?;
-        Ok(own)
+        let mut part = Part::new(paths, lock, part, Checksum::default(), 0)?;
+        part.put(first.to_owned())
+            .and_then(|()| part.end_block(0, String::new()))
+            .map_err(|problem| PartError::Refused { path: part.paths.part.clone(), problem })?;
+        Ok(part)
     }
 
-    /// Goes on where the last whole block ends; whatever stands behind it is dropped. The blocks that are
-    /// kept. Where a block is not as it was written: an error that changes nothing, or, if `mend`, only the
-    /// blocks before it are kept.
+    /// Continues after the last complete block and drops everything after it. Returns the blocks that are
+    /// kept. If a block has been changed, this fails without changing anything, or, if `mend`, keeps only the
+    /// blocks before it.
     pub fn go_on(self, mend: bool) -> Result<(Part, Vec<Block>), PartError> {
-        let Self { places, lock, mut journal, .. } = self;
-        let path = places.part.clone();
+        let Self { paths, lock, mut journal, .. } = self;
+        let path = paths.part.clone();
         let refused = |problem| PartError::Refused { path: path.clone(), problem };
         let mut part = OpenOptions::new().read(true).write(true).open(&path).map_err(refused)?;
         let (mut whole, mut rows, mut length) = (Checksum::default(), 0, 0);
         let mut kept = Vec::new();
-        let mut wrong = None;
+        let mut damage = None;
         for (block, end) in std::mem::take(&mut journal.blocks) {
             let mut bytes = Vec::new();
             (&mut part).take(block.bytes).read_to_end(&mut bytes).map_err(refused)?;
-            let mut own = Checksum::default();
-            own.add(&bytes);
-            if own.text() != block.sha256 {
+            let mut checksum = Checksum::default();
+            checksum.add(&bytes);
+            if checksum.text() != block.sha256 {
                 let what = if bytes.len() as u64 == block.bytes { "changed" } else { "missing" };
                 let last = rows + block.rows;
-                wrong = Some(match block.rows {
+                damage = Some(match block.rows {
                     0 => format!("its header is {what} since it was written"),
                     _ => format!("rows {} to {last} are {what} since they were written", rows + 1),
                 });
@@ -199,35 +200,35 @@ impl Opened {
             kept.push(block);
         }
         let after = || format!("what its journal says after row {rows} is changed since it was written");
-        if let Some(what) = wrong.or(journal.damaged.then(after)).filter(|_| !mend || kept.is_empty()) {
+        if let Some(what) = damage.or(journal.damaged.then(after)).filter(|_| !mend || kept.is_empty()) {
             return Err(PartError::Damaged { part: path.display().to_string(), what, rows });
         }
         let cut = part.set_len(length).and_then(|()| part.seek(SeekFrom::Start(length)));
         cut.and_then(|_| lock.set_len(journal.head_length)).map_err(refused)?;
-        Ok((Part::new(places, lock, part, whole, rows)?, kept))
+        Ok((Part::new(paths, lock, part, whole, rows)?, kept))
     }
 }
 
 impl Part {
-    fn new(places: Places, lock: File, part: File, whole: Checksum, rows: u64) -> Result<Self, PartError> {
+    fn new(paths: Paths, lock: File, part: File, whole: Checksum, rows: u64) -> Result<Self, PartError> {
         let kept = Arc::new(AtomicU64::new(rows));
-        let (sender, receiver) = sync_channel(WAITING);
+        let (sender, receiver) = sync_channel(MAX_WAITING);
         let start = || {
             let (journal, kept) = (lock.try_clone()?, Arc::clone(&kept));
             let work = move || write(receiver, (part, journal), whole, &kept);
             std::thread::Builder::new().name("blocks".into()).spawn(work)
         };
-        let refused = |problem| PartError::Refused { path: places.part.clone(), problem };
+        let refused = |problem| PartError::Refused { path: paths.part.clone(), problem };
         let thread = start().map_err(refused)?;
-        Ok(Self { places, kept, sender: Some(sender), thread: Some(thread), _lock: lock })
+        Ok(Self { paths, kept, sender: Some(sender), thread: Some(thread), _lock: lock })
     }
 
-    /// The file of the rows so far.
+    /// The path of the file with the rows so far.
     pub fn path(&self) -> &Path {
-        &self.places.part
+        &self.paths.part
     }
 
-    /// Rows on the disk.
+    /// Number of rows on the disk.
     pub fn kept(&self) -> u64 {
         self.kept.load(Ordering::Relaxed)
     }
@@ -237,18 +238,18 @@ impl Part {
         self.send(Message::Bytes(text))
     }
 
-    /// Ends a block of so many rows.
+    /// Ends a block of `rows` rows.
     pub fn end_block(&mut self, rows: u64, note: String) -> io::Result<()> {
         self.send(Message::Block(rows, note))
     }
 
     fn send(&mut self, message: Message) -> io::Result<()> {
         let sent = self.sender.as_ref().is_some_and(|sender| sender.send(message).is_ok());
-        // Its thread has ended, which it does alone only by an error.
+        // Sending fails only if the thread has ended by an error, which `close` returns.
         if sent { Ok(()) } else { self.close().map(|_| ()) }
     }
 
-    /// Waits until all blocks are on the disk; the checksum of all bytes.
+    /// Waits until all blocks are on the disk and returns the checksum of all bytes.
     pub fn close(&mut self) -> io::Result<String> {
         self.sender = None;
         let ended = || Err(io::Error::other("its writer has ended"));
@@ -256,20 +257,20 @@ impl Part {
         joined.and_then(Result::ok).unwrap_or_else(ended).map(|whole| whole.text())
     }
 
-    /// Gives the file its name. Precondition: it is [closed](Self::close) without an error.
+    /// Gives the file its name. Precondition: [`close`](Self::close) has succeeded.
     pub fn finish(self) -> io::Result<()> {
-        fs::rename(&self.places.part, &self.places.target)?;
-        // The new name is on the disk before the journal is gone from it; not every system can say so.
-        let folder = self.places.target.parent().filter(|own| !own.as_os_str().is_empty());
+        fs::rename(&self.paths.part, &self.paths.target)?;
+        // Sync the new name before the journal is removed; not every system can do this.
+        let folder = self.paths.target.parent().filter(|folder| !folder.as_os_str().is_empty());
         let _ = File::open(folder.unwrap_or(Path::new("."))).and_then(|folder| folder.sync_all());
-        fs::remove_file(&self.places.journal)
+        fs::remove_file(&self.paths.journal)
     }
 
-    /// Removes a file of which no row is kept.
+    /// Closes the file and removes it if it has no rows.
     pub fn discard(mut self) {
         let _ = self.close();
         if self.kept() == 0 {
-            let _ = (fs::remove_file(&self.places.part), fs::remove_file(&self.places.journal));
+            let _ = (fs::remove_file(&self.paths.part), fs::remove_file(&self.paths.journal));
         }
     }
 }
@@ -280,30 +281,30 @@ impl Drop for Part {
     }
 }
 
-/// Writes what comes and syncs at the end of each block, or of those that came meanwhile; the checksum of
-/// all.
+/// Writes the received messages and syncs after each block, or once after all blocks that are waiting.
+/// Returns the checksum of all bytes.
 fn write(
     receiver: Receiver<Message>,
     (mut part, mut journal): (File, File),
     mut whole: Checksum,
     kept: &AtomicU64,
 ) -> io::Result<Checksum> {
-    let (mut own, mut bytes) = (Checksum::default(), 0);
+    let (mut block_sum, mut bytes) = (Checksum::default(), 0);
     while let Ok(first) = receiver.recv() {
         let (mut lines, mut rows, mut written) = (String::new(), 0, Ok(()));
-        for message in std::iter::once(first).chain(receiver.try_iter().take(WAITING)) {
+        for message in std::iter::once(first).chain(receiver.try_iter().take(MAX_WAITING)) {
             match message {
                 Message::Bytes(text) => {
                     written = part.write_all(text.as_bytes());
                     if written.is_err() {
                         break; // the blocks before it count
                     }
-                    own.add(text.as_bytes());
+                    block_sum.add(text.as_bytes());
                     whole.add(text.as_bytes());
                     bytes += text.len() as u64;
                 }
                 Message::Block(more, note) => {
-                    let sha256 = std::mem::take(&mut own).text();
+                    let sha256 = std::mem::take(&mut block_sum).text();
                     let block = Block { rows: more, bytes: std::mem::take(&mut bytes), sha256, note };
                     lines += &journal::line(&serde_json::to_string(&block)?);
                     rows += more;

@@ -1,9 +1,9 @@
-//! Outputs: files that appear whole, devices, pipes and standard output.
+//! Outputs: atomically replaced files, devices, pipes and standard output.
 //!
-//! A regular file is written beside its final name and renamed when whole, so that neither an error
-//! nor Ctrl-C leaves a half file or harms the one that was there. What is not a regular file (a
-//! device, a pipe, standard output) is written straight. A pipe that its reader has closed swallows
-//! the rest quietly: that is how `| head -1` ends.
+//! A regular file is written under a temporary name and renamed when complete, so that neither an error nor
+//! Ctrl-C leaves an incomplete file or damages an existing one. Anything else (a device, a pipe, standard
+//! output) is written directly. Output to a pipe that its reader has closed is dropped without an error, as
+//! after `| head -1`.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
@@ -11,13 +11,13 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
-/// Why a place cannot be written to.
+/// Reason why an output cannot be opened.
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
     /// The folder of the file does not exist.
     #[error("cannot write {}: there is no folder {}; make it first", path.display(), folder.display())]
     MissingFolder {
-        /// The file asked for.
+        /// The requested file.
         path: PathBuf,
         /// The folder that is missing.
         folder: PathBuf,
@@ -25,12 +25,12 @@ pub enum OpenError {
     /// The path is a folder.
     #[error("cannot write {}: it is a folder; name a file in it", .0.display())]
     IsFolder(PathBuf),
-    /// The operating system refuses.
+    /// The operating system reports an error.
     #[error("cannot write {}: {problem}", path.display())]
     Refused {
-        /// The file asked for.
+        /// The requested file.
         path: PathBuf,
-        /// What it says; a part of the message, and no cause that is printed once more.
+        /// The error. It is a part of the message and not a `source`, which would be printed again.
         problem: io::Error,
     },
 }
@@ -48,11 +48,11 @@ pub struct Sink {
 #[derive(Debug)]
 enum Kind {
     Stdout,
-    Straight(File),
-    Whole { part: NamedTempFile, target: PathBuf },
+    Direct(File),
+    Replace { part: NamedTempFile, target: PathBuf },
 }
 
-/// What two outputs must not share.
+/// Identity of an output; two outputs must not have a part of it in common.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Identity {
     stdout: bool,
@@ -60,13 +60,12 @@ struct Identity {
     inode: Option<(u64, u64)>,
 }
 
-/// Bytes collected before they are handed to the operating system.
+/// Number of bytes collected before they are written.
 const BUFFER: usize = 1 << 16;
 
 impl Sink {
-    /// Opens `path` for writing; `-` and the names that the system gives to standard output are
-    /// standard output. Nothing is changed at `path` until [`finish`](Self::finish), except where
-    /// it is not a regular file.
+    /// Opens `path` for writing; `-` and the system's names of standard output are standard output. A regular
+    /// file is not changed until [`finish`](Self::finish).
     pub fn open(path: &Path) -> Result<Self, OpenError> {
         if is_stdout(path) {
             let identity = Identity { stdout: true, path: None, inode: stdout_inode() };
@@ -75,25 +74,25 @@ impl Sink {
         let refused = |problem| OpenError::Refused { path: path.to_owned(), problem };
         let name = path.display().to_string();
         let target = follow_links(path);
-        let there = match fs::metadata(&target) {
-            Ok(there) => Some(there),
+        let existing = match fs::metadata(&target) {
+            Ok(existing) => Some(existing),
             Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => None,
             Err(error) => return Err(refused(error)),
         };
-        if there.as_ref().is_some_and(fs::Metadata::is_dir)
+        if existing.as_ref().is_some_and(fs::Metadata::is_dir)
             || path.as_os_str().to_string_lossy().ends_with('/')
         {
             return Err(OpenError::IsFolder(path.to_owned()));
         }
         let descriptor = is_descriptor(path);
-        if let Some(there) = there.as_ref().filter(|there| descriptor || !there.is_file()) {
-            // A shell's `3>file` is the shell's to empty, and what stands in it stays.
+        if let Some(existing) = existing.as_ref().filter(|existing| descriptor || !existing.is_file()) {
+            // With `3>file` the shell has truncated the file if it should be; append to its contents.
             let mut open = fs::OpenOptions::new();
             let file = open.write(true).append(descriptor).open(path).map_err(refused)?;
             // Any number of outputs may go to a device such as /dev/null, but not to one pipe or file.
-            let shared = is_device(there);
-            let identity = Identity { stdout: false, path: None, inode: inode(there).filter(|_| !shared) };
-            return Ok(Self::new(name, Kind::Straight(file), identity));
+            let shared = is_device(existing);
+            let identity = Identity { stdout: false, path: None, inode: inode(existing).filter(|_| !shared) };
+            return Ok(Self::new(name, Kind::Direct(file), identity));
         }
         let folder = match target.parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
@@ -109,21 +108,21 @@ impl Sink {
             return Err(OpenError::MissingFolder { path: path.to_owned(), folder });
         }
         let target = whole_folder.join(file_name);
-        if there.is_some() {
-            // A rename would replace a write-protected file without asking.
+        if existing.is_some() {
+            // Fail for a write-protected file, which a rename would replace.
             fs::OpenOptions::new().write(true).open(&target).map_err(refused)?;
         }
-        let part = create_part(&whole_folder, there.as_ref()).map_err(refused)?;
+        let part = create_part(&whole_folder, existing.as_ref()).map_err(refused)?;
         let identity =
-            Identity { stdout: false, path: Some(target.clone()), inode: there.as_ref().and_then(inode) };
-        Ok(Self::new(name, Kind::Whole { part, target }, identity))
+            Identity { stdout: false, path: Some(target.clone()), inode: existing.as_ref().and_then(inode) };
+        Ok(Self::new(name, Kind::Replace { part, target }, identity))
     }
 
     fn new(name: String, kind: Kind, identity: Identity) -> Self {
         Self { name, kind, identity, buffer: Vec::with_capacity(BUFFER), closed: false }
     }
 
-    /// The path as it was asked for, or "standard output".
+    /// The path as requested, or "standard output".
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -133,7 +132,7 @@ impl Sink {
         matches!(self.kind, Kind::Stdout)
     }
 
-    /// Whether the reader of this pipe has gone: whatever is still written is thrown away.
+    /// Whether the reader has closed this pipe, so that further output is dropped.
     pub fn is_closed(&self) -> bool {
         self.closed
     }
@@ -143,13 +142,13 @@ impl Sink {
         self.put_bytes(text.as_bytes())
     }
 
-    /// Appends bytes as [`put`](Self::put) does text.
+    /// Appends `bytes`, which may stay in memory until [`flush`](Self::flush).
     pub fn put_bytes(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.buffer.extend_from_slice(bytes);
         if self.buffer.len() >= BUFFER { self.flush() } else { Ok(()) }
     }
 
-    /// Hands everything to the operating system.
+    /// Writes all collected bytes.
     pub fn flush(&mut self) -> io::Result<()> {
         if self.closed {
             self.buffer.clear();
@@ -161,9 +160,9 @@ impl Sink {
                 let mut stdout = io::stdout().lock();
                 stdout.write_all(bytes).and_then(|()| stdout.flush())
             }
-            Kind::Straight(file) => file.write_all(bytes),
-            // Not through the temporary file itself, whose errors name it.
-            Kind::Whole { part, .. } => part.as_file_mut().write_all(bytes),
+            Kind::Direct(file) => file.write_all(bytes),
+            // Write to the inner file: errors of the temporary file contain its name.
+            Kind::Replace { part, .. } => part.as_file_mut().write_all(bytes),
         };
         self.buffer.clear();
         match result {
@@ -175,18 +174,19 @@ impl Sink {
         }
     }
 
-    /// Writes what is left and gives a regular file its name. A sink that is dropped without this
-    /// leaves nothing behind at a regular file's place.
+    /// Writes all collected bytes and gives a regular file its name. If a sink is dropped without this, a
+    /// regular file is not created or changed.
     pub fn finish(mut self) -> io::Result<()> {
         self.flush()?;
         match self.kind {
-            Kind::Whole { part, target } => part.persist(target).map(|_| ()).map_err(|error| error.error),
+            Kind::Replace { part, target } => part.persist(target).map(|_| ()).map_err(|error| error.error),
             _ => Ok(()),
         }
     }
 }
 
-/// Writes text or bytes; a file is replaced only once all of it is there. The error is a sentence.
+/// Writes a whole file; an existing one is replaced only after all bytes are written. The error
+/// is a sentence.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), String> {
     let mut sink = Sink::open(path).map_err(|error| error.to_string())?;
     let refused = |error: io::Error| format!("cannot write {}: {error}", path.display());
@@ -194,24 +194,24 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), String> {
     sink.finish().map_err(refused)
 }
 
-/// Whether an output at `path` would be a regular file, and not standard output, a device or a pipe.
-/// Nothing is opened: a pipe that is opened and closed is at its end.
+/// Whether an output at `path` would be a regular file, and not standard output, a device or a pipe. This
+/// does not open `path`, since opening and closing a pipe would end it.
 pub fn is_regular(path: &Path) -> bool {
-    let there = fs::metadata(follow_links(path));
-    !is_stdout(path) && there.map_or(true, |there| there.is_file() && !is_descriptor(path))
+    let existing = fs::metadata(follow_links(path));
+    !is_stdout(path) && existing.map_or(true, |existing| existing.is_file() && !is_descriptor(path))
 }
 
-/// The names that the system gives to standard output.
+/// Whether a path is one of the system's names of standard output.
 fn is_stdout(path: &Path) -> bool {
-    ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|own| path == Path::new(own))
+    ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|name| path == Path::new(name))
 }
 
-/// The names that the system gives to what a shell has opened.
+/// Whether a path is a name of a file descriptor that a shell has opened.
 fn is_descriptor(path: &Path) -> bool {
     path.starts_with("/dev/fd") || path.starts_with("/proc/self/fd") || path == "/dev/stderr"
 }
 
-/// Whether two outputs would write over each other: both standard output, or one file by two names.
+/// Whether two outputs would overwrite each other: both are standard output, or two names of one file.
 pub fn same_target(a: &Sink, b: &Sink) -> bool {
     let (a, b) = (&a.identity, &b.identity);
     (a.stdout && b.stdout)
@@ -219,10 +219,10 @@ pub fn same_target(a: &Sink, b: &Sink) -> bool {
         || (a.inode.is_some() && a.inode == b.inode)
 }
 
-/// The place that a chain of symbolic links ends at, whether something is there or not.
+/// The end of a chain of symbolic links, whether it exists or not.
 pub(super) fn follow_links(path: &Path) -> PathBuf {
     let mut place = path.to_owned();
-    // Linux itself gives up after 40; a circle then shows as an error of the open.
+    // Linux also stops after 40 links; a cycle then fails when the file is opened.
     for _ in 0..40 {
         match fs::read_link(&place) {
             Ok(to) => place = place.parent().map_or_else(|| to.clone(), |folder| folder.join(&to)),
@@ -232,8 +232,7 @@ pub(super) fn follow_links(path: &Path) -> PathBuf {
     place
 }
 
-/// A new file in `folder` with the mode that a file created there would have, or that of the one
-/// it will replace.
+/// Creates a temporary file in `folder` with the mode of a new file, or of the file that it will replace.
 fn create_part(folder: &Path, replaces: Option<&fs::Metadata>) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".interwell-").suffix(".part");
@@ -243,13 +242,13 @@ fn create_part(folder: &Path, replaces: Option<&fs::Metadata>) -> io::Result<Nam
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     let part = builder.tempfile_in(folder).map_err(without_path)?;
-    if let Some(there) = replaces {
-        part.as_file().set_permissions(there.permissions())?;
+    if let Some(existing) = replaces {
+        part.as_file().set_permissions(existing.permissions())?;
     }
     Ok(part)
 }
 
-/// An error of tempfile without the name of the temporary file, which means nothing to a person.
+/// Removes the name of the temporary file from an error of tempfile; it would only confuse the user.
 fn without_path(error: io::Error) -> io::Error {
     let text = error.to_string();
     io::Error::new(error.kind(), text.split(" at path \"").next().unwrap_or_default().to_owned())
@@ -267,7 +266,7 @@ fn is_device(metadata: &fs::Metadata) -> bool {
     metadata.file_type().is_char_device()
 }
 
-/// The file that standard output was redirected to; none where it is a device.
+/// The file that standard output is redirected to; `None` if it is a device.
 #[cfg(unix)]
 fn stdout_inode() -> Option<(u64, u64)> {
     use std::os::fd::AsFd;

@@ -1,4 +1,4 @@
-//! Threads.
+//! Threads, and the distribution of work among them.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -9,30 +9,30 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
-/// How many processors the program may use; at least 1.
+/// Number of processors that the program may use; at least 1.
 pub fn processors() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// Stack of a thread that studies run on: compiled without optimisation, the integrator takes more than the
-/// 2 MB that a thread has by default. The system provides memory only for what is used.
+/// Stack size in bytes of a thread for studies. Without optimisation the integrator needs more than the
+/// default of 2 MB. The system provides memory only for the part that is used.
 const STACK: usize = 16 << 20;
 
-/// Does `work` on a thread of its own. Whether the system has one to give.
+/// Runs `work` on a new thread. Returns false if the thread cannot be started.
 pub fn spawn(work: impl FnOnce() + Send + 'static) -> bool {
     std::thread::Builder::new().name("study".into()).stack_size(STACK).spawn(work).is_ok()
 }
 
-/// Lets this thread stand still.
+/// Suspends this thread.
 pub fn sleep(time: Duration) {
     std::thread::sleep(time);
 }
 
-/// Threads that share the parts of one study.
+/// A pool of threads that share the parts of one study.
 #[derive(Debug)]
 pub struct Pool(rayon::ThreadPool);
 
-/// Why threads cannot be started.
+/// Failure to start threads.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot start {count} threads: {reason}")]
 pub struct NoThreads {
@@ -41,19 +41,19 @@ pub struct NoThreads {
 }
 
 impl Pool {
-    /// So many threads.
+    /// Starts `count` threads.
     pub fn new(count: usize) -> Result<Self, NoThreads> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(count).stack_size(STACK).build();
         pool.map(Self).map_err(|error| NoThreads { count, reason: error.to_string() })
     }
 
-    /// How many there are.
+    /// Number of threads.
     pub fn count(&self) -> usize {
         self.0.current_num_threads()
     }
 
-    /// The results of all parts from 0 to `parts`, in order, or an error of one of them, after which no other
-    /// part begins. `state` makes what a thread keeps from part to part.
+    /// The results of parts 0 to `parts` (exclusive) in order, or an error of one of them, after which no
+    /// further part begins. `state` creates data that a thread reuses from part to part.
     pub fn map<S, R: Send, E: Send>(
         &self,
         parts: usize,
@@ -63,7 +63,7 @@ impl Pool {
         self.0.install(|| (0..parts).into_par_iter().with_max_len(1).map_init(&state, &part).collect())
     }
 
-    /// The first of the parts from 0 to `parts` for which there is an answer, with it.
+    /// The result of the first of parts 0 to `parts` (exclusive) that has one.
     pub fn find_first<S, R: Send>(
         &self,
         parts: u64,
@@ -74,12 +74,16 @@ impl Pool {
         self.0.install(|| all().find_first(Option::is_some).flatten())
     }
 
-    /// Has each thread `work` on the numbers from 0 to `count` that it takes by the first argument, as from a
-    /// [`Queue`], and hand over their results by the second one, so many of `each` number, numbered through
-    /// and those of one number in order. They leave in order, here, some at a time and those of a number
-    /// together where they are not very many, while others are still worked on. At most so many numbers
-    /// are begun `ahead` of the last one whose results have left. Ends early where `leave` wants no more, and
-    /// where a `work` ends while there are more: those of the others that can still leave do.
+    /// Computes results on all threads and passes them to `leave` on this thread in order, while further
+    /// results are still being computed.
+    ///
+    /// Each thread calls `work` once. The first argument of `work` gives the next number from 0 to `count`
+    /// (exclusive), as from a [`Queue`]; the second one takes the results. Each number has `each` results,
+    /// whose indices continue from one number to the next; the results of one number must come in order.
+    /// `leave` gets several results at a time, and all results of a number together if there are at most
+    /// 256. At most `ahead` numbers are begun beyond the last one whose results have all been
+    /// passed on. The function returns early if `leave` returns false, or if a `work` returns while numbers
+    /// remain; then the results that are still complete and in order are passed on.
     pub fn in_order<R: Send>(
         &self,
         (count, each, ahead): (usize, usize, usize),
@@ -87,15 +91,15 @@ impl Pool {
         mut leave: impl FnMut(Vec<R>) -> bool,
     ) {
         let queue = Queue { ahead, ..Queue::new(count, self.count()) };
-        let (tell, news) = channel();
+        let (sender, receiver) = channel();
         self.0.in_place_scope(|scope| {
             scope.spawn_broadcast(|_, _| {
-                let farewell = Farewell(tell.clone());
-                let held = RefCell::new((Vec::new(), Instant::now()));
+                let sender = EndNotice(sender.clone());
+                let pending = RefCell::new((Vec::new(), Instant::now()));
                 let send = || {
-                    let done = std::mem::take(&mut held.borrow_mut().0);
-                    let _ = farewell.0.send(News::Done(done));
-                    held.borrow_mut().1 = Instant::now();
+                    let done = std::mem::take(&mut pending.borrow_mut().0);
+                    let _ = sender.0.send(Message::Done(done));
+                    pending.borrow_mut().1 = Instant::now();
                 };
                 let take = |under_way: UnderWay| {
                     queue.take(under_way).or_else(|| {
@@ -105,43 +109,45 @@ impl Pool {
                     })
                 };
                 let done = |number, result| {
-                    held.borrow_mut().0.push((number, result));
-                    if held.borrow().1.elapsed() > SOON {
+                    pending.borrow_mut().0.push((number, result));
+                    if pending.borrow().1.elapsed() > SEND_INTERVAL {
                         send();
                     }
                 };
                 work(&take, &done);
                 send();
             });
-            // However this ends, be it by a panic of `leave`: no thread waits for more.
-            let _over = Over(&queue);
-            let (mut waiting, mut left, mut working) = (BTreeMap::new(), 0, self.count());
+            // Stops the queue on every exit, including a panic of `leave`, so that no thread keeps waiting.
+            let _stop = StopOnDrop(&queue);
+            let (mut waiting, mut passed, mut working) = (BTreeMap::new(), 0, self.count());
             while working > 0 {
-                match news.recv() {
-                    Ok(News::Done(results)) => waiting.extend(results),
-                    Ok(News::Ended) => {
-                        // While there is more it has given up, or panics, which goes on when all threads have
-                        // ended: some results will never come, and nobody is to wait for them.
+                match receiver.recv() {
+                    Ok(Message::Done(results)) => waiting.extend(results),
+                    Ok(Message::Ended) => {
+                        // If numbers remain, this thread has given up or panicked (the scope propagates the
+                        // panic after all threads have ended). Some results will then be missing, and no
+                        // thread may wait for them.
                         queue.stop();
                         working -= 1;
                     }
                     Err(_) => break,
                 }
                 loop {
-                    // whole numbers, or of a large one some, none beyond its end
-                    let (step, most) = match each <= MOST {
-                        true => (each, MOST),
-                        false => (1, MOST.min(each - left % each)),
+                    // all results of one or more numbers, or a part of the results of one large number
+                    let (step, limit) = match each <= MAX_BATCH {
+                        true => (each, MAX_BATCH),
+                        false => (1, MAX_BATCH.min(each - passed % each)),
                     };
-                    let ends = (1..=most / step).map(|more| left + more * step);
+                    let ends = (1..=limit / step).map(|steps| passed + steps * step);
                     let until = ends.take_while(|end| waiting.contains_key(&(end - 1))).last();
-                    let in_order = (left..until.unwrap_or(left)).map_while(|own| waiting.remove(&own));
+                    let in_order =
+                        (passed..until.unwrap_or(passed)).map_while(|index| waiting.remove(&index));
                     let next: Vec<R> = in_order.collect();
                     if next.is_empty() {
                         break;
                     }
-                    left += next.len();
-                    queue.leave(left / each);
+                    passed += next.len();
+                    queue.set_finished(passed / each);
                     if !leave(next) {
                         return;
                     }
@@ -150,24 +156,25 @@ impl Pool {
         });
     }
 
-    /// Does the same on each thread.
+    /// Runs `work` on each thread.
     pub fn everywhere(&self, work: impl Fn() + Sync) {
         self.0.broadcast(|_| work());
     }
 }
 
-/// The results of all numbers from 0 to `count`, in order, or an error of one of them. Each thread of a pool,
-/// or without one this one, asks `work` for those of the numbers that it takes, as from a [`Queue`].
+/// The results of all numbers from 0 to `count` (exclusive) in order, or an error of one of them. Each thread
+/// of the pool, or this thread without a pool, calls `work`, which takes numbers as from a [`Queue`] and
+/// returns their results.
 pub fn share<R: Send, E: Send>(
     pool: Option<&Pool>,
     count: usize,
     work: impl Fn(&dyn Fn(UnderWay) -> Option<usize>) -> Result<Vec<(usize, R)>, E> + Sync,
 ) -> Result<Vec<R>, E> {
     let queue = Queue::new(count, pool.map_or(1, Pool::count));
-    share_from(pool, &|held| queue.take(held), work)
+    share_from(pool, &|under_way| queue.take(under_way), work)
 }
 
-/// The same of all numbers that `take` gives, as of a [`Queue`], in their order.
+/// Like [`share`], for the numbers that `take` returns, as from a [`Queue`].
 pub fn share_from<R: Send, E: Send>(
     pool: Option<&Pool>,
     take: &(dyn Fn(UnderWay) -> Option<usize> + Sync),
@@ -178,72 +185,75 @@ pub fn share_from<R: Send, E: Send>(
         Some(pool) => pool.map(pool.count(), || (), |(), _| part())?.into_iter().flatten().collect(),
         None => part()?,
     };
-    all.sort_unstable_by_key(|own| own.0);
-    Ok(all.into_iter().map(|own| own.1).collect())
+    all.sort_unstable_by_key(|(number, _)| *number);
+    Ok(all.into_iter().map(|(_, result)| result).collect())
 }
 
-/// Results that come faster than this are handed over some at a time.
-const SOON: Duration = Duration::from_millis(1);
+/// Smallest time between two messages of a thread; faster results are sent several at a time.
+const SEND_INTERVAL: Duration = Duration::from_millis(1);
 
-/// The most that leave at once.
-const MOST: usize = 256;
+/// Largest number of results that are passed on at once.
+const MAX_BATCH: usize = 256;
 
-/// What a thread holds when it asks for a number.
+/// Work in progress of a thread that takes a number.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct UnderWay {
-    /// Runs that are under way.
+    /// Number of runs in progress.
     pub runs: usize,
-    /// Whether they fill its lanes. A [`Queue`] then gives it only the last of all numbers, 16 for each
-    /// thread: these runs begin early, take turns with those before them, and all end about together. Begun
-    /// in turn they would leave more and more lanes empty.
+    /// Whether these runs fill the lanes of the thread. A [`Queue`] then gives it only numbers near the end,
+    /// 16 for each thread. Such runs start early, alternate with the others, and all end at about the same
+    /// time; if they started one after another, more and more lanes would be empty at the end.
     pub full: bool,
 }
 
-/// The last numbers that a thread with full lanes is given, for each thread.
-const LAST: usize = 16;
+/// Count of last numbers, per thread, that threads with full lanes may take.
+const LAST_PER_THREAD: usize = 16;
 
-/// Numbers from 0 on that threads take from each other, each of them once.
+/// Numbers from 0 that several threads take, each number once.
 #[derive(Debug)]
 pub struct Queue {
     count: usize,
-    /// How many may be taken before the first of them has left.
+    /// Largest number of unfinished numbers that have been taken.
     ahead: usize,
     threads: usize,
-    state: Mutex<Taken>,
-    moved: Condvar,
+    state: Mutex<Progress>,
+    changed: Condvar,
 }
 
 #[derive(Debug, Default)]
-struct Taken {
+struct Progress {
     next: usize,
-    left: usize,
+    finished: usize,
     stopped: bool,
 }
 
 impl Queue {
-    /// So many numbers for so many threads.
+    /// A queue of `count` numbers for `threads` threads.
     pub fn new(count: usize, threads: usize) -> Self {
-        Self { count, ahead: usize::MAX, threads, state: Mutex::default(), moved: Condvar::new() }
+        Self { count, ahead: usize::MAX, threads, state: Mutex::default(), changed: Condvar::new() }
     }
 
-    /// One more number for a thread that holds this. None where none is left, or at present none is for
-    /// this thread: of few numbers none holds more than its share.
-    pub fn take(&self, held: UnderWay) -> Option<usize> {
-        self.take_from(&mut self.lock(), held)
+    /// The next number for a thread with this work in progress. Returns `None` if no number is left, or if
+    /// the thread should not get one now, as when it already has its share of a few numbers.
+    pub fn take(&self, under_way: UnderWay) -> Option<usize> {
+        self.take_from(&mut self.lock(), under_way)
     }
 
-    /// The same for a thread that holds none: none only where none is left.
+    /// The next number for a thread without work in progress; waits until there is one. Returns `None` only
+    /// if no number is left.
     fn wait(&self) -> Option<usize> {
-        let is_full = |own: &mut Taken| !own.stopped && own.next < self.count && self.is_full(own);
-        let mut state = self.moved.wait_while(self.lock(), is_full).unwrap_or_else(PoisonError::into_inner);
+        let must_wait =
+            |state: &mut Progress| !state.stopped && state.next < self.count && self.is_full(state);
+        let waited = self.changed.wait_while(self.lock(), must_wait);
+        let mut state = waited.unwrap_or_else(PoisonError::into_inner);
         self.take_from(&mut state, UnderWay::default())
     }
 
-    fn take_from(&self, state: &mut Taken, held: UnderWay) -> Option<usize> {
-        if held.full && self.count - state.next > LAST * self.threads {
+    fn take_from(&self, state: &mut Progress, under_way: UnderWay) -> Option<usize> {
+        if under_way.full && self.count - state.next > LAST_PER_THREAD * self.threads {
             return None;
         }
-        let has_its_share = held.runs > 0 && held.runs >= self.count.div_ceil(self.threads);
+        let has_its_share = under_way.runs > 0 && under_way.runs >= self.count.div_ceil(self.threads);
         if state.stopped || state.next == self.count || has_its_share || self.is_full(state) {
             return None;
         }
@@ -251,67 +261,67 @@ impl Queue {
         Some(state.next - 1)
     }
 
-    fn is_full(&self, state: &Taken) -> bool {
-        state.next - state.left >= self.ahead
+    fn is_full(&self, state: &Progress) -> bool {
+        state.next - state.finished >= self.ahead
     }
 
-    /// So many, from 0 on, have left.
-    fn leave(&self, left: usize) {
-        self.lock().left = left;
-        self.moved.notify_all();
+    /// Records that the first `finished` numbers are finished.
+    fn set_finished(&self, finished: usize) {
+        self.lock().finished = finished;
+        self.changed.notify_all();
     }
 
-    /// Gives no more.
+    /// Makes the queue return no more numbers.
     fn stop(&self) {
         self.lock().stopped = true;
-        self.moved.notify_all();
+        self.changed.notify_all();
     }
 
-    fn lock(&self) -> MutexGuard<'_, Taken> {
+    fn lock(&self) -> MutexGuard<'_, Progress> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-/// What a thread tells whoever waits for its results.
-enum News<R> {
-    /// Results, each with its number.
+/// A message from a thread to the receiver of its results.
+enum Message<R> {
+    /// Results, each with its index.
     Done(Vec<(usize, R)>),
-    /// It has come to its end, be it by a panic.
+    /// The thread has ended, possibly by a panic.
     Ended,
 }
 
-/// Tells, however a thread ends, that it has ended.
-struct Farewell<R>(Sender<News<R>>);
+/// Sends [`Message::Ended`] when dropped, also by a panic.
+struct EndNotice<R>(Sender<Message<R>>);
 
-impl<R> Drop for Farewell<R> {
+impl<R> Drop for EndNotice<R> {
     fn drop(&mut self) {
-        let _ = self.0.send(News::Ended);
+        let _ = self.0.send(Message::Ended);
     }
 }
 
-/// Stops a queue, however what uses it ends.
-struct Over<'a>(&'a Queue);
+/// Stops a queue when dropped.
+struct StopOnDrop<'a>(&'a Queue);
 
-impl Drop for Over<'_> {
+impl Drop for StopOnDrop<'_> {
     fn drop(&mut self) {
         self.0.stop();
     }
 }
 
-/// What `work` gives, which is told to stop, by its argument, once `patience` is over.
-pub fn within<R>(patience: Duration, work: impl FnOnce(&AtomicBool) -> R) -> R {
+/// Runs `work`, and sets its argument after `timeout` so that it can stop.
+pub fn within<R>(timeout: Duration, work: impl FnOnce(&AtomicBool) -> R) -> R {
     let cancel = AtomicBool::new(false);
     std::thread::scope(|scope| {
         let (done, wait) = channel::<()>();
         let cancel = &cancel;
         scope.spawn(move || {
-            if wait.recv_timeout(patience) == Err(RecvTimeoutError::Timeout) {
+            if wait.recv_timeout(timeout) == Err(RecvTimeoutError::Timeout) {
                 cancel.store(true, Ordering::Relaxed);
             }
         });
-        let found = work(cancel);
+        let result = work(cancel);
         drop(done);
-        found
+        result
     })
 }
 

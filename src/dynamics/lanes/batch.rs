@@ -11,7 +11,7 @@ use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::result::{Outcome, Pursuit, Request};
 use crate::dynamics::run::ending::Begun;
-use crate::dynamics::series::{SEEDED, Series};
+use crate::dynamics::series::{Integrals, SEEDED, Series};
 use crate::dynamics::state::Contact;
 use crate::dynamics::step::stepper::Step;
 use crate::numeric::{GaussLegendre, Lanes};
@@ -296,7 +296,8 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         let flow = if trial.holds[lane] && trial.length.0[lane] < left {
             copy_lane(&own.series, lane, own.order, &mut motion.stepper.series);
             let alone = &mut motion.stepper.series;
-            let measured = (trial.length.0[lane], (trial.squared.0[lane], 0.0));
+            let measured =
+                Integrals { until: trial.length.0[lane], squared: trial.squared.0[lane], work: 0.0 };
             alone.measured.set(trial.measured[lane].then_some(measured));
             motion.stepper.evaluations += 1;
             motion.stepper.cursor = Some(trial.drive_at_end(lane));

@@ -6,7 +6,7 @@ use super::events::Call;
 use super::laps::Totals;
 use super::recorder::Recorder;
 use crate::dynamics::clock::{Clock, Instant};
-use crate::dynamics::series::Series;
+use crate::dynamics::series::{Integrals, Series};
 use crate::dynamics::state::{Checkpoint, Label, MotionState};
 use crate::dynamics::step::path::StepView;
 use crate::numeric::Scalar;
@@ -54,7 +54,7 @@ pub(crate) struct Log<T: Copy> {
     entries: Vec<Entry<T>>,
     coefficients: Vec<T>,
     /// Integrals over whole steps, once they have been taken.
-    integrals: Vec<Cell<Option<(T, (T, T))>>>,
+    integrals: Vec<Cell<Option<Integrals<T>>>>,
     marks: Vec<Mark<T>>,
     /// The releases with a label: where they stand, and what the recorder had then.
     labels: Vec<(Label<T>, usize, Totals<T>)>,

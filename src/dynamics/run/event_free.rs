@@ -11,7 +11,7 @@ use crate::dynamics::drive::Drive;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::record::barrier::{StepCrossings, side_of};
 use crate::dynamics::record::event_free::{EventFree, MARGIN};
-use crate::dynamics::series::polynomial;
+use crate::dynamics::series::{Integrals, polynomial};
 use crate::dynamics::state::Contact;
 use crate::dynamics::step::chord::{CLEARANCE, Chord};
 use crate::dynamics::step::stepper::{Step, Stepper};
@@ -113,7 +113,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
                 let squared = polynomial::integrals::<_, false>(y, &[], rule, T::zero(), length).0;
                 event_free = now.record_step(&chord, deviations, (length, squared));
                 if !event_free {
-                    series.measured.set(Some((length, (squared, T::zero()))));
+                    series.measured.set(Some(Integrals { until: length, squared, work: T::zero() }));
                 }
             }
             if !event_free {

@@ -28,11 +28,21 @@ pub(crate) struct Series<T: Copy> {
     pub a: [T; ROOM],
     /// Number of coefficients of y that are known.
     pub known: usize,
-    /// A time since the step's start up to which the integrals of the squared velocity and of base
-    /// acceleration times velocity have been taken, and those; the latter only where it has been asked for.
-    pub measured: Cell<Option<(T, (T, T))>>,
+    /// The integrals that have been taken, where some have.
+    pub measured: Cell<Option<Integrals<T>>>,
     forces: ForceSeries<T>,
     inverse: [T; ROOM],
+}
+
+/// Integrals over a step from its start on.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Integrals<T> {
+    /// Time since the step's start up to which they are taken.
+    pub until: T,
+    /// Integral of the squared velocity.
+    pub squared: T,
+    /// Integral of base acceleration times velocity; 0 in a run without a ledger.
+    pub work: T,
 }
 
 /// Where a step's polynomial leads.

@@ -8,7 +8,7 @@
 use crate::dynamics::clock::Instant;
 use crate::dynamics::result::Phase;
 use crate::dynamics::series::polynomial;
-use crate::dynamics::series::{ROOM, Series};
+use crate::dynamics::series::{Integrals, ROOM, Series};
 use crate::numeric::{GaussLegendre, Scalar};
 
 /// The motion over one step, in a parameter that is 0 at the step's start and grows with time.
@@ -127,15 +127,15 @@ impl<T: Scalar> Path<T> for Series<T> {
     #[inline]
     fn integrals<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T) {
         let whole = from == T::zero();
-        if let Some((_, integrals)) = self.measured.get().filter(|(length, _)| whole && *length == to) {
-            return integrals;
+        if let Some(known) = self.measured.get().filter(|known| whole && known.until == to) {
+            return (known.squared, known.work);
         }
         let (y, a) = (self.coefficients(), self.base_coefficients());
-        let integrals = polynomial::integrals::<_, WORK>(y, a, rule, from, to);
+        let (squared, work) = polynomial::integrals::<_, WORK>(y, a, rule, from, to);
         if whole {
-            self.measured.set(Some((to, integrals)));
+            self.measured.set(Some(Integrals { until: to, squared, work }));
         }
-        integrals
+        (squared, work)
     }
     fn moment(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T {
         polynomial::moment(self.coefficients(), rule, from, to)

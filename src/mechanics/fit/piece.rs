@@ -7,14 +7,14 @@ use super::chain::Left;
 use crate::mechanics::curve::{ForceCurve, Piece};
 use crate::numeric::fit::lowest_degree;
 
-/// Least squares use at most this many samples of a piece, evenly picked; all are checked. More would
-/// average noise better, at a cost that grows with the table.
-const MOST_SAMPLES_OF_A_FIT: usize = 256;
+/// Largest number of samples in the least-squares fit of a piece, picked evenly; all samples are checked.
+/// More would average noise better, at a cost that grows with the table.
+const MAX_SAMPLES_PER_FIT: usize = 256;
 
 impl Samples<'_> {
-    /// The piece of lowest degree from sample `span.start` to sample `span.end`, both interpolated, that
-    /// meets all between (and ends with the slope `right`); none where the limit of the degree is too low or
-    /// something overflows.
+    /// The piece of lowest degree that interpolates samples `span.start` and `span.end` and is within the
+    /// allowed error of all samples between (and ends with the slope `right`, if given). Returns `None` if
+    /// that takes a degree above `degree` or if a number overflows.
     pub(super) fn piece(
         &self,
         span: Range<usize>,
@@ -29,7 +29,7 @@ impl Samples<'_> {
         let room = degree.min(1 + (3.0 * (intervals as f64).sqrt()) as usize);
         let room = (room + 1).saturating_sub(base.len()).min(ForceCurve::MAX_COEFFICIENTS - base.len());
         let terms = (room / if odd { 2 } else { 1 }).min(inner.len());
-        let stride = inner.len().div_ceil(MOST_SAMPLES_OF_A_FIT).max(1);
+        let stride = inner.len().div_ceil(MAX_SAMPLES_PER_FIT).max(1);
         let (mut points, mut weights, mut values) = (Vec::new(), Vec::new(), Vec::new());
         for i in inner.clone().step_by(stride) {
             let t = (self.x[i] - origin) / half;
@@ -47,9 +47,10 @@ impl Samples<'_> {
         lowest_degree(&points, &weights, &values, terms, |q| {
             let local = combine(&base, &shape, q, odd);
             let piece = self.in_metres(&local, origin, half, &span, left);
-            // The picked samples first: most trials end there. A single interval is accepted whatever the
-            // curve does between its ends, so that there is a chain; but over an interval a million times
-            // longer than the one before it, a slope that is kept drowns the ends themselves in rounding.
+            // The picked samples are checked first, since most trials fail there. A single interval is
+            // accepted without a check between its ends, so that a chain exists. Its ends are still checked:
+            // on an interval a million times longer than the previous one a prescribed slope can make the
+            // rounding error at the ends too large.
             let good = inner.clone().step_by(stride).all(|i| meets(&piece, i))
                 && [span.start, span.end].iter().all(|i| meets(&piece, *i))
                 && (stride == 1 || inner.clone().all(|i| meets(&piece, i)))
@@ -89,7 +90,8 @@ impl Samples<'_> {
         Frame { origin, half, base, shape }
     }
 
-    /// From the local variable to metres, with the ends met to rounding.
+    /// Converts a polynomial of the local variable to metres and corrects its values at both
+    /// ends to rounding.
     fn in_metres(&self, local: &[f64], origin: f64, half: f64, span: &Range<usize>, left: Left) -> Piece {
         let mut coefficients = Vec::with_capacity(local.len());
         let mut unit = 1.0;
@@ -114,8 +116,8 @@ impl Samples<'_> {
     }
 }
 
-/// A piece as base + shape q in t = (x - origin)/half: base meets the samples at the ends (and the slope),
-/// shape vanishes there. For odd data q is a polynomial in 2 t^2 - 1.
+/// A piece as base + shape q in t = (x - origin)/half. The base interpolates the samples at the ends (and the
+/// slope), and the shape is 0 there. For odd data q is a polynomial in 2 t^2 - 1.
 struct Frame {
     origin: f64,
     half: f64,
@@ -127,9 +129,9 @@ fn value(coefficients: &[f64], t: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, c| sum * t + c)
 }
 
-/// base + shape q in monomials of t; q is one in t, or for odd data in 2 t^2 - 1.
+/// base + shape q in monomials of t; q is a polynomial in t, or for odd data in 2 t^2 - 1.
 fn combine(base: &[f64], shape: &[f64], q: &[f64], in_squares: bool) -> Vec<f64> {
-    // Horner's scheme on polynomials.
+    // Horner's scheme with polynomials
     let mut in_t: Vec<f64> = Vec::new();
     for c in q.iter().rev() {
         let factor: &[f64] = if in_squares { &[-1.0, 0.0, 2.0] } else { &[0.0, 1.0] };

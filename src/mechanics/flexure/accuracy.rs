@@ -1,15 +1,15 @@
-//! Accuracy of a force curve, measured at fresh states.
+//! Accuracy of a force curve, measured at independently solved states.
 
 use super::Units;
 use super::branch::Segment;
-use super::pieces::{Scale, Stretch};
+use super::pieces::{Scale, ScaledPiece};
 use super::solver::Solver;
 use crate::mechanics::ForceCurve;
 
-/// How far the force curve is from fresh solutions at points that it was not made of.
+/// Errors of the force curve at states that were not used to build it.
 ///
-/// *Inside* is between the outermost kinks, or between the outermost equilibria where there is no kink; with
-/// one well and no kink there is no inside, and what is said of it is NaN.
+/// *Inside* is the range between the outermost kinks, or between the outermost equilibria without kinks. With
+/// one well and no kink there is no such range, and errors inside are NaN.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Accuracy {
     /// Error of the force inside, relative to its largest magnitude between the wells.
@@ -20,16 +20,16 @@ pub struct Accuracy {
     pub stiffness: f64,
     /// Error of the force outside, relative to the larger of that largest magnitude and the force itself.
     pub outer_force: f64,
-    /// Equilibria solved for.
+    /// Number of equilibria solved.
     pub solves: usize,
-    /// Functions of each parity that the most demanding of them needed.
+    /// Largest number of functions of each parity that an equilibrium needed.
     pub modes: usize,
 }
 
-/// Compares the curve with the fresh states of its pieces.
-pub(super) fn measured(
+/// Compares the curve with the check states of its pieces.
+pub(super) fn measure(
     curve: &ForceCurve,
-    stretches: &[Stretch],
+    scaled_pieces: &[ScaledPiece],
     segments: &[Segment],
     scale: Scale,
     units: Units,
@@ -39,30 +39,30 @@ pub(super) fn measured(
     let start = segments[0].points[0].energy;
     let inside = segments.iter().flat_map(|s| &s.points).filter(|p| p.x > 0.0 && p.x <= scale.inside);
     let two_wells = inside.clone().any(|p| p.force < 0.0);
-    let deepest = inside.fold(0.0_f64, |most, p| most.max(start - p.energy));
-    let none = if scale.inside > 0.0 { 0.0 } else { f64::NAN };
-    let mut own = Accuracy {
-        force: none,
+    let deepest = inside.fold(0.0_f64, |largest, p| largest.max(start - p.energy));
+    let start_value = if scale.inside > 0.0 { 0.0 } else { f64::NAN };
+    let mut accuracy = Accuracy {
+        force: start_value,
         potential: if two_wells { 0.0 } else { f64::NAN },
-        stiffness: none,
+        stiffness: start_value,
         outer_force: 0.0,
         solves: solver.solves,
-        modes: solver.most_modes,
+        modes: solver.max_modes,
     };
-    for point in stretches.iter().flat_map(|s| &s.checks) {
+    for point in scaled_pieces.iter().flat_map(|s| &s.checks) {
         let x = point.x * length;
-        let missed = (curve.force(x) / force - point.force).abs() / scale.force.max(point.force.abs());
+        let error = (curve.force(x) / force - point.force).abs() / scale.force.max(point.force.abs());
         if point.x > scale.inside {
-            own.outer_force = own.outer_force.max(missed);
+            accuracy.outer_force = accuracy.outer_force.max(error);
             continue;
         }
         let potential = curve.potential(x) / (force * length) - (point.energy - start);
         let stiffness = curve.stiffness(x) * length / force - point.stiffness;
-        own.force = own.force.max(missed);
+        accuracy.force = accuracy.force.max(error);
         if two_wells {
-            own.potential = own.potential.max(potential.abs() / deepest);
+            accuracy.potential = accuracy.potential.max(potential.abs() / deepest);
         }
-        own.stiffness = own.stiffness.max(stiffness.abs() / scale.stiffness);
+        accuracy.stiffness = accuracy.stiffness.max(stiffness.abs() / scale.stiffness);
     }
-    own
+    accuracy
 }

@@ -1,16 +1,16 @@
 //! Basis functions of a flexure's rotation.
 //!
-//! Integrated Legendre polynomials: each vanishes at both clamps and their slopes are orthonormal, so that
+//! Integrated Legendre polynomials: each vanishes at both clamps, and their slopes are orthonormal, so that
 //! the bending stiffness is a multiple of the identity. A flexure's rotation has an even part about its
-//! middle (the sway between the shuttle and the frame) and an odd one (the bump); the two never meet in the
-//! linear terms, and every integral is taken over one half.
+//! middle (the sway between the shuttle and the frame) and an odd part (the bump). The two are not coupled in
+//! the linear terms, and every integral is taken over one half.
 
 use crate::numeric::even_half;
 
-/// The functions and where they are sampled; xi runs over \[-1, 1] along a flexure.
+/// The functions sampled at quadrature points; xi runs over \[-1, 1] along a flexure.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Basis {
-    /// Functions of each parity.
+    /// Number of functions of each parity.
     pub modes: usize,
     /// Weights of the points at xi > 0; their sum is 1.
     pub weights: Vec<f64>,
@@ -21,9 +21,9 @@ pub(super) struct Basis {
 }
 
 impl Basis {
-    /// `modes` functions of each parity, with half as many points again on the half: products of two
-    /// functions are integrated exactly with a weight of half their degree, and the weight's own coefficients
-    /// fall as fast as the rotation's.
+    /// `modes` functions of each parity, sampled at about 1.5 `modes` points of one half. This integrates the
+    /// product of two functions exactly with a weight of half their degree; the coefficients of the weight
+    /// fall as fast as those of the rotation.
     pub fn new(modes: usize) -> Self {
         let rule = even_half(modes + modes / 2 + 1);
         let (mut even, mut odd) = (Vec::new(), Vec::new());
@@ -40,7 +40,7 @@ impl Basis {
     /// rotation of the first buckling mode between clamps.
     pub fn first_buckling_mode(&self) -> Vec<f64> {
         use std::f64::consts::PI;
-        // Enough points for a cosine of one period whatever the number of modes.
+        // enough points for a cosine of one period with any number of modes
         let rule = even_half(2 * self.modes.max(16));
         let mut sum = vec![0.0; self.modes];
         let mut row = vec![0.0; 2 * self.modes];
@@ -54,7 +54,7 @@ impl Basis {
         sum
     }
 
-    /// How much shorter than its arc, as a part of it, a flexure with this odd rotation is.
+    /// The shortening of a flexure with this odd rotation, relative to its arc length.
     pub fn shortening(&self, odd: &[f64]) -> f64 {
         let rows = self.odd.chunks_exact(self.modes).zip(&self.weights);
         rows.map(|(row, weight)| {

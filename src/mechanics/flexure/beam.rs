@@ -11,14 +11,14 @@
 //! u    = int 1 - cos theta - N/EA cos theta + V/GA_s sin theta          (shortening)
 //! ```
 //!
-//! All three are derivatives of one potential of theta, H and Q, so that the tables below are symmetric and
-//! shortening and deflection are far more exact than theta itself.
+//! All three are derivatives of one potential of theta, H and Q, so that the matrices below are symmetric and
+//! shortening and deflection are far more accurate than theta itself.
 //!
-//! **The bump.** Split theta = even + odd about the middle. Where the flexure carries a bump, the odd part is
-//! written as sqrt(q) psi with the leading coefficient of psi set to 1 and the odd equations divided by
-//! sqrt(q): everything is then analytic in q, the square of the bump's amplitude, and regular where the bump
-//! vanishes. With the coefficients themselves as unknowns the equations are singular there, and a second,
-//! unstable solution waits beside.
+//! **The bump.** Split theta = even + odd about the middle. If the flexure has a bump, the odd part is
+//! written as sqrt(q) psi with the leading coefficient of psi set to 1, and the odd equations are divided by
+//! sqrt(q). Everything is then analytic in q, the square of the bump's amplitude, and regular where the bump
+//! vanishes. With the coefficients themselves as unknowns the equations are singular there, with a second,
+//! unstable solution close by.
 
 use super::basis::Basis;
 
@@ -35,20 +35,20 @@ pub(super) struct Beam {
     pub stretch: f64,
     /// 1/GA_s.
     pub shear: f64,
-    /// Coefficients of the rotation of the stress-free flexure; empty where it is straight.
+    /// Coefficients of the rotation of the stress-free flexure; empty if it is straight.
     pub natural: Vec<f64>,
-    /// How much shorter than its arc the stress-free flexure is.
+    /// Arc length of the stress-free flexure less the distance between its ends.
     pub natural_shortening: f64,
 }
 
-/// What the odd part of a flexure's rotation is.
+/// Form of the odd part of a flexure's rotation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Shape {
-    /// None.
+    /// No odd part.
     Straight,
-    /// A bump that may point either way: sqrt(q) psi.
+    /// A bump that may point to either side: sqrt(q) psi.
     Bump,
-    /// A bump that an initial bow gave its side: plain coefficients.
+    /// A bump whose side is given by an initial bow: plain coefficients.
     Bowed,
 }
 
@@ -58,9 +58,9 @@ pub(super) struct Rotation<'a> {
     pub shape: Shape,
     /// Coefficients of the even part.
     pub even: &'a [f64],
-    /// Coefficients of psi, or of the odd part itself; empty where it is straight.
+    /// Coefficients of psi for a bump, of the odd part itself for a bow; empty for a straight flexure.
     pub odd: &'a [f64],
-    /// The square of the bump's amplitude; 1 where it is bowed.
+    /// The square of the bump's amplitude; 1 for a bowed flexure.
     pub q: f64,
     /// Axial force H, positive in tension.
     pub axial: f64,
@@ -72,30 +72,35 @@ pub(super) struct Rotation<'a> {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Terms {
     pub modes: usize,
-    /// Residual of the moment equation, even and odd part.
+    /// Even part of the residual of the moment equation.
     pub even: Vec<f64>,
+    /// Odd part of that residual.
     pub odd: Vec<f64>,
-    /// Derivatives of the even residual by the even coefficients, of the odd by the odd, and of the odd
-    /// (rows) by the even (columns); row by row.
+    /// Derivatives of the even residual with respect to the even coefficients, row by row.
     pub even_even: Vec<f64>,
+    /// Derivatives of the odd residual with respect to the odd coefficients, row by row.
     pub odd_odd: Vec<f64>,
+    /// Derivatives of the odd residual (rows) with respect to the even coefficients (columns), row by row.
     pub odd_even: Vec<f64>,
-    /// Derivatives of the residuals by H, Q and q.
+    /// Derivatives of the even residual with respect to H, Q and q.
     pub even_by: [Vec<f64>; 3],
+    /// Derivatives of the odd residual with respect to H, Q and q.
     pub odd_by: [Vec<f64>; 3],
-    /// Deflection y(L) and shortening u.
+    /// Deflection y(L).
     pub deflection: f64,
+    /// Shortening u.
     pub shortening: f64,
-    /// du/dH (negative), du/dQ = -dy/dH, and dy/dQ at fixed rotation.
+    /// du/dH at fixed rotation (negative).
     pub shortening_by_axial: f64,
+    /// du/dQ = -dy/dH at fixed rotation.
     pub shortening_by_lateral: f64,
+    /// dy/dQ at fixed rotation.
     pub deflection_by_lateral: f64,
     /// Strain energy.
     pub energy: f64,
 }
 
-/// cos(sqrt(q) psi), sin(sqrt(q) psi)/sqrt(q) and the derivative of the latter by q: analytic, also for q <
-/// 0.
+/// cos(sqrt(q) psi), sin(sqrt(q) psi)/sqrt(q) and its derivative with respect to q: analytic, also for q < 0.
 fn odd_functions(q: f64, psi: f64) -> (f64, f64, f64) {
     let square = q * psi * psi;
     if square.abs() <= 1.0 {
@@ -168,7 +173,7 @@ impl Beam {
             let (sine, cosine) = angle.sin_cos();
             let (c, s, s_by_q) = odd_functions(q, psi);
             let (cosine_2, sine_2) = (cosine * cosine - sine * sine, 2.0 * sine * cosine);
-            // Of the doubled odd part: its cosine, and its sine over sqrt(q).
+            // The cosine of the doubled odd part, and its sine over sqrt(q).
             let (c_2, s_2) = (1.0 - 2.0 * q * s * s, 2.0 * s * c);
             // N and V of the even part alone, and from them N^2 - V^2 and 2 N V.
             let normal = h * cosine + lateral * sine;
@@ -179,14 +184,15 @@ impl Beam {
             let odd_load = -s * normal - 0.5 * kappa * s_2 * difference;
             let even_weight = c * normal + kappa * c_2 * difference;
             let odd_weight = s * shear + kappa * s_2 * product;
-            // Half of N^2 - V^2, and the tension's share of the deflection, rotate by the doubled angle.
+            // The shares of shortening and deflection from axial and shear strain depend on
+            // the doubled angle.
             let along = 0.5 * (h * cosine_2 + lateral * sine_2);
             let across = 0.5 * (h * sine_2 - lateral * cosine_2);
             let half = odd_functions(q, 0.5 * psi).1;
             let half_sine = (0.5 * angle).sin();
-            let lost = 2.0 * half_sine * half_sine + cosine * q * 2.0 * half * half;
+            let shortened = 2.0 * half_sine * half_sine + cosine * q * 2.0 * half * half;
             t.deflection += weight * (c * sine + kappa * c_2 * across);
-            t.shortening += weight * (lost - kappa * c_2 * along);
+            t.shortening += weight * (shortened - kappa * c_2 * along);
             t.shortening_by_axial -= 0.5 * weight * kappa * c_2 * cosine_2;
             t.shortening_by_lateral -= 0.5 * weight * kappa * c_2 * sine_2;
             t.deflection_by_lateral -= 0.5 * weight * kappa * c_2 * cosine_2;

@@ -1,10 +1,9 @@
 //! Joint equilibrium of all flexures.
 //!
 //! The shuttle does not rotate and is free axially: both groups share the lateral displacement x, their
-//! shortenings add up to the preload and their axial forces are equal. Unknown are the rotations, the two
-//! lateral forces and the compression P that the groups exchange. Newton's method with the exact derivatives;
-//! what makes it converge where other solvers fail is the form of the bump's equations (see
-//! [`beam`](super::beam)).
+//! shortenings add up to the preload, and their axial forces are equal. The unknowns are the rotations, the
+//! two lateral forces and the axial compression P. They are solved by Newton's method with exact derivatives;
+//! it converges reliably because of the form of the bump's equations (see [`beam`](super::beam)).
 
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 
@@ -12,23 +11,24 @@ use super::basis::Basis;
 use super::beam::{Beam, Shape, Terms};
 use super::point::Point;
 
-/// A step smaller than this part of the unknowns ends the iteration: the next one would be its square.
+/// Step, relative to the unknowns, below which the iteration has converged: the next step would
+/// be its square.
 const SMALL_STEP: f64 = 1e-9;
 
-/// After a step as small as this the matrix before it is the matrix at the solution.
+/// Step below which the last matrix is used as the matrix at the solution.
 const SAME_MATRIX: f64 = 1e-12;
 
-/// Where two groups are about to buckle at once the steps do not shrink below the rounding of an
-/// ill-conditioned matrix; from the seventh on this is enough.
+/// Step that is accepted from the seventh iteration on. If two groups are about to buckle together, rounding
+/// in the ill-conditioned matrix keeps the steps from shrinking further.
 const STALLED_STEP: f64 = 1e-6;
 
-/// More iterations than a convergent run needs; from a fair guess there are three to six.
-const MOST_ITERATIONS: usize = 16;
+/// Largest number of iterations; from a good guess three to six are needed.
+const MAX_ITERATIONS: usize = 16;
 
-/// The largest change of a coefficient of the rotation in one iteration; more leads astray.
-const LARGEST_TURN: f64 = 0.6;
+/// Largest change of a coefficient of the rotation in one iteration; larger steps tend to diverge.
+const MAX_ROTATION: f64 = 0.6;
 
-/// The flexures in scaled units, with the functions that their rotations are written in.
+/// The flexures in scaled units with the basis functions of their rotations.
 #[derive(Debug, Clone)]
 pub(super) struct System {
     /// The parallel and the buckling flexures.
@@ -38,22 +38,23 @@ pub(super) struct System {
     pub basis: Basis,
 }
 
+/// Condition that selects one equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Prescribed {
-    /// The displacement.
+    /// The displacement is given.
     Displacement(f64),
-    /// The vanishing of this group's bump; the displacement is found.
+    /// The bump of this group vanishes; the displacement is an unknown.
     BumpVanishes(usize),
 }
 
-/// The iteration ended without an answer; the size of its last step, relative to the unknowns.
+/// Failure of the iteration to converge, with the size of its last step relative to the unknowns.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Stalled {
     pub residual: f64,
 }
 
 impl System {
-    /// The state without any sway: the flexures compressed, straight or as bowed as they are made.
+    /// The state without sway: compressed flexures that are straight or have their stress-free bow.
     pub fn straight(&self) -> Point {
         let compliance: f64 = self.beams.iter().map(|b| b.length * b.stretch / b.count).sum();
         let shapes = std::array::from_fn(|g| match self.beams[g].natural.is_empty() {
@@ -76,7 +77,7 @@ impl System {
 
     /// Solves for the equilibrium near `guess`.
     ///
-    /// Returns the point with force, stiffness and energy; fails where the iteration does not converge.
+    /// Returns the point with force, stiffness and energy; fails if the iteration does not converge.
     pub fn solve(&self, guess: &Point, prescribed: Prescribed) -> Result<Point, Stalled> {
         let mut point = guess.clone();
         match prescribed {
@@ -84,7 +85,7 @@ impl System {
             Prescribed::BumpVanishes(group) => point.q[group] = 0.0,
         }
         let mut residual = f64::INFINITY;
-        for iteration in 0..MOST_ITERATIONS {
+        for iteration in 0..MAX_ITERATIONS {
             let terms = self.terms(&point);
             let (matrix, right) = self.assemble(&point, &terms, prescribed);
             let factors = matrix.lu();
@@ -100,16 +101,16 @@ impl System {
         Err(Stalled { residual })
     }
 
-    /// Takes Newton's step, shortened where it turns too far; returns its full size relative to the unknowns.
+    /// Takes Newton's step, shortened to [`MAX_ROTATION`]; returns its full size relative to the unknowns.
     fn advance(&self, point: &mut Point, step: &DVector<f64>, prescribed: Prescribed) -> f64 {
         let mut unknowns = point.unknowns();
         let rotations = unknowns.len() - 3;
-        let turn = step.iter().take(rotations).fold(0.0_f64, |most, s| most.max(s.abs()));
-        let shorten = if turn > LARGEST_TURN { LARGEST_TURN / turn } else { 1.0 };
+        let turn = step.iter().take(rotations).fold(0.0_f64, |largest, s| largest.max(s.abs()));
+        let shorten = if turn > MAX_ROTATION { MAX_ROTATION / turn } else { 1.0 };
         let column = self.displacement_column(point, prescribed);
         let mut size: f64 = 0.0;
         for (i, (value, change)) in unknowns.iter_mut().zip(step.iter()).enumerate() {
-            // Adding carries a NaN along where `max` would drop it.
+            // the sum propagates a NaN, which `max` would drop
             size = size.max(change.abs() / (1.0 + value.abs())) + 0.0 * change;
             if Some(i) == column {
                 point.x += shorten * change;
@@ -117,11 +118,11 @@ impl System {
                 *value += shorten * change;
             }
         }
-        point.take(&unknowns);
+        point.set_unknowns(&unknowns);
         size
     }
 
-    /// Where among the unknowns the displacement stands in place of q.
+    /// Index of the unknown q that the displacement replaces, if any.
     fn displacement_column(&self, point: &Point, prescribed: Prescribed) -> Option<usize> {
         match prescribed {
             Prescribed::Displacement(_) => None,
@@ -129,7 +130,7 @@ impl System {
         }
     }
 
-    /// Where each group's unknowns begin, and where the three common ones do.
+    /// Indices of the first unknown of each group and of the first of the three common unknowns.
     fn offsets(&self, point: &Point) -> [usize; 3] {
         let size = |g: usize| point.even[g].len() + point.odd[g].len();
         [0, size(0), size(0) + size(1)]
@@ -139,8 +140,8 @@ impl System {
         std::array::from_fn(|g| self.beams[g].terms(&self.basis, &point.rotation(g, self.beams[g].count)))
     }
 
-    /// Newton's matrix and right-hand side. The rows stand in the order of the unknowns; the last three are
-    /// the two deflections and the sum of the shortenings.
+    /// Newton's matrix and right-hand side. The rows are in the order of the unknowns; the last three are the
+    /// two deflections and the sum of the shortenings.
     fn assemble(
         &self,
         point: &Point,
@@ -160,7 +161,7 @@ impl System {
             let (even, odd) = (offsets[g], offsets[g] + n);
             let (lateral, deflection_row) = (common + g, common + g);
             let bump = point.shapes[g] == Shape::Bump;
-            // By a bump's leading unknown, q, where plain coefficients have their own.
+            // The factor that the division of the odd rows by sqrt(q) leaves in the transposed entries.
             let q = point.q[g];
             for i in 0..n {
                 right[even + i] = -t.even[i];
@@ -209,7 +210,7 @@ impl System {
     }
 
     /// Adds force, stiffness and energy. The stiffness is the derivative of the lateral forces along the
-    /// solutions, from the factors of the last iteration.
+    /// branch, from the factors of the last iteration.
     fn finish(
         &self,
         mut point: Point,
@@ -230,8 +231,8 @@ impl System {
             change.map_or(f64::NAN, |c| counts[0] * c[common] + counts[1] * c[common + 1])
         };
         point.stiffness = match prescribed {
-            // The matrix of the last iteration is as far off as its step was long, and beside a rounded kink
-            // or a threshold the slope changes much faster than the state.
+            // The error of the last iteration's matrix is proportional to its step, and near a rounded kink
+            // or a buckling threshold the slope changes much faster than the state.
             Prescribed::Displacement(_) if residual < SAME_MATRIX => along(factors),
             _ => along(&self.assemble(&point, &terms, Prescribed::Displacement(point.x)).0.lu()),
         };

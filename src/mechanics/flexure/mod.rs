@@ -1,13 +1,13 @@
-//! Force of a buckled flexure mechanism.
+//! Restoring force of a buckled flexure mechanism.
 //!
-//! `count` parallel flexures hold the shuttle on one side, one or more buckling flexures on the other; all
-//! are clamped at both ends, the shuttle does not rotate and is free axially. A preload pushes the two groups
-//! together: the buckling flexures bulge, and the sway of all of them has two stable sides. The curve ends in
-//! a kink where the bulge is used up and the flexures are taut.
+//! `count` parallel flexures hold the shuttle on one side and one or more buckling flexures on the other. All
+//! are clamped at both ends; the shuttle does not rotate and is free axially. A preload pushes the two groups
+//! together: the buckling flexures bulge, and the sway of all flexures has two stable sides. The force has a
+//! kink where the bulge vanishes and the flexures become taut.
 //!
 //! Method: geometrically exact beams (Reissner 1972) in a spectral discretisation (`basis`), the equilibrium
-//! equations of all of them at once (`equilibrium`), the stable branch with its kinks (`branch`), and
-//! from a few dozen states the piecewise polynomial (`pieces`).
+//! equations of all beams together (`equilibrium`), the stable branch with its kinks (`branch`), and a
+//! piecewise polynomial through a few dozen states (`pieces`).
 
 mod accuracy;
 mod basis;
@@ -23,31 +23,31 @@ mod stability;
 use std::sync::atomic::AtomicBool;
 
 pub use accuracy::Accuracy;
-use accuracy::measured;
+use accuracy::measure;
 use beam::{Beam, Shape};
 use branch::Segment;
 use equilibrium::Prescribed;
-use pieces::{Scale, Stretch};
+use pieces::{Scale, ScaledPiece};
 use point::Point;
-use shape::Bent;
-use solver::{Lost, Solver};
+use shape::Deflected;
+use solver::{Failure, Solver};
 
 use super::curve::{ForceCurve, Piece};
 
 /// Shear coefficient of a rectangular section.
 const SHEAR_FACTOR: f64 = 5.0 / 6.0;
 
-/// The coefficients that a rotation may leave out, as this many times the root of the tolerance: the force
-/// then has a hundredth of the tolerance from there.
+/// Neglected coefficients of a rotation relative to the square root of the tolerance. They contribute a
+/// hundredth of the tolerance to the error of the force.
 const TAIL: f64 = 0.3;
 
-/// The same for a state that a person asks for, and for those that a curve is compared with.
+/// Neglected coefficients of the rotation at single states, which are solved more accurately than a curve.
 const FINE_TAIL: f64 = 1e-6;
 
-/// Flexures that are alike and share both ends.
+/// Equal flexures in parallel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Group {
-    /// How many, 1 or more.
+    /// Number of flexures, 1 or more.
     pub count: usize,
     /// Length of each in m, along the flexure.
     pub length: f64,
@@ -58,7 +58,7 @@ pub struct Group {
 /// The geometry and material of a mechanism, in SI.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Geometry {
-    /// By how much the two groups are pushed together axially, from their stress-free lengths, in m.
+    /// Axial distance in m by which the two groups are pushed together from their stress-free lengths.
     pub preload: f64,
     /// Thickness of all flexures in m.
     pub thickness: f64,
@@ -66,9 +66,10 @@ pub struct Geometry {
     pub young: f64,
     /// Poisson's ratio.
     pub poisson: f64,
-    /// Whether the strips are so wide that they cannot contract sideways: E/(1 - poisson^2) in place of E.
+    /// Whether the flexures are so wide that they cannot contract sideways: E/(1 - poisson^2) replaces E.
     pub plane_strain: bool,
-    /// Deflection in m of the middle of the stress-free buckling flexure: a bow of the first buckling mode.
+    /// Deflection in m of the middle of the stress-free buckling flexure, in the form of the
+    /// first buckling mode.
     pub initial_bow: f64,
     /// Stress in Pa at which the flexures yield.
     pub yield_stress: f64,
@@ -79,17 +80,17 @@ pub struct Geometry {
 }
 
 impl Accuracy {
-    /// Whether a state needed more functions than there are: its flexures are so thin that it is not resolved
-    /// where they bend.
+    /// Whether a state needed the largest number of functions: its flexures are so thin that their bending is
+    /// not resolved.
     pub fn is_at_limit(&self) -> bool {
-        self.modes >= solver::MOST_MODES
+        self.modes >= solver::MAX_MODES
     }
 }
 
-/// Why no curve could be computed; x in m.
+/// Reason why no curve could be computed; x in m.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum FlexureError {
-    /// Newton's iteration came to no end.
+    /// Newton's iteration did not converge.
     #[error(
         "the equilibrium of the flexures at x = {} mm was not found (residual {residual:.1e}): {}",
         crate::numeric::short(x * 1e3),
@@ -103,19 +104,19 @@ pub enum FlexureError {
         /// Whether there is a preload.
         is_preloaded: bool,
     },
-    /// It takes too long.
+    /// The solver stopped after too much work, or was cancelled.
     #[error(
         "the flexures take more work than can be meant, at x = {} mm: {}",
         crate::numeric::short(x * 1e3),
         remedy(*is_preloaded)
     )]
-    Endless {
+    TooMuchWork {
         /// Position in m.
         x: f64,
         /// Whether there is a preload.
         is_preloaded: bool,
     },
-    /// No stable equilibrium could be followed.
+    /// The stable branch ended.
     #[error(
         "the flexures have no stable shape of this kind at x = {} mm: {}",
         crate::numeric::short(x * 1e3),
@@ -129,23 +130,23 @@ pub enum FlexureError {
     },
 }
 
-/// What may be solved in place of a geometry.
+/// Advice after a failed solve.
 fn remedy(is_preloaded: bool) -> &'static str {
     if is_preloaded { "try a smaller preload or other proportions" } else { "try other proportions" }
 }
 
-/// The centre line of one flexure of a group; all of a group are alike.
+/// The centre line of one flexure of a group; all flexures of a group are equal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CentreLine {
     /// `parallel` or `buckling`.
     pub flexure: &'static str,
-    /// Arc length s from the clamp on the frame and the position px (axial), py (lateral), each in m. With a
-    /// shuttle of no width the parallel flexures are clamped at (0, 0), the buckling ones at their common
-    /// stress-free length less the preload.
+    /// Arc length s from the clamp on the frame and the position px (axial), py (lateral), each in m. For a
+    /// shuttle of zero width the parallel flexures are clamped to the frame at (0, 0) and the buckling
+    /// flexures at px equal to the sum of the stress-free lengths less the preload.
     pub points: Vec<[f64; 3]>,
 }
 
-/// The mechanism held at one x.
+/// State of the mechanism held at one x.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
     /// Position in m.
@@ -156,9 +157,9 @@ pub struct State {
     pub potential: f64,
     /// Stiffness in N/m; at a kink that of its inner side.
     pub stiffness: f64,
-    /// Axial force in N that the groups exchange, positive in compression.
+    /// Axial force in N, equal for both groups and positive in compression.
     pub axial: f64,
-    /// Deflection in m of the middle of a bulging flexure beyond its sway.
+    /// Deflection in m of the middle of a bulging flexure in excess of its sway.
     pub bump: f64,
     /// Largest bending stress in Pa.
     pub max_stress: f64,
@@ -166,7 +167,7 @@ pub struct State {
     pub lines: Vec<CentreLine>,
 }
 
-/// A solved mechanism: what its force curve was made from.
+/// A solved mechanism: the states that its force curve was computed from.
 #[derive(Debug, Clone)]
 pub struct Flexures {
     geometry: Geometry,
@@ -177,14 +178,14 @@ pub struct Flexures {
     units: Units,
 }
 
-/// Everything else follows from these two.
+/// Geometry and tolerance determine everything else.
 impl PartialEq for Flexures {
     fn eq(&self, other: &Self) -> bool {
         self.geometry == other.geometry && self.tolerance == other.tolerance
     }
 }
 
-/// Length and force of the scaled equations: those of one buckling flexure.
+/// Units of length and force of the scaled equations, from one buckling flexure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Units {
     length: f64,
@@ -194,23 +195,24 @@ struct Units {
 impl Flexures {
     /// Solves the mechanism.
     ///
-    /// Returns its force curve, odd bit for bit, with the flexures behind it. The domain reaches 1.15 times
-    /// the last kink, 1.1 times the wells and a tenth of the shortest flexure at least; breaks are the kinks,
-    /// and joints of pieces that meet smoothly.
+    /// Returns the force curve, odd bit for bit, and the solved flexures. The domain ends at 1.15 times the
+    /// last kink, 1.1 times the wells or a tenth of the shortest flexure, whichever is farthest; breaks are
+    /// the kinks and the joints of pieces that meet smoothly.
     ///
     /// Preconditions: sizes above 0, a preload from 0 to half of the shorter flexure, a thickness of at most
     /// a tenth of it.
     ///
-    /// Guarantee: force and potential within `tolerance` (1e-6 to 1e-9) and stiffness within 100 times it at
-    /// the points that were looked at, relative to what [`Accuracy`] says. A preload up to a quarter of the
-    /// shorter flexure solves; beyond, the stable branch may end, which is an error.
+    /// Guarantee: at the checked points, force and potential are within `tolerance` (1e-6 to 1e-9) and
+    /// the stiffness within 100 times `tolerance`, relative to the references in [`Accuracy`]. A preload
+    /// up to a quarter of the shorter flexure can be solved; beyond that the stable branch may end, which
+    /// is an error.
     ///
-    /// `tolerance` trades time for closeness; at 1e-8 it takes milliseconds.
+    /// A smaller `tolerance` takes longer; 1e-8 takes milliseconds.
     pub fn solve(geometry: &Geometry, tolerance: f64) -> Result<(ForceCurve, Self), FlexureError> {
         Self::solve_unless(geometry, tolerance, None)
     }
 
-    /// As [`solve`](Self::solve); once `cancel` is set, it soon fails with any error.
+    /// Like [`solve`](Self::solve), but fails with an arbitrary error soon after `cancel` is set.
     pub fn solve_unless(
         geometry: &Geometry,
         tolerance: f64,
@@ -218,25 +220,25 @@ impl Flexures {
     ) -> Result<(ForceCurve, Self), FlexureError> {
         let (mut solver, units) = scaled(geometry, TAIL * tolerance.sqrt(), cancel);
         let is_preloaded = geometry.preload > 0.0;
-        let lost = |lost: Lost| match lost {
-            Lost::NotConverged { x, residual } => {
+        let in_metres = |failure: Failure| match failure {
+            Failure::NotConverged { x, residual } => {
                 FlexureError::NotConverged { x: x * units.length, residual, is_preloaded }
             }
-            Lost::Unstable { x } => FlexureError::Unstable { x: x * units.length, is_preloaded },
-            Lost::Endless { x } => FlexureError::Endless { x: x * units.length, is_preloaded },
+            Failure::Unstable { x } => FlexureError::Unstable { x: x * units.length, is_preloaded },
+            Failure::TooMuchWork { x } => FlexureError::TooMuchWork { x: x * units.length, is_preloaded },
         };
-        let mut segments = branch::trace(&mut solver).map_err(lost)?;
-        // Potentials are differences from this state, and wells may be shallow beside the energy of the
-        // preload.
+        let mut segments = branch::trace(&mut solver).map_err(in_metres)?;
+        // Potentials are differences from this state, and wells may be shallow compared with the energy of
+        // the preload, so solve it more accurately.
         let coarse = std::mem::replace(&mut solver.tail, FINE_TAIL);
-        let rest = solver.solve(&segments[0].points[0], Prescribed::Displacement(0.0)).map_err(lost)?;
+        let rest = solver.solve(&segments[0].points[0], Prescribed::Displacement(0.0)).map_err(in_metres)?;
         segments[0].points[0] = rest;
         solver.tail = coarse;
         let scale = Scale::of(&segments);
-        let stretches = pieces::fit(&mut solver, &mut segments, scale, tolerance).map_err(lost)?;
-        let curve = curve(&stretches, units);
-        let accuracy = measured(&curve, &stretches, &segments, scale, units, &solver);
-        let solver = solver.forget();
+        let scaled_pieces = pieces::fit(&mut solver, &mut segments, scale, tolerance).map_err(in_metres)?;
+        let curve = curve(&scaled_pieces, units);
+        let accuracy = measure(&curve, &scaled_pieces, &segments, scale, units, &solver);
+        let solver = solver.without_cache();
         Ok((curve, Self { geometry: geometry.clone(), tolerance, accuracy, solver, segments, units }))
     }
 
@@ -245,22 +247,22 @@ impl Flexures {
         &self.geometry
     }
 
-    /// How good the curve is, measured at fresh solutions that it was not made of.
+    /// Errors of the curve, measured at states that were not used to build it.
     pub fn accuracy(&self) -> &Accuracy {
         &self.accuracy
     }
 
-    /// The mechanism held at `x` in m, solved for afresh; within the domain of the curve.
+    /// Solves the mechanism held at `x` in m, within the domain of the curve.
     pub fn state(&self, x: f64) -> Result<State, FlexureError> {
         let mut solver = self.solver.clone();
         solver.tail = FINE_TAIL;
         let distance = x.abs() / self.units.length;
         let last = self.segments.len() - 1;
-        // In metres, as the curve has its breaks: x/length may round to the other side of a kink.
+        // Compare in metres, like the breaks of the curve: x/length may round to the other side of a kink.
         let beyond = |segment: &Segment| segment.to * self.units.length < x.abs();
         let segment = &self.segments[self.segments.partition_point(beyond).min(last)];
         let is_preloaded = self.geometry.preload > 0.0;
-        let mut point = segment.afresh(&mut solver, distance).map_err(|_| FlexureError::NotConverged {
+        let mut point = segment.solve_at(&mut solver, distance).map_err(|_| FlexureError::NotConverged {
             x,
             residual: f64::NAN,
             is_preloaded,
@@ -277,9 +279,9 @@ impl Flexures {
     fn described(&self, solver: &mut Solver, point: &Point, x: f64) -> State {
         let Units { length, force } = self.units;
         let system = solver.system(point.even[0].len()).clone();
-        let bent: [Bent; 2] = std::array::from_fn(|g| Bent::of(&system.beams[g], point, g));
-        let curvature = bent[0].curvature().max(bent[1].curvature()) / length;
-        let lines = bent.each_ref().map(Bent::line);
+        let deflected: [Deflected; 2] = std::array::from_fn(|g| Deflected::of(&system.beams[g], point, g));
+        let curvature = deflected[0].curvature().max(deflected[1].curvature()) / length;
+        let lines = deflected.each_ref().map(Deflected::line);
         let bumps = (0..2).filter(|g| point.shapes[*g] != Shape::Straight).map(|g| shape::bump(&lines[g]));
         let bump = bumps.fold(0.0, f64::max);
         let clamp = (0..2).map(|g| system.beams[g].length - system.beams[g].natural_shortening).sum::<f64>()
@@ -312,7 +314,7 @@ fn bending_modulus(geometry: &Geometry) -> f64 {
     if *plane_strain { young / (1.0 - poisson * poisson) } else { *young }
 }
 
-/// The equations in units of one buckling flexure: its length, and its EI over that length squared.
+/// The equations in units of one buckling flexure: its length, and its EI over the square of that length.
 fn scaled<'a>(geometry: &Geometry, tail: f64, cancel: Option<&'a AtomicBool>) -> (Solver<'a>, Units) {
     let Geometry { thickness, young, poisson, .. } = *geometry;
     let modulus = bending_modulus(geometry);
@@ -334,23 +336,23 @@ fn scaled<'a>(geometry: &Geometry, tail: f64, cancel: Option<&'a AtomicBool>) ->
     (Solver::new(beams, geometry.preload / length, [0.0, bow], tail, cancel), Units { length, force })
 }
 
-/// The whole curve from its right half.
-fn curve(stretches: &[Stretch], units: Units) -> ForceCurve {
-    let piece = |stretch: &Stretch| {
+/// The whole curve in SI units from the scaled pieces of its right half.
+fn curve(scaled_pieces: &[ScaledPiece], units: Units) -> ForceCurve {
+    let piece = |scaled_piece: &ScaledPiece| {
         let mut power = 1.0;
-        let coefficients = stretch.coefficients.iter().map(|c| {
+        let coefficients = scaled_piece.coefficients.iter().map(|c| {
             let scaled = c * units.force / power;
             power *= units.length;
             scaled
         });
         Piece {
-            origin: stretch.origin * units.length,
+            origin: scaled_piece.origin * units.length,
             coefficients: coefficients.collect(),
             potential_at_origin: 0.0,
         }
     };
-    let right: Vec<Piece> = stretches.iter().map(piece).collect();
-    let ends: Vec<f64> = stretches.iter().map(|s| s.to * units.length).collect();
+    let right: Vec<Piece> = scaled_pieces.iter().map(piece).collect();
+    let ends: Vec<f64> = scaled_pieces.iter().map(|s| s.to * units.length).collect();
     let (breaks, end) = (&ends[..ends.len() - 1], ends[ends.len() - 1]);
     let left = right.iter().skip(1).rev().map(Piece::mirrored);
     let pieces: Vec<Piece> = left.chain(right.iter().cloned()).collect();

@@ -1,10 +1,9 @@
 //! Piecewise polynomial through the states of a branch.
 //!
-//! Every solved state gives force and slope, so each piece is Hermite's interpolant at Chebyshev-Lobatto
-//! points: neighbouring pieces share value and slope, and nothing is smoothed across a kink. Inside the kink
-//! one odd polynomial is enough; the pieces of the taut branch are as long as the tolerance allows. Each
-//! piece is compared with fresh states between its points, and these comparisons are the accuracy that is
-//! reported.
+//! Every solved state gives force and slope, so each piece is a Hermite interpolant at Chebyshev-Lobatto
+//! points: neighbouring pieces share value and slope, and nothing is smoothed across a kink. Inside the first
+//! kink one odd polynomial is enough; the pieces of the taut branch are as long as the tolerance allows. Each
+//! piece is compared with independently solved states between its points, which give the reported accuracy.
 
 use std::f64::consts::PI;
 
@@ -12,58 +11,59 @@ use nalgebra::{DMatrix, DVector};
 
 use super::branch::Segment;
 use super::point::Point;
-use super::solver::{Lost, Solver};
+use super::solver::{Failure, Solver};
 
 /// Points of a piece; its degree is twice this less one.
 const POINTS: usize = 7;
 
-/// Points of the odd piece about x = 0 at x > 0; with the slope at 0 its degree is 4 times this and one.
+/// Points at x > 0 of the odd piece about x = 0; with the slope at 0 its degree is 4 times this plus one.
 const ODD_POINTS: usize = 3;
 
-/// Where, from -1 to 1 along a piece, it is compared with fresh states. At cos(phi) the error of the force
-/// goes with sin(6 phi)^2 and that of the slope with sin(12 phi), which vanishes where the first is largest;
-/// at 160, 110 and 50 degrees they have three quarters and nine tenths of their largest values.
+/// Positions, from -1 to 1 along a piece, at which it is compared with solved states. At cos(phi) the
+/// error of the force is proportional to sin(6 phi)^2 and that of the slope to sin(12 phi), which is 0
+/// where the first is largest; at 160, 110 and 50 degrees they have three quarters and nine tenths of
+/// their largest values.
 const CHECKS: [f64; 3] = [-0.94, -0.342, 0.643];
 
-/// The same for the odd piece, from 0 to 1; the innermost is for wells much shallower than the forces at the
-/// kink.
+/// Positions, from 0 to 1, at which the odd piece is compared with solved states; the innermost is for wells
+/// much shallower than the forces at the kink.
 const ODD_CHECKS: [f64; 4] = [0.174, 0.342, 0.643, 0.94];
 
-/// The slope may be off by this many times the force's tolerance, relative to the slope at 0.
-const SLOPE: f64 = 100.0;
+/// Allowed error of the slope relative to the slope at 0, in units of the tolerance of the force.
+const SLOPE_FACTOR: f64 = 100.0;
 
-/// The share of the tolerance that a piece may use up; the rest is for places that were not looked at.
-const SHARE: f64 = 0.5;
+/// Share of the tolerance that a piece may use at the checks; the rest is a margin for other positions.
+const CHECK_SHARE: f64 = 0.5;
 
-/// The share of the outermost segment that its first piece takes, where it meets the tolerance there.
-const FIRST: f64 = 0.3;
+/// Share of the outermost segment that its first piece covers, if it meets the tolerance.
+const FIRST_SHARE: f64 = 0.3;
 
-/// The share that giving up the highest degrees may use.
-const SHARE_OF_DEGREES: f64 = 0.2;
+/// Share of the tolerance that dropping the highest degrees may use.
+const DEGREE_SHARE: f64 = 0.2;
 
-/// The states that a piece is compared with leave out this much less of the rotation than those it is made
-/// of.
+/// Neglected tail of the rotation at check states, relative to that of the states a piece is built from.
 const CHECK_TAIL: f64 = 0.1;
 
-/// A piece shorter than this part of its position means that the curve is not smooth there.
-const SHORTEST: f64 = 1e-9;
+/// Smallest length of a piece relative to its position; a shorter one means that the curve is
+/// not smooth there.
+const MIN_LENGTH: f64 = 1e-9;
 
-/// A segment shorter than this part of its position, between the kinks of two groups that are almost alike,
-/// is a straight line: over so little the force bends by less than its rounding, and rounding over so little
-/// is a slope.
-const STRAIGHT: f64 = 3e-8;
+/// Length of a segment, relative to its position, below which it is a straight line. Such segments lie
+/// between the kinks of two nearly equal groups; the force there is straight to rounding, and a slope
+/// computed from it would be dominated by rounding.
+const STRAIGHT_LENGTH: f64 = 3e-8;
 
 /// A polynomial in x - origin on an interval of x >= 0, in scaled units.
 #[derive(Debug, Clone)]
-pub(super) struct Stretch {
+pub(super) struct ScaledPiece {
     pub to: f64,
     pub origin: f64,
     pub coefficients: Vec<f64>,
-    /// The fresh states that it was compared with.
+    /// The solved states that it was compared with.
     pub checks: Vec<Point>,
 }
 
-impl Stretch {
+impl ScaledPiece {
     fn force(&self, x: f64) -> f64 {
         self.coefficients.iter().rev().fold(0.0, |sum, c| sum * (x - self.origin) + c)
     }
@@ -74,34 +74,33 @@ impl Stretch {
     }
 }
 
-/// What an error is relative to.
+/// Reference values of the relative errors.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Scale {
-    /// The largest force between the wells; 0 where there is one well.
+    /// The largest force between the wells; 0 with a single well.
     pub force: f64,
-    /// The slope at x = 0, without its sign.
+    /// The magnitude of the slope at x = 0.
     pub stiffness: f64,
-    /// How far the inside reaches: to the last kink, where there is none to the outermost equilibrium, 0 for
-    /// one well.
+    /// The end of the inside: the last kink, or the outermost equilibrium without kinks; 0 for a single well.
     pub inside: f64,
 }
 
 impl Scale {
     pub fn of(segments: &[Segment]) -> Self {
         let points = segments.iter().flat_map(|s| &s.points);
-        let force = points.clone().fold(0.0_f64, |most, p| most.max(-p.force));
+        let force = points.clone().fold(0.0_f64, |largest, p| largest.max(-p.force));
         let stiffness = segments[0].points[0].stiffness.abs();
         let kink = segments[segments.len() - 1].from;
         let pulled = points.filter(|p| p.force < 0.0).fold(0.0_f64, |last, p| last.max(p.x));
         Self { force, stiffness, inside: if kink > 0.0 { kink } else { pulled } }
     }
 
-    /// How far a stretch is off at a state, as a part of what `tolerance` allows.
-    fn miss(&self, stretch: &Stretch, point: &Point, tolerance: f64) -> f64 {
-        let force = (stretch.force(point.x) - point.force).abs() / self.force.max(point.force.abs());
-        let slope = (stretch.stiffness(point.x) - point.stiffness).abs() / self.stiffness;
-        let miss = if point.x <= self.inside { force.max(slope / SLOPE) } else { force };
-        miss / tolerance
+    /// Error of a piece at a solved state, relative to what `tolerance` allows.
+    fn error(&self, scaled_piece: &ScaledPiece, point: &Point, tolerance: f64) -> f64 {
+        let force = (scaled_piece.force(point.x) - point.force).abs() / self.force.max(point.force.abs());
+        let slope = (scaled_piece.stiffness(point.x) - point.stiffness).abs() / self.stiffness;
+        let error = if point.x <= self.inside { force.max(slope / SLOPE_FACTOR) } else { force };
+        error / tolerance
     }
 }
 
@@ -111,67 +110,67 @@ pub(super) fn fit(
     segments: &mut [Segment],
     scale: Scale,
     tolerance: f64,
-) -> Result<Vec<Stretch>, Lost> {
-    let mut stretches = Vec::new();
+) -> Result<Vec<ScaledPiece>, Failure> {
+    let mut scaled_pieces = Vec::new();
     let last = segments.len() - 1;
     for (i, segment) in segments.iter_mut().enumerate() {
         let kink_at_end = i < last;
         let length = segment.to - segment.from;
-        if length <= STRAIGHT * segment.to {
-            stretches.push(line(segment));
+        if length <= STRAIGHT_LENGTH * segment.to {
+            scaled_pieces.push(line(segment));
             continue;
         }
         let mut from = segment.from;
-        let mut size = if kink_at_end { length } else { FIRST * length };
+        let mut size = if kink_at_end { length } else { FIRST_SHARE * length };
         while from < segment.to {
             let to = if from + 1.2 * size >= segment.to { segment.to } else { from + size };
             let odd = from == 0.0;
-            let mut stretch =
+            let mut scaled_piece =
                 if odd { odd_piece(solver, segment, to)? } else { piece(solver, segment, from, to)? };
             if odd && kink_at_end && to == segment.to {
-                lower_degree(&mut stretch, scale, tolerance);
+                lower_degree(&mut scaled_piece, scale, tolerance);
             }
             let at = |t: f64| if odd { t * to } else { 0.5 * (from + to) + 0.5 * (to - from) * t };
-            let mut miss = 0.0_f64;
+            let mut error = 0.0_f64;
             for t in if odd { &ODD_CHECKS[..] } else { &CHECKS[..] } {
                 let tail = solver.tail;
                 solver.tail = CHECK_TAIL * tail;
                 let point = segment.at(solver, at(*t));
                 solver.tail = tail;
                 let point = point?;
-                miss = miss.max(scale.miss(&stretch, &point, tolerance));
-                stretch.checks.push(point);
-                // Hopeless: the rest would tell no more.
-                if miss > 1e3 {
+                error = error.max(scale.error(&scaled_piece, &point, tolerance));
+                scaled_piece.checks.push(point);
+                // far too large: further checks would not matter
+                if error > 1e3 {
                     break;
                 }
             }
-            // The error falls like the size to the power of the number of conditions.
-            let change = (0.3 * SHARE / miss.max(1e-30)).powf(0.5 / POINTS as f64);
-            if miss <= SHARE {
+            // the error grows like the size to the power of the number of conditions
+            let change = (0.3 * CHECK_SHARE / error.max(1e-30)).powf(0.5 / POINTS as f64);
+            if error <= CHECK_SHARE {
                 from = to;
                 size = (to - from).max(size) * change.clamp(0.5, 2.5);
-                stretches.push(stretch);
+                scaled_pieces.push(scaled_piece);
             } else {
                 size = (to - from) * change.clamp(0.1, 0.8);
-                if !(size > SHORTEST * segment.to) {
-                    return Err(Lost::NotConverged { x: from, residual: miss * tolerance });
+                if !(size > MIN_LENGTH * segment.to) {
+                    return Err(Failure::NotConverged { x: from, residual: error * tolerance });
                 }
             }
         }
     }
-    Ok(stretches)
+    Ok(scaled_pieces)
 }
 
 /// The straight line between the ends of a segment.
-fn line(segment: &Segment) -> Stretch {
+fn line(segment: &Segment) -> ScaledPiece {
     let (first, last) = (&segment.points[0], &segment.points[segment.points.len() - 1]);
     let slope = (last.force - first.force) / (last.x - first.x);
-    Stretch { to: last.x, origin: first.x, coefficients: vec![first.force, slope], checks: Vec::new() }
+    ScaledPiece { to: last.x, origin: first.x, coefficients: vec![first.force, slope], checks: Vec::new() }
 }
 
 /// The odd polynomial from 0 to `to`.
-fn odd_piece(solver: &mut Solver, segment: &mut Segment, to: f64) -> Result<Stretch, Lost> {
+fn odd_piece(solver: &mut Solver, segment: &mut Segment, to: f64) -> Result<ScaledPiece, Failure> {
     let terms = 2 * ODD_POINTS + 1;
     let mut matrix = DMatrix::zeros(terms, terms);
     let mut right = DVector::zeros(terms);
@@ -198,11 +197,11 @@ fn odd_piece(solver: &mut Solver, segment: &mut Segment, to: f64) -> Result<Stre
     for (degree, c) in degrees.iter().zip(all.iter()) {
         coefficients[*degree] = *c;
     }
-    Ok(Stretch { to, origin: 0.0, coefficients: monomials(&coefficients, to), checks: Vec::new() })
+    Ok(ScaledPiece { to, origin: 0.0, coefficients: monomials(&coefficients, to), checks: Vec::new() })
 }
 
 /// The polynomial from `from` to `to`.
-fn piece(solver: &mut Solver, segment: &mut Segment, from: f64, to: f64) -> Result<Stretch, Lost> {
+fn piece(solver: &mut Solver, segment: &mut Segment, from: f64, to: f64) -> Result<ScaledPiece, Failure> {
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
     let terms = 2 * POINTS;
     let mut matrix = DMatrix::zeros(terms, terms);
@@ -224,15 +223,15 @@ fn piece(solver: &mut Solver, segment: &mut Segment, from: f64, to: f64) -> Resu
         right[2 * j + 1] = point.stiffness * half;
     }
     let coefficients = solved(matrix, &right);
-    Ok(Stretch { to, origin: middle, coefficients: monomials(&coefficients, half), checks: Vec::new() })
+    Ok(ScaledPiece { to, origin: middle, coefficients: monomials(&coefficients, half), checks: Vec::new() })
 }
 
-/// The points of an interpolation are distinct, so that the matrix is regular.
+/// Solves for the coefficients of an interpolation; its points are distinct, so that the matrix is regular.
 fn solved(matrix: DMatrix<f64>, right: &DVector<f64>) -> Vec<f64> {
     matrix.lu().solve(right).map_or_else(|| vec![f64::NAN; right.len()], |c| c.as_slice().to_vec())
 }
 
-/// Chebyshev's polynomial of this degree and its derivative at `t`.
+/// Chebyshev polynomial of a given degree and its derivative at `t`.
 fn chebyshev(degree: usize, t: f64) -> (f64, f64) {
     let (mut value, mut next) = (1.0, t);
     let (mut slope, mut next_slope) = (0.0, 1.0);
@@ -269,34 +268,34 @@ fn monomials(chebyshev: &[f64], half: f64) -> Vec<f64> {
     sum
 }
 
-/// Gives up the highest degrees of the odd piece that the tolerance does not need; the value at its end
-/// stays.
+/// Drops the highest degrees of the odd piece that the tolerance does not need, without changing the value at
+/// its end.
 ///
-/// A run pays for each degree at every step. T_n - T_(n-2) is at most 2 and vanishes at the end.
-fn lower_degree(stretch: &mut Stretch, scale: Scale, tolerance: f64) {
-    let to = stretch.to;
+/// Each degree makes every step of a run slower. T_n - T_(n-2) is at most 2 and vanishes at the end.
+fn lower_degree(piece: &mut ScaledPiece, scale: Scale, tolerance: f64) {
+    let to = piece.to;
     let (mut force, mut slope) = (0.0, 0.0);
-    while stretch.coefficients.len() > 4 {
-        let highest = stretch.coefficients.len() - 1;
-        if stretch.coefficients[highest] == 0.0 {
-            stretch.coefficients.pop();
+    while piece.coefficients.len() > 4 {
+        let highest = piece.coefficients.len() - 1;
+        if piece.coefficients[highest] == 0.0 {
+            piece.coefficients.pop();
             continue;
         }
-        // The leading coefficient of T_n is 2^(n-1).
-        let size = stretch.coefficients[highest] * to.powi(highest as i32) / 2.0_f64.powi(highest as i32 - 1);
+        // the leading coefficient of T_n is 2^(n-1)
+        let size = piece.coefficients[highest] * to.powi(highest as i32) / 2.0_f64.powi(highest as i32 - 1);
         force += 2.0 * size.abs();
         slope += 4.0 * (highest - 1) as f64 * size.abs() / to;
-        if force > SHARE_OF_DEGREES * tolerance * scale.force
-            || slope > SHARE_OF_DEGREES * SLOPE * tolerance * scale.stiffness
+        if force > DEGREE_SHARE * tolerance * scale.force
+            || slope > DEGREE_SHARE * SLOPE_FACTOR * tolerance * scale.stiffness
         {
             return;
         }
-        let mut lost = vec![0.0; highest + 1];
-        lost[highest] = size;
-        lost[highest - 2] = -size;
-        for (c, m) in stretch.coefficients.iter_mut().zip(monomials(&lost, to)) {
+        let mut dropped = vec![0.0; highest + 1];
+        dropped[highest] = size;
+        dropped[highest - 2] = -size;
+        for (c, m) in piece.coefficients.iter_mut().zip(monomials(&dropped, to)) {
             *c -= m;
         }
-        stretch.coefficients.truncate(highest);
+        piece.coefficients.truncate(highest);
     }
 }

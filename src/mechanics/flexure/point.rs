@@ -1,4 +1,4 @@
-//! Equilibrium of the whole mechanism at one displacement, as the vector of its unknowns.
+//! Equilibrium of the whole mechanism at one displacement, and its vector of unknowns.
 
 use super::basis::Basis;
 use super::beam::{Rotation, Shape};
@@ -9,16 +9,19 @@ pub(super) struct Point {
     pub x: f64,
     pub shapes: [Shape; 2],
     pub even: [Vec<f64>; 2],
-    /// Coefficients of psi with a leading 1 (a bump), of the odd part (bowed), or nothing.
+    /// Coefficients of psi with a leading 1 for a bump, of the odd part for a bow; empty for
+    /// a straight group.
     pub odd: [Vec<f64>; 2],
     pub q: [f64; 2],
     /// Lateral force of one flexure of each group.
     pub lateral: [f64; 2],
-    /// Compression that the groups exchange.
+    /// Axial compression, equal for both groups.
     pub compression: f64,
-    /// dV/dx, its derivative, and the strain energy.
+    /// dV/dx.
     pub force: f64,
+    /// d2V/dx2.
     pub stiffness: f64,
+    /// Strain energy.
     pub energy: f64,
 }
 
@@ -34,8 +37,8 @@ impl Point {
         }
     }
 
-    /// The unknowns in a row: for each group the even coefficients and, where there are any, the odd ones (of
-    /// a bump, q stands in place of the leading 1); then the lateral forces and the compression.
+    /// The vector of unknowns: for each group the even coefficients and the odd coefficients, if any (q takes
+    /// the place of the leading 1 of a bump); then the lateral forces and the compression.
     pub(super) fn unknowns(&self) -> Vec<f64> {
         let mut all = Vec::new();
         for group in 0..2 {
@@ -51,8 +54,8 @@ impl Point {
         all
     }
 
-    /// Takes the unknowns back; the inverse of [`Self::unknowns`].
-    pub(super) fn take(&mut self, all: &[f64]) {
+    /// Sets the unknowns; the inverse of [`Self::unknowns`].
+    pub(super) fn set_unknowns(&mut self, all: &[f64]) {
         let mut at = 0;
         for group in 0..2 {
             for part in [&mut self.even[group], &mut self.odd[group]] {
@@ -68,42 +71,42 @@ impl Point {
         self.compression = all[at + 2];
     }
 
-    /// The same state with other shapes: a bump that appears has vanishing size and the form of the first
-    /// buckling mode, one that goes leaves nothing.
+    /// The same state with other shapes. A new bump has amplitude 0 and the form of the first buckling mode;
+    /// a group that becomes straight loses its odd part.
     pub fn reshaped(&self, shapes: [Shape; 2], basis: &Basis) -> Self {
-        let mut own = Self { shapes, ..self.clone() };
+        let mut point = Self { shapes, ..self.clone() };
         for (group, shape) in shapes.into_iter().enumerate() {
             match shape {
                 Shape::Straight => {
-                    own.odd[group] = Vec::new();
-                    own.q[group] = 0.0;
+                    point.odd[group] = Vec::new();
+                    point.q[group] = 0.0;
                 }
                 Shape::Bump if self.shapes[group] != Shape::Bump => {
-                    own.odd[group] = basis.first_buckling_mode();
-                    let leading = own.odd[group][0];
-                    own.odd[group].iter_mut().for_each(|c| *c /= leading);
-                    own.q[group] = 0.0;
+                    point.odd[group] = basis.first_buckling_mode();
+                    let leading = point.odd[group][0];
+                    point.odd[group].iter_mut().for_each(|c| *c /= leading);
+                    point.q[group] = 0.0;
                 }
                 _ => {}
             }
         }
-        own
+        point
     }
 
-    /// The same state with more functions, whose coefficients are 0.
+    /// The same state with `modes` functions of each parity; the coefficients of the new ones are 0.
     pub fn padded(&self, modes: usize) -> Self {
-        let mut own = self.clone();
+        let mut point = self.clone();
         for group in 0..2 {
-            own.even[group].resize(modes, 0.0);
-            if own.shapes[group] != Shape::Straight {
-                own.odd[group].resize(modes, 0.0);
+            point.even[group].resize(modes, 0.0);
+            if point.shapes[group] != Shape::Straight {
+                point.odd[group].resize(modes, 0.0);
             }
         }
-        own
+        point
     }
 
-    /// How large the last coefficients of the rotations are beside the largest: what further functions would
-    /// add.
+    /// Magnitude of the last coefficients of the rotations relative to the largest: an estimate of what more
+    /// functions would add.
     pub fn tail(&self) -> f64 {
         let all = (0..2).flat_map(|g| {
             let size = self.q[g].abs().sqrt();
@@ -112,17 +115,17 @@ impl Point {
             [self.even[g].clone(), odd]
         });
         let parts: Vec<Vec<f64>> = all.collect();
-        let largest = parts.iter().flatten().fold(0.0_f64, |most, a| most.max(a.abs()));
+        let largest = parts.iter().flatten().fold(0.0_f64, |largest, a| largest.max(a.abs()));
         let last = parts
             .iter()
             .flat_map(|part| part.iter().rev().take(2))
-            .fold(0.0_f64, |most, a| most.max(a.abs()));
+            .fold(0.0_f64, |largest, a| largest.max(a.abs()));
         if largest > 0.0 { last / largest } else { 0.0 }
     }
 
-    /// A guess at `x` from solved points of the same shapes: Lagrange's interpolation of the unknowns. Points
-    /// at x >= 0 stand for their mirror images too where `mirrored`: rotation and lateral force of the sway
-    /// are odd in x, everything else is even.
+    /// A guess at `x` by Lagrange interpolation of the unknowns of solved points with the same shapes. If
+    /// `mirrored`, the mirror images of points at x > 0 are used as well: the even coefficients (the sway)
+    /// and the lateral forces are odd in x, all other unknowns are even.
     pub fn between(points: &[&Self], x: f64, mirrored: bool) -> Self {
         let modes = points.iter().map(|p| p.even[0].len()).max().unwrap_or(0);
         let points: Vec<Self> = points.iter().map(|p| p.padded(modes)).collect();
@@ -133,11 +136,11 @@ impl Point {
         let weight = |node: f64| -> f64 {
             nodes.iter().filter(|other| **other != node).map(|other| (x - other) / (node - other)).product()
         };
-        let mut own = points[0].clone();
+        let mut guess = points[0].clone();
         let mut odd_in_x = Vec::new();
         for group in 0..2 {
-            odd_in_x.extend(vec![true; own.even[group].len()]);
-            odd_in_x.extend(vec![false; own.odd[group].len()]);
+            odd_in_x.extend(vec![true; guess.even[group].len()]);
+            odd_in_x.extend(vec![false; guess.odd[group].len()]);
         }
         odd_in_x.extend([true, true, false]);
         let mut sum = vec![0.0; odd_in_x.len()];
@@ -148,8 +151,8 @@ impl Point {
                 *s += value * if *odd { right - left } else { right + left };
             }
         }
-        own.take(&sum);
-        own.x = x;
-        own
+        guess.set_unknowns(&sum);
+        guess.x = x;
+        guess
     }
 }

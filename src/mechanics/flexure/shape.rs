@@ -7,27 +7,28 @@ use super::beam::{Beam, Shape};
 use super::point::Point;
 use crate::numeric::GaussLegendre;
 
-/// Points of a centre line; an odd number, so that the middle is one.
+/// Number of points of a centre line; odd, so that one is the middle.
 const LINE_POINTS: usize = 65;
 
-/// Places at which the curvature is looked at, dense at the clamps, where it is largest on the taut branch.
+/// Number of positions at which the curvature is evaluated, dense at the clamps, where it is largest on the
+/// taut branch.
 const CURVATURE_POINTS: usize = 257;
 
-/// How far the middle of a centre line is from the middle of its ends, across.
+/// Lateral distance of the middle of a centre line from the mean of its ends.
 pub(super) fn bump(line: &[[f64; 3]]) -> f64 {
     (line[line.len() / 2][2] - 0.5 * line[line.len() - 1][2]).abs()
 }
 
-/// One flexure of a group, as bent.
-pub(super) struct Bent<'a> {
+/// One flexure of a group in its deflected shape.
+pub(super) struct Deflected<'a> {
     pub beam: &'a Beam,
-    /// Coefficients of the whole rotation, even and odd in turn.
+    /// Coefficients of the whole rotation, even and odd alternating.
     rotation: Vec<f64>,
     axial: f64,
     lateral: f64,
 }
 
-impl<'a> Bent<'a> {
+impl<'a> Deflected<'a> {
     pub fn of(beam: &'a Beam, point: &Point, group: usize) -> Self {
         let size = if point.shapes[group] == Shape::Bump { point.q[group].max(0.0).sqrt() } else { 1.0 };
         let mut rotation = vec![0.0; 2 * point.even[group].len()];
@@ -40,7 +41,8 @@ impl<'a> Bent<'a> {
         Self { beam, rotation, axial: -point.compression / beam.count, lateral: point.lateral[group] }
     }
 
-    /// Points s, axial and lateral position along the flexure from its clamp on the frame, in scaled units.
+    /// Points (arc length s, axial and lateral position) along the flexure from its clamp on the frame, in
+    /// scaled units.
     pub fn line(&self) -> Vec<[f64; 3]> {
         let rule = GaussLegendre::<f64>::new(4);
         let mut row = vec![0.0; self.rotation.len()];
@@ -74,10 +76,10 @@ impl<'a> Bent<'a> {
             }
         }
         let places = (0..CURVATURE_POINTS).map(|i| (PI * i as f64 / (CURVATURE_POINTS - 1) as f64).cos());
-        places.fold(0.0, |most: f64, xi| {
+        places.fold(0.0, |largest: f64, xi| {
             slopes(xi, &mut row);
             let slope: f64 = row.iter().zip(&bend).map(|(f, a)| f * a).sum();
-            most.max((slope * 2.0 / self.beam.length).abs())
+            largest.max((slope * 2.0 / self.beam.length).abs())
         })
     }
 }

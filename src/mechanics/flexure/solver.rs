@@ -1,8 +1,8 @@
-//! Equilibria with as many basis functions as each needs.
+//! Solver for equilibria that adapts the number of basis functions to each state.
 //!
-//! As many as make the last coefficients vanish beside the largest: eight of each parity in the wells, ten
-//! times as many far up the taut branch. The answer is found for each state anew, beginning with what its
-//! guess had.
+//! Functions are added until the last coefficients are negligible: eight of each parity are enough in
+//! the wells, ten times as many are needed far up the taut branch. Each state starts with as many as
+//! its guess has.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,46 +12,46 @@ use super::beam::{Beam, Shape, Terms};
 use super::equilibrium::{Prescribed, System};
 use super::point::Point;
 
-/// Functions of each parity: what a state begins with, and the most that it is given.
-const FEWEST_MODES: usize = 8;
-pub(super) const MOST_MODES: usize = 256;
+/// Number of functions of each parity that the first state starts with.
+const MIN_MODES: usize = 8;
+/// Largest number of functions of each parity.
+pub(super) const MAX_MODES: usize = 256;
 
-/// The work that a mechanism may take, as the sum over its states of the cubes of their functions: a thousand
-/// times that of the prototype, and an end within some twenty seconds of one core for the others (10 to 45 ns
-/// each, measured). It is lengths that differ a thousandfold that need it, such as one that was written in
-/// another unit.
-const MOST_WORK: usize = 500_000_000;
+/// Largest work for a mechanism, as the sum over its states of the cube of their number of functions. This is
+/// a thousand times the work for the prototype and ends after about twenty seconds on one core (10 to 45 ns
+/// per unit, measured). Only lengths that differ a thousandfold exceed it, as when one is in the wrong unit.
+const MAX_WORK: usize = 500_000_000;
 
-/// Leaning is less than this many times the coefficient of the bow.
-const MOST_LEAN: f64 = 3.0;
+/// Largest leading coefficient of a leaning flexure, relative to the coefficient of its bow.
+const MAX_LEAN: f64 = 3.0;
 
-/// Why no stable equilibrium was found; x in scaled units.
+/// Reason why no stable equilibrium was found; x in scaled units.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Lost {
+pub(super) enum Failure {
     NotConverged { x: f64, residual: f64 },
     Unstable { x: f64 },
-    Endless { x: f64 },
+    TooMuchWork { x: f64 },
 }
 
-/// The flexures, and the equations for each number of functions that was needed so far.
+/// The flexures with the equations for each number of functions used so far.
 #[derive(Debug, Clone)]
 pub(super) struct Solver<'a> {
     pub beams: [Beam; 2],
     pub preload: f64,
     /// Coefficient of the first buckling mode in the stress-free rotation of each group.
     pub bow: [f64; 2],
-    /// Coefficients below this part of the largest are left out. Force and energy are stationary in the
-    /// rotation, so their error is a tenth of the square of what is left out (measured in the wells and up
-    /// the wall).
+    /// Share of the largest coefficient below which coefficients are neglected. Force and energy are
+    /// stationary in the rotation, so their error is a tenth of the square of this share (measured in the
+    /// wells and on the taut branch).
     pub tail: f64,
     systems: BTreeMap<usize, System>,
     /// Number of states solved for.
     pub solves: usize,
-    /// The most functions that a state needed.
-    pub most_modes: usize,
-    /// See [`MOST_WORK`].
+    /// Largest number of functions of each parity that a state needed.
+    pub max_modes: usize,
+    /// See [`MAX_WORK`].
     work: usize,
-    /// Set from elsewhere to end it: it is then lost.
+    /// Solving fails soon after another thread sets this.
     cancel: Option<&'a AtomicBool>,
 }
 
@@ -64,16 +64,16 @@ impl<'a> Solver<'a> {
         cancel: Option<&'a AtomicBool>,
     ) -> Self {
         let systems = BTreeMap::new();
-        Self { beams, preload, bow, tail, systems, solves: 0, most_modes: 0, work: 0, cancel }
+        Self { beams, preload, bow, tail, systems, solves: 0, max_modes: 0, work: 0, cancel }
     }
 
-    /// Gives up the tables, which are made again where they are needed; they are larger than all states
-    /// together. Work begins anew.
-    pub fn forget(self) -> Solver<'static> {
+    /// The same solver without its cached systems, which are larger than all states together and are rebuilt
+    /// when needed. The work is counted from 0 again.
+    pub fn without_cache(self) -> Solver<'static> {
         Solver { systems: BTreeMap::new(), work: 0, cancel: None, ..self }
     }
 
-    /// Another bow of the stress-free flexures.
+    /// Sets the bow of the stress-free flexures.
     pub fn set_bow(&mut self, bow: [f64; 2]) {
         if bow != self.bow {
             self.bow = bow;
@@ -97,29 +97,29 @@ impl<'a> Solver<'a> {
         system
     }
 
-    /// The equilibrium near `guess`, with as many functions as it needs.
-    pub fn solve(&mut self, guess: &Point, prescribed: Prescribed) -> Result<Point, Lost> {
+    /// The equilibrium near `guess`, with enough functions.
+    pub fn solve(&mut self, guess: &Point, prescribed: Prescribed) -> Result<Point, Failure> {
         let mut guess = guess.clone();
         loop {
             let modes = guess.even[0].len();
             self.solves += 1;
             self.work += modes.pow(3);
-            if self.work > MOST_WORK || self.cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed)) {
-                return Err(Lost::Endless { x: guess.x });
+            if self.work > MAX_WORK || self.cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed)) {
+                return Err(Failure::TooMuchWork { x: guess.x });
             }
-            self.most_modes = self.most_modes.max(modes);
+            self.max_modes = self.max_modes.max(modes);
             let point = self
                 .system(modes)
                 .solve(&guess, prescribed)
-                .map_err(|stalled| Lost::NotConverged { x: guess.x, residual: stalled.residual })?;
+                .map_err(|stalled| Failure::NotConverged { x: guess.x, residual: stalled.residual })?;
             let side = side(&point, &self.bow);
-            if side == Side::Other || (side == Side::Leaning && !self.is_stable(&point)) {
-                return Err(Lost::NotConverged { x: point.x, residual: 1.0 });
+            if side == Side::Opposite || (side == Side::Leaning && !self.is_stable(&point)) {
+                return Err(Failure::NotConverged { x: point.x, residual: 1.0 });
             }
-            if point.tail() <= self.tail || modes >= MOST_MODES {
+            if point.tail() <= self.tail || modes >= MAX_MODES {
                 return Ok(point);
             }
-            guess = point.padded((modes + (modes / 4).max(2)).min(MOST_MODES));
+            guess = point.padded((modes + (modes / 4).max(2)).min(MAX_MODES));
         }
     }
 
@@ -136,12 +136,12 @@ impl<'a> Solver<'a> {
         point.reshaped(shapes, &self.system(point.even[0].len()).basis)
     }
 
-    /// The state without any sway, straight or as bowed as it is made.
+    /// The state without sway, straight or with the stress-free bow.
     pub fn straight(&mut self) -> Point {
-        self.system(FEWEST_MODES).straight()
+        self.system(MIN_MODES).straight()
     }
 
-    /// The compression at which a straight group buckles between its clamps, for thin flexures.
+    /// The axial compression at which a straight group of thin flexures buckles between its clamps.
     pub fn buckling_load(&self, group: usize) -> f64 {
         let beam = &self.beams[group];
         let wave = 2.0 * std::f64::consts::PI / beam.length;
@@ -153,13 +153,14 @@ impl<'a> Solver<'a> {
         self.beams.iter().map(|b| b.length * b.stretch / b.count).sum()
     }
 
-    /// The square of the bump's amplitude that shortens a flexure by this much, for small slopes.
+    /// The square of the bump's amplitude that causes a given shortening, for small slopes.
     pub fn bump_of_shortening(&mut self, group: usize, shortening: f64) -> f64 {
-        let leading = self.system(FEWEST_MODES).basis.first_buckling_mode()[0];
+        let leading = self.system(MIN_MODES).basis.first_buckling_mode()[0];
         4.0 * leading * leading * shortening / self.beams[group].length
     }
 
-    /// Where the sway alone uses up the preload, for small slopes: about where the bumps vanish.
+    /// The displacement at which the sway alone uses up the preload, for small slopes: approximately where
+    /// the bumps vanish.
     pub fn taut_at(&self) -> f64 {
         let [a, b] = &self.beams;
         4.0 / std::f64::consts::PI * (self.preload / (1.0 / a.length + 1.0 / b.length)).sqrt()
@@ -170,15 +171,17 @@ impl<'a> Solver<'a> {
     }
 }
 
-/// Where each bowed flexure bulges beside the side of its bow. On the way from x = 0 it does so where the
-/// bulge matters; up the wall it may lean to the other side by no more than its bow. Two other states bulge
-/// to the other side: a stable one outright, an unstable one.
+/// The side to which bowed flexures bulge, relative to their bow. On the branch from x = 0 they bulge to
+/// the side of the bow wherever the bulge is large; on the taut branch they may lean to the other side
+/// by about the bow. Two other equilibria bulge to the opposite side: a stable one with a large bulge
+/// and an unstable one.
 fn side(point: &Point, bow: &[f64; 2]) -> Side {
-    let mut side = Side::Own;
+    let mut side = Side::Same;
     for g in (0..2).filter(|g| point.shapes[*g] == Shape::Bowed) {
         let leading = point.odd[g].first().copied().unwrap_or(0.0);
         if leading * bow[g] < 0.0 {
-            side = if leading.abs() > MOST_LEAN * bow[g].abs() { return Side::Other } else { Side::Leaning };
+            side =
+                if leading.abs() > MAX_LEAN * bow[g].abs() { return Side::Opposite } else { Side::Leaning };
         }
     }
     side
@@ -187,7 +190,7 @@ fn side(point: &Point, bow: &[f64; 2]) -> Side {
 /// See [`side`].
 #[derive(PartialEq)]
 enum Side {
-    Own,
+    Same,
     Leaning,
-    Other,
+    Opposite,
 }

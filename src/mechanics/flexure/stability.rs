@@ -1,4 +1,4 @@
-//! Stability of an equilibrium.
+//! Stability test of an equilibrium.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -7,12 +7,12 @@ use super::equilibrium::System;
 use super::point::Point;
 
 impl System {
-    /// Whether the equilibrium is stable with x held: the second variation of the strain energy is positive,
-    /// for all flexures together and for each flexure of a group against its neighbours.
+    /// Whether the equilibrium is stable at fixed x: the second variation of the strain energy is positive
+    /// for all flexures together and for each flexure of a group relative to its neighbours.
     ///
-    /// Method: the forces eliminated from the second variation leave one symmetric matrix of the coefficients
-    /// alone, which has a Cholesky factor where no eigenvalue is negative. At a bump that just vanishes it is
-    /// singular and the answer is left to rounding.
+    /// Method: eliminating the forces from the second variation leaves one symmetric matrix of the
+    /// coefficients, which has a Cholesky factor if no eigenvalue is negative. For a bump that just vanishes
+    /// the matrix is singular and the result depends on rounding.
     pub fn is_stable(&self, point: &Point) -> bool {
         let terms = self.terms(point);
         let parts: [Variation; 2] = std::array::from_fn(|g| Variation::of(&terms[g], point.q[g]));
@@ -24,8 +24,8 @@ impl System {
     }
 }
 
-/// The second variation of one flexure by its coefficients and by its two forces. Of a straight one the odd
-/// coefficients stand apart, see [`stays_straight`].
+/// Second derivatives of the energy of one flexure with respect to its coefficients and its two forces. The
+/// odd coefficients of a straight flexure are not included, see [`stays_straight`].
 struct Variation {
     stiffness: DMatrix<f64>,
     by_axial: DVector<f64>,
@@ -34,7 +34,7 @@ struct Variation {
 
 impl Variation {
     fn of(t: &Terms, q: f64) -> Self {
-        // The odd rows were divided by this.
+        // the factor by which the odd rows were divided
         let size = q.max(0.0).sqrt();
         let n = t.modes;
         let all = n + t.odd.len();
@@ -51,7 +51,7 @@ impl Variation {
         Self { stiffness, by_axial: by(0), by_lateral: by(1) }
     }
 
-    /// With both ends of this flexure held.
+    /// The second variation with both ends of this flexure fixed.
     fn alone(&self, t: &Terms) -> DMatrix<f64> {
         let (a, b, c) = (-t.shortening_by_axial, -t.shortening_by_lateral, t.deflection_by_lateral);
         let determinant = a * c - b * b;
@@ -61,11 +61,11 @@ impl Variation {
                 / determinant
     }
 
-    /// With x held and the shuttle free axially.
+    /// The second variation of all flexures at fixed x with the shuttle free axially.
     fn together(parts: &[Self; 2], terms: &[Terms; 2], counts: [f64; 2]) -> DMatrix<f64> {
         let sizes = parts.each_ref().map(|p| p.stiffness.nrows());
         let mut all = DMatrix::zeros(sizes[0] + sizes[1], sizes[0] + sizes[1]);
-        // Columns: by the compression, by the two lateral forces.
+        // columns: derivatives with respect to the compression and to the two lateral forces
         let mut by = DMatrix::zeros(sizes[0] + sizes[1], 3);
         let mut compliance = DMatrix::zeros(3, 3);
         for g in 0..2 {
@@ -85,7 +85,7 @@ impl Variation {
     }
 }
 
-/// Whether a straight flexure keeps its shape: no bump lowers its energy.
+/// Whether a straight flexure stays straight, because no bump lowers its energy.
 pub(super) fn stays_straight(t: &Terms) -> bool {
     is_positive(DMatrix::from_row_slice(t.modes, t.modes, &t.odd_odd))
 }

@@ -1,3 +1,5 @@
+//! Tests of the search for sign changes.
+
 use proptest::prelude::*;
 
 use super::super::DoubleDouble;
@@ -28,7 +30,7 @@ fn all(g: &[f64]) -> Vec<f64> {
 
 #[test]
 fn a_polynomial_and_its_negative_have_the_same_roots_whatever_sign_a_zero_has() {
-    // A mass that starts at rest: no slope, of either sign.
+    // a mass that starts at rest: the slope is 0 or -0
     let mut state = 1_u64;
     let mut next = || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -69,7 +71,7 @@ fn a_pair_that_the_ends_do_not_show() {
 fn a_double_root_is_a_touch() {
     assert!(all(&from_roots(&[0.3, 0.3], 1.0)).len().is_multiple_of(2));
     assert!(all(&from_roots(&[0.3, 0.3, 0.7], -1.0)).len() % 2 == 1);
-    // a value of exactly 0 at a halving point is met as a pair, as close as rounding allows
+    // a value of exactly 0 at a halving point is found as a pair, as close as rounding allows
     let pair = all(&from_roots(&[0.5, 0.5], 1.0));
     assert!(pair.len() == 2 && (pair[0] - 0.5).abs() < 1e-7 && (pair[1] - 0.5).abs() < 1e-7);
 }
@@ -132,7 +134,7 @@ fn a_root_at_0_is_no_sign_change() {
     ] {
         assert_eq!(all(g), roots, "{g:?}");
     }
-    // a root that is nearer to 0 than anything else, beside one right there
+    // a root very close to 0 beside a root at 0
     for near in [1e-9, 1e-30] {
         let found = all(&[0.0, -near, 1.0]);
         assert!(found.len() == 1 && (found[0] / near - 1.0).abs() < 1e-15, "{found:?}");
@@ -152,17 +154,17 @@ fn a_root_at_1_and_at_the_ends_of_halves_is_found_from_either_side() {
         (&[0.125, 0.875, 2.0, -1.0], &[0.125, 0.875]),
     ] {
         for scale in [1.0, -1.0, 1e-280, -1e200] {
-            let own = all(&from_roots(roots, scale));
-            assert_eq!(own.len(), found.len(), "{roots:?} {scale}: {own:?}");
-            let off = |(own, root): (&f64, &f64)| (own - root).abs();
-            assert!(own.iter().zip(found).map(off).all(|off| off < 2e-5), "{roots:?} {scale}: {own:?}");
+            let all = all(&from_roots(roots, scale));
+            assert_eq!(all.len(), found.len(), "{roots:?} {scale}: {all:?}");
+            let off = |(s, root): (&f64, &f64)| (s - root).abs();
+            assert!(all.iter().zip(found).map(off).all(|off| off < 2e-5), "{roots:?} {scale}: {all:?}");
         }
     }
 }
 
 #[test]
 fn where_the_end_of_a_half_is_a_root_to_rounding_it_is_that_root() {
-    // One way to the value at 1/2 gives the one sign, another way the other.
+    // Two ways to evaluate the polynomial at 1/2 give opposite signs.
     for k in (0..4000).map(f64::from) {
         let (near, other) = (0.5 + 0.3 * (0.7 * k).sin().abs(), 1.5 + 1e-3 * k);
         if near < 0.501 {
@@ -186,7 +188,7 @@ fn a_change_inside_is_found_where_the_end_is_a_root_to_rounding() {
     }
 }
 
-/// Roots from 0 to 1, halves and quarters among them, and some outside.
+/// Roots from 0 to 1, including multiples of 1/16, and some outside.
 fn some_roots() -> impl Strategy<Value = Vec<f64>> {
     let root = prop_oneof![
         (0_u8..=16).prop_map(|k| f64::from(k) / 16.0),
@@ -203,8 +205,8 @@ proptest! {
         cases: 4000, failure_persistence: None, ..ProptestConfig::default()
     })]
 
-    /// Against the roots that it was made of: of a cluster whose members lie closer than rounding can tell,
-    /// only the parity counts.
+    /// Compares with the roots that the polynomial was made from. Of a cluster of roots closer than rounding
+    /// can resolve, only the parity counts.
     #[test]
     fn sign_changes_are_those_of_a_scan(mut roots in some_roots(), scale in -1.0..1.0) {
         prop_assume!(scale != 0.0);
@@ -213,7 +215,7 @@ proptest! {
         let negative: Vec<f64> = g.iter().map(|c| -c).collect();
         prop_assert_eq!(&all(&negative), &found);
         prop_assert!(found.is_sorted() && found.iter().all(|s| *s > 0.0 && *s <= 1.0), "{:?}", found);
-        // what lies between two places that are clear of every root
+        // compare the number of roots between two positions that are far from every root
         roots.sort_by(f64::total_cmp);
         let value = |s: f64| roots.iter().map(|root| s - root).product::<f64>();
         let clear = |s: f64| roots.iter().all(|root| (s - root).abs() > 0.02);

@@ -2,7 +2,7 @@
 
 use super::condition::Condition;
 use super::stage::Stage;
-use super::{LESSON_FORMAT, LONGEST_OPTION, LONGEST_STEP, Lesson, Step};
+use super::{LESSON_FORMAT, Lesson, MAX_OPTION_LENGTH, MAX_STEP_LENGTH, Step};
 use crate::scene::axis::Axis;
 use crate::scene::check::check;
 use crate::scene::data::{Excitation, Scene};
@@ -10,43 +10,44 @@ use crate::scene::error::Fault;
 use crate::scene::fields::{all_fields, numeric_fields};
 use crate::scene::ranges::number_text;
 
-/// A field of a summary, as a lesson may name it.
+/// A field of a summary that a lesson may name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ResultField {
-    /// Its name, with the unit in it.
+    /// Its name, which includes the unit.
     pub name: &'static str,
-    /// The words that it may be; none for a number.
+    /// The possible values of a word; empty for a number.
     pub words: &'static [&'static str],
 }
 
-/// The most starts of a condition, and the most seeds.
-const MOST_STARTS: usize = 1000;
-const MOST_SEEDS: u32 = 1000;
-/// The longest title, and the longest goal.
-const LONGEST_TITLE: usize = 60;
-/// The most minutes of a lesson.
-const MOST_MINUTES: u32 = 90;
+/// Largest number of starts of a condition.
+const MAX_STARTS: usize = 1000;
+/// Largest number of seeds.
+const MAX_SEEDS: u32 = 1000;
+/// Largest number of characters of a title.
+const MAX_TITLE_LENGTH: usize = 60;
+/// Largest number of minutes of a lesson.
+const MAX_MINUTES: u32 = 90;
 
 /// The fields of a whole walk.
 pub(super) const OF_WALK: [&str; 3] = ["walk.up_crosses_from", "walk.down_crosses_to", "walk.gap"];
 
-/// A field that a condition may name, with the words that it may be: none for a number, a list without an
-/// entry for any text.
+/// A field that a condition may name, with its possible words: `None` for a number, an empty list
+/// for any text.
 struct Known {
     name: String,
     words: Option<&'static [&'static str]>,
 }
 
-/// What is wrong with a lesson besides its scenes, all of it.
+/// All faults of a lesson except those of its scenes.
 pub(super) fn faults(lesson: &Lesson, stages: &[Stage], results: &[ResultField]) -> Vec<Fault> {
     let mut found = Found(Vec::new());
     if lesson.format != LESSON_FORMAT {
         found.add("format", lesson.format.to_string(), format!("this program reads format {LESSON_FORMAT}"));
     }
-    found.length("title", &lesson.title, LONGEST_TITLE);
-    found.length("goal", &lesson.goal, LONGEST_STEP);
-    if !(1..=MOST_MINUTES).contains(&lesson.minutes) {
-        found.add("minutes", lesson.minutes.to_string(), format!("must be 1 to {MOST_MINUTES}"));
+    found.length("title", &lesson.title, MAX_TITLE_LENGTH);
+    found.length("goal", &lesson.goal, MAX_STEP_LENGTH);
+    if !(1..=MAX_MINUTES).contains(&lesson.minutes) {
+        found.add("minutes", lesson.minutes.to_string(), format!("must be 1 to {MAX_MINUTES}"));
     }
     if let Some(speed) = lesson.speed
         && !(1e-15..=1000.0).contains(&speed)
@@ -60,7 +61,7 @@ pub(super) fn faults(lesson: &Lesson, stages: &[Stage], results: &[ResultField])
         found.add("steps", "", "must have a step, such as Say(\"..\")");
     }
     let scenes: Vec<&Scene> =
-        stages.iter().flat_map(|own| [&own.begin, &own.end]).map(|own| &own.scene).collect();
+        stages.iter().flat_map(|stage| [&stage.begin, &stage.end]).map(|document| &document.scene).collect();
     if scenes.is_empty() {
         return found.0;
     }
@@ -68,7 +69,7 @@ pub(super) fn faults(lesson: &Lesson, stages: &[Stage], results: &[ResultField])
     let known = known(lesson, &scenes, results);
     for (index, (step, stage)) in lesson.steps.iter().zip(stages).enumerate() {
         let at = |part: &str| format!("steps.{index}{part}");
-        found.length(&at(""), step.text(), LONGEST_STEP);
+        found.length(&at(""), step.text(), MAX_STEP_LENGTH);
         match step {
             Step::Say(_) | Step::Explain(_) => {}
             Step::Predict { options, .. } => {
@@ -77,13 +78,13 @@ pub(super) fn faults(lesson: &Lesson, stages: &[Stage], results: &[ResultField])
                 }
                 for (number, option) in options.iter().enumerate() {
                     let at = |part: &str| format!("steps.{index}.options.{number}.{part}");
-                    found.length(&at("text"), &option.text, LONGEST_OPTION);
+                    found.length(&at("text"), &option.text, MAX_OPTION_LENGTH);
                     condition(&option.holds, &at("holds"), (&known, &stage.end.scene, false), &mut found);
                 }
             }
             Step::Do { goal, hint, .. } => {
                 if let Some(hint) = hint {
-                    found.length(&at(".hint"), hint, LONGEST_STEP);
+                    found.length(&at(".hint"), hint, MAX_STEP_LENGTH);
                 }
                 condition(goal, &at(".goal"), (&known, &stage.end.scene, false), &mut found);
             }
@@ -92,7 +93,7 @@ pub(super) fn faults(lesson: &Lesson, stages: &[Stage], results: &[ResultField])
     found.0
 }
 
-/// Controls, seeds and walk.
+/// Checks controls, seeds and walk.
 fn settings(lesson: &Lesson, scenes: &[&Scene], found: &mut Found) {
     let numbers = union(scenes, numeric_fields);
     for (index, control) in lesson.controls.iter().enumerate() {
@@ -102,9 +103,9 @@ fn settings(lesson: &Lesson, scenes: &[&Scene], found: &mut Found) {
         }
     }
     if let Some(seeds) = lesson.seeds {
-        if !(2..=MOST_SEEDS).contains(&seeds) {
-            found.add("seeds", seeds.to_string(), format!("must be 2 to {MOST_SEEDS}"));
-        } else if !scenes.iter().all(|own| matches!(own.excitation, Excitation::Noise { .. })) {
+        if !(2..=MAX_SEEDS).contains(&seeds) {
+            found.add("seeds", seeds.to_string(), format!("must be 2 to {MAX_SEEDS}"));
+        } else if !scenes.iter().all(|scene| matches!(scene.excitation, Excitation::Noise { .. })) {
             found.add("seeds", seeds.to_string(), "its scenes have no seed; take a Noise, or leave it out");
         }
     }
@@ -123,13 +124,13 @@ fn known(lesson: &Lesson, scenes: &[&Scene], results: &[ResultField]) -> Vec<Kno
     let numbers = union(scenes, numeric_fields);
     let mut known: Vec<Known> = union(scenes, all_fields)
         .into_iter()
-        .map(|own| Known { words: (!numbers.contains(&own)).then_some(&[]), name: format!("scene.{own}") })
+        .map(|path| Known { words: (!numbers.contains(&path)).then_some(&[]), name: format!("scene.{path}") })
         .collect();
-    let mut add = |of: &str, numbers_only: bool| {
-        let wanted = results.iter().filter(|own| !numbers_only || own.words.is_empty());
-        known.extend(wanted.map(|own| Known {
-            name: format!("{of}.{}", own.name),
-            words: (!own.words.is_empty()).then_some(own.words),
+    let mut add = |prefix: &str, numbers_only: bool| {
+        let wanted = results.iter().filter(|field| !numbers_only || field.words.is_empty());
+        known.extend(wanted.map(|field| Known {
+            name: format!("{prefix}.{}", field.name),
+            words: (!field.words.is_empty()).then_some(field.words),
         }));
     };
     add("result", false);
@@ -146,48 +147,48 @@ fn known(lesson: &Lesson, scenes: &[&Scene], results: &[ResultField]) -> Vec<Kno
     known
 }
 
-/// Checks a condition; `from` says whether it stands in one over several starts.
-fn condition(own: &Condition, at: &str, of: (&[Known], &Scene, bool), found: &mut Found) {
-    let (known, scene, from) = of;
-    let inner = from || !own.starts().is_empty();
-    own.parts().iter().for_each(|part| condition(part, at, (known, scene, inner), found));
-    match own {
+/// Checks a condition. The flag in `context` tells whether it is inside a condition over several starts.
+fn condition(checked: &Condition, at: &str, context: (&[Known], &Scene, bool), found: &mut Found) {
+    let (known, scene, inside) = context;
+    let inner = inside || !checked.starts().is_empty();
+    checked.parts().iter().for_each(|part| condition(part, at, (known, scene, inner), found));
+    match checked {
         Condition::All(parts) | Condition::Any(parts) if parts.is_empty() => {
             found.add(at, "", "All and Any need a condition");
         }
         Condition::Every(starts, _) | Condition::ForSome(starts, _) | Condition::Same(_, _, starts) => {
-            if !(1..=MOST_STARTS).contains(&starts.len()) {
-                let problem = format!("give 1 to {MOST_STARTS} starts");
+            if !(1..=MAX_STARTS).contains(&starts.len()) {
+                let problem = format!("give 1 to {MAX_STARTS} starts");
                 found.add(at, format!("a list of {}", starts.len()), problem);
             }
-            if from {
+            if inside {
                 found.add(at, "", "starts within starts have no meaning");
             }
             for start in starts {
-                let begun = Scene { start: *start, ..scene.clone() };
-                let wrong = check(&begun).faults.into_iter().find(|fault| fault.field.starts_with("start"));
-                if let Some(fault) = wrong {
+                let scene = Scene { start: *start, ..scene.clone() };
+                let fault = check(&scene).faults.into_iter().find(|fault| fault.field.starts_with("start"));
+                if let Some(fault) = fault {
                     found.add(at, fault.value, format!("{}: {}", fault.field, fault.problem));
                 }
             }
         }
         _ => {}
     }
-    let Some(field) = own.field() else { return };
+    let Some(field) = checked.field() else { return };
     let Some(Known { words, .. }) = known.iter().find(|known| known.name == field) else {
         let needs = match field.split('.').next() {
             Some("mean" | "error") => "; it needs `seeds`",
             Some("up" | "down" | "walk") => "; it needs `walk`",
             _ => "",
         };
-        let names = known.iter().map(|own| &own.name);
+        let names = known.iter().map(|known| &known.name);
         found.add(at, field, format!("no such field{}{needs}", suggested(field, names)));
         return;
     };
     let mut bounds = Vec::new();
-    own.clone().for_each_bound(&mut |_, bound| bounds.push(*bound));
-    let of_parts = !own.parts().is_empty();
-    match (own, words) {
+    checked.clone().for_each_bound(&mut |_, bound| bounds.push(*bound));
+    let of_parts = !checked.parts().is_empty();
+    match (checked, words) {
         (Condition::Is(_, text), None) if text.trim().parse::<f64>().is_err() => {
             found.add(at, format!("{field} is {text}"), "the field is a number");
         }
@@ -202,7 +203,7 @@ fn condition(own: &Condition, at: &str, of: (&[Known], &Scene, bool), found: &mu
     if bounds.iter().any(|bound| !bound.is_finite()) {
         found.add(at, field, "its bound must be a number");
     }
-    match own {
+    match checked {
         Condition::Between(_, low, high) if low > high => {
             found.add(at, format!("{field} from {low} to {high}"), "give the lower bound first");
         }
@@ -224,10 +225,10 @@ fn union(scenes: &[&Scene], fields: fn(&Scene) -> Vec<String>) -> Vec<String> {
     all
 }
 
-/// The known name that is most like one that is not known, as the end of a sentence.
-fn suggested<'a>(wrong: &str, known: impl Iterator<Item = &'a String>) -> String {
-    let likeness = |own: &&String| strsim::jaro_winkler(own, wrong);
-    let best = known.max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
+/// The known name that is most similar to an unknown one, as the end of a sentence.
+fn suggested<'a>(unknown: &str, known: impl Iterator<Item = &'a String>) -> String {
+    let similarity = |name: &&String| strsim::jaro_winkler(name, unknown);
+    let best = known.max_by(|a, b| similarity(a).total_cmp(&similarity(b)));
     best.map_or(String::new(), |best| format!("; did you mean {best}?"))
 }
 
@@ -238,7 +239,7 @@ impl Found {
         self.0.push(Fault { field: field.to_owned(), value: value.into(), problem: problem.into() });
     }
 
-    /// A text that is missing, or longer than fits.
+    /// Adds a fault if a text is missing or too long.
     fn length(&mut self, field: &str, text: &str, longest: usize) {
         let length = text.replace("**", "").chars().count();
         if length == 0 {

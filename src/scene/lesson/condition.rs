@@ -1,52 +1,54 @@
-//! Conditions on a scene and on what its run comes to.
+//! Conditions on a scene and on the result of its run.
 
 use serde::Deserialize;
 
 use crate::scene::data::Start;
 
-/// What holds of a scene and its run. A field is named with what it is of: `scene.` and the path of a field,
-/// or, each with the name of a summary's field, `result.` (the scene's own run), `before.` (the run of the
-/// scene with which the step began), `up.` and `down.` (the run at the end of a walk to the scene's value of
-/// the walked field), `mean.` and `error.` (mean over the seeds, and its standard error). Of the whole walk
-/// there are `walk.up_crosses_from`, `walk.down_crosses_to` and `walk.gap`, the first less the second.
+/// Condition on a scene and its run.
 ///
-/// Nothing that is missing is at least or at most anything.
+/// The prefix of a field tells its source. `scene.` is followed by the path of a field. The other prefixes
+/// are followed by a field of a summary: `result.` (the run of the scene), `before.` (the run of the scene at
+/// the beginning of the step), `up.` and `down.` (the run at the end of a walk to the scene's value of the
+/// walked field), `mean.` and `error.` (mean over the seeds, and its standard error). A whole walk has the
+/// fields `walk.up_crosses_from`, `walk.down_crosses_to` and `walk.gap`, the first less the second.
+///
+/// A comparison with a bound fails if the field has no value.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub enum Condition {
-    /// The field is this word or number.
+    /// The field equals this word or number.
     Is(String, String),
-    /// The field is at least this.
+    /// The field is at least this number.
     AtLeast(String, f64),
-    /// The field is at most this.
+    /// The field is at most this number.
     AtMost(String, f64),
-    /// The field is greater than this.
+    /// The field is greater than this number.
     Above(String, f64),
-    /// The field is less than this.
+    /// The field is less than this number.
     Below(String, f64),
-    /// The field lies between these two, or is one of them.
+    /// The field lies between these two numbers, ends included.
     Between(String, f64, f64),
     /// The field has a value.
     Present(String),
-    /// The field has none.
+    /// The field has no value.
     Absent(String),
-    /// All of these hold.
+    /// All of these conditions hold.
     All(Vec<Condition>),
-    /// One of these holds, or more.
+    /// At least one of these conditions holds.
     Any(Vec<Condition>),
-    /// This does not hold.
+    /// This condition does not hold.
     Not(Box<Condition>),
-    /// It holds from every one of these starts.
+    /// The condition holds from each of these starts.
     Every(Vec<Start>, Box<Condition>),
-    /// It holds from one of these starts, or more.
+    /// The condition holds from at least one of these starts.
     #[serde(rename = "Some")]
     ForSome(Vec<Start>, Box<Condition>),
-    /// The field has a value from each of these starts, and the values differ by no more than this share of
-    /// the largest.
+    /// The field has a value from each of these starts, and the values differ by at most this share
+    /// of the largest.
     Same(String, f64, Vec<Start>),
 }
 
 impl Condition {
-    /// The conditions of which this one is made.
+    /// The conditions that this one is composed of.
     pub fn parts(&self) -> &[Self] {
         match self {
             Self::All(parts) | Self::Any(parts) => parts,
@@ -55,7 +57,7 @@ impl Condition {
         }
     }
 
-    /// The field that it names itself.
+    /// The field of this condition, not of its parts.
     pub fn field(&self) -> Option<&str> {
         match self {
             Self::Is(field, _)
@@ -71,7 +73,7 @@ impl Condition {
         }
     }
 
-    /// The starts that it names itself.
+    /// The starts of this condition, not of its parts.
     pub fn starts(&self) -> &[Start] {
         match self {
             Self::Every(starts, _) | Self::ForSome(starts, _) | Self::Same(_, _, starts) => starts,
@@ -79,7 +81,7 @@ impl Condition {
         }
     }
 
-    /// Calls `each` with every bound and the field that it is of, those of its parts among them.
+    /// Calls `each` with every bound and its field, including those of all parts.
     pub fn for_each_bound(&mut self, each: &mut impl FnMut(&str, &mut f64)) {
         match self {
             Self::AtLeast(field, bound)

@@ -1,4 +1,4 @@
-//! A lesson with the scenes of its steps.
+//! Lesson document: a lesson with the scenes of its steps.
 
 use std::path::{Path, PathBuf};
 
@@ -8,59 +8,59 @@ use super::stage::{Stage, stages};
 use super::{Lesson, Step};
 use crate::scene::clip::clip;
 use crate::scene::data::joined;
-use crate::scene::document::{Document, Source, unreadable};
+use crate::scene::document::{Document, Source, structure_error};
 use crate::scene::error::{Fault, Origin, PlacedFault, SceneError};
 use crate::scene::files::{ReadError, read_text};
 use crate::scene::locate::{Place, Places};
-use crate::scene::text::{LARGEST_SCENE, Refusal, read};
+use crate::scene::text::{MAX_SCENE_BYTES, ParseError, read};
 
-/// A lesson, and its scenes step by step.
+/// A lesson with the scenes of its steps.
 #[derive(Debug, Clone)]
 pub struct LessonDocument {
     /// The lesson.
     pub lesson: Lesson,
     /// Where it came from.
     pub source: Source,
-    /// How messages call it: the path as given, or `lesson NAME`.
+    /// Name in messages: the path as given, or `lesson NAME`.
     pub name: String,
     /// The text that it was read from.
     pub text: String,
     stages: Vec<Stage>,
 }
 
-/// Why a lesson cannot be used.
+/// Reason why a lesson cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LessonError {
     /// Neither a file nor a built-in lesson.
     #[error("{spec}: no such file, and no built-in lesson of that name; built in: {lessons}")]
     NoSuchLesson {
-        /// What was asked for.
+        /// The name or path as given.
         spec: String,
-        /// The names of the lessons, with commas.
+        /// The names of the lessons, separated by commas.
         lessons: String,
     },
-    /// What is wrong with it: all that could be found, a line each with its place.
+    /// Its faults, a line each with its place.
     #[error(transparent)]
     Wrong(#[from] SceneError),
 }
 
 impl LessonDocument {
-    /// Whether a file is meant as a lesson and not as a scene: whether it has steps.
+    /// Whether a file is a lesson rather than a scene, because it has steps.
     pub fn is_lesson(path: &Path) -> bool {
-        read_text(path, LARGEST_SCENE).is_ok_and(|text| {
+        read_text(path, MAX_SCENE_BYTES).is_ok_and(|text| {
             let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
             Places::of(text).find("steps").is_some()
         })
     }
 
-    /// Reads a built-in lesson, by its name, number or words, or the file of a lesson, and checks it.
-    /// `results` are the fields that a summary has.
+    /// Reads and checks a built-in lesson, given by its name, its number or its words, or the file of a
+    /// lesson. `results` are the fields of a summary.
     pub fn load(spec: &str, results: &[ResultField]) -> Result<Self, LessonError> {
         if let Some(lesson) = BuiltInLesson::find(spec) {
             let read = Self::from_text(&format!("lesson {}", lesson.name), lesson.text, None, results)?;
             return Ok(Self { source: Source::BuiltIn(lesson.name), ..read });
         }
-        let text = read_text(Path::new(spec), LARGEST_SCENE).map_err(|error| match error {
+        let text = read_text(Path::new(spec), MAX_SCENE_BYTES).map_err(|error| match error {
             ReadError::Missing => LessonError::NoSuchLesson { spec: clip(spec), lessons: names() },
             ReadError::Unusable(problem) => SceneError::Unreadable { name: clip(spec), problem }.into(),
         })?;
@@ -69,8 +69,8 @@ impl LessonDocument {
         Ok(Self { source: Source::File(PathBuf::from(spec)), ..read })
     }
 
-    /// Parses and checks a lesson; `name` is how messages call it. A scene that is no preset lies in
-    /// `folder`, where there is one.
+    /// Parses and checks a lesson; `name` is its name in messages. A scene that is not a preset is read from
+    /// `folder`, if given.
     pub fn from_text(
         name: &str,
         text: &str,
@@ -78,14 +78,14 @@ impl LessonDocument {
         results: &[ResultField],
     ) -> Result<Self, LessonError> {
         let parse = |text: &str| read::<Lesson>(text);
-        let mut lesson = match begun(text).and_then(|()| parse(text)) {
+        let mut lesson = match check_not_empty(text).and_then(|()| parse(text)) {
             Ok(lesson) => lesson,
-            Err(refusal) => {
+            Err(parse_error) => {
                 let rest = |text: &str| {
                     let checked = Self::from_text(name, text, folder, results);
                     checked.err().map(|error| error.to_string()).unwrap_or_default()
                 };
-                return Err(unreadable(name, text, refusal, |text| parse(text).err(), rest).into());
+                return Err(structure_error(name, text, parse_error, |text| parse(text).err(), rest).into());
             }
         };
         for text in lesson.steps.iter_mut().flat_map(Step::texts_mut) {
@@ -94,26 +94,27 @@ impl LessonDocument {
         for text in [&mut lesson.goal, &mut lesson.misconception, &mut lesson.lecturer] {
             *text = joined(text);
         }
-        let mut wrong = Vec::new();
-        let stages = stages(&lesson, folder, &mut wrong);
-        wrong.extend(faults(&lesson, &stages, results));
-        let own = Self { lesson, source: Source::Text, name: name.to_owned(), text: text.to_owned(), stages };
-        if wrong.is_empty() { Ok(own) } else { Err(own.error_from(wrong).into()) }
+        let mut found = Vec::new();
+        let stages = stages(&lesson, folder, &mut found);
+        found.extend(faults(&lesson, &stages, results));
+        let (name, text) = (name.to_owned(), text.to_owned());
+        let document = Self { lesson, source: Source::Text, name, text, stages };
+        if found.is_empty() { Ok(document) } else { Err(document.error_from(found).into()) }
     }
 
-    /// The scene with which a step begins: that of the lesson with the changes of all steps before, but
-    /// without their solutions. Out of range, of the last step.
+    /// The scene at the beginning of a step: the lesson's scene with the changes of all earlier steps, but
+    /// not their solutions. Beyond the last step, that of the last step.
     pub fn begin(&self, step: usize) -> &Document {
         &self.stages[step.min(self.stages.len() - 1)].begin
     }
 
-    /// The scene of the answer of a prediction, or of the solution of a task; of other steps the one with
-    /// which they begin. Out of range, of the last step.
+    /// The scene of the answer of a prediction or of the solution of a task; for other steps the scene at
+    /// their beginning. Beyond the last step, that of the last step.
     pub fn end(&self, step: usize) -> &Document {
         &self.stages[step.min(self.stages.len() - 1)].end
     }
 
-    /// Gives faults, whoever found them, the line where their value is written.
+    /// Adds to faults from any check the place where their value is written.
     pub fn error_from(&self, faults: Vec<Fault>) -> SceneError {
         let places = Places::of(self.text.strip_prefix('\u{feff}').unwrap_or(&self.text));
         let place = |fault: Fault| PlacedFault {
@@ -128,14 +129,14 @@ impl LessonDocument {
     }
 }
 
-/// Whether a text may be a lesson at all.
-fn begun(text: &str) -> Result<(), Refusal> {
-    let refusal = |problem: &str| {
+/// Fails if the text is empty.
+fn check_not_empty(text: &str) -> Result<(), ParseError> {
+    let parse_error = |problem: &str| {
         let place = Place { line: 1, column: 1 };
-        Err(Refusal { place, problem: problem.to_owned(), unknown: None })
+        Err(ParseError { place, problem: problem.to_owned(), unknown: None })
     };
     match text.trim_start_matches('\u{feff}').trim() {
-        "" => refusal("the file is empty; a lesson begins with `(format: 1, title: \"..\", ..`"),
+        "" => parse_error("the file is empty; a lesson begins with `(format: 1, title: \"..\", ..`"),
         _ => Ok(()),
     }
 }

@@ -1,9 +1,9 @@
-//! Built-in lessons, each a file in `lessons/` and embedded.
+//! Built-in lessons, embedded from the files in `lessons/`.
 
 /// A built-in lesson.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BuiltInLesson {
-    /// Its file's name without ending: a number and a few words.
+    /// Name of its file without extension: a number and a few words.
     pub name: &'static str,
     /// The lesson's text.
     pub text: &'static str,
@@ -32,11 +32,11 @@ lessons! {
     "10-noise-has-no-rhythm"
 }
 
-/// A lesson to begin one's own from.
+/// Template for a new lesson.
 pub static TEMPLATE: &str = include_str!("../../../lessons/template.ron");
 
 impl BuiltInLesson {
-    /// The lesson of that name; its number or its words alone will do.
+    /// The lesson of that name, which may also be its number or its words alone.
     pub fn find(name: &str) -> Option<&'static Self> {
         LESSONS.iter().find(|lesson| {
             let (number, words) = lesson.name.split_once('-').unwrap_or(("", lesson.name));
@@ -47,7 +47,7 @@ impl BuiltInLesson {
     }
 }
 
-/// Names of all lessons, with commas.
+/// Names of all lessons, separated by commas.
 pub(super) fn names() -> String {
     LESSONS.iter().map(|lesson| lesson.name).collect::<Vec<_>>().join(", ")
 }

@@ -1,9 +1,9 @@
-//! Lessons: what a student is told, asks the motion, and does.
+//! Lessons: sequences of texts, predictions and tasks for a student.
 //!
-//! A lesson names a scene and changes it by the same dotted paths as `--set`. Its steps tell something, ask
-//! for a prediction, set a task, or explain; what a prediction and a task come to is said by conditions on
-//! the summary of a run, so that the simulation is the answer key. [`LessonDocument::load`] reads one and
-//! says all that is wrong with it at once; `study::check_lesson` runs it.
+//! A lesson names a scene and changes it by the same dotted paths as `--set`. Its steps show a text, ask for
+//! a prediction, set a task, or explain. Predictions and tasks are judged by conditions on the summary of a
+//! run, so that the simulation is the answer key. [`LessonDocument::load`] reads a lesson and reports all
+//! faults at once; `study::check_lesson` runs it.
 
 mod check;
 mod condition;
@@ -20,15 +20,15 @@ pub use condition::Condition;
 pub use document::{LessonDocument, LessonError};
 pub use library::{BuiltInLesson, LESSONS, TEMPLATE};
 
-/// The version of the format.
+/// Version of the format.
 pub const LESSON_FORMAT: u32 = 1;
 
-/// The most characters of a step's text: as many as two lines of the window hold.
-pub const LONGEST_STEP: usize = 240;
-/// The most characters of an option.
-pub const LONGEST_OPTION: usize = 80;
+/// Largest number of characters of a step's text, which fit on two lines of the window.
+pub const MAX_STEP_LENGTH: usize = 240;
+/// Largest number of characters of an option.
+pub const MAX_OPTION_LENGTH: usize = 80;
 
-/// A lesson as its file has it.
+/// A lesson in the form of its file.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Lesson {
@@ -36,11 +36,11 @@ pub struct Lesson {
     pub format: u32,
     /// One line that names the lesson.
     pub title: String,
-    /// What a student can say afterwards.
+    /// What a student can explain afterwards.
     pub goal: String,
-    /// How long it takes, in minutes.
+    /// Duration in minutes.
     pub minutes: u32,
-    /// Name of a preset, or path of a scene beside the lesson's file.
+    /// Name of a preset, or path of a scene in the folder of the lesson's file.
     pub scene: String,
     /// Changes to the scene: field and value, as `--set` takes them.
     #[serde(default)]
@@ -50,21 +50,21 @@ pub struct Lesson {
     pub controls: Vec<String>,
     /// The views that are shown.
     pub views: Vec<LessonView>,
-    /// Playing speed relative to real time; left out, that of the scene.
+    /// Playing speed relative to real time; the default is that of the scene.
     #[serde(default)]
     pub speed: Option<f64>,
-    /// For fields `mean.` and `error.`: seeds 1 to this one of the noise are run.
+    /// For fields `mean.` and `error.`: the noise is run with seeds 1 to this one.
     #[serde(default)]
     pub seeds: Option<u32>,
-    /// For fields `up.`, `down.` and `walk.`: the field that is walked up and down, each run going on from
-    /// where the one before was.
+    /// For fields `up.`, `down.` and `walk.`: the field that is walked up and down, where each run starts
+    /// from the final state of the previous one.
     #[serde(default)]
     pub walk: Option<SweepAxis>,
-    /// What happens, in this order.
+    /// The steps in order.
     pub steps: Vec<Step>,
-    /// What students think before.
+    /// The misconception that the lesson corrects.
     pub misconception: String,
-    /// Notes for the lecturer; never on the projector by themselves.
+    /// Notes for the lecturer; never shown on the projector unless requested.
     pub lecturer: String,
 }
 
@@ -88,25 +88,25 @@ pub enum LessonView {
     Well,
     /// Displacement over time.
     Displacement,
-    /// The state before the last gesture against the present one.
+    /// The state before the last change, compared with the present one.
     BeforeNow,
     /// Velocity over displacement.
     PhasePortrait,
     /// The force that holds the mass, over displacement.
     ForceCurve,
-    /// Where the energy went.
+    /// The energy balance.
     Energy,
     /// Velocity over time.
     Velocity,
     /// Acceleration of the base over time.
     BaseAcceleration,
-    /// What every combination of two fields comes to.
+    /// A result over a grid of two fields.
     Map,
-    /// One field turned up and down.
+    /// One field walked up and down.
     UpAndDown,
-    /// Where the motion goes from every start.
+    /// Basins of attraction.
     Basins,
-    /// What oscillations the motion is made of.
+    /// Spectrum of the motion.
     Spectrum,
 }
 
@@ -114,34 +114,34 @@ pub enum LessonView {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Step {
-    /// Tells something.
+    /// Shows a text.
     Say(String),
-    /// Asks what will happen. Until an option is chosen nothing of the answer is shown.
+    /// Asks for a prediction. The answer is hidden until an option is chosen.
     Predict {
         /// The question.
         ask: String,
-        /// Changes to the scene that the answer comes from; made when it is revealed.
+        /// Changes to the scene for the answer, applied when it is revealed.
         #[serde(default)]
         set: Vec<(String, String)>,
-        /// What may be chosen; exactly one holds.
+        /// The options; exactly one of them holds.
         options: Vec<Choice>,
     },
     /// Sets a task.
     Do {
         /// The task.
         ask: String,
-        /// When it is done, judged on a full run from the scene's start.
+        /// Condition for success, judged by a full run from the scene's start.
         goal: Condition,
-        /// Shown on request, or when it takes long.
+        /// A hint, shown on request or after a while.
         #[serde(default)]
         hint: Option<String>,
-        /// Changes to the scene with which the goal is met.
+        /// Changes to the scene that meet the goal.
         solution: Vec<(String, String)>,
-        /// Changes to the scene with which the step begins.
+        /// Changes to the scene when the step begins.
         #[serde(default)]
         set: Vec<(String, String)>,
     },
-    /// Explains what was seen.
+    /// Explains the result.
     Explain(String),
 }
 
@@ -149,14 +149,14 @@ pub enum Step {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Choice {
-    /// What it says; the question goes on with it.
+    /// The text, which continues the question.
     pub text: String,
-    /// What holds where it is right.
+    /// Condition under which the option is correct.
     pub holds: Condition,
 }
 
 impl Step {
-    /// What it says first: its text, question or task.
+    /// Its text, question or task.
     pub fn text(&self) -> &str {
         match self {
             Self::Say(text) | Self::Explain(text) => text,
@@ -164,12 +164,12 @@ impl Step {
         }
     }
 
-    /// All texts of it that a person reads.
+    /// All of its visible texts.
     fn texts_mut(&mut self) -> Vec<&mut String> {
         match self {
             Self::Say(text) | Self::Explain(text) => vec![text],
             Self::Predict { ask, options, .. } => {
-                [ask].into_iter().chain(options.iter_mut().map(|own| &mut own.text)).collect()
+                [ask].into_iter().chain(options.iter_mut().map(|option| &mut option.text)).collect()
             }
             Self::Do { ask, hint, .. } => [ask].into_iter().chain(hint).collect(),
         }

@@ -1,6 +1,8 @@
+//! Tests of the distribution of work among threads.
+
 use super::*;
 
-fn held(runs: usize) -> UnderWay {
+fn not_full(runs: usize) -> UnderWay {
     UnderWay { runs, full: false }
 }
 
@@ -14,9 +16,9 @@ fn results_come_in_order_and_none_is_begun_too_far_ahead() {
         let pool = Pool::new(threads).unwrap();
         let (begun, left) = (Mutex::new(0), Mutex::new(Vec::new()));
         let work = |next: &dyn Fn(UnderWay) -> Option<usize>, done: &dyn Fn(usize, usize)| {
-            while let Some(first) = next(held(0)) {
-                // two at a time where there are two, the later one first
-                let pair = [next(held(1)), Some(first)];
+            while let Some(first) = next(not_full(0)) {
+                // two at a time if there are two, the later one first
+                let pair = [next(not_full(1)), Some(first)];
                 for i in pair.into_iter().flatten() {
                     *begun.lock().unwrap() += 1;
                     done(i, i * i);
@@ -43,7 +45,7 @@ fn results_come_in_order_and_none_is_begun_too_far_ahead() {
     }
 }
 
-/// What `work` gives, which is to come to its end.
+/// The result of `work`; panics if it does not end within a minute.
 fn ends<R: Send + 'static>(work: impl FnOnce() -> R + Send + 'static) -> R {
     let (done, wait) = channel();
     spawn(move || drop(done.send(work())));
@@ -55,7 +57,7 @@ fn one_that_gives_up_while_the_others_wait_ends_all() {
     for (threads, after) in (1..=8).flat_map(|threads| [0, 1, 3, 40].map(|after| (threads, after))) {
         let left = ends(move || {
             let work = |next: &dyn Fn(UnderWay) -> Option<usize>, done: &dyn Fn(usize, usize)| {
-                while let Some(number) = next(held(0)) {
+                while let Some(number) = next(not_full(0)) {
                     if number == after {
                         return sleep(Duration::from_millis(5)); // the others wait for it by then
                     }
@@ -63,8 +65,8 @@ fn one_that_gives_up_while_the_others_wait_ends_all() {
                 }
             };
             let mut left = Vec::new();
-            Pool::new(threads).unwrap().in_order((1_000_000_000, 1, 5), work, |own| {
-                left.extend(own);
+            Pool::new(threads).unwrap().in_order((1_000_000_000, 1, 5), work, |results| {
+                left.extend(results);
                 true
             });
             left
@@ -78,9 +80,9 @@ fn a_panic_where_they_leave_ends_all() {
     for threads in 1..=8 {
         assert!(ends(move || {
             let work = |next: &dyn Fn(UnderWay) -> Option<usize>, done: &dyn Fn(usize, usize)| {
-                std::iter::from_fn(|| next(held(0))).for_each(|number| done(number, number));
+                std::iter::from_fn(|| next(not_full(0))).for_each(|number| done(number, number));
             };
-            let leave = |own: Vec<usize>| own.iter().all(|number| *number < 9 || panic!("the ninth"));
+            let leave = |results: Vec<usize>| results.iter().all(|number| *number < 9 || panic!("the ninth"));
             let run = || Pool::new(threads).unwrap().in_order((usize::MAX, 1, 3), work, leave);
             std::panic::catch_unwind(std::panic::AssertUnwindSafe(run)).is_err()
         }));
@@ -92,20 +94,20 @@ fn results_of_a_number_leave_together_or_up_to_its_end() {
     for (threads, each) in (1..=8).flat_map(|threads| [1, 7, 255, 256, 257, 300, 700].map(|n| (threads, n))) {
         let all = 2000 / each + 3;
         let work = |next: &dyn Fn(UnderWay) -> Option<usize>, done: &dyn Fn(usize, usize)| {
-            while let Some(number) = next(held(0)) {
-                let pair = [Some(number), next(held(1))]; // side by side
+            while let Some(number) = next(not_full(0)) {
+                let pair = [Some(number), next(not_full(1))]; // side by side
                 for row in 0..each {
-                    pair.iter().flatten().for_each(|own| done(own * each + row, own * each + row));
+                    pair.iter().flatten().for_each(|taken| done(taken * each + row, taken * each + row));
                 }
             }
         };
         let mut left = Vec::new();
-        Pool::new(threads).unwrap().in_order((all, each, 4), work, |own| {
-            assert!(own.len() <= MOST);
-            let (first, last) = (own[0], own[own.len() - 1]);
+        Pool::new(threads).unwrap().in_order((all, each, 4), work, |results| {
+            assert!(results.len() <= MAX_BATCH);
+            let (first, last) = (results[0], results[results.len() - 1]);
             let together = first % each == 0 && (last + 1) % each == 0;
-            assert!(if each <= MOST { together } else { first / each == last / each });
-            left.extend(own);
+            assert!(if each <= MAX_BATCH { together } else { first / each == last / each });
+            left.extend(results);
             true
         });
         assert_eq!(left, (0..all * each).collect::<Vec<_>>());
@@ -113,10 +115,10 @@ fn results_of_a_number_leave_together_or_up_to_its_end() {
 }
 
 #[test]
-fn shared_results_come_in_order_and_an_error_is_told() {
+fn shared_results_come_in_order_and_an_error_is_returned() {
     let pool = Pool::new(3).unwrap();
     let squares = |next: &dyn Fn(UnderWay) -> Option<usize>| {
-        Ok::<_, ()>(std::iter::from_fn(|| next(held(0))).map(|i| (i, i * i)).collect())
+        Ok::<_, ()>(std::iter::from_fn(|| next(not_full(0))).map(|i| (i, i * i)).collect())
     };
     assert_eq!(share(Some(&pool), 100, squares), Ok((0..100).map(|i| i * i).collect()));
     assert_eq!(share(None, 0, squares), Ok(Vec::new()));
@@ -126,15 +128,15 @@ fn shared_results_come_in_order_and_an_error_is_told() {
 #[test]
 fn no_thread_holds_more_than_its_share() {
     let queue = Queue::new(5, 2);
-    assert_eq!([0, 1, 2].map(|runs| queue.take(held(runs))), [Some(0), Some(1), Some(2)]);
-    assert_eq!([3, 0, 2, 1, 0].map(|runs| queue.take(held(runs))), [None, Some(3), Some(4), None, None]);
+    assert_eq!([0, 1, 2].map(|runs| queue.take(not_full(runs))), [Some(0), Some(1), Some(2)]);
+    assert_eq!([3, 0, 2, 1, 0].map(|runs| queue.take(not_full(runs))), [None, Some(3), Some(4), None, None]);
 }
 
 #[test]
 fn a_thread_with_enough_gets_some_of_the_last() {
     let queue = Queue::new(40, 2);
-    assert_eq!([held(16), full(16)].map(|own| queue.take(own)), [Some(0), None]);
-    (1..8).for_each(|own| assert_eq!(queue.take(held(0)), Some(own)));
+    assert_eq!([not_full(16), full(16)].map(|under_way| queue.take(under_way)), [Some(0), None]);
+    (1..8).for_each(|next| assert_eq!(queue.take(not_full(0)), Some(next)));
     assert_eq!([17, 19, 20].map(|runs| queue.take(full(runs))), [Some(8), Some(9), None]);
 }
 
@@ -142,7 +144,7 @@ fn a_thread_with_enough_gets_some_of_the_last() {
 fn a_panic_in_a_part_ends_all() {
     let pool = Pool::new(2).unwrap();
     let work = |next: &dyn Fn(UnderWay) -> Option<usize>, done: &dyn Fn(usize, usize)| {
-        while let Some(number) = next(held(0)) {
+        while let Some(number) = next(not_full(0)) {
             assert!(number != 3, "part 3");
             done(number, number);
         }

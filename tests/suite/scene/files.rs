@@ -17,7 +17,7 @@ fn a_scene_is_found_or_the_message_says_what_there_is() {
     assert!(error(&at("noise.ron")).contains("is not text: byte 11 (line 2)"), "{}", error(&at("noise.ron")));
     std::fs::write(at("empty.ron"), "").unwrap();
     assert!(error(&at("empty.ron")).contains("empty.ron:1:1: the file is empty"));
-    std::fs::write(at("large.ron"), "(".repeat(LARGEST_SCENE + 1)).unwrap();
+    std::fs::write(at("large.ron"), "(".repeat(MAX_SCENE_BYTES + 1)).unwrap();
     assert!(error(&at("large.ron")).contains("larger than 4 MB"));
     std::fs::write(at("good.ron"), format!("\u{feff}{}", text(&[]).replace('\n', "\r\n"))).unwrap();
     let good = Document::load(&at("good.ron")).unwrap();

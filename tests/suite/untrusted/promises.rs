@@ -12,7 +12,7 @@ use std::time::Duration;
 use interwell::dynamics::{Model, Outcome, Request};
 use interwell::mechanics::{BuildError, ForceTable, Mechanism, fit, force_scale};
 use interwell::scene::{
-    self, Document, Excitation, FieldPath, Files, LARGEST_AXIS, MOST_ROWS, Record, Start, arguments,
+    self, Document, Excitation, FieldPath, Files, MAX_AXIS_VALUES, MOST_ROWS, Record, Start, arguments,
     read_columns, write,
 };
 use interwell::study::{Grid, MAX_CELLS};
@@ -153,7 +153,7 @@ pub fn over(bytes: &[u8]) {
     assert!(given.is_empty() || given.len() == axes.len());
     let mut last_cell = document.clone();
     for axis in &axes {
-        assert!((1..=LARGEST_AXIS).contains(&axis.values.len()), "{} values", axis.values.len());
+        assert!((1..=MAX_AXIS_VALUES).contains(&axis.values.len()), "{} values", axis.values.len());
         axis.apply(&mut last_cell.scene, axis.values.len() - 1);
         if axis.values.len() < 1000 {
             let listed: Vec<String> = axis.values.iter().map(|value| format!("{value:?}")).collect();

@@ -16,7 +16,7 @@ fn holds_or_says(own: &Geometry) -> Option<FlexureError> {
         Err(e) => {
             let (FlexureError::NotConverged { x, .. }
             | FlexureError::Unstable { x, .. }
-            | FlexureError::Endless { x, .. }) = e;
+            | FlexureError::TooMuchWork { x, .. }) = e;
             assert!(x.is_finite() && x >= 0.0, "{e:?}");
             let preloaded = own.preload > 0.0;
             assert_eq!(e.to_string().contains("try a smaller preload or other proportions"), preloaded);
