@@ -46,7 +46,7 @@ pub struct Options {
     #[arg(long, global = true)]
     pub headless: bool,
 
-    /// Scene or lesson to open in the window
+    /// Scene or lesson to open in the window; a lesson is a file, or the name or number of a built-in one
     #[arg(value_name = "SCENE")]
     pub scene: Option<String>,
 

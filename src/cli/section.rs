@@ -33,7 +33,7 @@ pub struct Arguments {
     #[arg(value_name = "SCENE", default_value = "paper")]
     pub scene: String,
 
-    /// A row once a forcing period, or at every impact of the settled window
+    /// A row once a forcing period, or at each impact of the settled window that counts
     #[arg(long, value_name = "phase|impacts", value_parser = ["phase", "impacts"], default_value = "phase")]
     pub at: String,
 

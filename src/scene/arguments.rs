@@ -25,6 +25,7 @@ pub fn arguments(from: &Scene, to: &Scene) -> Vec<String> {
     part("damping", from.damping == to.damping, ron(&to.damping));
     part("stops", from.stops == to.stops, ron(&to.stops));
     part("excitation", from.excitation == to.excitation, ron(&to.excitation));
+    part("transducer", from.transducer == to.transducer, ron(&to.transducer));
     part("start", from.start == to.start, ron(&to.start));
     part("run", from.run == to.run, ron(&to.run));
     all
@@ -51,6 +52,7 @@ fn numbers(from: &Scene, to: &Scene, part: &str) -> Option<Vec<String>> {
         "damping" => changed.damping == to.damping,
         "stops" => changed.stops == to.stops,
         "excitation" => changed.excitation == to.excitation,
+        "transducer" => changed.transducer == to.transducer,
         "start" => changed.start == to.start,
         "run" => changed.run == to.run,
         _ => false,
@@ -85,6 +87,7 @@ mod tests {
                     changed.set(argument).unwrap();
                 }
                 assert!(super::arguments(&changed.scene, &to).is_empty(), "{}: {arguments:?}", from.name);
+                assert_eq!(changed.scene.transducer, to.transducer, "{}: {arguments:?}", from.name);
             }
         }
         let paper = Document::load("paper").unwrap().scene;

@@ -14,6 +14,17 @@ use crate::lessons::{OWN, Shown, go_to, is_anywhere, number, opened, own, step, 
 use crate::support::{PROJECTED, WIDE, command, press, press_with_ctrl, sliced, window};
 
 #[test]
+fn a_built_in_lesson_opens_by_its_name_number_or_words() {
+    let open = |spec| Window::open(Some(spec), Settings::default(), std::sync::Arc::new(|| ()));
+    for spec in ["02-shake-it-over", "2", "02", "shake-it-over"] {
+        let window = open(spec).unwrap();
+        assert_eq!(window.lesson().unwrap().key(), LESSONS[1].name, "{spec}");
+    }
+    assert!(open("paper").unwrap().lesson().is_none());
+    assert!(open("02-shake-it").is_err());
+}
+
+#[test]
 fn a_file_with_faults_shows_them_all() {
     let folder = tempfile::tempdir().unwrap();
     let faulty = OWN.replace("minutes: 5", "minutes: 0").replace("\"stops.travel", "\"stops.trawel");

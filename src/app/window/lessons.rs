@@ -16,9 +16,10 @@ use crate::app::ui::style::Style;
 use crate::app::views::{Cover, Memory, View};
 use crate::app::words::fields::name_and_unit;
 use crate::app::words::lesson::bold_words;
-use crate::scene::lesson::{LessonDocument, LessonError, Step};
+use crate::scene::lesson::{BuiltInLesson, LessonDocument, LessonError, Step};
 use crate::scene::{Document, PRESETS, SceneError};
 use crate::study::result_fields;
+use crate::system::files;
 
 use super::Window;
 use super::layouts::{Arrangement, Tiling};
@@ -72,9 +73,12 @@ pub(super) fn read(spec: &str) -> Result<LessonDocument, CannotRun> {
     })
 }
 
-/// Whether what is to be opened is a lesson's file.
+/// Whether what is to be opened is a lesson: a lesson's file or, where no file is called so, the name, number
+/// or words of a built-in lesson.
 pub(super) fn is_lesson(spec: &str) -> bool {
-    PRESETS.iter().all(|preset| preset.name != spec) && LessonDocument::is_lesson(Path::new(spec))
+    let path = Path::new(spec);
+    let built_in = || !files::exists(path) && BuiltInLesson::find(spec).is_some();
+    PRESETS.iter().all(|preset| preset.name != spec) && (LessonDocument::is_lesson(path) || built_in())
 }
 
 impl Window {

@@ -1,9 +1,9 @@
 //! Drive: acceleration of the base in kernel units, as a series about any instant.
 //!
-//! There are three types, a constant, one sine, and a sum of anything with or without a circuit beside it;
-//! one is chosen per run, so that a scene pays only for what it names. A tone is evaluated from the clock's exact phase at the start of a step
-//! and continued by its own series, d\[k+2\] = -w^2 d\[k\] / ((k+1)(k+2)), so nothing drifts and no library
-//! function is called.
+//! There are three types: a constant, one sine, and a sum of anything with or without a circuit beside it.
+//! One is chosen for a run, so that a scene pays only for what it names. A tone is evaluated from the clock's
+//! exact phase at the start of a step and continued by its series, d\[k+2\] = -w^2 d\[k\] / ((k+1)(k+2)),
+//! so nothing drifts and no library function is called.
 
 mod chirp;
 pub(crate) mod circuit;

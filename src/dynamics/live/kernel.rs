@@ -84,7 +84,9 @@ impl Kernel {
     /// Acceleration of the base in m/s^2 at a time in s.
     pub fn base_at(&self, t: f64) -> f64 {
         let at = self.clock.at(t);
-        with_drive!(&*self.drive, drive => base_at(drive, &self.clock, self.segment(drive, t), &at, self.unit()))
+        with_drive!(&*self.drive, drive => {
+            base_at(drive, &self.clock, self.segment(drive, t), &at, self.unit())
+        })
     }
 
     /// The segment of the drive at a time in s.

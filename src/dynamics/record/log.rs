@@ -157,8 +157,8 @@ impl<T: Scalar> Log<T> {
         Checkpoint { state, barrier_side }
     }
 
-    /// Replays the recorder calls between two marks (to the end without a second), `later`, in this segment of
-    /// the drive; their number, and that of the impacts among them. The steps are put into `series`.
+    /// Replays the recorder calls between two marks (to the end without a second), `later`, in this segment
+    /// of the drive, with each step in `series`. Returns their number, and that of the impacts among them.
     pub fn play(
         &self,
         (record, series): (&mut Recorder<T>, &mut Series<T>),

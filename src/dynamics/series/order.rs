@@ -14,7 +14,7 @@ pub(crate) trait Tail<T: Number> {
     /// State carried along a series.
     type Cursor: Default;
 
-    /// The order from which on all coefficients are 0; where it is a constant, their addition is compiled away.
+    /// The order from which on all coefficients are 0. If it is a constant, their addition is compiled away.
     #[inline(always)]
     fn zero_from(&self) -> usize {
         usize::MAX

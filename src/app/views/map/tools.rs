@@ -266,7 +266,7 @@ pub fn legend(
         entry(words, &|rect| patch(rect, style.ground(), &[]));
     }
     if picture.shows_unsettled() && !surface {
-        entry("not settled", &|rect| _ = painter.add(picture::dot(rect.center(), style)));
+        entry("may be a transient", &|rect| _ = painter.add(picture::dot(rect.center(), style)));
     }
     if picture.shows(Look::Missing) {
         entry("ended early", &|rect| {
