@@ -289,7 +289,7 @@ impl Corrector<'_> {
 
     /// The motion through a state, which need not come back, with its derivatives; none where it ends early
     /// or has none.
-    fn look(&self, at: &Vector3<f64>) -> Option<Point> {
+    pub fn look(&self, at: &Vector3<f64>) -> Option<Point> {
         let value = at.z * self.units.range;
         let map = self.map(value)?;
         let state = allowed(map.model(), self.state(at));

@@ -148,7 +148,7 @@ impl<'a> Walk<'a> {
             }
             step *= 0.5;
             if step < SHORTEST {
-                let leaps = self.at.0.forgets() && self.is_elsewhere_beyond();
+                let leaps = self.at.0.forgets() && self.lasts_beyond();
                 // where chatter no longer ends in rest at both stops it may do so at one
                 if leaps && self.corrector.mirrored && self.forgets_its_mirror_image() {
                     step = FIRST;
@@ -382,12 +382,10 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Whether there is a motion just beyond the present value of the field, wherever it is.
-    fn is_elsewhere_beyond(&self) -> bool {
+    /// Whether a motion just beyond the present value of the field lasts for its period, wherever it leads.
+    fn lasts_beyond(&self) -> bool {
         let (point, along) = &self.at;
-        let across = Vector3::z();
-        let beyond = point.at + across * along.z.signum() * UNLOCATED;
-        self.corrector.correct(beyond, &across).is_some()
+        self.corrector.look(&(point.at + Vector3::z() * along.z.signum() * UNLOCATED)).is_some()
     }
 
     /// Goes on from the present motion without the condition that motions are their own mirror images; false

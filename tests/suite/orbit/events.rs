@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use interwell::dynamics::{Model, STANDARD_GRAVITY, Side};
 use interwell::mechanics::Mechanism;
 use interwell::scene::{Document, Excitation, Files, Scene, Stops};
-use interwell::study::{Branch, BranchEnd, BranchEvent, Family, Orbit, Task, branch, settled};
+use interwell::study::{Branch, BranchEnd, BranchEvent, Family, Orbit, Task, branch, orbit, settled};
 use proptest::prelude::*;
 
 use super::one_stop::OneStop;
@@ -182,8 +182,8 @@ impl Drawn {
                 (a - speed) * (b - speed) < 0.0
             };
             let passed = speeds.windows(2).filter(passes).count();
-            // nearer to a grazing than motions are looked at, which are farther with two impacts at once
-            let hidden = (speed < 1e-3 * self.gap || self.closed.mirrored) && located.len() < passed;
+            // nearer to a grazing than motions are looked at
+            let hidden = speed < 1e-3 * self.gap && located.len() < passed;
             let all = passed == located.len() || hidden;
             prop_assert!(all, "{event:?}: {passed} passed, {} located", located.len());
         }
@@ -194,7 +194,7 @@ impl Drawn {
 #[test]
 fn linear_oscillators_have_their_events_where_formulas_say() {
     let show = |drawn: &Drawn| format!("{drawn:?} {:?}", drawn.range());
-    hold_for("branches_of_linear_oscillators", 40, 0.3, drawn(), show, Drawn::check);
+    hold_for("branches_of_linear_oscillators", 40, 0.6, drawn(), show, Drawn::check);
 }
 
 /// A ball on a shaken table, from the middle of the amplitudes of its stable motion with one impact a period.
@@ -283,13 +283,16 @@ fn swings() -> impl Strategy<Value = Swing> {
 }
 
 impl Swing {
-    fn document(&self, stops: &str) -> Document {
+    /// The scene with stops, which begins at a state.
+    fn document(&self, stops: &str, (x, v): (f64, f64)) -> Document {
         let Self { cubic, w, damping, amplitude, .. } = self;
         document(&format!(
             "mass_g: 1000, mechanism: Polynomial(coefficients_si: [0, 1, 0, {cubic:?}]), \
              damping: Coefficient(c_n_s_per_m: {damping:?}), stops: {stops}, \
-             excitation: Sine(frequency_hz: {:?}, amplitude_g: {amplitude:?}), run: (duration_s: {:?})",
+             excitation: Sine(frequency_hz: {:?}, amplitude_g: {amplitude:?}), \
+             start: At(x_mm: {:?}, v_m_per_s: {v:?}), run: (duration_s: {:?})",
             w / TAU,
+            1e3 * x,
             60.0 * TAU / w
         ))
     }
@@ -297,17 +300,20 @@ impl Swing {
     /// Whether its branch over the amplitude, up to twice, comes to a grazing of the swing without impacts.
     fn check(&self) -> Result<bool, TestCaseError> {
         let cancel = AtomicBool::new(false);
-        let free = self.document("None");
+        let free = self.document("None", (0.0, 0.0));
         let free = Model::build(&free.scene, built(&free.scene.mechanism)).unwrap();
         let Some(swing) = settled(&free, &cancel).filter(|swing| swing.period == Some(1)) else {
             return Ok(false);
         };
-        let Some((low, high)) = swing.range else { return Ok(false) };
+        let (Some((low, high)), Ok(motion)) = (swing.range, orbit(&free, 0.0, Some(1), &cancel)) else {
+            return Ok(false);
+        };
         let (limit, e) = (1e3 * self.farther * if self.both { high.max(-low) } else { high }, self.e);
-        let document = self.document(&match self.both {
+        let stops = match self.both {
             true => format!("Rigid(travel_limit_mm: {limit:?}, restitution: {e:?})"),
             false => format!("Uneven(right_mm: {limit:?}, restitution_right: {e:?})"),
-        });
+        };
+        let document = self.document(&stops, motion.state);
         let mechanism = built(&document.scene.mechanism);
         let family = Family::new(&document.scene, &document.files, &mechanism, AMPLITUDE);
         let task = Task { tick: &|| (), cancel: &cancel };
