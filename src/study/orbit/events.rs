@@ -67,14 +67,14 @@ pub(super) fn between(
     (to, onward): (&Point, &Vector3<f64>),
 ) -> Option<Vec<(BranchEvent, Point)>> {
     let passes = |at: f64| characteristic(from, at) * characteristic(to, at) < 0.0;
+    // a multiplier of the map passes through 1 where the branch turns back, and nowhere else
     let turns = along.z * onward.z < 0.0;
-    if turns && !passes(1.0) {
+    if turns != passes(1.0) {
         return None;
     }
     let mut found = Vec::new();
-    let at_one = if turns { BranchEvent::Fold } else { BranchEvent::Symmetry };
     let at_minus_one = if corrector.mirrored { BranchEvent::Symmetry } else { BranchEvent::Flip };
-    for (at, event) in [(1.0, at_one), (-1.0, at_minus_one)] {
+    for (at, event) in [(1.0, BranchEvent::Fold), (-1.0, at_minus_one)] {
         if passes(at) {
             let (share, point) = root(corrector, (from, to), |point| characteristic(point, at))?;
             let multipliers = point.by_state.multipliers(point.determinant);
