@@ -14,8 +14,8 @@ pub(super) const PATIENCE: u32 = 1000;
 /// they repeat together.
 const LEAST_PATIENCE: f64 = 16.0;
 
-/// The time in s up to which a run of `model` is followed until its motion repeats: [`PATIENCE`] periods of
-/// its fastest sine beyond its duration, and at least [`LEAST_PATIENCE`] forcing periods.
+/// The time in s up to which a run of `model` is followed until its motion repeats: 1000 periods of
+/// its fastest sine beyond its duration, and at least 16 forcing periods.
 pub fn followed_until(model: &Model) -> f64 {
     let period = model.forcing_period().unwrap_or(0.0);
     let fastest = period / model.window_periods().1.max(1) as f64;
