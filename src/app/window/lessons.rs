@@ -16,9 +16,10 @@ use crate::app::ui::style::Style;
 use crate::app::views::{Cover, Memory, View};
 use crate::app::words::fields::name_and_unit;
 use crate::app::words::lesson::pointed;
-use crate::scene::lesson::{LessonDocument, LessonError, Step};
+use crate::scene::lesson::{BuiltInLesson, LessonDocument, LessonError, Step};
 use crate::scene::{Document, PRESETS, SceneError};
 use crate::study::result_fields;
+use crate::system::files;
 
 use super::Window;
 use super::layouts::{Arrangement, Tiling};
@@ -72,9 +73,12 @@ pub(super) fn read(spec: &str) -> Result<LessonDocument, CannotRun> {
     })
 }
 
-/// Whether what is to be opened is a lesson's file.
+/// Whether what is to be opened is a lesson: the file of one, or the name, number or words of a built-in one
+/// where no preset and no file is called so.
 pub(super) fn is_lesson(spec: &str) -> bool {
-    PRESETS.iter().all(|preset| preset.name != spec) && LessonDocument::is_lesson(Path::new(spec))
+    let path = Path::new(spec);
+    let is_built_in = || !files::exists(path) && BuiltInLesson::find(spec).is_some();
+    PRESETS.iter().all(|preset| preset.name != spec) && (LessonDocument::is_lesson(path) || is_built_in())
 }
 
 impl Window {
@@ -174,9 +178,15 @@ impl Window {
         records
     }
 
-    /// Takes over what was done in lessons.
+    /// Takes over what was done in lessons. One that is open already goes on where it was left.
     pub fn set_records(&mut self, records: Records) {
         self.lessons.records = records;
+        if let Some(lesson) = &mut self.lessons.open
+            && let Some(kept) = self.lessons.records.get(&lesson.key())
+        {
+            let turn = lesson.go_on_from(kept);
+            self.take_turn(turn);
+        }
     }
 
     pub(super) fn keep_progress(&mut self) {

@@ -87,8 +87,8 @@ pub struct Window {
 }
 
 impl Window {
-    /// A window on a scene file or a built-in scene, on the file of a lesson, or with measured data over the
-    /// first preset; on that where nothing is given.
+    /// A window on a scene file or a built-in scene, on a lesson, or with measured data over the first
+    /// preset; on that where nothing is given.
     pub fn open(spec: Option<&str>, settings: Settings, wake: Wake) -> Result<Self, CannotRun> {
         let first = PRESETS.first().map_or("paper", |preset| preset.name);
         if let Some(spec) = spec.filter(|spec| lessons::is_lesson(spec)) {

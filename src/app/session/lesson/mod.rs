@@ -204,6 +204,15 @@ impl OpenLesson {
         }
     }
 
+    /// Where it was left, by what was kept of it.
+    pub fn go_on_from(&mut self, kept: &Progress) -> Turn {
+        self.progress = Progress::of(self.lesson(), Some(kept));
+        match self.enter(self.progress.step) {
+            Turn::Same => Turn::Show(Box::new(self.behind()), true),
+            turn => turn,
+        }
+    }
+
     /// From the first step again, without answers.
     pub fn begin_anew(&mut self) -> Turn {
         let done = self.progress.done;
