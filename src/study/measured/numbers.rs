@@ -62,19 +62,24 @@ pub(super) fn assembled(rows: &[Row], rms_difference: f64, of_measured: f64) -> 
         .each("difference_percent", rows, percent)
 }
 
+/// The barrier at which crossings count, in m.
+fn barrier(model: &Model) -> Option<f64> {
+    model.crossing_level().filter(|_| model.mechanism().landscape.barrier.is_some())
+}
+
 /// The first crossing of the barrier: when, and of an amplitude ramp at which amplitude.
 fn crossing(scene: &Scene, model: &Model, (times, measured, computed): (&[f64], &[f64], &[f64])) -> Vec<Row> {
-    let Some(barrier) = model.mechanism().landscape.barrier else { return Vec::new() };
+    let Some(barrier) = barrier(model) else { return Vec::new() };
     let back = 0.5 * reach(measured, noise(measured));
     let first = |values: &[f64]| -> f64 {
-        let clear = |own: &f64| (own - barrier.x).abs() > back;
+        let clear = |own: &f64| (own - barrier).abs() > back;
         let Some(begin) = values.iter().position(clear) else { return f64::NAN };
-        let right = values[begin] > barrier.x;
-        let over = |own: &f64| if right { barrier.x - own > back } else { own - barrier.x > back };
+        let right = values[begin] > barrier;
+        let over = |own: &f64| if right { barrier - own > back } else { own - barrier > back };
         let Some(end) = values.iter().skip(begin).position(over).map(|k| begin + k) else { return f64::NAN };
-        let across = |k: &usize| (values[*k] > barrier.x) == right;
+        let across = |k: &usize| (values[*k] > barrier) == right;
         let last = (begin..end).rev().find(across).unwrap_or(begin);
-        let share = (barrier.x - values[last]) / (values[last + 1] - values[last]);
+        let share = (barrier - values[last]) / (values[last + 1] - values[last]);
         times[last] + share * (times[last + 1] - times[last])
     };
     let (own, other) = (first(measured), first(computed));
@@ -103,7 +108,7 @@ fn rebounds(model: &Model, (times, measured, computed): (&[f64], &[f64], &[f64])
         [Some(left), Some(right)] => right - left,
         [one, other] => 2.0 * one.or(other).unwrap_or(0.0).abs(),
     };
-    let barrier = model.mechanism().landscape.barrier.map(|own| own.x);
+    let barrier = barrier(model);
     let back = reach(measured, noise(measured));
     let found = |values: &[f64], stop: f64, right: bool| -> Vec<Rebound> {
         let all = turns(values, back);
