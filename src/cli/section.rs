@@ -33,7 +33,8 @@ pub struct Arguments {
     #[arg(value_name = "SCENE", default_value = "paper")]
     pub scene: String,
 
-    /// A row once a forcing period, or at every impact of the settled window
+    /// A row once a forcing period, or at every impact of the settled window that is faster than 1e-6 of the
+    /// scene's speed scale
     #[arg(long, value_name = "phase|impacts", value_parser = ["phase", "impacts"], default_value = "phase")]
     pub at: String,
 

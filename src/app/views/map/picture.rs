@@ -22,7 +22,8 @@ use super::quantity::{ColourScale, Look};
 const HATCH: f32 = 7.0;
 const SAMPLE: f32 = 2.0;
 
-/// Radius in points of the dot of a motion that had not settled, and the least side of a cell that bears one.
+/// Radius in points of the dot of a motion that may be a transient, and the least side of a cell that bears
+/// one.
 const DOT: f32 = 1.3;
 const SMALLEST_DOTTED: f32 = 4.0;
 
@@ -38,7 +39,7 @@ pub struct Picture {
     /// Which cells show a motion at rest.
     resting: Arc<[bool]>,
     /// Which cells show a motion that may be a transient.
-    unsettled: Arc<[bool]>,
+    transients: Arc<[bool]>,
     size: [usize; 2],
     key: Key,
     /// What lies over the cells, and where it was made for.
@@ -76,7 +77,7 @@ impl Picture {
         let look = |i: usize| cell(i).map_or((Look::Unknown, false), |c| scale.look(c.0));
         let (looks, resting): (Vec<Look>, Vec<bool>) = (0..columns * rows).map(look).unzip();
         let transient = |i: usize| cell(i).and_then(|c| c.0.settled()).is_some_and(Summary::is_transient);
-        let unsettled = (0..columns * rows).map(transient).collect();
+        let transients = (0..columns * rows).map(transient).collect();
         let image = ColorImage::new(size, looks.iter().map(|look| colour(&key.2, *look)).collect());
         let texture = match old {
             Some(mut old) => {
@@ -91,7 +92,7 @@ impl Picture {
             texture,
             looks,
             resting,
-            unsettled,
+            transients,
             size,
             key,
             over: None,
@@ -114,9 +115,9 @@ impl Picture {
         self.resting.contains(&true)
     }
 
-    /// Whether some cell shows a motion that had not settled.
-    pub fn shows_unsettled(&self) -> bool {
-        self.unsettled.contains(&true)
+    /// Whether some cell shows a motion that may be a transient.
+    pub fn shows_transient(&self) -> bool {
+        self.transients.contains(&true)
     }
 
     /// Draws cells, hatching, symbols and the colour bar.
@@ -147,14 +148,14 @@ impl Picture {
         shapes
     }
 
-    /// A dot on every cell whose motion had not settled, where cells are large enough to bear one.
+    /// A dot on every cell whose motion may be a transient, where cells are large enough to bear one.
     fn dots(&self, shapes: &mut Vec<Shape>, rect: Rect, style: &Style) {
         let [columns, rows] = self.size;
         let cell = rect.size() / vec2(columns as f32, rows as f32);
         if cell.min_elem() < SMALLEST_DOTTED {
             return;
         }
-        for (i, _) in self.unsettled.iter().enumerate().filter(|(_, unsettled)| **unsettled) {
+        for (i, _) in self.transients.iter().enumerate().filter(|(_, transient)| **transient) {
             let place = vec2((i % columns) as f32 + 0.5, (i / columns) as f32 + 0.5);
             shapes.push(dot(rect.min + place * cell, style));
         }
@@ -277,7 +278,7 @@ pub fn bar(painter: &Painter, rect: Rect, scale: &ColourScale, style: &Style) {
     upright(painter, style, (pos2(rect.right() + 44.0, rect.center().y), rect.height()), &axis.label);
 }
 
-/// The mark of a motion that had not settled.
+/// The mark of a motion that may be a transient.
 pub fn dot(at: Pos2, style: &Style) -> Shape {
     Shape::circle_filled(at, DOT, style.hatch_stroke().color)
 }

@@ -265,8 +265,8 @@ pub fn legend(
         let words = scale.without_value();
         entry(words, &|rect| patch(rect, style.ground(), &[]));
     }
-    if picture.shows_unsettled() && !surface {
-        entry("not settled", &|rect| _ = painter.add(picture::dot(rect.center(), style)));
+    if picture.shows_transient() && !surface {
+        entry("may be a transient", &|rect| _ = painter.add(picture::dot(rect.center(), style)));
     }
     if picture.shows(Look::Missing) {
         entry("ended early", &|rect| {
