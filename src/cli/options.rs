@@ -32,6 +32,7 @@ Examples:
   interwell --headless accuracy nominal-cubic --method rk4 --step-s 1/60,1/600
 
 A scene is a .ron file or the name of a built-in one; `presets --write DIR` copies those out.
+A lesson is a .ron file, or the name or number of a built-in one: `interwell 3` opens the third.
 A scene is also the manifest that `sweep --out map.csv` writes beside its rows (map.csv.json), or - for
 standard input.
 Exit status: 0 done; 1 the run or the writing failed, a case of `accuracy` falls short, or a run of

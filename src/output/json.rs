@@ -74,33 +74,35 @@ pub fn landscape(mechanism: &Mechanism, mass: f64) -> String {
         .iter()
         .map(|equilibrium| {
             json!({
-                "x_m": equilibrium.x,
+                "x_m": equilibrium.x + 0.0,
                 "stable": equilibrium.stable,
-                "stiffness_left_n_per_m": equilibrium.stiffness_left,
-                "stiffness_right_n_per_m": equilibrium.stiffness_right,
+                "stiffness_left_n_per_m": equilibrium.stiffness_left + 0.0,
+                "stiffness_right_n_per_m": equilibrium.stiffness_right + 0.0,
                 "frequency_hz": small_amplitude_frequency(mass, equilibrium),
             })
         })
         .collect();
     let barrier = barrier.map(|barrier| {
         json!({
-            "x_m": barrier.x,
-            "height_j": barrier.from_left_j.min(barrier.from_right_j),
-            "height_from_left_j": barrier.from_left_j,
-            "height_from_right_j": barrier.from_right_j,
-            "left_well_m": barrier.left_well,
-            "right_well_m": barrier.right_well,
+            "x_m": barrier.x + 0.0,
+            "height_j": barrier.from_left_j.min(barrier.from_right_j) + 0.0,
+            "height_from_left_j": barrier.from_left_j + 0.0,
+            "height_from_right_j": barrier.from_right_j + 0.0,
+            "left_well_m": barrier.left_well + 0.0,
+            "right_well_m": barrier.right_well + 0.0,
         })
     });
-    let extrema: Vec<Value> =
-        extrema.iter().map(|extremum| json!({ "x_m": extremum.x, "force_n": extremum.force })).collect();
+    let extrema: Vec<Value> = extrema
+        .iter()
+        .map(|extremum| json!({ "x_m": extremum.x + 0.0, "force_n": extremum.force + 0.0 }))
+        .collect();
     let kinks: Vec<Value> = kinks
         .iter()
         .map(|kink| {
             json!({
-                "x_m": kink.x,
-                "stiffness_left_n_per_m": kink.stiffness_left,
-                "stiffness_right_n_per_m": kink.stiffness_right,
+                "x_m": kink.x + 0.0,
+                "stiffness_left_n_per_m": kink.stiffness_left + 0.0,
+                "stiffness_right_n_per_m": kink.stiffness_right + 0.0,
             })
         })
         .collect();
@@ -110,7 +112,7 @@ pub fn landscape(mechanism: &Mechanism, mass: f64) -> String {
         "barrier": barrier,
         "force_extrema": extrema,
         "kinks": kinks,
-        "domain_m": [left, right],
+        "domain_m": [left + 0.0, right + 0.0],
     }))
 }
 
@@ -120,8 +122,8 @@ pub fn identified(of: &str, found: &Identified, timing: Option<&Timing>, origin:
     let mut object = Map::new();
     object.insert("of".to_owned(), json!(of));
     for own in &found.summary {
-        let (low, high) = own.interval;
-        object.insert(own.name.to_owned(), json!({ "value": own.value, "low": low, "high": high }));
+        let [value, low, high] = [own.value, own.interval.0, own.interval.1].map(|number| number + 0.0);
+        object.insert(own.name.to_owned(), json!({ "value": value, "low": low, "high": high }));
     }
     if let Some(timing) = timing {
         object.insert("samples".to_owned(), json!(timing.samples));

@@ -35,6 +35,23 @@ pub(super) fn for_each(scene: &mut Scene, each: impl FnMut(&str, Field<'_>)) {
     walk(scene, &mut Each { path: String::new(), lengths: Vec::new(), each });
 }
 
+/// Whether every number of a scene is within its range; no path is written for that.
+pub(super) fn in_range(scene: &mut Scene) -> bool {
+    struct InRange(bool);
+    impl Visitor for InRange {
+        fn field(&mut self, _: Segment, inner: bool, field: Field<'_>) -> bool {
+            if let Field::Number(spec, slot) = field {
+                self.0 &= slot.get().is_none_or(|value| spec.range.contains(value));
+            }
+            inner
+        }
+        fn leave(&mut self) {}
+    }
+    let mut all = InRange(true);
+    walk(scene, &mut all);
+    all.0
+}
+
 /// The dotted path of a field, split once so that it can be followed many times.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FieldPath {

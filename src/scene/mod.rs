@@ -47,6 +47,7 @@ mod walk;
 
 pub use arguments::arguments;
 pub use axis::{Axis, MAX_AXES, MAX_AXIS_VALUES, column_names};
+pub(crate) use check::is_sound;
 pub use check::{Checked, check, corners};
 pub use columns::{Columns, ColumnsError, MOST_ROWS, read_columns};
 pub use data::*;

@@ -308,6 +308,19 @@ fn a_record_that_cannot_be_meant_is_refused_and_one_that_may_surprise_is_remarke
 }
 
 #[test]
+fn a_record_that_is_missing_is_named_with_its_field_and_a_remedy() {
+    let folder = tempfile::tempdir().unwrap();
+    let beside = Files::beside(&folder.path().join("s.ron"));
+    for (files, remedy) in [(beside, "give the path of one"), (Files::default(), "give an absolute path")] {
+        let scene = "(title: \"t\", mass_g: 1, mechanism: Cubic(linear_n_per_m: -1, cubic_n_per_m3: 1), \
+                     excitation: Recorded(path: \"gone.csv\"), run: (duration_s: 2))";
+        let error = Document::from_text("s.ron", scene, files).unwrap().check().unwrap_err().to_string();
+        assert!(error.contains("excitation.path = ") && error.contains("gone.csv"), "{error}");
+        assert!(error.contains(remedy), "{error}");
+    }
+}
+
+#[test]
 fn a_seed_and_a_number_of_lines_are_whole_and_can_be_swept() {
     let mut document = Document::load("nominal-cubic").unwrap();
     document.set("excitation=Noise(rms_g: 1, low_hz: 1, high_hz: 5, seed: 1)").unwrap();

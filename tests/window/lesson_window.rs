@@ -57,6 +57,16 @@ fn a_file_with_faults_shows_them_all() {
 }
 
 #[test]
+fn a_built_in_lesson_is_opened_by_name_number_or_words() {
+    let open = |spec: &str| Window::open(Some(spec), Settings::default(), std::sync::Arc::new(|| ()));
+    for spec in ["02-shake-it-over", "2", "02", "shake-it-over"] {
+        assert_eq!(open(spec).unwrap().lesson().unwrap().key(), LESSONS[1].name, "{spec}");
+    }
+    assert!(open("paper").unwrap().lesson().is_none());
+    assert!(open("02-shake-it").is_err());
+}
+
+#[test]
 fn the_longest_texts_fit() {
     let long = |begin: &str, count: usize| {
         let words = begin.chars().chain("the mass hops from stop to stop ".chars().cycle());

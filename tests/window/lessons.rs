@@ -6,6 +6,7 @@ use eframe::egui::{Key, OutputCommand};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use interwell::app::session::lesson::{Records, answers_text};
+use interwell::app::ui::settings::Settings;
 use interwell::app::views::View;
 use interwell::app::window::{Command, Wanted, Window};
 use interwell::scene::lesson::{LESSONS, Step};
@@ -331,10 +332,18 @@ fn progress_is_kept_and_answers_are_text() {
         assert!(text.contains(part), "{text}");
     }
     let mut again = window("first-look", WIDE);
-    again.state_mut().set_records(records);
+    again.state_mut().set_records(records.clone());
     again.state_mut().open_lesson(&path);
     again.run_steps(3);
-    assert_eq!((number(&again), again.state().lesson().unwrap().answer().clone()), (step, answer));
+    assert_eq!((number(&again), again.state().lesson().unwrap().answer()), (step, &answer));
+    // an argument of the program opens it before what was kept is there
+    let mut window = Window::open(Some(&path), Settings::default(), std::sync::Arc::new(|| ())).unwrap();
+    assert_eq!(window.lesson().unwrap().number(), 0);
+    window.set_records(records.clone());
+    let lesson = window.lesson().unwrap();
+    assert_eq!((lesson.number(), lesson.answer()), (step, &answer));
+    assert_eq!(window.session.scene(), harness.state().session.scene());
+    assert_eq!(window.records(), records);
     let ctx = again.ctx.clone();
     again.state_mut().carry_out(&ctx, Command::CopyAnswers);
     again.run_steps(1);

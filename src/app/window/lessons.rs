@@ -176,9 +176,15 @@ impl Window {
         records
     }
 
-    /// Takes over what was done in lessons.
+    /// Takes over what was done in lessons. One that is open already goes on where it was left.
     pub fn set_records(&mut self, records: Records) {
         self.lessons.records = records;
+        if let Some(lesson) = &mut self.lessons.open
+            && let Some(kept) = self.lessons.records.get(&lesson.key())
+        {
+            let turn = lesson.go_on_from(kept);
+            self.take_turn(turn);
+        }
     }
 
     pub(super) fn keep_progress(&mut self) {

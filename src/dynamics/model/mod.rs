@@ -69,7 +69,7 @@ fn faults_of_check(scene: &Scene) -> Vec<Fault> {
 impl Model {
     /// Converts a scene that has passed its check; faults that only show here (no equilibrium to rest
     /// at, a ratio without a stable equilibrium, a start beyond a stop or the curve) are all reported, and of
-    /// a scene with a number that is none or out of all bounds those of its check.
+    /// a scene with numbers that none may have those of its check.
     pub fn build(scene: &Scene, mechanism: Arc<Mechanism>) -> Result<Self, Vec<Fault>> {
         let mut faults = Vec::new();
         let mass = scene.mass_g / 1e3;
@@ -180,38 +180,9 @@ impl Model {
             mechanism,
         };
         model.choose_barrier();
-        // A scene that has passed its check is not looked at once more: a sweep builds a model for each cell.
-        let faults = if model.is_sound(&scene.transducer) { Vec::new() } else { faults_of_check(scene) };
+        // Faults are looked for only where there are some: a sweep builds a model for each cell.
+        let faults = if scene::is_sound(scene) { Vec::new() } else { faults_of_check(scene) };
         if faults.is_empty() { Ok(model) } else { Err(faults) }
-    }
-
-    /// Whether its numbers can be those of a scene that has passed its check.
-    fn is_sound(&self, transducer: &scene::Transducer) -> bool {
-        // the one number that may be infinite
-        let load = match *transducer {
-            scene::Transducer::None => 0.0,
-            scene::Transducer::Electromagnetic { load_ohm, .. } => load_ohm,
-            scene::Transducer::Piezoelectric { load_kohm, .. } => load_kohm,
-        };
-        let Self { mass, damping, duration, settle, scales, excitation, start, .. } = self;
-        let stops = self.stops.iter().flat_map(|pair| [pair.left, pair.right]).flatten();
-        let stops = stops.map(|stop| stop.x * stop.restitution);
-        let compliant = self.compliant.iter().map(|own| own.stiffness * own.loss);
-        let tones = excitation.tones.iter().filter(|tone| !tone.noise).map(|tone| {
-            let ramp = tone.ramp.map_or(0.0, |(from, over)| from + over);
-            tone.amplitude + tone.frequency + tone.phase + ramp
-        });
-        let noises = excitation.noises.iter().map(|noise| noise.rms + noise.low + noise.high);
-        let chirps = excitation.chirps.iter().map(|own| own.amplitude + own.from + own.to + own.over);
-        let others = [*damping, start.0, start.1, self.start_electrical, excitation.constant];
-        let others = others.into_iter().chain([scales.length, scales.speed, scales.time]);
-        let all = others.chain(stops).chain(compliant).chain(tones).chain(noises).chain(chirps);
-        *mass > 0.0
-            && load >= 0.0
-            && *duration > 0.0
-            && *settle >= 0.0
-            && (scene::TOLERANCES.0..=scene::TOLERANCES.1).contains(&self.tolerance)
-            && all.chain([*mass, *duration, *settle]).all(f64::is_finite)
     }
 
     /// Of two barriers as near to x = 0, counts crossings at the one on the side of the start; of a start

@@ -245,3 +245,30 @@ fn once<T>(cell: &OnceCell<T>, make: impl FnOnce() -> Result<T, Unjudged>) -> Re
     let value = make()?;
     Ok(cell.get_or_init(|| value))
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::AtomicBool;
+
+    use super::*;
+    use crate::scene::Document;
+    use crate::scene::lesson::LessonDocument;
+    use crate::study::result_fields;
+
+    #[test]
+    fn a_subject_is_of_a_scene_with_its_files() {
+        let lesson = LessonDocument::load("1", &result_fields()).unwrap().lesson;
+        let document = Document::load("paper-table").unwrap();
+        let of = |text: &str| {
+            let mut files = document.files.clone();
+            files.held.insert("force.csv".to_owned(), text.to_owned());
+            files
+        };
+        let files = of("x_m,force_n\n0,0\n1,1\n");
+        let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
+        let subject = Subject::new(&document.scene, &files, &lesson, &task);
+        assert!(subject.is_of(&document.scene, &files.clone()));
+        assert!(!subject.is_of(&document.scene, &of("x_m,force_n\n0,0\n1,2\n")));
+        assert!(!subject.is_of(&Scene { mass_g: 1.0, ..document.scene.clone() }, &files));
+    }
+}

@@ -8,6 +8,8 @@
 //! stroboscopic map changes as the root of the distance from it (Nordmark 1991). Of a motion that is its own
 //! mirror image half a period is flown, so that it touches both stops at once.
 
+use std::ops::Range;
+
 use nalgebra::Vector3;
 
 use super::corrector::{Accuracy, Corrector, Equations, Point, newton};
@@ -29,6 +31,9 @@ const FIRST: f64 = 1e-7;
 
 /// The largest gap or speed in the units of a motion beside it.
 const LARGEST: f64 = 0.3;
+
+/// Shares of the distance that was asked for at which a motion beside it may be.
+const DISTANCES: Range<f64> = 0.3..3.0;
 
 /// To rounding.
 const FINEST: Accuracy = Accuracy { change: 0.0, step: 1e-15 };
@@ -312,7 +317,24 @@ impl Grazing<'_> {
         let at = self.strobe(&there, beside)?;
         let away = (at - self.point.at).try_normalize(0.0)?;
         let point = self.corrector.correct(at, &away)?;
-        ((point.at - at).norm() <= 0.1 * distance).then_some(point)
+        let far = (at - self.point.at).norm();
+        let is_there = (DISTANCES.start * distance..DISTANCES.end * distance).contains(&far)
+            && (point.at - at).norm() <= 0.1 * distance;
+        (is_there && self.is_beside(&point, beside)).then_some(point)
+    }
+
+    /// Whether a motion touches the stops as the grazing one does, and once more where it touches this one;
+    /// its mirror image then does so at the other stop.
+    fn is_beside(&self, point: &Point, beside: Beside) -> bool {
+        let touches = |point: &Point, side: Side| {
+            let contacts = point.orbit.contacts();
+            contacts.iter().filter(|event| event.side == side).count()
+        };
+        [Side::Left, Side::Right].into_iter().all(|side| {
+            let touches_once_more =
+                beside == Beside::Touching && (side == self.side || self.corrector.mirrored);
+            touches(point, side) == touches(&self.point, side) + usize::from(touches_once_more)
+        })
     }
 
     /// The coordinates at a strobe of a motion beside it.

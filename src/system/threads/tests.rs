@@ -1,5 +1,7 @@
 //! Tests of the distribution of work among threads.
 
+use std::hint::black_box;
+
 use super::*;
 
 fn not_full(runs: usize) -> UnderWay {
@@ -151,4 +153,19 @@ fn a_panic_in_a_part_ends_all() {
     };
     let run = || pool.in_order((usize::MAX, 1, 2), work, |_| true);
     assert!(std::panic::catch_unwind(std::panic::AssertUnwindSafe(run)).is_err());
+}
+
+/// The sum of all depths up to this one, in frames of 8 KB each: 2.4 MB of stack for 300.
+fn deep(depth: u64) -> u64 {
+    let frame = black_box([depth; 1 << 10]);
+    let below = if depth == 0 { 0 } else { deep(depth - 1) };
+    below + black_box(&frame)[0]
+}
+
+#[test]
+fn threads_of_studies_have_room_for_large_frames() {
+    let sum = 300 * 301 / 2;
+    assert_eq!(ends(|| deep(300)), sum);
+    let all = Pool::new(2).unwrap().map(4, || (), |(), _| Ok::<_, ()>(deep(300)));
+    assert_eq!(all, Ok(vec![sum; 4]));
 }

@@ -148,27 +148,33 @@ fn a_closed_pipe_ends_quietly() {
 #[cfg(unix)]
 #[test]
 fn ctrl_c_leaves_no_half_file() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("map.csv");
-    // More cells than can be run before the signal.
-    let over = "--over stops.travel_limit_mm=1:7:0.001 --over excitation.amplitude_g=0:2:0.001";
-    let line = format!("section --quiet {over} --out");
-    let mut child = Process::new(assert_cmd::cargo::cargo_bin!("interwell"))
-        .arg("--headless")
-        .args(line.split_whitespace())
-        .arg(&path)
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    // The program listens before it makes a file.
-    while fs::read_dir(folder.path()).unwrap().count() == 0 {
-        assert_eq!(child.try_wait().unwrap(), None, "it ended before it wrote");
-        std::thread::yield_now();
+    // More work than can be done before the signal.
+    for line in [
+        "section --over stops.travel_limit_mm=1:7:0.001 --over excitation.amplitude_g=0:2:0.001",
+        "simulate random-shaking --set excitation.lines=4096 --set run.duration_s=1e6 --at 0",
+        "threshold paper-unconstrained --over excitation.frequency_hz=1:12:0.01",
+        "accuracy",
+        "accuracy duffing-chaos",
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let mut child = Process::new(assert_cmd::cargo::cargo_bin!("interwell"))
+            .arg("--headless")
+            .args(line.split_whitespace())
+            .args(["--quiet", "--out"])
+            .arg(folder.path().join("table.csv"))
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        // The program listens before it makes a file.
+        while fs::read_dir(folder.path()).unwrap().count() == 0 {
+            assert_eq!(child.try_wait().unwrap(), None, "{line}: it ended before it wrote");
+            std::thread::yield_now();
+        }
+        let killed = Process::new("kill").arg("-INT").arg(child.id().to_string()).status().unwrap();
+        assert!(killed.success());
+        let end = child.wait_with_output().unwrap();
+        assert_eq!(end.status.code(), Some(1), "{line}");
+        assert!(String::from_utf8_lossy(&end.stderr).contains("interrupted"), "{line}");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "{line}");
     }
-    let killed = Process::new("kill").arg("-INT").arg(child.id().to_string()).status().unwrap();
-    assert!(killed.success());
-    let end = child.wait_with_output().unwrap();
-    assert_eq!(end.status.code(), Some(1));
-    assert!(String::from_utf8_lossy(&end.stderr).contains("interrupted"));
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }

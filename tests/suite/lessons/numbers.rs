@@ -186,6 +186,15 @@ fn stops_that_help() {
     let from = |limit: f64| told.least(Onset::Crossing, &[&stopped(limit)], 1.0..1.6);
     assert!(from(2.6) < open && [2.7, 3.0, 4.0, 5.0, 6.0, 7.0, 7.15].iter().all(|own| from(*own) > open));
     told.says("from about 2.7 mm out to the wells at 7.2 mm the mass needs more shaking");
+    let outer = told.model(&[]).mechanism().landscape.kink_at_right_well().unwrap().outer;
+    let damping = 2.0 * 0.023 * (outer * MASS).sqrt();
+    let damping = format!("damping=Coefficient(c_n_s_per_m: {damping:?})");
+    let [open, below, above] = ["stops=None", &stopped(3.4), &stopped(3.6)]
+        .map(|stops| told.least(Onset::Crossing, &[&damping, stops], 1.2..1.6));
+    // that without stops depends on rounding
+    assert!((1.395..1.425).contains(&open), "{open}");
+    assert!(below < 1.395 && above > below + 0.02 && above > open - 0.01, "{below} {open} {above}");
+    told.says("read by the slope outside, that begins between 3.4 and 3.6 mm");
     told.says(&format!("{:.3} N and {:.3} N", told.press(4.0), told.press(1.5)));
 }
 

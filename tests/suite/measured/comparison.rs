@@ -2,12 +2,13 @@
 
 use std::sync::atomic::AtomicBool;
 
-use interwell::dynamics::Model;
-use interwell::scene::{Channel, Document, Quantity};
+use interwell::dynamics::{EventKind, Model};
+use interwell::scene::{Channel, Document, Files, Quantity};
 use interwell::study::{Comparison, Keep, MeasuredMotion, NoComparison, compare, simulate};
 
 use super::Noise;
 use crate::cli::{headless, refused};
+use crate::support::{build, of_kind, run_at};
 
 fn model(changes: &[&str]) -> (Document, Model) {
     let mut document = Document::load("paper").unwrap();
@@ -78,6 +79,39 @@ fn the_numbers_are_those_of_the_difference() {
     }
     let [measured, computed, ..] = row(&found, "first_crossing");
     assert!(measured > 0.0 && (measured - computed).abs() < 1e-3, "{measured} {computed}");
+}
+
+#[test]
+fn of_two_barriers_the_first_crossing_is_at_that_of_the_run() {
+    // wells at -1.7, 0 and 1.7 mm, barriers at -1.05 and 1.05 mm
+    let times: Vec<f64> = (0..2000).map(|i| f64::from(i) * 1e-4).collect();
+    let crossed = [1.0, -1.0].map(|sign| {
+        let text = format!(
+            "(title: \"three wells\", mass_g: 15.2, \
+             mechanism: Polynomial(coefficients_si: [0, 320, 0, -4e8, 0, 1e14]), \
+             start: At(x_mm: {}, v_m_per_s: {}), run: (duration_s: 0.2))",
+            1.75 * sign,
+            -0.15 * sign
+        );
+        let document = Document::from_text("three wells", &text, Files::default()).unwrap();
+        let model = build(&document);
+        let run = run_at(&model, &times);
+        let values = run.samples.iter().map(|sample| sample.x).collect();
+        let channel = Channel { quantity: Quantity::Displacement, column: "x_m".into(), values };
+        let motion = MeasuredMotion {
+            times: &times,
+            channel: &channel,
+            offset: 0.0,
+            time_scale: 1.0,
+            shift: Some(0.0),
+        };
+        let found = compare(&document.scene, &model, &motion, &AtomicBool::new(false)).unwrap();
+        let [measured, computed, ..] = row(&found, "first_crossing");
+        let event = of_kind(&run, EventKind::Crossing)[0].t;
+        assert!((measured - event).abs() <= 1e-4 && measured == computed, "{measured} {computed} {event}");
+        measured
+    });
+    assert_eq!(crossed[0], crossed[1]);
 }
 
 #[test]

@@ -244,6 +244,17 @@ fn clean_records_of_the_prototype_give_its_restitution_at_all_rates() {
 }
 
 #[test]
+fn a_stop_that_lies_elsewhere_than_given_is_said() {
+    let changes = changes(&["run.duration_s=5", "run.settle_s=0"]);
+    let record = recorded("paper", &changes, 1e-3, 0.0, 1);
+    let found = restitution(&record[0], &record[1], None, [None, Some(1.45e-3)]).unwrap();
+    let stop = number(&found, "right_stop_m");
+    assert!((stop.value - 1.5e-3).abs() < 1e-6, "{}", stop.describe());
+    let is_said = |text: &String| text.starts_with("the right stop lies at 1.5");
+    assert!(found.remarks.iter().any(is_said), "{:?}", found.remarks);
+}
+
+#[test]
 fn the_acceleration_of_the_base_makes_flights_smoother() {
     let shaking =
         "Sum([Sine(frequency_hz: 3, amplitude_g: 1.2), Noise(rms_g: 2, low_hz: 20, high_hz: 200, seed: 3)])";

@@ -198,11 +198,13 @@ impl OpenLesson {
 
     pub fn go_back(&mut self) -> Turn {
         let Some(number) = self.progress.step.checked_sub(1) else { return Turn::Stay };
-        match self.enter(number) {
-            // the scene on the screen belongs to a later step
-            Turn::Same => Turn::Show(Box::new(self.preceding_scene()), true),
-            turn => turn,
-        }
+        self.enter_from_elsewhere(number)
+    }
+
+    /// Goes on from the step and with the answers that were kept.
+    pub fn go_on_from(&mut self, kept: &Progress) -> Turn {
+        self.progress = Progress::of(self.lesson(), Some(kept));
+        self.enter_from_elsewhere(self.progress.step)
     }
 
     /// Begins again with the first step, without answers.
@@ -210,6 +212,14 @@ impl OpenLesson {
         let done = self.progress.done;
         self.progress = Progress { done, ..Progress::of(self.lesson(), None) };
         self.enter(0)
+    }
+
+    /// Enters a step while the scene on the screen is not that of the step before.
+    fn enter_from_elsewhere(&mut self, number: usize) -> Turn {
+        match self.enter(number) {
+            Turn::Same => Turn::Show(Box::new(self.preceding_scene()), true),
+            turn => turn,
+        }
     }
 
     fn enter(&mut self, number: usize) -> Turn {

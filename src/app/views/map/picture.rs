@@ -23,7 +23,7 @@ const HATCH: f32 = 7.0;
 /// Distance in points between samples along a line of hatching.
 const SAMPLE: f32 = 2.0;
 
-/// Radius in points of the dot of a motion that had not settled.
+/// Radius in points of the dot of a motion that may be a transient.
 const DOT: f32 = 1.3;
 /// Smallest side in points of a cell that has a dot.
 const MIN_DOTTED: f32 = 4.0;
@@ -40,7 +40,7 @@ pub struct Picture {
     /// Which cells show a motion at rest.
     resting: Arc<[bool]>,
     /// Which cells show a motion that may be a transient.
-    unsettled: Arc<[bool]>,
+    transients: Arc<[bool]>,
     size: [usize; 2],
     key: Key,
     /// The mesh of the shapes over the cells, and the place that it was made for.
@@ -77,7 +77,7 @@ impl Picture {
         let look = |i: usize| cell(i).map_or((Look::Unknown, false), |c| scale.look(c.0));
         let (looks, resting): (Vec<Look>, Vec<bool>) = (0..columns * rows).map(look).unzip();
         let transient = |i: usize| cell(i).and_then(|c| c.0.settled()).is_some_and(Summary::is_transient);
-        let unsettled = (0..columns * rows).map(transient).collect();
+        let transients = (0..columns * rows).map(transient).collect();
         let image = ColorImage::new(size, looks.iter().map(|look| colour(&key.2, *look)).collect());
         let texture = match old {
             Some(mut old) => {
@@ -92,7 +92,7 @@ impl Picture {
             texture,
             looks,
             resting,
-            unsettled,
+            transients,
             size,
             key,
             over: None,
@@ -113,9 +113,9 @@ impl Picture {
         self.resting.contains(&true)
     }
 
-    /// Whether any cell shows a motion that had not settled.
-    pub fn shows_unsettled(&self) -> bool {
-        self.unsettled.contains(&true)
+    /// Whether any cell shows a motion that may be a transient.
+    pub fn shows_transient(&self) -> bool {
+        self.transients.contains(&true)
     }
 
     /// Draws cells, hatching, symbols and the colour bar.
@@ -146,14 +146,14 @@ impl Picture {
         shapes
     }
 
-    /// Marks every cell whose motion had not settled by a dot, where cells are large enough.
+    /// Marks every cell whose motion may be a transient by a dot, where cells are large enough.
     fn dots(&self, shapes: &mut Vec<Shape>, rect: Rect, style: &Style) {
         let [columns, rows] = self.size;
         let cell = rect.size() / vec2(columns as f32, rows as f32);
         if cell.min_elem() < MIN_DOTTED {
             return;
         }
-        for (i, _) in self.unsettled.iter().enumerate().filter(|(_, unsettled)| **unsettled) {
+        for (i, _) in self.transients.iter().enumerate().filter(|(_, transient)| **transient) {
             let place = vec2((i % columns) as f32 + 0.5, (i / columns) as f32 + 0.5);
             shapes.push(dot(rect.min + place * cell, style));
         }
@@ -276,7 +276,7 @@ pub fn bar(painter: &Painter, rect: Rect, scale: &ColourScale, style: &Style) {
     upright(painter, style, (pos2(rect.right() + 44.0, rect.center().y), rect.height()), &axis.label);
 }
 
-/// The mark of a motion that had not settled.
+/// The mark of a motion that may be a transient.
 pub fn dot(at: Pos2, style: &Style) -> Shape {
     Shape::circle_filled(at, DOT, style.hatch_stroke().color)
 }

@@ -265,7 +265,7 @@ pub fn legend(
         let words = scale.without_value();
         entry(words, &|rect| patch(rect, style.ground(), &[]));
     }
-    if picture.shows_unsettled() && !surface {
+    if picture.shows_transient() && !surface {
         entry("may be a transient", &|rect| _ = painter.add(picture::dot(rect.center(), style)));
     }
     if picture.shows(Look::Missing) {
