@@ -282,7 +282,7 @@ fn bands(excitation: &Excitation, path: &str, checked: &mut Checked) {
 fn sines(excitation: &Excitation, checked: &mut Checked) {
     fn count(excitation: &Excitation) -> u64 {
         match excitation {
-            Excitation::Sine { .. } | Excitation::AmplitudeRamp { .. } => 1,
+            Excitation::Sine { .. } | Excitation::AmplitudeRamp { .. } | Excitation::Chirp { .. } => 1,
             Excitation::Noise { lines, .. } => *lines,
             Excitation::Sum(terms) => terms.iter().map(count).fold(0, u64::saturating_add),
             _ => 0,

@@ -190,6 +190,7 @@ fn choices(field: &str) -> Option<&'static [&'static str]> {
         "stops" | "stops_when_on" => of::<Stops>(),
         "excitation" => of::<Excitation>(),
         "start" => of::<Start>(),
+        "transducer" => of::<Transducer>(),
         "layout" => of::<Layout>(),
         _ => None,
     }
