@@ -141,12 +141,12 @@ fn verdict(report: &Report) -> Result<(), Failure> {
 
 /// What the cases are, a paragraph each.
 fn list(wanted: &[String]) -> String {
-    let shown = |name: &str| wanted.is_empty() || wanted.iter().any(|own| own == name);
+    let shown = |name: &str| wanted.is_empty() || wanted.iter().any(|chosen| chosen == name);
     let mut text = String::new();
-    for problem in PROBLEMS.iter().filter(|own| shown(own.name)) {
+    for problem in PROBLEMS.iter().filter(|problem| shown(problem.name)) {
         text += &format!("{}\n  {}\n  Error: {}\n", problem.name, problem.problem, problem.error);
     }
-    for case in HARD_CASES.iter().filter(|own| shown(own.name)) {
+    for case in HARD_CASES.iter().filter(|case| shown(case.name)) {
         text += &format!(
             "{}\n  {}\n  Answer: {}\n  Digits allowed: {}\n",
             case.name, case.problem, case.answer, case.conditioning

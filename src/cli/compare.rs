@@ -61,8 +61,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let (mut all, mut files, mut shaken, mut until) = (Vec::new(), Vec::new(), Vec::new(), None);
     for spec in &options.scenes {
         let (mut document, warnings) = load(spec, common, None)?;
-        let (own, lent) = (&document.scene, &environment.scene);
-        let how = match (own.excitation != lent.excitation, window(&own.run) != window(&lent.run)) {
+        let (scene, lent) = (&document.scene, &environment.scene);
+        let how = match (scene.excitation != lent.excitation, window(&scene.run) != window(&lent.run)) {
             (true, true) => Some("under the excitation and with the run of"),
             (true, false) => Some("under the excitation of"),
             (false, true) => Some("with the run of"),
@@ -97,8 +97,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let rated = rated.ok_or_else(Failure::interrupted)?;
     write_table(&mut sinks[0], &comparison_table(&rated))?;
     if !common.quiet {
-        let remarks = all.iter().zip(&rated).flat_map(|(own, rated)| {
-            let said = remarks(own, rated, amplitude_g).into_iter();
+        let remarks = all.iter().zip(&rated).flat_map(|(scene, rated)| {
+            let said = remarks(scene, rated, amplitude_g).into_iter();
             said.map(|words| (rated.name.clone(), words))
         });
         grouped(remarks.collect()).iter().for_each(|line| say(line));
@@ -123,7 +123,7 @@ fn window(run: &RunSettings) -> [f64; 3] {
 fn grouped(said: Vec<(String, String)>) -> Vec<String> {
     let mut lines: Vec<(Vec<String>, String)> = Vec::new();
     for (name, words) in said {
-        match lines.iter_mut().find(|own| own.1 == words) {
+        match lines.iter_mut().find(|line| line.1 == words) {
             Some((names, _)) => names.push(name),
             None => lines.push((vec![name], words)),
         }

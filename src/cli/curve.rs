@@ -92,8 +92,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let contact_picture =
         Picture::of("--contact-plot", options.contact_plot.as_deref(), &options.chart.plot, common)?;
     // of two pictures the numbers are those of --plot
-    let contact_picture =
-        contact_picture.map(|own| if picture.is_none() { own.with_data(&options.chart.plot) } else { own });
+    let contact_picture = contact_picture
+        .map(|contact| if picture.is_none() { contact.with_data(&options.chart.plot) } else { contact });
     let rigid = restitution(&options.rigid)?;
     let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
     let range = |text| range("--range-mm", text, "A:B in mm with A below B, such as -8:8");
@@ -136,7 +136,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     }
     let table = if options.full {
         let rows = solved(&mechanism, &positions(CURVE_POINTS), &document.name, "--full")?;
-        let warning = mechanism.flexures.as_ref().and_then(|own| stress_warning(own, &rows));
+        let warning = mechanism.flexures.as_ref().and_then(|flexures| stress_warning(flexures, &rows));
         if let Some(warning) = warning.filter(|_| !common.quiet) {
             say(&format!("warning: {}: {warning}", document.name));
         }
@@ -198,7 +198,7 @@ fn contact_table(
 
 /// The restitution of a rigid stop as given to `--rigid`.
 fn restitution(text: &str) -> Result<f64, Failure> {
-    let fits = |own: &f64| (0.0..=1.0).contains(own);
+    let fits = |value: &f64| (0.0..=1.0).contains(value);
     number("--rigid", text, fits, "give a coefficient of restitution, 0 to 1, such as 0.36")
 }
 

@@ -135,10 +135,10 @@ fn checked(options: &Arguments, common: &Common) -> Result<(String, Option<Failu
 
 /// Findings with their places, a line each.
 fn lines(document: &LessonDocument, findings: &[LessonFinding]) -> impl Iterator<Item = String> {
-    let fault = |own: &LessonFinding| Fault {
-        field: own.field.clone(),
+    let fault = |finding: &LessonFinding| Fault {
+        field: finding.field.clone(),
         value: String::new(),
-        problem: own.problem.clone(),
+        problem: finding.problem.clone(),
     };
     let error = (!findings.is_empty()).then(|| document.error_from(findings.iter().map(fault).collect()));
     let text = error.map(|error| error.to_string()).unwrap_or_default();

@@ -55,7 +55,7 @@ pub fn offset(text: Option<&str>) -> Result<f64, Failure> {
 }
 
 fn finite(option: &str, text: &str, right: &str) -> Result<f64, Failure> {
-    number(option, text, |own: &f64| own.is_finite(), right)
+    number(option, text, |value: &f64| value.is_finite(), right)
 }
 
 /// A record that was read, and how it is laid over the run.
@@ -76,7 +76,7 @@ impl MeasuredOptions {
         let ColumnOptions { time, time_unit, column, unit } = &self.columns;
         let chosen = [("--time", time), ("--time-unit", time_unit), ("--column", column), ("--unit", unit)];
         let Some(path) = &self.measured else {
-            return match chosen.into_iter().find(|own| own.1.is_some()) {
+            return match chosen.into_iter().find(|option| option.1.is_some()) {
                 None => Ok(None),
                 Some((option, _)) => {
                     Err(Failure::argument(format!("{option} is of a record: name that by --measured FILE")))
@@ -131,8 +131,8 @@ impl Laid {
     pub fn compare(&self, scene: &Scene, model: &Model, cancel: &AtomicBool) -> Result<Comparison, Failure> {
         let [times, channel] = &self.record.channels;
         let Self { offset, time_scale, shift, .. } = *self;
-        let own = MeasuredMotion { times: &times.values, channel, offset, time_scale, shift };
-        compare(scene, model, &own, cancel).map_err(|problem| match problem {
+        let motion = MeasuredMotion { times: &times.values, channel, offset, time_scale, shift };
+        compare(scene, model, &motion, cancel).map_err(|problem| match problem {
             NoComparison::Cancelled => Failure::interrupted(),
             problem => Failure::argument(format!("{}: {problem}", self.name)),
         })

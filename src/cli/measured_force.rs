@@ -47,7 +47,7 @@ impl MeasuredForceOptions {
         let PositionOptions { position, position_unit } = &self.positions;
         let Some(path) = &self.measured else {
             let chosen = [("--position", position), ("--position-unit", position_unit)];
-            return match chosen.into_iter().find(|own| own.1.is_some()) {
+            return match chosen.into_iter().find(|option| option.1.is_some()) {
                 None => Ok(None),
                 Some((option, _)) => {
                     Err(Failure::argument(format!("{option} is of a record: name that by --measured FILE")))

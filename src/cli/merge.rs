@@ -39,8 +39,11 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let mut parts = all(&options.parts)?;
     let beside = manifest_path(common.out());
     let outputs = [Some(("--out", common.out())), beside.as_deref().map(|path| (MANIFEST, path))];
-    let inputs: Vec<PathBuf> =
-        parts.iter().flat_map(|own| [Some(own.path.clone()), manifest_path(&own.path)]).flatten().collect();
+    let inputs: Vec<PathBuf> = parts
+        .iter()
+        .flat_map(|part| [Some(part.path.clone()), manifest_path(&part.path)])
+        .flatten()
+        .collect();
     let mut sinks = open(&inputs, outputs)?;
     let plan = &parts[0].manifest["plan"];
     let (rows, unit) = (plan["rows"].as_u64().unwrap_or(0), plan["unit"].as_u64().unwrap_or(0).max(1));
@@ -52,7 +55,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         let Some(sink) = sink else { return Ok(()) };
         sink.put_bytes(text).map_err(|error| Failure::writing(sink.name(), error))
     };
-    let headers: Vec<Vec<u8>> = parts.iter_mut().map(|own| own.lines(1)).collect::<Result<_, _>>()?;
+    let headers: Vec<Vec<u8>> = parts.iter_mut().map(|part| part.lines(1)).collect::<Result<_, _>>()?;
     put(&mut sinks[0], &headers[0])?;
     for (number, rows) in slice.dealt() {
         if interrupt::came() {
@@ -64,7 +67,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         part.check()?;
     }
     let sum = whole.text();
-    let manifests: Vec<Value> = parts.into_iter().map(|own| own.manifest).collect();
+    let manifests: Vec<Value> = parts.into_iter().map(|part| part.manifest).collect();
     let origin = watch.origin(1);
     let text = merged_manifest(&manifests, &file_name(common.out()), &sum, &origin.arguments);
     write_text(&mut sinks[1], &text)?;
@@ -97,9 +100,9 @@ fn all(paths: &[PathBuf]) -> Result<Vec<Part>, Failure> {
         )));
     };
     for part in &parts[1..] {
-        let (own, other) = (part.path.display(), first.path.display());
+        let (path, other) = (part.path.display(), first.path.display());
         let differences = plan_differences(&part.manifest["plan"], &first.manifest["plan"]);
-        let wrong = |how: String| Failure::argument(format!("{own} does not belong to {other}: {how}"));
+        let wrong = |how: String| Failure::argument(format!("{path} does not belong to {other}: {how}"));
         if !differences.is_empty() {
             // "there" is the file that is named first
             return Err(wrong(differences));
@@ -107,14 +110,14 @@ fn all(paths: &[PathBuf]) -> Result<Vec<Part>, Failure> {
             return Err(wrong(format!("it is the shard {}, that one {}", part.shard, first.shard)));
         }
     }
-    parts.sort_by_key(|own| own.shard.number());
-    if let Some(same) = parts.windows(2).find(|own| own[0].shard == own[1].shard) {
+    parts.sort_by_key(|part| part.shard.number());
+    if let Some(same) = parts.windows(2).find(|pair| pair[0].shard == pair[1].shard) {
         let (a, b) = (same[0].path.display(), same[1].path.display());
         let both = format!("{a} and {b} are both the shard {}; name each shard once", same[0].shard);
         return Err(Failure::argument(both));
     }
     let count = parts[0].shard.count();
-    let has = |number: u64| parts.iter().any(|own| own.shard.number() == number);
+    let has = |number: u64| parts.iter().any(|part| part.shard.number() == number);
     let missing: Vec<String> = (1..=count)
         .filter(|number| !has(*number))
         .map(|number| Ok(parts[0].command_of(Shard::new(number, count)?)))
@@ -204,12 +207,15 @@ impl Part {
     /// The command that computes another shard of the same sweep.
     fn command_of(&self, shard: Shard) -> String {
         let arguments = self.manifest["arguments"].as_array();
-        let arguments: Vec<String> =
-            arguments.into_iter().flatten().filter_map(|own| own.as_str().map(str::to_owned)).collect();
-        let own = self.path.to_string_lossy();
+        let arguments: Vec<String> = arguments
+            .into_iter()
+            .flatten()
+            .filter_map(|argument| argument.as_str().map(str::to_owned))
+            .collect();
+        let name = self.path.to_string_lossy();
         let out = match value(&arguments, "--out") {
             Some(out) if out.contains(PLACE) => out.to_owned(),
-            _ => other_name(&own, self.shard, shard),
+            _ => other_name(&name, self.shard, shard),
         };
         command(&arguments, &["--shard", &shard.to_string(), "--out", &out, "--resume"])
     }

@@ -74,7 +74,7 @@ macro_rules! commands {
                     [OPTIONS]"))]
                 $variant {
                     #[command(flatten)]
-                    own: super::$word::Arguments,
+                    arguments: super::$word::Arguments,
                     #[command(flatten)]
                     common: Common,
                 },
@@ -111,7 +111,7 @@ macro_rules! commands {
             /// Does it.
             pub fn run(&self) -> Result<(), Failure> {
                 match self {
-                    $(Self::$variant { own, common } => super::$word::run(own, common),)*
+                    $(Self::$variant { arguments, common } => super::$word::run(arguments, common),)*
                 }
             }
         }
@@ -176,9 +176,9 @@ pub fn whole<T: TryFrom<u64>>(
     range: RangeInclusive<u64>,
 ) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static {
     move |text| {
-        let number = text.trim().parse().ok().filter(|own| range.contains(own));
+        let number = text.trim().parse().ok().filter(|number| range.contains(number));
         let wrong = || format!("give a whole number from {} to {}", range.start(), range.end());
-        number.and_then(|own| T::try_from(own).ok()).ok_or_else(wrong)
+        number.and_then(|number| T::try_from(number).ok()).ok_or_else(wrong)
     }
 }
 
@@ -219,12 +219,12 @@ impl Common {
     ///
     /// clap's own global arguments would forget a `--set` before the command where another one follows it.
     pub fn put_before(&mut self, before: Self) -> Result<(), &'static str> {
-        fn one<T>(own: &mut Option<T>, before: Option<T>, name: &'static str) -> Result<(), &'static str> {
-            match (own.is_some(), before) {
+        fn one<T>(after: &mut Option<T>, before: Option<T>, name: &'static str) -> Result<(), &'static str> {
+            match (after.is_some(), before) {
                 (_, None) => Ok(()),
                 (true, Some(_)) => Err(name),
                 (false, before) => {
-                    *own = before;
+                    *after = before;
                     Ok(())
                 }
             }

@@ -33,7 +33,7 @@ impl<'a> Picture<'a> {
     /// The picture that `options` ask for; an error where its name does not end like one.
     pub fn asked(options: &'a PlotOptions, common: &Common) -> Result<Option<Self>, Failure> {
         let picture = Self::of("--plot", options.plot.as_deref(), options, common)?;
-        Ok(picture.map(|own| own.with_data(options)))
+        Ok(picture.map(|picture| picture.with_data(options)))
     }
 
     /// The same, with the place of the numbers that are drawn.
@@ -71,8 +71,8 @@ impl<'a> Picture<'a> {
     /// What a picture's outputs are opened by: that of the picture and that of its data, where they were
     /// asked for.
     pub fn outputs(picture: Option<Self>) -> [Option<(&'static str, &'a Path)>; 2] {
-        let data = picture.and_then(|own| own.data);
-        [picture.map(|own| (own.option, own.path)), data.map(|path| ("--plot-data", path))]
+        let data = picture.and_then(|picture| picture.data);
+        [picture.map(|picture| (picture.option, picture.path)), data.map(|path| ("--plot-data", path))]
     }
 
     /// Writes the picture to the first of its sinks and its data to the second, where there is one.
@@ -97,7 +97,7 @@ impl<'a> Picture<'a> {
 fn arguments() -> Vec<String> {
     let program = Options::command();
     let Ok(matches) = program.clone().try_get_matches_from(std::env::args_os()) else { return Vec::new() };
-    let Some((word, own)) = matches.subcommand() else { return Vec::new() };
+    let Some((word, command)) = matches.subcommand() else { return Vec::new() };
     let mut all = Vec::new();
     for argument in program.find_subcommand(word).iter().flat_map(|command| command.get_arguments()) {
         let id = argument.get_id().as_str();
@@ -116,7 +116,7 @@ fn arguments() -> Vec<String> {
         let is_flag = matches!(argument.get_action(), ArgAction::SetTrue);
         let option = argument.get_long().map(str::to_owned);
         let values =
-            given(&matches).into_iter().chain(given(own)).map(|value| Some(value).filter(|_| !is_flag));
+            given(&matches).into_iter().chain(given(command)).map(|value| Some(value).filter(|_| !is_flag));
         all.extend(values.map(|value| Argument { option: option.clone(), value }));
     }
     picture_arguments(word, all)
@@ -150,7 +150,7 @@ pub fn ranges(options: &ChartOptions, across: &'static str) -> Result<Ranges, Fa
 
 /// A size `WxH` in pixels.
 fn size(text: &str) -> Result<(u32, u32), Failure> {
-    let side = |text: &str| text.trim().parse::<u32>().ok().filter(|own| (200..=4000).contains(own));
+    let side = |text: &str| text.trim().parse::<u32>().ok().filter(|pixels| (200..=4000).contains(pixels));
     let sides = text.split_once(['x', 'X']).and_then(|(width, height)| side(width).zip(side(height)));
     sides.ok_or_else(|| {
         let message = "write WxH in pixels, 200 to 4000 each, such as 2400x1500";

@@ -60,7 +60,7 @@ fn is_wanted(scheme: Scheme, names: &[String]) -> bool {
         Scheme::VelocityVerlet => "verlet",
         Scheme::RungeKutta4 => "rk4",
     };
-    names.is_empty() || names.iter().any(|own| own == name)
+    names.is_empty() || names.iter().any(|chosen| chosen == name)
 }
 
 /// The shortest and the longest step in s that a run is made with.

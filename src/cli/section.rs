@@ -89,7 +89,7 @@ fn section_at(options: &Arguments) -> Result<SectionAt, Failure> {
             None => Ok(SectionAt::Impacts),
         };
     }
-    let finite = |own: &f64| own.is_finite();
+    let finite = |value: &f64| value.is_finite();
     let angle = |text| number("--phase-deg", text, finite, "give an angle in degrees, such as 90");
     Ok(SectionAt::Phase(phase.map_or(Ok(0.0), angle)?))
 }

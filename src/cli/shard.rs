@@ -22,7 +22,7 @@ pub fn shard(text: &str, variable: impl Fn(&str) -> Option<String>) -> Result<Sh
         value.trim().parse::<u64>().map(Some).map_err(|_| not())
     };
     let slurm = number("SLURM_ARRAY_TASK_ID")?;
-    let Some(own) = slurm.map_or_else(|| number("HQ_TASK_ID"), |own| Ok(Some(own)))? else {
+    let Some(task) = slurm.map_or_else(|| number("HQ_TASK_ID"), |number| Ok(Some(number)))? else {
         return Err(wrong(
             "the environment has neither SLURM_ARRAY_TASK_ID nor HQ_TASK_ID, as within an array job; give \
              I/N, such as 2/5"
@@ -30,13 +30,13 @@ pub fn shard(text: &str, variable: impl Fn(&str) -> Option<String>) -> Result<Sh
         ));
     };
     if !rest.is_empty() {
-        return Shard::parse(&format!("{own}{rest}")).map_err(wrong);
+        return Shard::parse(&format!("{task}{rest}")).map_err(wrong);
     }
     match number("SLURM_ARRAY_TASK_COUNT")?.filter(|_| slurm.is_some()) {
         Some(count) => {
             let least = number("SLURM_ARRAY_TASK_MIN")?.unwrap_or(1);
             let step = number("SLURM_ARRAY_TASK_STEP")?.unwrap_or(1).max(1);
-            let number = own.checked_sub(least).map_or(0, |beyond| beyond / step + 1);
+            let number = task.checked_sub(least).map_or(0, |beyond| beyond / step + 1);
             Shard::new(number, count).map_err(wrong)
         }
         None => Err(wrong("the environment does not say how many tasks there are; give auto/N".to_owned())),
@@ -82,7 +82,7 @@ pub fn command(arguments: &[String], options: &[&str]) -> String {
     let mut left_out = false;
     for argument in arguments {
         let name = argument.split('=').next().unwrap_or_default();
-        let of_a_part = OF_A_PART.iter().find(|(own, _)| *own == name);
+        let of_a_part = OF_A_PART.iter().find(|(option, _)| *option == name);
         match of_a_part {
             _ if std::mem::take(&mut left_out) => {}
             Some((_, has_value)) => left_out = *has_value && name == argument,
@@ -100,30 +100,30 @@ pub fn line<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
         if !word.is_empty() && word.chars().all(plain) {
             return word.to_owned();
         }
-        shlex::try_quote(word).map_or_else(|_| word.to_owned(), |own| own.into_owned())
+        shlex::try_quote(word).map_or_else(|_| word.to_owned(), |quoted| quoted.into_owned())
     };
     words.into_iter().map(quoted).collect::<Vec<_>>().join(" ")
 }
 
 /// The value of an option among arguments.
 pub fn value<'a>(arguments: &'a [String], option: &str) -> Option<&'a str> {
-    let place = arguments.iter().position(|own| own == option);
+    let place = arguments.iter().position(|argument| argument == option);
     let beside = place.and_then(|place| arguments.get(place + 1)).map(String::as_str);
-    beside.or_else(|| arguments.iter().find_map(|own| own.strip_prefix(option)?.strip_prefix('=')))
+    beside.or_else(|| arguments.iter().find_map(|argument| argument.strip_prefix(option)?.strip_prefix('=')))
 }
 
-/// The name of the file of another shard, where that of `own` is called `out`.
-pub fn other_name(out: &str, own: Shard, other: Shard) -> String {
+/// The name of the file of another shard, where that of `shard` is called `out`.
+pub fn other_name(out: &str, shard: Shard, other: Shard) -> String {
     if out.contains(PLACE) {
         return out.to_owned();
     }
     let named = |shard: Shard| format!("{}-of-{}", shard.number(), shard.count());
-    if out.contains(&named(own)) {
-        return out.replace(&named(own), &named(other));
+    if out.contains(&named(shard)) {
+        return out.replace(&named(shard), &named(other));
     }
     // its number, where the name has it once as a number of its own
     let (folder, name) = out.rsplit_once('/').map_or(("", out), |(folder, name)| (folder, name));
-    let number = own.number().to_string();
+    let number = shard.number().to_string();
     let digit = |c: Option<char>| c.is_some_and(|c| c.is_ascii_digit());
     let alone = |at: &usize| {
         let (before, after) = (&name[..*at], &name[at + number.len()..]);
@@ -145,8 +145,9 @@ mod tests {
     use super::*;
 
     fn of(text: &str, variables: &[(&str, &str)]) -> Result<String, String> {
-        let variable = |name: &str| variables.iter().find(|own| own.0 == name).map(|own| own.1.to_owned());
-        shard(text, variable).map(|own| own.to_string()).map_err(|error| error.to_string())
+        let variable =
+            |name: &str| variables.iter().find(|entry| entry.0 == name).map(|entry| entry.1.to_owned());
+        shard(text, variable).map(|shard| shard.to_string()).map_err(|error| error.to_string())
     }
 
     #[test]
@@ -177,7 +178,7 @@ mod tests {
     fn commands_of_other_shards_can_be_copied() {
         let arguments =
             ["--headless", "sweep", "--out=a.csv", "--set", "start=At(x_mm: 1)", "--shard", "1/5"];
-        let arguments: Vec<String> = arguments.iter().map(|own| (*own).to_owned()).collect();
+        let arguments: Vec<String> = arguments.iter().map(|argument| (*argument).to_owned()).collect();
         let text = command(&arguments, &["--shard", "2/5", "--out", "b.csv"]);
         let set = shlex::try_quote("start=At(x_mm: 1)").unwrap();
         assert_eq!(text, format!("interwell --headless sweep --set {set} --shard 2/5 --out b.csv"));

@@ -86,7 +86,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         return Err(Failure::argument(message));
     }
     let record = options.measured.read(common.quiet)?;
-    if let Some((from, to)) = record.as_ref().and_then(|own| own.inset).filter(|(_, to)| *to > most) {
+    if let Some((from, to)) = record.as_ref().and_then(|measured| measured.inset).filter(|(_, to)| *to > most)
+    {
         let message = format!("--inset {from}:{to}: the run lasts from 0 to {most} s");
         return Err(Failure::argument(message));
     }
@@ -105,7 +106,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let (simulation, trace) = match picture {
         None => (simulate(&model, &keep, Some(cancel)), None),
         Some(_) => {
-            let close = record.as_ref().and_then(|own| own.inset).or(window);
+            let close = record.as_ref().and_then(|measured| measured.inset).or(window);
             let (simulation, trace) = simulate_with_trace(&model, &keep, close, Some(cancel));
             (simulation, Some(trace))
         }
@@ -113,7 +114,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if interrupt::came() {
         return Err(Failure::interrupted());
     }
-    let compared = record.as_ref().map(|own| own.compare(&document.scene, &model, cancel)).transpose()?;
+    let compared =
+        record.as_ref().map(|measured| measured.compare(&document.scene, &model, cancel)).transpose()?;
     let [samples, events, about, pictures @ .., comparison] = &mut sinks;
     write_table(samples, &simulation.samples)?;
     write_table(events, &simulation.events)?;
@@ -121,9 +123,9 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if let Some((picture, trace)) = picture.zip(trace) {
         let (about, mechanism) = (caption(&document), &model.mechanism());
         let figure = match record.as_ref().zip(compared.as_ref()) {
-            Some((own, found)) => {
-                let quantity = own.record.channels[1].quantity;
-                measured_figure(&trace, (found, quantity), own.inset, axes, &about, &picture.theme)
+            Some((measured, found)) => {
+                let quantity = measured.record.channels[1].quantity;
+                measured_figure(&trace, (found, quantity), measured.inset, axes, &about, &picture.theme)
             }
             None => {
                 let named = options.panels.iter().filter_map(|name| Panel::named(name)).collect::<Vec<_>>();
@@ -138,8 +140,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         write_table(comparison, &found.table)?;
     }
     finish(sinks)?;
-    if let Some((own, found)) = record.as_ref().zip(compared.as_ref()).filter(|_| !common.quiet) {
-        own.tell(found);
+    if let Some((measured, found)) = record.as_ref().zip(compared.as_ref()).filter(|_| !common.quiet) {
+        measured.tell(found);
     }
     if let Some(warning) = yield_warning(&model, &simulation.summary).filter(|_| !common.quiet) {
         say(&format!("warning: {}: {warning}", document.name));

@@ -70,7 +70,10 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let model = Model::build(&document.scene, mechanism).map_err(|faults| document.error_from(faults))?;
     let until_settled = until_settled(options.until_settled.as_deref(), &document, &model)?;
     let asked = SpectrumOptions {
-        signal: Signal::ALL.into_iter().find(|own| own.name() == options.of).unwrap_or(Signal::Displacement),
+        signal: Signal::ALL
+            .into_iter()
+            .find(|signal| signal.name() == options.of)
+            .unwrap_or(Signal::Displacement),
         taper: match options.taper.as_str() {
             "hann" => Some(Taper::Hann),
             "none" => Some(Taper::None),
@@ -111,6 +114,6 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
 }
 
 fn rate(text: &str) -> Result<f64, Failure> {
-    let fits = |own: &f64| *own > 0.0 && own.is_finite();
+    let fits = |value: &f64| *value > 0.0 && value.is_finite();
     number("--rate-hz", text, fits, "give a number of samples a second above 0, such as 2048")
 }

@@ -41,7 +41,10 @@ impl Watch {
     pub fn origin(&self, jobs: usize) -> Provenance {
         Provenance {
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            arguments: std::env::args_os().skip(1).map(|own| own.to_string_lossy().into_owned()).collect(),
+            arguments: std::env::args_os()
+                .skip(1)
+                .map(|argument| argument.to_string_lossy().into_owned())
+                .collect(),
             wall_s: self.wall_s(),
             cpu_s: self.cpu.seconds(),
             jobs,

@@ -237,7 +237,7 @@ fn scan(options: &Arguments, document: &Document) -> Result<Scan, Failure> {
         None if whole => 1.0,
         None => 1e-3 * step,
         Some(text) => {
-            let fits = |own: &f64| *own > 0.0 && own.is_finite() && (!whole || own.fract() == 0.0);
+            let fits = |value: &f64| *value > 0.0 && value.is_finite() && (!whole || value.fract() == 0.0);
             let kind = if whole { "whole number" } else { "number" };
             number("--resolution", text, fits, &format!("give a {kind} above 0, in the unit of the field"))?
         }

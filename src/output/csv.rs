@@ -52,7 +52,7 @@ pub fn csv_table(text: &str, empty: &Table) -> Result<Table, String> {
     for column in empty.columns() {
         let name = &column.name;
         let missing = || format!("there is no column {name}");
-        let place = names.iter().position(|own| own == name).ok_or_else(missing)?;
+        let place = names.iter().position(|header| header == name).ok_or_else(missing)?;
         let cells = rows.iter().map(|row| row.get(place).unwrap_or_default());
         let wrong = |cell: &str| format!("`{cell}` in the column {name} is no number");
         let values = match &column.values {
@@ -80,12 +80,12 @@ pub fn csv_table(text: &str, empty: &Table) -> Result<Table, String> {
 
 /// A word of a table, which lasts as long as the program; there are few different ones.
 fn lasting(word: &str, known: &mut BTreeSet<&'static str>) -> &'static str {
-    if let Some(own) = known.get(word) {
-        return own;
+    if let Some(word) = known.get(word) {
+        return word;
     }
-    let own: &'static str = Box::leak(word.into());
-    known.insert(own);
-    own
+    let word: &'static str = Box::leak(word.into());
+    known.insert(word);
+    word
 }
 
 #[cfg(test)]

@@ -121,9 +121,10 @@ pub fn landscape(mechanism: &Mechanism, mass: f64) -> String {
 pub fn identified(of: &str, found: &Identified, timing: Option<&Timing>, origin: &Provenance) -> String {
     let mut object = Map::new();
     object.insert("of".to_owned(), json!(of));
-    for own in &found.summary {
-        let [value, low, high] = [own.value, own.interval.0, own.interval.1].map(|number| number + 0.0);
-        object.insert(own.name.to_owned(), json!({ "value": value, "low": low, "high": high }));
+    for number in &found.summary {
+        let [value, low, high] =
+            [number.value, number.interval.0, number.interval.1].map(|number| number + 0.0);
+        object.insert(number.name.to_owned(), json!({ "value": value, "low": low, "high": high }));
     }
     if let Some(timing) = timing {
         object.insert("samples".to_owned(), json!(timing.samples));

@@ -48,51 +48,51 @@ pub fn manifest(
     origin: &Provenance,
     data: &str,
 ) -> String {
-    let mut own = json!({
+    let mut more = json!({
         "cells": tally.cells,
         "mechanisms": made.map_or(tally.mechanisms, |_| grid.mechanisms()),
         "outcomes": tally.outcomes,
         "regimes": tally.regimes,
     });
     if let Some(Made { plan, shard, sha256 }) = made {
-        own["shard"] = json!(shard.to_string());
-        own["sha256"] = json!(sha256);
-        own["plan_sha256"] = json!(plan_checksum(plan));
-        own["plan"] = plan.clone();
+        more["shard"] = json!(shard.to_string());
+        more["sha256"] = json!(sha256);
+        more["plan_sha256"] = json!(plan_checksum(plan));
+        more["plan"] = plan.clone();
     }
-    swept((command, document), grid, own, origin, data)
+    swept((command, document), grid, more, origin, data)
 }
 
 /// The manifest of a whole sweep whose shards have these manifests, in a file `data` with this checksum, put
 /// together by a call of the program with these `arguments`. Counts and CPU times are added, the time on the
 /// wall is the longest.
 pub fn merged_manifest(shards: &[Value], data: &str, sha256: &str, arguments: &[String]) -> String {
-    let Some(mut own) = shards.first().cloned() else { return String::new() };
+    let Some(mut merged) = shards.first().cloned() else { return String::new() };
     for other in &shards[1..] {
         for key in ["cells", "outcomes", "regimes", "cpu_s"] {
-            add(&mut own[key], &other[key]);
+            add(&mut merged[key], &other[key]);
         }
-        if other["wall_s"].as_f64() > own["wall_s"].as_f64() {
-            own["wall_s"] = other["wall_s"].clone();
+        if other["wall_s"].as_f64() > merged["wall_s"].as_f64() {
+            merged["wall_s"] = other["wall_s"].clone();
         }
     }
-    own["data"] = json!(data);
-    own["sha256"] = json!(sha256);
-    own["arguments"] = json!(arguments);
-    own["shard"] = json!(Shard::WHOLE.to_string());
-    pretty(&own)
+    merged["data"] = json!(data);
+    merged["sha256"] = json!(sha256);
+    merged["arguments"] = json!(arguments);
+    merged["shard"] = json!(Shard::WHOLE.to_string());
+    pretty(&merged)
 }
 
 /// Adds numbers, or the numbers of objects key by key.
-fn add(own: &mut Value, other: &Value) {
-    match (own, other) {
-        (Value::Object(own), Value::Object(other)) => {
-            other.iter().for_each(|(key, n)| add(own.entry(key).or_insert(json!(0)), n));
+fn add(sum: &mut Value, other: &Value) {
+    match (sum, other) {
+        (Value::Object(sum), Value::Object(other)) => {
+            other.iter().for_each(|(key, n)| add(sum.entry(key).or_insert(json!(0)), n));
         }
-        (own, other) => {
-            let whole = own.as_u64().zip(other.as_u64()).map(|(a, b)| json!(a + b));
-            let real = own.as_f64().zip(other.as_f64()).map(|(a, b)| json!(a + b));
-            *own = whole.or(real).unwrap_or(Value::Null);
+        (sum, other) => {
+            let whole = sum.as_u64().zip(other.as_u64()).map(|(a, b)| json!(a + b));
+            let real = sum.as_f64().zip(other.as_f64()).map(|(a, b)| json!(a + b));
+            *sum = whole.or(real).unwrap_or(Value::Null);
         }
     }
 }
@@ -106,12 +106,12 @@ pub fn exponents_manifest(
     origin: &Provenance,
     data: &str,
 ) -> String {
-    let own = json!({
+    let more = json!({
         "cells": tally.cells,
         "resting": tally.resting,
         "without_exponents": tally.missing,
     });
-    swept(("exponents", document), grid, own, origin, data)
+    swept(("exponents", document), grid, more, origin, data)
 }
 
 /// The manifest of rows over a grid, with what else there is to say of them.
@@ -132,11 +132,11 @@ fn swept(
         .collect();
     let sweep = grid.axes().iter().map(|axis| axis.to_scene(&document.scene)).collect();
     let scene = &Scene { sweep, ..document.scene.clone() };
-    let mut own = json!({ "grid": axes });
-    if let (Value::Object(own), Value::Object(more)) = (&mut own, more) {
-        own.extend(more);
+    let mut all = json!({ "grid": axes });
+    if let (Value::Object(all), Value::Object(more)) = (&mut all, more) {
+        all.extend(more);
     }
-    written((document, scene), command, own, origin, data)
+    written((document, scene), command, all, origin, data)
 }
 
 /// The manifest of a map of basins as text: as that of a sweep, with the starts in place of the grid.
@@ -148,7 +148,7 @@ pub fn basins_manifest(
     data: &str,
 ) -> String {
     let (length, speed) = (basins.model().scales().length, basins.model().scales().speed);
-    let own = json!({
+    let more = json!({
         "starts": answer.rows.len(),
         "attractors": answer.attractors.len(),
         "outside": answer.outside,
@@ -159,14 +159,14 @@ pub fn basins_manifest(
         "length_scale_m": length,
         "speed_scale_m_per_s": speed,
     });
-    written((document, &document.scene), "basins", own, origin, data)
+    written((document, &document.scene), "basins", more, origin, data)
 }
 
-/// A manifest with what a command has of its `own`; `scene` is what ran of the document.
+/// A manifest with what a command has of its `more`; `scene` is what ran of the document.
 fn written(
     (document, scene): (&Document, &Scene),
     command: &str,
-    own: Value,
+    more: Value,
     origin: &Provenance,
     data: &str,
 ) -> String {
@@ -190,7 +190,7 @@ fn written(
         "scene_ron": crate::scene::write(scene).ok(),
         "files": document.files.held,
     });
-    for part in [own, end] {
+    for part in [more, end] {
         if let (Value::Object(all), Value::Object(part)) = (&mut all, part) {
             all.extend(part);
         }

@@ -26,7 +26,7 @@ pub fn aligned(table: &Table) -> String {
         .columns()
         .iter()
         .map(|column| {
-            let (left, own): (bool, Vec<String>) = match &column.values {
+            let (left, words): (bool, Vec<String>) = match &column.values {
                 Values::Numbers(values) => (false, values.iter().map(|value| brief(*value)).collect()),
                 Values::Counts(values) => {
                     let text = |count: &Option<u64>| count.map_or_else(String::new, |n| n.to_string());
@@ -35,16 +35,16 @@ pub fn aligned(table: &Table) -> String {
                 Values::Words(values) => (true, values.iter().map(|word| (*word).to_owned()).collect()),
                 Values::Names(values) => (true, values.clone()),
             };
-            (left, std::iter::once(column.label()).chain(own).collect())
+            (left, std::iter::once(column.label()).chain(words).collect())
         })
         .collect();
-    let width = |own: &[String]| own.iter().map(|cell| cell.chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = cells.iter().map(|(_, own)| width(own)).collect();
+    let width = |column: &[String]| column.iter().map(|cell| cell.chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = cells.iter().map(|(_, column)| width(column)).collect();
     let mut text = String::new();
     for row in 0..=table.rows() {
         let mut line = String::new();
-        for ((left, own), width) in cells.iter().zip(&widths) {
-            let cell = &own[row];
+        for ((left, column), width) in cells.iter().zip(&widths) {
+            let cell = &column[row];
             line += &if *left { format!("{cell:<width$}  ") } else { format!("{cell:>width$}  ") };
         }
         text += line.trim_end();

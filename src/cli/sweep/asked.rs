@@ -46,7 +46,10 @@ impl Asked {
         let number = options.shard.as_ref().or(swept.shard.as_ref());
         Ok(Self {
             columns: words.unwrap_or_else(|| options.columns.clone()),
-            until_settled: options.until_settled.clone().or(swept.until_settled.map(|own| own.to_string())),
+            until_settled: options
+                .until_settled
+                .clone()
+                .or(swept.until_settled.map(|limit| limit.to_string())),
             carry: carry.and_then(|word| Carry::named(word)),
             shard: number.map_or(Ok(Shard::WHOLE), |text| shard(text, variable))?,
             data: Path::new(&options.scene).with_file_name(swept.data),

@@ -82,7 +82,7 @@ pub fn tell(
     println!("at most about {} MB of memory{kept}", memory.div_ceil(1_000_000));
 
     let arguments: Vec<String> =
-        std::env::args_os().skip(1).map(|own| own.to_string_lossy().into()).collect();
+        std::env::args_os().skip(1).map(|argument| argument.to_string_lossy().into()).collect();
     let out = value(&arguments, "--out").unwrap_or("map.csv");
     if sharded {
         let shard = slice.shard().to_string();

@@ -155,7 +155,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             let table = sweep.empty_table();
             let mut needed =
                 Some(&*options.quantity).into_iter().chain(table.columns().iter().map(|c| &*c.name));
-            let lacking = needed.find(|name| picture.is_some() && !columns.iter().any(|own| own == name));
+            let lacking =
+                needed.find(|name| picture.is_some() && !columns.iter().any(|column| column == name));
             let lacking = lacking.map(str::to_owned);
             match (Begin { out, plan, shard, rows, unit, header, resume, force, lacking }).begin()? {
                 Some((blocks, tally)) => {
@@ -192,26 +193,26 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let result = (|| {
         let valid = sweep.validate_rows(&slice, from, &pool, &task);
         valid.map_err(|cell| SweepEnd::Write(located(&document, cell)))?;
-        let write = |table: &Table, own: &Tally| {
+        let write = |table: &Table, tally: &Tally| {
             if let Some(shown) = &mut shown {
                 shown.append(table);
             }
             let text = interwell::output::rows(&table.only(&columns), 0..usize::MAX);
             // Where the reader of a pipe has gone, a picture may still be wanted.
-            Ok(rows.put(text, own)? || shown.is_some())
+            Ok(rows.put(text, tally)? || shown.is_some())
         };
         sweep.run_rows(&slice, from, &pool, &task, write)
     })();
     bar.finish_and_clear();
     let tally = match (result, rows) {
-        (Ok(tally), own) => {
-            rows = own;
+        (Ok(tally), kept) => {
+            rows = kept;
             tally
         }
         (Err(SweepEnd::Cancelled), Rows::Blocks(blocks)) => return Err(blocks.interrupted()),
         (Err(SweepEnd::Cancelled), _) => return Err(Failure::interrupted()),
-        (Err(SweepEnd::Write(failure)), own) => {
-            if let Rows::Blocks(blocks) = own {
+        (Err(SweepEnd::Write(failure)), rows) => {
+            if let Rows::Blocks(blocks) = rows {
                 blocks.leave();
             }
             return Err(failure);

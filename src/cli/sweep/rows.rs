@@ -29,14 +29,14 @@ pub enum Rows {
 
 impl Rows {
     /// Takes some rows with their tally; whether more are wanted.
-    pub fn put(&mut self, text: String, own: &Tally) -> Result<bool, Failure> {
+    pub fn put(&mut self, text: String, tally: &Tally) -> Result<bool, Failure> {
         match self {
             Self::Straight(sink) => {
                 let put = sink.put(&text).and_then(|()| sink.flush());
                 put.map_err(|error| Failure::writing(sink.name(), error))?;
                 Ok(!sink.is_closed())
             }
-            Self::Blocks(blocks) => blocks.put(text, own).map(|()| true),
+            Self::Blocks(blocks) => blocks.put(text, tally).map(|()| true),
             Self::Compared(compared) => compared.put(&text).map(|()| true),
         }
     }
@@ -122,7 +122,7 @@ impl Begin<'_> {
                 let (part, blocks) = opened.go_on(self.force).map_err(refused)?;
                 let mut tally = Tally::default();
                 let notes = blocks.iter().filter_map(|block| serde_json::from_str(&block.note).ok());
-                notes.for_each(|own| tally.add(&own));
+                notes.for_each(|note| tally.add(&note));
                 return Ok(Some((self.blocks(part), tally)));
             }
         };
@@ -143,33 +143,33 @@ impl Begin<'_> {
 
     /// The plan and the shard of a sweep that stands in the file.
     fn beside(&self) -> Option<Value> {
-        let own = self.manifest()?;
-        own["plan"].is_object().then(|| json!({ "plan": own["plan"], "shard": own["shard"] }))
+        let manifest = self.manifest()?;
+        manifest["plan"].is_object().then(|| json!({ "plan": manifest["plan"], "shard": manifest["shard"] }))
     }
 
     /// Whether the file is there with all its rows, as its manifest says.
     fn is_whole(&self) -> bool {
-        self.manifest().is_some_and(|own| {
-            own["plan"] == *self.plan
-                && own["shard"].as_str() == Some(&self.shard.to_string())
-                && own["sha256"].as_str() == file_checksum(self.out).as_deref()
+        self.manifest().is_some_and(|manifest| {
+            manifest["plan"] == *self.plan
+                && manifest["shard"].as_str() == Some(&self.shard.to_string())
+                && manifest["sha256"].as_str() == file_checksum(self.out).as_deref()
         })
     }
 }
 
 /// The plan in a head with the shard in it.
 fn flat(head: &Value) -> Value {
-    let mut own = head["plan"].clone();
-    own["shard"] = head["shard"].clone();
-    own
+    let mut plan = head["plan"].clone();
+    plan["shard"] = head["shard"].clone();
+    plan
 }
 
 fn file_checksum(path: &Path) -> Option<String> {
-    let (mut file, mut own, mut bytes) = (files::open(path).ok()?, Checksum::default(), vec![0; 1 << 16]);
+    let (mut file, mut sum, mut bytes) = (files::open(path).ok()?, Checksum::default(), vec![0; 1 << 16]);
     loop {
         match file.read(&mut bytes).ok()? {
-            0 => return Some(own.text()),
-            n => own.add(&bytes[..n]),
+            0 => return Some(sum.text()),
+            n => sum.add(&bytes[..n]),
         }
     }
 }
@@ -188,9 +188,9 @@ fn refused(error: PartError) -> Failure {
 }
 
 impl Blocks {
-    fn put(&mut self, text: String, own: &Tally) -> Result<(), Failure> {
+    fn put(&mut self, text: String, tally: &Tally) -> Result<(), Failure> {
         self.part.put(text).map_err(|error| self.failed(&error))?;
-        self.block.add(own);
+        self.block.add(tally);
         let whole = self.block.cells.is_multiple_of(self.unit);
         if whole && (self.block.cells >= MOST_ROWS || self.clock.seconds() >= LONGEST) {
             self.end_block().map_err(|error| self.failed(&error))?;
@@ -199,9 +199,9 @@ impl Blocks {
     }
 
     fn end_block(&mut self) -> std::io::Result<()> {
-        let own = std::mem::take(&mut self.block);
+        let block = std::mem::take(&mut self.block);
         self.clock = WallClock::start();
-        self.part.end_block(own.cells, serde_json::to_string(&own)?)
+        self.part.end_block(block.cells, serde_json::to_string(&block)?)
     }
 
     /// Rows on the disk.
@@ -260,7 +260,8 @@ impl Blocks {
     /// The text of the rows that are there.
     pub fn text(&self) -> Result<String, Failure> {
         let path = self.part.path();
-        let bytes = files::bytes(path).and_then(|own| String::from_utf8(own).map_err(std::io::Error::other));
+        let bytes =
+            files::bytes(path).and_then(|bytes| String::from_utf8(bytes).map_err(std::io::Error::other));
         bytes.map_err(|error| Failure::Failed(anyhow::anyhow!("cannot read {}: {error}", path.display())))
     }
 }

@@ -28,13 +28,13 @@ pub fn accuracy_figure(table: &Table, version: &str, theme: &Theme) -> Figure {
     let column = |name: &str| table.numbers(name).unwrap_or_default();
     let (errors, times) = (column("error"), column("cpu_s"));
     let distinct = |all: &[&'static str]| {
-        let mut own: Vec<&'static str> = Vec::new();
+        let mut found: Vec<&'static str> = Vec::new();
         all.iter().for_each(|word| {
-            if !own.contains(word) {
-                own.push(word);
+            if !found.contains(word) {
+                found.push(word);
             }
         });
-        own
+        found
     };
     let (shown, named) = (distinct(problems), distinct(methods));
     let floored = |error: f64| if error == 0.0 { LEAST } else { error };
@@ -43,7 +43,7 @@ pub fn accuracy_figure(table: &Table, version: &str, theme: &Theme) -> Figure {
     let up = PlotAxis::decades(errors.iter().map(|error| floored(*error).min(10.0)), 9, "error");
     let title = "What accuracy costs".to_owned();
     let footer = format!("interwell {version} \u{b7} CPU time on one core of the machine that drew this");
-    let about = PROBLEMS.iter().filter(|own| shown.contains(&own.name)).count();
+    let about = PROBLEMS.iter().filter(|problem| shown.contains(&problem.name)).count();
     let subtitle = match about {
         1 => "ten seconds of motion: error against the same motion in twice the digits".to_owned(),
         n => format!("{n} problems of ten seconds each: error against the same motion in twice the digits"),
@@ -110,7 +110,7 @@ pub fn accuracy_figure(table: &Table, version: &str, theme: &Theme) -> Figure {
 
 /// The words over the frame of a problem.
 fn heading(problem: &str) -> &str {
-    PROBLEMS.iter().find(|own| own.name == problem).map_or(problem, |own| own.heading)
+    PROBLEMS.iter().find(|known| known.name == problem).map_or(problem, |known| known.heading)
 }
 
 /// Marker and colour of the method that stands at this place: the own one first.

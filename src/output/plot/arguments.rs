@@ -51,14 +51,16 @@ const IDLE: [&str; 14] = [
 /// order of `--help`. Options that change nothing on it are left out, so that the same picture is the same
 /// bytes; the place of the picture is no part of it, its kind is.
 pub fn picture_arguments(command: &str, given: impl IntoIterator<Item = Argument>) -> Vec<String> {
-    let kept = given.into_iter().filter(|own| !own.option.as_deref().is_some_and(|own| IDLE.contains(&own)));
-    let words = kept.flat_map(|mut own| {
-        let ending = own.value.as_deref().and_then(|value| Path::new(value).extension());
+    let kept = given
+        .into_iter()
+        .filter(|argument| !argument.option.as_deref().is_some_and(|option| IDLE.contains(&option)));
+    let words = kept.flat_map(|mut argument| {
+        let ending = argument.value.as_deref().and_then(|value| Path::new(value).extension());
         let ending = ending.map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-        if let (Some(name @ ("plot" | "contact-plot")), Some(ending)) = (own.option.as_deref(), ending) {
-            own.value = Some(format!("{}.{ending}", name.replace('-', "_")));
+        if let (Some(name @ ("plot" | "contact-plot")), Some(ending)) = (argument.option.as_deref(), ending) {
+            argument.value = Some(format!("{}.{ending}", name.replace('-', "_")));
         }
-        own.words().collect::<Vec<_>>()
+        argument.words().collect::<Vec<_>>()
     });
     ["--headless".to_owned(), command.to_owned()].into_iter().chain(words).collect()
 }

@@ -27,7 +27,8 @@ pub fn can_show_starts(starts: &Starts) -> Result<(), NoPicture> {
 pub fn basins_figure(basins: &Basins, answer: &Answer, caption: &Caption, theme: &Theme) -> Figure {
     let mut figure = Figure::new(theme, caption, LEAST);
     let entries = entries(basins, answer, theme);
-    let entries: Vec<(Sample, &str)> = entries.iter().map(|(own, words)| (*own, words.as_str())).collect();
+    let entries: Vec<(Sample, &str)> =
+        entries.iter().map(|(sample, words)| (*sample, words.as_str())).collect();
     let top = below_legend(&mut figure, theme, &entries);
     let (across, up) = match basins.starts().axes() {
         Some((x_mm, v)) => (Edges::new(x_mm).ends(), Edges::new(v).ends()),
@@ -37,7 +38,7 @@ pub fn basins_figure(basins: &Basins, answer: &Answer, caption: &Caption, theme:
                 let axis = PlotAxis::around(values, 0.02, 8, "");
                 (axis.low, axis.high)
             };
-            (around(all().map(|own| own.0).collect()), around(all().map(|own| own.1).collect()))
+            (around(all().map(|start| start.0).collect()), around(all().map(|start| start.1).collect()))
         }
     };
     let upward = PlotAxis::between(up.0, up.1, 7, "velocity at the start, m/s");
@@ -74,7 +75,7 @@ fn drawn(basins: &Basins, answer: &Answer) -> Table {
     let stand_in = standing(basins);
     for row in 0..answer.rows.len() {
         let (x_mm, v) = basins.starts().at(row);
-        let number = answer.rows[stand_in(row)].map_or(f64::NAN, |own| f64::from(own.0));
+        let number = answer.rows[stand_in(row)].map_or(f64::NAN, |found| f64::from(found.0));
         drawn.put("start", &[x_mm, v, number], &[]);
     }
     for (place, attractor) in answer.attractors.iter().enumerate() {
@@ -112,8 +113,8 @@ fn cells(
     let (across, up) = (Edges::new(x_mm), Edges::new(v));
     let stand_in = standing(basins);
     for (column, x_mm) in x_mm.iter().enumerate() {
-        let own = |row: usize| answer.rows[stand_in(column * v.len() + row)].map(|own| own.0);
-        let all: Vec<Option<u32>> = (0..v.len()).map(own).collect();
+        let attractor = |row: usize| answer.rows[stand_in(column * v.len() + row)].map(|found| found.0);
+        let all: Vec<Option<u32>> = (0..v.len()).map(attractor).collect();
         let (low, high) = basins.room();
         let outside = x_mm / 1e3 < low || x_mm / 1e3 > high;
         let mut row = 0;
@@ -150,7 +151,7 @@ fn standing(basins: &Basins) -> impl Fn(usize) -> usize {
 /// Random starts as discs in the colours of their attractors.
 fn dots(figure: &mut Figure, frame: &Frame, (basins, answer): (&Basins, &Answer), theme: &Theme) {
     let size = (700.0 / (answer.rows.len() as f64).sqrt()).clamp(2.5, 9.0);
-    for (row, own) in answer.rows.iter().enumerate() {
+    for (row, found) in answer.rows.iter().enumerate() {
         let (x_mm, v) = basins.starts().at(row);
         let (low, high) = basins.room();
         if x_mm / 1e3 < low || x_mm / 1e3 > high {
@@ -158,7 +159,11 @@ fn dots(figure: &mut Figure, frame: &Frame, (basins, answer): (&Basins, &Answer)
         }
         let at = frame.place((x_mm, v));
         figure.disc(at, size, theme.soft);
-        figure.disc(at, 0.85 * size, own.map_or(theme.rest, |own| attractor_colour(own.0 as usize - 1)));
+        figure.disc(
+            at,
+            0.85 * size,
+            found.map_or(theme.rest, |found| attractor_colour(found.0 as usize - 1)),
+        );
     }
 }
 
@@ -183,10 +188,10 @@ fn entries(basins: &Basins, answer: &Answer, theme: &Theme) -> Vec<(Sample, Stri
 }
 
 /// An attractor in words, with its number and its share; of random starts with its interval.
-fn words(place: usize, own: &Attractor, is_grid: bool) -> String {
-    let mut words = format!("{} {}", place + 1, own.words());
+fn words(place: usize, attractor: &Attractor, is_grid: bool) -> String {
+    let mut words = format!("{} {}", place + 1, attractor.words());
     let percent = |share: f64| short((1e3 * share).round() / 10.0);
-    let share = &own.share;
+    let share = &attractor.share;
     words += &match is_grid {
         true => format!(": {} %", percent(share.share)),
         false => {

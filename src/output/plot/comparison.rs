@@ -72,8 +72,8 @@ impl Panel {
 
     /// The best of at least two that have a value.
     fn best(&self) -> Option<usize> {
-        let merits: Vec<f64> = self.entries.iter().map(|own| self.merit(own)).collect();
-        let known = || merits.iter().enumerate().filter(|own| own.1.is_finite());
+        let merits: Vec<f64> = self.entries.iter().map(|entry| self.merit(entry)).collect();
+        let known = || merits.iter().enumerate().filter(|merit| merit.1.is_finite());
         let by = |a: &(usize, &f64), b: &(usize, &f64)| a.1.total_cmp(b.1);
         let best = match self.best {
             Best::Least => known().min_by(by),
@@ -81,7 +81,7 @@ impl Panel {
         };
         let (place, merit) = best?;
         // what others have as well is not marked
-        (merits.iter().filter(|own| *own == merit).count() == 1 && known().count() > 1).then_some(place)
+        (merits.iter().filter(|value| *value == merit).count() == 1 && known().count() > 1).then_some(place)
     }
 }
 
@@ -99,7 +99,7 @@ pub fn comparison_figure(picture: &ComparisonPicture<'_>, caption: &Caption, the
     let ComparisonPicture { rated, .. } = *picture;
     let panels = panels(picture);
     let names = names(rated);
-    let widest = names.iter().map(|own| font::width(own, style::TICK, false)).fold(0.0, f64::max);
+    let widest = names.iter().map(|name| font::width(name, style::TICK, false)).fold(0.0, f64::max);
     // how many panels stand side by side follows from the width alone
     let probe = Figure::new(theme, caption, 0.0);
     let (left, right) = probe.breadth((60.0, probe.right()));
@@ -145,18 +145,18 @@ fn place(rated: &[Rated], scene: usize) -> f64 {
 
 /// The scenes' names, without folders where they are told apart so.
 fn names(rated: &[Rated]) -> Vec<String> {
-    let last = |own: &Rated| own.name.rsplit(['/', '\\']).next().unwrap_or(&own.name).to_owned();
+    let last = |scene: &Rated| scene.name.rsplit(['/', '\\']).next().unwrap_or(&scene.name).to_owned();
     let names: Vec<String> = rated.iter().map(last).collect();
     let apart: BTreeSet<&String> = names.iter().collect();
-    if apart.len() == names.len() { names } else { rated.iter().map(|own| own.name.clone()).collect() }
+    if apart.len() == names.len() { names } else { rated.iter().map(|scene| scene.name.clone()).collect() }
 }
 
 /// The quantities that are above 0 for at least one of the scenes.
 fn panels(picture: &ComparisonPicture<'_>) -> Vec<Panel> {
     let ComparisonPicture { rated, frequency_hz } = *picture;
     let panel = |title, unit: &str, best, scale: f64, of: &dyn Fn(&Rated) -> Option<f64>| {
-        let entry = |own: &Rated| {
-            let to = of(own).map_or(f64::NAN, |own| own * scale);
+        let entry = |scene: &Rated| {
+            let to = of(scene).map_or(f64::NAN, |value| value * scale);
             let words = match to {
                 to if to.is_nan() => "\u{2013}".to_owned(),
                 to if to.is_infinite() => "lost".to_owned(),
@@ -168,10 +168,10 @@ fn panels(picture: &ComparisonPicture<'_>) -> Vec<Panel> {
         let entries = rated.iter().map(entry).collect();
         Panel { title, unit: unit.to_owned(), best, entries, is_band: false }
     };
-    let speed = |own: &Rated| own.summary.rms_velocity;
+    let speed = |scene: &Rated| scene.summary.rms_velocity;
     // a motion without an impact strikes with nothing
-    let impact = |own: &Rated| speed(own).map(|_| own.summary.impact_speed_max.unwrap_or(0.0));
-    let power = |own: &Rated| own.summary.harvest.and_then(|own| own.mean_load_power);
+    let impact = |scene: &Rated| speed(scene).map(|_| scene.summary.impact_speed_max.unwrap_or(0.0));
+    let power = |scene: &Rated| scene.summary.harvest.and_then(|harvest| harvest.mean_load_power);
     let (per_speed, speed_name) = speed_unit(rated.iter().filter_map(speed));
     let (per_impact, impact_name) = speed_unit(rated.iter().filter_map(impact));
     let (per_watt, watt) = match rated.iter().filter_map(power).fold(0.0, f64::max) {
@@ -179,23 +179,23 @@ fn panels(picture: &ComparisonPicture<'_>) -> Vec<Panel> {
         most if most >= 1e-3 => (1e3, "mW"),
         _ => (1e6, "\u{b5}W"),
     };
-    let sensitivity = |own: &Rated| own.sensitivity.as_ref().map(|own| own.0);
+    let sensitivity = |scene: &Rated| scene.sensitivity.as_ref().map(|change| change.0);
     let all = [
         panel("crosses from", "g", Best::Least, 1.0, &Rated::crossing_g),
         panel("RMS velocity", speed_name, Best::Most, per_speed, &speed),
         panel("power", watt, Best::Most, per_watt, &power),
-        panel("reach", "mm", Best::Least, 1e3, &|own| own.summary.max_abs_x),
+        panel("reach", "mm", Best::Least, 1e3, &|scene| scene.summary.max_abs_x),
         panel("fastest impact", impact_name, Best::Least, per_impact, &impact),
         bands(rated, frequency_hz),
         panel("sensitivity", "% for 1 % of a size", Best::Least, 100.0, &sensitivity),
     ];
-    all.into_iter().filter(|own| own.entries.iter().any(|own| own.to > 0.0)).collect()
+    all.into_iter().filter(|panel| panel.entries.iter().any(|entry| entry.to > 0.0)).collect()
 }
 
 /// The bands of frequencies; an end that is that of the search may be further out.
 fn bands(rated: &[Rated], frequency_hz: f64) -> Panel {
-    let entry = |own: &Rated| {
-        let Some((from, to)) = own.crosses_hz else {
+    let entry = |scene: &Rated| {
+        let Some((from, to)) = scene.crosses_hz else {
             return Entry { from: f64::NAN, to: f64::NAN, words: "\u{2013}".to_owned() };
         };
         let least = if from < frequency_hz / SEARCHED_SPAN * NEAR { "\u{2264}" } else { "" };
@@ -223,7 +223,7 @@ fn draw(
     theme: &Theme,
 ) -> Frame {
     let ComparisonPicture { rated, frequency_hz } = *picture;
-    let ends = panel.entries.iter().map(|own| own.to).filter(|own| own.is_finite());
+    let ends = panel.entries.iter().map(|entry| entry.to).filter(|end| end.is_finite());
     let most = ends.fold(0.0, f64::max);
     let count = ((area.right - area.left) / 95.0).floor().clamp(1.0, 4.0) as usize;
     let across = match panel.is_band {
@@ -288,8 +288,8 @@ fn bar(figure: &mut Figure, frame: &Frame, (panel, entry): (&Panel, &Entry), row
         true => [entry.from.log10(), entry.to.log10()],
         false => [0.0, entry.to],
     };
-    if ends.iter().all(|own| own.is_finite()) {
-        let [left, right] = ends.map(|own| frame.across(own));
+    if ends.iter().all(|end| end.is_finite()) {
+        let [left, right] = ends.map(|end| frame.across(end));
         figure.rect(Area::new(left, top, right.max(left + 2.0), bottom), ink);
     } else if entry.to == f64::INFINITY {
         // longer than any
@@ -327,20 +327,23 @@ fn words(
 /// What marks and colours mean, of those that are drawn.
 fn legend_entries(rated: &[Rated], panels: &[Panel], theme: &Theme) -> Vec<(Sample, &'static str)> {
     let mut entries = Vec::new();
-    if panels.iter().any(|own| own.best().is_some()) {
+    if panels.iter().any(|panel| panel.best().is_some()) {
         entries.push((Sample::Patch(theme.stable, None), "best of its panel"));
     }
-    if rated.iter().any(|own| own.release_g.is_some()) {
+    if rated.iter().any(|scene| scene.release_g.is_some()) {
         entries.push((Sample::Marker(Marker::Triangle, theme.unstable), "leaves its stop from"));
     }
     for (name, _) in REGIMES {
-        if rated.iter().any(|own| own.summary.regime.name() == name && own.summary.rms_velocity.is_some()) {
+        if rated
+            .iter()
+            .any(|scene| scene.summary.regime.name() == name && scene.summary.rms_velocity.is_some())
+        {
             let (shape, ink) = regime(name, theme);
             entries.push((Sample::Marker(shape, ink), name));
         }
     }
     entries.push((Sample::Line(theme.shaking, style::THIN, Some(style::DASH)), "frequency of the drive"));
-    if panels.iter().flat_map(|own| &own.entries).any(|own| own.to == f64::INFINITY) {
+    if panels.iter().flat_map(|panel| &panel.entries).any(|entry| entry.to == f64::INFINITY) {
         let patch = Sample::Patch(theme.paper, Some(theme.soft.over(theme.paper, 0.35)));
         entries.push((patch, "crossing lost by 1 % of a size"));
     }
@@ -350,27 +353,27 @@ fn legend_entries(rated: &[Rated], panels: &[Panel], theme: &Theme) -> Vec<(Samp
 /// The values that are drawn, each in a row, in SI.
 fn drawn(rated: &[Rated]) -> Table {
     let (mut series, mut scenes, mut values) = (Vec::new(), Vec::new(), Vec::new());
-    for own in rated {
-        let summary = &own.summary;
-        let power = summary.harvest.and_then(|own| own.mean_load_power);
+    for scene in rated {
+        let summary = &scene.summary;
+        let power = summary.harvest.and_then(|harvest| harvest.mean_load_power);
         let all = [
-            ("release_g", own.release_g),
-            ("crossing_g", own.crossing_g()),
-            ("crossing_low_g", own.crossing.and_then(|found| found.low)),
-            ("crossing_high_g", own.crossing.and_then(|found| found.high)),
-            ("crossing_undecided", own.crossing.map(|found| f64::from(u8::from(found.undecided)))),
+            ("release_g", scene.release_g),
+            ("crossing_g", scene.crossing_g()),
+            ("crossing_low_g", scene.crossing.and_then(|found| found.low)),
+            ("crossing_high_g", scene.crossing.and_then(|found| found.high)),
+            ("crossing_undecided", scene.crossing.map(|found| f64::from(u8::from(found.undecided)))),
             ("rms_velocity_m_per_s", summary.rms_velocity),
             ("mean_load_power_w", power),
             ("max_abs_x_m", summary.max_abs_x),
             ("impact_speed_max_m_per_s", summary.impact_speed_max),
-            ("crosses_from_hz", own.crosses_hz.map(|band| band.0)),
-            ("crosses_to_hz", own.crosses_hz.map(|band| band.1)),
-            ("threshold_sensitivity", own.sensitivity.as_ref().map(|own| own.0)),
+            ("crosses_from_hz", scene.crosses_hz.map(|band| band.0)),
+            ("crosses_to_hz", scene.crosses_hz.map(|band| band.1)),
+            ("threshold_sensitivity", scene.sensitivity.as_ref().map(|change| change.0)),
         ];
         for (name, value) in all {
             let Some(value) = value else { continue };
             series.push(name);
-            scenes.push(own.name.clone());
+            scenes.push(scene.name.clone());
             values.push(value);
         }
     }
