@@ -42,7 +42,7 @@ pub struct MeasuredForceOptions {
 }
 
 impl MeasuredForceOptions {
-    /// The record beside the curve of a mechanism, where there is one.
+    /// Compares the record, if one is given, with the curve of a mechanism.
     pub fn compare(&self, mechanism: &Mechanism, quiet: bool) -> Result<Option<ForceComparison>, Failure> {
         let PositionOptions { position, position_unit } = &self.positions;
         let Some(path) = &self.measured else {

@@ -1,4 +1,4 @@
-//! `merge`: the shards of a sweep as one file, with the bytes that one process writes.
+//! `merge`: joins the shards of a sweep into one file, with the bytes that a single process would write.
 
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
@@ -33,7 +33,7 @@ struct Part {
     read: Checksum,
 }
 
-/// Puts the shards together.
+/// Joins the shards.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let watch = Watch::start();
     let mut parts = all(&options.parts)?;
@@ -78,8 +78,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     Ok(())
 }
 
-/// All shards of one sweep in their order; an error names what does not fit, and what is missing with the
-/// commands that compute it.
+/// Opens all shards of one sweep and orders them. An error names the files that do not belong together, or
+/// the missing shards with the commands that compute them.
 fn all(paths: &[PathBuf]) -> Result<Vec<Part>, Failure> {
     let (mut parts, mut unfinished): (Vec<Part>, Vec<&Path>) = (Vec::new(), Vec::new());
     for path in paths {
@@ -91,8 +91,8 @@ fn all(paths: &[PathBuf]) -> Result<Vec<Part>, Failure> {
     let unfinished: Vec<String> = unfinished.into_iter().map(why_not).collect();
     let Some(first) = parts.first() else {
         if paths.is_empty() {
-            let such = "such as merge map-*-of-5.csv --out map.csv";
-            return Err(Failure::argument(format!("merge: name the files of all shards, {such}")));
+            let example = "such as merge map-*-of-5.csv --out map.csv";
+            return Err(Failure::argument(format!("merge: name the files of all shards, {example}")));
         }
         return Err(Failure::argument(format!(
             "{}; name the rows of every shard, beside which a manifest stands when it is whole",
@@ -104,7 +104,7 @@ fn all(paths: &[PathBuf]) -> Result<Vec<Part>, Failure> {
         let differences = plan_differences(&part.manifest["plan"], &first.manifest["plan"]);
         let wrong = |how: String| Failure::argument(format!("{path} does not belong to {other}: {how}"));
         if !differences.is_empty() {
-            // "there" is the file that is named first
+            // in the differences, "there" is `path` and "here" is `other`
             return Err(wrong(differences));
         } else if part.shard.count() != first.shard.count() {
             return Err(wrong(format!("it is the shard {}, that one {}", part.shard, first.shard)));
@@ -134,7 +134,7 @@ fn all(paths: &[PathBuf]) -> Result<Vec<Part>, Failure> {
     )))
 }
 
-/// Why the file at `path` is no shard.
+/// The reason why the file at `path` is not a shard.
 fn why_not(path: &Path) -> String {
     let name = path.display();
     let begun = files::exists(Path::new(&format!("{name}.part")));
@@ -146,7 +146,7 @@ fn why_not(path: &Path) -> String {
 }
 
 impl Part {
-    /// The shard at `path`, or whose manifest is there; none where it has no manifest yet.
+    /// Opens the shard whose rows or manifest are at `path`. Returns `None` if it has no manifest yet.
     fn open(path: &Path) -> Result<Option<Self>, Failure> {
         let ends = |ending: &str| path.to_string_lossy().strip_suffix(ending).map(PathBuf::from);
         let path = ends(".json").or_else(|| ends(".part")).unwrap_or_else(|| path.to_owned());
@@ -170,7 +170,7 @@ impl Part {
         Ok(Some(Self { path, manifest, shard, offset: 0, read }))
     }
 
-    /// The next lines, so many.
+    /// Reads the next `count` lines.
     fn lines(&mut self, count: u64) -> Result<Vec<u8>, Failure> {
         let failed = |error| Failure::Failed(anyhow::anyhow!("cannot read {}: {error}", self.path.display()));
         let mut file = BufReader::new(files::open_at(&self.path, self.offset).map_err(failed)?);
@@ -185,7 +185,7 @@ impl Part {
         Ok(bytes)
     }
 
-    /// Whether all of it was read, and is as it was written.
+    /// Checks that the file was read to its end and has the checksum of its manifest.
     fn check(&self) -> Result<(), Failure> {
         let mut more = [0];
         let read = files::open_at(&self.path, self.offset).and_then(|mut file| file.read(&mut more));

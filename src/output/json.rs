@@ -1,5 +1,5 @@
-//! JSON of a summary and of a landscape: flat objects, numbers in SI with the unit in the key, `null` for
-//! what is missing.
+//! JSON of a summary, a landscape and an identification: numbers in SI with the unit in the key, `null` for
+//! missing values.
 
 use serde_json::{Map, Value, json};
 
@@ -9,9 +9,9 @@ use crate::mechanics::{Landscape, Mechanism};
 use crate::scene::{Scene, Timing};
 use crate::study::{Identified, Read, SUMMARY_FIELDS, SummaryField, small_amplitude_frequency};
 
-/// The summary of a run of `scene`, as text. Compliant stops add two keys, their peak force and pressure. A
-/// run that ended early has two keys more, `ended_at_s` and, where a budget ran out, `ended_after`, the
-/// impacts or steps made.
+/// The summary of a run of `scene`, as text. Compliant stops add the keys of peak force and pressure. A run
+/// that ended early adds `ended_at_s` and, if a budget ran out, `ended_after`, the number of impacts or
+/// steps.
 pub fn summary(summary: &Summary, scene: &Scene, origin: &Provenance) -> String {
     let mut object = Value::Object(SUMMARY_FIELDS.iter().filter_map(|field| entry(field, summary)).collect());
     let mut add = |key: &str, value: Value| {
@@ -32,9 +32,9 @@ pub fn summary(summary: &Summary, scene: &Scene, origin: &Provenance) -> String 
     pretty(&object)
 }
 
-/// A field with its value. What only some runs have is left out of the others: the contact with a compliant
-/// stop, what a transducer gives, an early end, what happened first under a drive that changes, and the terms
-/// of the ledger, which stand together elsewhere.
+/// A field with its value. Returns `None` for a quantity that the run does not have: contact with a compliant
+/// stop, transducer, early end, first events under a changing drive. The terms of the ledger are left out,
+/// because they have an object of their own.
 fn entry(field: &SummaryField, summary: &Summary) -> Option<(String, Value)> {
     let value = match field.read {
         // Adding 0 makes -0 a plain 0.
@@ -116,8 +116,8 @@ pub fn landscape(mechanism: &Mechanism, mass: f64) -> String {
     }))
 }
 
-/// What was identified (`of` a record that was sampled like this), as text: its numbers by name, each an
-/// object of value and 95 % interval.
+/// The result of an identification, as text: its numbers by name, each an object of value and 95 % interval.
+/// `of` is the identified quantity, `timing` the sampling of the record.
 pub fn identified(of: &str, found: &Identified, timing: Option<&Timing>, origin: &Provenance) -> String {
     let mut object = Map::new();
     object.insert("of".to_owned(), json!(of));
@@ -138,7 +138,8 @@ pub fn identified(of: &str, found: &Identified, timing: Option<&Timing>, origin:
     pretty(&Value::Object(object))
 }
 
-/// Numbers are in serde_json's shortest form; one that is not finite became `null` on its way in.
+/// Formats JSON. serde_json writes numbers in their shortest form, and stores those that are not finite as
+/// `null`.
 pub(super) fn pretty(value: &Value) -> String {
     format!("{value:#}\n")
 }

@@ -1,8 +1,8 @@
-//! Table as text for a terminal, columns aligned and numbers short.
+//! Tables as text for a terminal, with aligned columns and short numbers.
 
 use crate::study::{Table, Values};
 
-/// A number with three digits, for the eye; a missing one is nothing.
+/// A number with about three digits; a missing one is empty.
 fn brief(value: f64) -> String {
     if !value.is_finite() {
         return String::new();
@@ -19,8 +19,8 @@ fn brief(value: f64) -> String {
     }
 }
 
-/// The table as lines of text: a heading of the columns' names as a person writes them, then a line for each
-/// row. Words stand to the left, numbers to the right; nothing is cut off.
+/// The table as lines of text: a heading with readable names of the columns, then one line for each row.
+/// Words are aligned to the left, numbers to the right; nothing is cut off.
 pub fn aligned(table: &Table) -> String {
     let cells: Vec<(bool, Vec<String>)> = table
         .columns()

@@ -93,7 +93,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let pool = pool(common)?;
     let mut sinks = open(&inputs(&options.scene, &document), [Some(("--out", common.out()))])?;
     let bar = bar(scan_runs(&question), "runs", common.quiet, common.out());
-    // how many runs follow the scan is not known before
+    // the number of runs after the scan is not known in advance
     let tick = || bar.inc_beyond();
     let task = Task { tick: &tick, cancel: interrupt::listen() };
     let mut so_far = None;
@@ -113,7 +113,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     finish(sinks)
 }
 
-/// A field that is changed must be there in every environment: a record has no amplitude.
+/// Checks that every field that is changed exists in every environment: a record has no amplitude.
 fn has_fields(question: &BestQuestion) -> Result<(), Failure> {
     let over = question.over.iter().map(|range| ("--over", &range.field));
     let vary = question.vary.iter().map(|variation| ("--vary", &variation.field));
@@ -135,9 +135,9 @@ fn failure(why: NoBest, options: &Arguments, question: &BestQuestion, document: 
         NoBest::Invalid(faults) => document.error_from(faults).into(),
         NoBest::NoValue => {
             let without = |environment: &Environment| environment.scene.transducer == Transducer::None;
-            let asked = std::iter::once(question.maximise)
+            let columns = std::iter::once(question.maximise)
                 .chain(question.subject_to.iter().map(|constraint| constraint.of));
-            let electrical = asked.map(|field| field.name).find(|name| OF_TRANSDUCER.contains(name));
+            let electrical = columns.map(|field| field.name).find(|name| OF_TRANSDUCER.contains(name));
             let missing = electrical.filter(|_| question.environments.iter().any(without));
             Failure::argument(match missing {
                 Some(name) => format!(
@@ -221,13 +221,13 @@ fn ranges(over: &[String], document: &Document) -> Result<Vec<DesignRange>, Fail
     Ok(ranges)
 }
 
-/// Numbers that only a scene with a transducer has.
+/// Columns that only a scene with a transducer has.
 const OF_TRANSDUCER: [&str; 3] = ["mean_load_power_w", "mean_coil_power_w", "voltage_rms_v"];
 
-/// A shorter name of the power into the load.
+/// A shorter name for the column of the power into the load, and the column.
 const POWER: (&str, &str) = ("mean_power_w", "mean_load_power_w");
 
-/// The column called `name`, where it is a number.
+/// The column called `name`; an error if it is not a number.
 fn number(option: &str, name: &str) -> Result<&'static SummaryField, Failure> {
     let is_number = |field: &&SummaryField| matches!(field.read, Read::Number(_) | Read::Count(_));
     let name = if name == POWER.0 { POWER.1 } else { name };
@@ -281,7 +281,7 @@ fn variation(text: &str, document: &Document) -> Result<Variation, Failure> {
     Ok(Variation { field: field.to_owned(), by, relative })
 }
 
-/// A text and the weight after its last `*`.
+/// Splits a text from the weight after its last `*`, which is 1 if left out.
 fn weighted<'a>(text: &'a str, option: &str) -> Result<(&'a str, f64), Failure> {
     let Some((text, weight)) = text.rsplit_once('*') else { return Ok((text.trim(), 1.0)) };
     let weight = weight.trim().parse().ok().filter(|weight: &f64| *weight > 0.0 && weight.is_finite());
@@ -289,9 +289,9 @@ fn weighted<'a>(text: &'a str, option: &str) -> Result<(&'a str, f64), Failure> 
     Ok((text.trim(), weight.ok_or_else(wrong)?))
 }
 
-const MOST_ENVIRONMENTS: usize = 1000;
+const MAX_ENVIRONMENTS: usize = 1000;
 
-/// The environments of the design; without any given, the scene's own.
+/// The environments of the design; if none are given, that of the scene.
 fn environments(given: &[String], document: &Document) -> Result<Vec<Environment>, Failure> {
     let of = |name: String, weight: f64, document: &Document| Environment {
         name,
@@ -320,7 +320,7 @@ fn environments(given: &[String], document: &Document) -> Result<Vec<Environment
             let (name, weight) = weighted(text, &option)?;
             let wrong = |problem: String| Failure::argument(format!("{option}: {problem}"));
             if name.to_ascii_lowercase().ends_with(".csv") {
-                // (a name that is no file may be that of a table of the program)
+                // a name that is no file may be that of a built-in table
                 let path = canonical(name.as_ref()).unwrap_or_else(|| name.into());
                 let set =
                     changed.set(&format!("excitation=Recorded(path: {:?})", path.display().to_string()));
@@ -342,9 +342,9 @@ fn environments(given: &[String], document: &Document) -> Result<Vec<Environment
         }
     }
     match all.len() {
-        0..=MOST_ENVIRONMENTS => Ok(all),
+        0..=MAX_ENVIRONMENTS => Ok(all),
         n => {
-            Err(Failure::argument(format!("--environment: {n} of them; at most {MOST_ENVIRONMENTS} are run")))
+            Err(Failure::argument(format!("--environment: {n} of them; at most {MAX_ENVIRONMENTS} are run")))
         }
     }
 }

@@ -1,10 +1,10 @@
-//! What `best` found, in sentences.
+//! Sentences about the result of `best`.
 
 use interwell::numeric::short;
 use interwell::scene::column_names;
 use interwell::study::{BestDesign, BestQuestion, SAMPLES};
 
-/// The answer in sentences.
+/// The result in sentences.
 pub fn words(design: &BestDesign, question: &BestQuestion) -> Vec<String> {
     let names = names(question);
     let maximised = question.maximise.name;
@@ -87,7 +87,7 @@ fn with_unit(number: &str, name: &str) -> String {
     unit.map_or_else(|| number.to_owned(), |(_, unit)| format!("{number} {unit}"))
 }
 
-/// Units by the ends of names; of two ends of one name the longer one comes first.
+/// Units by the endings of names; where two endings match a name, the longer one comes first.
 const UNITS: [(&str, &str); 26] = [
     ("_v_s_per_m", "V s/m"),
     ("_n_s_per_m", "N s/m"),
@@ -126,7 +126,7 @@ mod tests {
 
     #[test]
     fn a_number_has_the_unit_of_its_name() {
-        for (name, said) in [
+        for (name, expected) in [
             ("travel_limit_mm", "2 mm"),
             ("n_per_m", "2 N/m"),
             ("1.n_per_m", "2 N/m"),
@@ -137,20 +137,20 @@ mod tests {
             ("impacts", "2"),
             ("coefficients_si.2", "2"),
         ] {
-            assert_eq!(quantity(2.0, name), said);
+            assert_eq!(quantity(2.0, name), expected);
         }
     }
 
-    /// A name whose end is one letter of a unit that is longer would be given a wrong one.
+    /// A name that ends with a compound unit must not get the unit of its last letter alone.
     #[test]
     fn no_unit_is_part_of_a_longer_one() {
         let scenes = PRESETS.iter().map(|preset| Document::load(preset.name).unwrap().scene);
         let fields = scenes.flat_map(|scene| numeric_fields(&scene));
         let columns = SUMMARY_FIELDS.iter().map(|field| field.name.to_owned());
         for name in fields.chain(columns) {
-            let said = quantity(2.0, &name);
+            let text = quantity(2.0, &name);
             let per = name.contains("_per_") || name.contains(".n_per_");
-            assert_eq!(said.contains('/'), per, "{name}: {said}");
+            assert_eq!(text.contains('/'), per, "{name}: {text}");
         }
     }
 }

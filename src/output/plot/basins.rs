@@ -1,4 +1,4 @@
-//! Picture of basins of attraction: the attractor of each start as colour, and where the attractors are.
+//! Picture of basins of attraction: the attractor of each start as colour, and the states of the attractors.
 
 use super::axis::PlotAxis;
 use super::drawn::Drawn;
@@ -14,8 +14,8 @@ use crate::study::{Answer, Attractor, Basins, Edges, Starts, Table};
 /// Markers of attractors, in turn.
 const MARKERS: [Marker; 4] = [Marker::Disc, Marker::Square, Marker::Diamond, Marker::Triangle];
 
-/// The most attractors that the legend names, those with the largest shares.
-const MOST_NAMED: usize = 9;
+/// Number of attractors that the legend names, those with the largest shares.
+const MAX_NAMED: usize = 9;
 
 /// Whether a map of these starts can be drawn.
 pub fn can_show_starts(starts: &Starts) -> Result<(), NoPicture> {
@@ -23,7 +23,7 @@ pub fn can_show_starts(starts: &Starts) -> Result<(), NoPicture> {
     if count > MAX_PICTURE_CELLS { Err(NoPicture::Starts(count)) } else { Ok(()) }
 }
 
-/// The picture of a map as far as it is known.
+/// The picture of a map, which may be incomplete.
 pub fn basins_figure(basins: &Basins, answer: &Answer, caption: &Caption, theme: &Theme) -> Figure {
     let mut figure = Figure::new(theme, caption, LEAST);
     let entries = entries(basins, answer, theme);
@@ -69,13 +69,13 @@ pub fn basins_figure(basins: &Basins, answer: &Answer, caption: &Caption, theme:
     figure
 }
 
-/// The starts with the attractors that they go to, and the states of these.
+/// The data of the picture: the starts with the numbers of their attractors, and the attractors' states.
 fn drawn(basins: &Basins, answer: &Answer) -> Table {
     let mut drawn = Drawn::new(["x_mm", "v_m_per_s", "attractor"], &[]);
-    let stand_in = standing(basins);
+    let source = source_row(basins);
     for row in 0..answer.rows.len() {
         let (x_mm, v) = basins.starts().at(row);
-        let number = answer.rows[stand_in(row)].map_or(f64::NAN, |found| f64::from(found.0));
+        let number = answer.rows[source(row)].map_or(f64::NAN, |found| f64::from(found.0));
         drawn.put("start", &[x_mm, v, number], &[]);
     }
     for (place, attractor) in answer.attractors.iter().enumerate() {
@@ -86,7 +86,7 @@ fn drawn(basins: &Basins, answer: &Answer) -> Table {
     drawn.table()
 }
 
-/// The colour of an attractor, by its place from 0; beyond eight they come again.
+/// The colour of an attractor by its index; the colours repeat after eight.
 pub fn attractor_colour(place: usize) -> Ink {
     KINDS[place % KINDS.len()]
 }
@@ -95,7 +95,7 @@ fn shape(place: usize) -> Marker {
     MARKERS[place % MARKERS.len()]
 }
 
-/// The hatching of an attractor whose colour is another one's too.
+/// The hatching of an attractor whose colour is used a second time.
 fn hatch(place: usize) -> Option<Ink> {
     let dark = |Ink(r, g, b): Ink| 2 * u32::from(r) + 5 * u32::from(g) + u32::from(b) < 8 * 128;
     let over = if dark(attractor_colour(place)) { style::WHITE } else { style::BLACK };
@@ -111,9 +111,9 @@ fn cells(
     theme: &Theme,
 ) {
     let (across, up) = (Edges::new(x_mm), Edges::new(v));
-    let stand_in = standing(basins);
+    let source = source_row(basins);
     for (column, x_mm) in x_mm.iter().enumerate() {
-        let attractor = |row: usize| answer.rows[stand_in(column * v.len() + row)].map(|found| found.0);
+        let attractor = |row: usize| answer.rows[source(column * v.len() + row)].map(|found| found.0);
         let all: Vec<Option<u32>> = (0..v.len()).map(attractor).collect();
         let (low, high) = basins.room();
         let outside = x_mm / 1e3 < low || x_mm / 1e3 > high;
@@ -140,8 +140,8 @@ fn cells(
     }
 }
 
-/// For each row the one whose answer is shown: its own, or the nearest one that has been run.
-fn standing(basins: &Basins) -> impl Fn(usize) -> usize {
+/// Maps each row to the row whose answer is shown for it: itself, or the nearest one that has been run.
+fn source_row(basins: &Basins) -> impl Fn(usize) -> usize {
     let (levels, done) = basins.levels();
     move |row| {
         if basins.is_whole() || done == 0 { row } else { levels.stand_in(row as u64, done - 1) as usize }
@@ -167,11 +167,11 @@ fn dots(figure: &mut Figure, frame: &Frame, (basins, answer): (&Basins, &Answer)
     }
 }
 
-/// What the legend says: the attractors with their shares, the largest ones where there are many.
+/// Entries of the legend: the attractors with their shares. If there are many, only the largest are named.
 fn entries(basins: &Basins, answer: &Answer, theme: &Theme) -> Vec<(Sample, String)> {
     let mut named: Vec<usize> = (0..answer.attractors.len()).collect();
     named.sort_by_key(|place| std::cmp::Reverse(answer.attractors[*place].starts));
-    let more = named.split_off(named.len().min(MOST_NAMED)).len();
+    let more = named.split_off(named.len().min(MAX_NAMED)).len();
     named.sort_unstable();
     let mut entries: Vec<(Sample, String)> = Vec::new();
     for place in named {
@@ -187,7 +187,7 @@ fn entries(basins: &Basins, answer: &Answer, theme: &Theme) -> Vec<(Sample, Stri
     entries
 }
 
-/// An attractor in words, with its number and its share; of random starts with its interval.
+/// An attractor in words, with its number and its share; for random starts with the interval of the share.
 fn words(place: usize, attractor: &Attractor, is_grid: bool) -> String {
     let mut words = format!("{} {}", place + 1, attractor.words());
     let percent = |share: f64| short((1e3 * share).round() / 10.0);
@@ -201,7 +201,7 @@ fn words(place: usize, attractor: &Attractor, is_grid: bool) -> String {
     words
 }
 
-/// What was run, in one line.
+/// The subtitle: which starts were run.
 fn about(basins: &Basins, answer: &Answer) -> String {
     let counted = match basins.starts().axes() {
         Some((x_mm, v)) => format!("{} \u{d7} {} starts", x_mm.len(), v.len()),

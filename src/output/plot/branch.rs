@@ -50,7 +50,7 @@ pub fn branch_figure(
     let up = PlotAxis::around(millimetres, 0.08, 6, y_label).or_given(ranges.y, 6, y_label);
     let frame = Frame::whole(&figure, (LEFT, top), across, up);
     frame.grid(&mut figure, theme);
-    // a stretch of one kind ends at the point where the other begins
+    // a stable or unstable stretch ends at the point where the next one begins
     let mut from = 0;
     for to in 1..=points.len() {
         if to < points.len() && stable[to] == stable[from] {
