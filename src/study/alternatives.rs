@@ -70,13 +70,13 @@ pub struct Rated {
 }
 
 enum Part {
-    Own(usize),
+    Unchanged(usize),
     Changed(usize, String, f64),
 }
 
 /// What a part came to.
 enum Done {
-    Own(Box<Rated>),
+    Unchanged(Box<Rated>),
     /// The crossing threshold.
     Changed(Option<f64>),
 }
@@ -87,12 +87,12 @@ pub fn comparison_parts(scenes: &[Alternative]) -> u64 {
 }
 
 fn parts(scenes: &[Alternative]) -> Vec<Part> {
-    let own = (0..scenes.len()).map(Part::Own);
-    let changed = scenes.iter().enumerate().flat_map(|(i, own)| {
-        let sizes = sizes(&own.scene).into_iter();
+    let unchanged = (0..scenes.len()).map(Part::Unchanged);
+    let changed = scenes.iter().enumerate().flat_map(|(i, alternative)| {
+        let sizes = sizes(&alternative.scene).into_iter();
         sizes.flat_map(move |field| [-1.0, 1.0].map(|way| Part::Changed(i, field.clone(), way * SIZE_CHANGE)))
     });
-    own.chain(changed).collect()
+    unchanged.chain(changed).collect()
 }
 
 /// The sizes of a scene's mechanism that are not 0.
@@ -118,7 +118,7 @@ pub fn alternatives(
     let rating = Rating { until_settled, pool, task: &silent };
     let work = |_: &mut (), index: usize| {
         let done = match &parts[index] {
-            Part::Own(i) => rating.rate(&scenes[*i]).map(|rated| Done::Own(Box::new(rated))),
+            Part::Unchanged(i) => rating.rate(&scenes[*i]).map(|rated| Done::Unchanged(Box::new(rated))),
             Part::Changed(i, field, by) => rating.changed(&scenes[*i], (field, *by)).map(Done::Changed),
         };
         (task.tick)();
@@ -136,7 +136,7 @@ pub fn alternatives(
                     *sensitivity = Some((change, field.clone()));
                 }
             }
-            (_, Done::Own(scene)) => rated.push(*scene),
+            (_, Done::Unchanged(scene)) => rated.push(*scene),
             _ => {}
         }
     }

@@ -176,11 +176,11 @@ impl Cells {
     ) -> Result<Tally, SweepEnd<E>> {
         let (mut tally, mut end) = (Tally::default(), None);
         let leave = |ran: Vec<Ran<Q::Answer>>| {
-            let mut own = Tally::default();
-            ran.iter().for_each(|row| own.count(&row.cell));
-            tally.add(&own);
+            let mut part = Tally::default();
+            ran.iter().for_each(|row| part.count(&row.cell));
+            tally.add(&part);
             tally.mechanisms = self.built.load(Ordering::Relaxed);
-            let wanted = write(&question.table(&self.grid, &ran), &own);
+            let wanted = write(&question.table(&self.grid, &ran), &part);
             wanted.unwrap_or_else(|error| {
                 end = Some(SweepEnd::Write(error));
                 false
@@ -216,7 +216,7 @@ impl Cells {
         each: &(dyn Fn(u64, Cell) + Sync),
     ) -> bool {
         let queue = Queue::new(cells.len(), pool.count());
-        let done = |_, own: Ran<_>| each(own.index, own.cell);
+        let done = |_, ran: Ran<_>| each(ran.index, ran.cell);
         pool.everywhere(|| {
             self.ask(question, &|number| cells[number], task, &|held| queue.take(held), &done)
         });

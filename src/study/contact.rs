@@ -52,7 +52,7 @@ pub fn yield_speed(stop: &Hertz, mass: f64) -> Option<f64> {
 /// One sentence where the contact of a run was pressed beyond what its material bears.
 pub fn yield_warning(model: &Model, summary: &Summary) -> Option<String> {
     let material = model.compliant()?.material?;
-    let pressure = summary.peak_contact_pressure.filter(|own| *own > material.yield_pressure())?;
+    let pressure = summary.peak_contact_pressure.filter(|pressure| *pressure > material.yield_pressure())?;
     let gpa = |pascal: f64| short(pascal / 1e9);
     Some(format!(
         "the contact with a stop reaches {} GPa ({} N) and yields from {} GPa on, 1.6 times its yield \
@@ -134,9 +134,10 @@ pub fn strikes_in_words(model: &Model, scene: &Scene) -> Option<String> {
         }
         None => {
             let there = stops.limits_mm().into_iter().zip(stops.restitutions());
-            let mut own: Vec<f64> = there.filter_map(|(limit, own)| limit.and(own)).collect();
-            own.dedup();
-            let own = own.into_iter().map(|e| match loss(e) {
+            let mut restitutions: Vec<f64> =
+                there.filter_map(|(limit, restitution)| limit.and(restitution)).collect();
+            restitutions.dedup();
+            let losses = restitutions.into_iter().map(|e| match loss(e) {
                 Some(loss) => format!("a restitution of {e} there takes loss_s_per_m: {loss}"),
                 None => format!("no loss gives a restitution of {e}"),
             });
@@ -145,7 +146,7 @@ pub fn strikes_in_words(model: &Model, scene: &Scene) -> Option<String> {
                 true => "compliant in their place (`Hertz`)",
                 false => "compliant ones (`Hertz`), which stand equally far out on both sides",
             };
-            format!("{which}, {}", own.collect::<Vec<_>>().join(", "))
+            format!("{which}, {}", losses.collect::<Vec<_>>().join(", "))
         }
     };
     let flights = if count == 1 { "one flight".to_owned() } else { format!("{count} flights") };

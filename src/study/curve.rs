@@ -74,8 +74,8 @@ fn two_digits_up(value: f64) -> f64 {
 
 /// `mm` in m: the double nearest to the decimal that `mm` spells, so that 0.3 mm is 3e-4 m.
 pub fn metres(mm: f64) -> f64 {
-    let shifted = Decimal::shortest(mm).map(|own| Decimal { exponent: own.exponent - 3, ..own });
-    shifted.map_or(mm / 1e3, |own| own.value().copysign(mm))
+    let shifted = Decimal::shortest(mm).map(|decimal| Decimal { exponent: decimal.exponent - 3, ..decimal });
+    shifted.map_or(mm / 1e3, |decimal| decimal.value().copysign(mm))
 }
 
 /// Positions in m of the left and the right stop; NaN where there is none.

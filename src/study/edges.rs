@@ -37,7 +37,7 @@ impl Edges {
 
     /// Which of the values this is.
     pub fn place(&self, value: f64) -> Option<usize> {
-        self.values.binary_search_by(|own| own.total_cmp(&value)).ok()
+        self.values.binary_search_by(|known| known.total_cmp(&value)).ok()
     }
 
     /// In which cell a number lies; none outside all of them.

@@ -74,7 +74,8 @@ pub fn shapes(states: &[State]) -> Table {
     for state in states {
         for line in &state.lines {
             // Adding 0 makes -0 a plain 0.
-            let row = |[s, px, py]: &[f64; 3]| (line.flexure, [state.x, *s, *px, *py].map(|own| own + 0.0));
+            let row =
+                |[s, px, py]: &[f64; 3]| (line.flexure, [state.x, *s, *px, *py].map(|value| value + 0.0));
             rows.extend(line.points.iter().map(row));
         }
     }

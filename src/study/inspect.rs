@@ -41,9 +41,9 @@ pub fn inspect(scene: &Scene, mechanism: &Arc<Mechanism>) -> Result<Vec<String>,
 
 /// The flexures, where there are such, and the force curve.
 fn force(mechanism: &Mechanism) -> Vec<String> {
-    let Some(own) = &mechanism.flexures else { return vec![force_curve(mechanism)] };
-    let [shape, theory] = flexures(own.geometry());
-    vec![shape, theory, accuracy(mechanism, own.accuracy())]
+    let Some(solved) = &mechanism.flexures else { return vec![force_curve(mechanism)] };
+    let [shape, theory] = flexures(solved.geometry());
+    vec![shape, theory, accuracy(mechanism, solved.accuracy())]
 }
 
 /// What the flexures are and which beams model them.

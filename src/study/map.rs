@@ -48,13 +48,13 @@ pub fn release_line(scene: &Scene, mechanism: &Mechanism, grid: &Grid) -> Option
 pub fn first_crossing(grid: &Grid, rows: &Table) -> Option<Table> {
     let [a, b] = grid.axes() else { return None };
     let amplitude = |axis: &Axis| axis.field == "amplitude_g" || axis.field.ends_with(".amplitude_g");
-    let (other, own) = match (amplitude(a), amplitude(b)) {
+    let (other, amplitude_axis) = match (amplitude(a), amplitude(b)) {
         (false, true) => (0, 1),
         (true, false) => (1, 0),
         _ => return None,
     };
     let others = rows.numbers(&grid.columns()[other])?;
-    let amplitudes = rows.numbers(&grid.columns()[own])?;
+    let amplitudes = rows.numbers(&grid.columns()[amplitude_axis])?;
     let Values::Words(regimes) = &rows.column("regime")?.values else { return None };
     let mut values = grid.axes()[other].values.clone();
     values.sort_by(f64::total_cmp);
@@ -62,7 +62,7 @@ pub fn first_crossing(grid: &Grid, rows: &Table) -> Option<Table> {
     let mut least = vec![f64::NAN; values.len()];
     for (i, other) in others.iter().enumerate() {
         let counts = regimes.get(i).is_some_and(|regime| crosses(regime)) && amplitudes[i] >= 0.0;
-        if let Ok(place) = values.binary_search_by(|own| own.total_cmp(other))
+        if let Ok(place) = values.binary_search_by(|value| value.total_cmp(other))
             && counts
         {
             // f64::min passes over the NaN of a place that has none yet.
@@ -70,12 +70,12 @@ pub fn first_crossing(grid: &Grid, rows: &Table) -> Option<Table> {
         }
     }
     let table = Table::new().with(&grid.columns()[other], Values::Numbers(values));
-    Some(table.with(&grid.columns()[own], Values::Numbers(least)))
+    Some(table.with(&grid.columns()[amplitude_axis], Values::Numbers(least)))
 }
 
 /// Whether a regime is one of motions that cross at all.
 fn crosses(regime: &str) -> bool {
-    [Regime::Interwell, Regime::Irregular, Regime::Crossing].iter().any(|own| own.name() == regime)
+    [Regime::Interwell, Regime::Irregular, Regime::Crossing].iter().any(|known| known.name() == regime)
 }
 
 fn axis<'a>(grid: &'a Grid, field: &str) -> Option<&'a Axis> {

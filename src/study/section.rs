@@ -146,8 +146,8 @@ impl Question for SectionOptions {
     }
 
     fn table(&self, grid: &Grid, ran: &[Ran<Points>]) -> Table {
-        let table = fields(grid, ran, |own| own.answer.as_ref().map_or(0, Points::len), self.carry.is_some());
-        let each = ran.iter().filter_map(|own| own.answer.as_ref().zip(own.cell.summary()));
+        let table = fields(grid, ran, |row| row.answer.as_ref().map_or(0, Points::len), self.carry.is_some());
+        let each = ran.iter().filter_map(|row| row.answer.as_ref().zip(row.cell.summary()));
         self.rows(table, &each.collect::<Vec<_>>())
     }
 
@@ -167,28 +167,30 @@ impl SectionOptions {
                 let states: Vec<(SectionPoint, u64)> = runs
                     .iter()
                     .flat_map(|(points, summary)| {
-                        let own: &[SectionPoint] =
+                        let states: &[SectionPoint] =
                             if let Points::States(states) = points { states } else { &[] };
-                        own.iter().map(|state| (*state, summary.impacts))
+                        states.iter().map(|state| (*state, summary.impacts))
                     })
                     .collect();
                 table
-                    .each("t_s", &states, |own| own.0.t)
-                    .each("x_m", &states, |own| own.0.x)
-                    .each("v_m_per_s", &states, |own| own.0.v)
-                    .each(IMPACTS, &states, |own| Some(own.1))
+                    .each("t_s", &states, |state| state.0.t)
+                    .each("x_m", &states, |state| state.0.x)
+                    .each("v_m_per_s", &states, |state| state.0.v)
+                    .each(IMPACTS, &states, |state| Some(state.1))
             }
             SectionAt::Impacts => {
                 let impacts: Vec<Struck> = runs
                     .iter()
-                    .flat_map(|(points, _)| if let Points::Impacts(own) = points { &own[..] } else { &[] })
+                    .flat_map(
+                        |(points, _)| if let Points::Impacts(impacts) = points { &impacts[..] } else { &[] },
+                    )
                     .copied()
                     .collect();
                 table
-                    .each("t_s", &impacts, |own| own.t)
-                    .each("side", &impacts, |own| own.side.name())
-                    .each("phase_deg", &impacts, |own| own.phase)
-                    .each("v_in_m_per_s", &impacts, |own| own.v_in)
+                    .each("t_s", &impacts, |impact| impact.t)
+                    .each("side", &impacts, |impact| impact.side.name())
+                    .each("phase_deg", &impacts, |impact| impact.phase)
+                    .each("v_in_m_per_s", &impacts, |impact| impact.v_in)
             }
         }
     }

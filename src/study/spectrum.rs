@@ -211,9 +211,9 @@ impl Plan {
         if !(to > from) {
             return Err(NoSpectrum::NoWindow(from, to));
         }
-        let own = model.forcing_period().filter(|_| periods > 0);
+        let forcing = model.forcing_period().filter(|_| periods > 0);
         let lap = u64::from(repeats.unwrap_or(1));
-        let whole = own.map(|period| (period, periods / lap * lap)).filter(|(_, count)| *count > 0);
+        let whole = forcing.map(|period| (period, periods / lap * lap)).filter(|(_, count)| *count > 0);
         let (from, parts) = match whole {
             Some((period, count)) => (from + (periods - count) as f64 * period, count as f64),
             None => (from, 1.0),

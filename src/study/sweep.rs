@@ -69,16 +69,16 @@ impl Question for SweepOptions {
 pub(super) fn fields<A>(grid: &Grid, ran: &[Ran<A>], rows: impl Fn(&Ran<A>) -> usize, walked: bool) -> Table {
     let mut table = Table::new();
     for (i, name) in grid.columns().iter().enumerate() {
-        let value = |own: &Ran<A>| {
-            let value = grid.values(own.index).nth(i).unwrap_or(f64::NAN);
-            std::iter::repeat_n(value, rows(own))
+        let value = |row: &Ran<A>| {
+            let value = grid.values(row.index).nth(i).unwrap_or(f64::NAN);
+            std::iter::repeat_n(value, rows(row))
         };
         table = table.with(name, ran.iter().flat_map(value).collect());
     }
     if !walked {
         return table;
     }
-    let word = |own: &Ran<A>| std::iter::repeat_n(own.direction.map_or("", |way| way.name()), rows(own));
+    let word = |row: &Ran<A>| std::iter::repeat_n(row.direction.map_or("", |way| way.name()), rows(row));
     table.with(DIRECTION, ran.iter().flat_map(word).collect())
 }
 

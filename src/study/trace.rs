@@ -73,7 +73,7 @@ pub fn simulate_with_trace(
     let run = model.run(&Request { sample_times: &times, events: true, ledger: true, ..request });
     let stop = |side: Option<f64>| side.unwrap_or(f64::NAN);
     let stops = model.stops().map_or((f64::NAN, f64::NAN), |pair| {
-        (stop(pair.left.map(|own| own.x)), stop(pair.right.map(|own| own.x)))
+        (stop(pair.left.map(|stop| stop.x)), stop(pair.right.map(|stop| stop.x)))
     });
     let end = run.summary.outcome.ended_at().unwrap_or(span.1);
     let mut shown = in_order(&seen, &run.samples);
@@ -106,7 +106,7 @@ pub fn simulate_with_trace(
         stops,
         end,
     };
-    let samples = samples_table(&in_order(&keep.times, &run.samples), |own| model.output(own));
+    let samples = samples_table(&in_order(&keep.times, &run.samples), |sample| model.output(sample));
     let events = events_table(if keep.events { &run.events } else { &[] });
     (Simulation { samples, events, summary: run.summary }, trace)
 }
@@ -169,7 +169,7 @@ fn impacts(events: &[Event]) -> Table {
         event.kind == EventKind::Impact || (event.kind == EventKind::Contact && event.v_in != 0.0)
     };
     let impacts: Vec<&Event> = events.iter().filter(struck).collect();
-    Table::new().each("t_s", &impacts, |own| own.t).each("side", &impacts, |own| own.side.name())
+    Table::new().each("t_s", &impacts, |impact| impact.t).each("side", &impacts, |impact| impact.side.name())
 }
 
 /// Contacts with a compliant stop that take a smaller share of the run are impacts to the eye.

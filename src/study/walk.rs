@@ -26,7 +26,7 @@ pub enum Carry {
 impl Carry {
     /// What is called `up`, `down` or `both`.
     pub fn named(word: &str) -> Option<Self> {
-        [Self::Up, Self::Down, Self::Both].into_iter().find(|own| own.name() == word)
+        [Self::Up, Self::Down, Self::Both].into_iter().find(|carry| carry.name() == word)
     }
 
     /// The word in an argument.
@@ -125,8 +125,9 @@ impl Cells {
                 if task.is_cancelled() {
                     return None;
                 }
-                let own = ready.borrow_mut().pop();
-                let (number, walk) = own.or_else(|| take(under_way).map(|number| (number, begin(number))))?;
+                let waiting = ready.borrow_mut().pop();
+                let (number, walk) =
+                    waiting.or_else(|| take(under_way).map(|number| (number, begin(number))))?;
                 match self.model(walk.cell(length as u64), &mut scene, task) {
                     Some(Ok(model)) => {
                         let model = question.model(model);

@@ -49,7 +49,7 @@ impl Watch {
     pub fn new(model: &Model) -> Self {
         let live = Live::new(model);
         let now = live.state();
-        let mut own = Self {
+        let mut watch = Self {
             live,
             models: Models::new(Arc::new(model.clone())),
             samples: VecDeque::new(),
@@ -60,9 +60,9 @@ impl Watch {
             now,
             step: sampling_step(model),
         };
-        own.take(LiveOutput { samples: vec![now], events: Vec::new() });
-        own.advance(0.0);
-        own
+        watch.take(LiveOutput { samples: vec![now], events: Vec::new() });
+        watch.advance(0.0);
+        watch
     }
 
     /// Whether from now on a ledger is kept at the end of every forcing period: each takes the last step once
@@ -278,7 +278,7 @@ impl Watch {
             !(struck(event.kind) || event.kind == EventKind::Rest)
                 || before.is_none_or(|before| !struck(before.kind) || before.side != event.side)
         };
-        let split = |own: f64| self.events.partition_point(|event| event.t <= own);
+        let split = |time: f64| self.events.partition_point(|event| event.t <= time);
         let found = if later {
             (split(t)..self.events.len()).find(lone)
         } else {

@@ -17,11 +17,11 @@ pub fn watched_events(watch: &Watch, which: Range<usize>) -> Table {
     let which = which.start.min(count)..which.end.min(count);
     let events: Vec<Event> = watch.events().range(which).copied().collect();
     let phase =
-        |own: &Event| watch.model_at(own.t).drive_phase(own.t).map_or(f64::NAN, |turns| 360.0 * turns);
-    let lost = |own: &Event| match own.kind {
+        |event: &Event| watch.model_at(event.t).drive_phase(event.t).map_or(f64::NAN, |turns| 360.0 * turns);
+    let lost = |event: &Event| match event.kind {
         EventKind::Contact | EventKind::Separate => f64::NAN,
         // the sum of the speeds times their difference: exact where they are nearly equal
-        _ => 0.5 * watch.model_at(own.t).mass() * (own.v_in + own.v_out) * (own.v_in - own.v_out),
+        _ => 0.5 * watch.model_at(event.t).mass() * (event.v_in + event.v_out) * (event.v_in - event.v_out),
     };
     events_table(&events).each("phase_deg", &events, phase).each("lost_j", &events, lost)
 }

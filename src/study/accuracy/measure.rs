@@ -210,9 +210,9 @@ impl<'a> Bench<'a> {
         let base = numbers(&self.reference(&setup.model()?, times)?);
         let mut sums = vec![0.0; base.len()];
         for changed in changed(setup, change) {
-            let own = numbers(&self.reference(&changed.model()?, times)?);
+            let values = numbers(&self.reference(&changed.model()?, times)?);
             for (i, sum) in sums.iter_mut().enumerate() {
-                *sum += own.get(i).map_or(f64::INFINITY, |own| (own - base[i]).abs() / change);
+                *sum += values.get(i).map_or(f64::INFINITY, |value| (value - base[i]).abs() / change);
             }
         }
         Ok(sums)
@@ -224,7 +224,7 @@ impl<'a> Bench<'a> {
     pub fn allowed(model: &Model, steps: u64, sensitivities: &[f64]) -> Vec<f64> {
         let per_scale = steps as f64 * model.scales().time / model.duration();
         let error = STEP_ERROR * per_scale.max(1.0);
-        sensitivities.iter().map(|own| own * error).collect()
+        sensitivities.iter().map(|sensitivity| sensitivity * error).collect()
     }
 }
 
@@ -245,16 +245,16 @@ fn changed(setup: &Setup, change: f64) -> Vec<Setup> {
     ];
     let fields = numeric_fields(&setup.scene);
     let with = |(begin, ends, by): (&str, &[&str], f64)| {
-        let mut own = setup.clone();
+        let mut changed = setup.clone();
         let is_meant =
             |field: &&String| field.starts_with(begin) && ends.iter().any(|end| field.ends_with(end));
         for field in fields.iter().filter(is_meant).map(|field| FieldPath::new(field)) {
             // a restitution of 1 stays elastic
             if let Some(value) = field.get(&setup.scene).filter(|value| by > 1.0 || *value < 1.0) {
-                let _ = field.set(&mut own.scene, value * by);
+                let _ = field.set(&mut changed.scene, value * by);
             }
         }
-        (own.scene != setup.scene).then_some(own)
+        (changed.scene != setup.scene).then_some(changed)
     };
     data.into_iter().filter_map(with).collect()
 }

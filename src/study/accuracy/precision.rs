@@ -166,13 +166,13 @@ impl Problem {
         (task.tick)();
         let keep = Keep { impacts: true, cancel: Some(task.cancel), ..Keep::default() };
         let mut of = |method, setting, run: &dyn Fn(&Keep) -> super::methods::MethodRun| {
-            let own = run(&keep);
+            let result = run(&keep);
             cancelled()?;
-            let statistics = own.statistics;
+            let statistics = result.statistics;
             let answer = Answer {
                 final_x: statistics.final_x,
                 rms: statistics.rms_velocity.unwrap_or(f64::NAN),
-                impacts: own.impacts,
+                impacts: result.impacts,
             };
             let error = match statistics.ended_at {
                 Some(_) => f64::NAN,
@@ -198,14 +198,14 @@ impl Problem {
         Ok(points)
     }
 
-    fn error_of(&self, model: &Model, own: &Answer, exact: &Answer) -> f64 {
-        let rms = (own.rms / exact.rms - 1.0).abs();
+    fn error_of(&self, model: &Model, found: &Answer, exact: &Answer) -> f64 {
+        let rms = (found.rms / exact.rms - 1.0).abs();
         match self.measure {
-            Error::FinalDisplacement(length) => (own.final_x - exact.final_x).abs() / length,
+            Error::FinalDisplacement(length) => (found.final_x - exact.final_x).abs() / length,
             Error::ImpactsAndRms => {
                 let period = model.forcing_period().unwrap_or(model.duration());
                 let hard = exact.impacts.iter().filter(|impact| impact.v_in.abs() > HARD);
-                let late = hard.map(|impact| nearest(&own.impacts, impact) / period).fold(0.0, f64::max);
+                let late = hard.map(|impact| nearest(&found.impacts, impact) / period).fold(0.0, f64::max);
                 if rms.is_nan() { rms } else { late.max(rms) }
             }
         }
@@ -215,11 +215,11 @@ impl Problem {
 /// Time in s from an impact to the nearest of `impacts`, ascending in time, on the same stop; infinite
 /// without any.
 fn nearest(impacts: &[Event], impact: &Event) -> f64 {
-    let after = impacts.partition_point(|own| own.t < impact.t);
-    let same = |own: &&Event| own.side == impact.side;
+    let after = impacts.partition_point(|event| event.t < impact.t);
+    let same = |event: &&Event| event.side == impact.side;
     let before = impacts[..after].iter().rfind(same);
     let after = impacts[after..].iter().find(same);
-    before.into_iter().chain(after).map(|own| (own.t - impact.t).abs()).fold(f64::INFINITY, f64::min)
+    before.into_iter().chain(after).map(|event| (event.t - impact.t).abs()).fold(f64::INFINITY, f64::min)
 }
 
 fn tolerances() -> impl Iterator<Item = f64> {

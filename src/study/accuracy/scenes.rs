@@ -45,11 +45,11 @@ impl Setup {
     /// rest.
     pub fn nominal(limit_mm: f64, restitution: f64, excitation: Excitation, duration_s: f64) -> Self {
         let cubic = Mechanism::Cubic { linear_n_per_m: -40.0, cubic_n_per_m3: 40.0 / 49e-6 };
-        let mut own = Self::new(cubic, (0.0, 0.0), duration_s);
-        own.scene.mass_g = 15.2;
-        own.scene.damping = Damping::Ratio(0.023);
-        own.scene.start = Start::Rest;
-        own.stops(rigid(limit_mm, restitution)).drive(excitation)
+        let mut setup = Self::new(cubic, (0.0, 0.0), duration_s);
+        setup.scene.mass_g = 15.2;
+        setup.scene.damping = Damping::Ratio(0.023);
+        setup.scene.start = Start::Rest;
+        setup.stops(rigid(limit_mm, restitution)).drive(excitation)
     }
 
     /// A built-in scene at the tightest tolerance, with fields changed, each as `FIELD=VALUE`.

@@ -15,8 +15,12 @@ impl Report {
     /// `part` is `work_precision` or `hard_case`; `error` and `allowed` are relative to what the problem or
     /// case names; cells that a row has no use for are empty.
     pub fn table(&self) -> Table {
-        let rows: Vec<Row> =
-            self.points.iter().map(Row::of_point).chain(self.rows(|own| own.checks.clone())).collect();
+        let rows: Vec<Row> = self
+            .points
+            .iter()
+            .map(Row::of_point)
+            .chain(self.rows(|variant| variant.checks.clone()))
+            .collect();
         Table::new()
             .each("part", &rows, |row| row.part)
             .each("case", &rows, |row| row.case)
@@ -60,8 +64,8 @@ impl Report {
             }
         }
         let least = |group: &Group, of: &dyn Fn(&Point) -> f64| {
-            let own = self.points.iter().filter(|point| (point.problem, point.method) == *group);
-            own.map(of).fold(f64::NAN, f64::min)
+            let points = self.points.iter().filter(|point| (point.problem, point.method) == *group);
+            points.map(of).fold(f64::NAN, f64::min)
         };
         let mut table =
             Table::new().each("problem", &groups, |group| group.0).each("method", &groups, |group| group.1);

@@ -58,7 +58,7 @@ pub(super) fn find(scope: &Stroboscope, period: u32, state: (f64, f64)) -> Optio
     match first {
         // Soon after a doubling the two halves of the doubled orbit are hardly told apart.
         Found::Unstable(_) => match of_period(scope, 2 * period, state)? {
-            Found::Stable(own) => Some(Found::Stable(own)),
+            Found::Stable(captures) => Some(Found::Stable(captures)),
             _ => Some(first),
         },
         _ => Some(first),
@@ -71,18 +71,18 @@ fn of_period(scope: &Stroboscope, period: u32, state: (f64, f64)) -> Option<Foun
     let Some(states) = scope.map(&after)?.into_iter().collect::<Option<Vec<Point>>>() else {
         return Some(Found::Nothing);
     };
-    let same = |own: &Point| distance(own, &root) < SAME;
+    let same = |other: &Point| distance(other, &root) < SAME;
     let period = states.iter().position(same).map_or(period, |place| place as u32 + 1);
     let mut captures = Vec::new();
     let mut orbit = vec![root];
     orbit.extend_from_slice(&states[..period as usize - 1]);
-    for own in orbit {
-        let Some((_, jacobian)) = jacobian(scope, period, own) else { return Some(Found::Nothing) };
+    for point in orbit {
+        let Some((_, jacobian)) = jacobian(scope, period, point) else { return Some(Found::Nothing) };
         if lyapunov(&jacobian).is_none() {
             return Some(Found::Unstable(scope.state(root)));
         }
-        let Some(own) = ellipse(scope, period, own, jacobian)? else { return Some(Found::Nothing) };
-        captures.push(own);
+        let Some(capture) = ellipse(scope, period, point, jacobian)? else { return Some(Found::Nothing) };
+        captures.push(capture);
     }
     Some(Found::Stable(captures))
 }
@@ -156,7 +156,7 @@ fn lyapunov(jacobian: &Matrix) -> Option<[f64; 3]> {
             a * q * q + 2.0 * b * q * s + c * s * s,
         ];
         sum = [a + more[0], b + more[1], c + more[2]];
-        if !sum.iter().all(|own| own.is_finite()) {
+        if !sum.iter().all(|entry| entry.is_finite()) {
             return None;
         }
         if more[0] + more[2] <= f64::EPSILON * (sum[0] + sum[2]) {

@@ -212,13 +212,15 @@ impl Rounds {
 
     /// Looks for an orbit near a state that proposed one. None where it was cancelled.
     fn propose(&mut self, scope: &Stroboscope, period: u32, state: (f64, f64)) -> Option<()> {
-        let known = self.captures.iter().any(|own| own.holds(state));
-        let tried = self.rejected.iter().any(|own| is_near(scope, *own, state, SAME_PROPOSAL));
+        let known = self.captures.iter().any(|capture| capture.holds(state));
+        let tried = self.rejected.iter().any(|rejected| is_near(scope, *rejected, state, SAME_PROPOSAL));
         if known || tried {
             return Some(());
         }
         match find(scope, period, state)? {
-            Found::Stable(captures) if self.captures.iter().any(|own| own.holds(captures[0].state)) => {
+            Found::Stable(captures)
+                if self.captures.iter().any(|capture| capture.holds(captures[0].state)) =>
+            {
                 self.rejected.push(state);
             }
             Found::Stable(captures) => {
@@ -226,8 +228,8 @@ impl Rounds {
                 self.of.extend(captures.iter().map(|_| orbit));
                 self.captures.extend(captures);
             }
-            Found::Unstable(own) => {
-                self.unstable.push(own);
+            Found::Unstable(unstable) => {
+                self.unstable.push(unstable);
                 self.rejected.push(state);
             }
             Found::Nothing => self.rejected.push(state),
@@ -238,13 +240,13 @@ impl Rounds {
     /// Looks for a region around the irregular motion that an item was found to go to, which has this state.
     /// None where it was cancelled.
     fn surround(&mut self, scope: &Stroboscope, item: Item, state: (f64, f64)) -> Option<()> {
-        let fate = item.after.map_or(self.fates[item.row], |own| self.releases[own.0 as usize].next);
+        let fate = item.after.map_or(self.fates[item.row], |after| self.releases[after.0 as usize].next);
         let Fate::Kind(kind, _) = fate else { return Some(()) };
         let irregular = match &self.kinds[kind as usize] {
             Kind::Judged(Verdict::Settled { period, .. }, _) => period.is_none(),
             _ => false,
         };
-        let searches = self.searches.iter().filter(|own| **own == kind).count();
+        let searches = self.searches.iter().filter(|searched| **searched == kind).count();
         if !irregular || searches >= MOST_SEARCHES || self.is_surrounded(state) {
             return Some(());
         }
@@ -258,7 +260,7 @@ impl Rounds {
 
     /// Whether a state lies in a region.
     fn is_surrounded(&self, state: (f64, f64)) -> bool {
-        self.regions.iter().any(|own| own.holds(state))
+        self.regions.iter().any(|region| region.holds(state))
     }
 }
 

@@ -183,7 +183,7 @@ mod tests {
 
     #[test]
     fn what_is_no_range_is_told() {
-        for (own, word) in [
+        for (wrong, word) in [
             (range(0.0, 1.0, 0), "no values"),
             (range(0.0, 1.0, 1), "A:A:1"),
             (range(1.0, 1.0, 2), "equal"),
@@ -191,7 +191,7 @@ mod tests {
             (range(f64::NAN, 0.0, 2), "finite"),
             (range(0.0, 1.0, 1_000_000_000), "1000000000 starts"),
         ] {
-            assert!(own.check().unwrap_err().to_string().contains(word), "{own:?}");
+            assert!(wrong.check().unwrap_err().to_string().contains(word), "{wrong:?}");
         }
         let many = range(0.0, 1.0, 10_000);
         assert!(Starts::grid(&many, &many).unwrap_err().to_string().contains("10000 x 10000"));
@@ -203,8 +203,8 @@ mod tests {
         let mean =
             |of: fn((f64, f64)) -> f64| (0..10_000).map(|row| of(starts.at(row))).sum::<f64>() / 10_000.0;
         // 4 standard errors of a uniform mean
-        assert!((mean(|own| own.0) - 1.0).abs() < 4.0 * 4.0 / 12.0_f64.sqrt() / 100.0);
-        assert!((mean(|own| own.1) - 1.0).abs() < 4.0 * 2.0 / 12.0_f64.sqrt() / 100.0);
+        assert!((mean(|start| start.0) - 1.0).abs() < 4.0 * 4.0 / 12.0_f64.sqrt() / 100.0);
+        assert!((mean(|start| start.1) - 1.0).abs() < 4.0 * 2.0 / 12.0_f64.sqrt() / 100.0);
         assert_eq!(starts, Starts::random((-1.0, 3.0), (0.0, 2.0), 10_000, 7).unwrap());
         assert_ne!(starts, Starts::random((-1.0, 3.0), (0.0, 2.0), 10_000, 8).unwrap());
     }

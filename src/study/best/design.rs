@@ -178,10 +178,10 @@ impl BestDesign {
         }
         let back = self.stepped_back.as_ref();
         table = table
-            .with("back_to", one(back.map_or(f64::NAN, |own| own.0.at[0])))
-            .with("back_value", one(back.map_or(f64::NAN, |own| own.0.value)))
-            .with("back_worst", one(back.map_or(f64::NAN, |own| own.1.worst)))
-            .with("back_quantile_5", one(back.map_or(f64::NAN, |own| own.1.quantile_5)));
+            .with("back_to", one(back.map_or(f64::NAN, |back| back.0.at[0])))
+            .with("back_value", one(back.map_or(f64::NAN, |back| back.0.value)))
+            .with("back_worst", one(back.map_or(f64::NAN, |back| back.1.worst)))
+            .with("back_quantile_5", one(back.map_or(f64::NAN, |back| back.1.quantile_5)));
         let each = self.optimum.of_each.iter().enumerate().filter(|_| question.environments.len() > 1);
         each.fold(table, |table, (i, value)| table.with(format!("value_{}", i + 1), one(*value)))
     }

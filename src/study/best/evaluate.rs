@@ -60,12 +60,17 @@ pub(super) struct Evaluator<'a> {
 impl<'a> Evaluator<'a> {
     pub fn new(question: &'a BestQuestion, pool: &'a Pool, task: &'a Task<'a>) -> Result<Self, NoBest> {
         let mut mechanisms: Vec<Option<Arc<Mechanism>>> = Vec::new();
-        for (i, own) in question.environments.iter().enumerate() {
-            let same = |other: &usize| question.environments[*other].scene.mechanism == own.scene.mechanism;
+        for (i, environment) in question.environments.iter().enumerate() {
+            let same =
+                |other: &usize| question.environments[*other].scene.mechanism == environment.scene.mechanism;
             let built = match (0..i).find(same) {
                 Some(other) => mechanisms[other].clone(),
                 None => {
-                    let built = Mechanism::build_unless(&own.scene.mechanism, &own.files, task.cancel);
+                    let built = Mechanism::build_unless(
+                        &environment.scene.mechanism,
+                        &environment.files,
+                        task.cancel,
+                    );
                     built.ok_or(NoBest::Cancelled)?.ok().map(Arc::new)
                 }
             };
@@ -81,7 +86,7 @@ impl<'a> Evaluator<'a> {
             pool,
             task,
             paths: question.over.iter().map(|range| path(&range.field)).collect(),
-            varied: question.vary.iter().map(|own| path(&own.field)).collect(),
+            varied: question.vary.iter().map(|variation| path(&variation.field)).collect(),
             mechanisms,
         })
     }
@@ -120,8 +125,8 @@ impl<'a> Evaluator<'a> {
     }
 
     fn model(&self, (at, varied): &Design, environment: usize) -> Result<Model, Vec<Fault>> {
-        let own = &self.question.environments[environment];
-        let mut scene = Scene { sweep: Vec::new(), app: None, notes: String::new(), ..own.scene.clone() };
+        let base = &self.question.environments[environment];
+        let mut scene = Scene { sweep: Vec::new(), app: None, notes: String::new(), ..base.scene.clone() };
         apply(&self.paths, at, &mut scene);
         apply(&self.varied, varied, &mut scene);
         let faults = check(&scene).faults;
@@ -129,8 +134,8 @@ impl<'a> Evaluator<'a> {
             return Err(faults);
         }
         let mechanism = match &self.mechanisms[environment] {
-            Some(mechanism) if scene.mechanism == own.scene.mechanism => Arc::clone(mechanism),
-            _ => match Mechanism::build_unless(&scene.mechanism, &own.files, self.task.cancel) {
+            Some(mechanism) if scene.mechanism == base.scene.mechanism => Arc::clone(mechanism),
+            _ => match Mechanism::build_unless(&scene.mechanism, &base.files, self.task.cancel) {
                 Some(Ok(mechanism)) => Arc::new(mechanism),
                 Some(Err(BuildError::Wrong(fault))) => return Err(vec![fault]),
                 Some(Err(BuildError::Unsolved(_))) | None => return Err(Vec::new()),
@@ -142,8 +147,8 @@ impl<'a> Evaluator<'a> {
     /// One design from its runs in each environment.
     fn judged(&self, runs: &[Ran]) -> Judged {
         let mut summaries = Vec::new();
-        for own in runs {
-            match own {
+        for run in runs {
+            match run {
                 Ok(summary) => summaries.push(summary),
                 Err(faults) => return Judged::Invalid(faults.clone()),
             }
@@ -173,7 +178,7 @@ impl<'a> Evaluator<'a> {
         if broken > 0.0 {
             return Judged::Broken(broken, results);
         }
-        let weights = self.question.environments.iter().map(|own| own.weight);
+        let weights = self.question.environments.iter().map(|environment| environment.weight);
         let sum: f64 = of_each.iter().zip(weights.clone()).map(|(value, weight)| value * weight).sum();
         Judged::Value(sum / weights.sum::<f64>(), of_each)
     }

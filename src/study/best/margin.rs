@@ -48,8 +48,8 @@ fn side(evaluator: &Evaluator, found: &Found, field: usize, way: f64) -> Result<
     let mut inside = middle;
     for part in values.chunks(TOGETHER) {
         let judged = evaluator.judge(&part.iter().map(|value| at(*value)).collect::<Vec<_>>())?;
-        for (value, own) in part.iter().zip(&judged) {
-            if holds(own) {
+        for (value, design) in part.iter().zip(&judged) {
+            if holds(design) {
                 inside = *value;
                 continue;
             }

@@ -50,8 +50,8 @@ pub(super) fn rounded(range: &DesignRange, value: f64) -> f64 {
 /// All indices of the scan, the first field slowest.
 fn indices(over: &[DesignRange]) -> Vec<Vec<usize>> {
     over.iter().fold(vec![Vec::new()], |before, range| {
-        let longer = |own: &Vec<usize>| {
-            (0..=range.intervals).map(|i| [own.as_slice(), &[i]].concat()).collect::<Vec<_>>()
+        let longer = |prefix: &Vec<usize>| {
+            (0..=range.intervals).map(|i| [prefix.as_slice(), &[i]].concat()).collect::<Vec<_>>()
         };
         before.iter().flat_map(longer).collect()
     })
@@ -60,11 +60,11 @@ fn indices(over: &[DesignRange]) -> Vec<Vec<usize>> {
 /// The best of some places that were judged, the first of equal ones.
 fn highest(places: &[Vec<f64>], judged: &[Judged]) -> Option<Optimum> {
     let mut best: Option<Optimum> = None;
-    for (at, own) in places.iter().zip(judged) {
-        if let Some(own) = own.optimum(at)
-            && best.as_ref().is_none_or(|best| own.value > best.value)
+    for (at, design) in places.iter().zip(judged) {
+        if let Some(optimum) = design.optimum(at)
+            && best.as_ref().is_none_or(|best| optimum.value > best.value)
         {
-            best = Some(own);
+            best = Some(optimum);
         }
     }
     best
@@ -73,11 +73,14 @@ fn highest(places: &[Vec<f64>], judged: &[Judged]) -> Option<Optimum> {
 pub(super) fn search(evaluator: &Evaluator, preview: &mut dyn FnMut(&Optimum)) -> Result<Found, NoBest> {
     let over = &evaluator.over;
     let all = indices(over);
-    let coarse = |own: &Vec<usize>| own.iter().all(|index| index.is_multiple_of(COARSE));
+    let coarse = |indices: &Vec<usize>| indices.iter().all(|index| index.is_multiple_of(COARSE));
     let (mut places, mut judged) = (Vec::new(), Vec::new());
     for first in [true, false] {
-        let part: Vec<Vec<f64>> =
-            all.iter().filter(|own| coarse(own) == first).map(|own| place(over, own)).collect();
+        let part: Vec<Vec<f64>> = all
+            .iter()
+            .filter(|indices| coarse(indices) == first)
+            .map(|indices| place(over, indices))
+            .collect();
         judged.extend(evaluator.judge(&part)?);
         places.extend(part);
         if let Some(best) = highest(&places, &judged).filter(|_| first) {
@@ -85,7 +88,7 @@ pub(super) fn search(evaluator: &Evaluator, preview: &mut dyn FnMut(&Optimum)) -
         }
     }
     let Some(mut best) = highest(&places, &judged) else { return Err(none(&places, &judged)) };
-    let all_equal = judged.iter().all(|own| own.value() == Some(best.value));
+    let all_equal = judged.iter().all(|design| design.value() == Some(best.value));
     let mut order: Vec<usize> = (0..places.len()).filter(|i| judged[*i].value().is_some()).collect();
     order.sort_by(|a, b| judged[*b].value().partial_cmp(&judged[*a].value()).unwrap_or(a.cmp(b)));
     // of a plateau beside the highest place only its best: each begins a box of its own
@@ -104,9 +107,9 @@ pub(super) fn search(evaluator: &Evaluator, preview: &mut dyn FnMut(&Optimum)) -
         }
     }
     let starts = begins.iter().filter_map(|i| judged[*i].optimum(&places[*i])).collect();
-    for own in refine(evaluator, starts)? {
-        if own.value > best.value {
-            best = own;
+    for optimum in refine(evaluator, starts)? {
+        if optimum.value > best.value {
+            best = optimum;
         }
     }
     preview(&best);
@@ -135,16 +138,16 @@ fn refine(evaluator: &Evaluator, starts: Vec<Optimum>) -> Result<Vec<Optimum>, N
     let grid = indices(&grid);
     loop {
         // of all boxes together, so that no thread waits
-        let places: Vec<Vec<Vec<f64>>> = boxes.iter().map(|own| around(own, over, &grid, &half)).collect();
+        let places: Vec<Vec<Vec<f64>>> = boxes.iter().map(|area| around(area, over, &grid, &half)).collect();
         let judged = evaluator.judge(&places.concat())?;
         let mut rest = judged.as_slice();
-        for (own, places) in boxes.iter_mut().zip(places) {
+        for (area, places) in boxes.iter_mut().zip(places) {
             let (judged, others) = rest.split_at(places.len());
             rest = others;
-            if let Some(better) = highest(&places, judged).filter(|better| better.value > own.best.value) {
-                own.best = better;
+            if let Some(better) = highest(&places, judged).filter(|better| better.value > area.best.value) {
+                area.best = better;
             }
-            own.tried.extend(places);
+            area.tried.extend(places);
         }
         let finest = half.iter().zip(over).all(|(half, range)| half / sides as f64 <= resolution(range));
         // with one place to each side the best may lie anywhere in the box, so that it is only halved
@@ -153,22 +156,22 @@ fn refine(evaluator: &Evaluator, starts: Vec<Optimum>) -> Result<Vec<Optimum>, N
             *half = (*half * smaller).max(resolution(range));
         }
         if finest || sides == 1 && half.iter().zip(over).all(|(half, range)| *half <= resolution(range)) {
-            return Ok(boxes.into_iter().map(|own| own.best).collect());
+            return Ok(boxes.into_iter().map(|area| area.best).collect());
         }
     }
 }
 
 /// The places of a box that have not been tried: on a grid of so many indices, `half` to each side.
-fn around(own: &Closer, over: &[DesignRange], grid: &[Vec<usize>], half: &[f64]) -> Vec<Vec<f64>> {
+fn around(area: &Closer, over: &[DesignRange], grid: &[Vec<usize>], half: &[f64]) -> Vec<Vec<f64>> {
     let sides = SIDES[over.len() - 1] as f64;
     let place = |indices: &Vec<usize>| -> Vec<f64> {
         let at = |(field, index): (usize, &usize)| {
             let offset = half[field] * (*index as f64 / sides - 1.0);
-            rounded(&over[field], own.best.at[field] + offset)
+            rounded(&over[field], area.best.at[field] + offset)
         };
         indices.iter().enumerate().map(at).collect()
     };
-    let mut places: Vec<Vec<f64>> = grid.iter().map(place).filter(|at| !own.tried.contains(at)).collect();
+    let mut places: Vec<Vec<f64>> = grid.iter().map(place).filter(|at| !area.tried.contains(at)).collect();
     places.sort_by(|a: &Vec<f64>, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
     places.dedup();
     places
@@ -177,8 +180,8 @@ fn around(own: &Closer, over: &[DesignRange], grid: &[Vec<usize>], half: &[f64])
 /// Why no place has a value.
 fn none(places: &[Vec<f64>], judged: &[Judged]) -> NoBest {
     let mut nearest: Option<(f64, usize)> = None;
-    for (i, own) in judged.iter().enumerate() {
-        if let Judged::Broken(by, _) = own
+    for (i, design) in judged.iter().enumerate() {
+        if let Judged::Broken(by, _) = design
             && nearest.is_none_or(|(least, _)| *by < least)
         {
             nearest = Some((*by, i));
@@ -189,12 +192,14 @@ fn none(places: &[Vec<f64>], judged: &[Judged]) -> NoBest {
     {
         return NoBest::NoneMeets { nearest: places[i].clone(), results: results.clone() };
     }
-    let invalid = judged.iter().find_map(|own| match own {
+    let invalid = judged.iter().find_map(|design| match design {
         Judged::Invalid(faults) if !faults.is_empty() => Some(faults.clone()),
         _ => None,
     });
     match invalid {
-        Some(faults) if judged.iter().all(|own| matches!(own, Judged::Invalid(_))) => NoBest::Invalid(faults),
+        Some(faults) if judged.iter().all(|design| matches!(design, Judged::Invalid(_))) => {
+            NoBest::Invalid(faults)
+        }
         _ => NoBest::NoValue,
     }
 }

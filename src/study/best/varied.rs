@@ -32,14 +32,14 @@ pub(super) fn robust(
     }
     let range = &evaluator.over[0];
     // the nearer cliff is the one to step back from
-    let [low, high] = margins[0].map(|own| own.unwrap_or(f64::INFINITY));
+    let [low, high] = margins[0].map(|margin| margin.unwrap_or(f64::INFINITY));
     let way = if high <= low { -1.0 } else { 1.0 };
-    let shift = |own: &Variation| {
-        let size = if own.relative { best.at[0].abs() } else { 1.0 };
-        if own.field == range.field { own.by * size } else { 0.0 }
+    let shift = |variation: &Variation| {
+        let size = if variation.relative { best.at[0].abs() } else { 1.0 };
+        if variation.field == range.field { variation.by * size } else { 0.0 }
     };
-    let own: f64 = evaluator.question.vary.iter().map(shift).sum();
-    let reach = (3.0 * own).max(LEAST_BACK * range.step());
+    let shifts: f64 = evaluator.question.vary.iter().map(shift).sum();
+    let reach = (3.0 * shifts).max(LEAST_BACK * range.step());
     let mut places: Vec<Vec<f64>> = Vec::new();
     for i in 0..=PLACES {
         // closer together near the optimum
@@ -53,9 +53,9 @@ pub(super) fn robust(
         }
     }
     let judged = evaluator.judge(&places[1..])?;
-    let back = places[1..].iter().zip(&judged).filter_map(|(at, own)| own.optimum(at));
+    let back = places[1..].iter().zip(&judged).filter_map(|(at, design)| design.optimum(at));
     let mut all: Vec<Sampled> =
-        std::iter::once(best.clone()).chain(back).map(|own| Sampled::new(evaluator, own)).collect();
+        std::iter::once(best.clone()).chain(back).map(|optimum| Sampled::new(evaluator, optimum)).collect();
     let everything: Vec<usize> = (0..SAMPLES).collect();
     evaluate(evaluator, &mut all[..1], &everything)?;
     // What is worst here is so elsewhere as a rule, and the worst that is known of a place bounds its worst
@@ -97,8 +97,8 @@ impl Sampled {
         let mut uniform = || (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
         let nominal = evaluator.values_of_varied(&at.at);
         let mut sample = || {
-            let vary = evaluator.question.vary.iter().zip(&nominal).map(|(own, value)| {
-                let by = if own.relative { own.by * value } else { own.by };
+            let vary = evaluator.question.vary.iter().zip(&nominal).map(|(variation, value)| {
+                let by = if variation.relative { variation.by * value } else { variation.by };
                 value + by * (2.0 * uniform() - 1.0)
             });
             vary.collect()
@@ -124,15 +124,15 @@ impl Sampled {
 
 /// Makes these samples of all places known.
 fn evaluate(evaluator: &Evaluator, places: &mut [Sampled], samples: &[usize]) -> Result<(), NoBest> {
-    let of = |own: &Sampled, sample: usize| (own.at.at.clone(), own.varied[sample].clone());
+    let of = |place: &Sampled, sample: usize| (place.at.at.clone(), place.varied[sample].clone());
     let designs: Vec<Design> =
-        places.iter().flat_map(|own| samples.iter().map(move |sample| of(own, *sample))).collect();
+        places.iter().flat_map(|place| samples.iter().map(move |sample| of(place, *sample))).collect();
     let judged = evaluator.judge_varied(&designs)?;
-    for (own, judged) in places.iter_mut().zip(judged.chunks(samples.len())) {
+    for (place, judged) in places.iter_mut().zip(judged.chunks(samples.len())) {
         for (sample, judged) in samples.iter().zip(judged) {
-            own.values[*sample] = judged.value().unwrap_or(f64::NEG_INFINITY);
+            place.values[*sample] = judged.value().unwrap_or(f64::NEG_INFINITY);
         }
-        own.known += samples.len();
+        place.known += samples.len();
     }
     Ok(())
 }

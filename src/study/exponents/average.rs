@@ -55,13 +55,13 @@ pub(super) fn average(
             first.add(growth.ln());
             second.add(passed.log_determinant() - growth.ln());
             measured.add(passed.measured);
-            exact = exact.zip(passed.exact).map(|(mut sum, own)| {
-                sum.add(own);
+            exact = exact.zip(passed.exact).map(|(mut sum, term)| {
+                sum.add(term);
                 sum
             });
         }
     }
-    let exact_sum = exact.map(|own| own.value() / time + 0.0);
+    let exact_sum = exact.map(|sum| sum.value() / time + 0.0);
     let (first, second) = (first.estimate(tangent.period()), second.estimate(tangent.period()));
     // The sum less the first one has no rounding of its own.
     let second = Estimate { per_s: exact_sum.map_or(second.per_s, |sum| sum - first.per_s), ..second };
@@ -108,7 +108,7 @@ impl Batches {
             (begin(batch + 1) - begin(batch)) as f64
         };
         let means = self.sums.iter().zip(0..).map(|(sum, batch)| sum / length(batch));
-        let squares: f64 = means.map(|own| (own - mean) * (own - mean)).sum();
+        let squares: f64 = means.map(|value| (value - mean) * (value - mean)).sum();
         let error = match count {
             1 => f64::NAN,
             n => (squares / (n - 1) as f64 / n as f64).sqrt(),

@@ -102,8 +102,8 @@ impl ExponentCells {
         let leave = |found: Vec<Found>| {
             let table = self.table(tally.cells, &found);
             tally.cells += found.len() as u64;
-            tally.missing += found.iter().filter(|own| own.is_none()).count() as u64;
-            tally.resting += found.iter().flatten().filter(|own| own.rests()).count() as u64;
+            tally.missing += found.iter().filter(|cell| cell.is_none()).count() as u64;
+            tally.resting += found.iter().flatten().filter(|exponents| exponents.rests()).count() as u64;
             write(&table).unwrap_or_else(|error| {
                 end = Some(SweepEnd::Write(error));
                 false
@@ -138,13 +138,13 @@ pub fn exponents_row(found: &Exponents) -> Table {
 }
 
 fn with_columns(table: Table, found: &[Found]) -> Table {
-    let number = |of: fn(&Exponents) -> f64| move |own: &Found| own.as_ref().map_or(f64::NAN, of);
+    let number = |of: fn(&Exponents) -> f64| move |cell: &Found| cell.as_ref().map_or(f64::NAN, of);
     table
-        .each("exponent_1_per_s", found, number(|own| own.first.per_s))
-        .each("exponent_1_se", found, number(|own| own.first.error))
-        .each("exponent_2_per_s", found, number(|own| own.second.per_s))
-        .each("exponent_2_se", found, number(|own| own.second.error))
-        .each("sum_per_s", found, number(|own| own.sum))
-        .each("exact_sum_per_s", found, number(|own| own.exact_sum.unwrap_or(f64::NAN)))
+        .each("exponent_1_per_s", found, number(|exponents| exponents.first.per_s))
+        .each("exponent_1_se", found, number(|exponents| exponents.first.error))
+        .each("exponent_2_per_s", found, number(|exponents| exponents.second.per_s))
+        .each("exponent_2_se", found, number(|exponents| exponents.second.error))
+        .each("sum_per_s", found, number(|exponents| exponents.sum))
+        .each("exact_sum_per_s", found, number(|exponents| exponents.exact_sum.unwrap_or(f64::NAN)))
         .each("dimension", found, number(Exponents::dimension))
 }

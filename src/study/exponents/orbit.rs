@@ -42,7 +42,7 @@ pub(super) fn of_orbit(
         first: Estimate::exact(first / time),
         second: Estimate::exact(second / time),
         sum: orbit.measured / time,
-        exact_sum: orbit.exact.map(|own| own / time + 0.0),
+        exact_sum: orbit.exact.map(|sum| sum / time + 0.0),
         period: Some(periods),
         span: (periods, time),
     }))
@@ -65,7 +65,7 @@ fn find(
         };
         let [x, v] = tangent.scaled(state, orbit.state);
         let distance = x.hypot(v);
-        if step == 0 && !(distance <= NEAR) || best.is_some_and(|own| !(distance < own.1)) {
+        if step == 0 && !(distance <= NEAR) || best.is_some_and(|best| !(distance < best.1)) {
             break;
         }
         best = Some((orbit, distance, step > 0));
@@ -79,7 +79,7 @@ fn find(
         state = next;
     }
     let close = (10.0 * tangent.model().tolerance()).clamp(CLOSE.0, CLOSE.1);
-    Ok(best.filter(|own| own.1 <= close))
+    Ok(best.filter(|best| best.1 <= close))
 }
 
 /// Whether a mass can be there.

@@ -81,19 +81,20 @@ impl Tangent {
 
     /// The next period of the motion from a state in m and m/s.
     pub fn pass(&self, state: (f64, f64)) -> Result<Passed, NoExponents> {
-        let (passage, own) = self.map.pass_with_jacobian(state, 1);
+        let (passage, derivative) = self.map.pass_with_jacobian(state, 1);
         if passage.outcome != Outcome::Done {
             return Err(NoExponents::EndedEarly(passage.outcome));
         }
         let time = self.scales.length / self.scales.speed;
-        let [[a, b], [c, d]] = own.rows;
+        let [[a, b], [c, d]] = derivative.rows;
         let jacobian = Jacobian { rows: [[a, b / time], [c * time, d]] };
-        if !products(&own).is_finite() {
+        if !products(&derivative).is_finite() {
             return Err(NoExponents::Grazing);
         }
-        let rested = own.rows == [[0.0; 2]; 2];
+        let rested = derivative.rows == [[0.0; 2]; 2];
         let impacts = |side: Side| {
-            let hits = passage.events.iter().filter(|own| own.kind == EventKind::Impact && own.side == side);
+            let hits =
+                passage.events.iter().filter(|event| event.kind == EventKind::Impact && event.side == side);
             hits.count() as f64
         };
         let exact = self.struck.map(|[left, right]| match rested {
@@ -102,16 +103,18 @@ impl Tangent {
         });
         let measured = match rested {
             true => f64::NEG_INFINITY,
-            false => self.told((&passage, &own), 1.0, FEW_LEFT).unwrap_or_else(|| self.by_parts(state)),
+            false => {
+                self.told((&passage, &derivative), 1.0, FEW_LEFT).unwrap_or_else(|| self.by_parts(state))
+            }
         };
         Ok(Passed { state: passage.state, jacobian, measured, exact })
     }
 
     /// Logarithm of the determinant of a share of a period, where it is more than `least` of its products.
-    fn told(&self, (passage, own): (&Passage, &Jacobian), share: f64, least: f64) -> Option<f64> {
-        let determinant = own.determinant().abs();
+    fn told(&self, (passage, derivative): (&Passage, &Jacobian), share: f64, least: f64) -> Option<f64> {
+        let determinant = derivative.determinant().abs();
         let exact = passage.determinant.unwrap_or_else(|| (self.damped * share).exp());
-        (exact.min(determinant) > least * products(own)).then(|| determinant.ln())
+        (exact.min(determinant) > least * products(derivative)).then(|| determinant.ln())
     }
 
     /// The same of a period from its parts, NaN where one has lost its digits.
@@ -119,9 +122,9 @@ impl Tangent {
         let share = 1.0 / f64::from(PARTS);
         let parts = (0..PARTS).map(|part| {
             let span = (f64::from(part) * share, f64::from(part + 1) * share);
-            let (passage, own) = self.map.pass_part_with_jacobian(state, span);
+            let (passage, derivative) = self.map.pass_part_with_jacobian(state, span);
             state = passage.state;
-            self.told((&passage, &own), share, LOST).unwrap_or(f64::NAN)
+            self.told((&passage, &derivative), share, LOST).unwrap_or(f64::NAN)
         });
         parts.sum()
     }
@@ -136,7 +139,7 @@ impl Tangent {
                 state: next.state,
                 jacobian: next.jacobian.after(&all.jacobian),
                 measured: all.measured + next.measured,
-                exact: all.exact.zip(next.exact).map(|(before, own)| before + own),
+                exact: all.exact.zip(next.exact).map(|(before, more)| before + more),
             };
         }
         Ok(all)
@@ -154,8 +157,8 @@ impl Tangent {
 }
 
 /// The two products of which a determinant is the difference, without their signs.
-fn products(own: &Jacobian) -> f64 {
-    let [[a, b], [c, d]] = own.rows;
+fn products(derivative: &Jacobian) -> f64 {
+    let [[a, b], [c, d]] = derivative.rows;
     (a * d).abs() + (b * c).abs()
 }
 

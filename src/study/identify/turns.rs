@@ -11,7 +11,7 @@ pub use crate::numeric::{Turn, turns};
 pub fn noise(values: &[f64]) -> f64 {
     /// Median magnitude over standard deviation of normal numbers.
     const NORMAL: f64 = 0.674_489_750_196_081_7;
-    let third = |own: &[f64]| (own[3] - 3.0 * own[2] + 3.0 * own[1] - own[0]).abs();
+    let third = |window: &[f64]| (window[3] - 3.0 * window[2] + 3.0 * window[1] - window[0]).abs();
     let mut sizes: Vec<f64> = values.windows(4).map(third).collect();
     if sizes.is_empty() {
         return 0.0;

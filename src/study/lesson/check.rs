@@ -83,7 +83,7 @@ fn check_step(
             report.predictions += 1;
             let held = options_that_hold(step, end, begin)?;
             let right: Vec<&str> =
-                options.iter().zip(&held).filter(|own| *own.1).map(|own| own.0.text.as_str()).collect();
+                options.iter().zip(&held).filter(|pair| *pair.1).map(|pair| pair.0.text.as_str()).collect();
             if right.len() != 1 {
                 let problem = match right.len() {
                     0 => "none of the options holds; exactly one must".to_owned(),
@@ -123,14 +123,14 @@ fn turned_by(
     let mut turned = Vec::new();
     for (index, (field, bound)) in bounds.iter().enumerate() {
         let of_scene = field.strip_prefix("scene.");
-        if of_scene.is_some_and(|own| !controls.iter().any(|control| control == own)) {
+        if of_scene.is_some_and(|path| !controls.iter().any(|control| control == path)) {
             continue;
         }
         for factor in [1.0 - MOVED, 1.0 + MOVED] {
             let (mut moved, mut place) = (condition.clone(), 0);
-            moved.for_each_bound(&mut |_, own| {
+            moved.for_each_bound(&mut |_, bound| {
                 if place == index {
-                    *own *= factor;
+                    *bound *= factor;
                 }
                 place += 1;
             });

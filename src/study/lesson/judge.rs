@@ -72,19 +72,21 @@ struct Judge<'a> {
 impl Judge<'_> {
     fn holds(&self, condition: &Condition) -> Result<bool, Unjudged> {
         let compare = |field: &str, of: &dyn Fn(f64) -> bool| {
-            Ok(matches!(self.value(field)?, Value::Number(own) if of(own)))
+            Ok(matches!(self.value(field)?, Value::Number(number) if of(number)))
         };
         match condition {
             Condition::Is(field, text) => Ok(match self.value(field)? {
-                Value::Number(own) => text.trim().parse() == Ok(own),
-                Value::Word(own) => own == *text,
+                Value::Number(number) => text.trim().parse() == Ok(number),
+                Value::Word(word) => word == *text,
                 Value::Missing => false,
             }),
-            Condition::AtLeast(field, bound) => compare(field, &|own| own >= *bound),
-            Condition::AtMost(field, bound) => compare(field, &|own| own <= *bound),
-            Condition::Above(field, bound) => compare(field, &|own| own > *bound),
-            Condition::Below(field, bound) => compare(field, &|own| own < *bound),
-            Condition::Between(field, low, high) => compare(field, &|own| (*low..=*high).contains(&own)),
+            Condition::AtLeast(field, bound) => compare(field, &|number| number >= *bound),
+            Condition::AtMost(field, bound) => compare(field, &|number| number <= *bound),
+            Condition::Above(field, bound) => compare(field, &|number| number > *bound),
+            Condition::Below(field, bound) => compare(field, &|number| number < *bound),
+            Condition::Between(field, low, high) => {
+                compare(field, &|number| (*low..=*high).contains(&number))
+            }
             Condition::Present(field) => Ok(self.value(field)? != Value::Missing),
             Condition::Absent(field) => Ok(self.value(field)? == Value::Missing),
             Condition::All(parts) => self.count(parts).map(|count| count == parts.len()),
@@ -102,14 +104,15 @@ impl Judge<'_> {
                 let values: Option<Vec<f64>> = runs
                     .iter()
                     .map(|run| match value(run, name) {
-                        Value::Number(own) => Some(own),
+                        Value::Number(number) => Some(number),
                         _ => None,
                     })
                     .collect();
                 Ok(values.is_some_and(|values| {
-                    let (low, high) = values
-                        .iter()
-                        .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), own| (a.min(*own), b.max(*own)));
+                    let (low, high) =
+                        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), number| {
+                            (a.min(*number), b.max(*number))
+                        });
                     high - low <= within * low.abs().max(high.abs())
                 }))
             }
@@ -167,7 +170,7 @@ impl Judge<'_> {
             "mean" | "error" => {
                 let runs = self.subject.over_seeds()?;
                 let number = |run: &Summary| match value(run, name) {
-                    Value::Number(own) => own,
+                    Value::Number(number) => number,
                     _ => f64::NAN,
                 };
                 let (mean, error) = mean(&runs.iter().map(number).collect::<Vec<_>>());
@@ -182,6 +185,6 @@ impl Judge<'_> {
 fn mean(values: &[f64]) -> (f64, f64) {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
-    let squares: f64 = values.iter().map(|own| (own - mean).powi(2)).sum();
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
     (mean, (squares / (count - 1.0) / count).sqrt())
 }

@@ -48,7 +48,7 @@ pub fn compare_force(
 ) -> Result<ForceComparison, OffTheCurve> {
     let curve = &mechanism.curve;
     let domain = curve.domain();
-    let on = |own: &(&f64, &f64)| (domain.0..=domain.1).contains(own.0);
+    let on = |sample: &(&f64, &f64)| (domain.0..=domain.1).contains(sample.0);
     let (positions, measured): (Vec<f64>, Vec<f64>) = x.iter().zip(force).filter(on).unzip();
     if positions.len() < 2 {
         let domain = (short(domain.0 * 1e3), short(domain.1 * 1e3));
@@ -72,7 +72,7 @@ pub fn compare_force(
     let mut remarks = Vec::new();
     if positions.len() < x.len() {
         let outside = x.len() - positions.len();
-        let [low, high] = [domain.0, domain.1].map(|own| short(own * 1e3));
+        let [low, high] = [domain.0, domain.1].map(|end| short(end * 1e3));
         remarks.push(format!(
             "{outside} of {} samples lie beyond the force curve, which reaches from {low} to {high} mm",
             x.len()

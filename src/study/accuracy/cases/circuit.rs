@@ -48,7 +48,7 @@ pub(super) fn closed_form(setup: &Setup, model: &Model, (stiffness, force): (f64
     };
     let tone = model.excitation().tones.first();
     let tone =
-        tone.map(|own| (own.amplitude, own.frequency, own.phase + if own.quarter { 0.25 } else { 0.0 }));
+        tone.map(|tone| (tone.amplitude, tone.frequency, tone.phase + if tone.quarter { 0.25 } else { 0.0 }));
     let (mass, damping) = (model.mass(), model.damping());
     let tone = tone.unwrap_or((0.0, 0.0, 0.0));
     Coupled { mass, damping, stiffness, force, coupling, storage, loss, tone }
@@ -69,7 +69,7 @@ fn errors(model: &Model, run: &Run, exact: &Coupled) -> Vec<(f64, f64)> {
     let start = [model.start().0, model.start().1, model.start_electrical()].map(dd);
     let steps = run.summary.steps as f64;
     let error = |sample: &crate::dynamics::Sample| {
-        let [x, v, s] = exact.state(start, dd(0.0), dd(sample.t)).map(|own| own.to_f64());
+        let [x, v, s] = exact.state(start, dd(0.0), dd(sample.t)).map(|value| value.to_f64());
         let mechanical = off(sample.x, x, scales.length).max(off(sample.v, v, scales.speed));
         let progress = (sample.t / model.duration()).max(1.0 / steps);
         let phase = TAU * exact.tone.1 * sample.t * f64::EPSILON;
@@ -83,7 +83,7 @@ fn against(bench: &Bench, name: &'static str, setup: &Setup) -> Result<(Variant,
     let model = setup.model()?;
     let run = bench.run(&model, &even(model.duration(), 41))?;
     let errors = errors(&model, &run, &closed_form(setup, &model, (STIFFNESS, 0.0)));
-    let ledger = run.summary.ledger.map_or(f64::NAN, |own| own.energy_residual);
+    let ledger = run.summary.ledger.map_or(f64::NAN, |ledger| ledger.energy_residual);
     let steps = run.summary.steps as f64;
     let variant = Variant::of(name, &run).worst("state at 41 samples", errors).number(
         "energy balance",
@@ -105,8 +105,8 @@ pub(super) const STIFF: HardCase = HardCase {
             ("coil 1 us", coil(5.0, 100.0, 1e-4)),
             ("layer 1 us", layer(1e-3, 1e-9, 1e3)),
         ];
-        let own = stiff.map(|(name, own)| Ok(against(bench, name, &sprung(own, 0.2))?.0));
-        own.into_iter().collect()
+        let variants = stiff.map(|(name, transducer)| Ok(against(bench, name, &sprung(transducer, 0.2))?.0));
+        variants.into_iter().collect()
     },
 };
 
@@ -123,8 +123,8 @@ pub(super) const STRONG: HardCase = HardCase {
             ("coil 1000 times", coil(223.6, 0.1, 1e-3)),
             ("layer 100 times", layer(0.7, 1e-6, 1e6)),
         ];
-        let own = strong.map(|(name, own)| Ok(against(bench, name, &sprung(own, 1.0))?.0));
-        own.into_iter().collect()
+        let variants = strong.map(|(name, transducer)| Ok(against(bench, name, &sprung(transducer, 1.0))?.0));
+        variants.into_iter().collect()
     },
 };
 
@@ -148,7 +148,7 @@ fn no_inductance(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
     let (scales, forcings) = (model.scales(), tones(&model));
     let pairs = run.samples.iter().map(|sample| {
         let (x, v) = damped.nearest(model.start(), 0.0, sample.t, &forcings);
-        let current = model.output(sample).map_or(f64::NAN, |own| own.current);
+        let current = model.output(sample).map_or(f64::NAN, |output| output.current);
         let exact = coupling * v / resistance;
         let size = coupling * scales.speed / resistance;
         let error = off(sample.x, x, scales.length).max(off(sample.v, v, scales.speed));
@@ -164,8 +164,8 @@ fn no_inductance(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
     let mut apart = Vec::new();
     for (name, time_constant) in [("1 ms", 1e-3), ("0.1 ms", 1e-4), ("10 us", 1e-5)] {
         let setup = sprung(coil(coupling, resistance, resistance * time_constant), 0.5);
-        let (variant, own) = against(bench, name, &setup)?;
-        let distances = own.samples.iter().zip(&run.samples).map(|(a, b)| off(a.x, b.x, scales.length));
+        let (variant, inductive) = against(bench, name, &setup)?;
+        let distances = inductive.samples.iter().zip(&run.samples).map(|(a, b)| off(a.x, b.x, scales.length));
         apart.push(distances.fold(0.0, f64::max) / time_constant);
         variants.push(variant);
     }

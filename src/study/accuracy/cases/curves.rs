@@ -191,17 +191,17 @@ pub(super) fn by_reference(
     let model = setup.model()?;
     let run = bench.run(&model, &[])?;
     let exact = numbers(&bench.reference(&alike.model()?, &[])?);
-    let own = numbers(&run);
+    let found = numbers(&run);
     let allowed = Bench::allowed(&model, run.summary.steps, &bench.sensitivity(setup, &[], &numbers)?);
-    let pairs: Vec<_> = own
+    let pairs: Vec<_> = found
         .iter()
         .zip(&exact)
         .zip(&allowed)
-        .map(|((own, exact), allowed)| (off(*own, *exact, *exact), allowed / exact))
+        .map(|((value, exact), allowed)| (off(*value, *exact, *exact), allowed / exact))
         .collect();
     Ok(Variant::of(name, &run)
         .worst("impact times", pairs)
-        .fact("all impacts", own.len() == exact.len() && !own.is_empty()))
+        .fact("all impacts", found.len() == exact.len() && !found.is_empty()))
 }
 
 fn stop_at_the_force_maximum(bench: &Bench) -> Result<Vec<Variant>, Stopped> {

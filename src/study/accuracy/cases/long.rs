@@ -66,8 +66,8 @@ fn chaos(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
             run.summary.steps,
             &bench.sensitivity_by(SMALL_CHANGE, &setup, &[], state)?,
         );
-        let (own, scales) = (state(&run), [model.scales().length, model.scales().speed]);
-        let pairs = (0..2).map(|i| (off(own[i], exact[i], scales[i]), allowed[i] / scales[i]));
+        let (found, scales) = (state(&run), [model.scales().length, model.scales().speed]);
+        let pairs = (0..2).map(|i| (off(found[i], exact[i], scales[i]), allowed[i] / scales[i]));
         variants.push(Variant::of(name, &run).worst("final state", pairs));
     }
     let (one, batches) = averages(bench, &preset(&[])?.model()?)?;

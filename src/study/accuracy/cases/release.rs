@@ -138,8 +138,8 @@ fn plastic(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
     let speed = pressed.flight((dd(0.0), dd(0.0)), first, landing).1.to_f64().abs();
     let angle = (1.0_f64 / 1.8).asin();
     let per_flight = run.summary.steps as f64 / 10.0;
-    let in_time = |own: Vec<f64>, first: DoubleDouble, allowed: f64| {
-        let pairs: Vec<_> = own
+    let in_time = |found: Vec<f64>, first: DoubleDouble, allowed: f64| {
+        let pairs: Vec<_> = found
             .into_iter()
             .enumerate()
             .map(move |(i, t)| {

@@ -78,10 +78,10 @@ mod tests {
     fn an_angle_comes_back_from_its_sine() {
         for angle in [0.0, 1e-9, 0.1, 0.125, 0.2, 0.249_999_999, 0.25] {
             let (sine, _) = turns(dd(angle));
-            let own = sine_turns(sine);
+            let found = sine_turns(sine);
             // near a quarter turn by the root of what the sine is rounded by
             let allowed = if angle < 0.249 { 1e-30 } else { 1e-15 };
-            assert!((own - dd(angle)).to_f64().abs() < allowed, "{angle}");
+            assert!((found - dd(angle)).to_f64().abs() < allowed, "{angle}");
         }
     }
 

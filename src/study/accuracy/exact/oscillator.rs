@@ -103,13 +103,13 @@ impl Oscillator {
     pub fn state(&self, start: State, from: DoubleDouble, t: DoubleDouble, forcings: &[Forcing]) -> State {
         let sum = |at: DoubleDouble| {
             forcings.iter().fold((dd(0.0), dd(0.0)), |sum, forcing| {
-                let own = self.driven(forcing, at);
-                (sum.0 + own.0, sum.1 + own.1)
+                let part = self.driven(forcing, at);
+                (sum.0 + part.0, sum.1 + part.1)
             })
         };
         let (at_start, now) = (sum(from), sum(t));
-        let own = self.free((start.0 - at_start.0, start.1 - at_start.1), t - from);
-        (own.0 + now.0, own.1 + now.1)
+        let free = self.free((start.0 - at_start.0, start.1 - at_start.1), t - from);
+        (free.0 + now.0, free.1 + now.1)
     }
 
     /// The same as the nearest doubles, from doubles.

@@ -37,13 +37,13 @@ impl Lateness {
     }
 }
 
-/// How late the arrivals among the impacts of `exact` are in the run whose impacts are `own`, both in order
+/// How late the arrivals among the impacts of `exact` are in the run whose impacts are `compared`, both in order
 /// of time; none without an arrival that is in both.
 ///
 /// An arrival is the first impact after a flight across or after a push, not the rebounds that follow it. It
 /// is looked for among the impacts of the other run on the same stop, within half the time to its neighbours.
 /// Where one is not found the other run has taken another course, and what follows is not compared.
-pub(super) fn lateness(model: &Model, own: &[Event], exact: &[Event]) -> Option<Lateness> {
+pub(super) fn lateness(model: &Model, compared: &[Event], exact: &[Event]) -> Option<Lateness> {
     let arrivals = arrivals(exact, SLOWEST * model.scales().speed);
     let mut late: Vec<f64> = Vec::new();
     for (i, arrival) in arrivals.iter().enumerate() {
@@ -51,7 +51,7 @@ pub(super) fn lateness(model: &Model, own: &[Event], exact: &[Event]) -> Option<
         let gaps = [arrivals[..i].iter().rfind(same), arrivals[i + 1..].iter().find(same)];
         let gap = gaps.into_iter().flatten().map(|other| (other.t - arrival.t).abs()).reduce(f64::min);
         let room = 0.5 * gap.unwrap_or(model.characteristic_time());
-        let Some(found) = nearest(own, arrival, room) else { break };
+        let Some(found) = nearest(compared, arrival, room) else { break };
         late.push(found.t - arrival.t);
     }
     late.sort_by(f64::total_cmp);
@@ -63,7 +63,7 @@ pub(super) fn lateness(model: &Model, own: &[Event], exact: &[Event]) -> Option<
 
 /// How many impacts of a run fall into the times in which the mass of the other one rests on a stop: hops of
 /// a mass that is pressed there. `exact` are all events of that one, in order of time.
-pub(super) fn hops(own: &[Event], exact: &[Event]) -> u64 {
+pub(super) fn hops(impacts: &[Event], exact: &[Event]) -> u64 {
     let turns = || exact.iter().filter(|event| matches!(event.kind, EventKind::Rest | EventKind::Release));
     // what begins with a release has rested from the start
     let mut since = turns().next().filter(|first| first.kind == EventKind::Release).map(|_| 0.0);
@@ -83,7 +83,7 @@ pub(super) fn hops(own: &[Event], exact: &[Event]) -> u64 {
         let next = rests.partition_point(|rest| rest.0 < impact.t);
         next > 0 && impact.t < rests[next - 1].1
     };
-    own.iter().filter(within).count() as u64
+    impacts.iter().filter(within).count() as u64
 }
 
 fn arrivals(impacts: &[Event], slowest: f64) -> Vec<Event> {
@@ -102,9 +102,9 @@ fn arrivals(impacts: &[Event], slowest: f64) -> Vec<Event> {
 }
 
 /// The impact on the same stop that is nearest in time, fast enough and not further than `room` in s.
-fn nearest<'a>(own: &'a [Event], arrival: &Event, room: f64) -> Option<&'a Event> {
-    let from = own.partition_point(|other| other.t < arrival.t - room);
-    let near = own[from..].iter().take_while(|other| other.t <= arrival.t + room);
+fn nearest<'a>(impacts: &'a [Event], arrival: &Event, room: f64) -> Option<&'a Event> {
+    let from = impacts.partition_point(|other| other.t < arrival.t - room);
+    let near = impacts[from..].iter().take_while(|other| other.t <= arrival.t + room);
     let alike =
         |other: &&Event| other.side == arrival.side && other.v_in.abs() >= LEAST_SPEED * arrival.v_in.abs();
     near.filter(alike).min_by(|a, b| (a.t - arrival.t).abs().total_cmp(&(b.t - arrival.t).abs()))

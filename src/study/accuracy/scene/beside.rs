@@ -39,14 +39,14 @@ pub(super) struct Beside {
 }
 
 impl Beside {
-    /// `own` beside `better`, both sampled at the same times as far as each of them came.
-    pub fn new(model: &Model, own: &[Sample], better: &[Sample]) -> Self {
+    /// `samples` beside `better`, both sampled at the same times as far as each of them came.
+    pub fn new(model: &Model, samples: &[Sample], better: &[Sample]) -> Self {
         let mut found = Self::default();
         let (mut low, mut high, mut worst) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
-        let last = own.len().min(better.len());
+        let last = samples.len().min(better.len());
         let from_end = (last as f64 * (1.0 - END)) as usize;
-        for (i, (own, better)) in own.iter().zip(better).enumerate() {
-            let apart = (own.x - better.x).abs();
+        for (i, (sample, better)) in samples.iter().zip(better).enumerate() {
+            let apart = (sample.x - better.x).abs();
             worst = worst.max(apart);
             (low, high) = (low.min(better.x), high.max(better.x));
             found.times.push(better.t);

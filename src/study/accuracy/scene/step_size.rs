@@ -83,8 +83,8 @@ pub struct StepSize {
 impl StepSize {
     /// By what share the RMS velocity is wrong; above 0 where it is too high.
     pub fn rms_error(&self) -> Option<f64> {
-        let (exact, own) = (self.rms_velocity.0?, self.rms_velocity.1?);
-        (exact > 0.0).then(|| own / exact - 1.0)
+        let (exact, stepped) = (self.rms_velocity.0?, self.rms_velocity.1?);
+        (exact > 0.0).then(|| stepped / exact - 1.0)
     }
 }
 
@@ -113,11 +113,11 @@ pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) 
     let impacts: Vec<Event> = all.iter().copied().filter(|event| event.kind == EventKind::Impact).collect();
 
     let keep = |sample_times| Keep { sample_times, impacts: true, cancel: Some(cancel) };
-    let own = fixed_step(model, scheme, step, &keep(&even));
+    let stepped = fixed_step(model, scheme, step, &keep(&even));
     // the same run up to where it is drawn
     let start = model.with_duration(drawn, 0.0);
     let ghost = fixed_step(&start, scheme, step, &keep(&steps)).samples;
-    let statistics = own.statistics;
+    let statistics = stepped.statistics;
     let bare = Keep { impacts: false, ..keep(&[]) };
     let cpu_s = if statistics.cpu_s > MEASURED_FOR {
         statistics.cpu_s
@@ -128,7 +128,7 @@ pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) 
     if cancel.load(std::sync::atomic::Ordering::Relaxed) {
         return Err(Unfit::Cancelled);
     }
-    let beside = Beside::new(model, &own.samples, &exact.samples);
+    let beside = Beside::new(model, &stepped.samples, &exact.samples);
     Ok(StepSize {
         scheme,
         step,
@@ -136,9 +136,9 @@ pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) 
         drawn,
         truth: with_impacts(model, &path, &impacts),
         ghost: ghost.iter().map(|sample| (sample.t, sample.x)).collect(),
-        late: lateness(model, &own.impacts, &impacts),
+        late: lateness(model, &stepped.impacts, &impacts),
         impacts: (summary.total_impacts, statistics.impacts),
-        hops: hops(&own.impacts, &all),
+        hops: hops(&stepped.impacts, &all),
         crossings: (summary.total_crossings, statistics.crossings),
         rms_velocity: (summary.rms_velocity, statistics.rms_velocity),
         error: beside.error(),

@@ -53,13 +53,13 @@ pub fn tolerances(model: &Model, cancel: &AtomicBool) -> Option<Tolerances> {
     let times = times(model);
     let request = Request { sample_times: &times, cancel: Some(cancel), ..Request::default() };
     let bare = Request { sample_times: &[], ..request };
-    let all = with_own(model.tolerance());
+    let all = tolerances_with(model.tolerance());
     let tightest = all.last().copied().unwrap_or(model.tolerance());
     let (_, exact) = better(model, tightest, &request)?;
     let mut found = Tolerances::default();
     for tolerance in all {
-        let own = model.with_tolerance(tolerance);
-        let run = finished(own.run(&request))?;
+        let trial = model.with_tolerance(tolerance);
+        let run = finished(trial.run(&request))?;
         let summary = run.summary;
         let beside = Beside::new(model, &run.samples, &exact.samples);
         (found.span, found.travel) = (beside.span(), beside.travel);
@@ -69,7 +69,7 @@ pub fn tolerances(model: &Model, cancel: &AtomicBool) -> Option<Tolerances> {
             trusted: beside.parted(),
             steps: summary.steps,
             evaluations: summary.evaluations,
-            cpu_s: median(|| own.run(&bare).summary.cpu_s),
+            cpu_s: median(|| trial.run(&bare).summary.cpu_s),
             rms_velocity: summary.rms_velocity,
             impacts: summary.total_impacts,
             outcome: summary.outcome,
@@ -79,10 +79,10 @@ pub fn tolerances(model: &Model, cancel: &AtomicBool) -> Option<Tolerances> {
 }
 
 /// The tolerances from the loosest to the tightest, the scene's own among them.
-fn with_own(own: f64) -> Vec<f64> {
+fn tolerances_with(tolerance: f64) -> Vec<f64> {
     let mut all = TOLERANCES.to_vec();
-    if !all.contains(&own) {
-        all.push(own);
+    if !all.contains(&tolerance) {
+        all.push(tolerance);
     }
     all.sort_by(|a, b| b.total_cmp(a));
     all
@@ -94,8 +94,8 @@ mod tests {
 
     #[test]
     fn the_scenes_own_tolerance_is_among_them() {
-        assert_eq!(with_own(1e-9), TOLERANCES);
-        assert_eq!(with_own(1e-14), [1e-3, 1e-6, 1e-9, 1e-12, 1e-14]);
-        assert_eq!(with_own(3e-5), [1e-3, 3e-5, 1e-6, 1e-9, 1e-12]);
+        assert_eq!(tolerances_with(1e-9), TOLERANCES);
+        assert_eq!(tolerances_with(1e-14), [1e-3, 1e-6, 1e-9, 1e-12, 1e-14]);
+        assert_eq!(tolerances_with(3e-5), [1e-3, 3e-5, 1e-6, 1e-9, 1e-12]);
     }
 }

@@ -85,9 +85,9 @@ pub struct Trust {
 pub fn trust(model: &Model, cancel: &AtomicBool) -> Option<Trust> {
     let times = times(model);
     let request = Request { sample_times: &times, cancel: Some(cancel), ..Request::default() };
-    let own = finished(model.run(&request))?;
+    let run = finished(model.run(&request))?;
     let (finer, better) = better(model, model.tolerance(), &request)?;
-    let beside = Beside::new(model, &own.samples, &better.samples);
+    let beside = Beside::new(model, &run.samples, &better.samples);
     let course = match beside.parted() {
         None => Course::Kept,
         Some(until) => {
@@ -102,8 +102,8 @@ pub fn trust(model: &Model, cancel: &AtomicBool) -> Option<Trust> {
         error: beside.error(),
         travel: beside.travel,
         course,
-        outcome: own.summary.outcome,
-        same_regime: own.summary.regime == better.summary.regime,
+        outcome: run.summary.outcome,
+        same_regime: run.summary.regime == better.summary.regime,
     })
 }
 

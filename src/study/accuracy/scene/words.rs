@@ -93,7 +93,7 @@ impl Trust {
 
     /// What that means and how it is known.
     pub fn long(&self, from: f64) -> String {
-        let (own, finer) = self.tolerances;
+        let (tolerance, finer) = self.tolerances;
         let share = TRUSTED_SHARE * 100.0;
         let span = stretch(self.span);
         let after = if from > 0.0 {
@@ -103,7 +103,7 @@ impl Trust {
         };
         let leaves = |until: f64| {
             format!(
-                "Computed once more with the tolerance {finer:.0e} in place of {own:.0e}, the path is \
+                "Computed once more with the tolerance {finer:.0e} in place of {tolerance:.0e}, the path is \
                  another one from {} on (off by {share} % of the travel)",
                 moment(from + until)
             )
@@ -111,12 +111,12 @@ impl Trust {
         match self.course {
             Course::Kept if self.error == 0.0 => {
                 format!(
-                    "Computed once more with the tolerance {finer:.0e} in place of {own:.0e}, the path is \
+                    "Computed once more with the tolerance {finer:.0e} in place of {tolerance:.0e}, the path is \
                      the same over {after}."
                 )
             }
             Course::Kept => format!(
-                "Computed once more with the tolerance {finer:.0e} in place of {own:.0e}, the path changes \
+                "Computed once more with the tolerance {finer:.0e} in place of {tolerance:.0e}, the path changes \
                  by no more than {} mm over {after}.",
                 length_mm(self.error)
             ),
@@ -184,13 +184,13 @@ impl StepSize {
             return all;
         }
         all.extend(self.late.map(|late| late.words()));
-        let (exact, own) = self.impacts;
-        if exact != own {
-            all.push(format!("{own} impacts counted where there are {exact}."));
+        let (exact, counted) = self.impacts;
+        if exact != counted {
+            all.push(format!("{counted} impacts counted where there are {exact}."));
         } else if exact > 0 {
-            all.push(format!("{own} impacts counted, which is right."));
+            all.push(format!("{counted} impacts counted, which is right."));
         }
-        if own > exact && self.hops > 0 {
+        if counted > exact && self.hops > 0 {
             all.push(format!(
                 "{} of them are hops of a mass that truly rests: pressed on a stop it bounces every step or \
                  two, so that shorter steps count more.",
@@ -206,17 +206,17 @@ impl StepSize {
                 _ => format!("RMS velocity {} times what it should be.", two(1.0 + error)),
             });
         }
-        let (exact, own) = self.crossings;
-        if exact != own {
-            all.push(format!("{own} crossings where there are {exact}."));
+        let (exact, counted) = self.crossings;
+        if exact != counted {
+            all.push(format!("{counted} crossings where there are {exact}."));
         }
         if let Some(t) = self.trusted {
             all.push(format!("It leaves the true path (by 1 % of the travel) at {}.", duration(t)));
         } else if self.error > 0.0 {
             all.push(format!("Displacement wrong by {} mm at most.", length_mm(self.error)));
         }
-        let (exact, own) = self.cpu_s;
-        all.push(format!("{} of processor time; the true run takes {}.", duration(own), duration(exact)));
+        let (exact, stepped) = self.cpu_s;
+        all.push(format!("{} of processor time; the true run takes {}.", duration(stepped), duration(exact)));
         all
     }
 }
