@@ -15,11 +15,12 @@ const DORMAND_PRINCE: &str = "Dormand-Prince 5(4)";
 /// Impacts faster than this in m/s count for the error.
 const HARD: f64 = 1e-2;
 
-/// A run is repeated for so long in s to measure its time, but not more often than this.
+/// Time in s for which a run is repeated to measure its CPU time.
 pub(super) const MEASURED_FOR: f64 = 0.02;
+/// Most repetitions of such a run.
 const MOST_REPEATS: usize = 25;
 
-/// Times that progress is told in a problem: the reference, the own method, Dormand-Prince and each scheme.
+/// Progress reports of a problem: the reference, the program's method, Dormand-Prince and each scheme.
 pub(super) const PARTS: usize = 3 + Scheme::ALL.len();
 
 /// How a problem's error is measured.
@@ -85,7 +86,7 @@ pub const PROBLEMS: &[Problem] = &[
     },
 ];
 
-/// What a method was told.
+/// Setting of a method.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Setting {
     /// Local error allowed, relative to the scene's scales.
@@ -101,7 +102,7 @@ pub struct Point {
     pub problem: &'static str,
     /// Name of the method.
     pub method: &'static str,
-    /// What it was told.
+    /// Its setting.
     pub setting: Setting,
     /// Error, as the problem defines it.
     pub error: f64,
@@ -126,8 +127,8 @@ impl Problem {
         Setup::preset(self.preset, self.changes)?.model()
     }
 
-    /// Tolerances 1e-3 to 1e-14 for the own method and Dormand-Prince, steps of 1/60 s down to 5 us for the
-    /// others.
+    /// Tolerances 1e-3 to 1e-14 for the program's method and Dormand-Prince, steps of 1/60 s down to 5 us for
+    /// the others.
     pub(super) fn measure(&self, task: &Task) -> Result<Vec<Point>, Stopped> {
         let model = self.model()?;
         let cancelled = || if task.is_cancelled() { Err(Stopped::Cancelled) } else { Ok(()) };

@@ -5,7 +5,7 @@ use super::precision::{Point, Setting};
 use super::{Report, Variant};
 use crate::study::Table;
 
-/// Errors that the summary of a method says the cost of.
+/// Errors whose cost the summary of a method lists.
 const LEVELS: [(&str, f64); 4] =
     [("cpu_to_1e-3_s", 1e-3), ("cpu_to_1e-6_s", 1e-6), ("cpu_to_1e-9_s", 1e-9), ("cpu_to_1e-12_s", 1e-12)];
 
@@ -13,7 +13,7 @@ impl Report {
     /// Everything in one table, a row for each point and for each quantity of each variant of a case.
     ///
     /// `part` is `work_precision` or `hard_case`; `error` and `allowed` are relative to what the problem or
-    /// case names; cells that a row has no use for are empty.
+    /// case names; unused cells are empty.
     pub fn table(&self) -> Table {
         let rows: Vec<Row> = self
             .points
@@ -53,7 +53,7 @@ impl Report {
             .each("cpu_s", &rows, |row| row.cpu)
     }
 
-    /// What each method pays at least for an error of 1e-3, 1e-6, 1e-9 and 1e-12, and the least error that it
+    /// The least CPU time of each method for an error of 1e-3, 1e-6, 1e-9 and 1e-12, and the least error
     /// reached: a row for each problem and method.
     pub fn cost_table(&self) -> Table {
         let mut groups: Vec<Group> = Vec::new();
@@ -104,7 +104,7 @@ impl Report {
 /// Problem and method.
 type Group = (&'static str, &'static str);
 
-/// One row, of either half; what it has no use for is NaN or empty.
+/// One row of either part; unused numbers are NaN, unused words empty.
 #[derive(Clone, Copy)]
 struct Row {
     part: &'static str,

@@ -1,4 +1,4 @@
-//! Chatter: impacts that accumulate, and those that do not come to it.
+//! Cases of complete and incomplete chatter.
 
 use super::HardCase;
 use super::ball::times;
@@ -88,7 +88,7 @@ pub(super) const ENDS_WITH_THE_PRESS: HardCase = HardCase {
     find: ends_with_the_press,
 };
 
-/// How long after the release both are compared.
+/// Time in s after the release at which both are compared.
 const AFTER: f64 = 0.3;
 
 fn ends_with_the_press(bench: &Bench) -> Result<Vec<Variant>, Stopped> {

@@ -1,4 +1,4 @@
-//! Circuits beside a linear oscillator: stiff ones, strongly coupled ones, and limits in which they vanish.
+//! Cases of a linear oscillator with a circuit: stiff, strongly coupled, and limits in which it vanishes.
 
 use std::f64::consts::TAU;
 
@@ -13,7 +13,7 @@ use crate::study::accuracy::exact::{Coupled, Oscillator, dd};
 use crate::study::accuracy::measure::{Bench, STEP_ERROR, Variant, off};
 use crate::study::accuracy::scenes::{Setup, coil, layer, polynomial, sine};
 
-/// Of a linear oscillator with a circuit, whose energy no term but the shaking adds to.
+/// Conditioning of a linear oscillator with a circuit: only the drive adds energy.
 const LINEAR: &str = "Energy in mass, spring and circuit only falls, so that an error is carried on without \
                       growth: n steps add n d to each of the three, relative to the size that the motion \
                       gives it; the phase of the drive at a time t is a product of two doubles: 2 pi f t \
@@ -23,8 +23,8 @@ const MASS: f64 = 0.02;
 const STIFFNESS: f64 = 50.0;
 const DAMPING: f64 = 0.08;
 
-/// 20 g on a spring of 50 N/m (7.96 Hz), damped, shaken with 1 g at 7 Hz, from 2 mm with -0.1 m/s, beside a
-/// circuit without a current or voltage.
+/// 20 g on a spring of 50 N/m (7.96 Hz), damped, shaken with 1 g at 7 Hz, from 2 mm with -0.1 m/s, with a
+/// circuit whose current or voltage is 0 at the start.
 fn sprung(transducer: Transducer, duration: f64) -> Setup {
     let mut setup = Setup::new(polynomial(&[0.0, STIFFNESS]), (0.002, -0.1), duration)
         .damping(DAMPING)
@@ -34,8 +34,8 @@ fn sprung(transducer: Transducer, duration: f64) -> Setup {
     setup
 }
 
-/// The closed form of an oscillator of this stiffness and constant force beside the circuit of its scene, in
-/// the scene's own doubles.
+/// The closed form of an oscillator with this stiffness, constant force and the circuit of its scene, from
+/// the exact doubles of the scene.
 pub(super) fn closed_form(setup: &Setup, model: &Model, (stiffness, force): (f64, f64)) -> Coupled {
     let (coupling, storage, loss) = match setup.scene.transducer {
         Transducer::Electromagnetic { coupling_v_s_per_m, coil_ohm, load_ohm, inductance_mh } => {
@@ -54,8 +54,8 @@ pub(super) fn closed_form(setup: &Setup, model: &Model, (stiffness, force): (f64
     Coupled { mass, damping, stiffness, force, coupling, storage, loss, tone }
 }
 
-/// Size of the electrical state that a motion of the model's scales makes: by what it moves, and by what it
-/// can give.
+/// Size of the electrical state that a motion of the model's scales induces: limited by its coupling and by
+/// its kinetic energy, and no less than at the start.
 pub(super) fn electrical_size(model: &Model, exact: &Coupled) -> f64 {
     let (coupling, decay) = exact.rates();
     let time = model.scales().time;
@@ -63,7 +63,7 @@ pub(super) fn electrical_size(model: &Model, exact: &Coupled) -> f64 {
     (exact.amount().to_f64() * model.scales().speed * moved.min(1.0)).max(model.start_electrical().abs())
 }
 
-/// Errors of all three numbers of each sample in their sizes, each with what is allowed at its time.
+/// The largest relative error of the three states at each sample, with the error allowed at its time.
 fn errors(model: &Model, run: &Run, exact: &Coupled) -> Vec<(f64, f64)> {
     let (scales, size) = (model.scales(), electrical_size(model, exact));
     let start = [model.start().0, model.start().1, model.start_electrical()].map(dd);
@@ -78,7 +78,7 @@ fn errors(model: &Model, run: &Run, exact: &Coupled) -> Vec<(f64, f64)> {
     run.samples.iter().map(error).collect()
 }
 
-/// A variant on a linear oscillator.
+/// A variant compared with the closed form of a linear oscillator with a circuit.
 fn against(bench: &Bench, name: &'static str, setup: &Setup) -> Result<(Variant, Run), Stopped> {
     let model = setup.model()?;
     let run = bench.run(&model, &even(model.duration(), 41))?;

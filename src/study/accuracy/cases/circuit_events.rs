@@ -1,4 +1,4 @@
-//! Circuits at stops: a decay at rest, releases that it decides, impacts at which it must not jump.
+//! Cases of a circuit with stops: decay at rest, releases that it decides, impacts at which it must not jump.
 
 use super::HardCase;
 use super::ball::times;
@@ -84,7 +84,7 @@ pub(super) const RELEASE: HardCase = HardCase {
     find: release,
 };
 
-/// A press, a push that decays, and a sine that pulls.
+/// A constant press, a push that decays, and a sine that pulls.
 struct Pulls {
     press: f64,
     push: f64,
@@ -101,7 +101,7 @@ impl Pulls {
         (dd(self.press) + push - sin, -(self.rate * push) - DoubleDouble::tau() * cos)
     }
 
-    /// The first root within `until` in s: bracketed in steps of a 20 000th of it.
+    /// The first root up to `until` in s, bracketed in steps of a 20 000th of it.
     fn root(&self, until: f64) -> Option<DoubleDouble> {
         let at = |i: u32| dd(until * f64::from(i) / 2e4);
         let is_pressed = |t: DoubleDouble| self.net(t).0 >= dd(0.0);
@@ -159,7 +159,7 @@ pub(super) const AT_IMPACTS: HardCase = HardCase {
     find: at_impacts,
 };
 
-/// A time in s in which next to nothing changes but at an impact.
+/// A time in s so short that the state hardly changes in it, except at an impact.
 const JUST: f64 = 1e-12;
 
 const STOP: f64 = 0.002;

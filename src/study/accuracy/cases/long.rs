@@ -85,7 +85,7 @@ fn chaos(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
     Ok(variants)
 }
 
-/// A run, and the mean square velocity over each of 30 batches of 30 periods, by 64 samples a period.
+/// A run, and the mean square velocity over each of 30 batches of 30 periods, from 64 samples a period.
 fn averages(bench: &Bench, model: &Model) -> Result<(Run, Vec<f64>), Stopped> {
     const BATCHES: usize = 30;
     const PER_BATCH: usize = 30 * 64;

@@ -1,4 +1,4 @@
-//! A linear oscillator beside a circuit, under a constant force and a sine.
+//! A linear oscillator with a circuit, under a constant force and a sine.
 
 use super::dd;
 use super::elementary::turns;
@@ -68,8 +68,8 @@ impl Coupled {
     }
 }
 
-/// The exponential of `rates` times `t`, by Taylor's series of a small part of it and squarings, each of
-/// which may cost a bit.
+/// The exponential of `rates` times `t`, by scaling and squaring of its Taylor series; each squaring may cost
+/// a bit.
 fn exponential(rates: Matrix, t: DoubleDouble) -> Matrix {
     let sizes = rates.map(|row| row.iter().map(|rate| (*rate * t).abs().to_f64()).sum::<f64>());
     let largest = sizes.into_iter().fold(0.0, f64::max);
@@ -104,7 +104,7 @@ mod tests {
     use super::super::{Forcing, Oscillator};
     use super::*;
 
-    /// 20 g on 50 N/m with 0.08 N s/m, shaken, beside a circuit.
+    /// 20 g on 50 N/m with 0.08 N s/m, shaken, with a circuit.
     fn coupled(coupling: f64, loss: f64) -> Coupled {
         let tone = (9.0, 7.0, 0.125);
         let (storage, loss) = (dd(0.5), dd(loss));
@@ -145,7 +145,7 @@ mod tests {
 
     #[test]
     fn a_fast_circuit_keeps_the_digits() {
-        // time constant 0.1 us; there and on is there at once
+        // time constant 0.1 us; two successive spans must give the state of the whole
         let system = coupled(3.0, 5e6);
         let start = [dd(0.002), dd(-0.1), dd(0.3)];
         let whole = system.state(start, dd(0.0), dd(2.0));

@@ -29,7 +29,7 @@ pub fn sin_cos(angle: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
     turns(angle / DoubleDouble::tau())
 }
 
-/// (sin, cos) of so many turns; whole ones may be many.
+/// (sin, cos) of an angle in turns, which may be large.
 pub(super) fn turns(turns: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
     DoubleDouble::sin_cos_turns(turns - turns.floor())
 }
@@ -79,7 +79,7 @@ mod tests {
         for angle in [0.0, 1e-9, 0.1, 0.125, 0.2, 0.249_999_999, 0.25] {
             let (sine, _) = turns(dd(angle));
             let found = sine_turns(sine);
-            // near a quarter turn by the root of what the sine is rounded by
+            // near a quarter turn the error is the root of the rounding of the sine
             let allowed = if angle < 0.249 { 1e-30 } else { 1e-15 };
             assert!((found - dd(angle)).to_f64().abs() < allowed, "{angle}");
         }

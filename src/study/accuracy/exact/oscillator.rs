@@ -1,4 +1,4 @@
-//! A damped linear oscillator under anything that has a closed form.
+//! A damped linear oscillator under forcings with a closed form.
 
 use super::dd;
 use super::elementary::{exp, sin_cos, turns};
@@ -72,7 +72,7 @@ impl Oscillator {
         (x * c + (v + half * x) * s, v * c - (self.stiffness * x + half * v) * s)
     }
 
-    /// The solution under one forcing that has no free part, at time `t` of the run.
+    /// The particular solution under one forcing at time `t` of the run.
     ///
     /// Under (a + r t) sin(w t + phase) it is the imaginary part of (P + Q t) exp(i (w t + phase)), with Q L
     /// = -r, P L + Q L' = -a, L = k - w^2 + i g w, L' = g + 2 i w.
@@ -112,7 +112,7 @@ impl Oscillator {
         (free.0 + now.0, free.1 + now.1)
     }
 
-    /// The same as the nearest doubles, from doubles.
+    /// The same from doubles, rounded to doubles.
     pub fn nearest(&self, start: (f64, f64), from: f64, t: f64, forcings: &[Forcing]) -> (f64, f64) {
         let state = self.state((dd(start.0), dd(start.1)), dd(from), dd(t), forcings);
         (state.0.to_f64(), state.1.to_f64())

@@ -17,7 +17,7 @@ pub struct AtTolerance {
     pub tolerance: f64,
     /// Largest error of the displacement in m.
     pub error: f64,
-    /// Up to when in s its path can be trusted; none where that is all of the time compared.
+    /// Time in s up to which its path can be trusted; `None` if that is all of the time compared.
     pub trusted: Option<f64>,
     /// Steps.
     pub steps: u64,
@@ -25,7 +25,7 @@ pub struct AtTolerance {
     pub evaluations: u64,
     /// CPU time in s: the median of a few that keep statistics alone.
     pub cpu_s: f64,
-    /// RMS velocity in m/s over the scene's settled window; none where the run ended before it.
+    /// RMS velocity in m/s over the scene's settled window; `None` if the run ended before it.
     pub rms_velocity: Option<f64>,
     /// Impacts.
     pub impacts: u64,
@@ -48,7 +48,7 @@ pub struct Tolerances {
 /// of the tightest of them (in double-double arithmetic where that is below 1e-14).
 ///
 /// The error is the largest of the displacement; that of a chaotic motion is as large as its travel, and then
-/// the time up to which the path is trusted is what counts. None where it was cancelled.
+/// the time up to which the path is trusted is what counts. `None` if cancelled.
 pub fn tolerances(model: &Model, cancel: &AtomicBool) -> Option<Tolerances> {
     let times = times(model);
     let request = Request { sample_times: &times, cancel: Some(cancel), ..Request::default() };
