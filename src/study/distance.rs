@@ -2,7 +2,7 @@
 
 use super::watch::Watch;
 
-/// Share of the samples that have to be at common times to be the only ones that are taken.
+/// Least share of samples at common times for which these alone are compared.
 const ENOUGH: f64 = 0.25;
 
 /// Times in s from `from` to `to` and the distance in m of two motions at each, at most some `most` of them.
@@ -15,7 +15,7 @@ pub fn distances(a: &Watch, b: &Watch, (from, to): (f64, f64), most: usize) -> V
     let from = from.max(a.begin()).max(b.begin());
     let first = samples.partition_point(|sample| sample.t < from);
     let last = samples.partition_point(|sample| sample.t <= to);
-    // a power of two: the samples that are taken stay the same while others come
+    // a power of two, so that the samples taken stay the same while others are added
     let stride = (last.saturating_sub(first) / most.max(1)).max(1).next_power_of_two();
     let first = first.next_multiple_of(stride);
     let taken = || (first..last).step_by(stride).map(|i| &samples[i]);

@@ -10,24 +10,26 @@ use std::collections::BTreeSet;
 use super::stroboscopic::Stroboscope;
 use crate::dynamics::{Capture, Region};
 
-/// Motions that are followed to see an attractor, the periods that each is followed, and how many of the
-/// first are left out.
+/// Motions that are followed to find an attractor.
 const MOTIONS: usize = 16;
+/// Forcing periods that each is followed.
 const PERIODS: u32 = 500;
+/// First periods that are left out.
 const SKIPPED: usize = 50;
 
-/// How far apart these begin, as a share of the scales; they part by themselves.
+/// Distance of their starts, as a share of the scales; they diverge by themselves.
 const APART: f64 = 1e-6;
 
-/// Cells along each side of what an attractor spans, coarse ones first, and the most of any region.
+/// Cells along each side of the extent of an attractor, coarse ones first.
 const ALONG: [f64; 3] = [48.0, 96.0, 192.0];
+/// Most cells of a region.
 const MOST_CELLS: usize = 20_000;
 
 /// Rounds in which cells may be added.
 const ROUNDS: usize = 40;
 
-/// A region around the irregular motion that has a state in m and m/s, where no state comes to a known orbit.
-/// None where it was cancelled.
+/// A region around the irregular motion through `state` in m and m/s; the inner `None` if there is none or a
+/// state of it comes to a known orbit, the outer one if cancelled.
 pub(super) fn absorbing(scope: &Stroboscope, state: (f64, f64), known: &[Capture]) -> Option<Option<Region>> {
     let [x, v] = scope.point(state);
     let starts: Vec<(f64, f64)> = (0..MOTIONS)
@@ -75,14 +77,14 @@ fn closed(
         let halves = new.iter().flat_map(|(i, j)| {
             [(0, 0), (2, 0), (0, 2), (2, 2), (1, 1)].map(|(right, up)| (2 * i + right, 2 * j + up))
         });
-        let asked: BTreeSet<(i32, i32)> = halves.filter(|half| !seen.contains(half)).collect();
+        let unseen: BTreeSet<(i32, i32)> = halves.filter(|half| !seen.contains(half)).collect();
         let place = |(i, j): &(i32, i32)| {
             let (x, v) = (f64::from(*i) * 0.5 * region.size.0, f64::from(*j) * 0.5 * region.size.1);
             scope.point((region.corner.0 + x, region.corner.1 + v))
         };
         let starts: Vec<_> =
-            asked.iter().map(place).filter(|point| scope.has(*point)).map(|point| (point, 1)).collect();
-        seen.extend(asked);
+            unseen.iter().map(place).filter(|point| scope.has(*point)).map(|point| (point, 1)).collect();
+        seen.extend(unseen);
         let Some(images) = scope.map(&starts)?.into_iter().collect::<Option<Vec<_>>>() else {
             return Some(None);
         };

@@ -17,7 +17,7 @@ const LARGEST: f64 = 1e15;
 /// What is wrong about a range or a number of starts, as a sentence.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum StartsError {
-    /// A range that cannot be.
+    /// An invalid range.
     #[error("{0}")]
     Range(&'static str),
     /// Too many starts.
@@ -62,7 +62,7 @@ impl EvenRange {
         let last = i128::from(self.count.saturating_sub(1).max(1));
         let below = last.checked_mul(10_i128.checked_pow(exponent.unsigned_abs())?)?;
         let (from, to) = (from.in_units(exponent)?, to.in_units(exponent)?);
-        // Of whole numbers that doubles hold the quotient is rounded once.
+        // The quotient of whole numbers that doubles hold exactly is rounded once.
         let whole = |number: i128| (number.unsigned_abs() <= 1 << 53).then_some(number as f64);
         let below = whole(below)?;
         let value = |place: i128| {
@@ -88,7 +88,8 @@ fn within((from, to): (f64, f64)) -> Result<(), StartsError> {
 pub struct Starts {
     x_mm: Vec<f64>,
     v: Vec<f64>,
-    /// Whether they are all pairs of the values, displacement the slower; else each has its own.
+    /// Whether they are all pairs of the values, displacement the slower; else values of the same index are
+    /// a start.
     product: bool,
 }
 
@@ -103,7 +104,7 @@ impl Starts {
         }
     }
 
-    /// So many drawn uniformly from two ranges: from ChaCha8 seeded with `seed`, for each start first the
+    /// `count` starts drawn uniformly from two ranges by ChaCha8 seeded with `seed`: for each start first the
     /// displacement, then the velocity, each from the upper 53 bits of 64.
     pub fn random(x_mm: (f64, f64), v: (f64, f64), count: u64, seed: u64) -> Result<Self, StartsError> {
         within(x_mm).and(within(v))?;

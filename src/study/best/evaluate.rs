@@ -12,14 +12,14 @@ use crate::study::settled::followed;
 use crate::study::shared_runs::shared_runs;
 use crate::system::threads::Pool;
 
-/// What one design came to.
+/// Result of one design.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Judged {
     /// It is no valid scene.
     Invalid(Vec<Fault>),
     /// A result is missing, or a run ended early.
     Missing,
-    /// Constraints are broken: by how much together, each relative to its limit, and the results.
+    /// Constraints are broken: the sum of the excesses, each relative to its limit, and the results.
     Broken(f64, Vec<f64>),
     /// It has a value.
     Value(f64, Vec<f64>),
@@ -38,39 +38,34 @@ impl Judged {
     }
 }
 
-/// A design with fields that came out otherwise: fields' values, then those of what varies.
+/// A varied design: values of its fields, then of those that vary.
 pub(super) type Design = (Vec<f64>, Vec<f64>);
 
 /// The summary of a run, or what is wrong with its scene.
 type Ran = Result<Box<Summary>, Vec<Fault>>;
 
-/// What evaluates designs.
+/// Evaluator of designs.
 pub(super) struct Evaluator<'a> {
     pub question: &'a BestQuestion,
-    /// The ranges of the question, in which it is known which fields hold whole numbers.
+    /// The ranges of the question, with the fields of whole numbers marked.
     pub over: Vec<DesignRange>,
     pub pool: &'a Pool,
     task: &'a Task<'a>,
     paths: Vec<FieldPath>,
     varied: Vec<FieldPath>,
-    /// Of each environment the scene's own mechanism, where it has one.
+    /// The mechanism of each environment's scene, if it could be built.
     mechanisms: Vec<Option<Arc<Mechanism>>>,
 }
 
 impl<'a> Evaluator<'a> {
     pub fn new(question: &'a BestQuestion, pool: &'a Pool, task: &'a Task<'a>) -> Result<Self, NoBest> {
         let mut mechanisms: Vec<Option<Arc<Mechanism>>> = Vec::new();
-        for (i, environment) in question.environments.iter().enumerate() {
-            let same =
-                |other: &usize| question.environments[*other].scene.mechanism == environment.scene.mechanism;
+        for (i, base) in question.environments.iter().enumerate() {
+            let same = |other: &usize| question.environments[*other].scene.mechanism == base.scene.mechanism;
             let built = match (0..i).find(same) {
                 Some(other) => mechanisms[other].clone(),
                 None => {
-                    let built = Mechanism::build_unless(
-                        &environment.scene.mechanism,
-                        &environment.files,
-                        task.cancel,
-                    );
+                    let built = Mechanism::build_unless(&base.scene.mechanism, &base.files, task.cancel);
                     built.ok_or(NoBest::Cancelled)?.ok().map(Arc::new)
                 }
             };
@@ -91,20 +86,20 @@ impl<'a> Evaluator<'a> {
         })
     }
 
-    /// The present value of what varies in a design.
+    /// The values of the varied fields in a design.
     pub fn values_of_varied(&self, at: &[f64]) -> Vec<f64> {
         let mut scene = self.question.environments[0].scene.clone();
         apply(&self.paths, at, &mut scene);
         self.varied.iter().map(|path| path.get(&scene).unwrap_or(f64::NAN)).collect()
     }
 
-    /// What these designs come to, in their order.
+    /// Results of these designs, in their order.
     pub fn judge(&self, designs: &[Vec<f64>]) -> Result<Vec<Judged>, NoBest> {
         let designs: Vec<Design> = designs.iter().map(|at| (at.clone(), Vec::new())).collect();
         self.judge_varied(&designs)
     }
 
-    /// The same of designs in which what varies has values of its own.
+    /// Results of designs with values of the varied fields.
     pub fn judge_varied(&self, designs: &[Design]) -> Result<Vec<Judged>, NoBest> {
         let each = self.question.environments.len();
         let constraints = self.question.subject_to.iter().map(|constraint| constraint.of);

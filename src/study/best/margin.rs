@@ -1,11 +1,11 @@
-//! Distance from the best design to where it is one no longer.
+//! Distance from the best design to where its value falls or a constraint breaks.
 
 use super::design::NoBest;
 use super::evaluate::{Evaluator, Judged};
 use super::search::{Found, resolution, rounded};
 use crate::study::bisection::multiple;
 
-/// The value falls by this share of itself.
+/// Relative fall of the value that ends the margin.
 const FALL: f64 = 0.1;
 
 /// Steps of the walk outward in one step of the scan.
@@ -22,8 +22,8 @@ pub(super) fn margins(evaluator: &Evaluator, found: &Found) -> Result<Vec<[Optio
         .collect()
 }
 
-/// The least distance in direction `way` at which the value has fallen, every finer step being tried: the
-/// values that hold are no interval.
+/// The least distance in direction `way` at which the value has fallen, with every finer step tried, since
+/// the values that hold form no interval.
 fn side(evaluator: &Evaluator, found: &Found, field: usize, way: f64) -> Result<Option<f64>, NoBest> {
     let range = &evaluator.over[field];
     let (best, middle) = (&found.optimum, found.optimum.at[field]);
@@ -61,7 +61,7 @@ fn side(evaluator: &Evaluator, found: &Found, field: usize, way: f64) -> Result<
                     false => outside = middle,
                 }
             }
-            // a whole number of them, but for an end of the range
+            // a multiple of the resolution, except at an end of the range
             return Ok(Some(multiple((outside - middle).abs(), resolution(range))));
         }
     }

@@ -5,20 +5,20 @@ use super::evaluate::{Evaluator, Judged};
 use crate::numeric::round::{ONE_TWO_FIVE, round_down};
 use crate::study::bisection::multiple;
 
-/// Places of the scan between two of the coarse one that goes before it.
+/// Stride of the coarse scan before the full one.
 const COARSE: usize = 4;
 
-/// How many of the best places of the scan are looked at closer: beside the highest there may be a higher one
-/// in a window that the scan has only grazed.
+/// How many of the best places of the scan are refined: beside the highest there may be a higher one in a
+/// window that the scan has only grazed.
 const REFINED: usize = 5;
 
-/// Intervals to each side of the middle in a closer look, for one field, two, three and four.
+/// Intervals to each side of the middle in a refinement, for one field, two, three and four.
 const SIDES: [usize; 4] = [4, 2, 1, 1];
 
-/// Parts of a field's range that a place is located among.
+/// Parts of a field's range to which a place is located.
 const PARTS: f64 = 5e3;
 
-/// What the search came to.
+/// Result of the search.
 #[derive(Debug)]
 pub(super) struct Found {
     pub optimum: Optimum,
@@ -73,14 +73,11 @@ fn highest(places: &[Vec<f64>], judged: &[Judged]) -> Option<Optimum> {
 pub(super) fn search(evaluator: &Evaluator, preview: &mut dyn FnMut(&Optimum)) -> Result<Found, NoBest> {
     let over = &evaluator.over;
     let all = indices(over);
-    let coarse = |indices: &Vec<usize>| indices.iter().all(|index| index.is_multiple_of(COARSE));
+    let coarse = |node: &Vec<usize>| node.iter().all(|index| index.is_multiple_of(COARSE));
     let (mut places, mut judged) = (Vec::new(), Vec::new());
     for first in [true, false] {
-        let part: Vec<Vec<f64>> = all
-            .iter()
-            .filter(|indices| coarse(indices) == first)
-            .map(|indices| place(over, indices))
-            .collect();
+        let part: Vec<Vec<f64>> =
+            all.iter().filter(|node| coarse(node) == first).map(|node| place(over, node)).collect();
         judged.extend(evaluator.judge(&part)?);
         places.extend(part);
         if let Some(best) = highest(&places, &judged).filter(|_| first) {
@@ -91,7 +88,7 @@ pub(super) fn search(evaluator: &Evaluator, preview: &mut dyn FnMut(&Optimum)) -
     let all_equal = judged.iter().all(|design| design.value() == Some(best.value));
     let mut order: Vec<usize> = (0..places.len()).filter(|i| judged[*i].value().is_some()).collect();
     order.sort_by(|a, b| judged[*b].value().partial_cmp(&judged[*a].value()).unwrap_or(a.cmp(b)));
-    // of a plateau beside the highest place only its best: each begins a box of its own
+    // only the best place of a plateau begins a box
     let mut begins: Vec<usize> = Vec::new();
     for i in order {
         let apart = |other: &usize| {
@@ -137,7 +134,7 @@ fn refine(evaluator: &Evaluator, starts: Vec<Optimum>) -> Result<Vec<Optimum>, N
         .collect();
     let grid = indices(&grid);
     loop {
-        // of all boxes together, so that no thread waits
+        // all boxes together, so that no thread waits
         let places: Vec<Vec<Vec<f64>>> = boxes.iter().map(|area| around(area, over, &grid, &half)).collect();
         let judged = evaluator.judge(&places.concat())?;
         let mut rest = judged.as_slice();
@@ -161,7 +158,7 @@ fn refine(evaluator: &Evaluator, starts: Vec<Optimum>) -> Result<Vec<Optimum>, N
     }
 }
 
-/// The places of a box that have not been tried: on a grid of so many indices, `half` to each side.
+/// The untried places of a box on a grid of indices, `half` to each side.
 fn around(area: &Closer, over: &[DesignRange], grid: &[Vec<usize>], half: &[f64]) -> Vec<Vec<f64>> {
     let sides = SIDES[over.len() - 1] as f64;
     let place = |indices: &Vec<usize>| -> Vec<f64> {

@@ -1,4 +1,4 @@
-//! What becomes of a design whose fields come out a little otherwise, and how far to step back for it.
+//! Robustness of a design whose fields vary, and the step back that improves it.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -16,11 +16,11 @@ const QUANTILE: f64 = 0.05;
 /// Places from the optimum inward at which the samples are taken.
 const PLACES: usize = 16;
 
-/// How far inward is looked, in steps of the scan, where what varies is no part of the first field.
+/// Least reach of the search inward, in steps of the scan, such as when the first field does not vary.
 const LEAST_BACK: f64 = 16.0;
 
 /// The spread at the optimum, and the place with the largest worst case of those inward of it along the first
-/// field, away from the nearer cliff; none where the optimum is that place, or where nothing varies.
+/// field, away from the nearer cliff; `None` if the optimum is that place, or nothing varies.
 pub(super) fn robust(
     evaluator: &Evaluator,
     found: &Found,
@@ -58,8 +58,8 @@ pub(super) fn robust(
         std::iter::once(best.clone()).chain(back).map(|optimum| Sampled::new(evaluator, optimum)).collect();
     let everything: Vec<usize> = (0..SAMPLES).collect();
     evaluate(evaluator, &mut all[..1], &everything)?;
-    // What is worst here is so elsewhere as a rule, and the worst that is known of a place bounds its worst
-    // case: few places need all samples to be behind.
+    // Samples that are bad here are usually bad elsewhere, and the worst known sample of a place bounds its
+    // worst case: few places need all samples to be ruled out.
     let mut order = everything;
     order.sort_by(|a, b| all[0].values[*a].total_cmp(&all[0].values[*b]));
     evaluate(evaluator, &mut all[1..], &order[..TOGETHER])?;
@@ -83,9 +83,9 @@ const TOGETHER: usize = 8;
 /// A place and its samples: the same at each.
 struct Sampled {
     at: Optimum,
-    /// Values of what varies in each.
+    /// Values of the varied fields in each sample.
     varied: Vec<Vec<f64>>,
-    /// Of those that are known the value, minus infinity where there is none; else infinity.
+    /// Values of the known samples, minus infinity if missing; infinity for unknown ones.
     values: Vec<f64>,
     /// How many are known.
     known: usize,
@@ -122,7 +122,7 @@ impl Sampled {
     }
 }
 
-/// Makes these samples of all places known.
+/// Evaluates these samples at all places.
 fn evaluate(evaluator: &Evaluator, places: &mut [Sampled], samples: &[usize]) -> Result<(), NoBest> {
     let of = |place: &Sampled, sample: usize| (place.at.at.clone(), place.varied[sample].clone());
     let designs: Vec<Design> =

@@ -93,7 +93,7 @@ impl Trust {
 
     /// The meaning of [`short`](Self::short) and how it was determined.
     pub fn long(&self, from: f64) -> String {
-        let (tolerance, finer) = self.tolerances;
+        let (loose, finer) = self.tolerances;
         let share = TRUSTED_SHARE * 100.0;
         let span = stretch(self.span);
         let after = if from > 0.0 {
@@ -103,7 +103,7 @@ impl Trust {
         };
         let leaves = |until: f64| {
             format!(
-                "Computed once more with the tolerance {finer:.0e} in place of {tolerance:.0e}, the path is \
+                "Computed once more with the tolerance {finer:.0e} in place of {loose:.0e}, the path is \
                  another one from {} on (off by {share} % of the travel)",
                 moment(from + until)
             )
@@ -111,12 +111,12 @@ impl Trust {
         match self.course {
             Course::Kept if self.error == 0.0 => {
                 format!(
-                    "Computed once more with the tolerance {finer:.0e} in place of {tolerance:.0e}, the path is \
+                    "Computed once more with the tolerance {finer:.0e} in place of {loose:.0e}, the path is \
                      the same over {after}."
                 )
             }
             Course::Kept => format!(
-                "Computed once more with the tolerance {finer:.0e} in place of {tolerance:.0e}, the path changes \
+                "Computed once more with the tolerance {finer:.0e} in place of {loose:.0e}, the path changes \
                  by no more than {} mm over {after}.",
                 length_mm(self.error)
             ),
