@@ -3,8 +3,8 @@
 use super::table::Values;
 use crate::dynamics::{First, Firsts, STANDARD_GRAVITY, Summary};
 
-/// What a field of a summary is, and how it is read. A number, count or flag of none and an empty word are
-/// missing.
+/// What a field of a summary is, and how it is read. A number, count or flag of `None` and an empty word are
+/// missing values.
 #[derive(Debug, Clone, Copy)]
 pub enum Read {
     /// A real number.
@@ -114,7 +114,7 @@ impl SummaryField {
     pub fn column<'a>(&self, summaries: impl Iterator<Item = Option<&'a Summary>>) -> Values {
         match self.read {
             Read::Number(of) => {
-                // (that of a run that blew up is no number)
+                // (not finite after a run that diverged)
                 let number = |summary: &Summary| of(summary).filter(|number| number.is_finite());
                 Values::Numbers(
                     summaries.map(|summary| summary.and_then(number).unwrap_or(f64::NAN)).collect(),

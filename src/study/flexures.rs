@@ -1,6 +1,6 @@
 //! Shapes, compression and stress of the flexures over the displacement.
 //!
-//! Unlike the force curve, which is a polynomial, every position here is a solution of its own.
+//! Unlike the force curve, which is a polynomial, every position here is solved separately.
 
 use super::Task;
 use super::curve::{OutsideCurve, check_positions, curve};
@@ -29,7 +29,7 @@ pub enum StatesError {
     Cancelled,
 }
 
-/// The flexures of a mechanism, once the positions in m are seen to be on its curve.
+/// The flexures of a mechanism, after a check that the positions in m are on its curve.
 pub fn flexures_at<'a>(mechanism: &'a Mechanism, positions: &[f64]) -> Result<&'a Flexures, StatesError> {
     let flexures = mechanism.flexures.as_deref().ok_or(StatesError::NoFlexures)?;
     check_positions(mechanism, positions)?;
@@ -87,8 +87,8 @@ pub fn shapes(states: &[State]) -> Table {
         .each("py_m", &rows, |row| row.1[3])
 }
 
-/// One sentence where the bending stress of some of the `states` exceeds what the scene allows; it names from
-/// which |x| on, the largest stress and the limit.
+/// A warning, one sentence, if the bending stress of some `states` exceeds the limit of the scene: the range
+/// of |x|, the largest stress and the limit.
 pub fn stress_warning(flexures: &Flexures, states: &[State]) -> Option<String> {
     let limit = flexures.geometry().yield_stress;
     let farthest = states.iter().fold(0.0_f64, |most, state| most.max(state.x.abs()));

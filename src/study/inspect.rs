@@ -79,7 +79,7 @@ fn flexures(geometry: &Geometry) -> [String; 2] {
     ]
 }
 
-/// How good the curve of solved flexures is. What does not exist, such as a barrier, has no error.
+/// How good the curve of solved flexures is. Errors of what does not exist, such as a barrier, are left out.
 fn accuracy(mechanism: &Mechanism, accuracy: &Accuracy) -> String {
     let parts = [
         (accuracy.force, "of the largest inner force"),

@@ -7,8 +7,9 @@ use crate::mechanics::Mechanism;
 use crate::numeric::extent;
 use crate::scene::{Axis, Excitation, Scene, Start};
 
-/// The fields that the release in closed form joins.
+/// The travel limit, over which the release is known in closed form.
 const LIMIT: &str = "stops.travel_limit_mm";
+/// The amplitude of that release.
 const AMPLITUDE: &str = "excitation.amplitude_g";
 
 /// Points of the line of releases.
@@ -21,10 +22,10 @@ const POINTS: usize = 400;
 /// Only for a grid over these two fields, from rest; only for travel limits inside the right-hand
 /// well, because further out the mass rests in the well and not on the stop.
 pub fn release_line(scene: &Scene, mechanism: &Mechanism, grid: &Grid) -> Option<Table> {
-    let asked = scene.stops.travel_limit_mm().is_some()
+    let applies = scene.stops.travel_limit_mm().is_some()
         && matches!(scene.excitation, Excitation::Sine { .. })
         && scene.start == Start::Rest;
-    let limits = axis(grid, LIMIT).filter(|_| asked && axis(grid, AMPLITUDE).is_some())?;
+    let limits = axis(grid, LIMIT).filter(|_| applies && axis(grid, AMPLITUDE).is_some())?;
     let well = mechanism.landscape.right_stable()?.x;
     let (from, most) = extent(limits.values.iter().copied());
     let to = most.min(well * 1e3);
@@ -65,7 +66,7 @@ pub fn first_crossing(grid: &Grid, rows: &Table) -> Option<Table> {
         if let Ok(place) = values.binary_search_by(|value| value.total_cmp(other))
             && counts
         {
-            // f64::min passes over the NaN of a place that has none yet.
+            // f64::min ignores the NaN of a place that has none yet.
             least[place] = least[place].min(amplitudes[i]);
         }
     }

@@ -1,4 +1,4 @@
-//! History of the models by which a motion went.
+//! History of the models of a motion.
 //!
 //! While a slider is dragged there is another model with every frame. One that held too briefly to be seen
 //! gives way to the next, and of too many the one that held the shortest time is forgotten, so that memory
@@ -53,7 +53,7 @@ impl Models {
         self.before.get(after.saturating_sub(1)).map_or(&self.now.1, |entry| &entry.1)
     }
 
-    /// From when on in s the model held that held at a time in s.
+    /// The time in s from which the model held that held at a time in s.
     pub fn since(&self, t: f64) -> f64 {
         if t >= self.now.0 {
             return self.now.0;
@@ -68,7 +68,7 @@ impl Models {
         }
     }
 
-    /// Who held from `from` to `to` in s, in order of time; the first and the last are cut there.
+    /// The models that held from `from` to `to` in s, in order of time; the first and the last are cut there.
     pub fn between(&self, from: f64, to: f64) -> impl Iterator<Item = Held<'_>> {
         let first = self.before.partition_point(|entry| entry.0 <= from).saturating_sub(1);
         let all = self.before.iter().skip(first).chain([&self.now]);
@@ -92,7 +92,7 @@ mod tests {
     use crate::mechanics::Mechanism;
     use crate::scene::Document;
 
-    /// A model that is told by its mass.
+    /// A model that is identified by its mass.
     fn of(grams: f64) -> Arc<Model> {
         let mut document = Document::load("nominal-cubic").unwrap();
         document.scene.mass_g = grams;

@@ -20,7 +20,7 @@ pub struct Verdict {
     pub does: bool,
     /// Whether it goes on so: the motion repeats or rests. A motion that does not, up to the end of the time
     /// for which it is followed, may be a transient: one that crosses may stay in one well later, and one in
-    /// one well may cross later. Under a drive that does not repeat, the run itself is what is asked about.
+    /// one well may cross later. Under a drive that does not repeat, the verdict is about the run itself.
     pub known: bool,
 }
 

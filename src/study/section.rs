@@ -22,8 +22,7 @@ pub const MAX_SECTION: u64 = 1 << 22;
 /// States that are kept in memory before their rows are written.
 const KEPT: u64 = 1 << 21;
 
-/// The column that is in the table of states beside those of its rows: how many impacts the settled window
-/// holds.
+/// Extra column of the table of states: the number of impacts in the settled window.
 pub const IMPACTS: &str = "impacts";
 
 /// Where a section is taken.
@@ -257,7 +256,7 @@ impl Sections {
         self.options.table(self.grid(), &[])
     }
 
-    /// The model of the first cell as it is run, or its faults; none where its mechanism was not solved.
+    /// The model of the first cell as it is run, or its faults; `None` if its mechanism was not solved.
     pub fn first_model(&self, task: &Task) -> Option<Result<Model, Vec<Fault>>> {
         let built = self.cells.model(0, &mut self.cells.base.clone(), task)?;
         Some(built.map(|model| self.options.model(model)))
@@ -270,8 +269,8 @@ impl Sections {
         self
     }
 
-    /// Builds every cell without running it; the first one that is wrong, with all its faults. A cancelled
-    /// check finds nothing.
+    /// Builds every cell without running it; the error is the first invalid one, with all its faults. A
+    /// cancelled check finds nothing.
     pub fn validate(&self, pool: &Pool, task: &Task) -> Result<(), CellFaults> {
         self.cells.validate(&self.options, (self.grid().cells(), |cell| cell), pool, task)
     }

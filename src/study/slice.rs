@@ -1,8 +1,8 @@
 //! Shards of a sweep: which of its rows each of several processes computes.
 //!
 //! The rows are cut into blocks of whole units, about [`ROUNDS`] for each shard, and dealt in rounds: each
-//! shard gets one block of every round, so that each has cells from all over the grid and costs even out. In
-//! which order the shards are served changes from round to round by a fixed generator: in a fixed order a
+//! shard gets one block of every round, so that each has cells from all over the grid and costs even out. The
+//! order in which the shards are served changes from round to round by a fixed generator: in a fixed order a
 //! shard would get the same columns of a map again and again.
 
 use std::fmt;
@@ -49,7 +49,7 @@ impl Shard {
         Self::new(number, count)
     }
 
-    /// Which one it is, from 1.
+    /// Its number, from 1.
     pub fn number(self) -> u64 {
         self.number
     }
@@ -72,13 +72,15 @@ pub struct Slice {
     shard: Shard,
     /// Rows of a unit.
     unit: u64,
-    /// Units of a block, units of the whole sweep, and those of the shard.
+    /// Units of a block.
     block: u64,
+    /// Units of the whole sweep.
     units: u64,
+    /// Units of the shard.
     shard_units: u64,
 }
 
-/// By how many places the order of the shards is turned in a round (splitmix64, Steele, Lea and Flood 2014).
+/// Rotation of the order of the shards in a round (splitmix64, Steele, Lea and Flood 2014).
 fn turn(round: u64, count: u64) -> u64 {
     let mut z = round.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -93,7 +95,7 @@ impl Slice {
         let units = rows / unit;
         let block = units.div_ceil(ROUNDS * shard.count).clamp(1, (LONGEST / unit).max(1));
         let mut slice = Self { shard, unit, block, units, shard_units: 0 };
-        // All rounds but the last are full, and in it all blocks but the last of all.
+        // All rounds but the last are full, and all blocks but the very last.
         let (full, left) = (slice.blocks() / shard.count, slice.blocks() % shard.count);
         let place = slice.place(full);
         slice.shard_units = full * block + if place < left { block } else { 0 };

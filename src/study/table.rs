@@ -142,7 +142,7 @@ impl Table {
         self
     }
 
-    /// The table with one more column on its right: what `of` says of each row.
+    /// The table with one more column on its right: the value of `of` for each row.
     #[must_use]
     pub fn each<R, V>(self, name: &str, rows: &[R], of: impl Fn(&R) -> V) -> Self
     where
@@ -169,7 +169,7 @@ impl Table {
         }
     }
 
-    /// The words of the column called `name`; none where it has other values or is not there.
+    /// The words of the column called `name`; empty if it has other values or is not there.
     pub fn words(&self, name: &str) -> &[&'static str] {
         match self.column(name).map(|column| &column.values) {
             Some(Values::Words(words)) => words,

@@ -1,7 +1,7 @@
 //! Samples of a run for a picture: its path, every jump of the velocity, and the spans at rest.
 //!
-//! A picture must be right however sparse the samples are that were asked for, so it has its own:
-//! the run is asked for both at once, and each gets its own back.
+//! A picture must be right however sparse the requested samples are, so it has separate ones; a single run
+//! gives both.
 
 use super::simulate::{Keep, Simulation, events_table, in_order, samples_table};
 use super::table::Table;
@@ -42,15 +42,15 @@ const PER_PERIOD: f64 = 80.0;
 /// Forcing periods in a phase portrait: as many as a period of the response may have.
 const PORTRAIT_PERIODS: f64 = 12.0;
 
-/// A run of more forcing periods than this is a filled band over time; then so many of its last ones are
-/// shown.
+/// A run of more forcing periods than this is a filled band over time.
 const BAND_PERIODS: f64 = 60.0;
+/// The last forcing periods that are then shown.
 const SHOWN_PERIODS: f64 = 24.0;
 
 /// Samples in a phase portrait.
 const PORTRAIT: f64 = 24_000.0;
 
-/// The most rows in a phase portrait; more of them, as of a million impacts, only blacken it.
+/// The most rows in a phase portrait; more of them, as from a million impacts, only blacken it.
 const MOST_PORTRAIT: usize = 60_000;
 
 /// Runs `model` once and keeps, besides what `keep` says, what a picture needs; a `window` in s, which lies
@@ -78,7 +78,7 @@ pub fn simulate_with_trace(
     let end = run.summary.outcome.ended_at().unwrap_or(span.1);
     let mut shown = in_order(&seen, &run.samples);
     if end < span.1 && !matches!(run.summary.outcome, Outcome::Cancelled { .. }) {
-        // It ended where hardly a sample had been asked for: the same run again, looked at more closely.
+        // it ended where there are few samples: the same run again, with samples up to its end
         close = window.filter(|(from, _)| *from < end).map_or((0.0, end), |(from, to)| (from, to.min(end)));
         seen = picture_times(model, close, end);
         shown = model.run(&Request { sample_times: &seen, ..request }).samples;

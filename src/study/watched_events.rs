@@ -11,7 +11,7 @@ use super::watch::Watch;
 /// Some of the events that are remembered, by their places, in the columns of
 /// [`events_table`](super::events_table) and two more: `phase_deg`, the phase of the drive, missing where it
 /// does not repeat; and `lost_j`, the kinetic energy that an event takes, m (v_in^2 - v_out^2) / 2 with the
-/// mass of then. That is missing for a touch of a compliant stop, whose loss is spread over the contact.
+/// mass at that time. That is missing for a touch of a compliant stop, whose loss is spread over the contact.
 pub fn watched_events(watch: &Watch, which: Range<usize>) -> Table {
     let count = watch.events().len();
     let which = which.start.min(count)..which.end.min(count);

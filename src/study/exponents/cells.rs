@@ -32,7 +32,7 @@ pub struct ExponentTally {
     pub missing: u64,
 }
 
-/// The exponents of a cell; none where it has none.
+/// The exponents of a cell; `None` if it has none.
 type Found = Option<Exponents>;
 
 impl ExponentCells {
@@ -51,7 +51,7 @@ impl ExponentCells {
         self.cells.first_mechanism()
     }
 
-    /// The model of the first cell, or its faults; none where its mechanism was not solved.
+    /// The model of the first cell, or its faults; `None` if its mechanism was not solved.
     pub fn first_model(&self, task: &Task) -> Option<Result<Model, Vec<Fault>>> {
         self.cells.model(0, &mut self.cells.base.clone(), task)
     }
@@ -61,7 +61,8 @@ impl ExponentCells {
         self.table(0, &[])
     }
 
-    /// Builds every cell; the first one that is wrong, or whose excitation changes and does not repeat.
+    /// Builds every cell; the error is the first invalid one, or one whose excitation changes and does
+    /// not repeat.
     pub fn validate(&self, pool: &Pool, task: &Task) -> Result<(), CellFaults> {
         let faults = |scene: &mut Scene, index: u64| {
             if task.is_cancelled() {

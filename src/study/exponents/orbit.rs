@@ -6,9 +6,9 @@ use super::tangent::{Passed, Tangent};
 /// The farthest a motion that repeats is from itself a period later, in units of the scales.
 const NEAR: f64 = 1e-2;
 
-/// The same of the periodic motion that Newton's method gives: rounding at best, and at most the error of a
-/// period.
+/// Distance of a periodic motion from itself a period later, in units of the scales, that is only rounding.
 const ROUNDING: f64 = 1e-13;
+/// Least and largest bound of that distance for a motion that Newton's method finds.
 const CLOSE: (f64, f64) = (1e-10, 1e-4);
 
 /// Steps of Newton's method: it doubles the digits.
@@ -18,8 +18,7 @@ const STEPS: usize = 12;
 const NEUTRAL: f64 = 1e-6;
 
 /// The exponents of the periodic motion of so many forcing periods that the motion through `start` has
-/// settled on. None where there is none near it, and where it is unstable: only a motion that is on it
-/// exactly stays there.
+/// settled on. `None` if there is none near it, or if it is unstable and the motion is not exactly on it.
 pub(super) fn of_orbit(
     tangent: &Tangent,
     start: (f64, f64),
@@ -49,7 +48,7 @@ pub(super) fn of_orbit(
 }
 
 /// The periodic motion near a state, how far it is from itself a period later, and whether the state had to
-/// be moved; none where Newton's method finds none.
+/// be moved; `None` if Newton's method finds none.
 fn find(
     tangent: &Tangent,
     start: (f64, f64),
@@ -82,7 +81,7 @@ fn find(
     Ok(best.filter(|best| best.1 <= close))
 }
 
-/// Whether a mass can be there.
+/// Whether the mass can have this state.
 fn has_room(tangent: &Tangent, (x, v): (f64, f64)) -> bool {
     let model = tangent.model();
     let (low, high) = model.mechanism().curve.domain();

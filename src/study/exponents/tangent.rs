@@ -1,4 +1,4 @@
-//! Forcing period of a motion, with what becomes of small changes of it.
+//! Map of a forcing period, with the growth of small changes of the motion.
 
 use super::result::NoExponents;
 use crate::dynamics::{EventKind, Jacobian, Model, Outcome, Passage, Scales, Side, StroboscopicMap};
@@ -7,9 +7,10 @@ use crate::dynamics::{EventKind, Jacobian, Model, Outcome, Passage, Scales, Side
 /// (The error of the integration is a share of the areas themselves, of the size of the tolerance.)
 const LOST: f64 = 1e-12;
 
-/// Below this share that of a period is the product of those of its parts, so many. A mass that lingers near
-/// the top of a barrier turns all changes into the one that grows there, up to 1e6-fold in a period.
+/// Below this share the determinant of a period is the product of those of its parts. A mass that lingers
+/// near the top of a barrier turns all changes into the one that grows there, up to 1e6-fold in a period.
 const FEW_LEFT: f64 = 1e-4;
+/// Number of these parts.
 const PARTS: u32 = 8;
 
 /// The stroboscopic map of a model, with changes of a state in units of its scales.
@@ -18,11 +19,11 @@ pub(super) struct Tangent {
     scales: Scales,
     /// Logarithm of the share of an area that damping leaves in a period.
     damped: f64,
-    /// The same of an impact on the left and the right stop; none where they are compliant.
+    /// The same of an impact on the left and the right stop; `None` if they are compliant.
     struck: Option<[f64; 2]>,
 }
 
-/// What one or more forcing periods did.
+/// Result of one or more forcing periods.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Passed {
     /// The state at their end, in m and m/s.
@@ -31,7 +32,7 @@ pub(super) struct Passed {
     pub jacobian: Jacobian,
     /// Logarithm of their determinant; NaN where its digits are lost.
     pub measured: f64,
-    /// The same by damping and impacts; none with compliant stops.
+    /// The same by damping and impacts; `None` with compliant stops.
     pub exact: Option<f64>,
 }
 
@@ -41,7 +42,7 @@ impl Passed {
         self.jacobian.rows == [[0.0; 2]; 2]
     }
 
-    /// The best there is of both logarithms.
+    /// The exact logarithm if it is known, else the measured one.
     pub fn log_determinant(&self) -> f64 {
         self.exact.unwrap_or(self.measured)
     }
@@ -104,14 +105,15 @@ impl Tangent {
         let measured = match rested {
             true => f64::NEG_INFINITY,
             false => {
-                self.told((&passage, &derivative), 1.0, FEW_LEFT).unwrap_or_else(|| self.by_parts(state))
+                self.logarithm((&passage, &derivative), 1.0, FEW_LEFT).unwrap_or_else(|| self.by_parts(state))
             }
         };
         Ok(Passed { state: passage.state, jacobian, measured, exact })
     }
 
-    /// Logarithm of the determinant of a share of a period, where it is more than `least` of its products.
-    fn told(&self, (passage, derivative): (&Passage, &Jacobian), share: f64, least: f64) -> Option<f64> {
+    /// Logarithm of the determinant of a share of a period; `None` if it is less than `least` of
+    /// its products.
+    fn logarithm(&self, (passage, derivative): (&Passage, &Jacobian), share: f64, least: f64) -> Option<f64> {
         let determinant = derivative.determinant().abs();
         let exact = passage.determinant.unwrap_or_else(|| (self.damped * share).exp());
         (exact.min(determinant) > least * products(derivative)).then(|| determinant.ln())
@@ -124,12 +126,12 @@ impl Tangent {
             let span = (f64::from(part) * share, f64::from(part + 1) * share);
             let (passage, derivative) = self.map.pass_part_with_jacobian(state, span);
             state = passage.state;
-            self.told((&passage, &derivative), share, LOST).unwrap_or(f64::NAN)
+            self.logarithm((&passage, &derivative), share, LOST).unwrap_or(f64::NAN)
         });
         parts.sum()
     }
 
-    /// So many periods of the motion together.
+    /// The result of `periods` forcing periods.
     pub fn pass_many(&self, state: (f64, f64), periods: u32) -> Result<Passed, NoExponents> {
         let mut all =
             Passed { state, jacobian: Jacobian::IDENTITY, measured: 0.0, exact: self.struck.map(|_| 0.0) };

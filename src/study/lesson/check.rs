@@ -1,4 +1,4 @@
-//! A lesson run from its first step to its last.
+//! Check of a lesson, run from its first step to its last.
 
 use std::rc::Rc;
 
@@ -9,7 +9,7 @@ use crate::scene::lesson::{Condition, LessonDocument, Step};
 use crate::study::Task;
 use crate::system::threads::Pool;
 
-/// A bound is moved by this share of it, to see whether a verdict sits on an edge.
+/// Relative change of a bound that shows whether a verdict is close to it.
 const MOVED: f64 = 0.01;
 
 /// Something that is wrong with a lesson, or close to it.
@@ -19,11 +19,11 @@ pub struct LessonFinding {
     pub step: usize,
     /// Path of the field in the lesson: `steps.2.goal`.
     pub field: String,
-    /// What is the matter.
+    /// The problem.
     pub problem: String,
 }
 
-/// What a lesson comes to.
+/// Result of the check of a lesson.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct LessonReport {
     /// Predictions that were asked.
@@ -81,9 +81,9 @@ fn check_step(
         Step::Say(_) | Step::Explain(_) => {}
         Step::Predict { options, .. } => {
             report.predictions += 1;
-            let held = options_that_hold(step, end, begin)?;
+            let hold = options_that_hold(step, end, begin)?;
             let right: Vec<&str> =
-                options.iter().zip(&held).filter(|pair| *pair.1).map(|pair| pair.0.text.as_str()).collect();
+                options.iter().zip(&hold).filter(|pair| *pair.1).map(|pair| pair.0.text.as_str()).collect();
             if right.len() != 1 {
                 let problem = match right.len() {
                     0 => "none of the options holds; exactly one must".to_owned(),

@@ -4,7 +4,7 @@ use crate::dynamics::{Outcome, Place, Regime, Summary};
 use crate::scene::lesson::ResultField;
 use crate::study::fields::{Read, SUMMARY_FIELDS, SummaryField};
 
-/// What a field has come to.
+/// Value of a field.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
     /// A number.
@@ -16,7 +16,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// Of a number that is missing where it is not finite.
+    /// A number, missing if it is not finite.
     pub fn number(value: f64) -> Self {
         if value.is_finite() { Self::Number(value) } else { Self::Missing }
     }

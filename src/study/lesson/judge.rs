@@ -28,16 +28,16 @@ impl Unjudged {
     }
 }
 
-/// A condition that does not hold, and what the field that it names has come to.
+/// A condition that does not hold, and the value of the field that it names.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lack {
-    /// The condition; none of its parts where all of these have to hold.
+    /// The condition; of an `All`, the first part that does not hold.
     pub asked: Condition,
-    /// The value of its field; missing where it names none.
+    /// The value of its field; missing if it names none.
     pub found: Value,
 }
 
-/// The first condition in the goal of a step that `subject` does not meet, none where the goal is met;
+/// The first condition in the goal of a step that `subject` does not meet, `None` if the goal is met;
 /// `before` is the scene with which the step began. A step without a goal lacks nothing.
 pub fn goal_lack(step: &Step, subject: &Subject, before: &Subject) -> Result<Option<Lack>, Unjudged> {
     match step {
@@ -62,7 +62,7 @@ pub(super) fn holds(condition: &Condition, subject: &Subject, before: &Subject) 
     Judge { subject, before, from: None }.holds(condition)
 }
 
-/// The scene, that before, and, in a condition over starts, the run from the present one.
+/// The scene, the one before, and, in a condition over starts, the run from the present start.
 struct Judge<'a> {
     subject: &'a Subject<'a>,
     before: &'a Subject<'a>,
@@ -132,7 +132,7 @@ impl Judge<'_> {
         Ok(Some(Lack { asked: condition.clone(), found }))
     }
 
-    /// How many of these hold; all are asked, so that what one of them needs is run whatever the others say.
+    /// How many of these hold. All are evaluated, so that the runs of each are made whatever the others give.
     fn count(&self, parts: &[Condition]) -> Result<usize, Unjudged> {
         let verdicts = parts.iter().map(|part| self.holds(part)).collect::<Result<Vec<_>, _>>()?;
         Ok(verdicts.into_iter().filter(|holds| *holds).count())

@@ -29,7 +29,7 @@ pub struct Subject<'a> {
     turns: OnceCell<Turns>,
 }
 
-/// Where the motion begins to cross on the way up, and to where it goes on crossing on the way down.
+/// Values at which the motion begins to cross on the way up and ceases to on the way down.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Turns {
     pub up_crosses_from: Option<f64>,
@@ -136,12 +136,12 @@ impl<'a> Subject<'a> {
         })
     }
 
-    /// Where the motion begins to cross and ends to, over the whole walk.
+    /// Where the motion begins and ceases to cross, over the whole walk.
     pub(super) fn turns(&self) -> Result<Turns, Unjudged> {
         let turns = once(&self.turns, || {
             let Axis { field, values, .. } = self.axis()?;
             let downwards: Vec<f64> = values.iter().rev().copied().collect();
-            // the last value at which it crosses, and whether it crosses at the last of all
+            // the last value at which it crosses, and whether it crosses at the last value of all
             let walks =
                 self.walks(&field, [values, downwards], |way, seen: &mut (_, bool), value, summary| {
                     seen.1 = summary.crossings > 0;
@@ -160,7 +160,7 @@ impl<'a> Subject<'a> {
     }
 
     /// Runs the scene over two rows of values side by side, each run from where the one before ended, until
-    /// `each` has seen enough; what that, told the number of the row, makes of it.
+    /// `each` returns false; returns the states that `each` made for each row.
     fn walks<S: Default + Send>(
         &self,
         field: &str,
@@ -216,7 +216,7 @@ impl<'a> Subject<'a> {
         })
     }
 
-    /// Its mechanism: the subject's own where it is the same.
+    /// The mechanism of a scene; that of the subject if it is the same.
     fn mechanism_of(&self, scene: &Scene) -> Result<Arc<Mechanism>, Unjudged> {
         let build = || {
             Mechanism::build(&scene.mechanism, self.files)
@@ -237,7 +237,7 @@ fn needs_ledger(condition: &Condition) -> bool {
     field.is_some_and(|field| field.needs_ledger) || condition.parts().iter().any(needs_ledger)
 }
 
-/// The value of `cell`, made where there is none yet.
+/// The value of `cell`, made on first use.
 fn once<T>(cell: &OnceCell<T>, make: impl FnOnce() -> Result<T, Unjudged>) -> Result<&T, Unjudged> {
     if let Some(value) = cell.get() {
         return Ok(value);

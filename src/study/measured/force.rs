@@ -20,7 +20,7 @@ pub struct ForceComparison {
     pub rms: (f64, f64),
     /// Where the two differ most: the position in m, and computed less measured there in N.
     pub largest: (f64, f64),
-    /// What to know of it, each a sentence.
+    /// Remarks, each a sentence.
     pub remarks: Vec<String>,
 }
 
