@@ -132,7 +132,7 @@ pub fn alternatives(
                 let Some(before) = rated[*i].crossing_g() else { continue };
                 let change = threshold.map_or(f64::INFINITY, |after| (after - before).abs() / before);
                 let sensitivity = &mut rated[*i].sensitivity;
-                if sensitivity.as_ref().is_none_or(|(most, _)| change > *most) {
+                if sensitivity.as_ref().is_none_or(|(largest, _)| change > *largest) {
                     *sensitivity = Some((change, field.clone()));
                 }
             }

@@ -51,25 +51,25 @@ mod tests {
     fn what_is_asked_ahead_changes_nothing() {
         for (ahead, at) in [1, 2, 3, 7].into_iter().flat_map(|ahead| [0.51, 0.77, 1.0].map(|at| (ahead, at)))
         {
-            let mut asked: Vec<(f64, Option<bool>)> = Vec::new();
+            let mut trials: Vec<(f64, Option<bool>)> = Vec::new();
             loop {
-                let answer = |asked: &[(f64, Option<bool>)], value| {
-                    asked.iter().find(|entry| entry.0 == value).map(|entry| entry.1)
+                let answer = |trials: &[(f64, Option<bool>)], value| {
+                    trials.iter().find(|entry| entry.0 == value).map(|entry| entry.1)
                 };
-                while let Some(next) = next_between(|value| answer(&asked, value), (0.5, 1.0), 0.01, ahead) {
-                    asked.push((next, None));
+                while let Some(next) = next_between(|value| answer(&trials, value), (0.5, 1.0), 0.01, ahead) {
+                    trials.push((next, None));
                 }
-                let open = asked.iter().filter(|entry| entry.1.is_none()).count();
+                let open = trials.iter().filter(|entry| entry.1.is_none()).count();
                 assert!(open <= ahead);
                 // the last that was asked is answered first
-                let Some(last) = asked.iter_mut().rfind(|entry| entry.1.is_none()) else { break };
+                let Some(last) = trials.iter_mut().rfind(|entry| entry.1.is_none()) else { break };
                 last.1 = Some(last.0 >= at);
             }
-            let does = |value: f64| asked.contains(&(value, Some(true)));
+            let does = |value: f64| trials.contains(&(value, Some(true)));
             let hundredths = (51..100).map(|i| f64::from(i) / 100.0);
             let least = hundredths.into_iter().find(|value| does(*value)).unwrap_or(1.0);
             assert_eq!(least, at);
-            assert!(ahead > 1 || asked.len() <= 6);
+            assert!(ahead > 1 || trials.len() <= 6);
         }
     }
 }

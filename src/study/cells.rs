@@ -74,7 +74,7 @@ pub(super) trait Question: Sync {
         model
     }
 
-    /// Why this model cannot be asked; `scene` is that of its cell.
+    /// Why the question does not apply to this model; `scene` is that of its cell.
     fn fault(&self, model: &Model, scene: &Scene) -> Option<Fault>;
 
     /// Reads the answer.
@@ -196,7 +196,7 @@ impl Cells {
         (AHEAD / length).max(WALKS)
     }
 
-    /// An upper bound of the bytes that [`run`](Self::run), or [`walk`](Self::walk) with walks of so many
+    /// An upper bound of the bytes that [`run`](Self::run), or [`walk`](Self::walk) with walks of `length`
     /// cells, keeps, however many cells there are.
     pub fn memory<Q: Question>(&self, threads: u64, length: Option<u64>) -> u64 {
         let row = size_of::<Ran<Q::Answer>>() as u64;

@@ -35,12 +35,12 @@ impl Edges {
         Self { values, edges }
     }
 
-    /// Which of the values this is.
+    /// The index of this value.
     pub fn place(&self, value: f64) -> Option<usize> {
         self.values.binary_search_by(|known| known.total_cmp(&value)).ok()
     }
 
-    /// In which cell a number lies; none outside all of them.
+    /// The cell in which a number lies; `None` outside all of them.
     pub fn cell(&self, value: f64) -> Option<usize> {
         let above = self.edges.partition_point(|edge| *edge <= value);
         (1..=self.values.len()).contains(&above).then(|| above - 1)

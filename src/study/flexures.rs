@@ -91,11 +91,11 @@ pub fn shapes(states: &[State]) -> Table {
 /// of |x|, the largest stress and the limit.
 pub fn stress_warning(flexures: &Flexures, states: &[State]) -> Option<String> {
     let limit = flexures.geometry().yield_stress;
-    let farthest = states.iter().fold(0.0_f64, |most, state| most.max(state.x.abs()));
+    let farthest = states.iter().fold(0.0_f64, |largest, state| largest.max(state.x.abs()));
     let above: Vec<&State> = states.iter().filter(|state| state.max_stress > limit).collect();
     let worst = above.iter().max_by(|a, b| a.max_stress.total_cmp(&b.max_stress))?;
     let from = above.iter().fold(f64::INFINITY, |least, state| least.min(state.x.abs()));
-    let to = above.iter().fold(0.0_f64, |most, state| most.max(state.x.abs()));
+    let to = above.iter().fold(0.0_f64, |largest, state| largest.max(state.x.abs()));
     let (gpa, mm) = (|pascal: f64| short(pascal / 1e9), |metres: f64| short(metres * 1e3));
     let end = if to < farthest { format!("to {} mm", mm(to)) } else { "on".to_owned() };
     Some(format!(

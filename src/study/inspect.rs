@@ -39,7 +39,7 @@ pub fn inspect(scene: &Scene, mechanism: &Arc<Mechanism>) -> Result<Vec<String>,
     Ok(lines)
 }
 
-/// The flexures, where there are such, and the force curve.
+/// The flexures, if any, and the force curve.
 fn force(mechanism: &Mechanism) -> Vec<String> {
     let Some(solved) = &mechanism.flexures else { return vec![force_curve(mechanism)] };
     let [shape, theory] = flexures(solved.geometry());

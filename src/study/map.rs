@@ -27,8 +27,8 @@ pub fn release_line(scene: &Scene, mechanism: &Mechanism, grid: &Grid) -> Option
         && scene.start == Start::Rest;
     let limits = axis(grid, LIMIT).filter(|_| applies && axis(grid, AMPLITUDE).is_some())?;
     let well = mechanism.landscape.right_stable()?.x;
-    let (from, most) = extent(limits.values.iter().copied());
-    let to = most.min(well * 1e3);
+    let (from, last) = extent(limits.values.iter().copied());
+    let to = last.min(well * 1e3);
     if from >= to {
         return None;
     }
@@ -54,14 +54,14 @@ pub fn first_crossing(grid: &Grid, rows: &Table) -> Option<Table> {
         (true, false) => (1, 0),
         _ => return None,
     };
-    let others = rows.numbers(&grid.columns()[other])?;
+    let swept = rows.numbers(&grid.columns()[other])?;
     let amplitudes = rows.numbers(&grid.columns()[amplitude_axis])?;
     let Values::Words(regimes) = &rows.column("regime")?.values else { return None };
     let mut values = grid.axes()[other].values.clone();
     values.sort_by(f64::total_cmp);
     values.dedup();
     let mut least = vec![f64::NAN; values.len()];
-    for (i, other) in others.iter().enumerate() {
+    for (i, other) in swept.iter().enumerate() {
         let counts = regimes.get(i).is_some_and(|regime| crosses(regime)) && amplitudes[i] >= 0.0;
         if let Ok(place) = values.binary_search_by(|value| value.total_cmp(other))
             && counts

@@ -76,7 +76,7 @@ impl Models {
             self.before.iter().chain([&self.now]).skip(first + 1).map(|next| next.0).chain([f64::INFINITY]);
         all.zip(ends)
             .map(move |(entry, end)| (entry.0.max(from), end.min(to), &entry.1))
-            .filter(|held| held.1 > held.0)
+            .filter(|span| span.1 > span.0)
     }
 
     /// How many there are.
@@ -114,8 +114,8 @@ mod tests {
             [1.0, 1.0, 1.0, 2.0, 2.0, 3.0, 3.0]
         );
         assert_eq!([1.0, 3.0, 7.0].map(|t| models.since(t)), [0.0, 2.0, 5.0]);
-        let held: Vec<(f64, f64)> = models.between(1.0, 6.0).map(|held| (held.0, held.1)).collect();
-        assert_eq!(held, [(1.0, 2.0), (2.0, 5.0), (5.0, 6.0)]);
+        let spans: Vec<(f64, f64)> = models.between(1.0, 6.0).map(|span| (span.0, span.1)).collect();
+        assert_eq!(spans, [(1.0, 2.0), (2.0, 5.0), (5.0, 6.0)]);
         assert_eq!(models.between(2.5, 3.0).count(), 1);
         // one that held for no time, and one for too little of it, are gone
         models.change(5.0, of(4.0), 0.1);

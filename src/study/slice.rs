@@ -89,7 +89,7 @@ fn turn(round: u64, count: u64) -> u64 {
 }
 
 impl Slice {
-    /// The rows of `shard` of a sweep of so many `rows`, cut only between units. Precondition: `rows` is a
+    /// The rows of `shard` of a sweep of `rows` rows, cut only between units. Precondition: `rows` is a
     /// multiple of `unit`, which is at least 1.
     pub fn new(rows: u64, unit: u64, shard: Shard) -> Self {
         let units = rows / unit;

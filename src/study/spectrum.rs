@@ -47,7 +47,7 @@ impl Signal {
 /// Options of a spectrum.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpectrumOptions {
-    /// Of what.
+    /// The signal.
     pub signal: Signal,
     /// How the samples are weighted; by default not at all if the motion repeats, else by the window of
     /// von Hann.
@@ -64,7 +64,7 @@ pub struct SpectrumOptions {
 pub struct Spectrum {
     /// `frequency_hz,amplitude,psd`, one-sided: from 0 to half the rate, a row a line.
     pub table: Table,
-    /// Of what.
+    /// The signal.
     pub signal: Signal,
     /// How the samples were weighted.
     pub taper: Taper,
@@ -123,11 +123,11 @@ pub enum NoSpectrum {
     Rate {
         /// Samples a second.
         rate_hz: f64,
-        /// What that makes.
+        /// Number of samples at that rate.
         samples: String,
         /// Length of the window in s.
         length: f64,
-        /// What would be right.
+        /// How to correct it.
         remedy: String,
     },
 }
@@ -140,8 +140,8 @@ const FEWEST: f64 = 4.0;
 /// The fewest samples by default.
 const PLENTY: f64 = 4096.0;
 
-/// The spectrum of the settled motion of `model`. The motion is run twice: for its verdict, then for its
-/// samples.
+/// The spectrum of the settled motion of `model`. The motion is run twice: for its verdict, then for
+/// its samples.
 ///
 /// Frequencies above half the rate are folded back below it. In a smooth motion that is negligible: its
 /// spectrum falls faster than any power of the frequency. Impacts are jumps of the velocity, whose amplitude

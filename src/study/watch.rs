@@ -68,7 +68,7 @@ impl Watch {
     }
 
     /// Whether from now on a ledger is kept at the end of every forcing period: each repeats the last step.
-    /// What has been kept stays, and the present one is there in any case.
+    /// Ledgers already kept stay, and the present one is always available.
     pub fn keep_ledgers(&mut self, keep: bool) {
         self.keeps_ledgers = keep;
     }
@@ -140,8 +140,8 @@ impl Watch {
         self.now = self.live.state();
     }
 
-    /// Remembers the present state, so that a change is a jump at its instant and not a way from the last
-    /// sample.
+    /// Remembers the present state, so that a change is a jump at its instant and not a way from the
+    /// last sample.
     fn leave(&mut self) {
         if self.samples.back().is_none_or(|last| last.t < self.now.t) {
             self.samples.push_back(self.now);

@@ -128,8 +128,7 @@ impl Variant {
         self
     }
 
-    /// The check with the smallest margin: one that fails, else the number nearest to what is allowed, else a
-    /// fact.
+    /// The check with the smallest margin: one that fails, else the number nearest to its bound, else a fact.
     pub fn tightest(&self) -> Option<(&'static str, Check)> {
         let share = |check: &Check| match *check {
             Check::Fact(false) => f64::INFINITY,

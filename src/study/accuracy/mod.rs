@@ -36,7 +36,7 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     PROBLEMS.iter().map(|problem| problem.name).chain(HARD_CASES.iter().map(|case| case.name))
 }
 
-/// What is to be done.
+/// Parts of the study to run.
 #[derive(Debug, Clone, Default)]
 pub struct Selection {
     problems: Vec<&'static Problem>,
@@ -73,7 +73,7 @@ impl Selection {
     }
 }
 
-/// What the study found.
+/// Results of the study.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Report {
     /// Work against precision, by problem and method, the coarsest setting first.

@@ -42,8 +42,8 @@ impl Setup {
         }
     }
 
-    /// The cubic of the prototype's size (wells at 7 mm, 15.2 g, damping ratio 0.023) between stops, from
-    /// rest.
+    /// The cubic of the prototype's size (wells at 7 mm, 15.2 g, damping ratio 0.023) between stops,
+    /// from rest.
     pub fn nominal(limit_mm: f64, restitution: f64, excitation: Excitation, duration_s: f64) -> Self {
         let cubic = Mechanism::Cubic { linear_n_per_m: -40.0, cubic_n_per_m3: 40.0 / 49e-6 };
         let mut setup = Self::new(cubic, (0.0, 0.0), duration_s);

@@ -39,8 +39,8 @@ impl Report {
             .each("verdict", &rows, |row| row.verdict)
     }
 
-    /// The points alone, as a plot reads them: `problem`, `method`, `tolerance`, `step_s`, `error`, `steps`,
-    /// `cpu_s`.
+    /// The points alone, as a plot reads them: `problem`, `method`, `tolerance`, `step_s`, `error`,
+    /// `steps`, `cpu_s`.
     pub fn work_table(&self) -> Table {
         let rows: Vec<Row> = self.points.iter().map(Row::of_point).collect();
         Table::new()

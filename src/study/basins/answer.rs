@@ -266,8 +266,8 @@ impl Basins {
     }
 }
 
-/// The state of a settled motion after each of `count` forcing periods, that with the largest displacement
-/// first.
+/// The state of a settled motion after each of `count` forcing periods, that with the largest
+/// displacement first.
 fn states(model: &Model, state: (f64, f64), count: u32, period: f64) -> Vec<(f64, f64)> {
     let times: Vec<f64> = (0..count).map(|number| f64::from(number) * period).collect();
     let request = Request { sample_times: &times, ..Request::default() };
@@ -276,8 +276,8 @@ fn states(model: &Model, state: (f64, f64), count: u32, period: f64) -> Vec<(f64
         return vec![state];
     }
     let mut states: Vec<(f64, f64)> = run.samples.iter().map(|sample| (sample.x, sample.v)).collect();
-    let most = |a: &(f64, f64), b: &(f64, f64)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1));
-    let first = (0..states.len()).max_by(|a, b| most(&states[*a], &states[*b])).unwrap_or(0);
+    let by_state = |a: &(f64, f64), b: &(f64, f64)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1));
+    let first = (0..states.len()).max_by(|a, b| by_state(&states[*a], &states[*b])).unwrap_or(0);
     states.rotate_left(first);
     states
 }

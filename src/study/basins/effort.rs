@@ -23,7 +23,7 @@ const LEAST: u64 = 2_000_000;
 /// Work of one map.
 #[derive(Debug)]
 pub(super) struct Effort {
-    most: u64,
+    budget: u64,
     done: AtomicU64,
     /// Forcing periods that were followed for it.
     periods: AtomicU64,
@@ -31,8 +31,8 @@ pub(super) struct Effort {
 
 impl Effort {
     pub fn of_starts(count: usize) -> Self {
-        let most = OF_THE_MAP + OF_A_START.saturating_mul(count as u64);
-        Self { most, done: AtomicU64::new(0), periods: AtomicU64::new(0) }
+        let budget = OF_THE_MAP + OF_A_START.saturating_mul(count as u64);
+        Self { budget, done: AtomicU64::new(0), periods: AtomicU64::new(0) }
     }
 
     /// Adds a pursuit whose forcing period in s is given.
@@ -53,7 +53,7 @@ impl Effort {
     }
 
     fn left(&self) -> u64 {
-        self.most.saturating_sub(self.done.load(Ordering::Relaxed))
+        self.budget.saturating_sub(self.done.load(Ordering::Relaxed))
     }
 
     /// Units that each start may take while `remaining` starts are still to be followed.

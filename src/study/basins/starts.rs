@@ -25,7 +25,7 @@ pub enum StartsError {
     TooMany(String),
 }
 
-/// Values of one axis of a grid: so many, evenly spaced from `from` to `to`, both included.
+/// Values of one axis of a grid: `count`, evenly spaced from `from` to `to`, both included.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EvenRange {
     /// The first, in mm or m/s.

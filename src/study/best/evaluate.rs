@@ -158,7 +158,7 @@ impl<'a> Evaluator<'a> {
                 let Some(result) = number(constraint.of, summary) else { return Judged::Missing };
                 let over =
                     if constraint.at_most { result - constraint.limit } else { constraint.limit - result };
-                if furthest.is_none_or(|(most, _)| over > most) {
+                if furthest.is_none_or(|(largest, _)| over > largest) {
                     furthest = Some((over, result));
                 }
             }

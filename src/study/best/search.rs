@@ -139,8 +139,8 @@ fn refine(evaluator: &Evaluator, starts: Vec<Optimum>) -> Result<Vec<Optimum>, N
         let judged = evaluator.judge(&places.concat())?;
         let mut rest = judged.as_slice();
         for (area, places) in boxes.iter_mut().zip(places) {
-            let (judged, others) = rest.split_at(places.len());
-            rest = others;
+            let (judged, after) = rest.split_at(places.len());
+            rest = after;
             if let Some(better) = highest(&places, judged).filter(|better| better.value > area.best.value) {
                 area.best = better;
             }

@@ -20,7 +20,7 @@ pub struct ExponentCells {
     cells: Cells,
 }
 
-/// What the cells of a grid came to.
+/// Counts of the results of the cells of a grid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ExponentTally {
     /// Cells done.
@@ -126,8 +126,8 @@ impl ExponentCells {
     }
 }
 
-/// What is wrong with the excitation of a scene whose exponents are asked for: it changes and does not
-/// repeat.
+/// What is wrong with the excitation of a scene whose exponents are asked for: it changes and does
+/// not repeat.
 pub fn drive_fault(model: &Model, scene: &Scene) -> Option<Fault> {
     let suits = model.excitation().is_constant();
     if suits { None } else { without_a_period(model, scene, "an exponent") }

@@ -17,7 +17,7 @@ const STEPS: usize = 12;
 /// A growth over a period that rounding can hide.
 const NEUTRAL: f64 = 1e-6;
 
-/// The exponents of the periodic motion of so many forcing periods that the motion through `start` has
+/// The exponents of the periodic motion of `periods` forcing periods that the motion through `start` has
 /// settled on. `None` if there is none near it, or if it is unstable and the motion is not exactly on it.
 pub(super) fn of_orbit(
     tangent: &Tangent,

@@ -49,8 +49,8 @@ impl Passed {
 }
 
 impl Tangent {
-    /// The map from a phase of the drive on, in forcing periods; without a drive over the natural time of the
-    /// mechanism.
+    /// The map from a phase of the drive on, in forcing periods; without a drive over the natural time of
+    /// the mechanism.
     pub fn of(model: &Model, phase: f64) -> Result<Self, NoExponents> {
         if model.has_electrical_state() {
             return Err(NoExponents::ElectricalState);

@@ -23,8 +23,8 @@ const NEGLIGIBLE: f64 = 1e-3;
 /// Swings count down to this many times the reach of the noise.
 const CLEAR: f64 = 1.5;
 
-/// Damping ratio, decay and frequency of a free decay, over the whole record and as they change with the
-/// amplitude.
+/// Damping ratio, decay and frequency of a free decay, over the whole record and as they change with
+/// the amplitude.
 ///
 /// Each turning point is fitted separately (see `peaks`) and an exponential envelope through them by weighted
 /// least squares (see [`Envelope`]), whose rate r is the decay of the amplitude a second. Over half a period
@@ -119,7 +119,7 @@ fn remarks(
     .filter_map(|(name, changes)| changes.then_some(name))
     .collect();
     if let [others @ .., last] = &changing[..] {
-        let (names, change, is) = match others {
+        let (names, change, note) = match others {
             [] => ((*last).to_owned(), "changes", "the number for all is a mean over the amplitudes"),
             _ => (
                 format!("{} and {last}", others.join(", ")),
@@ -127,7 +127,7 @@ fn remarks(
                 "the numbers for all are means over the amplitudes",
             ),
         };
-        remarks.push(format!("{names} {change} with the amplitude by more than the intervals: {is}"));
+        remarks.push(format!("{names} {change} with the amplitude by more than the intervals: {note}"));
     }
     remarks
 }
@@ -232,10 +232,10 @@ fn natural(frequency: Identity, damping: Identity) -> Identity {
 /// Whether the numbers of the rows differ from that of the whole by more than their intervals explain, and by
 /// more than counts.
 fn differ(rows: impl ExactSizeIterator<Item = Identity>, whole: f64) -> bool {
-    let most = 1 + rows.len() / 5;
+    let chance = 1 + rows.len() / 5;
     let apart = |row: &Identity| (row.value - whole).abs() > NEGLIGIBLE * whole.abs();
     // one in twenty of rows that agree lies outside
-    rows.filter(|row| !(row.interval.0..=row.interval.1).contains(&whole) && apart(row)).count() > most
+    rows.filter(|row| !(row.interval.0..=row.interval.1).contains(&whole) && apart(row)).count() > chance
 }
 
 fn table(rows: &[Decay], amplitude: &str) -> Table {

@@ -69,8 +69,8 @@ struct Curve {
 /// the friction. The equilibria are fitted separately (see `Rest::near`). Intervals are 95 %, from the
 /// residuals of the fits.
 ///
-/// Rows: `x_m,force_n,force_low_n,force_high_n,force_rising_n,force_falling_n`, as a table mechanism reads
-/// them.
+/// Rows: `x_m,force_n,force_low_n,force_high_n,force_rising_n,force_falling_n`, as a table mechanism
+/// reads them.
 pub fn force(x: &[f64], force: &[f64], points: usize) -> Result<Identified, Unidentified> {
     let [rising, falling] = directions(x, force);
     let pulls: Vec<&Pull> = [&rising, &falling].into_iter().filter(|pull| !pull.is_empty()).collect();
@@ -274,8 +274,8 @@ fn through_four(u: f64, values: &[f64]) -> f64 {
     let first = ((u.floor() - 1.0).max(0.0) as usize).min(values.len() - 4);
     let nodes = [0, 1, 2, 3].map(|k| (first + k) as f64);
     let weight = |k: usize| -> f64 {
-        let others = (0..4).filter(|j| *j != k);
-        others.map(|j| (u - nodes[j]) / (nodes[k] - nodes[j])).product()
+        let other_nodes = (0..4).filter(|j| *j != k);
+        other_nodes.map(|j| (u - nodes[j]) / (nodes[k] - nodes[j])).product()
     };
     (0..4).map(|k| weight(k) * values[first + k]).sum()
 }

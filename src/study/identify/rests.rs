@@ -89,16 +89,16 @@ impl Rest {
             .min_by(|a, b| (a - place).abs().total_cmp(&(b - place).abs()))?;
         let sign = force(left).signum();
         let x = bisect(left, left + step, HALVINGS, |x| force(x) * sign > 0.0).1;
-        // where the force is no longer told from 0
+        // where the force can no longer be distinguished from 0
         let half = at(x, 0)?.half();
         let end = |side: f64| {
             let inside = |away: f64| force(x + side * away).abs() <= half;
-            let most = if side < 0.0 { x - low } else { high - x };
+            let limit = if side < 0.0 { x - low } else { high - x };
             let mut away = 1e-9 * reach;
-            while away < most && inside(away) {
+            while away < limit && inside(away) {
                 away *= 2.0;
             }
-            if away < most { x + side * bisect(0.0, away, HALVINGS, inside).1 } else { x + side * most }
+            if away < limit { x + side * bisect(0.0, away, HALVINGS, inside).1 } else { x + side * limit }
         };
         let ends = [end(-1.0), end(1.0)];
         let slope = at(x, 1)?;
@@ -258,8 +258,8 @@ fn samples(pull: &Pull, centre: f64, reach: f64) -> Vec<(f64, f64)> {
 
 /// The place of a kink that all directions have, which leaves the least squares.
 fn kink_of(directions: &[Vec<(f64, f64)>]) -> Option<f64> {
-    let most = directions.iter().map(Vec::len).max()?;
-    let stride = most.div_ceil(LOOKED_AT).max(1);
+    let samples = directions.iter().map(Vec::len).max()?;
+    let stride = samples.div_ceil(LOOKED_AT).max(1);
     let square = |kink: f64| -> f64 {
         let left = |samples: &Vec<(f64, f64)>| {
             let rows: Vec<([f64; 7], f64)> =

@@ -31,7 +31,7 @@ pub fn result_fields() -> Vec<ResultField> {
     of_summary.chain([ResultField { name: PERIOD_MULTIPLE, words: &[] }]).collect()
 }
 
-/// The words that a field may be; none for a number.
+/// The words that a field may be; empty for a number.
 fn words(field: &SummaryField) -> &'static [&'static str] {
     const REGIMES: &[&str] = &[
         Regime::Rest.name(),

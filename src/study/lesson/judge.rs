@@ -1,4 +1,4 @@
-//! Whether a condition holds.
+//! Evaluation of the conditions of lessons.
 
 use super::fields::{Value, value};
 use super::subject::Subject;

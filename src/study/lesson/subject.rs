@@ -37,7 +37,7 @@ pub(super) struct Turns {
 }
 
 impl<'a> Subject<'a> {
-    /// Of a scene whose files are at hand, in a step of a lesson.
+    /// The subject of a scene with its files, in a step of a lesson.
     pub fn new(scene: &'a Scene, files: &'a Files, lesson: &'a Lesson, task: &'a Task<'a>) -> Self {
         Self {
             scene,

@@ -56,8 +56,8 @@ pub fn compare_force(
     }
     let computed: Vec<f64> = positions.iter().map(|x| curve.force(*x)).collect();
     let apart: Vec<f64> = measured.iter().zip(&computed).map(|(m, c)| c - m).collect();
-    let most = |a: &usize, b: &usize| apart[*a].abs().total_cmp(&apart[*b].abs());
-    let worst = (0..apart.len()).max_by(most).unwrap_or(0);
+    let by_size = |a: &usize, b: &usize| apart[*a].abs().total_cmp(&apart[*b].abs());
+    let worst = (0..apart.len()).max_by(by_size).unwrap_or(0);
     let fold = |values: &[f64], of: fn(f64, f64) -> f64| values.iter().copied().fold(f64::NAN, of);
     let both = |name, of: &dyn Fn(&[f64]) -> f64| -> Row { (name, "N", of(&measured), of(&computed)) };
     let (of_measured, rms_apart) = (rms(&measured), rms(&apart));

@@ -164,8 +164,8 @@ pub(super) const RECORD: HardCase = HardCase {
     answer: "Closed form of a linear acceleration, joined from line to line.",
     conditioning: LINEAR,
     find: |bench| {
-        // the fractional parts of multiples of the golden ratio: as uneven as random numbers, the same
-        // everywhere
+        // the fractional parts of multiples of the golden ratio: as uneven as random numbers, the
+        // same everywhere
         let jump = |i: u32| (f64::from(i) * 0.618_033_988_749_894_9).fract() - 0.5;
         let times = (0..1000_u32).map(|i| f64::from(i) * 0.005).collect();
         let accelerations = (0..1000_u32).map(|i| STANDARD_GRAVITY * jump(i)).collect();

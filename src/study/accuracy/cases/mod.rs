@@ -1,5 +1,5 @@
-//! Hard cases: problems that break integrators of impacts, each with its answer and what its conditioning
-//! allows.
+//! Hard cases: problems that break integrators of impacts, each with its answer and what its
+//! conditioning allows.
 //!
 //! The texts of a case state the problem, where the answer comes from, and the bound of its error.
 //! Throughout, d is the error that one step may make ([`STEP_ERROR`](super::STEP_ERROR)), relative to the

@@ -5,8 +5,8 @@ use crate::numeric::{DoubleDouble, Scalar};
 
 /// e^x, to some 29 digits, for |x| below 700.
 ///
-/// Reduced by ln 2 and halved eight times, then Taylor's series and eight squarings, which cost some two
-/// digits.
+/// Reduced by ln 2 and halved eight times, then Taylor's series and eight squarings, which cost some
+/// two digits.
 pub fn exp(x: DoubleDouble) -> DoubleDouble {
     let ln_2 = dd(std::f64::consts::LN_2) + dd(2.319_046_813_846_299_6e-17);
     let halvings = (x / ln_2 + dd(0.5)).floor().to_f64();

@@ -16,8 +16,8 @@ pub struct Oscillator {
 /// A base acceleration with a closed form. SI; time is that of the run.
 #[derive(Debug, Clone, Copy)]
 pub enum Forcing {
-    /// (amplitude + growth t) sin(2 pi (frequency t + phase)); growth in m/s^3, frequency in Hz, phase in
-    /// turns.
+    /// (amplitude + growth t) sin(2 pi (frequency t + phase)); growth in m/s^3, frequency in Hz, phase
+    /// in turns.
     Tone {
         /// Amplitude at time 0 in m/s^2.
         amplitude: f64,

@@ -96,8 +96,8 @@ impl Step {
         [0, 1].map(|i| a[i] + s * (b[i] + r * (c[i] + s * (d[i] + r * e[i]))))
     }
 
-    /// The integral of v^2 over the first `share` of the step: Gauss's rule of four points on the continuous
-    /// extension.
+    /// The integral of v^2 over the first `share` of the step: Gauss's rule of four points on the
+    /// continuous extension.
     fn squares(&self, share: f64) -> f64 {
         const POINTS: [(f64, f64); 2] = [
             (0.339_981_043_584_856_3, 0.652_145_154_862_546_1),
@@ -134,8 +134,8 @@ impl Step {
 ///
 /// Samples lie on straight lines between steps, as those of [`fixed_step`](super::fixed_step). A pressed
 /// rebound slower than 1e-6 of the scene's speed is a rest, its release found by a scan in 200ths of the
-/// forcing period (or of the duration) and bisection. Ends early where the force curve ends, and after 2e7
-/// attempts.
+/// forcing period (or of the duration) and bisection. Ends early where the force curve ends, and after
+/// 2e7 attempts.
 pub fn dormand_prince(model: &Model, tolerance: f64, keep: &Keep) -> MethodRun {
     let watch = ThreadClock::start();
     let problem = Problem::new(model);

@@ -76,7 +76,7 @@ impl<'a> Tally<'a> {
         }
     }
 
-    /// The run as it stands at its last state.
+    /// The finished run, which ends in the state `last`.
     pub fn finish(
         mut self,
         problem: &Problem,

@@ -167,11 +167,11 @@ impl Lateness {
             _ if duration(worst) == duration(median.abs()) => String::new(),
             _ => format!(" (worst {})", duration(worst)),
         };
-        let others = match fewer {
+        let minority = match fewer {
             0 => String::new(),
             n => format!(", {n} of {} up to {} {}", self.matched, duration(other.abs()), way(other)),
         };
-        format!("{who} {} {}{worst}{others}{then}.", duration(median.abs()), way(median))
+        format!("{who} {} {}{worst}{minority}{then}.", duration(median.abs()), way(median))
     }
 }
 

@@ -35,8 +35,8 @@ const ENOUGH: usize = 8;
 /// intervals, its interval holds both of theirs; where the impacts of a stop differ by more than theirs, it
 /// is as much wider (Birge 1932).
 ///
-/// Rows, one an impact: `t_s,side`, then `v_in`, `v_out` in m/s and `restitution`, each with `_low` and
-/// `_high`.
+/// Rows, one an impact: `t_s,side`, then `v_in`, `v_out` in m/s and `restitution`, each with `_low`
+/// and `_high`.
 pub fn restitution(
     times: &[f64],
     x: &[f64],

@@ -74,7 +74,7 @@ impl<'a> Motion<'a> {
         Orthogonal::fit(&both(self.times), &both(&self.smooth))
     }
 
-    /// Displacement, velocity and acceleration at a time, of a fit with so many coefficients.
+    /// Displacement, velocity and acceleration at a time, of a fit with `terms` coefficients.
     pub fn at(&self, fit: &Orthogonal, t: f64, terms: usize) -> Tangent {
         let mut found = fit.at(t, terms);
         if !self.base.is_empty() {

@@ -22,7 +22,7 @@ const NARROWEST: f64 = 3.5;
 /// Ratio of each further window to the one before.
 const WIDER: f64 = SQRT_2;
 
-/// An impact counts where its speed towards the stop is so many standard errors: the instant of a slower one
+/// Standard errors of its speed towards the stop from which on an impact counts: the instant of a slower one
 /// is so unsure that both speeds are biased.
 const FAST: f64 = 12.0;
 
@@ -152,7 +152,7 @@ pub fn together(
     Some((choice, trial.selected(&counts).len()))
 }
 
-/// Each impact alone, of so many contacts.
+/// Estimates of each impact alone.
 pub fn each(trials: &[Trial], contacts: usize) -> Vec<Single> {
     let mut estimates = vec![Estimates::new(); contacts];
     for trial in trials {
