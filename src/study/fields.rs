@@ -116,15 +116,13 @@ impl SummaryField {
             Read::Number(of) => {
                 // (not finite after a run that diverged)
                 let number = |summary: &Summary| of(summary).filter(|number| number.is_finite());
-                Values::Numbers(
-                    summaries.map(|summary| summary.and_then(number).unwrap_or(f64::NAN)).collect(),
-                )
+                Values::Numbers(summaries.map(|s| s.and_then(number).unwrap_or(f64::NAN)).collect())
             }
-            Read::Count(of) => Values::Counts(summaries.map(|summary| summary.and_then(of)).collect()),
-            Read::Word(of) => Values::Words(summaries.map(|summary| summary.map_or("", of)).collect()),
+            Read::Count(of) => Values::Counts(summaries.map(|s| s.and_then(of)).collect()),
+            Read::Word(of) => Values::Words(summaries.map(|s| s.map_or("", of)).collect()),
             Read::Flag(of) => {
                 let word = |flag: bool| if flag { "true" } else { "false" };
-                Values::Words(summaries.map(|summary| summary.and_then(of).map_or("", word)).collect())
+                Values::Words(summaries.map(|s| s.and_then(of).map_or("", word)).collect())
             }
         }
     }

@@ -180,9 +180,7 @@ impl SectionOptions {
             SectionAt::Impacts => {
                 let impacts: Vec<Struck> = runs
                     .iter()
-                    .flat_map(
-                        |(points, _)| if let Points::Impacts(impacts) = points { &impacts[..] } else { &[] },
-                    )
+                    .flat_map(|(points, _)| if let Points::Impacts(all) = points { &all[..] } else { &[] })
                     .copied()
                     .collect();
                 table

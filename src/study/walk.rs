@@ -126,9 +126,9 @@ impl Cells {
                 if task.is_cancelled() {
                     return None;
                 }
-                let waiting = ready.borrow_mut().pop();
+                let kept = ready.borrow_mut().pop();
                 let (number, walk) =
-                    waiting.or_else(|| take(under_way).map(|number| (number, begin(number))))?;
+                    kept.or_else(|| take(under_way).map(|number| (number, begin(number))))?;
                 match self.model(walk.cell(length as u64), &mut scene, task) {
                     Some(Ok(model)) => {
                         let model = question.model(model);

@@ -84,9 +84,7 @@ impl Judge<'_> {
             Condition::AtMost(field, bound) => compare(field, &|number| number <= *bound),
             Condition::Above(field, bound) => compare(field, &|number| number > *bound),
             Condition::Below(field, bound) => compare(field, &|number| number < *bound),
-            Condition::Between(field, low, high) => {
-                compare(field, &|number| (*low..=*high).contains(&number))
-            }
+            Condition::Between(field, low, high) => compare(field, &|x| (*low..=*high).contains(&x)),
             Condition::Present(field) => Ok(self.value(field)? != Value::Missing),
             Condition::Absent(field) => Ok(self.value(field)? == Value::Missing),
             Condition::All(parts) => self.count(parts).map(|count| count == parts.len()),

@@ -129,11 +129,10 @@ fn rebounds(model: &Model, (times, measured, computed): (&[f64], &[f64], &[f64])
     ];
     for ((stop, right), [count, height, worst]) in sides.into_iter().zip([false, true]).zip(names) {
         let Some(stop) = stop else { continue };
-        let (measured_rebounds, computed_rebounds) =
-            (found(measured, stop, right), found(computed, stop, right));
-        let pairs = paired(&measured_rebounds, &computed_rebounds);
+        let (seen, expected) = (found(measured, stop, right), found(computed, stop, right));
+        let pairs = paired(&seen, &expected);
         let mean = |of: fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>() / pairs.len() as f64;
-        rows.push((count, "", measured_rebounds.len() as f64, computed_rebounds.len() as f64));
+        rows.push((count, "", seen.len() as f64, expected.len() as f64));
         rows.push((height, "m", mean(|pair| pair.0), mean(|pair| pair.1)));
         let error = |pair: &&(f64, f64)| (pair.1 / pair.0 - 1.0).abs();
         let largest = pairs.iter().max_by(|a, b| error(a).total_cmp(&error(b)));
