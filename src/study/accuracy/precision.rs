@@ -151,7 +151,8 @@ impl Problem {
         };
         for tolerance in tolerances() {
             cancelled()?;
-            let run = model.with_tolerance(tolerance).run(&request);
+            let model_at_tolerance = model.with_tolerance(tolerance);
+            let run = model_at_tolerance.run(&request);
             let Outcome::Done = run.summary.outcome else { return Err(Stopped::Cancelled) };
             let summary = run.summary;
             let statistics = Statistics {
@@ -160,7 +161,7 @@ impl Problem {
                 ..Statistics::default()
             };
             let error = self.error_of(&model, &answer(run), &exact);
-            let cpu_s = median(|| model.run(&Request::default()).summary.cpu_s);
+            let cpu_s = median(|| model_at_tolerance.run(&Request::default()).summary.cpu_s);
             points.push(point(OWN, Setting::Tolerance(tolerance), error, &statistics, cpu_s));
         }
         (task.tick)();
