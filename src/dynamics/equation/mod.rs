@@ -38,9 +38,9 @@ impl<T: Scalar> Equation<T> {
     pub fn new(model: &Model, unit: f64) -> Self {
         let curve = &model.mechanism.curve;
         let square = T::of(unit * unit) / T::of(model.mass);
-        let compliant = model.compliant.map(|own| Compliant {
-            stiffness: T::of(own.stiffness) * square,
-            loss: T::of(own.loss) / T::of(unit),
+        let compliant = model.compliant.map(|stop| Compliant {
+            stiffness: T::of(stop.stiffness) * square,
+            loss: T::of(stop.loss) / T::of(unit),
         });
         let left_stop = model.stops.as_ref().and_then(|s| s.left);
         let right_stop = model.stops.as_ref().and_then(|s| s.right);

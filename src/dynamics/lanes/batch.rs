@@ -45,14 +45,20 @@ pub(super) trait Source<'a> {
     fn next(&mut self, under_way: UnderWay) -> Option<Prepared<'a>>;
 
     /// Takes a motion that has ended, what it began as, and its outcome.
-    fn ended(&mut self, own: &Prepared<'a>, motion: LaneMotion<'a>, begun: &Begun<f64>, outcome: Outcome);
+    fn ended(
+        &mut self,
+        prepared: &Prepared<'a>,
+        motion: LaneMotion<'a>,
+        begun: &Begun<f64>,
+        outcome: Outcome,
+    );
 }
 
 /// A motion under way, and what it began as.
 struct Member<'a> {
     /// Its number among those of the batch.
     index: usize,
-    own: Prepared<'a>,
+    prepared: Prepared<'a>,
     motion: Box<LaneMotion<'a>>,
     begun: Begun<f64>,
 }
@@ -112,8 +118,8 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
     /// started; none at the end. The last few go on alone.
     fn fullest(&mut self) -> Option<usize> {
         loop {
-            let fullest = (0..self.groups.len()).max_by_key(|own| self.groups[*own].ready());
-            let ready = fullest.map_or(0, |own| self.groups[own].ready());
+            let fullest = (0..self.groups.len()).max_by_key(|group| self.groups[*group].ready());
+            let ready = fullest.map_or(0, |group| self.groups[group].ready());
             if ready >= W || !self.start_next(false) {
                 if ready >= FEWEST.min(W / 2) {
                     while ready >= W && self.under_way() < 2 * W && self.start_next(true) {}
@@ -132,16 +138,16 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
     fn finish_alone(&mut self) {
         for group in 0..self.groups.len() {
             for lane in 0..W {
-                if let Some((_, own, member)) = self.member(group, lane) {
-                    own.columns.store(lane, &mut member.motion);
-                    own.lanes[lane] = None;
+                if let Some((_, group, member)) = self.member(group, lane) {
+                    group.columns.store(lane, &mut member.motion);
+                    group.lanes[lane] = None;
                 }
             }
             self.groups[group].waiting.clear();
         }
         for place in 0..self.members.len() {
-            if let Some(own) = &mut self.members[place] {
-                let outcome = own.motion.go_on();
+            if let Some(member) = &mut self.members[place] {
+                let outcome = member.motion.go_on();
                 self.end(place, outcome);
             }
         }
@@ -154,17 +160,19 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
     /// Starts the next run; false where there is none, or no room. `full`: the lanes are.
     fn start_next(&mut self, full: bool) -> bool {
         let Some(place) = self.free.last().copied() else { return false };
-        let Some(own) = self.source.next(UnderWay { runs: self.under_way(), full }) else { return false };
+        let Some(prepared) = self.source.next(UnderWay { runs: self.under_way(), full }) else {
+            return false;
+        };
         self.free.pop();
-        let clock = clock(own.model, own.equation.unit);
-        let (model, request) = (own.model, own.request);
-        let motion = Motion::new(model, request, model.tolerance, own.equation, clock, own.drive);
-        let mut motion = Box::new(match own.pursuit {
+        let clock = clock(prepared.model, prepared.equation.unit);
+        let (model, request) = (prepared.model, prepared.request);
+        let motion = Motion::new(model, request, model.tolerance, prepared.equation, clock, prepared.drive);
+        let mut motion = Box::new(match prepared.pursuit {
             Some(pursuit) => motion.pursuing(pursuit, model),
             None => motion.with_recurrence(model.recurrence, model),
         });
         let begun = motion.begin(model);
-        self.members[place] = Some(Member { index: self.started, own, motion, begun });
+        self.members[place] = Some(Member { index: self.started, prepared, motion, begun });
         self.started += 1;
         self.wait(place);
         true
@@ -172,8 +180,8 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
 
     /// Ends the run of a member.
     fn end(&mut self, place: usize, outcome: Outcome) {
-        if let Some(Member { own, motion, begun, .. }) = self.members[place].take() {
-            self.source.ended(&own, *motion, &begun, outcome);
+        if let Some(Member { prepared, motion, begun, .. }) = self.members[place].take() {
+            self.source.ended(&prepared, *motion, &begun, outcome);
             self.free.push(place);
         }
     }
@@ -188,15 +196,15 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
     /// Goes on with a motion alone until its steps are event-free; the group of its force then, none where
     /// the run has ended.
     fn prepare(&mut self, place: usize) -> Option<usize> {
-        while let Some(own) = &mut self.members[place] {
-            let left = match own.motion.left() {
+        while let Some(member) = &mut self.members[place] {
+            let left = match member.motion.left() {
                 Ok(left) => left,
                 Err(outcome) => {
                     self.end(place, outcome);
                     continue;
                 }
             };
-            let motion = &mut own.motion;
+            let motion = &mut member.motion;
             if motion.state.contact == Contact::Free
                 && motion.stepper.flies_freely(&motion.state)
                 && motion.has_budget_for(4 * BATCH_STEPS)
@@ -204,8 +212,9 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
                 let force = &motion.stepper.mode(&motion.state).force;
                 let settings = &motion.stepper.settings;
                 let (order, tolerance_log2) = (settings.order, settings.tolerance_log2);
-                let alike = |own: &Group<W>| {
-                    own.columns.takes(force) && (own.order, own.tolerance_log2) == (order, tolerance_log2)
+                let alike = |group: &Group<W>| {
+                    group.columns.takes(force)
+                        && (group.order, group.tolerance_log2) == (order, tolerance_log2)
                 };
                 let found = self.groups.iter().position(alike);
                 return Some(found.unwrap_or_else(|| {
@@ -287,14 +296,14 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
     /// Stores a lane back to its motion, which takes the step on which an event is possible; loads it again
     /// where it stays in the group.
     fn store(&mut self, group: usize, lane: usize) {
-        let Some((place, own, member)) = self.member(group, lane) else { return };
-        let trial = &own.trial;
+        let Some((place, current, member)) = self.member(group, lane) else { return };
+        let trial = &current.trial;
         let motion = &mut member.motion;
-        own.lanes[lane] = None;
-        own.columns.store(lane, motion);
+        current.lanes[lane] = None;
+        current.columns.store(lane, motion);
         let left = motion.stepper.clock.between(&motion.state.at, &motion.stepper.end);
         let flow = if trial.holds[lane] && trial.length.0[lane] < left {
-            copy_lane(&own.series, lane, own.order, &mut motion.stepper.series);
+            copy_lane(&current.series, lane, current.order, &mut motion.stepper.series);
             let alone = &mut motion.stepper.series;
             let measured =
                 Integrals { until: trial.length.0[lane], squared: trial.squared.0[lane], work: 0.0 };
@@ -317,11 +326,11 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
 
     /// Lets the motion of a lane, which stands on a break, enter the neighbouring mode.
     fn enter_neighbour(&mut self, group: usize, lane: usize) {
-        let Some((place, own, member)) = self.member(group, lane) else { return };
-        if !own.columns.enter_neighbour(lane, &member.own.equation.modes) {
-            own.lanes[lane] = None;
-            own.columns.store(lane, &mut member.motion);
-            let exit = own.columns.exit(lane);
+        let Some((place, group, member)) = self.member(group, lane) else { return };
+        if !group.columns.enter_neighbour(lane, &member.prepared.equation.modes) {
+            group.lanes[lane] = None;
+            group.columns.store(lane, &mut member.motion);
+            let exit = group.columns.exit(lane);
             member.motion.enter_neighbour(exit);
             self.wait(place);
         }
@@ -329,18 +338,18 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
 
     /// Loads a motion into a lane.
     fn load(&mut self, group: usize, lane: usize, place: usize) {
-        if let Some(own) = &self.members[place] {
-            self.groups[group].columns.load(lane, own.index, &own.motion);
+        if let Some(member) = &self.members[place] {
+            self.groups[group].columns.load(lane, member.index, &member.motion);
             self.groups[group].lanes[lane] = Some(place);
         }
     }
 
     /// Logs the step that a lane has just taken.
     fn log_step(&mut self, group: usize, lane: usize) {
-        let Some((_, own, member)) = self.member(group, lane) else { return };
-        let trial = &own.trial;
+        let Some((_, group, member)) = self.member(group, lane) else { return };
+        let trial = &group.trial;
         let motion = &mut member.motion;
-        copy_lane(&own.series, lane, own.order, &mut motion.stepper.series);
+        copy_lane(&group.series, lane, group.order, &mut motion.stepper.series);
         let mode = motion.stepper.mode(&motion.state);
         let (length, end) = (trial.length.0[lane], trial.end(lane));
         let state = (end.y + mode.origin, end.v);
@@ -349,18 +358,18 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         if let Some(log) = &mut motion.log {
             log.add_step(&view);
         }
-        own.columns.copy_state(lane, motion);
+        group.columns.copy_state(lane, motion);
         motion.mark();
-        own.columns.logged[lane] = motion.log.is_some();
+        group.columns.logged[lane] = motion.log.is_some();
     }
 
     /// Checks budgets and the cancel flag.
     fn check_budgets(&mut self, group: usize) {
         for lane in 0..W {
-            let Some((place, own, member)) = self.member(group, lane) else { continue };
+            let Some((place, group, member)) = self.member(group, lane) else { continue };
             let motion = &mut member.motion;
-            own.lanes[lane] = None;
-            own.columns.store(lane, motion);
+            group.lanes[lane] = None;
+            group.columns.store(lane, motion);
             if motion.stepper.work.is_cancelled() {
                 let outcome = Outcome::Cancelled { at: motion.stepper.clock.seconds(&motion.state.at) };
                 self.end(place, outcome);

@@ -155,8 +155,8 @@ impl<'a> Source<'a> for Runs<'a, '_, '_> {
                 Some(Form::Sine(drive)) => {
                     self.berths.next();
                     let equation = Equation::new(&model, unit);
-                    let own = berth.get_or_init(|| Box::new(Berth { model, request, equation, drive }));
-                    let Berth { model, request, equation, drive } = &**own;
+                    let run = berth.get_or_init(|| Box::new(Berth { model, request, equation, drive }));
+                    let Berth { model, request, equation, drive } = &**run;
                     return Some(Prepared { model, request, equation, drive, pursuit: None, place });
                 }
                 _ => (self.ended)(place, &model, model.run(&request)),
@@ -164,8 +164,14 @@ impl<'a> Source<'a> for Runs<'a, '_, '_> {
         }
     }
 
-    fn ended(&mut self, own: &Prepared<'a>, motion: LaneMotion<'a>, begun: &Begun<f64>, outcome: Outcome) {
-        (self.ended)(own.place, own.model, motion.finish(own.model, begun, outcome));
+    fn ended(
+        &mut self,
+        prepared: &Prepared<'a>,
+        motion: LaneMotion<'a>,
+        begun: &Begun<f64>,
+        outcome: Outcome,
+    ) {
+        (self.ended)(prepared.place, prepared.model, motion.finish(prepared.model, begun, outcome));
     }
 }
 
@@ -208,8 +214,14 @@ impl<'a, P: Fn(usize) -> Prepared<'a>> Source<'a> for Pursuits<'_, P> {
         (self.next)(under_way).map(&self.prepared)
     }
 
-    fn ended(&mut self, own: &Prepared<'a>, motion: LaneMotion<'a>, begun: &Begun<f64>, outcome: Outcome) {
-        (self.ended)(own.place, motion.arrived(own.model, begun, outcome));
+    fn ended(
+        &mut self,
+        prepared: &Prepared<'a>,
+        motion: LaneMotion<'a>,
+        begun: &Begun<f64>,
+        outcome: Outcome,
+    ) {
+        (self.ended)(prepared.place, motion.arrived(prepared.model, begun, outcome));
     }
 }
 

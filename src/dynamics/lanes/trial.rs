@@ -55,9 +55,9 @@ impl<const W: usize> CompensatedSums<W> {
     /// What a sum becomes with one more term.
     #[inline(always)]
     pub fn with(&self, lane: usize, term: f64) -> (f64, f64) {
-        let mut own = self.get(lane);
-        own.add(term);
-        own.parts()
+        let mut sum = self.get(lane);
+        sum.add(term);
+        sum.parts()
     }
 }
 

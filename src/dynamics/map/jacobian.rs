@@ -42,8 +42,8 @@ impl Jacobian {
     /// The derivatives of a change of this state by an earlier one, of which `earlier` are its derivatives.
     #[must_use]
     pub fn after(&self, earlier: &Self) -> Self {
-        let (own, other) = (&self.rows, &earlier.rows);
-        let entry = |i: usize, j: usize| own[i][0] * other[0][j] + own[i][1] * other[1][j];
+        let (later, other) = (&self.rows, &earlier.rows);
+        let entry = |i: usize, j: usize| later[i][0] * other[0][j] + later[i][1] * other[1][j];
         Self { rows: [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]] }
     }
 
@@ -79,20 +79,20 @@ mod tests {
     fn eigenvalues_of_both_kinds() {
         let real = Jacobian { rows: [[2.0, 1.0], [1.0, 2.0]] };
         assert_eq!(
-            real.multipliers(real.determinant()).map(|own| (own.re, own.im)),
+            real.multipliers(real.determinant()).map(|multiplier| (multiplier.re, multiplier.im)),
             [(3.0, 0.0), (1.0, 0.0)]
         );
         let turned = Jacobian { rows: [[0.0, -0.5], [0.5, 0.0]] };
         assert_eq!(
-            turned.multipliers(turned.determinant()).map(|own| (own.re, own.im)),
+            turned.multipliers(turned.determinant()).map(|multiplier| (multiplier.re, multiplier.im)),
             [(0.0, 0.5), (0.0, -0.5)]
         );
         assert!((turned.multipliers(0.25)[0].magnitude() - 0.5).abs() < 1e-15);
         let nothing = Jacobian { rows: [[0.0, 0.0], [0.0, 0.0]] };
-        assert!(nothing.multipliers(0.0).iter().all(|own| own.magnitude() == 0.0));
+        assert!(nothing.multipliers(0.0).iter().all(|multiplier| multiplier.magnitude() == 0.0));
         let twice = real.after(&turned);
         assert_eq!(twice.rows, [[0.5, -1.0], [1.0, -0.5]]);
         let stiff = Jacobian { rows: [[-1e9, 0.0], [1e9, -1e-12]] };
-        assert_eq!(stiff.multipliers(1e-3).map(|own| own.re), [-1e9, -1e-12]);
+        assert_eq!(stiff.multipliers(1e-3).map(|multiplier| multiplier.re), [-1e9, -1e-12]);
     }
 }

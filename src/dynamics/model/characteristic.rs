@@ -33,8 +33,8 @@ impl Model {
     /// without a stiffness twice the time of flight to a stop; without both the scene's time scale.
     pub fn natural_time(&self) -> f64 {
         let landscape = &self.mechanism.landscape;
-        let wells = landscape.equilibria.iter().filter(|own| own.stable);
-        let stiffness = wells.map(|own| landscape.inner_stiffness(own)).fold(0.0, f64::max);
+        let wells = landscape.equilibria.iter().filter(|equilibrium| equilibrium.stable);
+        let stiffness = wells.map(|well| landscape.inner_stiffness(well)).fold(0.0, f64::max);
         let small = TAU * (self.mass / stiffness).sqrt();
         let usable = |time: &f64| time.is_finite() && *time > 0.0;
         Some(small)
@@ -157,8 +157,8 @@ mod tests {
 
     #[test]
     fn the_acceleration_is_that_of_the_equation_of_motion() {
-        let own = model("duffing", &[]);
+        let duffing = model("duffing", &[]);
         // x'' = x - x^3 - 0.3 x' - a_b
-        near(own.acceleration(0.5, 0.2, 0.1), 0.5 - 0.125 - 0.06 - 0.1);
+        near(duffing.acceleration(0.5, 0.2, 0.1), 0.5 - 0.125 - 0.06 - 0.1);
     }
 }

@@ -18,7 +18,7 @@ impl Model {
         }
         match &self.stops {
             _ if self.compliant.is_some() => {
-                lines.extend(self.compliant.iter().flat_map(|own| compliant(self, own)))
+                lines.extend(self.compliant.iter().flat_map(|stop| compliant(self, stop)))
             }
             Some(pair) => {
                 let stop = |side: &str, at: Option<StopAt>| match at {
@@ -87,8 +87,8 @@ impl Model {
             absent.push("excitation");
         }
         match &self.transducer {
-            Some(own) => {
-                lines.push(own.describe());
+            Some(transducer) => {
+                lines.push(transducer.describe());
                 lines.extend(self.fast_circuit());
             }
             None => absent.push("transducer"),
@@ -136,7 +136,7 @@ fn compliant(model: &Model, stop: &Hertz) -> Vec<String> {
     )];
     for speed in SPEEDS {
         let force = stop.peak_force(model.mass, speed);
-        let pressure = stop.pressure(force).map(|own| format!(", {} GPa", short(own / 1e9)));
+        let pressure = stop.pressure(force).map(|pressure| format!(", {} GPa", short(pressure / 1e9)));
         lines.push(format!(
             "an impact at {speed} m/s on one: {} ms of contact, restitution {}, {} um deep, {} N{}",
             short(stop.contact_time(model.mass, speed) * 1e3),

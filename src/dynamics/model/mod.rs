@@ -212,7 +212,7 @@ impl Model {
     /// x = 0 and holds what a compliant stop stores.
     pub fn energies(&self, x: f64, v: f64) -> (f64, f64) {
         let potential = self.mechanism.curve.potential(x);
-        let pressed = self.compliant.zip(self.pressed_depth(x)).map(|(own, (depth, _))| own.energy(depth));
+        let pressed = self.compliant.zip(self.pressed_depth(x)).map(|(stop, (depth, _))| stop.energy(depth));
         (0.5 * self.mass * v * v, pressed.map_or(potential, |stored| potential + stored))
     }
 

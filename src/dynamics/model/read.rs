@@ -26,7 +26,7 @@ impl Model {
     /// Damping coefficient in N s/m that acts on the motion: with that of a transducer without an electrical
     /// state.
     pub fn total_damping(&self) -> f64 {
-        self.damping + self.transducer.map_or(0.0, |own| own.damping)
+        self.damping + self.transducer.map_or(0.0, |transducer| transducer.damping)
     }
 
     /// Whether the scene has a transducer.
@@ -36,12 +36,12 @@ impl Model {
 
     /// The transducer as the scene has it.
     pub fn transducer(&self) -> scene::Transducer {
-        self.transducer.map_or(scene::Transducer::None, |own| own.described)
+        self.transducer.map_or(scene::Transducer::None, |transducer| transducer.described)
     }
 
     /// What the transducer gives at a sample of the motion; none without one.
     pub fn output(&self, sample: &Sample) -> Option<Output> {
-        self.transducer.map(|own| own.output(sample.v, sample.electrical))
+        self.transducer.map(|transducer| transducer.output(sample.v, sample.electrical))
     }
 
     /// Whether the transducer has a state of its own, a current or a voltage, that goes on with the motion.
@@ -62,18 +62,18 @@ impl Model {
 
     /// The circuit of the transducer, where that has a state.
     pub(in crate::dynamics) fn circuit(&self) -> Option<&Circuit> {
-        self.transducer.as_ref().and_then(|own| own.circuit.as_ref())
+        self.transducer.as_ref().and_then(|transducer| transducer.circuit.as_ref())
     }
 
     /// Energy in J that the transducer stores in this electrical state.
     pub(in crate::dynamics) fn charged(&self, electrical: f64) -> f64 {
-        self.circuit().map_or(0.0, |own| 0.5 * self.mass * own.state(electrical).powi(2))
+        self.circuit().map_or(0.0, |circuit| 0.5 * self.mass * circuit.state(electrical).powi(2))
     }
 
     /// The electrical state with which this model goes on from that of another one.
     pub(in crate::dynamics) fn taken_over(&self, before: &Self, electrical: f64) -> f64 {
         let pair = self.transducer.as_ref().zip(before.transducer.as_ref());
-        pair.map_or(0.0, |(own, was)| own.taken_over(was, electrical))
+        pair.map_or(0.0, |(present, previous)| present.taken_over(previous, electrical))
     }
 
     /// The mechanism.
@@ -184,7 +184,7 @@ impl Model {
     #[must_use]
     pub fn carried_on(mut self, before: &Self, state: (f64, f64)) -> Self {
         let pressed = before.compliant.and(self.compliant).and_then(|_| before.pressed_depth(state.0));
-        self.start = self.held_within(state, pressed.map_or(0.0, |own| own.0));
+        self.start = self.held_within(state, pressed.map_or(0.0, |(depth, _)| depth));
         self.motionless = false;
         self
     }

@@ -178,7 +178,7 @@ pub(crate) fn scales(
     let open = Scales::new(&landmarks);
     let Some(StopPair { left: Some(left), right: Some(right) }) = stops else { return open };
     // A compliant stop leaves as much more as the mass could press it in, even without its loss.
-    let depth = compliant.map_or(0.0, |own| Hertz { loss: 0.0, ..own }.depth(mass, open.speed));
+    let depth = compliant.map_or(0.0, |stop| Hertz { loss: 0.0, ..stop }.depth(mass, open.speed));
     let room = 0.5 * (right.x - left.x) + depth;
     Scales::new(&Landmarks { room: Some(room), ..landmarks })
 }

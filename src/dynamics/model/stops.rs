@@ -37,7 +37,7 @@ impl StopPair {
                 Some(Self { left, right })
             }
             Stops::Uneven { left_mm, right_mm, restitution_left, restitution_right } => {
-                let of = |own: Option<f64>, other: Option<f64>| own.or(other).unwrap_or(1.0);
+                let of = |given: Option<f64>, other: Option<f64>| given.or(other).unwrap_or(1.0);
                 Some(Self {
                     left: left_mm.and_then(|mm| at(mm, -1.0, of(restitution_left, restitution_right))),
                     right: right_mm.and_then(|mm| at(mm, 1.0, of(restitution_right, restitution_left))),

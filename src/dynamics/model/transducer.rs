@@ -131,7 +131,7 @@ impl Transducer {
     /// Whether a motion can be computed with it.
     pub fn is_finite(&self) -> bool {
         let numbers = [self.damping, self.voltage, self.current, self.load, self.coil];
-        numbers.into_iter().all(f64::is_finite) && self.circuit.is_none_or(|own| own.is_finite())
+        numbers.into_iter().all(f64::is_finite) && self.circuit.is_none_or(|circuit| circuit.is_finite())
     }
 
     /// What it gives at a velocity in m/s and an electrical state in A or V.
@@ -159,7 +159,7 @@ impl Transducer {
     /// current and a voltage as a voltage.
     pub fn taken_over(&self, before: &Self, electrical: f64) -> f64 {
         match (&self.circuit, &before.circuit) {
-            (Some(own), Some(was)) if own.is_voltage == was.is_voltage => electrical,
+            (Some(circuit), Some(previous)) if circuit.is_voltage == previous.is_voltage => electrical,
             _ => 0.0,
         }
     }
@@ -167,23 +167,23 @@ impl Transducer {
     /// Why steps are short beside a circuit that is far faster than a motion of this time scale in s, and
     /// what the scene would be without it; none of another one. `mass` in kg.
     pub fn fast_circuit(&self, mass: f64, time: f64) -> Option<String> {
-        let own = self.circuit.as_ref()?;
-        let (coupling, decay) = (own.coupling.abs(), own.decay);
+        let circuit = self.circuit.as_ref()?;
+        let (coupling, decay) = (circuit.coupling.abs(), circuit.decay);
         if !(coupling.max(decay) * time > FAST) {
             return None;
         }
         // what is left out with the state: its lag, and the mass that this takes or gives
         let apart = (1.0 / (decay * time)).max((coupling / decay).powi(2));
         if !(apart < NEARLY) {
-            let storage = if own.is_voltage { "capacitance_nf" } else { "inductance_mh" };
+            let storage = if circuit.is_voltage { "capacitance_nf" } else { "inductance_mh" };
             return Some(format!(
                 "mass and circuit exchange their energy in {} s, and a step covers but a few of it; a larger \
                  {storage} or a weaker coupling makes that slower",
                 short(1.0 / coupling)
             ));
         }
-        let instead = if own.is_voltage {
-            let (load, force) = (1.0 / self.current, coupling * mass / own.amount);
+        let instead = if circuit.is_voltage {
+            let (load, force) = (1.0 / self.current, coupling * mass / circuit.amount);
             format!(
                 "transducer=Electromagnetic(coupling_v_s_per_m: {}, coil_ohm: 0, load_ohm: {}) gives the \
                  same voltage, current and power without a state of its own",
@@ -211,10 +211,10 @@ impl Transducer {
                 short(self.voltage),
                 short(self.current)
             ),
-            Some(own) => format!(
+            Some(circuit) => format!(
                 "transducer: {} with a time constant of {} s beside the motion",
-                if own.is_voltage { "a voltage" } else { "a current" },
-                short(1.0 / own.decay)
+                if circuit.is_voltage { "a voltage" } else { "a current" },
+                short(1.0 / circuit.decay)
             ),
         }
     }

@@ -129,9 +129,9 @@ impl Judge {
         self.rhythm == Rhythm::Changing
     }
 
-    fn keep(&mut self, own: Observation) {
+    fn keep(&mut self, observation: Observation) {
         if let Some(tape) = &mut self.tape {
-            tape.push(own);
+            tape.push(observation);
         }
     }
 

@@ -102,8 +102,8 @@ impl Strobes {
             return;
         }
         let number = self.seen;
-        for (own, since) in self.since.iter_mut().enumerate().take(self.longest) {
-            let Some(before) = number.checked_sub(own as u64 + 1) else { break };
+        for (index, since) in self.since.iter_mut().enumerate().take(self.longest) {
+            let Some(before) = number.checked_sub(index as u64 + 1) else { break };
             if !state.is_near(&self.recent[before as usize % LONGEST], self.scales) {
                 *since = before + 1;
             }
@@ -232,15 +232,15 @@ impl Crossings {
     /// A window of so many forcing periods. A period is only accepted if the window holds it twice, so that
     /// every crossing has a partner to be compared with.
     pub fn new(periods: u64) -> Self {
-        let waiting = std::array::from_fn(|own| (2 * (own as u64 + 1) <= periods).then_some(0));
+        let waiting = std::array::from_fn(|index| (2 * (index as u64 + 1) <= periods).then_some(0));
         let paired = [false; LONGEST];
         Self { periods: periods as f64, recent: VecDeque::new(), gone: 0, waiting, paired }
     }
 
     pub fn tell(&mut self, time: f64, side: Side) {
         let number = self.gone + self.recent.len() as u64;
-        for (own, waiting) in self.waiting.iter_mut().enumerate() {
-            let (q, Some(first)) = (own as f64 + 1.0, *waiting) else { continue };
+        for (index, waiting) in self.waiting.iter_mut().enumerate() {
+            let (q, Some(first)) = (index as f64 + 1.0, *waiting) else { continue };
             if time < q - CROSSING_MATCH {
                 continue;
             }
@@ -249,7 +249,7 @@ impl Crossings {
                 .is_some_and(|partner| partner.1 == side && (time - partner.0 - q).abs() <= CROSSING_MATCH);
             if meets {
                 *waiting = Some(first + 1);
-                self.paired[own] = true;
+                self.paired[index] = true;
             } else if !(time <= q + CROSSING_MATCH && first == 0) {
                 // (one near the edge may have its partner before the window)
                 *waiting = None;
@@ -275,8 +275,8 @@ impl Crossings {
 
     /// Whether they repeat with a period of at most [`LONGEST`] forcing periods.
     pub fn repeat(&self) -> bool {
-        self.waiting.iter().zip(self.paired).enumerate().any(|(own, (waiting, paired))| {
-            let q = own as f64 + 1.0;
+        self.waiting.iter().zip(self.paired).enumerate().any(|(index, (waiting, paired))| {
+            let q = index as f64 + 1.0;
             paired
                 && waiting.is_some_and(|first| {
                     let alone = self.recent.get((first - self.gone) as usize);
@@ -429,7 +429,7 @@ mod tests {
                 assert_eq!(skipped.seen(), told.seen());
                 assert_eq!(skipped.period(), told.period(), "{lap} {from} {periods}");
                 let expected = (lap <= 12 && 2 * lap <= periods).then_some(lap as u32);
-                assert_eq!(told.period().map(|own| own.0), expected, "{lap} {from} {periods}");
+                assert_eq!(told.period().map(|period| period.0), expected, "{lap} {from} {periods}");
             }
         }
     }

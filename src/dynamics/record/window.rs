@@ -85,8 +85,8 @@ impl<T: Scalar> Recorder<'_, T> {
         // as it was written, where it was
         let written = [self.model.settle, self.model.duration];
         let seconds = |at: &Instant<T>| {
-            let own = written.into_iter().find(|t| self.clock.at(*t) == *at);
-            own.unwrap_or_else(|| self.clock.seconds(at))
+            let as_written = written.into_iter().find(|t| self.clock.at(*t) == *at);
+            as_written.unwrap_or_else(|| self.clock.seconds(at))
         };
         let (from, reached) = (seconds(from), seconds(reached));
         (from, reached.max(from))
@@ -120,24 +120,24 @@ impl<T: Scalar> Recorder<'_, T> {
 
     /// Lists the states within a step.
     pub(crate) fn list_states<P: Path<T>>(&mut self, step: &StepView<T, P>) {
-        for own in self.listings.each() {
-            while let Some(next) = own.due() {
+        for listing in self.listings.each() {
+            while let Some(next) = listing.due() {
                 let into = self.clock.between(&step.at, &next).larger(T::zero());
                 if into >= step.duration {
                     break;
                 }
                 let into = step.path.parameter(into, step.length);
-                own.add((step.x_at(into).to_f64(), step.path.velocity(into).to_f64() / self.unit));
+                listing.add((step.x_at(into).to_f64(), step.path.velocity(into).to_f64() / self.unit));
             }
         }
     }
 
     /// Lists the states of a mass that stands still at `x` up to `until`.
     pub(crate) fn list_still(&mut self, x: T, until: &Instant<T>) {
-        for own in self.listings.each() {
-            own.skip_still(&self.clock, self.period, until);
-            while own.due().is_some_and(|next| self.clock.between(&next, until) > T::zero()) {
-                own.add((x.to_f64(), 0.0));
+        for listing in self.listings.each() {
+            listing.skip_still(&self.clock, self.period, until);
+            while listing.due().is_some_and(|next| self.clock.between(&next, until) > T::zero()) {
+                listing.add((x.to_f64(), 0.0));
             }
         }
     }
@@ -149,9 +149,9 @@ impl<T: Scalar> Recorder<'_, T> {
         (x, v): (f64, f64),
     ) -> (Vec<SectionPoint>, Option<(f64, f64)>) {
         let same = self.period * T::of(SAME);
-        for own in self.listings.each() {
-            if own.due().is_some_and(|next| self.clock.between(&next, end).abs() <= same) {
-                own.add((x, v));
+        for listing in self.listings.each() {
+            if listing.due().is_some_and(|next| self.clock.between(&next, end).abs() <= same) {
+                listing.add((x, v));
             }
         }
         std::mem::take(&mut self.listings).finish(&self.clock)

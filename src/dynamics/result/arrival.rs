@@ -26,7 +26,7 @@ impl Capture {
 
     /// Whether a motion in this state has arrived.
     pub fn is_reached(&self, state: (f64, f64)) -> bool {
-        let near = |own: f64, other: f64, most: f64| (own - other).abs() <= most;
+        let near = |value: f64, other: f64, most: f64| (value - other).abs() <= most;
         near(state.0, self.state.0, self.near.0)
             && near(state.1, self.state.1, self.near.1)
             && self.holds(state)
@@ -47,7 +47,7 @@ pub struct Region {
 impl Region {
     /// The cell in which a state lies.
     pub fn cell(&self, (x, v): (f64, f64)) -> (i32, i32) {
-        let place = |own: f64, corner: f64, size: f64| ((own - corner) / size).floor() as i32;
+        let place = |value: f64, corner: f64, size: f64| ((value - corner) / size).floor() as i32;
         (place(x, self.corner.0, self.size.0), place(v, self.corner.1, self.size.1))
     }
 

@@ -115,7 +115,7 @@ impl<T: Number> ForceSeries<T> {
         // (by names, since of an array the compiler would gather the same lane of all)
         macro_rules! side_by_side {
             ($first:expr, $($at:literal $sum:ident)*) => {{
-                let (above, own) = self.rows.split_at_mut(n * self.stride);
+                let (above, current) = self.rows.split_at_mut(n * self.stride);
                 let first = $first;
                 let mut rows = above.chunks_exact(self.stride).rev().zip(&y[1..=n]);
                 if let Some((row, y)) = rows.next() {
@@ -126,8 +126,8 @@ impl<T: Number> ForceSeries<T> {
                         let row = &row[first + 1..first + 1 + BLOCK];
                         $($sum += *y * row[$at];)*
                     }
-                    let own = &mut own[first..first + BLOCK];
-                    $(own[$at] = $sum;)*
+                    let current = &mut current[first..first + BLOCK];
+                    $(current[$at] = $sum;)*
                 }
             }};
         }
@@ -158,13 +158,13 @@ impl<T: Number> Cubic<'_, T> {
         if k == 0 {
             return plus(a0, more);
         }
-        let own = a1 * y[k];
+        let linear_term = a1 * y[k];
         match k {
             1 => {}
             2 => self.row[1] = a2 * y[1],
             _ => self.row[k - 1] = a2 * y[k - 1] + a3 * inner_square(y, k - 1),
         }
-        plus(inner_convolve(y, self.row, k), more) + own
+        plus(inner_convolve(y, self.row, k), more) + linear_term
     }
 }
 
@@ -181,8 +181,8 @@ pub(crate) fn constant<T: Number>(c0: T, k: usize, more: Option<T>) -> T {
 /// Coefficient `k` of a force that is a straight line, and `more`.
 #[inline(always)]
 pub(crate) fn linear<T: Number>(c0: T, c1: T, y: &[T; ROOM], k: usize, more: Option<T>) -> T {
-    let own = c1 * y[k];
-    if k == 0 { plus(own + c0, more) } else { plus(own, more) }
+    let linear_term = c1 * y[k];
+    if k == 0 { plus(linear_term + c0, more) } else { plus(linear_term, more) }
 }
 
 /// The sum, where there is something to add; otherwise no addition is executed.
@@ -286,8 +286,8 @@ mod tests {
             let (force, y) = some::<f64>(degree);
             let mut series = ForceSeries::new(degree);
             for (k, exact) in exact.iter().enumerate().take(18) {
-                let own = series.coefficient(&force, &y, k);
-                assert!((own - exact).abs() < 1e-13 * largest, "{degree} {k}: {own:e} {exact:e}");
+                let value = series.coefficient(&force, &y, k);
+                assert!((value - exact).abs() < 1e-13 * largest, "{degree} {k}: {value:e} {exact:e}");
             }
         }
     }
@@ -296,8 +296,8 @@ mod tests {
     fn after_a_force_of_another_degree_the_bits_are_the_same() {
         let (low, y) = some::<f64>(5);
         let (high, other) = some::<f64>(11);
-        let series = |own: &mut ForceSeries<f64>, force, y| -> Vec<f64> {
-            (0..18).map(|k| own.coefficient(force, y, k)).collect()
+        let series = |force_series: &mut ForceSeries<f64>, force, y| -> Vec<f64> {
+            (0..18).map(|k| force_series.coefficient(force, y, k)).collect()
         };
         let alone = series(&mut ForceSeries::new(11), &low, &y);
         let mut used = ForceSeries::new(11);

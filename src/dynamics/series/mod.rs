@@ -254,8 +254,8 @@ pub(crate) fn natural_steps<const W: usize>(
         let inverse = 1.0 / (k as f64 - 1.0);
         for lane in 0..W {
             let size = coefficients[lane].abs() * k as f64;
-            let own = (speed_log2[lane] - fast_log2(size)) * inverse;
-            radius[lane] = if (size > 1e-300) & (own < radius[lane]) { own } else { radius[lane] };
+            let estimate = (speed_log2[lane] - fast_log2(size)) * inverse;
+            radius[lane] = if (size > 1e-300) & (estimate < radius[lane]) { estimate } else { radius[lane] };
             sum[lane] += size;
         }
     }

@@ -126,11 +126,11 @@ fn at_nodes<T: Number, const WORK: bool, const COUNT: usize>(
     let v = at_four_times(y.len(), |k| y[k] * T::whole(k), 1, times);
     let base = if WORK { at_four_times(a.len(), |k| a[k], 0, times) } else { v };
     macro_rules! add {
-        ($($own:tt)*) => {
-            $(if $own < COUNT {
-                *squared += v.$own * v.$own * weights[$own];
+        ($($index:tt)*) => {
+            $(if $index < COUNT {
+                *squared += v.$index * v.$index * weights[$index];
                 if WORK {
-                    *power += base.$own * v.$own * weights[$own];
+                    *power += base.$index * v.$index * weights[$index];
                 }
             })*
         };

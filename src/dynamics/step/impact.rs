@@ -186,18 +186,18 @@ impl<T: Scalar> Impact<T> {
         if !(unresolved <= between && unresolved * unresolved <= tolerance) {
             return None;
         }
-        let end = self.motion(|own| own, T::sqrt, [amplitude, time, T::of(1.0)]).speed;
+        let end = self.motion(|value| value, T::sqrt, [amplitude, time, T::of(1.0)]).speed;
         let groups = self.amplitude[..self.rule.groups()].iter();
         // (between the points too)
-        self.most = groups.flat_map(|own| own.0).fold(self.first, T::larger) * T::of(1.001);
+        self.most = groups.flat_map(|group| group.0).fold(self.first, T::larger) * T::of(1.001);
         (end < T::zero() && -end <= speed * T::of(MOST_GAIN)).then_some(Separation { time, speed: end })
     }
 
     /// |q| at touch, and how many terms of the series tell speeds up to there.
     fn begin(&mut self, speed: T, tolerance: T) -> Option<T> {
         // p^2 = 2 (z - ln(1 + z)) is near z^2/(1 + 2z/3), and below z^2/(1 + z/2).
-        let own = self.stop.loss * speed;
-        let near = |share: f64| own / (T::of(1.0) + own * T::of(share)).sqrt();
+        let z_at_touch = self.stop.loss * speed;
+        let near = |share: f64| z_at_touch / (T::of(1.0) + z_at_touch * T::of(share)).sqrt();
         let size = near(0.5).to_f64().max(1e-9) * MOST_GAIN;
         let needed = fast_log2(tolerance.to_f64() * 1e-3) / (fast_log2(size) - fast_log2(STRETCH_RADIUS));
         self.terms = needed as usize + 2;
@@ -211,7 +211,7 @@ impl<T: Scalar> Impact<T> {
         for _ in 0..6 {
             // z' = p (1 + z)/z
             let z = p * self.stretch(p);
-            let change = (own - z) * z / (p * (T::of(1.0) + z));
+            let change = (z_at_touch - z) * z / (p * (T::of(1.0) + z));
             p += change;
             if change.abs() <= p * T::of(T::ROUGH) {
                 break;
@@ -313,7 +313,7 @@ impl<T: Scalar> Impact<T> {
     #[inline(always)]
     fn motion_at(&self, group: usize) -> Place<Lanes<GROUP, T>> {
         let (m, t, y) = (self.amplitude[group], self.time[group], self.rule.places(group));
-        self.motion(Lanes::all, |own| own.map(T::sqrt), [m, t, y])
+        self.motion(Lanes::all, |value| value.map(T::sqrt), [m, t, y])
     }
 
     /// The motion at m, t and y.

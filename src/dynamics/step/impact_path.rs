@@ -20,13 +20,13 @@ impl<T: Scalar> Impact<T> {
     #[inline(always)]
     fn sums<N: Number>(&self, y: N, all: impl Fn(T) -> N + Copy) -> (N, (N, N)) {
         let slopes = [&self.amplitude_slope, &self.time_slope];
-        let [m, t] = self.between.get_or_init(|| slopes.map(|own| self.rule.coefficients(own)));
+        let [m, t] = self.between.get_or_init(|| slopes.map(|slope| self.rule.coefficients(slope)));
         (all(self.first) + self.rule.integral(m, y, all).0, self.rule.integral(t, y, all))
     }
 
     /// The time at `y` and its slope.
     fn time_at(&self, y: T) -> (T, T) {
-        self.sums(y, |own| own).1
+        self.sums(y, |value| value).1
     }
 
     /// Root of the depth where y is 0: m, which hardly changes.
@@ -36,8 +36,8 @@ impl<T: Scalar> Impact<T> {
 
     /// The motion and the time at `y`.
     fn at(&self, y: T) -> (Place<T>, T) {
-        let (m, (t, _)) = self.sums(y, |own| own);
-        (self.motion(|own| own, T::sqrt, [m, t, y]), t)
+        let (m, (t, _)) = self.sums(y, |value| value);
+        (self.motion(|value| value, T::sqrt, [m, t, y]), t)
     }
 
     /// The same as exact as at the ends: the slopes between the points are not, what they add up to is.
@@ -46,12 +46,12 @@ impl<T: Scalar> Impact<T> {
         let (mut m, mut t): (Values<T>, Values<T>) =
             ([Lanes::zero(); MOST_GROUPS], [Lanes::zero(); MOST_GROUPS]);
         for group in 0..self.rule.groups() {
-            let own = self.between((start, y), group).0;
-            (m[group], t[group]) = (own.amplitude_slope, own.time_slope);
+            let point = self.between((start, y), group).0;
+            (m[group], t[group]) = (point.amplitude_slope, point.time_slope);
         }
         let half = (y - start) * T::of(0.5);
         let (m, t) = (self.first + self.rule.total(&m) * half, self.rule.total(&t) * half);
-        (self.motion(|own| own, T::sqrt, [m, t, y]), t)
+        (self.motion(|value| value, T::sqrt, [m, t, y]), t)
     }
 
     /// The motion at the points between two places, and the time there.
@@ -59,7 +59,7 @@ impl<T: Scalar> Impact<T> {
         let half = (to - from) * T::of(0.5);
         let y = self.rule.places(group).map(|place: T| from + half * (T::of(1.0) + place));
         let (m, (t, _)) = self.sums(y, Lanes::all);
-        (self.motion(Lanes::all, |own| own.map(T::sqrt), [m, t, y]), t)
+        (self.motion(Lanes::all, |value| value.map(T::sqrt), [m, t, y]), t)
     }
 
     /// The base's acceleration.
@@ -97,8 +97,8 @@ impl<T: Scalar> Impact<T> {
             let (t, u, w, slope) = if whole {
                 (self.time[group], self.root[group], self.speed[group], self.time_slope[group])
             } else {
-                let (own, t) = self.between((from - one, to - one), group);
-                (t, own.root, own.speed, own.time_slope)
+                let (point, t) = self.between((from - one, to - one), group);
+                (t, point.root, point.speed, point.time_slope)
             };
             *value = of(t, u, w) * slope;
         }
@@ -149,8 +149,8 @@ impl<T: Scalar> Path<T> for Impact<T> {
         }
         let between = self.parameter_by(|y| self.time_at(y), time, length * T::of(0.5));
         let exactly = |y: T| {
-            let (own, time) = self.exactly_at(y);
-            (time, own.time_slope)
+            let (point, time) = self.exactly_at(y);
+            (time, point.time_slope)
         };
         self.parameter_by(exactly, time, between)
     }
@@ -177,13 +177,13 @@ impl<T: Scalar> InStop<T> for Impact<T> {
             return known;
         }
         let grows = |y: T| {
-            let (own, t) = self.at(y);
-            let (u, w) = (own.root, own.speed);
-            let net = self.stop.force(u, w) - self.pressing - self.changed(|own| own, [t, u * u, w]);
+            let (point, t) = self.at(y);
+            let (u, w) = (point.root, point.speed);
+            let net = self.stop.force(u, w) - self.pressing - self.changed(|value| value, [t, u * u, w]);
             T::of(1.5) * w * (T::of(1.0) + self.stop.loss * w) > self.stop.loss * (u * u) * net
         };
         let (_, place) = bisect(T::of(-1.0), T::zero(), HALVINGS, grows);
-        let own = self.at(place).0;
-        known.larger(self.stop.force(own.root, own.speed))
+        let point = self.at(place).0;
+        known.larger(self.stop.force(point.root, point.speed))
     }
 }

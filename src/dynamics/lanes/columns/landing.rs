@@ -113,10 +113,10 @@ impl<const W: usize> Columns<W> {
         let times = (at(0.2), at(0.4), at(0.6), at(0.8));
         let (a, b, c, d) = polynomial::at_four_times(y.len(), |k| y[k], 0, times);
         for (lane, turning) in turning.iter_mut().enumerate() {
-            let own = [a, b, c, d].map(|own| own.0[lane] + self.origin.0[lane]);
+            let positions = [a, b, c, d].map(|value| value.0[lane] + self.origin.0[lane]);
             let (start, end) = (y[0].0[lane] + self.origin.0[lane], to.x.0[lane]);
-            let lowest = own.into_iter().fold(start.min(end), f64::min);
-            let highest = own.into_iter().fold(start.max(end), f64::max);
+            let lowest = positions.into_iter().fold(start.min(end), f64::min);
+            let highest = positions.into_iter().fold(start.max(end), f64::max);
             // five chords, each of a fifth of the length
             let off = deviation.0[lane] * (CLEARANCE / 25.0) + bound.0[lane] * ROUNDING;
             clear.0[lane] |= lowest - off > self.low_end.0[lane];
@@ -211,10 +211,10 @@ fn roots<const W: usize>(
 
 /// Of each lane the second number where `which` says so, else the first.
 #[inline(always)]
-fn choose<const W: usize>(which: &[bool; W], own: Lanes<W>, other: Lanes<W>) -> Lanes<W> {
-    let mut chosen = own;
+fn choose<const W: usize>(which: &[bool; W], first: Lanes<W>, second: Lanes<W>) -> Lanes<W> {
+    let mut chosen = first;
     for (lane, which) in which.iter().enumerate() {
-        chosen.0[lane] = if *which { other.0[lane] } else { own.0[lane] };
+        chosen.0[lane] = if *which { second.0[lane] } else { first.0[lane] };
     }
     chosen
 }

@@ -158,8 +158,8 @@ impl<const W: usize> Columns<W> {
     /// Loads a mode, whose force has the lanes' degree, into a lane, as number `index` of its equation.
     fn load_mode(&mut self, lane: usize, index: usize, mode: &Mode<f64>) {
         self.of[lane].1 = index;
-        for (degree, own) in mode.force.coefficients().iter().enumerate() {
-            self.force.coefficient_mut(degree).0[lane] = *own;
+        for (degree, coefficient) in mode.force.coefficients().iter().enumerate() {
+            self.force.coefficient_mut(degree).0[lane] = *coefficient;
         }
         let at_break = |end: End| match mode.end(end) {
             (level, EndKind::Break) => level,
@@ -218,7 +218,7 @@ impl<const W: usize> Columns<W> {
         motion.state.mode = self.of[lane].1;
         let touched = |end: End| Touch { end, multiplicity: BY_SPEED };
         let ends = [End::Low, End::High].into_iter();
-        motion.state.touch = ends.map(touched).find(|own| own.end.sign::<f64>() == self.touch.0[lane]);
+        motion.state.touch = ends.map(touched).find(|touch| touch.end.sign::<f64>() == self.touch.0[lane]);
         motion.record.end_event_free(
             (self.low.0[lane], self.high.0[lane]),
             self.squared.get(lane),
