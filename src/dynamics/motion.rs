@@ -75,7 +75,7 @@ impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
         state.circuit =
             T::of(model.circuit().map_or(0.0, |circuit| circuit.state(model.start_electrical) * unit));
         let stepper = Stepper::new(equation, drive, clock, settings, end, Work::new(request.cancel));
-        record.samples_per_look = stepper.costs.samples_per_look();
+        record.samples_per_check = stepper.costs.samples_per_check();
         Self {
             stepper,
             state,
@@ -112,10 +112,10 @@ impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
 
     /// Passes a call to the recorder, and to the log where there is one.
     #[inline(always)] // so that only what is kept of the call is made
-    pub fn tell(&mut self, call: Call<T>) {
+    pub fn report(&mut self, call: Call<T>) {
         if let Some(log) = &mut self.log {
             log.add(call);
         }
-        self.record.tell(&call, self.state.segment);
+        self.record.report(&call, self.state.segment);
     }
 }

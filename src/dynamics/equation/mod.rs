@@ -17,7 +17,7 @@ use mode::cut;
 pub(crate) use mode::{End, EndKind, Mode};
 pub(crate) use stop::{Compliant, Stop};
 
-/// Stands in for an end that does not exist; far, yet safe to compute with.
+/// Stands for an end that does not exist: far away, yet safe to compute with.
 pub(crate) const FAR: f64 = 1e200;
 
 /// The equation of motion in kernel units.
@@ -90,8 +90,8 @@ impl<T: Scalar> Equation<T> {
         self.modes.iter().map(|mode| mode.force.degree()).max().unwrap_or(0)
     }
 
-    /// The mode of a mass at `x`, which lies on `piece` of the force curve; on the surface of a compliant
-    /// stop the one outside it.
+    /// The mode of a mass at `x`, which lies on `piece` of the force curve. On the surface of a compliant
+    /// stop it is the mode outside the stop.
     pub fn mode_at(&self, x: T, piece: usize) -> usize {
         if self.compliant.is_none() {
             return piece;

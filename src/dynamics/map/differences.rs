@@ -1,4 +1,5 @@
-//! Derivatives of the map against finite differences in double-double arithmetic, on every kind of event.
+//! Tests of the derivatives of the map against finite differences in double-double arithmetic, for
+//! every event.
 
 use std::sync::Arc;
 
@@ -24,7 +25,7 @@ fn differences(model: &Model, seconds: f64, (x, v): (f64, f64)) -> Jacobian {
     let kernel = Kernel::<DoubleDouble>::new(&map.model);
     let unit = model.scales.unit();
     let dd = DoubleDouble::of;
-    // The error of a central difference is of the order of its square.
+    // The error of a central difference is of the order of the square of its step.
     let step = dd(1e-9);
     let end = |dx: DoubleDouble, dv: DoubleDouble| {
         let start = (dd(x) + dx, (dd(v) + dv) * dd(unit));
@@ -41,7 +42,7 @@ fn differences(model: &Model, seconds: f64, (x, v): (f64, f64)) -> Jacobian {
     Jacobian { rows: [[by_x[0], by_v[0]], [by_x[1], by_v[1]]] }
 }
 
-/// Asserts that both agree to a share of the largest derivative, and that what must happen happens.
+/// Asserts that both agree to a share of the largest derivative, and that the `must` events happen.
 #[track_caller]
 fn agree(fields: &str, seconds: f64, start: (f64, f64), must: &[EventKind], share: f64) {
     let model = model(fields);

@@ -1,7 +1,7 @@
-//! Derivatives of a state by an earlier one, and their eigenvalues.
+//! Derivatives of a state with respect to an earlier one, and their eigenvalues.
 
-/// Derivatives of displacement and velocity (rows) by displacement and velocity at an earlier time (columns),
-/// in SI.
+/// Derivatives of displacement and velocity (rows) with respect to displacement and velocity at an earlier
+/// time (columns), in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Jacobian {
     /// By rows: the unit of the second column is s, that of the second row 1/s.
@@ -25,7 +25,7 @@ impl Multiplier {
 }
 
 impl Jacobian {
-    /// No change.
+    /// The identity.
     pub const IDENTITY: Self = Self { rows: [[1.0, 0.0], [0.0, 1.0]] };
 
     /// Determinant.
@@ -39,7 +39,7 @@ impl Jacobian {
         self.rows[0][0] + self.rows[1][1]
     }
 
-    /// The derivatives of a change of this state by an earlier one, of which `earlier` are its derivatives.
+    /// The chain rule: these derivatives, of the later part of a motion, times those of the part before it.
     #[must_use]
     pub fn after(&self, earlier: &Self) -> Self {
         let (later, other) = (&self.rows, &earlier.rows);
@@ -47,15 +47,15 @@ impl Jacobian {
         Self { rows: [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]] }
     }
 
-    /// The same of the mirrored state.
+    /// The derivatives of the mirrored state.
     #[must_use]
     pub fn mirrored(&self) -> Self {
         Self { rows: self.rows.map(|row| row.map(|entry| -entry)) }
     }
 
-    /// Eigenvalues, the larger magnitude first, of a pair of conjugates the one above the real axis. The
-    /// smaller real one is `determinant` over the larger: known apart, it keeps its digits however small it
-    /// is.
+    /// Eigenvalues, the one of larger magnitude first; of a conjugate pair first the one above the real axis.
+    /// The smaller real one is `determinant` over the larger: since the determinant is known separately, it
+    /// keeps its digits however small it is.
     pub fn multipliers(&self, determinant: f64) -> [Multiplier; 2] {
         let half = 0.5 * self.trace();
         // (a - d)^2 / 4 + b c loses no digits where the eigenvalues are close

@@ -66,14 +66,14 @@ impl Model {
     }
 
     /// Energy in J that the transducer stores in this electrical state.
-    pub(in crate::dynamics) fn charged(&self, electrical: f64) -> f64 {
+    pub(in crate::dynamics) fn electrical_energy(&self, electrical: f64) -> f64 {
         self.circuit().map_or(0.0, |circuit| 0.5 * self.mass * circuit.state(electrical).powi(2))
     }
 
     /// The electrical state with which this model goes on from that of another one.
-    pub(in crate::dynamics) fn taken_over(&self, before: &Self, electrical: f64) -> f64 {
+    pub(in crate::dynamics) fn electrical_after(&self, before: &Self, electrical: f64) -> f64 {
         let pair = self.transducer.as_ref().zip(before.transducer.as_ref());
-        pair.map_or(0.0, |(present, previous)| present.taken_over(previous, electrical))
+        pair.map_or(0.0, |(present, previous)| present.electrical_after(previous, electrical))
     }
 
     /// The mechanism.

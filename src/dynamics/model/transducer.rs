@@ -58,13 +58,13 @@ impl Circuit {
 }
 
 /// A circuit is fast from this multiple of the motion's rate on.
-const FAST: f64 = 100.0;
+const FAST_RATIO: f64 = 100.0;
 
 /// The share of the motion up to which a fast circuit may be left out.
-const NEARLY: f64 = 1e-2;
+const NEGLIGIBLE_SHARE: f64 = 1e-2;
 
 /// A coil that damps the motion by less than this share while that changes lets no current through.
-const OPEN: f64 = 1e-9;
+const OPEN_CIRCUIT_SHARE: f64 = 1e-9;
 
 /// What a transducer gives at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -82,7 +82,7 @@ impl Transducer {
     /// The transducer of a scene whose mass in kg is given; none where it has none.
     pub fn of(transducer: &scene::Transducer, mass: f64) -> Option<Self> {
         use scene::Transducer::{Electromagnetic, Piezoelectric};
-        let nothing = Self {
+        let zero = Self {
             described: *transducer,
             damping: 0.0,
             circuit: None,
@@ -94,7 +94,7 @@ impl Transducer {
         Some(match *transducer {
             scene::Transducer::None => return None,
             Electromagnetic { coupling_v_s_per_m, load_ohm, .. } if load_ohm.is_infinite() => {
-                Self { voltage: coupling_v_s_per_m, ..nothing }
+                Self { voltage: coupling_v_s_per_m, ..zero }
             }
             Electromagnetic { coupling_v_s_per_m, coil_ohm, load_ohm, inductance_mh } => {
                 let (resistance, inductance) = (coil_ohm + load_ohm, inductance_mh / 1e3);
@@ -113,17 +113,17 @@ impl Transducer {
                     current: gain,
                     load: load_ohm * gain * gain,
                     coil: coil_ohm * gain * gain,
-                    ..nothing
+                    ..zero
                 }
             }
             Piezoelectric { coupling_n_per_v, load_kohm: 0.0, .. } => {
-                Self { current: coupling_n_per_v, ..nothing }
+                Self { current: coupling_n_per_v, ..zero }
             }
             Piezoelectric { coupling_n_per_v, capacitance_nf, load_kohm } => {
                 let (conductance, capacitance) = (1.0 / (load_kohm * 1e3), capacitance_nf / 1e9);
                 let decay = conductance / capacitance;
                 let circuit = Some(Circuit::new(coupling_n_per_v, capacitance, decay, mass, true));
-                Self { circuit, voltage: 1.0, current: conductance, load: conductance, ..nothing }
+                Self { circuit, voltage: 1.0, current: conductance, load: conductance, ..zero }
             }
         })
     }
@@ -157,7 +157,7 @@ impl Transducer {
 
     /// The state of this transducer after one of `before` had the state `electrical`: a current goes on as a
     /// current and a voltage as a voltage.
-    pub fn taken_over(&self, before: &Self, electrical: f64) -> f64 {
+    pub fn electrical_after(&self, before: &Self, electrical: f64) -> f64 {
         match (&self.circuit, &before.circuit) {
             (Some(circuit), Some(previous)) if circuit.is_voltage == previous.is_voltage => electrical,
             _ => 0.0,
@@ -169,12 +169,12 @@ impl Transducer {
     pub fn fast_circuit(&self, mass: f64, time: f64) -> Option<String> {
         let circuit = self.circuit.as_ref()?;
         let (coupling, decay) = (circuit.coupling.abs(), circuit.decay);
-        if !(coupling.max(decay) * time > FAST) {
+        if !(coupling.max(decay) * time > FAST_RATIO) {
             return None;
         }
         // what is left out with the state: its lag, and the mass that this takes or gives
         let apart = (1.0 / (decay * time)).max((coupling / decay).powi(2));
-        if !(apart < NEARLY) {
+        if !(apart < NEGLIGIBLE_SHARE) {
             let storage = if circuit.is_voltage { "capacitance_nf" } else { "inductance_mh" };
             return Some(format!(
                 "mass and circuit exchange their energy in {} s, and a step covers but a few of it; a larger \
@@ -182,7 +182,7 @@ impl Transducer {
                 short(1.0 / coupling)
             ));
         }
-        let instead = if circuit.is_voltage {
+        let alternative = if circuit.is_voltage {
             let (load, force) = (1.0 / self.current, coupling * mass / circuit.amount);
             format!(
                 "transducer=Electromagnetic(coupling_v_s_per_m: {}, coil_ohm: 0, load_ohm: {}) gives the \
@@ -190,14 +190,14 @@ impl Transducer {
                 short(force * load),
                 short(load)
             )
-        } else if coupling * coupling / decay * time < OPEN {
+        } else if coupling * coupling / decay * time < OPEN_CIRCUIT_SHARE {
             "load_ohm: inf is the open circuit that this is".to_owned()
         } else {
             "without inductance_mh the coil is a damping".to_owned()
         };
         let constant = short(1.0 / decay);
         Some(format!(
-            "the circuit's time constant is {constant} s, and a step covers but a few of it; {instead}, but \
+            "the circuit's time constant is {constant} s, and a step covers but a few of it; {alternative}, but \
              for a share of some {apart:.0e}"
         ))
     }

@@ -44,12 +44,12 @@ impl<'a, T: Scalar> StepCrossings<'a, T> {
 
     /// Their number.
     pub fn count(&self) -> usize {
-        self.settle(self.at_once + self.roots.count_sign_changes())
+        self.corrected_count(self.at_once + self.roots.count_sign_changes())
     }
 
     /// The number of crossings where `count` roots were found: the step's end decides the parity, since
     /// rounding may put a root just beyond it or split a touch.
-    pub fn settle(&self, count: usize) -> usize {
+    pub fn corrected_count(&self, count: usize) -> usize {
         match count % 2 == 1 {
             odd if self.end == 0 => count - usize::from(odd), // on the barrier: the next step decides
             odd if odd == (self.end != self.from) => count,

@@ -51,7 +51,7 @@ impl<T: Scalar> Recorder<'_, T> {
         if count == 0 {
             found[0] = step.length;
         }
-        for t in &found[..crossings.settle(count)] {
+        for t in &found[..crossings.corrected_count(count)] {
             self.crossing(step, *t);
         }
     }

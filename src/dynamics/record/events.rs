@@ -77,7 +77,7 @@ impl<T: Scalar> Call<T> {
 impl<T: Scalar> Recorder<'_, T> {
     /// Records a call, in this segment of the drive.
     #[inline(always)]
-    pub fn tell(&mut self, call: &Call<T>, segment: usize) {
+    pub fn report(&mut self, call: &Call<T>, segment: usize) {
         match call {
             Call::Stand { at, until, state, phase } => self.stand((at, until), *state, *phase, segment),
             Call::Impact { at, side, v_in, v_out } => self.impact(at, *side, *v_in, *v_out),

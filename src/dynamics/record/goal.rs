@@ -4,7 +4,7 @@ use super::regime::Judge;
 use crate::dynamics::result::{Arrival, Pursuit};
 
 /// Stroboscopic states beyond two periods of a motion that must have come back.
-const MORE: u64 = 12;
+const CONFIRMING_STATES: u64 = 12;
 
 /// What a motion is pursued to, and what it has reached.
 #[derive(Debug)]
@@ -29,7 +29,7 @@ impl<'a> Goal<'a> {
         } else if let Some(which) = self.pursuit.regions.iter().position(|region| region.holds(state)) {
             self.reached = Some(Arrival::Entered { which, periods });
         } else if periods >= self.pursuit.repeats_from {
-            let period = judge.strobes().repeats_for(MORE);
+            let period = judge.strobes().repeats_for(CONFIRMING_STATES);
             self.reached = period.map(|period| Arrival::Repeats { period, state, periods });
         }
     }

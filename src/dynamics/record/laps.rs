@@ -53,7 +53,7 @@ impl<T: Scalar> Recorder<'_, T> {
     }
 
     /// Up to when the time after `at` is on the same side of the window's borders, `end` at the latest.
-    pub fn alike_until(&self, at: &Instant<T>, end: &Instant<T>, inside: bool) -> Instant<T> {
+    pub fn same_side_until(&self, at: &Instant<T>, end: &Instant<T>, inside: bool) -> Instant<T> {
         let (from, to) = self.window;
         let border =
             if inside { Some(to) } else { Some(from).filter(|w| self.clock.between(at, w) > T::zero()) };
@@ -67,7 +67,7 @@ impl<T: Scalar> Recorder<'_, T> {
     }
 
     /// Takes sums and counts back to what they were; what has been listed since stays.
-    pub fn take_back(&mut self, totals: &Totals<T>) {
+    pub fn restore(&mut self, totals: &Totals<T>) {
         self.whole = totals.whole;
         self.settled = totals.settled;
         self.covered = totals.covered;

@@ -17,13 +17,13 @@ const MOST_ENTRIES: usize = 1 << 15;
 /// One recorder call, kept for replay.
 #[derive(Debug, Clone)]
 enum Entry<T: Copy> {
-    Step(Kept<T>),
+    Step(KeptStep<T>),
     Call(Call<T>),
 }
 
 /// A step of flight; its coefficients lie in the log.
 #[derive(Debug, Clone)]
-struct Kept<T: Copy> {
+struct KeptStep<T: Copy> {
     origin: T,
     at: Instant<T>,
     whole: T,
@@ -62,9 +62,9 @@ pub(crate) struct Log<T: Copy> {
 
 /// A shift in time by whole cycles of the clock.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Later(pub i64);
+pub(crate) struct CycleShift(pub i64);
 
-impl Later {
+impl CycleShift {
     fn instant<T: Scalar>(self, at: &Instant<T>) -> Instant<T> {
         Instant { cycle: at.cycle + self.0, phase: at.phase }
     }
@@ -96,7 +96,7 @@ impl<T: Scalar> Log<T> {
         let first = self.coefficients.len();
         self.coefficients.extend_from_slice(y);
         self.coefficients.extend_from_slice(a);
-        self.entries.push(Entry::Step(Kept {
+        self.entries.push(Entry::Step(KeptStep {
             origin: step.origin,
             at: step.at,
             whole: step.whole,
@@ -145,13 +145,13 @@ impl<T: Scalar> Log<T> {
     }
 
     /// The last mark from `first` on that is not after `end` when it is `later`.
-    pub fn last_before(&self, first: usize, later: Later, end: &Instant<T>, clock: &Clock<T>) -> usize {
+    pub fn last_before(&self, first: usize, later: CycleShift, end: &Instant<T>, clock: &Clock<T>) -> usize {
         let reached = |mark: &Mark<T>| clock.between(&later.instant(&mark.point.state.at), end) >= T::zero();
         first + self.marks[first + 1..].partition_point(reached)
     }
 
     /// The motion that was kept at a mark, `later`.
-    pub fn point_later(&self, mark: usize, later: Later) -> Checkpoint<T> {
+    pub fn point_later(&self, mark: usize, later: CycleShift) -> Checkpoint<T> {
         let Checkpoint { state, barrier_side } = self.marks[mark].point;
         let state = MotionState { at: later.instant(&state.at), refused: None, ..state };
         Checkpoint { state, barrier_side }
@@ -163,7 +163,7 @@ impl<T: Scalar> Log<T> {
         &self,
         (record, series): (&mut Recorder<T>, &mut Series<T>),
         (from, to): (usize, Option<usize>),
-        later: Later,
+        later: CycleShift,
         segment: usize,
     ) -> (usize, u64) {
         let mut impacts = 0;
@@ -197,7 +197,7 @@ impl<T: Scalar> Log<T> {
                 }
                 Entry::Call(call) => {
                     impacts += u64::from(matches!(call, Call::Impact { .. }));
-                    record.tell(&call.when(|at| later.instant(at)), segment);
+                    record.report(&call.when(|at| later.instant(at)), segment);
                 }
             }
         }
@@ -229,7 +229,7 @@ impl<T: Scalar> Log<T> {
                     let first = self.coefficients.len();
                     self.coefficients.extend_from_within(step.first..step.first + step.known + step.base);
                     self.coefficients[first..].iter_mut().for_each(|c| *c = minus(*c));
-                    Entry::Step(Kept {
+                    Entry::Step(KeptStep {
                         origin: minus(step.origin),
                         at: instant(&step.at),
                         limits: (minus(step.limits.1), minus(step.limits.0)),

@@ -24,8 +24,8 @@ pub(crate) struct Recorder<'a, T: Copy> {
     pub next_time: usize,
     pub cancel: Option<&'a AtomicBool>,
     /// Samples between two checks of the cancel flag, and since the last.
-    pub samples_per_look: u64,
-    pub samples_since_look: u64,
+    pub samples_per_check: u64,
+    pub samples_since_check: u64,
     /// Samples were left out since the run was cancelled.
     pub cut_short: bool,
     pub samples: Vec<Sample>,
@@ -102,8 +102,8 @@ impl<'a, T: Scalar> Recorder<'a, T> {
             times: request.sample_times,
             next_time: 0,
             cancel: request.cancel,
-            samples_per_look: 1,
-            samples_since_look: 0,
+            samples_per_check: 1,
+            samples_since_check: 0,
             cut_short: false,
             samples,
             events: request.events.then(Vec::new),

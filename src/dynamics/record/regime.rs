@@ -6,7 +6,7 @@ use crate::dynamics::model::excitation::Rhythm;
 use crate::dynamics::result::{First, Firsts, Side};
 
 /// Forcing periods of a window whose halves can be compared.
-const ENOUGH_TO_COMPARE: u64 = 8;
+const MIN_PERIODS_TO_COMPARE: u64 = 8;
 
 /// Two halves agree where their means differ by at most so many standard errors.
 const STANDARD_ERRORS: f64 = 3.0;
@@ -62,7 +62,7 @@ struct PeriodsWith {
 }
 
 impl PeriodsWith {
-    fn tell(&mut self, period: i64) {
+    fn add(&mut self, period: i64) {
         self.count += u64::from(self.last != Some(period));
         self.last = Some(period);
     }
@@ -142,7 +142,7 @@ impl Judge {
         self.last = total;
         self.keep(Observation::Strobe(state, gain));
         self.gain(self.strobes.seen(), gain);
-        self.strobes.tell(state);
+        self.strobes.add(state);
     }
 
     /// Adds what was gained over the period before the stroboscopic state of this number.
@@ -155,7 +155,7 @@ impl Judge {
     }
 
     /// The same of so many states, `lap` periods apart.
-    fn gain_often(&mut self, number: u64, times: u64, lap: u64, gain: Gain) {
+    fn gain_repeated(&mut self, number: u64, times: u64, lap: u64, gain: Gain) {
         let up_to = |end: u64| (end + 1).saturating_sub(number).div_ceil(lap).min(times);
         let ends = [self.from, self.from + self.periods / 2, self.from + self.periods].map(up_to);
         for (half, pair) in ends.windows(2).enumerate() {
@@ -180,9 +180,9 @@ impl Judge {
         }
         if let Some(inside) = self.in_window(time) {
             if self.rhythm == Rhythm::Periodic {
-                self.crossings.tell(inside, side);
+                self.crossings.add(inside, side);
             }
-            self.crossing_periods.tell(inside.floor() as i64);
+            self.crossing_periods.add(inside.floor() as i64);
         }
     }
 
@@ -193,7 +193,7 @@ impl Judge {
             self.firsts.release.get_or_insert(First { t: seconds, amplitude: None });
         }
         if let Some(inside) = self.in_window(time) {
-            self.release_periods.tell(inside.floor() as i64);
+            self.release_periods.add(inside.floor() as i64);
         }
     }
 
@@ -236,9 +236,9 @@ impl Judge {
         }
         self.last = (self.last.0 + total.0 * laps as f64, self.last.1 + total.1.saturating_mul(laps));
         // As many laps as any judgement looks back, and one more to see what each of them adds.
-        let told = laps.min(2 * self.strobes.longest() as u64 / periods.max(1) + 4);
+        let replayed = laps.min(2 * self.strobes.longest() as u64 / periods.max(1) + 4);
         let mut before = (0, 0);
-        for number in 1..=told {
+        for number in 1..=replayed {
             before = (self.crossing_periods.count, self.release_periods.count);
             let (later, mut next) = ((number * periods) as f64, strobes.iter());
             for entry in lap {
@@ -246,7 +246,7 @@ impl Judge {
                     Observation::Strobe(..) => {
                         let Some((state, gain)) = next.next() else { continue };
                         self.gain(self.strobes.seen(), *gain);
-                        self.strobes.tell(*state);
+                        self.strobes.add(*state);
                     }
                     Observation::Crossing { time, side, seconds } => {
                         self.crossing(time + later, side, seconds)
@@ -255,7 +255,7 @@ impl Judge {
                 }
             }
         }
-        let left = laps - told;
+        let left = laps - replayed;
         if left > 0 {
             let later = left * periods;
             let more = |count: &mut PeriodsWith, before: u64| {
@@ -266,7 +266,7 @@ impl Judge {
             more(&mut self.release_periods, before.1);
             if strobes.len() as u64 == periods {
                 for (number, (_, gain)) in (self.strobes.seen()..).zip(&strobes) {
-                    self.gain_often(number, left, periods, *gain);
+                    self.gain_repeated(number, left, periods, *gain);
                 }
                 self.strobes.skip(later, periods, |place| strobes[place as usize].0);
             }
@@ -279,7 +279,7 @@ impl Judge {
     /// Adds `more` stroboscopic states equal to `state`, the last one, none of them beyond the next border of
     /// the window.
     pub fn skip_still(&mut self, more: u64, state: Strobe) {
-        self.gain_often(self.strobes.seen(), more, 1, (0.0, 0));
+        self.gain_repeated(self.strobes.seen(), more, 1, (0.0, 0));
         self.strobes.skip(more, 1, |_| state);
     }
 
@@ -314,7 +314,7 @@ impl Judge {
     pub fn steady(&self, rests: bool) -> Option<bool> {
         match self.settled(rests)? {
             true => Some(true),
-            false if self.periods < ENOUGH_TO_COMPARE => None,
+            false if self.periods < MIN_PERIODS_TO_COMPARE => None,
             false => Some([self.speed, self.crossed].iter().all(|[first, second]| first.agrees(second))),
         }
     }

@@ -97,7 +97,7 @@ impl Strobes {
     }
 
     /// Adds a state; those after the window are not judged.
-    pub fn tell(&mut self, state: Strobe) {
+    pub fn add(&mut self, state: Strobe) {
         if self.is_complete() {
             return;
         }
@@ -184,14 +184,14 @@ impl Strobes {
                 let first = &self.opening[(end - whole) as usize];
                 let middle = &self.middle[(end - apart - self.before_middle()) as usize];
                 let last = &self.recent[(self.from + end) as usize % LONGEST];
-                self.has_arrived([first, middle, last])
+                self.has_converged([first, middle, last])
             })
     }
 
     /// Whether three states, the same time apart, agree with each other and with what they go to: where the
     /// second change is `r` times the first one (of their directions, the part that they share), those that
     /// follow add up to r / (1 - r) of it.
-    fn has_arrived(&self, [first, middle, last]: [&Strobe; 3]) -> bool {
+    fn has_converged(&self, [first, middle, last]: [&Strobe; 3]) -> bool {
         let near = |a: &Strobe, b: &Strobe| a.is_near(b, self.scales);
         if !(near(first, middle) && near(middle, last) && near(first, last)) {
             return false;
@@ -237,7 +237,7 @@ impl Crossings {
         Self { periods: periods as f64, recent: VecDeque::new(), gone: 0, waiting, paired }
     }
 
-    pub fn tell(&mut self, time: f64, side: Side) {
+    pub fn add(&mut self, time: f64, side: Side) {
         let number = self.gone + self.recent.len() as u64;
         for (index, waiting) in self.waiting.iter_mut().enumerate() {
             let (q, Some(first)) = (index as f64 + 1.0, *waiting) else { continue };
@@ -293,7 +293,7 @@ mod tests {
     fn repeat(periods: u64, times: &[f64]) -> bool {
         let side = |i: usize| if i.is_multiple_of(2) { Side::Right } else { Side::Left };
         let mut crossings = Crossings::new(periods);
-        times.iter().enumerate().for_each(|(i, t)| crossings.tell(*t, side(i)));
+        times.iter().enumerate().for_each(|(i, t)| crossings.add(*t, side(i)));
         assert!(crossings.recent.len() <= 2 * LONGEST + 2);
         crossings.repeat()
     }
@@ -328,23 +328,23 @@ mod tests {
     #[test]
     fn crossings_that_are_skipped_are_as_if_told() {
         let times = |from: i32, to: i32| (from..to).map(|i| 0.25 + 0.5 * f64::from(i));
-        let told = |crossings: &mut Crossings, from: i32, to: i32| {
+        let add_all = |crossings: &mut Crossings, from: i32, to: i32| {
             times(from, to)
                 .zip([Side::Right, Side::Left].into_iter().cycle())
-                .for_each(|(t, side)| crossings.tell(t, side));
+                .for_each(|(t, side)| crossings.add(t, side));
         };
         let mut crossings = Crossings::new(1_000_000);
-        told(&mut crossings, 0, 60);
+        add_all(&mut crossings, 0, 60);
         crossings.skip(1_000_000.0 - 30.0);
         assert!(crossings.repeat());
         // the last period is another
-        crossings.tell(1e6 - 0.1, Side::Right);
+        crossings.add(1e6 - 0.1, Side::Right);
         assert!(!crossings.repeat());
     }
 
     fn strobes(periods: u64, x: impl Fn(u64) -> f64) -> Strobes {
         let mut strobes = Strobes::new((1.0, 1.0), periods, 0);
-        (0..=periods).for_each(|i| strobes.tell(Strobe { x: x(i), v: 0.0 }));
+        (0..=periods).for_each(|i| strobes.add(Strobe { x: x(i), v: 0.0 }));
         strobes
     }
 
@@ -392,7 +392,7 @@ mod tests {
                     for i in 0..=window {
                         let size = 4e-4 * growth.powi(i as i32 - window as i32);
                         let (v, x) = (turn * i as f64).sin_cos();
-                        strobes.tell(Strobe { x: size * x, v: size * v });
+                        strobes.add(Strobe { x: size * x, v: size * v });
                     }
                     let first = 4e-4 * growth.powi(-(window as i32));
                     let case = format!("{turn} {growth} {window}: {:?}", strobes.period());
@@ -419,17 +419,17 @@ mod tests {
             for (from, periods) in [(0, 1200), (7, 41), (100, 23), (3, 1090), (600, 500)] {
                 let state = |i: u64| Strobe { x: (i % lap) as f64, v: 0.0 };
                 let mut skipped = Strobes::new((1.0, 1.0), periods, from);
-                let mut told = skipped.clone();
+                let mut full = skipped.clone();
                 let enough = 2 * LONGEST as u64 + 4 * lap;
                 let more = (from + periods + 1).saturating_sub(enough) / lap * lap;
-                (0..enough).for_each(|i| skipped.tell(state(i)));
+                (0..enough).for_each(|i| skipped.add(state(i)));
                 skipped.skip(more, lap, |place| state(enough + place));
-                (enough + more..=from + periods).for_each(|i| skipped.tell(state(i)));
-                (0..=from + periods).for_each(|i| told.tell(state(i)));
-                assert_eq!(skipped.seen(), told.seen());
-                assert_eq!(skipped.period(), told.period(), "{lap} {from} {periods}");
+                (enough + more..=from + periods).for_each(|i| skipped.add(state(i)));
+                (0..=from + periods).for_each(|i| full.add(state(i)));
+                assert_eq!(skipped.seen(), full.seen());
+                assert_eq!(skipped.period(), full.period(), "{lap} {from} {periods}");
                 let expected = (lap <= 12 && 2 * lap <= periods).then_some(lap as u32);
-                assert_eq!(told.period().map(|period| period.0), expected, "{lap} {from} {periods}");
+                assert_eq!(full.period().map(|period| period.0), expected, "{lap} {from} {periods}");
             }
         }
     }

@@ -102,9 +102,9 @@ impl<T: Scalar> Recorder<'_, T> {
     /// that there are, each with the sum of a drive's tones: once the run is cancelled there are no more.
     pub fn next_sample(&mut self, end: f64) -> Option<f64> {
         let next = self.times.get(self.next_time).copied().filter(|t| *t < end)?;
-        self.samples_since_look += 1;
-        if self.samples_since_look >= self.samples_per_look {
-            self.samples_since_look = 0;
+        self.samples_since_check += 1;
+        if self.samples_since_check >= self.samples_per_check {
+            self.samples_since_check = 0;
             if self.cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed)) {
                 self.times = &self.times[..self.next_time];
                 self.cut_short = true;

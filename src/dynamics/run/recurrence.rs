@@ -21,7 +21,7 @@ use crate::dynamics::clock::Instant;
 use crate::dynamics::drive::Drive;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::record::laps::Totals;
-use crate::dynamics::record::log::{Later, Log};
+use crate::dynamics::record::log::{CycleShift, Log};
 use crate::dynamics::result::ReleaseIdentity;
 use crate::dynamics::state::Label;
 use crate::dynamics::step::work::TOLD;
@@ -133,8 +133,8 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
             return;
         }
         log.append_mirrored(first, cycles / 2, self.stepper.equation.modes.len(), &self.stepper.clock);
-        self.replay(&log, (middle, None), Later(0));
-        self.resume(&log.point_later(first, Later(cycles)));
+        self.replay(&log, (middle, None), CycleShift(0));
+        self.resume(&log.point_later(first, CycleShift(cycles)));
         let like = self.like(first, &log, before);
         self.complete(&log, Lap { first, cycles, like });
     }
@@ -163,13 +163,13 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
             }
             let before = self.record.totals();
             later += lap.cycles;
-            self.replay(log, (lap.first, None), Later(later));
+            self.replay(log, (lap.first, None), CycleShift(later));
             let inside = self.record.lies_inside(&self.state.at, &next);
             let after = self.record.totals();
             lap.like = inside.map(|inside| Like { inside, before, after });
             self.state.at = next;
         }
-        let rest = Later(later + lap.cycles);
+        let rest = CycleShift(later + lap.cycles);
         let last = log.last_before(lap.first, rest, &self.stepper.end, &self.stepper.clock);
         self.replay(log, (lap.first, Some(last)), rest);
         self.resume(&log.point_later(last, rest));
@@ -195,23 +195,23 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
                 break;
             }
             if self.stepper.work.is_cancelled() || self.stepper.work.is_spent() {
-                self.record.take_back(&sums);
+                self.record.restore(&sums);
                 (self.record.judge, self.record.listings) = (judge, listings);
                 return told;
             }
             if self.stepper.clock.between(&next, &begin(number)) >= T::zero() {
-                let impacts = self.replay(log, (lap.first, None), Later(later + number * lap.cycles));
+                let impacts = self.replay(log, (lap.first, None), CycleShift(later + number * lap.cycles));
                 self.stepper.work.add_impacts(impacts);
             }
             told = number;
         }
-        self.record.take_back(&sums);
+        self.record.restore(&sums);
         (self.record.judge, self.record.listings) = (judge, listings);
         laps
     }
 
     /// Replays a part of the log; the number of impacts in it.
-    fn replay(&mut self, log: &Log<T>, marks: (usize, Option<usize>), later: Later) -> u64 {
+    fn replay(&mut self, log: &Log<T>, marks: (usize, Option<usize>), later: CycleShift) -> u64 {
         let recorded = (&mut self.record, &mut self.stepper.series);
         let (calls, impacts) = log.play(recorded, marks, later, self.state.segment);
         self.stepper.work.add(TOLD * calls as u64);
@@ -222,7 +222,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     fn laps_alike(&self, lap: &Lap<T>, inside: bool) -> i64 {
         let clear = self.stepper.clock.period() * T::of(CLEAR);
         let length = self.stepper.clock.period() * T::of(lap.cycles as f64);
-        let until = self.record.alike_until(&self.state.at, &self.stepper.end, inside);
+        let until = self.record.same_side_until(&self.state.at, &self.stepper.end, inside);
         let laps = ((self.stepper.clock.between(&self.state.at, &until) - clear) / length).floor();
         laps.larger(T::zero()).to_f64() as i64
     }

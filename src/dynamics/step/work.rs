@@ -59,7 +59,7 @@ impl Costs {
     }
 
     /// Samples between two looks at the cancel flag.
-    pub fn samples_per_look(&self) -> u64 {
+    pub fn samples_per_check(&self) -> u64 {
         (LOOK / self.sample).max(1)
     }
 }
@@ -199,6 +199,6 @@ mod tests {
         };
         let step = |lines| Costs::new(16, 3, &drive(lines)).step;
         assert!(step(4096) > 500 * step(1) && step(64) > 5 * step(1));
-        assert_eq!(Costs::new(16, 3, &drive(4096)).samples_per_look(), 1);
+        assert_eq!(Costs::new(16, 3, &drive(4096)).samples_per_check(), 1);
     }
 }

@@ -1,13 +1,13 @@
-//! Where steps of all lanes meet a break, and where they turn.
+//! Arrivals of steps of all lanes at breaks, and their turning points.
 //!
-//! A motion alone does the same arithmetic (`step/exit.rs`, `record/steps.rs`), and gets the same bits.
+//! A single motion does the same arithmetic (`step/exit.rs`, `record/steps.rs`) and gets the same bits.
 
 use super::{Clocks, Columns};
 use crate::dynamics::series::polynomial;
 use crate::dynamics::step::chord::{CLEARANCE, Chord, ROUNDING};
 use crate::numeric::{Lanes, Scalar, single_root};
 
-/// Where steps lead.
+/// The ends of the steps of all lanes.
 pub(super) struct Arrivals<const W: usize> {
     pub length: Lanes<W>,
     pub x: Lanes<W>,
@@ -36,12 +36,12 @@ impl<const W: usize> Columns<W> {
         (value, slope)
     }
 
-    /// Ends steps that `may` be taken at the break that they meet, the one ahead or the one just left, where
-    /// it is found at once; which those are.
+    /// Shortens steps of `candidates` to the break that they meet, the one ahead or the one just left, if the
+    /// root is found at once. Returns the lanes whose steps end there.
     #[inline(always)]
     pub(super) fn land(
         &self,
-        may: &[bool; W],
+        candidates: &[bool; W],
         y: &[Lanes<W>],
         bound: &Lanes<W>,
         to: &mut Arrivals<W>,
@@ -55,7 +55,7 @@ impl<const W: usize> Columns<W> {
             let back_high = (self.touch.0[lane] > 0.0) & (from - self.low_end.0[lane] > bound.0[lane]);
             let falls = (x < low) & (ahead_low | back_low);
             let rises = (x > high) & (ahead_high | back_high);
-            meets[lane] = may[lane] & !self.logged[lane] & (falls | rises);
+            meets[lane] = candidates[lane] & !self.logged[lane] & (falls | rises);
             returns[lane] = falls & (self.touch.0[lane] < 0.0) | rises & (self.touch.0[lane] > 0.0);
             level.0[lane] = if falls { low } else { high };
         }
@@ -66,7 +66,7 @@ impl<const W: usize> Columns<W> {
         let (v, last, past) = (self.v * whole, to.v * whole, to.x - level);
         let mut g = polynomial::scaled(y, whole);
         let second = g[2];
-        // (of those that return the gap over the time since the start)
+        // (if it returns to the break: the gap divided by the time since the start)
         g[0] = from;
         for k in 0..y.len() {
             g[k] = choose(&returns, g[k], g[k + 1]);
@@ -97,8 +97,8 @@ impl<const W: usize> Columns<W> {
         landed
     }
 
-    /// Looks at steps at four times within: which are `clear` of the low and of the high end of the mode
-    /// after all, and which are not `turning` beyond the extremes.
+    /// Evaluates steps at four times in their interior. Marks the lanes that are `clear` of the low and of
+    /// the high end of the mode after all, and unmarks those that are not `turning` beyond the extremes.
     #[inline(always)]
     pub(super) fn look_closer(
         &self,
@@ -125,8 +125,8 @@ impl<const W: usize> Columns<W> {
         }
     }
 
-    /// Takes turning points into the extremes of lanes that are `turning`, where they turn once; which those
-    /// are.
+    /// Includes turning points in the extremes of lanes that are `turning`, if they turn once. Returns the
+    /// lanes that do.
     #[inline(always)]
     pub(super) fn turn(
         &self,
@@ -155,7 +155,7 @@ impl<const W: usize> Columns<W> {
     }
 }
 
-/// What is known of a lane's velocity and acceleration over a step.
+/// Bounds of a lane's velocity and acceleration over a step.
 #[inline(always)]
 fn chord<const W: usize>(
     lane: usize,
@@ -175,7 +175,7 @@ fn chord<const W: usize>(
     }
 }
 
-/// The roots of the lanes that are `wanted`, from values and slopes at both ends, and where they are found.
+/// The roots of the `wanted` lanes, from values and slopes at both ends, and the lanes in which one is found.
 #[inline(always)]
 fn roots<const W: usize>(
     g: &[Lanes<W>],
@@ -209,7 +209,7 @@ fn roots<const W: usize>(
     (share, found)
 }
 
-/// Of each lane the second number where `which` says so, else the first.
+/// For each lane the second number if `which` is true, else the first.
 #[inline(always)]
 fn choose<const W: usize>(which: &[bool; W], first: Lanes<W>, second: Lanes<W>) -> Lanes<W> {
     let mut chosen = first;
