@@ -110,7 +110,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         if let Some(Separation { time, speed }) = found {
             let whole = T::of(2.0);
             let (x, v) = (self.state.x, end.sign::<T>() * speed);
-            self.record_contact(&*path, (whole, whole, time), path.most * path.most, (x, v));
+            self.record_contact(&*path, (whole, whole, time), path.max_root * path.max_root, (x, v));
             self.state.at = self.stepper.clock.advance(&self.state.at, time);
             self.state.v = v;
             self.leave_stop(end);

@@ -10,7 +10,7 @@ use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::result::{Outcome, Pursuit, Request};
-use crate::dynamics::run::ending::Begun;
+use crate::dynamics::run::ending::InitialState;
 use crate::dynamics::series::{Integrals, SEEDED, Series};
 use crate::dynamics::state::Contact;
 use crate::dynamics::step::stepper::Step;
@@ -50,7 +50,7 @@ pub(super) trait Source<'a> {
         &mut self,
         prepared: &Prepared<'a>,
         motion: LaneMotion<'a>,
-        begun: &Begun<f64>,
+        initial: &InitialState<f64>,
         outcome: Outcome,
     );
 }
@@ -61,7 +61,7 @@ struct Member<'a> {
     index: usize,
     prepared: Prepared<'a>,
     motion: Box<LaneMotion<'a>>,
-    begun: Begun<f64>,
+    initial: InitialState<f64>,
 }
 
 /// Motions of one order whose forces have the same degree at present.
@@ -172,8 +172,8 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
             Some(pursuit) => motion.pursuing(pursuit, model),
             None => motion.with_recurrence(model.recurrence, model),
         });
-        let begun = motion.begin(model);
-        self.members[place] = Some(Member { index: self.started, prepared, motion, begun });
+        let initial = motion.begin(model);
+        self.members[place] = Some(Member { index: self.started, prepared, motion, initial });
         self.started += 1;
         self.wait(place);
         true
@@ -181,8 +181,8 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
 
     /// Ends the run of a member.
     fn end(&mut self, place: usize, outcome: Outcome) {
-        if let Some(Member { prepared, motion, begun, .. }) = self.members[place].take() {
-            self.source.ended(&prepared, *motion, &begun, outcome);
+        if let Some(Member { prepared, motion, initial, .. }) = self.members[place].take() {
+            self.source.ended(&prepared, *motion, &initial, outcome);
             self.free.push(place);
         }
     }

@@ -24,7 +24,7 @@ use crate::dynamics::drive::tone::Sine;
 use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::result::{Outcome, Pursued, Pursuit, Request, Run};
-use crate::dynamics::run::ending::Begun;
+use crate::dynamics::run::ending::InitialState;
 use crate::dynamics::run::pursue::pursue_alone;
 use crate::system::clock::ThreadClock;
 use crate::system::threads::UnderWay;
@@ -167,10 +167,10 @@ impl<'a> Source<'a> for Runs<'a, '_, '_> {
         &mut self,
         prepared: &Prepared<'a>,
         motion: LaneMotion<'a>,
-        begun: &Begun<f64>,
+        initial: &InitialState<f64>,
         outcome: Outcome,
     ) {
-        (self.ended)(prepared.place, prepared.model, motion.finish(prepared.model, begun, outcome));
+        (self.ended)(prepared.place, prepared.model, motion.finish(prepared.model, initial, outcome));
     }
 }
 
@@ -223,10 +223,10 @@ impl<'a, P: Fn(usize) -> Prepared<'a>> Source<'a> for Pursuits<'_, P> {
         &mut self,
         prepared: &Prepared<'a>,
         motion: LaneMotion<'a>,
-        begun: &Begun<f64>,
+        initial: &InitialState<f64>,
         outcome: Outcome,
     ) {
-        (self.ended)(prepared.place, motion.arrived(prepared.model, begun, outcome));
+        (self.ended)(prepared.place, motion.arrived(prepared.model, initial, outcome));
     }
 }
 

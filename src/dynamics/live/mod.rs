@@ -22,7 +22,7 @@ use kernel::{Kernel, Sums};
 const HORIZON_UNITS: f64 = 8_589_934_592.0;
 
 /// Maximum number of periods of the fastest tone that the clock counts exactly.
-const MOST_PERIODS: f64 = 9e15;
+const MAX_PERIODS: f64 = 9e15;
 
 /// Samples and events of a time interval, each in order of time. The caller may drain them at any time.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -353,7 +353,7 @@ impl LiveLedger {
 /// The model with a very long duration, none of it settled.
 fn without_end(mut model: Model) -> Model {
     let unit = model.scales.unit();
-    let counted = MOST_PERIODS / model.excitation.fastest().unwrap_or(0.0);
+    let counted = MAX_PERIODS / model.excitation.fastest().unwrap_or(0.0);
     model.duration = (HORIZON_UNITS * unit).max(model.duration).min(counted);
     model.settle = model.duration;
     model

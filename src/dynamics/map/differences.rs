@@ -51,7 +51,7 @@ fn agree(fields: &str, seconds: f64, start: (f64, f64), must: &[EventKind], shar
     for kind in must {
         assert!(passage.events.iter().any(|event| event.kind == *kind), "{kind:?} {:?}", passage.events);
     }
-    let largest = other.rows.iter().flatten().fold(0.0_f64, |most, entry| most.max(entry.abs()));
+    let largest = other.rows.iter().flatten().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
     for (entry, other) in jacobian.rows.iter().flatten().zip(other.rows.iter().flatten()) {
         assert!((entry - other).abs() <= share * largest, "{entry:e} {other:e}, of {largest:e}");
     }

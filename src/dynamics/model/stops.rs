@@ -12,18 +12,18 @@ pub struct StopPair {
     pub right: Option<StopAt>,
 }
 
-/// One stop. SI. A compliant one takes energy by its own law and has the restitution 1 here.
+/// One stop. SI. A compliant stop dissipates by its contact law and has restitution 1 here.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct StopAt {
-    /// Where it is, in m.
+    /// Position in m.
     pub x: f64,
     /// Speed after an impact over the speed before it.
     pub restitution: f64,
 }
 
 impl StopPair {
-    /// The stops of a scene; none where it has none.
+    /// The stops of a scene; `None` if it has none.
     pub(crate) fn of(stops: &Stops) -> Option<Self> {
         let at = |mm: f64, sign: f64, restitution: f64| Some(StopAt { x: sign * (mm / 1e3), restitution });
         match *stops {

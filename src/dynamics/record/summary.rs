@@ -7,10 +7,10 @@ use crate::dynamics::model::excitation::Rhythm;
 use crate::dynamics::result::{Harvest, Ledger, Outcome, Phase, Place, Regime, Run, Sample, Summary};
 use crate::numeric::{CompensatedSum, Scalar};
 
-/// Below this share of the length scale a motion is rounding: the mass has not moved.
+/// Share of the length scale below which a motion is rounding: the mass has not moved.
 const STILL: f64 = 1e-12;
 
-/// How a run ended, as the recorder needs it.
+/// The end of a run, as the recorder needs it.
 pub(crate) struct Ending<T> {
     pub at: Instant<T>,
     /// Displacement and velocity, kernel units.
@@ -33,7 +33,7 @@ impl<T: Scalar> Recorder<'_, T> {
         let &Ending { at: end, state: (x, v), start_v, circuit, phase, segment, potential, outcome } = ending;
         let final_x = x.to_f64();
         let final_v = v.to_f64() / self.unit;
-        // What was asked for at the very end (to rounding) is the final state.
+        // A sample requested at the very end (to rounding) is the final state.
         let last = self.clock.seconds(&end);
         while let Some(t) = self.times.get(self.next_time).copied() {
             if t > last * (1.0 + 4.0 * f64::EPSILON) {
@@ -100,7 +100,7 @@ impl<T: Scalar> Recorder<'_, T> {
         let counts = &self.counts;
         let left = counts.crossings + counts.impacts + counts.releases > 0;
         let compliant = self.model.compliant;
-        // Pressed on a compliant stop throughout, it trembles there and has not left it.
+        // A mass pressed onto a compliant stop throughout oscillates there but has not left it.
         let pressed = compliant.is_some() && value(&self.settled.rested) == covered;
         let moved = seen && (left || (travel > STILL * scales.length && !pressed));
         let rests = seen && !moved;

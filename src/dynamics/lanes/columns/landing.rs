@@ -79,11 +79,11 @@ impl<const W: usize> Columns<W> {
         let acceleration = polynomial::curvature(y, length);
         let deviations = polynomial::chord_deviations(y, length);
         let square = length * length;
-        let (ways, bends) =
+        let (slopes, curvatures) =
             ((self.v * length, arrival * length), ((y[2] + y[2]) * square, acceleration * square));
         let mut landed = [false; W];
         for lane in 0..W {
-            let chord = chord(lane, ways, bends, deviations);
+            let chord = chord(lane, slopes, curvatures, deviations);
             let alone = if returns[lane] { chord.bends_one_way() } else { chord.is_monotone() };
             let outward = (arrival.0[lane] > 0.0) == (past.0[lane] > 0.0);
             landed[lane] = found[lane] & alone & outward & (arrival.0[lane] != 0.0);
@@ -133,16 +133,16 @@ impl<const W: usize> Columns<W> {
         turning: &[bool; W],
         y: &[Lanes<W>],
         to: &Arrivals<W>,
-        (ways, bends, deviations): ((Lanes<W>, Lanes<W>), (Lanes<W>, Lanes<W>), Three<W>),
+        (slopes, curvatures, deviations): ((Lanes<W>, Lanes<W>), (Lanes<W>, Lanes<W>), Three<W>),
         (low, high): (&mut Lanes<W>, &mut Lanes<W>),
     ) -> [bool; W] {
-        let bends = (bends.0, polynomial::curvature(y, to.length) * (to.length * to.length));
+        let curvatures = (curvatures.0, polynomial::curvature(y, to.length) * (to.length * to.length));
         let mut turned = [false; W];
         for (lane, turned) in turned.iter_mut().enumerate() {
-            *turned = turning[lane] & chord(lane, ways, bends, deviations).turns_once();
+            *turned = turning[lane] & chord(lane, slopes, curvatures, deviations).turns_once();
         }
         let velocity = polynomial::scaled_slope(y, to.length);
-        let ends = ((ways.0, bends.0), (ways.1, bends.1));
+        let ends = ((slopes.0, curvatures.0), (slopes.1, curvatures.1));
         let (share, turned) = roots(&velocity[..y.len() - 1], &turned, ends.0, ends.1);
         let x = polynomial::value(y, share * to.length) + self.origin;
         for (lane, turned) in turned.iter().enumerate() {
@@ -159,8 +159,8 @@ impl<const W: usize> Columns<W> {
 #[inline(always)]
 fn chord<const W: usize>(
     lane: usize,
-    ways: (Lanes<W>, Lanes<W>),
-    bends: (Lanes<W>, Lanes<W>),
+    slopes: (Lanes<W>, Lanes<W>),
+    curvatures: (Lanes<W>, Lanes<W>),
     deviations: Three<W>,
 ) -> Chord<f64> {
     let far = f64::INFINITY;
@@ -169,8 +169,8 @@ fn chord<const W: usize>(
         end: 0.0,
         bound: far,
         deviations: (far, deviations.1.0[lane], deviations.2.0[lane]),
-        ways: (ways.0.0[lane], ways.1.0[lane]),
-        bends: (bends.0.0[lane], bends.1.0[lane]),
+        slopes: (slopes.0.0[lane], slopes.1.0[lane]),
+        curvatures: (curvatures.0.0[lane], curvatures.1.0[lane]),
         limits: (-far, far),
     }
 }

@@ -59,8 +59,8 @@ impl<const W: usize> Columns<W> {
             squared = polynomial::integrals::<_, false>(y, &[], rule, squared, to.length).0;
         }
         let (start, square) = (y[0] + self.origin, to.length * to.length);
-        let (ways, bends) = ((self.v * to.length, to.v * to.length), to.acceleration * square);
-        let bends = ((y[2] + y[2]) * square, bends);
+        let (slopes, curvatures) = ((self.v * to.length, to.v * to.length), to.acceleration * square);
+        let curvatures = ((y[2] + y[2]) * square, curvatures);
         let (mut event_free, mut turning, mut crosses) = ([false; W], [false; W], [false; W]);
         let (mut clear, mut unsure) = (([false; W], [false; W]), false);
         let (mut low, mut high) = (start, start);
@@ -71,8 +71,8 @@ impl<const W: usize> Columns<W> {
                 end: to.x.0[lane],
                 bound,
                 deviations: (deviations.0.0[lane], deviations.1.0[lane], deviations.2.0[lane]),
-                ways: (ways.0.0[lane], ways.1.0[lane]),
-                bends: (bends.0.0[lane], bends.1.0[lane]),
+                slopes: (slopes.0.0[lane], slopes.1.0[lane]),
+                curvatures: (curvatures.0.0[lane], curvatures.1.0[lane]),
                 limits: (self.low_end.0[lane], self.high_end.0[lane]),
             };
             let (limits, touch, monotone) = (chord.limits, self.touch.0[lane], chord.is_monotone());
@@ -112,7 +112,7 @@ impl<const W: usize> Columns<W> {
             turning[lane] &= event_free[lane];
         }
         if turning.contains(&true) {
-            let turned = self.turn(&turning, y, &to, (ways, bends, deviations), (&mut low, &mut high));
+            let turned = self.turn(&turning, y, &to, (slopes, curvatures, deviations), (&mut low, &mut high));
             for lane in 0..W {
                 event_free[lane] &= !turning[lane] | turned[lane];
             }
