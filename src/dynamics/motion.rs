@@ -9,12 +9,11 @@
 //!
 //! Three rules keep events reliable:
 //!
-//! - After a located event the state is put exactly on the surface, and the next step knows it
-//! ([`Touch`]): the
-//!   gap polynomial starts with coefficients that are 0 by definition (one after a rebound or a break, two
-//!   after a plastic impact, three after a release). It is divided by that power of time, so the same contact
-//!   cannot be found again, however short the flight. Since x = D exactly, the gap needs no difference of
-//!   large numbers: a flight at 1e-6 m/s has the same relative accuracy as one at 1 m/s.
+//! - After a located event the state is put exactly on the surface, and the next step knows it ([`Touch`]):
+//!   the gap polynomial starts with coefficients that are 0 by definition (one after a rebound or a break,
+//!   two after a plastic impact, three after a release). It is divided by that power of time, so the same
+//!   contact cannot be found again, however short the flight. Since x = D exactly, the gap needs no
+//!   difference of large numbers: a flight at 1e-6 m/s has the same relative accuracy as one at 1 m/s.
 //! - A rebound that is pressed back lasts about 2 v / a, so the series is extended only until its terms are
 //!   negligible over that time: four or five coefficients, where a full step has sixteen. Its end is the one
 //!   root of that series in the gap, found without a search (`rebound`).

@@ -10,7 +10,7 @@ use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::result::{Outcome, Pursuit, Request};
-use crate::dynamics::run::ending::InitialState;
+use crate::dynamics::run::ending::Initial;
 use crate::dynamics::series::{Integrals, SEEDED, Series};
 use crate::dynamics::state::Contact;
 use crate::dynamics::step::stepper::Step;
@@ -46,22 +46,16 @@ pub(super) trait Source<'a> {
     fn next(&mut self, under_way: UnderWay) -> Option<Prepared<'a>>;
 
     /// Takes a motion that has ended, its initial values, and its outcome.
-    fn ended(
-        &mut self,
-        prepared: &Prepared<'a>,
-        motion: LaneMotion<'a>,
-        initial: &InitialState<f64>,
-        outcome: Outcome,
-    );
+    fn ended(&mut self, run: &Prepared<'a>, motion: LaneMotion<'a>, start: &Initial<f64>, outcome: Outcome);
 }
 
 /// A motion under way and its initial values.
 struct Member<'a> {
     /// Its number in order of start.
     index: usize,
-    prepared: Prepared<'a>,
+    run: Prepared<'a>,
     motion: Box<LaneMotion<'a>>,
-    initial: InitialState<f64>,
+    start: Initial<f64>,
 }
 
 /// Motions of one order whose forces have the same degree at present.
@@ -161,19 +155,19 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
     /// Starts the next run; returns false if there is none, or no room. `full`: whether the lanes are full.
     fn start_next(&mut self, full: bool) -> bool {
         let Some(place) = self.free.last().copied() else { return false };
-        let Some(prepared) = self.source.next(UnderWay { runs: self.under_way(), full }) else {
+        let Some(run) = self.source.next(UnderWay { runs: self.under_way(), full }) else {
             return false;
         };
         self.free.pop();
-        let clock = clock(prepared.model, prepared.equation.unit);
-        let (model, request) = (prepared.model, prepared.request);
-        let motion = Motion::new(model, request, model.tolerance, prepared.equation, clock, prepared.drive);
-        let mut motion = Box::new(match prepared.pursuit {
+        let clock = clock(run.model, run.equation.unit);
+        let (model, request) = (run.model, run.request);
+        let motion = Motion::new(model, request, model.tolerance, run.equation, clock, run.drive);
+        let mut motion = Box::new(match run.pursuit {
             Some(pursuit) => motion.pursuing(pursuit, model),
             None => motion.with_recurrence(model.recurrence, model),
         });
-        let initial = motion.begin(model);
-        self.members[place] = Some(Member { index: self.started, prepared, motion, initial });
+        let start = motion.begin(model);
+        self.members[place] = Some(Member { index: self.started, run, motion, start });
         self.started += 1;
         self.wait(place);
         true
@@ -181,8 +175,8 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
 
     /// Ends the run of a member.
     fn end(&mut self, place: usize, outcome: Outcome) {
-        if let Some(Member { prepared, motion, initial, .. }) = self.members[place].take() {
-            self.source.ended(&prepared, *motion, &initial, outcome);
+        if let Some(Member { run, motion, start, .. }) = self.members[place].take() {
+            self.source.ended(&run, *motion, &start, outcome);
             self.free.push(place);
         }
     }
@@ -328,7 +322,7 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
     /// Moves the motion of a lane, which stands on a break, into the neighbouring mode.
     fn enter_neighbour(&mut self, group: usize, lane: usize) {
         let Some((place, group, member)) = self.member(group, lane) else { return };
-        if !group.columns.enter_neighbour(lane, &member.prepared.equation.modes) {
+        if !group.columns.enter_neighbour(lane, &member.run.equation.modes) {
             group.lanes[lane] = None;
             group.columns.store(lane, &mut member.motion);
             let exit = group.columns.exit(lane);

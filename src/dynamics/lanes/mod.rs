@@ -24,7 +24,7 @@ use crate::dynamics::drive::tone::Sine;
 use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::result::{Outcome, Pursued, Pursuit, Request, Run};
-use crate::dynamics::run::ending::InitialState;
+use crate::dynamics::run::ending::Initial;
 use crate::dynamics::run::pursue::pursue_alone;
 use crate::system::clock::ThreadClock;
 use crate::system::threads::UnderWay;
@@ -163,14 +163,8 @@ impl<'a> Source<'a> for Runs<'a, '_, '_> {
         }
     }
 
-    fn ended(
-        &mut self,
-        prepared: &Prepared<'a>,
-        motion: LaneMotion<'a>,
-        initial: &InitialState<f64>,
-        outcome: Outcome,
-    ) {
-        (self.ended)(prepared.place, prepared.model, motion.finish(prepared.model, initial, outcome));
+    fn ended(&mut self, run: &Prepared<'a>, motion: LaneMotion<'a>, start: &Initial<f64>, outcome: Outcome) {
+        (self.ended)(run.place, run.model, motion.finish(run.model, start, outcome));
     }
 }
 
@@ -219,14 +213,8 @@ impl<'a, P: Fn(usize) -> Prepared<'a>> Source<'a> for Pursuits<'_, P> {
         (self.next)(under_way).map(&self.prepared)
     }
 
-    fn ended(
-        &mut self,
-        prepared: &Prepared<'a>,
-        motion: LaneMotion<'a>,
-        initial: &InitialState<f64>,
-        outcome: Outcome,
-    ) {
-        (self.ended)(prepared.place, motion.arrived(prepared.model, initial, outcome));
+    fn ended(&mut self, run: &Prepared<'a>, motion: LaneMotion<'a>, start: &Initial<f64>, outcome: Outcome) {
+        (self.ended)(run.place, motion.arrived(run.model, start, outcome));
     }
 }
 

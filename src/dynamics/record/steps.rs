@@ -120,18 +120,11 @@ impl<T: Scalar> Recorder<'_, T> {
             false => (step.x_at(from), step.x_at(to)),
         };
         let endless = T::of(f64::INFINITY);
-        let (nothing, limits) = ((T::zero(), T::zero()), step.limits);
+        let (zero, limits) = ((T::zero(), T::zero()), step.limits);
         let deviations = (endless, endless, endless);
         let bound = if full { step.bound } else { step.bound + step.bound };
-        let chord = Chord {
-            start: first,
-            end: last,
-            bound,
-            deviations,
-            slopes: nothing,
-            curvatures: nothing,
-            limits,
-        };
+        let chord =
+            Chord { start: first, end: last, bound, deviations, slopes: zero, curvatures: zero, limits };
         let (low, high, mut turns) = chord.extremes((self.low, self.high));
         (self.low, self.high) = (low, high);
         if turns

@@ -25,8 +25,8 @@ const MAX_MISSING_SHARE: f64 = 0.1;
 /// Share of the length scale below which nothing has moved.
 const STILL: f64 = 1e-12;
 
-/// Ratio of coupling to the motion's rate above which a circuit holds the mass fast. The result is then the
-/// small motion that is left, even if it is below the rounding of displacement and force.
+/// Ratio of coupling to the motion's rate above which a circuit holds the mass fast. The small motion that is
+/// left must balance its energy even if it is below the rounding of displacement and force.
 const STRONG_COUPLING: f64 = 1e3;
 
 /// Range and largest speed of a motion, in m and m/s.

@@ -11,7 +11,7 @@ use crate::dynamics::state::MotionState;
 use crate::numeric::Scalar;
 
 /// The first instant of a run.
-pub(crate) struct InitialState<T> {
+pub(crate) struct Initial<T> {
     /// Velocity.
     v: T,
     /// State of the circuit.
@@ -22,20 +22,16 @@ pub(crate) struct InitialState<T> {
 
 impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// Starts the motion.
-    pub fn begin(&mut self, model: &Model) -> InitialState<T> {
+    pub fn begin(&mut self, model: &Model) -> Initial<T> {
         let MotionState { v, circuit, .. } = self.state;
         self.place_at_start();
-        InitialState {
-            v,
-            circuit,
-            place: (self.state.mode, self.state.x.to_f64(), self.stop_energy_j(model)),
-        }
+        Initial { v, circuit, place: (self.state.mode, self.state.x.to_f64(), self.stop_energy_j(model)) }
     }
 
     /// Closes the record.
-    pub fn finish(self, model: &Model, initial: &InitialState<T>, outcome: Outcome) -> Run {
+    pub fn finish(self, model: &Model, start: &Initial<T>, outcome: Outcome) -> Run {
         let phase = self.state.phase();
-        let (start_v, potential) = (initial.v, self.potential_since(model, initial.place));
+        let (start_v, potential) = (start.v, self.potential_since(model, start.place));
         let unit = self.stepper.equation.unit;
         let (low, high) = self.record.places;
         let reach = Excursion { low, high, speed: (2.0 * self.record.peak_kinetic).sqrt() / unit };
@@ -43,7 +39,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
             at: self.state.at,
             state: (self.state.x, self.state.v),
             start_v,
-            circuit: (initial.circuit, self.state.circuit),
+            circuit: (start.circuit, self.state.circuit),
             phase,
             segment: self.state.segment,
             potential,

@@ -67,9 +67,9 @@ impl Model {
 impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// Runs from start to end.
     fn run(mut self, model: &Model) -> Run {
-        let initial = self.begin(model);
+        let start = self.begin(model);
         let outcome = self.go_on();
-        self.finish(model, &initial, outcome)
+        self.finish(model, &start, outcome)
     }
 
     /// Goes on from event to event until the run has ended.

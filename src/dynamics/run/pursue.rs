@@ -1,6 +1,6 @@
 //! Pursuit of a motion from a given start, until it is known what it goes to.
 
-use super::ending::InitialState;
+use super::ending::Initial;
 use crate::dynamics::drive::Drive;
 use crate::dynamics::drive::form::{clock, form, with_drive};
 use crate::dynamics::equation::Equation;
@@ -28,10 +28,10 @@ impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
     }
 
     /// Result of the pursuit.
-    pub fn arrived(mut self, model: &Model, initial: &InitialState<T>, outcome: Outcome) -> Pursued {
+    pub fn arrived(mut self, model: &Model, start: &Initial<T>, outcome: Outcome) -> Pursued {
         let (crossings, work) = (self.record.counts.total_crossings, self.stepper.work.done());
         let arrival = self.record.arrival().filter(|_| outcome == Outcome::Done);
-        let unsettled = || Arrival::Unsettled(Box::new(self.finish(model, initial, outcome).summary));
+        let unsettled = || Arrival::Unsettled(Box::new(self.finish(model, start, outcome).summary));
         Pursued { arrival: arrival.unwrap_or_else(unsettled), crossings, work }
     }
 }
@@ -43,8 +43,8 @@ pub(crate) fn pursue_alone(model: &Model, pursuit: &Pursuit, request: &Request) 
     with_drive!(&form(model, &clock), drive => {
         let motion = Motion::new(model, request, model.tolerance, &equation, clock, drive);
         let mut motion = motion.pursuing(pursuit, model);
-        let initial = motion.begin(model);
+        let start = motion.begin(model);
         let outcome = motion.go_on();
-        motion.arrived(model, &initial, outcome)
+        motion.arrived(model, &start, outcome)
     })
 }

@@ -17,9 +17,9 @@ pub(crate) struct Chord<T> {
     pub end: T,
     /// Bound of |x - x(start)|.
     pub bound: T,
-    /// Bounds of the deviations of displacement, velocity times length, and
-    /// acceleration times squared length from the chords between their ends, as given
-    /// by [`chord_deviations`](crate::dynamics::series::polynomial::chord_deviations).
+    /// Bounds of the deviations of displacement, velocity times length, and acceleration times squared
+    /// length from the chords between their ends, as given by
+    /// [`chord_deviations`](crate::dynamics::series::polynomial::chord_deviations).
     pub deviations: (T, T, T),
     /// The velocities at its ends, times its length.
     pub slopes: (T, T),

@@ -28,14 +28,14 @@ const CONTACT_ORDERS: usize = 2;
 
 /// Tolerance above which few terms of force and drive are tried first.
 const COARSE: f64 = 1e-9;
-/// Share of the scene's speed above which they are: slower motions take longer steps, over which the drive
-/// changes.
+/// Share of the scene's speed above which they are: slower motions take longer steps, in which the drive
+/// changes more.
 const SLOW_SHARE: f64 = 0.01;
 
 /// The event at the end of a step of contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Reached {
-    /// None: the chosen end, the end of the run or that of the drive's segment.
+    /// No event: the chosen end, the end of the run or that of the drive's segment.
     Time,
     Surface,
     ClipChange,

@@ -9,7 +9,7 @@ use crate::numeric::{GROUP, GaussLegendre, Lanes, MOST_GROUPS, Number, Scalar, V
 /// Numbers at the points of a group.
 type Group<T> = Lanes<GROUP, T>;
 
-/// Number of halvings that find the largest force, which depends on the square of the remaining interval.
+/// Halvings to find the largest force; its error is of the order of the square of the last interval.
 const HALVINGS: u32 = 30;
 
 /// Maximum number of Newton steps to the parameter of a time; each squares the error.
