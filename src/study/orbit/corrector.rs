@@ -148,17 +148,23 @@ impl Corrector<'_> {
         if self.mirrored { (-x, -v) } else { (x, v) }
     }
 
-    /// Whether a motion of some forcing periods is its own mirror image half of them later.
+    /// Whether a motion is its own mirror image half its period later.
     pub fn is_mirrored(map: &StroboscopicMap, orbit: &Orbit) -> bool {
+        Self::off_mirror(map, orbit).is_some_and(|off| off <= SAME)
+    }
+
+    /// Largest difference of a motion from its mirror image half its period later, relative to the scales;
+    /// `None` if the mirror image is no motion of the scene, or the motion ends early.
+    pub fn off_mirror(map: &StroboscopicMap, orbit: &Orbit) -> Option<f64> {
         let model = map.model();
         if !model.mirrors_in_half_a_period() || orbit.period.is_multiple_of(2) {
-            return false;
+            return None;
         }
         let half = map.pass_between(orbit.state, (0.0, 0.5 * f64::from(orbit.period)));
         let scales = model.scales();
-        let off =
-            [(orbit.state.0 + half.state.0) / scales.length, (orbit.state.1 + half.state.1) / scales.speed];
-        half.outcome == Outcome::Done && off.iter().all(|part| part.abs() <= SAME)
+        let off = ((orbit.state.0 + half.state.0) / scales.length).abs();
+        let off = off.max(((orbit.state.1 + half.state.1) / scales.speed).abs());
+        (half.outcome == Outcome::Done).then_some(off)
     }
 
     /// The same motion at another phase of the drive; none where it ends early.

@@ -12,8 +12,8 @@ pub enum BranchEvent {
     Fold,
     /// A multiplier passes through -1: a motion of twice the period begins.
     Flip,
-    /// A multiplier passes through 1 where the branch goes on: a pair of motions that are not their own
-    /// mirror images begins.
+    /// A multiplier passes through 1 at a motion that is its own mirror image: a pair of motions that are not
+    /// begins. A branch of such motions turns there and goes back as that of their mirror images.
     Symmetry,
     /// The motion begins or ceases to touch a stop.
     Grazing,
@@ -38,6 +38,10 @@ const CHECKED: f64 = 1e-9;
 
 /// The distance of a multiplier from 1 or -1 that is left there: where it changes fast, no less is known.
 const AT_UNIT: f64 = 1e-6;
+
+/// Largest difference of a motion from its mirror image half a period later, relative to the scales, where a
+/// branch of motions that differ from theirs turns: the state is known less exactly there than the field.
+const MIRRORED: f64 = 1e-5;
 
 /// The most points for it.
 const MOST_POINTS: usize = 80;
@@ -82,11 +86,23 @@ pub(super) fn between(
             if !unit {
                 return None;
             }
-            found.push((share, event, point));
+            let breaks = event == BranchEvent::Fold && breaks_symmetry(corrector, &point);
+            found.push((share, if breaks { BranchEvent::Symmetry } else { event }, point));
         }
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     Some(found.into_iter().map(|(_, event, point)| (event, point)).collect())
+}
+
+/// Whether a branch of motions that are not their own mirror images turns at one that is.
+fn breaks_symmetry(corrector: &Corrector, point: &Point) -> bool {
+    let half = Corrector { mirrored: true, ..*corrector };
+    let off = corrector.map(point.value).and_then(|map| Corrector::off_mirror(&map, &point.orbit));
+    !corrector.mirrored
+        && off.is_some_and(|off| off <= MIRRORED)
+        && half
+            .look(&point.at)
+            .is_some_and(|half| characteristic(&half, -1.0).abs() < characteristic(&half, 1.0).abs())
 }
 
 /// Where on the branch between two points a quantity of different signs at them is 0, as a share of their
