@@ -90,7 +90,7 @@ fn cuts_are_rows_of_the_table_and_lead_to_their_cells() {
         assert_eq!(cut.iter().map(|own| own.place).collect::<Vec<_>>(), (0..count).collect::<Vec<_>>());
         for cell in cut {
             let (column, row) = if upright { (at, cell.place) } else { (cell.place, at) };
-            assert!(cell.own && *cell.cell == *own.cell(column, row).unwrap().0);
+            assert!(cell.is_known && *cell.cell == *own.cell(column, row).unwrap().0);
         }
     }
     // both thresholds of 1.5 mm: release in closed form, and the step from 0.5 to 0.75 g
@@ -133,7 +133,7 @@ fn a_cut_through_a_coarse_map_says_what_is_its_own() {
         assert!(cut.len() > 3 && cut.len() < rows, "{}", cut.len());
         assert!(cut.windows(2).all(|pair| pair[0].place < pair[1].place));
         for own in cut {
-            assert_eq!(map.cell(column, own.place).unwrap().1, own.own);
+            assert_eq!(map.cell(column, own.place).unwrap().1, own.is_known);
             assert_eq!(map.cell(column, own.place).unwrap().0, own.cell);
         }
     }

@@ -33,8 +33,21 @@ fn record(changes: &[&str], from: f64, noise: f64) -> (Vec<f64>, Channel) {
 
 fn over_paper(times: &[f64], channel: &Channel, scale: f64, shift: Option<f64>) -> Comparison {
     let (document, model) = model(&[]);
-    let own = MeasuredMotion { times, channel, offset: 0.0, time_scale: scale, shift };
-    compare(&document.scene, &model, &own, &AtomicBool::new(false)).unwrap()
+    let motion = MeasuredMotion { times, channel, offset: 0.0, time_scale: scale, shift };
+    compare(&document.scene, &model, &motion, &AtomicBool::new(false)).unwrap()
+}
+
+/// Compares displacements in m with a run.
+fn with_displacements(
+    (document, model): &(Document, Model),
+    times: &[f64],
+    values: Vec<f64>,
+    shift: f64,
+) -> Comparison {
+    let channel = Channel { quantity: Quantity::Displacement, column: "x_m".into(), values };
+    let motion =
+        MeasuredMotion { times, channel: &channel, offset: 0.0, time_scale: 1.0, shift: Some(shift) };
+    compare(&document.scene, model, &motion, &AtomicBool::new(false)).unwrap()
 }
 
 fn row(found: &Comparison, quantity: &str) -> [f64; 4] {
@@ -97,15 +110,7 @@ fn of_two_barriers_the_first_crossing_is_at_that_of_the_run() {
         let model = build(&document);
         let run = run_at(&model, &times);
         let values = run.samples.iter().map(|sample| sample.x).collect();
-        let channel = Channel { quantity: Quantity::Displacement, column: "x_m".into(), values };
-        let motion = MeasuredMotion {
-            times: &times,
-            channel: &channel,
-            offset: 0.0,
-            time_scale: 1.0,
-            shift: Some(0.0),
-        };
-        let found = compare(&document.scene, &model, &motion, &AtomicBool::new(false)).unwrap();
+        let found = with_displacements(&(document, model), &times, values, 0.0);
         let [measured, computed, ..] = row(&found, "first_crossing");
         let event = of_kind(&run, EventKind::Crossing)[0].t;
         assert!((measured - event).abs() <= 1e-4 && measured == computed, "{measured} {computed} {event}");
@@ -119,9 +124,9 @@ fn the_zero_of_the_sensor_can_be_another() {
     let (times, mut channel) = record(&[], 0.4, 0.0);
     channel.values.iter_mut().for_each(|x| *x += 0.0352);
     let (document, model) = model(&[]);
-    let own =
+    let motion =
         MeasuredMotion { times: &times, channel: &channel, offset: -0.0352, time_scale: 1.0, shift: None };
-    let found = compare(&document.scene, &model, &own, &AtomicBool::new(false)).unwrap();
+    let found = compare(&document.scene, &model, &motion, &AtomicBool::new(false)).unwrap();
     // the digits of 0.0352 m; the motion repeats, so that whole periods fit as well
     let periods = 3.0 * found.shift;
     assert!(found.rms.0 < 1e-12, "{:?}", found.rms);
@@ -132,9 +137,9 @@ fn the_zero_of_the_sensor_can_be_another() {
 fn a_record_apart_from_the_run_is_refused() {
     let (times, channel) = record(&[], 0.0, 0.0);
     let (document, model) = model(&[]);
-    let own =
+    let motion =
         MeasuredMotion { times: &times, channel: &channel, offset: 0.0, time_scale: 1.0, shift: Some(10.0) };
-    let found = compare(&document.scene, &model, &own, &AtomicBool::new(false));
+    let found = compare(&document.scene, &model, &motion, &AtomicBool::new(false));
     assert!(matches!(found, Err(NoComparison::Apart { samples: 0, .. })));
 }
 
@@ -174,17 +179,8 @@ fn a_last_sample_at_the_end_of_the_run_is_within_it() {
     for (times, shift) in
         [(times, 0.0), (counted.clone(), 0.0), (counted.iter().map(|t| t + 0.3).collect(), -0.3)]
     {
-        let (document, model) = model(&["run.duration_s=0.7", "run.settle_s=0"]);
-        let values = vec![0.0; times.len()];
-        let channel = Channel { quantity: Quantity::Displacement, column: "x_m".into(), values };
-        let motion = MeasuredMotion {
-            times: &times,
-            channel: &channel,
-            offset: 0.0,
-            time_scale: 1.0,
-            shift: Some(shift),
-        };
-        let found = compare(&document.scene, &model, &motion, &AtomicBool::new(false)).unwrap();
+        let scene = model(&["run.duration_s=0.7", "run.settle_s=0"]);
+        let found = with_displacements(&scene, &times, vec![0.0; times.len()], shift);
         assert_eq!(found.times.len(), 8, "{:?}", found.remarks);
         assert!(!found.remarks.iter().any(|remark| remark.contains("outside")), "{:?}", found.remarks);
     }

@@ -31,7 +31,7 @@ pub struct CutCell<'a> {
     /// Its result.
     pub cell: &'a Cell,
     /// Whether the result is of this cell; if not, it is of the nearest cell that is known so far.
-    pub own: bool,
+    pub is_known: bool,
 }
 
 /// A map as far as it is known.
@@ -164,12 +164,12 @@ impl Map {
         let cell = |place: usize| {
             let index = index(place) as u64;
             if let Some(cell) = self.cells[index as usize].as_ref() {
-                return Some(CutCell { place, cell, own: true });
+                return Some(CutCell { place, cell, is_known: true });
             }
             let stand_ins = (0..STRIDES.len() - 1).rev().map(|level| self.levels.stand_in(index, level));
             let beside = |other: &u64| along(*other) == place;
             let cell = stand_ins.filter(beside).find_map(|other| self.cells[other as usize].as_ref())?;
-            Some(CutCell { place, cell, own: false })
+            Some(CutCell { place, cell, is_known: false })
         };
         (0..if upright { rows } else { columns }).filter_map(cell).collect()
     }

@@ -97,7 +97,7 @@ impl Strip<'_> {
         // the line connects neighbouring cells that have numbers
         let mut line: Vec<Pos2> = Vec::new();
         let mut last = None;
-        for cut in cells.iter().filter(|cut| cut.own) {
+        for cut in cells.iter().filter(|cut| cut.is_known) {
             let at = point(cut).filter(|_| !self.scale.is_of_words());
             if at.is_none() || last.is_some_and(|last| cut.place != last + 1) {
                 inside.add(Shape::line(std::mem::take(&mut line), style.ghost_stroke()));
@@ -110,13 +110,13 @@ impl Strip<'_> {
         for cut in &cells {
             let Some(at) = point(cut) else { continue };
             let kind = cut.cell.settled().map_or(Kind::Fault, |settled| Kind::from(settled.regime));
-            let is_scene = cut.place == scene && cut.own;
+            let is_scene = cut.place == scene && cut.is_known;
             if !is_scene && before.is_some_and(|(last, of)| of == kind && last.distance(at) < MARK_GAP) {
                 continue;
             }
             before = Some((at, kind));
             let colour = style.kind(kind);
-            let colour = if cut.own { colour } else { colour.gamma_multiply(FAINT) };
+            let colour = if cut.is_known { colour } else { colour.gamma_multiply(FAINT) };
             inside.extend(kind_shapes(kind, at, MARK, colour));
             if is_scene {
                 for stroke in style.marker_strokes() {
