@@ -1,5 +1,5 @@
-//! JSON of a summary and of a landscape: flat objects, numbers in SI with the unit in the key, `null` for
-//! what is missing.
+//! JSON of a summary, a landscape and an identification: numbers in SI with the unit in the key, `null` for
+//! missing values.
 
 use serde_json::{Map, Value, json};
 
@@ -9,11 +9,12 @@ use crate::mechanics::{Landscape, Mechanism};
 use crate::scene::{Scene, Timing};
 use crate::study::{Identified, Read, SUMMARY_FIELDS, SummaryField, small_amplitude_frequency};
 
-/// The summary of a run of `scene`, as text. Compliant stops add two keys, their peak force and pressure. A
-/// run that ended early has two keys more, `ended_at_s` and, where a budget ran out, `ended_after`, the
-/// impacts or steps made.
+/// The summary of a run of `scene`, as text. Compliant stops add the keys of peak force and pressure. A run
+/// that ended early adds `ended_at_s` and, if a budget ran out, `ended_after`, the number of impacts or
+/// steps.
 pub fn summary(summary: &Summary, scene: &Scene, origin: &Provenance) -> String {
-    let mut object = Value::Object(SUMMARY_FIELDS.iter().filter_map(|field| entry(field, summary)).collect());
+    let entries = SUMMARY_FIELDS.iter().filter_map(|field| entry(field, summary)).collect();
+    let mut object = without_negative_zeros(Value::Object(entries));
     let mut add = |key: &str, value: Value| {
         if let Value::Object(map) = &mut object {
             map.insert(key.to_owned(), value);
@@ -32,13 +33,12 @@ pub fn summary(summary: &Summary, scene: &Scene, origin: &Provenance) -> String 
     pretty(&object)
 }
 
-/// A field with its value. What only some runs have is left out of the others: the contact with a compliant
-/// stop, what a transducer gives, an early end, what happened first under a drive that changes, and the terms
-/// of the ledger, which stand together elsewhere.
+/// A field with its value. Returns `None` for a quantity that the run does not have: contact with a compliant
+/// stop, transducer, early end, first events under a changing drive. The terms of the ledger are left out,
+/// because they have an object of their own.
 fn entry(field: &SummaryField, summary: &Summary) -> Option<(String, Value)> {
     let value = match field.read {
-        // Adding 0 makes -0 a plain 0.
-        Read::Number(of) => json!(of(summary).map(|number| number + 0.0)),
+        Read::Number(of) => json!(of(summary)),
         Read::Count(of) => json!(of(summary)),
         Read::Word(of) => Some(of(summary)).filter(|word| !word.is_empty()).into(),
         Read::Flag(of) => json!(of(summary)),
@@ -64,7 +64,8 @@ fn ledger(ledger: &Ledger) -> Value {
         ("stored_j", Some(ledger.stored_j)),
         ("residual_j", Some(ledger.residual_j)),
     ];
-    terms.into_iter().filter_map(|(name, joules)| Some((name.to_owned(), json!(joules? + 0.0)))).collect()
+    let terms = terms.into_iter().filter_map(|(name, joules)| Some((name.to_owned(), json!(joules?))));
+    without_negative_zeros(terms.collect())
 }
 
 /// The landscape of a mechanism that carries `mass` in kg, as text.
@@ -74,56 +75,55 @@ pub fn landscape(mechanism: &Mechanism, mass: f64) -> String {
         .iter()
         .map(|equilibrium| {
             json!({
-                "x_m": equilibrium.x + 0.0,
+                "x_m": equilibrium.x,
                 "stable": equilibrium.stable,
-                "stiffness_left_n_per_m": equilibrium.stiffness_left + 0.0,
-                "stiffness_right_n_per_m": equilibrium.stiffness_right + 0.0,
+                "stiffness_left_n_per_m": equilibrium.stiffness_left,
+                "stiffness_right_n_per_m": equilibrium.stiffness_right,
                 "frequency_hz": small_amplitude_frequency(mass, equilibrium),
             })
         })
         .collect();
     let barrier = barrier.map(|barrier| {
         json!({
-            "x_m": barrier.x + 0.0,
-            "height_j": barrier.from_left_j.min(barrier.from_right_j) + 0.0,
-            "height_from_left_j": barrier.from_left_j + 0.0,
-            "height_from_right_j": barrier.from_right_j + 0.0,
-            "left_well_m": barrier.left_well + 0.0,
-            "right_well_m": barrier.right_well + 0.0,
+            "x_m": barrier.x,
+            "height_j": barrier.from_left_j.min(barrier.from_right_j),
+            "height_from_left_j": barrier.from_left_j,
+            "height_from_right_j": barrier.from_right_j,
+            "left_well_m": barrier.left_well,
+            "right_well_m": barrier.right_well,
         })
     });
-    let extrema: Vec<Value> = extrema
-        .iter()
-        .map(|extremum| json!({ "x_m": extremum.x + 0.0, "force_n": extremum.force + 0.0 }))
-        .collect();
+    let extrema: Vec<Value> =
+        extrema.iter().map(|extremum| json!({ "x_m": extremum.x, "force_n": extremum.force })).collect();
     let kinks: Vec<Value> = kinks
         .iter()
         .map(|kink| {
             json!({
-                "x_m": kink.x + 0.0,
-                "stiffness_left_n_per_m": kink.stiffness_left + 0.0,
-                "stiffness_right_n_per_m": kink.stiffness_right + 0.0,
+                "x_m": kink.x,
+                "stiffness_left_n_per_m": kink.stiffness_left,
+                "stiffness_right_n_per_m": kink.stiffness_right,
             })
         })
         .collect();
     let (left, right) = mechanism.curve.domain();
-    pretty(&json!({
+    let landscape = json!({
         "equilibria": equilibria,
         "barrier": barrier,
         "force_extrema": extrema,
         "kinks": kinks,
-        "domain_m": [left + 0.0, right + 0.0],
-    }))
+        "domain_m": [left, right],
+    });
+    pretty(&without_negative_zeros(landscape))
 }
 
-/// What was identified (`of` a record that was sampled like this), as text: its numbers by name, each an
-/// object of value and 95 % interval.
+/// The result of an identification, as text: its numbers by name, each an object of value and 95 % interval.
+/// `of` is the identified quantity, `timing` the sampling of the record.
 pub fn identified(of: &str, found: &Identified, timing: Option<&Timing>, origin: &Provenance) -> String {
     let mut object = Map::new();
     object.insert("of".to_owned(), json!(of));
-    for own in &found.summary {
-        let [value, low, high] = [own.value, own.interval.0, own.interval.1].map(|number| number + 0.0);
-        object.insert(own.name.to_owned(), json!({ "value": value, "low": low, "high": high }));
+    for number in &found.summary {
+        let (low, high) = number.interval;
+        object.insert(number.name.to_owned(), json!({ "value": number.value, "low": low, "high": high }));
     }
     if let Some(timing) = timing {
         object.insert("samples".to_owned(), json!(timing.samples));
@@ -134,10 +134,23 @@ pub fn identified(of: &str, found: &Identified, timing: Option<&Timing>, origin:
     object.insert("remarks".to_owned(), json!(found.remarks));
     object.insert("version".to_owned(), json!(origin.version));
     object.insert("arguments".to_owned(), json!(origin.arguments));
-    pretty(&Value::Object(object))
+    pretty(&without_negative_zeros(Value::Object(object)))
 }
 
-/// Numbers are in serde_json's shortest form; one that is not finite became `null` on its way in.
+/// Replaces each -0 by 0.
+fn without_negative_zeros(value: Value) -> Value {
+    match value {
+        Value::Number(number) if number.as_f64() == Some(-0.0) && number.is_f64() => json!(0.0),
+        Value::Array(values) => values.into_iter().map(without_negative_zeros).collect(),
+        Value::Object(map) => {
+            map.into_iter().map(|(key, value)| (key, without_negative_zeros(value))).collect()
+        }
+        other => other,
+    }
+}
+
+/// Formats JSON. serde_json writes numbers in their shortest form, and stores those that are not finite as
+/// `null`.
 pub(super) fn pretty(value: &Value) -> String {
     format!("{value:#}\n")
 }

@@ -13,6 +13,7 @@ use super::locate::{Place, Places};
 use super::mechanism::Mechanism;
 use super::scanner::Scanner;
 use super::stops::Stops;
+use super::transducer::Transducer;
 
 /// Largest size of a scene's text: about a thousand times that of a long scene, and still parsed immediately.
 pub const MAX_SCENE_BYTES: usize = 4 << 20;
@@ -190,6 +191,7 @@ fn choices(field: &str) -> Option<&'static [&'static str]> {
         "stops" | "stops_when_on" => of::<Stops>(),
         "excitation" => of::<Excitation>(),
         "start" => of::<Start>(),
+        "transducer" => of::<Transducer>(),
         "layout" => of::<Layout>(),
         _ => None,
     }

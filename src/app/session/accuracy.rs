@@ -195,9 +195,11 @@ impl Accuracy {
         Some((known, same && self.tolerances.current().is_some()))
     }
 
-    /// The result of the fixed step, and whether it is that of `model` and the present step.
+    /// The result of the fixed step, and whether it is that of `model`, the present method and step.
     pub fn stepped(&self, model: &Model) -> Option<(&Result<StepSize, Unfit>, bool)> {
-        let same = self.step_of.as_ref().is_some_and(|of| std::ptr::eq(&*of.0, model) && of.2 == self.step);
+        let same = self.step_of.as_ref().is_some_and(|(of, scheme, step)| {
+            std::ptr::eq(&**of, model) && (*scheme, *step) == (self.scheme, self.step)
+        });
         let known = self.stepped.newest()?;
         Some((known, same && self.stepped.current().is_some()))
     }

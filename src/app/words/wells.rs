@@ -9,13 +9,15 @@ pub fn well_name(number: usize, count: usize) -> String {
         (1, 3) => "middle well".to_owned(),
         (_, 2..=3) => "right-hand well".to_owned(),
         _ => {
-            let ending = match number % 10 {
-                0 if number != 10 => "st",
-                1 if number != 11 => "nd",
-                2 if number != 12 => "rd",
+            let ordinal = number + 1;
+            let ending = match (ordinal % 10, ordinal % 100) {
+                (_, 11..=13) => "th",
+                (1, _) => "st",
+                (2, _) => "nd",
+                (3, _) => "rd",
                 _ => "th",
             };
-            format!("{}{ending} of {count} wells", number + 1)
+            format!("{ordinal}{ending} of {count} wells")
         }
     }
 }
@@ -38,6 +40,9 @@ mod tests {
             let names: std::collections::HashSet<String> = (0..count).map(|i| well_name(i, count)).collect();
             assert_eq!(names.len(), count);
             assert_eq!(well_name(count - 1, count), last);
+        }
+        for (number, name) in [(1, "1st"), (11, "11th"), (22, "22nd"), (103, "103rd"), (111, "111th")] {
+            assert_eq!(well_name(number - 1, 200), format!("{name} of 200 wells"));
         }
     }
 }

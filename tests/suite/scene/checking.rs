@@ -178,9 +178,12 @@ fn a_million_faults_are_counted() {
 
 #[test]
 fn more_sines_than_fit_into_memory_are_refused() {
-    let noises = |noise: &str| faults(&[("excitation", &format!("Sum([{}])", noise.repeat(60_000)))]);
-    assert!(noises("Noise(rms_g:1,low_hz:9,high_hz:inf,seed:1),").ends_with("and 59950 more"));
-    assert!(noises("Noise(rms_g:1,low_hz:1,high_hz:9,seed:1,lines:4096),").contains(
+    let sum = |term: &str| faults(&[("excitation", &format!("Sum([{}])", term.repeat(60_000)))]);
+    assert!(sum("Noise(rms_g:1,low_hz:9,high_hz:inf,seed:1),").ends_with("and 59950 more"));
+    assert!(
+        sum("Chirp(from_hz:1,to_hz:2,over_s:3,amplitude_g:1),").contains("a sum of 60000 sines: must have")
+    );
+    assert!(sum("Noise(rms_g:1,low_hz:1,high_hz:9,seed:1,lines:4096),").contains(
         "excitation = a sum of 245760000 sines: must have at most 16384, the lines of noises included"
     ));
 }

@@ -206,6 +206,7 @@ fn structural_errors_have_a_place_and_the_known_names() {
         (("mass_g", "1, mass_g: 2"), "`mass_g` is given twice in Scene"),
         (("damping", "Ratio()"), "s.ron:6:20: damping: expected a number"),
         (("damping", "0.023"), "s.ron:6:14: damping: expected one of None, Ratio, Coefficient"),
+        (("transducer", "8"), "transducer: expected one of None, Electromagnetic, Piezoelectric"),
         (("excitation", "[Sine()]"), "excitation: expected one of None, Constant, Sine"),
         (
             ("mass_g", "15,2"),
