@@ -43,7 +43,8 @@ pub struct Arguments {
     pub plot: PlotOptions,
 }
 
-/// Runs what was selected and shows it; an error where a case falls short, after everything was written.
+/// Runs the selected problems and cases and shows the results. Returns an error, after all is written, if a
+/// case falls short.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if let Some(scene) = &options.scene {
         return scene_accuracy::run(scene, options, common);
@@ -53,7 +54,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             "--{option} needs a SCENE, such as interwell --headless accuracy paper --{option} .."
         )));
     }
-    let picture = Picture::asked(&options.plot, common)?;
+    let picture = Picture::new(&options.plot, common)?;
     let selection = if options.case.is_empty() { Selection::all() } else { Selection::of(&options.case)? };
     if options.list {
         let mut sinks = open(&[], [Some(("--list", std::path::Path::new("-")))])?;
@@ -100,9 +101,9 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     verdict(&report)
 }
 
-/// Puts a text on standard output, or beside the data that is there on standard error.
-pub(super) fn show(text: &str, data_is_there: bool, quiet: bool) -> Result<(), Failure> {
-    if !data_is_there {
+/// Writes a text to standard output, or to standard error if standard output has the data.
+pub(super) fn show(text: &str, data_on_stdout: bool, quiet: bool) -> Result<(), Failure> {
+    if !data_on_stdout {
         let mut sinks = open(&[], [Some(("the table", std::path::Path::new("-")))])?;
         write_text(&mut sinks[0], text)?;
         finish(sinks)?;
@@ -112,7 +113,7 @@ pub(super) fn show(text: &str, data_is_there: bool, quiet: bool) -> Result<(), F
     Ok(())
 }
 
-/// The tables of a report as text.
+/// Formats the tables of a report as text.
 fn shown(report: &Report) -> String {
     let mut parts = Vec::new();
     if !report.points.is_empty() {
@@ -124,7 +125,7 @@ fn shown(report: &Report) -> String {
     parts.join("\n")
 }
 
-/// An error that names what falls short.
+/// Returns an error that names the checks that fall short.
 fn verdict(report: &Report) -> Result<(), Failure> {
     let short = report.shortfalls();
     let named: Vec<String> =
@@ -139,14 +140,14 @@ fn verdict(report: &Report) -> Result<(), Failure> {
     }
 }
 
-/// What the cases are, a paragraph each.
+/// Describes the problems and cases, one paragraph each.
 fn list(wanted: &[String]) -> String {
-    let shown = |name: &str| wanted.is_empty() || wanted.iter().any(|own| own == name);
+    let shown = |name: &str| wanted.is_empty() || wanted.iter().any(|chosen| chosen == name);
     let mut text = String::new();
-    for problem in PROBLEMS.iter().filter(|own| shown(own.name)) {
+    for problem in PROBLEMS.iter().filter(|problem| shown(problem.name)) {
         text += &format!("{}\n  {}\n  Error: {}\n", problem.name, problem.problem, problem.error);
     }
-    for case in HARD_CASES.iter().filter(|own| shown(own.name)) {
+    for case in HARD_CASES.iter().filter(|case| shown(case.name)) {
         text += &format!(
             "{}\n  {}\n  Answer: {}\n  Digits allowed: {}\n",
             case.name, case.problem, case.answer, case.conditioning
@@ -155,7 +156,7 @@ fn list(wanted: &[String]) -> String {
     text
 }
 
-/// A bar, where standard error is a terminal.
+/// A progress bar, hidden unless standard error is a terminal.
 fn bar(parts: u64, quiet: bool) -> ProgressBar {
     if quiet || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();

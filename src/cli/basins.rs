@@ -1,4 +1,4 @@
-//! `basins`: the attractor that each start goes to, a row a start.
+//! `basins`: the attractor that each start goes to, one row for each start.
 
 use std::convert::Infallible;
 use std::path::PathBuf;
@@ -57,7 +57,7 @@ pub struct Arguments {
 
 /// Follows the starts and writes a row for each.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::asked(&options.plot, common)?;
+    let picture = Picture::new(&options.plot, common)?;
     let starts = starts(options)?;
     if picture.is_some() {
         can_show_starts(&starts)?;
@@ -109,7 +109,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Follows the starts, and once more those whose answers may not be sure; none where it was cancelled.
+/// Follows the starts, then repeats those whose answer may be uncertain. Returns `None` if cancelled.
 fn answer(basins: &mut Basins, pool: &Pool, common: &Common) -> Option<Answer> {
     let shown = |parts: usize, unit: &str| bar(parts as u64, unit, common.quiet, common.out());
     let cancel = interrupt::listen();
@@ -125,24 +125,24 @@ fn answer(basins: &mut Basins, pool: &Pool, common: &Common) -> Option<Answer> {
     whole.then_some(answer)
 }
 
-/// A start that may take so many steps, half a second of a core, is worth a word before it is followed.
+/// Steps of one start above which a forecast is printed; about half a second of a core.
 const MANY_STEPS: f64 = 1e6;
 
-/// What the starts may cost, where that is much.
+/// The possible cost of a start in words, or `None` if it is small.
 fn forecast(basins: &Basins) -> Option<String> {
     let (steps, seconds) = basins.cost_of_a_period();
-    let most = Basins::PATIENCE as f64;
-    (steps * most > MANY_STEPS).then(|| {
+    let periods = Basins::PATIENCE as f64;
+    (steps * periods > MANY_STEPS).then(|| {
         format!(
-            "a forcing period takes some {} steps: a start that is followed for {most} of them, the most, \
+            "a forcing period takes some {} steps: a start that is followed for {periods} of them, the most, \
              takes some {} of a core; one that takes far more than others ends early",
             short(steps),
-            duration(seconds * most)
+            duration(seconds * periods)
         )
     })
 }
 
-/// Rows that a thread turns into text at a time.
+/// Rows that a thread formats at a time.
 const ROWS: usize = 1 << 14;
 
 fn write_rows(
@@ -168,7 +168,7 @@ fn write_rows(
     Ok(())
 }
 
-/// What came of it, in a line.
+/// Sums up the answer in one line.
 fn outcome(answer: &Answer, count: u64, seconds: f64) -> String {
     let number = |count: u64, one: &str| match count {
         1 => format!("1 {one}"),
@@ -191,10 +191,10 @@ fn outcome(answer: &Answer, count: u64, seconds: f64) -> String {
     text
 }
 
-/// How values are given.
+/// The form of a range of values, for error messages.
 const AS_EVEN: &str = "write A:B:N, the first value, the last and how many, such as -5:5:101";
 
-/// The starts that were asked for.
+/// The starts that the options ask for.
 fn starts(options: &Arguments) -> Result<Starts, Failure> {
     let given = |option: &'static str, text: &Option<String>| {
         let missing = || Failure::argument(format!("{option} is missing: {AS_EVEN}"));

@@ -1,4 +1,4 @@
-//! `check`: faults and warnings of scenes, and what each models.
+//! `check`: faults and warnings of scenes, and what each scene models.
 
 use std::path::PathBuf;
 
@@ -19,7 +19,7 @@ pub struct Arguments {
     pub scenes: Vec<String>,
 }
 
-/// Reports every scene; the ones that are wrong on standard error, after which the command has failed.
+/// Reports every scene. Wrong scenes are reported on standard error, and make the command fail.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let paper = ["paper".to_owned()];
     let scenes = if options.scenes.is_empty() { &paper[..] } else { &options.scenes[..] };
@@ -35,10 +35,10 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     finish(sinks)?;
     match wrong.pop() {
         None => Ok(()),
-        // The last one is printed by whoever prints the failure.
+        // The last error is returned, and its caller prints it.
         Some(last) => {
             wrong.iter().for_each(|error| say(&format!("error: {error}")));
-            // One wrong scene among those that failed makes the arguments wrong.
+            // One wrong scene among the failed ones is enough for the exit status of wrong arguments.
             let any_wrong = wrong.iter().any(|error| matches!(error, Failure::Wrong(_)));
             Err(match last {
                 Failure::Failed(error) if any_wrong => Failure::Wrong(error),
@@ -57,7 +57,7 @@ fn report(spec: &str, common: &Common) -> Result<String, Failure> {
     if let Excitation::Sine { .. } = document.scene.excitation
         && mechanism.landscape.barrier.is_some()
     {
-        // a search, for which nobody waits here
+        // the search takes long, so its command is named instead
         let set = common.set.iter().flat_map(|set| ["--set", set]);
         let tolerance = common.tolerance.iter().flat_map(|tolerance| ["--tolerance", tolerance]);
         let search = ["interwell", "--headless", "threshold", spec, "--of", "crossing"].into_iter();

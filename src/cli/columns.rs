@@ -37,7 +37,7 @@ pub struct PositionOptions {
 }
 
 impl PositionOptions {
-    /// What is asked of the record for the positions.
+    /// The request to the record for the positions.
     pub fn positions(&self) -> Ask {
         Ask {
             quantities: vec![Quantity::Displacement],
@@ -49,13 +49,13 @@ impl PositionOptions {
 }
 
 impl ColumnOptions {
-    /// What is asked of the record for the times.
+    /// The request to the record for the times.
     pub fn times(&self) -> Ask {
         let (column, unit) = (self.time.clone(), self.time_unit.clone());
         Ask { quantities: vec![Quantity::Time], column, unit, options: ("--time", "--time-unit") }
     }
 
-    /// What is asked of it for values of one of these quantities, the first that it has.
+    /// The request to the record for values of the first of these quantities that it has.
     pub fn values(&self, quantities: &[Quantity]) -> Ask {
         let (column, unit) = (self.column.clone(), self.unit.clone());
         Ask { quantities: quantities.to_vec(), column, unit, options: ("--column", "--unit") }

@@ -1,4 +1,4 @@
-//! `compare`: scenes side by side under one sine, a row each.
+//! `compare`: scenes side by side under one sine, one row for each scene.
 
 use clap::Args;
 use interwell::dynamics::Regime;
@@ -48,7 +48,7 @@ pub struct Arguments {
 
 /// Rates the scenes and writes a row for each.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::asked(&options.plot, common)?;
+    let picture = Picture::new(&options.plot, common)?;
     let environment = options.environment.as_deref().or(options.scenes.first().map(String::as_str));
     let environment = read(environment.unwrap_or("paper"), common)?;
     let Excitation::Sine { frequency_hz, amplitude_g, .. } = environment.scene.excitation else {
@@ -58,17 +58,17 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             environment.name
         )));
     };
-    let (mut all, mut files, mut shaken, mut until) = (Vec::new(), Vec::new(), Vec::new(), None);
+    let (mut all, mut files, mut replaced, mut until) = (Vec::new(), Vec::new(), Vec::new(), None);
     for spec in &options.scenes {
         let (mut document, warnings) = load(spec, common, None)?;
-        let (own, lent) = (&document.scene, &environment.scene);
-        let how = match (own.excitation != lent.excitation, window(&own.run) != window(&lent.run)) {
+        let (scene, lent) = (&document.scene, &environment.scene);
+        let how = match (scene.excitation != lent.excitation, window(&scene.run) != window(&lent.run)) {
             (true, true) => Some("under the excitation and with the run of"),
             (true, false) => Some("under the excitation of"),
             (false, true) => Some("with the run of"),
             (false, false) => None,
         };
-        shaken.extend(how.map(|how| (plain(spec), format!("{how} {}", environment.name))));
+        replaced.extend(how.map(|how| (plain(spec), format!("{how} {}", environment.name))));
         document.scene.excitation = environment.scene.excitation.clone();
         document.scene.run = environment.scene.run;
         document.scene.sweep.clear(); // its fields may not be those of another excitation
@@ -85,7 +85,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         if let [only] = &options.scenes[..] {
             say(&format!("{only}: the only scene; name others to set beside it"));
         }
-        grouped(shaken).iter().for_each(|line| say(line));
+        grouped(replaced).iter().for_each(|line| say(line));
     }
     let pool = pool(common)?;
     let [plot, data] = Picture::outputs(picture);
@@ -97,9 +97,9 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let rated = rated.ok_or_else(Failure::interrupted)?;
     write_table(&mut sinks[0], &comparison_table(&rated))?;
     if !common.quiet {
-        let remarks = all.iter().zip(&rated).flat_map(|(own, rated)| {
-            let said = remarks(own, rated, amplitude_g).into_iter();
-            said.map(|words| (rated.name.clone(), words))
+        let remarks = all.iter().zip(&rated).flat_map(|(scene, rated)| {
+            let remarks = remarks(scene, rated, amplitude_g).into_iter();
+            remarks.map(|words| (rated.name.clone(), words))
         });
         grouped(remarks.collect()).iter().for_each(|line| say(line));
     }
@@ -114,16 +114,16 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     finish(sinks)
 }
 
-/// What a run is over and how closely it is computed: duration, begin of the settled window, tolerance.
+/// Duration of a run, beginning of its settled window, and tolerance.
 fn window(run: &RunSettings) -> [f64; 3] {
     [run.duration_s, run.settle_s.unwrap_or(0.5 * run.duration_s), run.tolerance]
 }
 
-/// Lines of what is said of scenes, one for all of which the same is said.
-fn grouped(said: Vec<(String, String)>) -> Vec<String> {
+/// One line for each distinct remark, with the names of all scenes to which it applies.
+fn grouped(remarks: Vec<(String, String)>) -> Vec<String> {
     let mut lines: Vec<(Vec<String>, String)> = Vec::new();
-    for (name, words) in said {
-        match lines.iter_mut().find(|own| own.1 == words) {
+    for (name, words) in remarks {
+        match lines.iter_mut().find(|line| line.1 == words) {
             Some((names, _)) => names.push(name),
             None => lines.push((vec![name], words)),
         }
@@ -131,7 +131,7 @@ fn grouped(said: Vec<(String, String)>) -> Vec<String> {
     lines.into_iter().map(|(names, words)| format!("{}: {words}", names.join(", "))).collect()
 }
 
-/// What empty and infinite cells of a row mean, and what else a reader of it should know.
+/// Explains the empty and infinite cells of a row, an early end, rest, and an undecided threshold.
 fn remarks(scene: &Alternative, rated: &Rated, amplitude_g: f64) -> Vec<String> {
     let (summary, given) = (&rated.summary, short(amplitude_g));
     let mut all = Vec::new();
@@ -169,7 +169,7 @@ fn remarks(scene: &Alternative, rated: &Rated, amplitude_g: f64) -> Vec<String> 
     all
 }
 
-/// Why the cell of a column is empty.
+/// The reason why the cell of a column is empty.
 fn why_empty(column: &str, scene: &Alternative, rated: &Rated, given: &str) -> String {
     let (summary, crossing) = (&rated.summary, rated.crossing_g());
     let transducer = scene.scene.transducer != Transducer::None;
@@ -195,7 +195,7 @@ fn why_empty(column: &str, scene: &Alternative, rated: &Rated, given: &str) -> S
     .to_owned()
 }
 
-/// A name without what would end a cell of CSV.
+/// A name with the characters that CSV would have to quote replaced by `_`.
 fn plain(name: &str) -> String {
     name.replace([',', '"', '\n', '\r'], "_")
 }

@@ -1,4 +1,4 @@
-//! `curve`: force, potential and stiffness of the mechanism, and what its flexures do.
+//! `curve`: force, potential and stiffness of the mechanism, and the state and shape of its flexures.
 
 use std::path::PathBuf;
 
@@ -82,18 +82,18 @@ pub struct Arguments {
     pub chart: ChartOptions,
 }
 
-/// Positions at which the flexures are drawn: each is some hundred rows.
+/// Default number of positions at which the flexures are drawn; each gives some hundred rows.
 const SHAPES: u32 = 21;
 
-/// Writes the curve as CSV and, where asked for, the landscape as JSON and the shapes of the flexures as CSV.
+/// Writes the curve as CSV and, if requested, the landscape as JSON and the shapes of the flexures as CSV.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::asked(&options.chart.plot, common)?;
+    let picture = Picture::new(&options.chart.plot, common)?;
     let axes = ranges(&options.chart, "--plot-x")?;
     let contact_picture =
         Picture::of("--contact-plot", options.contact_plot.as_deref(), &options.chart.plot, common)?;
-    // of two pictures the numbers are those of --plot
-    let contact_picture =
-        contact_picture.map(|own| if picture.is_none() { own.with_data(&options.chart.plot) } else { own });
+    // with two pictures, --plot-data holds the numbers of --plot
+    let contact_picture = contact_picture
+        .map(|contact| if picture.is_none() { contact.with_data(&options.chart.plot) } else { contact });
     let rigid = restitution(&options.rigid)?;
     let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
     let range = |text| range("--range-mm", text, "A:B in mm with A below B, such as -8:8");
@@ -109,8 +109,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         None => even(options.points.unwrap_or(points) as usize),
     };
     let table = curve(&mechanism, positions(CURVE_POINTS))?;
-    for (asked, option) in [(options.full, "--full"), (options.shapes.is_some(), "--shapes")] {
-        if asked {
+    for (given, option) in [(options.full, "--full"), (options.shapes.is_some(), "--shapes")] {
+        if given {
             flexures_at(&mechanism, &[]).map_err(|error| unknown(&document.name, option, error))?;
         }
     }
@@ -136,7 +136,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     }
     let table = if options.full {
         let rows = solved(&mechanism, &positions(CURVE_POINTS), &document.name, "--full")?;
-        let warning = mechanism.flexures.as_ref().and_then(|own| stress_warning(own, &rows));
+        let warning = mechanism.flexures.as_ref().and_then(|flexures| stress_warning(flexures, &rows));
         if let Some(warning) = warning.filter(|_| !common.quiet) {
             say(&format!("warning: {}: {warning}", document.name));
         }
@@ -147,7 +147,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     write_table(&mut sinks[0], &table)?;
     write_text(&mut sinks[1], &landscape(&mechanism, document.scene.mass_g / 1e3))?;
     if let Some(picture) = picture {
-        // The picture shows the curve however few positions were asked for.
+        // The picture shows the whole curve, even if few positions were requested.
         let about = caption(&document);
         let figure = match &measured {
             Some(found) => {
@@ -177,7 +177,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     finish(sinks)
 }
 
-/// What one impact on the scene's compliant stop does, and the model that it belongs to.
+/// The table of one impact on the scene's compliant stop over impact speed, and the model.
 fn contact_table(
     document: &Document,
     mechanism: &Arc<Mechanism>,
@@ -198,12 +198,11 @@ fn contact_table(
 
 /// The restitution of a rigid stop as given to `--rigid`.
 fn restitution(text: &str) -> Result<f64, Failure> {
-    let fits = |own: &f64| (0.0..=1.0).contains(own);
+    let fits = |value: &f64| (0.0..=1.0).contains(value);
     number("--rigid", text, fits, "give a coefficient of restitution, 0 to 1, such as 0.36")
 }
 
-/// The flexures at these positions in m, unless Ctrl-C comes first; `scene` and `option` are what an error
-/// names.
+/// Solves the flexures at these positions in m; stops at Ctrl-C. An error names `scene` and `option`.
 fn solved(
     mechanism: &Mechanism,
     positions: &[f64],
@@ -214,7 +213,7 @@ fn solved(
     states(mechanism, positions, &task).map_err(|error| unknown(scene, option, error))
 }
 
-/// What is said where the flexures are not known.
+/// The error for flexures whose state is not known.
 fn unknown(scene: &str, option: &str, error: StatesError) -> Failure {
     match error {
         StatesError::NoFlexures => Failure::argument(format!("{option}: {scene}: {error}")),

@@ -55,9 +55,9 @@ pub struct Arguments {
     pub chart: ChartOptions,
 }
 
-/// Measures and writes the table.
+/// Computes the exponents and writes the table.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::asked(&options.chart.plot, common)?;
+    let picture = Picture::new(&options.chart.plot, common)?;
     if !options.over.is_empty() {
         return over(options, common, picture);
     }
@@ -70,9 +70,9 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         return Err(document.error_from(vec![fault]).into());
     }
     refuse_electrical_state(&document, &[], "exponents")?;
-    let asked = asked(options, &document, Some(&model))?;
+    let settings = settings(options, &document, Some(&model))?;
     let mut sinks = open(&inputs(&options.scene, &document), [Some(("--out", common.out()))])?;
-    let found = exponents(&model, &asked, interrupt::listen()).map_err(|problem| match problem {
+    let found = exponents(&model, &settings, interrupt::listen()).map_err(|problem| match problem {
         NoExponents::Cancelled => Failure::interrupted(),
         _ => Failure::Failed(anyhow::anyhow!("{}: {problem}", document.name)),
     })?;
@@ -84,8 +84,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     Ok(())
 }
 
-/// How exponents are to be measured; `model` is that of the first cell, where its flexures are solved.
-fn asked(
+/// Settings of the computation; `model` is that of the first cell, `None` if its flexures have no solution.
+fn settings(
     options: &Arguments,
     document: &Document,
     model: Option<&Model>,
@@ -95,7 +95,7 @@ fn asked(
     Ok(ExponentOptions { periods: options.periods.unwrap_or(ExponentOptions::PERIODS), until_settled })
 }
 
-/// What the numbers of one motion are, in a sentence.
+/// Explains the exponents of one motion in a sentence.
 fn about(found: &Exponents, forced: bool) -> String {
     let unit = if forced { "forcing period" } else { "period of small oscillations" };
     let units = if forced { "forcing periods" } else { "periods of small oscillations" };
@@ -115,7 +115,7 @@ fn about(found: &Exponents, forced: bool) -> String {
     }
 }
 
-/// A row for each cell of a grid.
+/// Computes the exponents of every cell of a grid, one row for each.
 fn over(options: &Arguments, common: &Common, picture: Option<Picture>) -> Result<(), Failure> {
     let axes = ranges(&options.chart, "--plot-x")?;
     let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
@@ -133,7 +133,7 @@ fn over(options: &Arguments, common: &Common, picture: Option<Picture>) -> Resul
     let pool = pool(common)?;
     cells.validate(&pool, &task).map_err(|cell| located(&document, cell))?;
     let first = cells.first_model(&task).and_then(Result::ok);
-    let asked = asked(options, &document, first.as_ref())?;
+    let settings = settings(options, &document, first.as_ref())?;
     warn(&document, common, &warnings, cells.first_mechanism().ok().as_deref());
     let beside = beside.as_deref().map(|path| (MANIFEST, path));
     let [plot, data] = Picture::outputs(picture);
@@ -145,7 +145,7 @@ fn over(options: &Arguments, common: &Common, picture: Option<Picture>) -> Resul
     let task = Task { tick: &|| bar.inc(1), ..task };
     let watch = Watch::start();
     write_text(&mut sinks[0], &header(&cells.empty_table()))?;
-    let result = cells.run(&asked, &pool, &task, |table| {
+    let result = cells.run(&settings, &pool, &task, |table| {
         if let Some(shown) = &mut shown {
             shown.append(table);
         }
@@ -172,7 +172,7 @@ fn over(options: &Arguments, common: &Common, picture: Option<Picture>) -> Resul
     Ok(())
 }
 
-/// What came of the cells.
+/// Sums up the cells in one line.
 fn summary(tally: &ExponentTally, seconds: f64) -> String {
     let cells = if tally.cells == 1 { "1 cell".to_owned() } else { format!("{} cells", tally.cells) };
     let mut text = format!("{cells} in {seconds:.2} s");

@@ -9,7 +9,7 @@ use interwell::scene::{ArgumentError, SceneError};
 use interwell::study::accuracy::UnknownCase;
 use interwell::study::{CellFaults, GridError, OutsideCurve, TimesError};
 
-/// An error of a command, by whose fault it is.
+/// An error of a command, by its exit status.
 #[derive(Debug)]
 pub enum Failure {
     /// The arguments or the scene are wrong, or a folder is missing: status 2.
@@ -19,17 +19,17 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// An argument that is wrong, with what would be right.
+    /// A wrong argument; the message says what would be right.
     pub fn argument(message: impl fmt::Display) -> Self {
         Self::Wrong(anyhow::anyhow!("{message}"))
     }
 
-    /// What is said where Ctrl-C, or another request to end, came first.
+    /// The command was ended by Ctrl-C or another request to end.
     pub fn interrupted() -> Self {
         Self::Failed(anyhow::anyhow!("interrupted: no output file was made or changed"))
     }
 
-    /// What is said where `name` cannot be written to.
+    /// `name` could not be written.
     pub fn writing(name: &str, error: std::io::Error) -> Self {
         Self::Failed(anyhow::anyhow!("cannot write {name}: {error}"))
     }
@@ -80,7 +80,7 @@ impl From<OpenError> for Failure {
     }
 }
 
-/// What is said of a sweep's first wrong cell; `error` has its faults, with their places.
+/// The failure for a sweep's first wrong cell; `error` has its faults, with their places.
 pub fn wrong_cell(cell: &CellFaults, error: SceneError) -> Failure {
     if cell.cell.is_empty() {
         return error.into();

@@ -94,7 +94,7 @@ impl Arguments {
         self.of.as_deref().unwrap_or_default()
     }
 
-    /// What is asked of the record for the base's acceleration.
+    /// The request to the record for the base's acceleration.
     fn base(&self) -> Ask {
         let (column, unit) = (self.base.clone(), self.base_unit.clone());
         let options = ("--base", "--base-unit");
@@ -102,12 +102,12 @@ impl Arguments {
     }
 }
 
-/// Reads the record, identifies, and writes rows and summary.
+/// Reads the record, identifies the quantity, and writes rows and summary.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     fits(options)?;
     let summary = options.summary.as_deref().map(|path| ("--summary", path));
     let watch = Watch::start();
-    let picture = Picture::asked(&options.chart.plot, common)?;
+    let picture = Picture::new(&options.chart.plot, common)?;
     let axes = ranges(&options.chart, "--plot-x")?;
     let [plot, data] = Picture::outputs(picture);
     let outputs = [Some(("--out", common.out())), summary, plot, data];
@@ -136,7 +136,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Refuses what has no meaning for what is asked.
+/// Refuses options that do not belong to what is identified.
 fn fits(options: &Arguments) -> Result<(), Failure> {
     if options.file.is_none() || options.of.is_none() {
         return Err(Failure::argument(
@@ -172,7 +172,7 @@ fn fits(options: &Arguments) -> Result<(), Failure> {
     of_record(options)
 }
 
-/// Refuses places of stops that cannot be, and what is given beside impact times.
+/// Refuses impossible positions of stops, and options that do not go with impact times.
 fn of_record(options: &Arguments) -> Result<(), Failure> {
     let places = [("--left-mm", options.left_mm), ("--right-mm", options.right_mm)];
     let endless = |(option, place): &(&'static str, Option<f64>)| {
@@ -202,18 +202,18 @@ fn of_record(options: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// What is identified, and the record that it is identified from.
+/// The identified quantity, and the record that it is identified from.
 struct Answer {
-    /// The sampling of the record, where it is one over time.
+    /// The sampling of a record over time.
     timing: Option<Timing>,
     found: Result<Identified, Unidentified>,
     /// Times or positions.
     across: Vec<f64>,
-    /// What was measured; of impact times nothing.
+    /// What was measured; empty for impact times.
     values: Channel,
 }
 
-/// Reads the record and identifies.
+/// Reads the record and identifies the quantity.
 fn answer(options: &Arguments, quiet: bool) -> Result<Answer, Failure> {
     let times = options.columns.times();
     match options.of() {
@@ -268,7 +268,7 @@ fn read<const N: usize>(options: &Arguments, quiet: bool, asks: &[Ask; N]) -> Re
     Ok(record)
 }
 
-/// The rows from `--from` to `--to` alone; the first channel is the time.
+/// Keeps only the rows from `--from` to `--to`; the first channel is the time.
 fn cut<const N: usize>(options: &Arguments, mut record: Measured<N>) -> Result<Measured<N>, Failure> {
     let times = &record.channels[0].values;
     let from = times.partition_point(|t| *t < options.from.unwrap_or(f64::NEG_INFINITY));

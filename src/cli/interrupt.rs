@@ -1,12 +1,11 @@
-//! Ctrl-C, which ends a command and leaves no half file.
+//! Handler of Ctrl-C, which ends a command without leaving a partly written file.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
-/// From here on Ctrl-C (and a request to terminate) sets the flag that this returns, which runs and
-/// writers look at. A second one ends the program at once: the first may have met a reader of a pipe
-/// that does not read.
+/// Makes Ctrl-C (or a request to terminate) set the returned flag, which runs and writers check. A second
+/// Ctrl-C ends the program at once, because after the first a write may still wait for the reader of a pipe.
 pub fn listen() -> &'static AtomicBool {
     // A second call fails and changes nothing.
     let _ = ctrlc::set_handler(|| {
@@ -17,7 +16,7 @@ pub fn listen() -> &'static AtomicBool {
     &INTERRUPTED
 }
 
-/// Whether Ctrl-C came.
+/// Whether Ctrl-C was pressed.
 pub fn came() -> bool {
     INTERRUPTED.load(Ordering::Relaxed)
 }

@@ -1,4 +1,4 @@
-//! `lesson`: list of the lessons, the text of one, its check, and a template of one's own.
+//! `lesson`: list of the lessons, the text of a lesson, its check, and a template for a new one.
 
 use std::path::{Path, PathBuf};
 
@@ -39,7 +39,7 @@ pub struct Arguments {
     pub new: Option<PathBuf>,
 }
 
-/// Lists, prints, checks or begins lessons.
+/// Lists, prints or checks lessons, or writes the template of a new one.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if common.jobs.is_some() && !options.check {
         return Err(Failure::argument("--jobs: nothing runs without --check; leave it out"));
@@ -51,8 +51,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let mut sinks = open(&input, [Some(("--out", common.out()))])?;
     let (text, wrong) = match &options.lesson {
         _ if options.check => checked(options, common)?,
-        Some(spec) => (told(&load(spec)?), None),
-        None => (listed()?, None),
+        Some(spec) => (full_text(&load(spec)?), None),
+        None => (list()?, None),
     };
     write_text(&mut sinks[0], &text)?;
     finish(sinks)?;
@@ -63,8 +63,8 @@ fn load(spec: &str) -> Result<LessonDocument, LessonError> {
     LessonDocument::load(spec, &result_fields())
 }
 
-/// A line a lesson.
-fn listed() -> Result<String, Failure> {
+/// The list of the lessons, one line each.
+fn list() -> Result<String, Failure> {
     let width = LESSONS.iter().map(|lesson| lesson.name.len()).max().unwrap_or(0);
     let line = |name: &str| {
         let lesson = load(name)?.lesson;
@@ -73,8 +73,8 @@ fn listed() -> Result<String, Failure> {
     LESSONS.iter().map(|lesson| line(lesson.name)).collect()
 }
 
-/// A lesson as text: what a student reads, then what the lecturer does.
-fn told(document: &LessonDocument) -> String {
+/// A lesson as text: the student's part, then the lecturer's.
+fn full_text(document: &LessonDocument) -> String {
     let lesson = &document.lesson;
     let mut text = format!("{} ({} min)\nGoal: {}\n\n", lesson.title, lesson.minutes, lesson.goal);
     for (number, step) in lesson.steps.iter().enumerate() {
@@ -98,7 +98,7 @@ fn told(document: &LessonDocument) -> String {
     text + &format!("\nMisconception: {}\nLecturer: {}\n", lesson.misconception, lesson.lecturer)
 }
 
-/// What the check of the lessons says, a line each, and the error with which it ends where one is wrong.
+/// Checks the lessons. Returns one line for each, and the error of the command if a lesson is wrong.
 fn checked(options: &Arguments, common: &Common) -> Result<(String, Option<Failure>), Failure> {
     let specs: Vec<&str> = match &options.lesson {
         Some(spec) => vec![spec],
@@ -133,19 +133,19 @@ fn checked(options: &Arguments, common: &Common) -> Result<(String, Option<Failu
     Ok((text, wrong))
 }
 
-/// Findings with their places, a line each.
+/// Findings with their places, one line each.
 fn lines(document: &LessonDocument, findings: &[LessonFinding]) -> impl Iterator<Item = String> {
-    let fault = |own: &LessonFinding| Fault {
-        field: own.field.clone(),
+    let fault = |finding: &LessonFinding| Fault {
+        field: finding.field.clone(),
         value: String::new(),
-        problem: own.problem.clone(),
+        problem: finding.problem.clone(),
     };
     let error = (!findings.is_empty()).then(|| document.error_from(findings.iter().map(fault).collect()));
     let text = error.map(|error| error.to_string()).unwrap_or_default();
     text.lines().map(str::to_owned).collect::<Vec<_>>().into_iter()
 }
 
-/// Writes the template, where no file is there yet.
+/// Writes the template; an error if the file exists.
 fn begin(path: &Path) -> Result<(), Failure> {
     let shown = path.display();
     if files::exists(path) {

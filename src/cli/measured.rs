@@ -55,11 +55,11 @@ pub fn offset(text: Option<&str>) -> Result<f64, Failure> {
 }
 
 fn finite(option: &str, text: &str, right: &str) -> Result<f64, Failure> {
-    number(option, text, |own: &f64| own.is_finite(), right)
+    number(option, text, |value: &f64| value.is_finite(), right)
 }
 
-/// A record that was read, and how it is laid over the run.
-pub struct Laid {
+/// A measured record, and how its times and values are shifted and scaled for the comparison with a run.
+pub struct MeasuredRecord {
     /// Times and values.
     pub record: Measured<2>,
     /// Times in s that a second panel shows closer.
@@ -71,12 +71,12 @@ pub struct Laid {
 }
 
 impl MeasuredOptions {
-    /// The record, where there is one.
-    pub fn read(&self, quiet: bool) -> Result<Option<Laid>, Failure> {
+    /// Reads the record, if one is given.
+    pub fn read(&self, quiet: bool) -> Result<Option<MeasuredRecord>, Failure> {
         let ColumnOptions { time, time_unit, column, unit } = &self.columns;
         let chosen = [("--time", time), ("--time-unit", time_unit), ("--column", column), ("--unit", unit)];
         let Some(path) = &self.measured else {
-            return match chosen.into_iter().find(|own| own.1.is_some()) {
+            return match chosen.into_iter().find(|option| option.1.is_some()) {
                 None => Ok(None),
                 Some((option, _)) => {
                     Err(Failure::argument(format!("{option} is of a record: name that by --measured FILE")))
@@ -122,24 +122,24 @@ impl MeasuredOptions {
             let what = values.quantity.name();
             say(&format!("{name}: time from `{}`, {what} from `{}`{commas}", times.column, values.column));
         }
-        Ok(Some(Laid { record, inset, name, offset, time_scale, shift }))
+        Ok(Some(MeasuredRecord { record, inset, name, offset, time_scale, shift }))
     }
 }
 
-impl Laid {
-    /// Compares it with the run of a model.
+impl MeasuredRecord {
+    /// Compares the record with the run of a model.
     pub fn compare(&self, scene: &Scene, model: &Model, cancel: &AtomicBool) -> Result<Comparison, Failure> {
         let [times, channel] = &self.record.channels;
         let Self { offset, time_scale, shift, .. } = *self;
-        let own = MeasuredMotion { times: &times.values, channel, offset, time_scale, shift };
-        compare(scene, model, &own, cancel).map_err(|problem| match problem {
+        let motion = MeasuredMotion { times: &times.values, channel, offset, time_scale, shift };
+        compare(scene, model, &motion, cancel).map_err(|problem| match problem {
             NoComparison::Cancelled => Failure::interrupted(),
             problem => Failure::argument(format!("{}: {problem}", self.name)),
         })
     }
 
-    /// Says on standard error what was found.
-    pub fn tell(&self, found: &Comparison) {
+    /// Prints the comparison on standard error.
+    pub fn report(&self, found: &Comparison) {
         let name = &self.name;
         found.remarks.iter().for_each(|remark| say(&format!("{name}: {remark}")));
         let how = if self.shift.is_none() { " (found by least squares)" } else { "" };

@@ -42,12 +42,12 @@ pub struct MeasuredForceOptions {
 }
 
 impl MeasuredForceOptions {
-    /// The record beside the curve of a mechanism, where there is one.
+    /// Compares the record, if one is given, with the curve of a mechanism.
     pub fn compare(&self, mechanism: &Mechanism, quiet: bool) -> Result<Option<ForceComparison>, Failure> {
         let PositionOptions { position, position_unit } = &self.positions;
         let Some(path) = &self.measured else {
             let chosen = [("--position", position), ("--position-unit", position_unit)];
-            return match chosen.into_iter().find(|own| own.1.is_some()) {
+            return match chosen.into_iter().find(|option| option.1.is_some()) {
                 None => Ok(None),
                 Some((option, _)) => {
                     Err(Failure::argument(format!("{option} is of a record: name that by --measured FILE")))

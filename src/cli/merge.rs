@@ -1,4 +1,4 @@
-//! `merge`: the shards of a sweep as one file, with the bytes that one process writes.
+//! `merge`: joins the shards of a sweep into one file, with the bytes that a single process would write.
 
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
@@ -33,14 +33,17 @@ struct Part {
     read: Checksum,
 }
 
-/// Puts the shards together.
+/// Joins the shards.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let watch = Watch::start();
     let mut parts = all(&options.parts)?;
     let beside = manifest_path(common.out());
     let outputs = [Some(("--out", common.out())), beside.as_deref().map(|path| (MANIFEST, path))];
-    let inputs: Vec<PathBuf> =
-        parts.iter().flat_map(|own| [Some(own.path.clone()), manifest_path(&own.path)]).flatten().collect();
+    let inputs: Vec<PathBuf> = parts
+        .iter()
+        .flat_map(|part| [Some(part.path.clone()), manifest_path(&part.path)])
+        .flatten()
+        .collect();
     let mut sinks = open(&inputs, outputs)?;
     let plan = &parts[0].manifest["plan"];
     let (rows, unit) = (plan["rows"].as_u64().unwrap_or(0), plan["unit"].as_u64().unwrap_or(0).max(1));
@@ -52,7 +55,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         let Some(sink) = sink else { return Ok(()) };
         sink.put_bytes(text).map_err(|error| Failure::writing(sink.name(), error))
     };
-    let headers: Vec<Vec<u8>> = parts.iter_mut().map(|own| own.lines(1)).collect::<Result<_, _>>()?;
+    let headers: Vec<Vec<u8>> = parts.iter_mut().map(|part| part.lines(1)).collect::<Result<_, _>>()?;
     put(&mut sinks[0], &headers[0])?;
     for (number, rows) in slice.dealt() {
         if interrupt::came() {
@@ -64,7 +67,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         part.check()?;
     }
     let sum = whole.text();
-    let manifests: Vec<Value> = parts.into_iter().map(|own| own.manifest).collect();
+    let manifests: Vec<Value> = parts.into_iter().map(|part| part.manifest).collect();
     let origin = watch.origin(1);
     let text = merged_manifest(&manifests, &file_name(common.out()), &sum, &origin.arguments);
     write_text(&mut sinks[1], &text)?;
@@ -75,8 +78,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     Ok(())
 }
 
-/// All shards of one sweep in their order; an error names what does not fit, and what is missing with the
-/// commands that compute it.
+/// Opens all shards of one sweep and orders them. An error names the files that do not belong together, or
+/// the missing shards with the commands that compute them.
 fn all(paths: &[PathBuf]) -> Result<Vec<Part>, Failure> {
     let (mut parts, mut unfinished): (Vec<Part>, Vec<&Path>) = (Vec::new(), Vec::new());
     for path in paths {
@@ -88,8 +91,8 @@ fn all(paths: &[PathBuf]) -> Result<Vec<Part>, Failure> {
     let unfinished: Vec<String> = unfinished.into_iter().map(why_not).collect();
     let Some(first) = parts.first() else {
         if paths.is_empty() {
-            let such = "such as merge map-*-of-5.csv --out map.csv";
-            return Err(Failure::argument(format!("merge: name the files of all shards, {such}")));
+            let example = "such as merge map-*-of-5.csv --out map.csv";
+            return Err(Failure::argument(format!("merge: name the files of all shards, {example}")));
         }
         return Err(Failure::argument(format!(
             "{}; name the rows of every shard, beside which a manifest stands when it is whole",
@@ -97,24 +100,24 @@ fn all(paths: &[PathBuf]) -> Result<Vec<Part>, Failure> {
         )));
     };
     for part in &parts[1..] {
-        let (own, other) = (part.path.display(), first.path.display());
+        let (path, other) = (part.path.display(), first.path.display());
         let differences = plan_differences(&part.manifest["plan"], &first.manifest["plan"]);
-        let wrong = |how: String| Failure::argument(format!("{own} does not belong to {other}: {how}"));
+        let wrong = |how: String| Failure::argument(format!("{path} does not belong to {other}: {how}"));
         if !differences.is_empty() {
-            // "there" is the file that is named first
+            // in the differences, "there" is `path` and "here" is `other`
             return Err(wrong(differences));
         } else if part.shard.count() != first.shard.count() {
             return Err(wrong(format!("it is the shard {}, that one {}", part.shard, first.shard)));
         }
     }
-    parts.sort_by_key(|own| own.shard.number());
-    if let Some(same) = parts.windows(2).find(|own| own[0].shard == own[1].shard) {
+    parts.sort_by_key(|part| part.shard.number());
+    if let Some(same) = parts.windows(2).find(|pair| pair[0].shard == pair[1].shard) {
         let (a, b) = (same[0].path.display(), same[1].path.display());
         let both = format!("{a} and {b} are both the shard {}; name each shard once", same[0].shard);
         return Err(Failure::argument(both));
     }
     let count = parts[0].shard.count();
-    let has = |number: u64| parts.iter().any(|own| own.shard.number() == number);
+    let has = |number: u64| parts.iter().any(|part| part.shard.number() == number);
     let missing: Vec<String> = (1..=count)
         .filter(|number| !has(*number))
         .map(|number| Ok(parts[0].command_of(Shard::new(number, count)?)))
@@ -131,7 +134,7 @@ fn all(paths: &[PathBuf]) -> Result<Vec<Part>, Failure> {
     )))
 }
 
-/// Why the file at `path` is no shard.
+/// The reason why the file at `path` is not a shard.
 fn why_not(path: &Path) -> String {
     let name = path.display();
     let begun = files::exists(Path::new(&format!("{name}.part")));
@@ -143,7 +146,7 @@ fn why_not(path: &Path) -> String {
 }
 
 impl Part {
-    /// The shard at `path`, or whose manifest is there; none where it has no manifest yet.
+    /// Opens the shard whose rows or manifest are at `path`. Returns `None` if it has no manifest yet.
     fn open(path: &Path) -> Result<Option<Self>, Failure> {
         let ends = |ending: &str| path.to_string_lossy().strip_suffix(ending).map(PathBuf::from);
         let path = ends(".json").or_else(|| ends(".part")).unwrap_or_else(|| path.to_owned());
@@ -167,7 +170,7 @@ impl Part {
         Ok(Some(Self { path, manifest, shard, offset: 0, read }))
     }
 
-    /// The next lines, so many.
+    /// Reads the next `count` lines.
     fn lines(&mut self, count: u64) -> Result<Vec<u8>, Failure> {
         let failed = |error| Failure::Failed(anyhow::anyhow!("cannot read {}: {error}", self.path.display()));
         let mut file = BufReader::new(files::open_at(&self.path, self.offset).map_err(failed)?);
@@ -182,7 +185,7 @@ impl Part {
         Ok(bytes)
     }
 
-    /// Whether all of it was read, and is as it was written.
+    /// Checks that the file was read to its end and has the checksum of its manifest.
     fn check(&self) -> Result<(), Failure> {
         let mut more = [0];
         let read = files::open_at(&self.path, self.offset).and_then(|mut file| file.read(&mut more));
@@ -204,12 +207,15 @@ impl Part {
     /// The command that computes another shard of the same sweep.
     fn command_of(&self, shard: Shard) -> String {
         let arguments = self.manifest["arguments"].as_array();
-        let arguments: Vec<String> =
-            arguments.into_iter().flatten().filter_map(|own| own.as_str().map(str::to_owned)).collect();
-        let own = self.path.to_string_lossy();
+        let arguments: Vec<String> = arguments
+            .into_iter()
+            .flatten()
+            .filter_map(|argument| argument.as_str().map(str::to_owned))
+            .collect();
+        let name = self.path.to_string_lossy();
         let out = match value(&arguments, "--out") {
             Some(out) if out.contains(PLACE) => out.to_owned(),
-            _ => other_name(&own, self.shard, shard),
+            _ => other_name(&name, self.shard, shard),
         };
         command(&arguments, &["--shard", &shard.to_string(), "--out", &out, "--resume"])
     }

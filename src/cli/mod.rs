@@ -69,7 +69,7 @@ pub fn parse() -> Result<Options, ExitCode> {
     })
 }
 
-/// Does what was asked for; `window` is what opens the window on a scene.
+/// Runs the command, or opens the window on a scene by `window`.
 pub fn run(
     options: Options,
     window: impl FnOnce(Option<&str>) -> Result<(), Failure>,
@@ -114,7 +114,7 @@ pub fn run(
     }
 }
 
-/// Prints a line on standard error; where that is closed there is no one to tell.
+/// Prints a line on standard error; a closed standard error is ignored.
 pub fn say(line: &str) {
     let _ = writeln!(std::io::stderr(), "{line}");
 }

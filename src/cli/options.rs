@@ -59,8 +59,8 @@ pub struct Options {
     pub common: Common,
 }
 
-/// The commands: help, word, variant, what stands where the scene does; the common options that a command
-/// refuses, and those that it takes and makes nothing of. Its help lists neither.
+/// Defines the commands: help, name, variant, positional argument in the usage line, the common options that
+/// the command refuses, and those that it accepts but ignores. Its help lists neither.
 macro_rules! commands {
     ($($(#[doc = $help:literal])+ $word:ident $variant:ident $scene:literal
         $(refuses $($refused:literal)+)? $(ignores $($ignored:literal)+)?;)*) => {
@@ -74,21 +74,21 @@ macro_rules! commands {
                     [OPTIONS]"))]
                 $variant {
                     #[command(flatten)]
-                    own: super::$word::Arguments,
+                    arguments: super::$word::Arguments,
                     #[command(flatten)]
                     common: Common,
                 },
             )*
         }
 
-        /// The words that select the commands.
+        /// The names of the commands.
         pub const COMMANDS: &[&str] = &[$(stringify!($word)),*];
 
-        /// For each command the common options that it refuses, and those that it makes nothing of.
+        /// For each command the common options that it refuses, and those that it ignores.
         const UNUSED: &[(&[&str], &[&str])] = &[$((&[$($($refused),+)?], &[$($($ignored),+)?])),*];
 
         impl Command {
-            /// The word that selects it.
+            /// Its name on the command line.
             pub fn name(&self) -> &'static str {
                 match self {
                     $(Self::$variant { .. } => stringify!($word),)*
@@ -108,10 +108,10 @@ macro_rules! commands {
                 }
             }
 
-            /// Does it.
+            /// Runs the command.
             pub fn run(&self) -> Result<(), Failure> {
                 match self {
-                    $(Self::$variant { own, common } => super::$word::run(own, common),)*
+                    $(Self::$variant { arguments, common } => super::$word::run(arguments, common),)*
                 }
             }
         }
@@ -156,7 +156,7 @@ commands! {
     accuracy Accuracy " [SCENE]" ignores "jobs";
 }
 
-/// The command line as clap takes it, each command's help without what it does not use.
+/// The command line for clap; the help of each command hides the options that it does not use.
 pub fn command_line() -> clap::Command {
     COMMANDS.iter().zip(UNUSED).fold(Options::command(), |command, (word, (refused, ignored))| {
         let unused = refused.iter().chain(*ignored);
@@ -165,20 +165,20 @@ pub fn command_line() -> clap::Command {
     })
 }
 
-/// The words of all commands as a sentence lists them.
+/// The names of all commands, as a sentence lists them.
 pub fn command_names() -> String {
     let (last, others) = COMMANDS.split_last().unwrap_or((&"", &[]));
     format!("{} or {last}", others.join(", "))
 }
 
-/// Reads a whole number of a range for clap, and says in words what it takes.
+/// A parser for clap that reads a whole number in a range; its error names the range.
 pub fn whole<T: TryFrom<u64>>(
     range: RangeInclusive<u64>,
 ) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static {
     move |text| {
-        let number = text.trim().parse().ok().filter(|own| range.contains(own));
+        let number = text.trim().parse().ok().filter(|number| range.contains(number));
         let wrong = || format!("give a whole number from {} to {}", range.start(), range.end());
-        number.and_then(|own| T::try_from(own).ok()).ok_or_else(wrong)
+        number.and_then(|number| T::try_from(number).ok()).ok_or_else(wrong)
     }
 }
 
@@ -214,17 +214,17 @@ impl Common {
         self.out.as_deref().unwrap_or(Path::new("-"))
     }
 
-    /// Puts what stood before the command in front of what stands after it; an error names an option that may
-    /// be given once and was given in both places.
+    /// Adds the options given `before` the command to those given after it. The error is the name of an
+    /// option that may be given once and was given in both places.
     ///
-    /// clap's own global arguments would forget a `--set` before the command where another one follows it.
+    /// clap's global arguments would drop a `--set` before the command if another one follows the command.
     pub fn put_before(&mut self, before: Self) -> Result<(), &'static str> {
-        fn one<T>(own: &mut Option<T>, before: Option<T>, name: &'static str) -> Result<(), &'static str> {
-            match (own.is_some(), before) {
+        fn one<T>(after: &mut Option<T>, before: Option<T>, name: &'static str) -> Result<(), &'static str> {
+            match (after.is_some(), before) {
                 (_, None) => Ok(()),
                 (true, Some(_)) => Err(name),
                 (false, before) => {
-                    *own = before;
+                    *after = before;
                     Ok(())
                 }
             }
@@ -236,7 +236,7 @@ impl Common {
         one(&mut self.jobs, before.jobs, "--jobs")
     }
 
-    /// The first of these that was given, for where it has no meaning.
+    /// The first of the named options that was given, for commands in which they have no meaning.
     pub fn given(&self, names: &[&'static str]) -> Option<&'static str> {
         let is_given = |name: &&&str| match **name {
             "set" => !self.set.is_empty(),

@@ -1,4 +1,4 @@
-//! `orbit`: the periodic motion near a run's own, or a branch of them over a field.
+//! `orbit`: the periodic motion near the settled motion of a run, or a branch of them over a field.
 
 use std::io::IsTerminal;
 use std::sync::Arc;
@@ -53,7 +53,7 @@ pub struct Arguments {
 
 /// Finds the motion, or follows its branch, and writes the table.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::asked(&options.chart.plot, common)?;
+    let picture = Picture::new(&options.chart.plot, common)?;
     let axes = ranges(&options.chart, "--plot-x")?;
     if picture.is_some() && options.branch.is_none() {
         return Err(Failure::argument("--plot shows a branch; add --branch FIELD=A:B, or leave it out"));
@@ -62,7 +62,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let mut document = read(&options.scene, common)?;
     let branch_range = options.branch.as_deref().map(|text| range(text, &document)).transpose()?;
     if let Some((field, from, _)) = &branch_range {
-        // a branch begins there, and the scene's own value is never run
+        // the branch begins at this value; the value in the scene is never run
         document.assign(
             field,
             &from.to_string(),
@@ -118,7 +118,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     finish(sinks)
 }
 
-/// The number of motions on a terminal: how many there will be is not known.
+/// A counter of motions on a terminal; their final number is not known.
 fn count(quiet: bool) -> ProgressBar {
     if quiet || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
@@ -127,8 +127,8 @@ fn count(quiet: bool) -> ProgressBar {
     ProgressBar::no_length().with_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()))
 }
 
-/// What a table of a branch does not say: what was not located, and where and why the branch ended, unless at
-/// the value that it was to be followed to.
+/// Remarks that the table of a branch cannot hold: events that were not located, and where and why the branch
+/// ended, unless it reached the end of its range.
 fn remarks(branch: &Branch, (from, to): (f64, f64)) -> Vec<String> {
     let field = &branch.field;
     let mut lines: Vec<String> = branch

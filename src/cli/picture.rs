@@ -1,4 +1,4 @@
-//! Options of pictures: place, kind and size, checked before any work is done.
+//! Options of pictures: path, format and size, checked before any work is done.
 
 use std::path::Path;
 
@@ -14,12 +14,12 @@ use super::options::{ChartOptions, Common, Options, PlotOptions};
 use super::say;
 use super::support::{range, write_table};
 
-/// A picture that was asked for.
+/// A requested picture.
 #[derive(Debug, Clone, Copy)]
 pub struct Picture<'a> {
     /// Where it goes.
     pub path: &'a Path,
-    /// Its sheet of paper; light or dark.
+    /// Sheet of paper, and light or dark colours.
     pub theme: Theme,
     option: &'static str,
     data: Option<&'a Path>,
@@ -30,18 +30,18 @@ pub struct Picture<'a> {
 }
 
 impl<'a> Picture<'a> {
-    /// The picture that `options` ask for; an error where its name does not end like one.
-    pub fn asked(options: &'a PlotOptions, common: &Common) -> Result<Option<Self>, Failure> {
+    /// The picture that `options` ask for; an error if its name does not end like one.
+    pub fn new(options: &'a PlotOptions, common: &Common) -> Result<Option<Self>, Failure> {
         let picture = Self::of("--plot", options.plot.as_deref(), options, common)?;
-        Ok(picture.map(|own| own.with_data(options)))
+        Ok(picture.map(|picture| picture.with_data(options)))
     }
 
-    /// The same, with the place of the numbers that are drawn.
+    /// The same, with the path of `--plot-data`.
     pub fn with_data(self, options: &'a PlotOptions) -> Self {
         Self { data: options.plot_data.as_deref(), ..self }
     }
 
-    /// The picture at `path`, which `option` gave; laid out as `options` say.
+    /// The picture at the `path` given by `option`, laid out as `options` say.
     pub fn of(
         option: &'static str,
         path: Option<&'a Path>,
@@ -68,14 +68,13 @@ impl<'a> Picture<'a> {
         }))
     }
 
-    /// What a picture's outputs are opened by: that of the picture and that of its data, where they were
-    /// asked for.
+    /// The option and path of the picture and of its data, where they are requested.
     pub fn outputs(picture: Option<Self>) -> [Option<(&'static str, &'a Path)>; 2] {
-        let data = picture.and_then(|own| own.data);
-        [picture.map(|own| (own.option, own.path)), data.map(|path| ("--plot-data", path))]
+        let data = picture.and_then(|picture| picture.data);
+        [picture.map(|picture| (picture.option, picture.path)), data.map(|path| ("--plot-data", path))]
     }
 
-    /// Writes the picture to the first of its sinks and its data to the second, where there is one.
+    /// Writes the picture to the first sink and its data to the second, if there is one.
     pub fn write(&self, sinks: &mut [Option<Sink>], figure: Figure) -> Result<(), Failure> {
         let mut figure = if self.titled { figure } else { figure.without_title() };
         figure.size = self.size;
@@ -93,11 +92,11 @@ impl<'a> Picture<'a> {
     }
 }
 
-/// The arguments that this call of the program makes its pictures of, in the order of `--help`.
+/// The arguments of this call that the pictures depend on, in the order of `--help`.
 fn arguments() -> Vec<String> {
     let program = Options::command();
     let Ok(matches) = program.clone().try_get_matches_from(std::env::args_os()) else { return Vec::new() };
-    let Some((word, own)) = matches.subcommand() else { return Vec::new() };
+    let Some((word, command)) = matches.subcommand() else { return Vec::new() };
     let mut all = Vec::new();
     for argument in program.find_subcommand(word).iter().flat_map(|command| command.get_arguments()) {
         let id = argument.get_id().as_str();
@@ -116,7 +115,7 @@ fn arguments() -> Vec<String> {
         let is_flag = matches!(argument.get_action(), ArgAction::SetTrue);
         let option = argument.get_long().map(str::to_owned);
         let values =
-            given(&matches).into_iter().chain(given(own)).map(|value| Some(value).filter(|_| !is_flag));
+            given(&matches).into_iter().chain(given(command)).map(|value| Some(value).filter(|_| !is_flag));
         all.extend(values.map(|value| Argument { option: option.clone(), value }));
     }
     picture_arguments(word, all)
@@ -135,12 +134,12 @@ fn sheet(options: &PlotOptions, format: Format) -> Result<Option<Sheet>, Failure
     Sheet::read(&text, format == Format::Png).map(Some).map_err(|error| Failure::argument(error.to_string()))
 }
 
-/// What stands over and under a picture of this scene.
+/// The caption of a picture of this scene.
 pub fn caption(document: &Document) -> Caption {
     Caption::new(document, env!("CARGO_PKG_VERSION"))
 }
 
-/// The ranges of the axes that `options` ask for; errors call the one to the right `across`.
+/// The ranges of the axes that `options` ask for; errors name the horizontal one `across`.
 pub fn ranges(options: &ChartOptions, across: &'static str) -> Result<Ranges, Failure> {
     let form = "A:B with A below B, such as 0:2";
     let of =
@@ -150,7 +149,7 @@ pub fn ranges(options: &ChartOptions, across: &'static str) -> Result<Ranges, Fa
 
 /// A size `WxH` in pixels.
 fn size(text: &str) -> Result<(u32, u32), Failure> {
-    let side = |text: &str| text.trim().parse::<u32>().ok().filter(|own| (200..=4000).contains(own));
+    let side = |text: &str| text.trim().parse::<u32>().ok().filter(|pixels| (200..=4000).contains(pixels));
     let sides = text.split_once(['x', 'X']).and_then(|(width, height)| side(width).zip(side(height)));
     sides.ok_or_else(|| {
         let message = "write WxH in pixels, 200 to 4000 each, such as 2400x1500";

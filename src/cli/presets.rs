@@ -22,7 +22,7 @@ pub struct Arguments {
     pub force: bool,
 }
 
-/// Lists the built-in scenes, a line each, or writes them into a folder and lists the files.
+/// Lists the built-in scenes, one line each, or writes them into a folder and lists the files.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let mut sinks = open(&[], [Some(("--out", common.out()))])?;
     let text = match &options.write {
@@ -36,7 +36,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     finish(sinks)
 }
 
-/// Writes scenes and tables into `folder`, all or, where a file of that name differs, none.
+/// Writes all scenes and tables into `folder`, or none if a file of that name exists and differs.
 fn write(folder: &Path, force: bool) -> Result<String, Failure> {
     if !files::is_folder(folder) {
         let folder = folder.display();

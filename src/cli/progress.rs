@@ -1,4 +1,4 @@
-//! Progress of a long command on standard error: a bar on a terminal, elsewhere a line a minute.
+//! Progress of a long command on standard error: a bar on a terminal, otherwise a line every minute.
 
 use std::io::IsTerminal;
 use std::path::Path;
@@ -9,28 +9,30 @@ use interwell::system::clock::WallClock;
 
 use super::say;
 
-/// Seconds between two lines.
+/// Time between two lines in s.
 const INTERVAL: f64 = 60.0;
 
-/// How far a command is, and how it is shown.
+/// The progress of a command, shown as a bar or as lines.
 pub struct Progress {
     bar: ProgressBar,
     lines: Option<Lines>,
 }
 
-/// A line a minute.
+/// Progress in lines, one every minute.
 struct Lines {
     parts: u64,
     unit: String,
     clock: WallClock,
-    /// Parts done before the clock began, parts done, and lines printed.
+    /// Parts done before the clock was started.
     before: AtomicU64,
+    /// Parts done.
     done: AtomicU64,
+    /// Number of the interval in which the last line was printed.
     printed: AtomicU64,
 }
 
-/// Progress over so many parts, called `unit`: on a terminal that the rows do not go to too a bar with rate
-/// and time left, where there is no terminal a line a minute.
+/// Progress over a number of parts, called `unit`: a bar with rate and time left on a terminal, unless the
+/// rows go there too; lines if standard error is no terminal.
 pub fn bar(parts: u64, unit: &str, quiet: bool, out: &Path) -> Progress {
     let rows_on_terminal = out == Path::new("-") && std::io::stdout().is_terminal();
     let terminal = std::io::stderr().is_terminal();
@@ -54,7 +56,7 @@ pub fn bar(parts: u64, unit: &str, quiet: bool, out: &Path) -> Progress {
 }
 
 impl Progress {
-    /// So many parts were there before.
+    /// Counts `parts` as done before the command began.
     pub fn begin_at(&self, parts: u64) {
         self.bar.set_position(parts);
         self.bar.reset_eta();
@@ -64,7 +66,7 @@ impl Progress {
         }
     }
 
-    /// So many more parts are done. From any thread.
+    /// Counts `parts` more as done. May be called from any thread.
     pub fn inc(&self, parts: u64) {
         match &self.lines {
             Some(lines) => lines.inc(parts),
@@ -72,7 +74,7 @@ impl Progress {
         }
     }
 
-    /// One more part is done, of which there may be more than were known of.
+    /// Counts one more part as done, and makes the bar longer if there are more parts than it was made for.
     pub fn inc_beyond(&self) {
         self.inc(1);
         if self.bar.length().is_some_and(|length| self.bar.position() >= length) {
@@ -80,7 +82,7 @@ impl Progress {
         }
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub fn finish_and_clear(&self) {
         self.bar.finish_and_clear();
     }
@@ -105,7 +107,7 @@ impl Lines {
     }
 }
 
-/// A time in words.
+/// A duration in words.
 pub fn duration(seconds: f64) -> String {
     if seconds < 1.0 {
         return "less than a second".to_owned();

@@ -1,4 +1,4 @@
-//! `accuracy SCENE`: the error of one scene's run, what digits cost, and what fixed steps make of it.
+//! `accuracy SCENE`: the error of a run, its cost over the tolerance, and its error in fixed steps.
 
 use interwell::dynamics::Model;
 use interwell::output::{Sink, aligned};
@@ -12,7 +12,7 @@ use super::interrupt;
 use super::options::Common;
 use super::support::{finish, inputs, load_with_mechanism, open, write_table};
 
-/// Looks at the run of the scene called `spec`.
+/// Analyses the run of the scene called `spec`.
 pub fn run(spec: &str, options: &Arguments, common: &Common) -> Result<(), Failure> {
     let steps = options.step_s.as_deref().map_or_else(|| Ok(Vec::new()), steps)?;
     let (document, mechanism) = load_with_mechanism(spec, common)?;
@@ -28,7 +28,7 @@ pub fn run(spec: &str, options: &Arguments, common: &Common) -> Result<(), Failu
     };
     let cost = tolerances(&model, cancel).ok_or_else(Failure::interrupted)?;
     let mut stepped = Vec::new();
-    for scheme in Scheme::ALL.into_iter().filter(|scheme| is_wanted(*scheme, &options.method)) {
+    for scheme in Scheme::ALL.into_iter().filter(|scheme| is_chosen(*scheme, &options.method)) {
         for step in &steps {
             let run = step_size(&model, scheme, *step, cancel).map_err(|unfit| match unfit {
                 Unfit::Cancelled => Failure::interrupted(),
@@ -54,13 +54,13 @@ pub fn run(spec: &str, options: &Arguments, common: &Common) -> Result<(), Failu
     show(&text, to_stdout, common.quiet)
 }
 
-fn is_wanted(scheme: Scheme, names: &[String]) -> bool {
+fn is_chosen(scheme: Scheme, names: &[String]) -> bool {
     let name = match scheme {
         Scheme::SemiImplicitEuler => "euler",
         Scheme::VelocityVerlet => "verlet",
         Scheme::RungeKutta4 => "rk4",
     };
-    names.is_empty() || names.iter().any(|own| own == name)
+    names.is_empty() || names.iter().any(|chosen| chosen == name)
 }
 
 /// The shortest and the longest step in s that a run is made with.

@@ -70,13 +70,13 @@ pub struct Arguments {
 
 /// Takes the section, or one for each cell, and writes the rows.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let asked = SectionOptions {
+    let settings = SectionOptions {
         at: section_at(options)?,
         periods: options.skip.zip(options.keep),
         until_settled: None,
         carry: options.carry.as_deref().and_then(Carry::named),
     };
-    if options.over.is_empty() { one(options, common, asked) } else { diagram(options, common, asked) }
+    if options.over.is_empty() { one(options, common, settings) } else { diagram(options, common, settings) }
 }
 
 fn section_at(options: &Arguments) -> Result<SectionAt, Failure> {
@@ -89,54 +89,55 @@ fn section_at(options: &Arguments) -> Result<SectionAt, Failure> {
             None => Ok(SectionAt::Impacts),
         };
     }
-    let finite = |own: &f64| own.is_finite();
+    let finite = |value: &f64| value.is_finite();
     let angle = |text| number("--phase-deg", text, finite, "give an angle in degrees, such as 90");
     Ok(SectionAt::Phase(phase.map_or(Ok(0.0), angle)?))
 }
 
 /// The section of one run.
-fn one(options: &Arguments, common: &Common, mut asked: SectionOptions) -> Result<(), Failure> {
-    let picture = Picture::asked(&options.chart.plot, common)?;
+fn one(options: &Arguments, common: &Common, mut settings: SectionOptions) -> Result<(), Failure> {
+    let picture = Picture::new(&options.chart.plot, common)?;
     let axes = ranges(&options.chart, "--plot-x")?;
     let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
     let model = Model::build(&document.scene, mechanism).map_err(|faults| document.error_from(faults))?;
-    asked.until_settled = until_settled(options.until_settled.as_deref(), &document, &asked.run_of(&model))?;
+    settings.until_settled =
+        until_settled(options.until_settled.as_deref(), &document, &settings.run_of(&model))?;
     let [plot, data] = Picture::outputs(picture);
     let outputs = [Some(("--out", common.out())), plot, data];
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
-    let found = section(&model, &document.scene, &asked, interrupt::listen());
+    let found = section(&model, &document.scene, &settings, interrupt::listen());
     let (table, summary) = found.map_err(|fault| document.error_from(vec![fault]))?;
     if interrupt::came() {
         return Err(Failure::interrupted());
     }
-    let names: Vec<String> = asked.columns().iter().map(|name| (*name).to_owned()).collect();
+    let names: Vec<String> = settings.columns().iter().map(|name| (*name).to_owned()).collect();
     write_table(&mut sinks[0], &table.only(&names))?;
     if let Some(picture) = picture {
         let stops = model.stop_positions();
         let shown =
-            SectionPicture { rows: &table, over: None, phase_deg: phase(&asked), stops, ranges: axes };
+            SectionPicture { rows: &table, over: None, phase_deg: phase(&settings), stops, ranges: axes };
         picture.write(&mut sinks[1..3], section_figure(&shown, &caption(&document), &picture.theme))?;
     }
     finish(sinks)?;
-    tell_early(&document, &summary);
+    report_early_end(&document, &summary);
     Ok(())
 }
 
-/// Says where a run has ended early.
-fn tell_early(document: &Document, summary: &Summary) {
+/// Reports an early end of a run.
+fn report_early_end(document: &Document, summary: &Summary) {
     if let Some(at) = summary.outcome.ended_at() {
         let name = summary.outcome.name();
         say(&format!("{}: the run ended early at t = {at} s ({name}): the rows end there", document.name));
     }
 }
 
-fn phase(asked: &SectionOptions) -> Option<f64> {
-    if let SectionAt::Phase(degrees) = asked.at { Some(degrees) } else { None }
+fn phase(settings: &SectionOptions) -> Option<f64> {
+    if let SectionAt::Phase(degrees) = settings.at { Some(degrees) } else { None }
 }
 
-/// The sections of all cells.
-fn diagram(options: &Arguments, common: &Common, asked: SectionOptions) -> Result<(), Failure> {
-    let picture = Picture::asked(&options.chart.plot, common)?;
+/// The sections of all cells, written as they are computed.
+fn diagram(options: &Arguments, common: &Common, settings: SectionOptions) -> Result<(), Failure> {
+    let picture = Picture::new(&options.chart.plot, common)?;
     let axes = ranges(&options.chart, "--plot-x")?;
     let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
     let beside = manifest_path(common.out());
@@ -144,7 +145,7 @@ fn diagram(options: &Arguments, common: &Common, asked: SectionOptions) -> Resul
         document.hold_files();
     }
     let grid = Grid::new(document.axes(&options.over)?)?;
-    if asked.carry.is_some() {
+    if settings.carry.is_some() {
         refuse_electrical_state(&document, grid.axes(), "--carry")?;
     }
     if picture.is_some() && grid.axes().len() > 1 {
@@ -153,12 +154,12 @@ fn diagram(options: &Arguments, common: &Common, asked: SectionOptions) -> Resul
             "--plot shows a diagram over one field, not over {fields}: take the others out, or draw nothing"
         )));
     }
-    let sections = Sections::new(&document.scene, &document.files, grid, asked);
-    let looked_at = Task { tick: &|| (), cancel: interrupt::listen() };
-    let first = sections.first_model(&looked_at).and_then(Result::ok);
+    let sections = Sections::new(&document.scene, &document.files, grid, settings);
+    let trial = Task { tick: &|| (), cancel: interrupt::listen() };
+    let first = sections.first_model(&trial).and_then(Result::ok);
     let until = match &first {
         Some(model) => until_settled(options.until_settled.as_deref(), &document, model)?,
-        None => None, // said below, cell by cell
+        None => None, // `validate` reports the fault below, with its cell
     };
     let sections = sections.until_settled(until);
     warn(&document, common, &warnings, first.as_ref().map(|model| &**model.mechanism()));
@@ -176,8 +177,8 @@ fn diagram(options: &Arguments, common: &Common, asked: SectionOptions) -> Resul
     let result = (|| {
         sections.validate(&pool, &task).map_err(|cell| located(&document, cell))?;
         let mut names = sections.grid().columns().to_vec();
-        names.extend(asked.carry.map(|_| DIRECTION.to_owned()));
-        names.extend(asked.columns().iter().map(|name| (*name).to_owned()));
+        names.extend(settings.carry.map(|_| DIRECTION.to_owned()));
+        names.extend(settings.columns().iter().map(|name| (*name).to_owned()));
         write_text(&mut sinks[0], &header(&sections.empty_table().only(&names)))?;
         let write = |table: &Table| {
             if let Some(shown) = &mut shown {
@@ -195,7 +196,7 @@ fn diagram(options: &Arguments, common: &Common, asked: SectionOptions) -> Resul
     let tally = result?;
     if let Some((picture, rows)) = picture.zip(shown) {
         let over = sections.grid().columns().first().map(String::as_str);
-        let phase_deg = phase(&asked);
+        let phase_deg = phase(&settings);
         let shown = SectionPicture { rows: &rows, over, phase_deg, stops: (None, None), ranges: axes };
         picture.write(&mut sinks[1..3], section_figure(&shown, &caption(&document), &picture.theme))?;
     }
@@ -212,7 +213,7 @@ fn diagram(options: &Arguments, common: &Common, asked: SectionOptions) -> Resul
     Ok(())
 }
 
-/// The number of runs in words, and of those that ended early.
+/// The number of runs in words, and the number of those that ended early.
 fn runs(tally: &Tally) -> String {
     let cells = if tally.cells == 1 { "1 run".to_owned() } else { format!("{} runs", tally.cells) };
     match (tally.ended_early, tally.not_converged) {

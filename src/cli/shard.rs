@@ -1,5 +1,5 @@
-//! Shards of a sweep on the command line: which one this process computes, where it goes, and the commands
-//! that compute others.
+//! Shards of a sweep on the command line: number of this process's shard, path of its rows, and commands for
+//! the other shards.
 
 use std::path::{Path, PathBuf};
 
@@ -8,11 +8,11 @@ use interwell::study::Shard;
 
 use super::failure::Failure;
 
-/// What stands in the name of a file for the shard.
+/// Placeholder for the shard in the name of a file.
 pub const PLACE: &str = "{shard}";
 
-/// Which shard `--shard` asks for: `I/N`; `auto`, as the environment of an array job says; `auto/N`, with the
-/// number alone from there.
+/// The shard that `--shard` asks for: `I/N`; `auto`, with number and count from the environment of an array
+/// job; `auto/N`, with only the number from there.
 pub fn shard(text: &str, variable: impl Fn(&str) -> Option<String>) -> Result<Shard, Failure> {
     let wrong = |problem: String| Failure::argument(format!("--shard {text}: {problem}"));
     let Some(rest) = text.trim().strip_prefix("auto") else { return Shard::parse(text).map_err(wrong) };
@@ -22,7 +22,7 @@ pub fn shard(text: &str, variable: impl Fn(&str) -> Option<String>) -> Result<Sh
         value.trim().parse::<u64>().map(Some).map_err(|_| not())
     };
     let slurm = number("SLURM_ARRAY_TASK_ID")?;
-    let Some(own) = slurm.map_or_else(|| number("HQ_TASK_ID"), |own| Ok(Some(own)))? else {
+    let Some(task) = slurm.map_or_else(|| number("HQ_TASK_ID"), |number| Ok(Some(number)))? else {
         return Err(wrong(
             "the environment has neither SLURM_ARRAY_TASK_ID nor HQ_TASK_ID, as within an array job; give \
              I/N, such as 2/5"
@@ -30,44 +30,43 @@ pub fn shard(text: &str, variable: impl Fn(&str) -> Option<String>) -> Result<Sh
         ));
     };
     if !rest.is_empty() {
-        return Shard::parse(&format!("{own}{rest}")).map_err(wrong);
+        return Shard::parse(&format!("{task}{rest}")).map_err(wrong);
     }
     match number("SLURM_ARRAY_TASK_COUNT")?.filter(|_| slurm.is_some()) {
         Some(count) => {
             let least = number("SLURM_ARRAY_TASK_MIN")?.unwrap_or(1);
             let step = number("SLURM_ARRAY_TASK_STEP")?.unwrap_or(1).max(1);
-            let number = own.checked_sub(least).map_or(0, |beyond| beyond / step + 1);
+            let number = task.checked_sub(least).map_or(0, |beyond| beyond / step + 1);
             Shard::new(number, count).map_err(wrong)
         }
         None => Err(wrong("the environment does not say how many tasks there are; give auto/N".to_owned())),
     }
 }
 
-/// Where the rows of a shard go: `out` with `2-of-5` for its `{shard}`. With `--shard auto` it must have one:
-/// the tasks of an array job have the same arguments.
-pub fn placed(out: &Path, asked: Option<&str>, shard: Shard) -> Result<PathBuf, Failure> {
-    let Some(asked) = asked else { return Ok(out.to_owned()) };
+/// The path of the rows of a shard: `out` with `{shard}` replaced, such as by `2-of-5`. With `--shard auto`
+/// the placeholder is required, because all tasks of an array job have the same arguments.
+pub fn placed(out: &Path, argument: Option<&str>, shard: Shard) -> Result<PathBuf, Failure> {
+    let Some(argument) = argument else { return Ok(out.to_owned()) };
     let has = out.to_string_lossy().contains(PLACE);
     if has {
         return Ok(filled(&out.to_string_lossy(), shard).into());
     }
-    if asked.trim().starts_with("auto") && shard.count() > 1 && is_regular(out) {
+    if argument.trim().starts_with("auto") && shard.count() > 1 && is_regular(out) {
         let (out, stem) = (out.display(), out.with_extension(""));
-        let such = format!("{}-{PLACE}.csv", stem.display());
-        let problem = format!("all shards would go to {out}: put {PLACE} into --out, such as {such}");
-        return Err(Failure::argument(format!("--shard {asked}: {problem}")));
+        let example = format!("{}-{PLACE}.csv", stem.display());
+        let problem = format!("all shards would go to {out}: put {PLACE} into --out, such as {example}");
+        return Err(Failure::argument(format!("--shard {argument}: {problem}")));
     }
     Ok(out.to_owned())
 }
 
-/// A name with a shard for its `{shard}`.
+/// Replaces `{shard}` in a name.
 fn filled(name: &str, shard: Shard) -> String {
     name.replace(PLACE, &format!("{}-of-{}", shard.number(), shard.count()))
 }
 
-/// Options of a call of the program that say which part of a sweep it makes, and how; with a value or
-/// without.
-const OF_A_PART: [(&str, bool); 6] = [
+/// Options that belong to the shard or to this one call, and whether each takes a value.
+const SHARD_OPTIONS: [(&str, bool); 6] = [
     ("--shard", true),
     ("--out", true),
     ("--resume", false),
@@ -76,16 +75,16 @@ const OF_A_PART: [(&str, bool); 6] = [
     ("--quiet", false),
 ];
 
-/// The command that a call of the program with these `arguments` is with other options for a part.
+/// The command with these `arguments` and other options for the shard.
 pub fn command(arguments: &[String], options: &[&str]) -> String {
     let mut words = vec!["interwell"];
-    let mut left_out = false;
+    let mut skip_value = false;
     for argument in arguments {
         let name = argument.split('=').next().unwrap_or_default();
-        let of_a_part = OF_A_PART.iter().find(|(own, _)| *own == name);
-        match of_a_part {
-            _ if std::mem::take(&mut left_out) => {}
-            Some((_, has_value)) => left_out = *has_value && name == argument,
+        let shard_option = SHARD_OPTIONS.iter().find(|(option, _)| *option == name);
+        match shard_option {
+            _ if std::mem::take(&mut skip_value) => {}
+            Some((_, has_value)) => skip_value = *has_value && name == argument,
             None => words.push(argument),
         }
     }
@@ -93,37 +92,37 @@ pub fn command(arguments: &[String], options: &[&str]) -> String {
     line(words)
 }
 
-/// Words as a shell takes them.
+/// Quotes words for a shell and joins them.
 pub fn line<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
     let quoted = |word: &str| {
         let plain = |c: char| c.is_ascii_alphanumeric() || "_-+=:,./@%".contains(c);
         if !word.is_empty() && word.chars().all(plain) {
             return word.to_owned();
         }
-        shlex::try_quote(word).map_or_else(|_| word.to_owned(), |own| own.into_owned())
+        shlex::try_quote(word).map_or_else(|_| word.to_owned(), |quoted| quoted.into_owned())
     };
     words.into_iter().map(quoted).collect::<Vec<_>>().join(" ")
 }
 
-/// The value of an option among arguments.
+/// The value of `option` in `arguments`.
 pub fn value<'a>(arguments: &'a [String], option: &str) -> Option<&'a str> {
-    let place = arguments.iter().position(|own| own == option);
+    let place = arguments.iter().position(|argument| argument == option);
     let beside = place.and_then(|place| arguments.get(place + 1)).map(String::as_str);
-    beside.or_else(|| arguments.iter().find_map(|own| own.strip_prefix(option)?.strip_prefix('=')))
+    beside.or_else(|| arguments.iter().find_map(|argument| argument.strip_prefix(option)?.strip_prefix('=')))
 }
 
-/// The name of the file of another shard, where that of `own` is called `out`.
-pub fn other_name(out: &str, own: Shard, other: Shard) -> String {
+/// The name of the file of the shard `other`, given that the file of `shard` is called `out`.
+pub fn other_name(out: &str, shard: Shard, other: Shard) -> String {
     if out.contains(PLACE) {
         return out.to_owned();
     }
     let named = |shard: Shard| format!("{}-of-{}", shard.number(), shard.count());
-    if out.contains(&named(own)) {
-        return out.replace(&named(own), &named(other));
+    if out.contains(&named(shard)) {
+        return out.replace(&named(shard), &named(other));
     }
-    // its number, where the name has it once as a number of its own
+    // replace the number if it occurs exactly once, not as part of a longer number
     let (folder, name) = out.rsplit_once('/').map_or(("", out), |(folder, name)| (folder, name));
-    let number = own.number().to_string();
+    let number = shard.number().to_string();
     let digit = |c: Option<char>| c.is_some_and(|c| c.is_ascii_digit());
     let alone = |at: &usize| {
         let (before, after) = (&name[..*at], &name[at + number.len()..]);
@@ -145,8 +144,9 @@ mod tests {
     use super::*;
 
     fn of(text: &str, variables: &[(&str, &str)]) -> Result<String, String> {
-        let variable = |name: &str| variables.iter().find(|own| own.0 == name).map(|own| own.1.to_owned());
-        shard(text, variable).map(|own| own.to_string()).map_err(|error| error.to_string())
+        let variable =
+            |name: &str| variables.iter().find(|entry| entry.0 == name).map(|entry| entry.1.to_owned());
+        shard(text, variable).map(|shard| shard.to_string()).map_err(|error| error.to_string())
     }
 
     #[test]
@@ -162,7 +162,7 @@ mod tests {
         assert_eq!(of("auto", &slurm("3", "5", "1", "1")).unwrap(), "3/5");
         assert_eq!(of("auto", &slurm("0", "5", "0", "1")).unwrap(), "1/5");
         assert_eq!(of("auto", &slurm("17", "5", "9", "2")).unwrap(), "5/5");
-        // one task of an array is sent again
+        // a single task of an array is submitted again
         assert_eq!(of("auto/5", &slurm("3", "1", "3", "1")).unwrap(), "3/5");
         assert_eq!(of("auto/5", &[("HQ_TASK_ID", "2")]).unwrap(), "2/5");
         assert!(of("auto", &[("HQ_TASK_ID", "2")]).unwrap_err().contains("auto/N"));
@@ -177,7 +177,7 @@ mod tests {
     fn commands_of_other_shards_can_be_copied() {
         let arguments =
             ["--headless", "sweep", "--out=a.csv", "--set", "start=At(x_mm: 1)", "--shard", "1/5"];
-        let arguments: Vec<String> = arguments.iter().map(|own| (*own).to_owned()).collect();
+        let arguments: Vec<String> = arguments.iter().map(|argument| (*argument).to_owned()).collect();
         let text = command(&arguments, &["--shard", "2/5", "--out", "b.csv"]);
         let set = shlex::try_quote("start=At(x_mm: 1)").unwrap();
         assert_eq!(text, format!("interwell --headless sweep --set {set} --shard 2/5 --out b.csv"));

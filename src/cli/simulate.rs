@@ -1,4 +1,4 @@
-//! `simulate`: one run.
+//! `simulate`: one run of a scene.
 
 use std::path::PathBuf;
 
@@ -66,7 +66,7 @@ pub struct Arguments {
 
 /// Runs the scene and writes samples, events and summary.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::asked(&options.chart.plot, common)?;
+    let picture = Picture::new(&options.chart.plot, common)?;
     let axes = ranges(&options.chart, "--plot-time")?;
     let sampling = match (&options.at, &options.dt) {
         (Some(text), _) => Sampling::At(numbers("--at", text, ',')?),
@@ -79,15 +79,17 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let model = Model::build(&document.scene, mechanism).map_err(|faults| document.error_from(faults))?;
     let until_settled = until_settled(options.until_settled.as_deref(), &document, &model)?;
     let times = sample_times(&document.scene, &model, &sampling, until_settled)?;
-    let window = axes.x.or_else(|| spanned(&sampling));
-    let most = until_settled.unwrap_or(model.duration());
-    if let Some((from, to)) = window.filter(|(from, to)| *from < 0.0 || *to > most) {
-        let message = format!("--plot-time {from}:{to}: the run lasts from 0 to {most} s");
+    let window = axes.x.or_else(|| span(&sampling));
+    let longest = until_settled.unwrap_or(model.duration());
+    if let Some((from, to)) = window.filter(|(from, to)| *from < 0.0 || *to > longest) {
+        let message = format!("--plot-time {from}:{to}: the run lasts from 0 to {longest} s");
         return Err(Failure::argument(message));
     }
     let record = options.measured.read(common.quiet)?;
-    if let Some((from, to)) = record.as_ref().and_then(|own| own.inset).filter(|(_, to)| *to > most) {
-        let message = format!("--inset {from}:{to}: the run lasts from 0 to {most} s");
+    if let Some((from, to)) =
+        record.as_ref().and_then(|measured| measured.inset).filter(|(_, to)| *to > longest)
+    {
+        let message = format!("--inset {from}:{to}: the run lasts from 0 to {longest} s");
         return Err(Failure::argument(message));
     }
     let comparison = options.measured.comparison.as_deref().map(|path| ("--comparison", path));
@@ -105,7 +107,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let (simulation, trace) = match picture {
         None => (simulate(&model, &keep, Some(cancel)), None),
         Some(_) => {
-            let close = record.as_ref().and_then(|own| own.inset).or(window);
+            let close = record.as_ref().and_then(|measured| measured.inset).or(window);
             let (simulation, trace) = simulate_with_trace(&model, &keep, close, Some(cancel));
             (simulation, Some(trace))
         }
@@ -113,7 +115,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if interrupt::came() {
         return Err(Failure::interrupted());
     }
-    let compared = record.as_ref().map(|own| own.compare(&document.scene, &model, cancel)).transpose()?;
+    let compared =
+        record.as_ref().map(|measured| measured.compare(&document.scene, &model, cancel)).transpose()?;
     let [samples, events, about, pictures @ .., comparison] = &mut sinks;
     write_table(samples, &simulation.samples)?;
     write_table(events, &simulation.events)?;
@@ -121,9 +124,9 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if let Some((picture, trace)) = picture.zip(trace) {
         let (about, mechanism) = (caption(&document), &model.mechanism());
         let figure = match record.as_ref().zip(compared.as_ref()) {
-            Some((own, found)) => {
-                let quantity = own.record.channels[1].quantity;
-                measured_figure(&trace, (found, quantity), own.inset, axes, &about, &picture.theme)
+            Some((measured, found)) => {
+                let quantity = measured.record.channels[1].quantity;
+                measured_figure(&trace, (found, quantity), measured.inset, axes, &about, &picture.theme)
             }
             None => {
                 let named = options.panels.iter().filter_map(|name| Panel::named(name)).collect::<Vec<_>>();
@@ -138,8 +141,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         write_table(comparison, &found.table)?;
     }
     finish(sinks)?;
-    if let Some((own, found)) = record.as_ref().zip(compared.as_ref()).filter(|_| !common.quiet) {
-        own.tell(found);
+    if let Some((measured, found)) = record.as_ref().zip(compared.as_ref()).filter(|_| !common.quiet) {
+        measured.report(found);
     }
     if let Some(warning) = yield_warning(&model, &simulation.summary).filter(|_| !common.quiet) {
         say(&format!("warning: {}: {warning}", document.name));
@@ -154,14 +157,14 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The times from the first to the last of those that are listed, where they are some.
-fn spanned(sampling: &Sampling) -> Option<(f64, f64)> {
+/// The first and the last of the listed times. Returns `None` unless there are two different ones.
+fn span(sampling: &Sampling) -> Option<(f64, f64)> {
     let Sampling::At(times) = sampling else { return None };
     let (first, last) = extent(times.iter().copied());
     (first < last).then_some((first, last))
 }
 
-/// Why a run ended before its duration, or what is wrong with it; none where it is done.
+/// The reason why a run ended before its duration or is inaccurate. Returns `None` if it is done.
 fn remark(model: &Model, outcome: Outcome) -> Option<String> {
     let remedy = ended_remedy(model, outcome).unwrap_or_default();
     let reason = match outcome {

@@ -59,7 +59,7 @@ pub struct Arguments {
 
 /// Runs the scene and writes the spectrum of its settled motion.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::asked(&options.chart.plot, common)?;
+    let picture = Picture::new(&options.chart.plot, common)?;
     let axes = ranges(&options.chart, "--plot-x")?;
     if let Some((low, high)) = axes.y.filter(|(low, _)| !(*low > 0.0)) {
         return Err(Failure::argument(format!(
@@ -69,8 +69,11 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
     let model = Model::build(&document.scene, mechanism).map_err(|faults| document.error_from(faults))?;
     let until_settled = until_settled(options.until_settled.as_deref(), &document, &model)?;
-    let asked = SpectrumOptions {
-        signal: Signal::ALL.into_iter().find(|own| own.name() == options.of).unwrap_or(Signal::Displacement),
+    let settings = SpectrumOptions {
+        signal: Signal::ALL
+            .into_iter()
+            .find(|signal| signal.name() == options.of)
+            .unwrap_or(Signal::Displacement),
         taper: match options.taper.as_str() {
             "hann" => Some(Taper::Hann),
             "none" => Some(Taper::None),
@@ -83,7 +86,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let outputs = [Some(("--out", common.out())), plot, data];
     let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
     let task = Task { tick: &|| (), cancel: interrupt::listen() };
-    let found = spectrum(&model, &asked, &task).map_err(|problem| match problem {
+    let found = spectrum(&model, &settings, &task).map_err(|problem| match problem {
         NoSpectrum::Cancelled => Failure::interrupted(),
         NoSpectrum::EndedEarly { .. } => Failure::Failed(anyhow::anyhow!("{}: {problem}", document.name)),
         NoSpectrum::NoWindow(..) => Failure::argument(format!("{}: {problem}", document.name)),
@@ -111,6 +114,6 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
 }
 
 fn rate(text: &str) -> Result<f64, Failure> {
-    let fits = |own: &f64| *own > 0.0 && own.is_finite();
+    let fits = |value: &f64| *value > 0.0 && value.is_finite();
     number("--rate-hz", text, fits, "give a number of samples a second above 0, such as 2048")
 }

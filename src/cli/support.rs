@@ -19,7 +19,7 @@ use super::failure::{Failure, wrong_cell};
 use super::options::Common;
 use super::{interrupt, say};
 
-/// When a command's work began, by both clocks.
+/// Wall-clock and CPU time since a command began its work.
 #[derive(Debug, Clone, Copy)]
 pub struct Watch {
     wall: WallClock,
@@ -27,21 +27,24 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Begins now.
+    /// Starts both clocks.
     pub fn start() -> Self {
         Self { wall: WallClock::start(), cpu: ProcessClock::start() }
     }
 
-    /// Time on the wall since then, in s.
+    /// Wall-clock time since the start, in s.
     pub fn wall_s(&self) -> f64 {
         self.wall.seconds()
     }
 
-    /// What this call of the program was, and how long it has worked on `jobs` threads.
+    /// Version, arguments and times of this call of the program, which uses `jobs` threads.
     pub fn origin(&self, jobs: usize) -> Provenance {
         Provenance {
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            arguments: std::env::args_os().skip(1).map(|own| own.to_string_lossy().into_owned()).collect(),
+            arguments: std::env::args_os()
+                .skip(1)
+                .map(|argument| argument.to_string_lossy().into_owned())
+                .collect(),
             wall_s: self.wall_s(),
             cpu_s: self.cpu.seconds(),
             jobs,
@@ -49,15 +52,15 @@ impl Watch {
     }
 }
 
-/// The longest time in s for which a motion is waited for to settle, that of the longest run.
+/// Longest `--until-settled` in s, which is the longest duration of a run.
 const LONGEST_WAIT: f64 = 1e9;
 
-/// Rows that are turned into text at a time.
+/// Rows that are formatted at a time.
 const ROWS: usize = 1 << 15;
 
-/// The scene called `spec` with `--set` and `--tolerance` applied and checked, and its warnings. For a sweep
-/// `over` holds its arguments: then the first cell is checked, since the scene's own value of a swept field
-/// is never run.
+/// Loads the scene called `spec`, applies `--set` and `--tolerance`, checks it, and returns it with its
+/// warnings. For a sweep, `over` holds the arguments of `--over`, and the first cell is checked instead: the
+/// values that the scene has for the swept fields are never run.
 pub fn load(
     spec: &str,
     common: &Common,
@@ -78,7 +81,7 @@ pub fn load(
     Ok((document, moved.into_iter().chain(warnings).collect()))
 }
 
-/// The same, not checked yet.
+/// The same without the check.
 pub fn read(spec: &str, common: &Common) -> Result<Document, SceneError> {
     let mut document = Document::of_argument(spec)?;
     for argument in &common.set {
@@ -90,7 +93,7 @@ pub fn read(spec: &str, common: &Common) -> Result<Document, SceneError> {
     Ok(document)
 }
 
-/// The files that a scene is made of: its own and those that it names.
+/// The files that a scene is read from: its file and the files that it names.
 pub fn inputs(spec: &str, document: &Document) -> Vec<PathBuf> {
     let mut inputs = document.named_files();
     inputs.push(spec.into());
@@ -109,8 +112,8 @@ pub fn model_from_rest(document: &Document, mechanism: &Arc<Mechanism>) -> Resul
     Model::build(&trial, Arc::clone(mechanism)).map_err(|faults| document.error_from(faults).into())
 }
 
-/// The model of what shakes `scene` and for how long, all that waiting for its motion depends on: a mass on a
-/// spring in place of its own, which the grid or the design may replace.
+/// The model of a mass on a linear spring with the drive and the run of `scene`. The check of
+/// `--until-settled` depends on these alone, and the grid or the design may replace the mechanism.
 pub fn drive_alone(document: &Document, scene: Scene) -> Result<Model, Failure> {
     let mut alone = document.clone();
     alone.scene = Scene {
@@ -124,8 +127,8 @@ pub fn drive_alone(document: &Document, scene: Scene) -> Result<Model, Failure> 
     model_from_rest(&alone, &mechanism(&alone)?)
 }
 
-/// What is said where the mechanism of `document` cannot be built: a wrong scene is the writer's to mend,
-/// flexures that are right and are not solved are a run that failed.
+/// The failure for a mechanism that cannot be built: wrong fields are a wrong scene; valid flexures without
+/// a solution are a failed run.
 pub fn unbuilt(document: &Document, error: BuildError) -> Failure {
     match error {
         BuildError::Wrong(fault) => document.error_from(vec![fault]).into(),
@@ -141,7 +144,7 @@ pub fn load_with_mechanism(spec: &str, common: &Common) -> Result<(Document, Arc
     Ok((document, mechanism))
 }
 
-/// Prints the warnings of a scene and of its mechanism, unless told to be quiet.
+/// Prints the warnings of a scene and of its mechanism, unless `--quiet` is given.
 pub fn warn(document: &Document, common: &Common, warnings: &[String], mechanism: Option<&Mechanism>) {
     if common.quiet {
         return;
@@ -151,7 +154,7 @@ pub fn warn(document: &Document, common: &Common, warnings: &[String], mechanism
     of_tables.for_each(|warning| say(&format!("warning: {}: {warning}", document.name)));
 }
 
-/// The numbers of `A,B,C` as given to `option`; NaN and infinities pass, for their reader to judge.
+/// The numbers of `A,B,C` as given to `option`. NaN and infinities are accepted; the caller must check them.
 pub fn numbers(option: &str, text: &str, separator: char) -> Result<Vec<f64>, Failure> {
     let number = |part: &str| {
         let wrong = || Failure::argument(format!("{option} {text}: `{part}` is not a number"));
@@ -160,7 +163,7 @@ pub fn numbers(option: &str, text: &str, separator: char) -> Result<Vec<f64>, Fa
     text.split(separator).map(number).collect()
 }
 
-/// The number in `text`, as given to `option`; an error with this remedy where it is none that `fits`.
+/// The number in `text`, as given to `option`; an error with this remedy if it is no number that `fits`.
 pub fn number<T: FromStr>(
     option: &str,
     text: &str,
@@ -171,7 +174,7 @@ pub fn number<T: FromStr>(
     number.ok_or_else(|| Failure::argument(format!("{option} {text}: {remedy}")))
 }
 
-/// The range `A:B` as given to `option`; an error that says what to write where it is none.
+/// The range `A:B` as given to `option`; an error that says what to write if it is none.
 pub fn range(option: &str, text: &str, form: &str) -> Result<(f64, f64), Failure> {
     match numbers(option, text, ':')?[..] {
         [from, to] if from < to && from.is_finite() && to.is_finite() => Ok((from, to)),
@@ -179,7 +182,7 @@ pub fn range(option: &str, text: &str, form: &str) -> Result<(f64, f64), Failure
     }
 }
 
-/// The time in s of `--until-settled`, where it was given and runs of `model` can go on so far.
+/// The time in s of `--until-settled`, if given; an error if runs of `model` cannot go on to that time.
 pub fn until_settled(text: Option<&str>, document: &Document, model: &Model) -> Result<Option<f64>, Failure> {
     let Some(text) = text else { return Ok(None) };
     let wrong = |problem: String| Err(Failure::argument(format!("--until-settled {text}: {problem}")));
@@ -212,13 +215,13 @@ pub fn until_settled(text: Option<&str>, document: &Document, model: &Model) -> 
     Ok(Some(until))
 }
 
-/// What the manifest of a sweep is called among its outputs.
+/// Name of the manifest of a sweep among its outputs.
 pub const MANIFEST: &str = "the manifest of --out";
 
-/// Opens the outputs, each given with its option, before any work is done for them, and before that listens
-/// for Ctrl-C, which would leave their unfinished files behind. None may be one of the `inputs` (a scene's
-/// file, or a table or record that it names) or any other scene, the manifest replaces no file that is none,
-/// and no two are the same.
+/// Opens the outputs, each given with its option, before any work is done. Listens for Ctrl-C first, which
+/// would otherwise leave unfinished files behind. It is an error if an output is one of the `inputs` (a
+/// scene's file, or a table or record that it names) or any other scene, if the manifest would replace a file
+/// that is no manifest, or if two outputs are the same.
 pub fn open<const N: usize>(
     inputs: &[PathBuf],
     outputs: [Option<(&str, &Path)>; N],
@@ -253,7 +256,7 @@ pub fn open<const N: usize>(
     Ok(sinks)
 }
 
-/// Writes header and rows of `table`, where `sink` was asked for.
+/// Writes header and rows of `table` if there is a `sink`.
 pub fn write_table(sink: &mut Option<Sink>, table: &Table) -> Result<(), Failure> {
     write_text(sink, &header(table))?;
     for begin in (0..table.rows()).step_by(ROWS) {
@@ -265,14 +268,14 @@ pub fn write_table(sink: &mut Option<Sink>, table: &Table) -> Result<(), Failure
     Ok(())
 }
 
-/// Writes text, where `sink` was asked for.
+/// Writes text if there is a `sink`.
 pub fn write_text(sink: &mut Option<Sink>, text: &str) -> Result<(), Failure> {
     let Some(sink) = sink else { return Ok(()) };
     sink.put(text).map_err(|error| Failure::writing(sink.name(), error))
 }
 
-/// Writes rows as they come; whether more of them are wanted: where the reader of a pipe has gone, a picture
-/// may still be.
+/// Writes rows and flushes them. Returns whether more rows are needed: none are if the reader of a pipe has
+/// gone and nothing is `drawn`.
 pub fn put(sink: &mut Option<Sink>, table: &Table, drawn: bool) -> Result<bool, Failure> {
     write_text(sink, &rows(table, 0..usize::MAX))?;
     let Some(sink) = sink else { return Ok(drawn) };
@@ -280,8 +283,8 @@ pub fn put(sink: &mut Option<Sink>, table: &Table, drawn: bool) -> Result<bool, 
     Ok(!sink.is_closed() || drawn)
 }
 
-/// Writes out what is left of all outputs, then gives the files their names: either all of them
-/// appear or, where one cannot be written whole, none that was not there yet.
+/// Flushes all outputs, then gives the files their names. If one cannot be written to its end, no new file
+/// appears.
 pub fn finish<const N: usize>(mut sinks: [Option<Sink>; N]) -> Result<(), Failure> {
     for sink in sinks.iter_mut().flatten() {
         sink.flush().map_err(|error| Failure::writing(sink.name(), error))?;
@@ -293,8 +296,8 @@ pub fn finish<const N: usize>(mut sinks: [Option<Sink>; N]) -> Result<(), Failur
     Ok(())
 }
 
-/// Refuses a scene whose transducer has a state of its own, or may have along the swept fields, for what
-/// knows a motion by displacement and velocity alone.
+/// Refuses a scene whose transducer has an electrical state, in the scene or in a cell of the swept fields.
+/// Used by studies whose state is displacement and velocity alone.
 pub fn refuse_electrical_state(document: &Document, axes: &[Axis], what: &str) -> Result<(), Failure> {
     let swept = |name: &str| axes.iter().any(|axis| axis.field == format!("transducer.{name}"));
     let may_have = match document.scene.transducer {
@@ -310,7 +313,7 @@ pub fn refuse_electrical_state(document: &Document, axes: &[Axis], what: &str) -
     }
 }
 
-/// Where the manifest of the rows at `out` goes: beside them, where they are a regular file.
+/// The path of the manifest beside the rows at `out`. Returns `None` if `out` is no regular file.
 pub fn manifest_path(out: &Path) -> Option<PathBuf> {
     is_regular(out).then(|| {
         let mut name = out.as_os_str().to_owned();
@@ -324,13 +327,13 @@ pub fn file_name(out: &Path) -> String {
     out.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
 }
 
-/// As many threads as were asked for.
+/// The pool of `--jobs` threads.
 pub fn pool(common: &Common) -> Result<Pool, Failure> {
     let count = common.jobs.map_or_else(processors, usize::from);
     Pool::new(count).map_err(|error| Failure::Failed(error.into()))
 }
 
-/// The error of a cell that is wrong, with the places of its faults.
+/// The failure for a wrong cell, with the places of its faults.
 pub fn located(document: &Document, cell: CellFaults) -> Failure {
     let error = document.error_from(cell.faults.clone());
     wrong_cell(&cell, error)

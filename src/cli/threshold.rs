@@ -65,20 +65,20 @@ pub struct Arguments {
     pub chart: ChartOptions,
 }
 
-/// The field and range of a scan where none are given.
+/// The default field and range of a scan.
 const AMPLITUDES: &str = "excitation.amplitude_g=0:2";
 
-/// Steps of a scan whose step was left out.
+/// Steps of a scan if no step is given.
 const STEPS: f64 = 200.0;
 
-/// The most wrong cells that are named.
-const MOST_NAMED: usize = 8;
+/// Largest number of wrong cells that are named.
+const MAX_NAMED: usize = 8;
 
 /// Searches and writes the table.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::asked(&options.chart.plot, common)?;
+    let picture = Picture::new(&options.chart.plot, common)?;
     let axes = ranges(&options.chart, "--plot-x")?;
-    // without --over no cell of the scene's own sweep is run
+    // without --over the sweep in the scene is ignored
     let over = Some(options.over.as_slice()).filter(|over| !over.is_empty());
     let (document, warnings) = load(&options.scene, common, over)?;
     let mut scan = scan(options, &document)?;
@@ -128,8 +128,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     finish(sinks)
 }
 
-/// So many of all rows, as the subject of a sentence whose verb depends on whether there is only one row;
-/// none where it is none of them.
+/// The clause "`count` of `all` rows" with the singular or plural of a verb. Returns `None` if `count` is 0.
 fn of_rows(count: usize, all: usize, verbs: [&str; 2]) -> Option<String> {
     match (count, all) {
         (0, _) => None,
@@ -138,7 +137,7 @@ fn of_rows(count: usize, all: usize, verbs: [&str; 2]) -> Option<String> {
     }
 }
 
-/// What `undecided` means, where it is true.
+/// Explains `undecided`, if it is true in a row.
 fn undecided(table: &Table) -> Option<String> {
     let words = table.words("undecided");
     let count = words.iter().filter(|word| **word == "true").count();
@@ -151,7 +150,7 @@ fn undecided(table: &Table) -> Option<String> {
     ))
 }
 
-/// What an empty `value` means, where there are some.
+/// Explains an empty `value`, if a row has one.
 fn missing(table: &Table, (scan, onset): (&Scan, Onset), grid: Option<&Grid>) -> Option<String> {
     let values = table.numbers("value")?;
     let count = values.iter().filter(|value| value.is_nan()).count();
@@ -174,18 +173,18 @@ fn missing(table: &Table, (scan, onset): (&Scan, Onset), grid: Option<&Grid>) ->
     ))
 }
 
-/// An error that names the cells that are wrong.
+/// An error that names the wrong cells.
 fn wrong(document: &Document, cells: Vec<CellFaults>) -> Failure {
-    let more = cells.len().saturating_sub(MOST_NAMED);
+    let more = cells.len().saturating_sub(MAX_NAMED);
     let mut text: Vec<String> =
-        cells.into_iter().take(MOST_NAMED).map(|cell| located(document, cell).to_string()).collect();
+        cells.into_iter().take(MAX_NAMED).map(|cell| located(document, cell).to_string()).collect();
     if more > 0 {
         text.push(format!("and {more} more cells are wrong"));
     }
     Failure::argument(text.join("\n"))
 }
 
-/// What is searched over.
+/// The field, values and resolution of the search.
 fn scan(options: &Arguments, document: &Document) -> Result<Scan, Failure> {
     let argument = options.field.trim();
     let default = if argument == AMPLITUDES { " (the default; give another)" } else { "" };
@@ -199,7 +198,7 @@ fn scan(options: &Arguments, document: &Document) -> Result<Scan, Failure> {
     };
     let (mut full, mut end) = (argument.to_owned(), None);
     if let Some((from, to)) = argument.split_once(':').filter(|(_, to)| !to.contains(':')) {
-        // read as a list, so that the message names what is wrong with an end
+        // parsed as a list, so that the message names a wrong end
         let ends = parsed(&format!("{from},{to}"))?;
         let [low, high] = ends.values[..] else {
             return Err(wrong(
@@ -228,7 +227,7 @@ fn scan(options: &Arguments, document: &Document) -> Result<Scan, Failure> {
     let span = values.last().copied().unwrap_or(0.0) - values.first().copied().unwrap_or(0.0);
     let step = span / (values.len() - 1) as f64;
     if let Some(high) = end {
-        // no whole number of steps may lead there, and a step that is rounded just fails to
+        // the range may be no whole number of steps, and rounding may place the last one just below its end
         values.retain(|value| *value < high - 1e-6 * step);
         values.push(high);
     }
@@ -237,7 +236,7 @@ fn scan(options: &Arguments, document: &Document) -> Result<Scan, Failure> {
         None if whole => 1.0,
         None => 1e-3 * step,
         Some(text) => {
-            let fits = |own: &f64| *own > 0.0 && own.is_finite() && (!whole || own.fract() == 0.0);
+            let fits = |value: &f64| *value > 0.0 && value.is_finite() && (!whole || value.fract() == 0.0);
             let kind = if whole { "whole number" } else { "number" };
             number("--resolution", text, fits, &format!("give a {kind} above 0, in the unit of the field"))?
         }

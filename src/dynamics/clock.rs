@@ -1,8 +1,8 @@
-//! Clock: time as whole cycles and a phase, exact after any number of cycles.
+//! Clock: time as a whole number of cycles and a phase, exact after any number of cycles.
 //!
-//! Time is a whole number of cycles and a phase within the cycle. The cycle is the forcing period (of the
-//! fastest tone, where there are several); without a drive it is a power of two near the scene's time
-//! scale. The phase is as fine at t = 1e9 s as at t = 1 s, and equal phases are equal numbers.
+//! The cycle is the forcing period (of the fastest tone if there are several); without a drive it is a power
+//! of two near the scene's time scale. The phase has the same resolution at t = 1e9 s as at t = 1 s, and
+//! equal phases are equal numbers.
 //!
 //! Inside the integrator time is counted in a unit that is a power of two of a second, near the scene's
 //! time scale: the conversion is exact and Taylor coefficients stay near 1.
@@ -71,7 +71,7 @@ impl<T: Scalar> Clock<T> {
         quotient + (phase + rest / self.frequency)
     }
 
-    /// Seconds of an instant, in twice the digits.
+    /// Seconds of an instant, in double-double arithmetic.
     pub fn exact_seconds(&self, at: &Instant<T>) -> DoubleDouble {
         let cycles = DoubleDouble::of(at.cycle as f64) / DoubleDouble::of(self.frequency);
         cycles + at.phase.to_pair() * DoubleDouble::of(self.unit)

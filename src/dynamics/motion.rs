@@ -1,22 +1,23 @@
-//! Motion: the state, the stepper that advances it and the recorder that watches it.
+//! Motion: the state, the stepper that advances it and the recorder that observes it.
 //!
-//! The run is a chain of free flights in one mode each and of rests on a stop. A step of a flight is a
-//! Taylor series (`series`); its polynomial is also the dense output, and contacts, breaks and crossings are
-//! roots of it, found with none missed. Chosen for that, and for its cost: on the nominal cubic without stops
-//! six more digits cost 1.8 times the time (`benches/work_precision.rs` prints error and cost), where a
-//! Runge-Kutta method of order 5 pays 16 times and would need a dense output of its own to look for contacts.
+//! A run is a chain of free flights in one mode each and of rests on a stop. A step of a flight is a Taylor
+//! series (`series`). Its polynomial is also the dense output; contacts, breaks and crossings are its roots,
+//! and none is missed. This is the reason for the method, together with its cost: on the nominal cubic
+//! without stops six more digits cost 1.8 times the time (`benches/work_precision.rs` prints error and
+//! cost), whereas a Runge-Kutta method of order 5 needs 16 times the time and a separate dense output to
+//! find contacts.
 //!
-//! Three habits keep events sound:
+//! Three rules keep events reliable:
 //!
 //! - After a located event the state is put exactly on the surface, and the next step knows it ([`Touch`]):
-//!   its gap polynomial starts with coefficients that are 0 by definition (one after a rebound or a break,
-//!   two after a plastic impact, three after a release), so it is divided by that power of time and the same
+//!   the gap polynomial starts with coefficients that are 0 by definition (one after a rebound or a break,
+//!   two after a plastic impact, three after a release). It is divided by that power of time, so the same
 //!   contact cannot be found again, however short the flight. Since x = D exactly, the gap needs no
-//!   difference of large numbers: a flight of 1e-6 m/s is as exact, relatively, as one of 1 m/s.
-//! - A pressed rebound announces its own length, 2 v / a; the series is then extended only until its terms
-//!   are negligible over that length: four or five coefficients where a full step has sixteen. Its end is the
-//!   one root of that series in the gap, found without a search (`rebound`).
-//! - What remains of a chatter once it is short is summed in closed form (Nordmark and Piiroinen 2009).
+//!   difference of large numbers: a flight at 1e-6 m/s has the same relative accuracy as one at 1 m/s.
+//! - A rebound that is pressed back lasts about 2 v / a, so the series is extended only until its terms are
+//!   negligible over that time: four or five coefficients, where a full step has sixteen. Its end is the one
+//!   root of that series in the gap, found without a search (`rebound`).
+//! - The rest of a chatter, once it is short, is summed in closed form (Nordmark and Piiroinen 2009).
 //!
 //! [`Touch`]: super::state::Touch
 
@@ -38,19 +39,20 @@ pub(crate) struct Motion<'a, T: Scalar, D: Drive<T>> {
     pub stepper: Stepper<'a, T, D>,
     pub state: MotionState<T>,
     pub record: Recorder<'a, T>,
-    /// The recorder calls since the first labelled release, where the run may recur.
+    /// The recorder calls since the first labelled release, if the run may recur.
     pub log: Option<Box<Log<T>>>,
     pub steps: u64,
-    /// The segment of the drive and the instant since which a search has found no release.
+    /// The segment of the drive and the instant since which the search has found no release.
     pub searched: Option<(usize, Instant<T>)>,
-    /// Whether windows may be completed from a recurrence, whether this one may yet be, and whether the
-    /// mirror image of a motion is one.
+    /// Whether windows may be completed from a recurrence.
     pub may_recur: bool,
+    /// Whether the present window may still be completed from a recurrence.
     pub recurs: bool,
+    /// Whether the mirror image of a motion is a motion.
     pub symmetric: bool,
     /// The identity of the release that has just happened.
     pub label: Option<Label<T>>,
-    /// Time in s up to which the run goes on until the motion repeats.
+    /// Latest time in s to which the run goes on until the motion repeats.
     pub until_settled: Option<f64>,
 }
 
@@ -75,7 +77,7 @@ impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
         state.circuit =
             T::of(model.circuit().map_or(0.0, |circuit| circuit.state(model.start_electrical) * unit));
         let stepper = Stepper::new(equation, drive, clock, settings, end, Work::new(request.cancel));
-        record.samples_per_look = stepper.costs.samples_per_look();
+        record.samples_per_check = stepper.costs.samples_per_check();
         Self {
             stepper,
             state,
@@ -91,7 +93,7 @@ impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
         }
     }
 
-    /// Where `recurs`, lets the run be completed from a recurrence.
+    /// Permits the run to be completed from a recurrence if `recurs`.
     pub fn with_recurrence(mut self, recurs: bool, model: &Model) -> Self {
         self.may_recur = recurs && self.stepper.drive.circuit().is_none();
         self.recurs = self.may_recur;
@@ -99,23 +101,23 @@ impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
         self
     }
 
-    /// Where it stands: another motion of the same scene can go on from there.
+    /// The present state, from which another motion of the same scene can go on.
     pub fn checkpoint(&self) -> Checkpoint<T> {
         Checkpoint { state: self.state, barrier_side: self.record.barrier_side }
     }
 
-    /// Goes on from where another motion of the same scene stood.
+    /// Continues from a checkpoint of another motion of the same scene.
     pub fn resume(&mut self, point: &Checkpoint<T>) {
         self.state = point.state;
         self.record.barrier_side = point.barrier_side;
     }
 
-    /// Passes a call to the recorder, and to the log where there is one.
+    /// Passes a call to the recorder, and to the log if there is one.
     #[inline(always)] // so that only what is kept of the call is made
-    pub fn tell(&mut self, call: Call<T>) {
+    pub fn report(&mut self, call: Call<T>) {
         if let Some(log) = &mut self.log {
             log.add(call);
         }
-        self.record.tell(&call, self.state.segment);
+        self.record.report(&call, self.state.segment);
     }
 }

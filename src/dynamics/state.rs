@@ -1,25 +1,27 @@
-//! State of a motion: everything that its next step depends on.
+//! State of a motion: all data that its next step depends on.
 
 use super::clock::Instant;
 use super::equation::End;
 use super::result::{Outcome, Phase};
 use crate::numeric::Scalar;
 
-/// A surface that the mass touches at the start of a step, and the multiplicity of the leading zero of the
-/// gap there: how many of its coefficients are 0 by definition.
+/// A surface that the mass touches at the start of a step, and the multiplicity of the root of the gap there:
+/// how many of its leading coefficients are 0 by definition.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Touch {
     pub end: End,
     pub multiplicity: usize,
 }
 
-/// Multiplicities of a touch: the gap opens with the speed, the acceleration, or what follows them.
+/// Multiplicity of a touch whose gap opens with the speed.
 pub(crate) const BY_SPEED: usize = 1;
+/// Multiplicity of a touch whose gap opens with the acceleration.
 pub(crate) const BY_ACCELERATION: usize = 2;
+/// Multiplicity of a touch whose gap opens with the jerk.
 pub(crate) const BY_JERK: usize = 3;
-/// Nothing up to the fourth coefficient opens the gap: what follows decides.
+/// No coefficient up to the fourth opens the gap; the next ones decide.
 pub(crate) const UNDECIDED: usize = 5;
-/// The surface is ignored for one step: on neither side of a break does the mass leave it.
+/// The surface is ignored for one step: the mass leaves a break on neither side.
 pub(crate) const HELD: usize = usize::MAX;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,35 +33,35 @@ pub(crate) enum Contact {
     Motionless,
     /// In contact with the compliant stop of this end.
     Compressing(End),
-    /// In clipped contact with it: behind its surface, where the stop does not follow, since it would have to
-    /// pull.
+    /// In clipped contact with it: behind its untouched surface, which does not follow the mass, since the
+    /// stop would have to pull.
     Clipped(End),
 }
 
-/// How far a mass has pressed in a compliant stop.
+/// Depth of a mass in a compliant stop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Depth<T> {
     /// Root of the depth; 0 outside.
     pub root: T,
-    /// The contact became clipped, or ceased to be, right here.
+    /// Whether the contact became clipped, or ceased to be, at this instant.
     pub clip_changed: bool,
 }
 
-/// The state of a motion. The cursor of the drive's series is no part of it: that only keeps what would be
-/// computed again, to the bit.
+/// The state of a motion. The cursor of the drive's series is not part of it: it only caches numbers that
+/// would be computed again with the same bits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct MotionState<T> {
     pub at: Instant<T>,
     pub x: T,
     pub v: T,
-    /// State of the circuit of a transducer; 0 where there is none.
+    /// State of the circuit of a transducer; 0 without one.
     pub circuit: T,
     pub mode: usize,
     /// Segment of the drive.
     pub segment: usize,
     pub touch: Option<Touch>,
     pub contact: Contact,
-    /// The instant of a release that turned out to be none.
+    /// The instant of a release after which the mass did not leave the stop.
     pub refused: Option<Instant<T>>,
     /// Whether the mass has changed its mode at a break without moving.
     pub turned_back: bool,
@@ -67,7 +69,7 @@ pub(crate) struct MotionState<T> {
 }
 
 impl<T: Scalar> MotionState<T> {
-    /// At time 0 in the drive's first segment.
+    /// The state at time 0 in the drive's first segment.
     pub fn new((x, v): (T, T), mode: usize, contact: Contact) -> Self {
         Self {
             at: Instant { cycle: 0, phase: T::zero() },
@@ -84,7 +86,7 @@ impl<T: Scalar> MotionState<T> {
         }
     }
 
-    /// What a sample here is.
+    /// The phase of a sample in this state.
     pub fn phase(&self) -> Phase {
         match self.contact {
             Contact::Resting(End::Low) | Contact::Compressing(End::Low) | Contact::Clipped(End::Low) => {
@@ -100,7 +102,7 @@ impl<T: Scalar> MotionState<T> {
         }
     }
 
-    /// Its mirror image where `modes` is their number and no stop is compliant.
+    /// Its mirror image; `modes` is the number of modes. No stop may be compliant.
     pub fn mirrored(self, modes: usize) -> Self {
         let minus = |value: T| T::zero() - value;
         let contact = match self.contact {
@@ -128,7 +130,7 @@ impl<T: Scalar> MotionState<T> {
     }
 }
 
-/// A motion between two steps: from it another motion of the same scene goes on as if it were this one.
+/// A motion between two steps: another motion of the same scene can continue from it as if it were this one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Checkpoint<T> {
     pub state: MotionState<T>,
@@ -136,8 +138,8 @@ pub(crate) struct Checkpoint<T> {
     pub barrier_side: i8,
 }
 
-/// Identity of a release from rest, computed from the drive alone: equal labels are followed by equal
-/// motions.
+/// Identity of a release from rest, computed from the drive alone: equal labels are followed by
+/// equal motions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Label<T> {
     pub end: End,
@@ -146,5 +148,5 @@ pub(crate) struct Label<T> {
     pub phase: T,
 }
 
-/// Whether a motion goes on or the run has ended.
+/// `None` while the motion goes on; otherwise how the run has ended.
 pub(crate) type Flow = Option<Outcome>;

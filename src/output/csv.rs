@@ -1,7 +1,6 @@
-//! CSV: a header row, then a line for each row of a table, comma separated, `\n` ended.
+//! Tables as CSV: a header line, then one line for each row, separated by commas and ended by `\n`.
 //!
-//! Words come from fixed lists and field paths, and names are given without them: nothing holds a comma or a
-//! quote, so nothing is ever quoted.
+//! Words come from fixed lists and field paths, and names have no comma or quote, so no cell is ever quoted.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -16,7 +15,7 @@ pub fn header(table: &Table) -> String {
     names.join(",") + "\n"
 }
 
-/// The rows of `table` in `range`, which is cut to those there are; missing values are empty cells.
+/// The rows of `table` in `range`, which may go beyond the last row. Missing values are empty cells.
 pub fn rows(table: &Table, range: Range<usize>) -> String {
     let mut text = String::with_capacity(range.len().min(table.rows()) * 16 * table.columns().len());
     for row in range.start..range.end.min(table.rows()) {
@@ -40,8 +39,8 @@ pub fn rows(table: &Table, range: Range<usize>) -> String {
     text
 }
 
-/// Reads rows back that [`header`] and [`rows`] wrote of a table with the columns of `empty`, in any order;
-/// the error is a clause.
+/// Reads what [`header`] and [`rows`] wrote, into a table with the columns of `empty`; the columns of the
+/// text may be in any order. The error is a clause of a sentence.
 pub fn csv_table(text: &str, empty: &Table) -> Result<Table, String> {
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let names = reader.headers().map_err(|error| error.to_string())?.clone();
@@ -52,7 +51,7 @@ pub fn csv_table(text: &str, empty: &Table) -> Result<Table, String> {
     for column in empty.columns() {
         let name = &column.name;
         let missing = || format!("there is no column {name}");
-        let place = names.iter().position(|own| own == name).ok_or_else(missing)?;
+        let place = names.iter().position(|header| header == name).ok_or_else(missing)?;
         let cells = rows.iter().map(|row| row.get(place).unwrap_or_default());
         let wrong = |cell: &str| format!("`{cell}` in the column {name} is no number");
         let values = match &column.values {
@@ -71,21 +70,21 @@ pub fn csv_table(text: &str, empty: &Table) -> Result<Table, String> {
                     .collect::<Result<_, _>>()?,
             ),
             Values::Names(_) => Values::Names(cells.map(str::to_owned).collect()),
-            Values::Words(_) => Values::Words(cells.map(|cell| lasting(cell, &mut words)).collect()),
+            Values::Words(_) => Values::Words(cells.map(|cell| interned(cell, &mut words)).collect()),
         };
         table = table.with(name, values);
     }
     Ok(table)
 }
 
-/// A word of a table, which lasts as long as the program; there are few different ones.
-fn lasting(word: &str, known: &mut BTreeSet<&'static str>) -> &'static str {
-    if let Some(own) = known.get(word) {
-        return own;
+/// Interns a word for the life of the program; few different words occur.
+fn interned(word: &str, known: &mut BTreeSet<&'static str>) -> &'static str {
+    if let Some(word) = known.get(word) {
+        return word;
     }
-    let own: &'static str = Box::leak(word.into());
-    known.insert(own);
-    own
+    let word: &'static str = Box::leak(word.into());
+    known.insert(word);
+    word
 }
 
 #[cfg(test)]

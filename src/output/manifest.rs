@@ -7,39 +7,39 @@ use super::plan::plan_checksum;
 use crate::scene::{Document, PROGRAM, Scene};
 use crate::study::{Answer, Basins, ExponentTally, Grid, Shard, Tally};
 
-/// Where a result came from, besides its scene.
+/// Origin of a result, besides its scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Provenance {
     /// Version of the program.
     pub version: String,
     /// The arguments that it was called with.
     pub arguments: Vec<String>,
-    /// Time on the wall in s.
+    /// Wall-clock time in s.
     pub wall_s: f64,
     /// CPU time of all threads in s.
     pub cpu_s: f64,
-    /// Threads.
+    /// Number of threads.
     pub jobs: usize,
 }
 
-/// What a sweep made: the file of its rows, or of those of a shard.
+/// The file of the rows of a sweep, or of those of a shard.
 #[derive(Debug, Clone, Copy)]
 pub struct Made<'a> {
     /// Its [plan](super::plan()).
     pub plan: &'a Value,
-    /// Which of its rows are there.
+    /// The shard whose rows it has.
     pub shard: Shard,
     /// The checksum of the file.
     pub sha256: &'a str,
 }
 
-/// The manifest of what `command` swept as text: itself, or a scene file with `scene_ron` as its text beside
-/// the `files`, is swept to the same rows again. `scene_ron` has every argument applied, the swept fields at
-/// their unswept values, and the grid that ran as its `sweep`; `files` are the texts of the tables and
-/// records that the scene reads, by their paths in it.
+/// The manifest of the grid that `command` swept, as text. Sweeping the manifest, or a scene file with the
+/// text `scene_ron` beside the `files`, gives the same rows again. `scene_ron` has every argument applied,
+/// the swept fields at their unswept values, and the grid that ran as its `sweep`. `files` are the texts of
+/// the tables and records that the scene reads, by their paths in it.
 ///
-/// `document` has its files held; `data` is the name of the file with the rows, which `made` knows more of
-/// where a part of it may stand for itself.
+/// `document` must hold its files. `data` is the name of the file with the rows; `made` describes that file
+/// if it may be a shard.
 pub fn manifest(
     (command, document): (&str, &Document),
     grid: &Grid,
@@ -48,57 +48,57 @@ pub fn manifest(
     origin: &Provenance,
     data: &str,
 ) -> String {
-    let mut own = json!({
+    let mut more = json!({
         "cells": tally.cells,
         "mechanisms": made.map_or(tally.mechanisms, |_| grid.mechanisms()),
         "outcomes": tally.outcomes,
         "regimes": tally.regimes,
     });
     if let Some(Made { plan, shard, sha256 }) = made {
-        own["shard"] = json!(shard.to_string());
-        own["sha256"] = json!(sha256);
-        own["plan_sha256"] = json!(plan_checksum(plan));
-        own["plan"] = plan.clone();
+        more["shard"] = json!(shard.to_string());
+        more["sha256"] = json!(sha256);
+        more["plan_sha256"] = json!(plan_checksum(plan));
+        more["plan"] = plan.clone();
     }
-    swept((command, document), grid, own, origin, data)
+    swept((command, document), grid, more, origin, data)
 }
 
-/// The manifest of a whole sweep whose shards have these manifests, in a file `data` with this checksum, put
-/// together by a call of the program with these `arguments`. Counts and CPU times are added, the time on the
-/// wall is the longest.
+/// The manifest of a whole sweep, from the manifests of its shards. `data` is the name of the merged file,
+/// `sha256` its checksum, and `arguments` those of the call that merged it. Counts and CPU times are added;
+/// of the wall-clock times the longest is kept.
 pub fn merged_manifest(shards: &[Value], data: &str, sha256: &str, arguments: &[String]) -> String {
-    let Some(mut own) = shards.first().cloned() else { return String::new() };
+    let Some(mut merged) = shards.first().cloned() else { return String::new() };
     for other in &shards[1..] {
         for key in ["cells", "outcomes", "regimes", "cpu_s"] {
-            add(&mut own[key], &other[key]);
+            add(&mut merged[key], &other[key]);
         }
-        if other["wall_s"].as_f64() > own["wall_s"].as_f64() {
-            own["wall_s"] = other["wall_s"].clone();
+        if other["wall_s"].as_f64() > merged["wall_s"].as_f64() {
+            merged["wall_s"] = other["wall_s"].clone();
         }
     }
-    own["data"] = json!(data);
-    own["sha256"] = json!(sha256);
-    own["arguments"] = json!(arguments);
-    own["shard"] = json!(Shard::WHOLE.to_string());
-    pretty(&own)
+    merged["data"] = json!(data);
+    merged["sha256"] = json!(sha256);
+    merged["arguments"] = json!(arguments);
+    merged["shard"] = json!(Shard::WHOLE.to_string());
+    pretty(&merged)
 }
 
 /// Adds numbers, or the numbers of objects key by key.
-fn add(own: &mut Value, other: &Value) {
-    match (own, other) {
-        (Value::Object(own), Value::Object(other)) => {
-            other.iter().for_each(|(key, n)| add(own.entry(key).or_insert(json!(0)), n));
+fn add(sum: &mut Value, other: &Value) {
+    match (sum, other) {
+        (Value::Object(sum), Value::Object(other)) => {
+            other.iter().for_each(|(key, n)| add(sum.entry(key).or_insert(json!(0)), n));
         }
-        (own, other) => {
-            let whole = own.as_u64().zip(other.as_u64()).map(|(a, b)| json!(a + b));
-            let real = own.as_f64().zip(other.as_f64()).map(|(a, b)| json!(a + b));
-            *own = whole.or(real).unwrap_or(Value::Null);
+        (sum, other) => {
+            let whole = sum.as_u64().zip(other.as_u64()).map(|(a, b)| json!(a + b));
+            let real = sum.as_f64().zip(other.as_f64()).map(|(a, b)| json!(a + b));
+            *sum = whole.or(real).unwrap_or(Value::Null);
         }
     }
 }
 
-/// The manifest of exponents over a grid as text: as that of a sweep, with how many cells rest on a stop and
-/// how many have no exponents in place of outcomes and regimes.
+/// The manifest of exponents over a grid as text. It is that of a sweep with the numbers of cells that rest
+/// on a stop and of cells without exponents, in place of outcomes and regimes.
 pub fn exponents_manifest(
     document: &Document,
     grid: &Grid,
@@ -106,15 +106,15 @@ pub fn exponents_manifest(
     origin: &Provenance,
     data: &str,
 ) -> String {
-    let own = json!({
+    let more = json!({
         "cells": tally.cells,
         "resting": tally.resting,
         "without_exponents": tally.missing,
     });
-    swept(("exponents", document), grid, own, origin, data)
+    swept(("exponents", document), grid, more, origin, data)
 }
 
-/// The manifest of rows over a grid, with what else there is to say of them.
+/// The manifest of rows over a grid, with `more` entries of the command.
 fn swept(
     (command, document): (&str, &Document),
     grid: &Grid,
@@ -132,14 +132,14 @@ fn swept(
         .collect();
     let sweep = grid.axes().iter().map(|axis| axis.to_scene(&document.scene)).collect();
     let scene = &Scene { sweep, ..document.scene.clone() };
-    let mut own = json!({ "grid": axes });
-    if let (Value::Object(own), Value::Object(more)) = (&mut own, more) {
-        own.extend(more);
+    let mut all = json!({ "grid": axes });
+    if let (Value::Object(all), Value::Object(more)) = (&mut all, more) {
+        all.extend(more);
     }
-    written((document, scene), command, own, origin, data)
+    written((document, scene), command, all, origin, data)
 }
 
-/// The manifest of a map of basins as text: as that of a sweep, with the starts in place of the grid.
+/// The manifest of a map of basins as text. It is that of a sweep with the starts in place of the grid.
 pub fn basins_manifest(
     document: &Document,
     basins: &Basins,
@@ -148,7 +148,7 @@ pub fn basins_manifest(
     data: &str,
 ) -> String {
     let (length, speed) = (basins.model().scales().length, basins.model().scales().speed);
-    let own = json!({
+    let more = json!({
         "starts": answer.rows.len(),
         "attractors": answer.attractors.len(),
         "outside": answer.outside,
@@ -159,14 +159,14 @@ pub fn basins_manifest(
         "length_scale_m": length,
         "speed_scale_m_per_s": speed,
     });
-    written((document, &document.scene), "basins", own, origin, data)
+    written((document, &document.scene), "basins", more, origin, data)
 }
 
-/// A manifest with what a command has of its `own`; `scene` is what ran of the document.
+/// A manifest with `more` entries of the command; `scene` is the scene that ran.
 fn written(
     (document, scene): (&Document, &Scene),
     command: &str,
-    own: Value,
+    more: Value,
     origin: &Provenance,
     data: &str,
 ) -> String {
@@ -186,11 +186,11 @@ fn written(
         "wall_s": origin.wall_s,
         "cpu_s": origin.cpu_s,
         "scene": scene_value(scene),
-        // null where it cannot be written, and never an empty scene
+        // null if it cannot be written, never an empty scene
         "scene_ron": crate::scene::write(scene).ok(),
         "files": document.files.held,
     });
-    for part in [own, end] {
+    for part in [more, end] {
         if let (Value::Object(all), Value::Object(part)) = (&mut all, part) {
             all.extend(part);
         }
@@ -198,8 +198,8 @@ fn written(
     pretty(&all)
 }
 
-/// What made a picture of `document` with this `version` of the program, besides the arguments: the same
-/// names and values as in a manifest, and the scene with all arguments applied as its text.
+/// The origin of a picture of `document`, without the arguments: names and values as in a manifest, and the
+/// text of the scene with all arguments applied. `version` is that of the program.
 pub fn origin(document: &Document, version: &str) -> Map<String, Value> {
     let scene = &document.scene;
     let all = json!({
@@ -215,8 +215,8 @@ pub fn origin(document: &Document, version: &str) -> Map<String, Value> {
     if let Value::Object(all) = all { all } else { Map::new() }
 }
 
-/// A scene as JSON. It knows no infinity: that of an open circuit is the text `inf`, in the transducer and in
-/// the values of a sweep, where no number can be missing.
+/// A scene as JSON. JSON has no infinity: the load of an open circuit is the text `inf`, both in the
+/// transducer and in the values of a sweep, where `null` can mean nothing else.
 pub(super) fn scene_value(scene: &Scene) -> Value {
     let mut value = serde_json::to_value(scene).unwrap_or(Value::Null);
     for part in ["transducer", "sweep"] {
@@ -241,7 +241,7 @@ fn name_infinity(value: &mut Value) {
     }
 }
 
-/// The seed of the scene's random numbers: null where it has none, a list where it has several.
+/// The seed of the scene's random numbers: null if it has none, a list if it has several.
 pub fn seed(scene: &Scene) -> Value {
     let mut found = Vec::new();
     collect(&serde_json::to_value(&scene.excitation).unwrap_or(Value::Null), &mut found);

@@ -1,7 +1,7 @@
-//! Tables as bytes: CSV, JSON, text for a terminal, pictures.
+//! Output formats of tables: CSV, JSON, text for a terminal, pictures.
 //!
-//! Nothing here computes: a number is written in the shortest form that parses back to the same
-//! double, a missing one as an empty cell (CSV) or `null` (JSON).
+//! Nothing is computed here. A number is written in the shortest form that parses back to the same double, a
+//! missing one as an empty cell (CSV) or `null` (JSON).
 
 mod csv;
 mod json;

@@ -2,12 +2,12 @@
 
 use std::fmt::Write;
 
-/// Appends `value` in its shortest form: plain (`0.58`) or with an exponent (`1e-9`), whichever has
-/// fewer characters, plain where they tie. Zero of either sign is `0`. Minus infinity, the logarithm of
-/// nothing, is `-inf`, plus infinity, an open circuit, `inf`; NaN appends nothing.
+/// Appends `value` in its shortest form: plain (`0.58`) or with an exponent (`1e-9`), whichever has fewer
+/// characters, and plain if they are equal. Zero of either sign is `0`. Minus infinity (the logarithm of 0)
+/// is `-inf`, plus infinity (an open circuit) is `inf`, and NaN appends nothing.
 ///
-/// The digits are the fewest that parse back to the same double (the standard library's `{:e}`,
-/// after Grisu, Loitsch 2010); only their layout is chosen here, so that one conversion serves both.
+/// The digits are the fewest that parse back to the same double (the standard library's `{:e}`, after Grisu,
+/// Loitsch 2010). Only their layout is chosen here, so both forms need a single conversion.
 pub fn push_number(text: &mut String, value: f64) {
     if value.is_infinite() {
         text.push_str(if value > 0.0 { "inf" } else { "-inf" });

@@ -1,4 +1,4 @@
-//! Plan of a sweep: all that decides the bytes of its rows.
+//! Plan of a sweep: everything that determines the bytes of its rows.
 
 use serde_json::{Map, Value, json};
 
@@ -7,15 +7,15 @@ use crate::scene::{Axis, Document, PROGRAM};
 use crate::study::Sweep;
 use crate::system::checksum::checksum;
 
-/// The most differences that are listed.
-const MOST: usize = 4;
+/// Largest number of differences that are listed.
+const MAX_LISTED: usize = 4;
 
-/// The plan of `sweep`, whose rows have these `columns` after those of its fields, by this `version` of the
+/// The plan of `sweep`, whose rows have these `columns` after those of its fields, for this `version` of the
 /// program. Two sweeps with equal plans have the same rows, byte for byte. `document` is that of the sweep
-/// and has its files held: they are in it by their checksums.
+/// and must hold its files, whose checksums are part of the plan.
 pub fn plan(document: &Document, sweep: &Sweep, columns: &[String], version: &str) -> Value {
     let mut scene = document.scene.clone();
-    // What stands in the scene for a swept field is never run.
+    // The scene's value of a swept field is never run, so it is no part of the plan.
     sweep.grid().apply(0, &mut scene);
     let mut scene = serde_json::to_value(&scene).unwrap_or(Value::Null);
     if let Value::Object(scene) = &mut scene {
@@ -36,7 +36,7 @@ pub fn plan(document: &Document, sweep: &Sweep, columns: &[String], version: &st
     })
 }
 
-/// An axis in a line, with the checksum of its values.
+/// An axis in one line, with the checksum of its values.
 fn axis(axis: &Axis) -> String {
     let bits: Vec<u8> = axis.values.iter().flat_map(|value| value.to_le_bytes()).collect();
     let mut text = format!("{}, {} values from ", axis.field, axis.values.len());
@@ -51,13 +51,12 @@ pub fn plan_checksum(plan: &Value) -> String {
     checksum(plan.to_string().as_bytes())
 }
 
-/// In what two plans differ, in words: what stands `there`, and what stands `here`; empty where they are
-/// equal.
+/// The differences of two plans in words, called `there` and `here`; empty if the plans are equal.
 pub fn plan_differences(there: &Value, here: &Value) -> String {
     let mut found = Vec::new();
     differences("", there, here, &mut found);
-    let more = found.len().saturating_sub(MOST);
-    found.truncate(MOST);
+    let more = found.len().saturating_sub(MAX_LISTED);
+    found.truncate(MAX_LISTED);
     let more = if more > 0 { format!("; and {more} more") } else { String::new() };
     found.join("; ") + &more
 }
@@ -82,7 +81,7 @@ fn differences(path: &str, there: &Value, here: &Value, found: &mut Vec<String>)
     }
 }
 
-/// A value in few letters.
+/// A value as text, truncated if it is long.
 fn short(value: &Value) -> String {
     const LONGEST: usize = 100;
     let text = match value {

@@ -1,8 +1,8 @@
-//! Table as text for a terminal, columns aligned and numbers short.
+//! Tables as text for a terminal, with aligned columns and short numbers.
 
 use crate::study::{Table, Values};
 
-/// A number with three digits, for the eye; a missing one is nothing.
+/// A number with about three digits; a missing one is empty.
 fn brief(value: f64) -> String {
     if !value.is_finite() {
         return String::new();
@@ -19,14 +19,14 @@ fn brief(value: f64) -> String {
     }
 }
 
-/// The table as lines of text: a heading of the columns' names as a person writes them, then a line for each
-/// row. Words stand to the left, numbers to the right; nothing is cut off.
+/// The table as lines of text: a heading with readable names of the columns, then one line for each row.
+/// Words are aligned to the left, numbers to the right; nothing is cut off.
 pub fn aligned(table: &Table) -> String {
     let cells: Vec<(bool, Vec<String>)> = table
         .columns()
         .iter()
         .map(|column| {
-            let (left, own): (bool, Vec<String>) = match &column.values {
+            let (left, words): (bool, Vec<String>) = match &column.values {
                 Values::Numbers(values) => (false, values.iter().map(|value| brief(*value)).collect()),
                 Values::Counts(values) => {
                     let text = |count: &Option<u64>| count.map_or_else(String::new, |n| n.to_string());
@@ -35,16 +35,16 @@ pub fn aligned(table: &Table) -> String {
                 Values::Words(values) => (true, values.iter().map(|word| (*word).to_owned()).collect()),
                 Values::Names(values) => (true, values.clone()),
             };
-            (left, std::iter::once(column.label()).chain(own).collect())
+            (left, std::iter::once(column.label()).chain(words).collect())
         })
         .collect();
-    let width = |own: &[String]| own.iter().map(|cell| cell.chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = cells.iter().map(|(_, own)| width(own)).collect();
+    let width = |column: &[String]| column.iter().map(|cell| cell.chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = cells.iter().map(|(_, column)| width(column)).collect();
     let mut text = String::new();
     for row in 0..=table.rows() {
         let mut line = String::new();
-        for ((left, own), width) in cells.iter().zip(&widths) {
-            let cell = &own[row];
+        for ((left, column), width) in cells.iter().zip(&widths) {
+            let cell = &column[row];
             line += &if *left { format!("{cell:<width$}  ") } else { format!("{cell:>width$}  ") };
         }
         text += line.trim_end();

@@ -1,5 +1,5 @@
-//! Scenes side by side under one sine: what frees them, what makes them cross, how fast and far they move, at
-//! which frequencies they cross, and how much the least amplitude hangs on their sizes.
+//! Comparison of scenes under one sine: release and crossing amplitudes, settled motion, the band of
+//! frequencies that cross, and the sensitivity of the crossing amplitude to their sizes.
 
 use std::sync::Arc;
 
@@ -33,16 +33,16 @@ pub struct Alternative {
     pub mechanism: Arc<Mechanism>,
 }
 
-/// The share of itself by which each size is changed.
+/// Relative change of each size.
 pub const SIZE_CHANGE: f64 = 0.01;
 
-/// Up to so many times the drive's frequency, and down to this part of it, crossings are looked for.
+/// Crossings are searched from the drive's frequency divided by this to its multiple by this.
 pub const SEARCHED_SPAN: f64 = 10.0;
 
-/// Frequencies that are tried to each side of the drive's own.
+/// Number of frequencies tried on each side of that of the drive.
 const STEPS: i32 = 40;
 
-/// How closely the ends of the band are located, as a share.
+/// Relative resolution of the ends of the band.
 const BAND_RESOLUTION: f64 = 1e-3;
 
 /// Names of sizes: lengths and thicknesses, the gap between magnets among them.
@@ -50,33 +50,33 @@ const SIZES: [&str; 3] = ["length_mm", "thickness_mm", "gap_mm"];
 
 const FREQUENCY: &str = "excitation.frequency_hz";
 
-/// What one scene came to.
+/// Results of one scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rated {
     /// The scene.
     pub name: String,
-    /// The least amplitude in g that frees the mass from the stop it rests on; none where it rests on none.
+    /// The least amplitude in g that frees the mass from the stop it rests on; `None` if it rests on no stop.
     pub release_g: Option<f64>,
-    /// The least amplitude in g whose settled motion from rest crosses; none where nothing is to be crossed.
+    /// The least amplitude in g whose settled motion from rest crosses; `None` if there is no barrier.
     pub crossing: Option<Found>,
     /// The settled motion of the scene itself.
     pub summary: Summary,
     /// Ends of the band of frequencies in Hz, at the scene's amplitude, whose settled motion from rest
-    /// crosses: the band that the drive's frequency is in, or if that crosses nothing the widest.
+    /// crosses: the band that holds the drive's frequency, else the widest.
     pub crosses_hz: Option<(f64, f64)>,
     /// The largest change of the crossing threshold, as a share of it, when one size is 1 % larger or
-    /// smaller, and that size. Infinite where nothing is to be crossed then, or nothing crosses.
+    /// smaller, and that size. Infinite if the changed scene has no barrier or does not cross.
     pub sensitivity: Option<(f64, String)>,
 }
 
 enum Part {
-    Own(usize),
+    Unchanged(usize),
     Changed(usize, String, f64),
 }
 
-/// What a part came to.
+/// Result of a part.
 enum Done {
-    Own(Box<Rated>),
+    Unchanged(Box<Rated>),
     /// The crossing threshold.
     Changed(Option<f64>),
 }
@@ -87,12 +87,12 @@ pub fn comparison_parts(scenes: &[Alternative]) -> u64 {
 }
 
 fn parts(scenes: &[Alternative]) -> Vec<Part> {
-    let own = (0..scenes.len()).map(Part::Own);
-    let changed = scenes.iter().enumerate().flat_map(|(i, own)| {
-        let sizes = sizes(&own.scene).into_iter();
+    let unchanged = (0..scenes.len()).map(Part::Unchanged);
+    let changed = scenes.iter().enumerate().flat_map(|(i, alternative)| {
+        let sizes = sizes(&alternative.scene).into_iter();
         sizes.flat_map(move |field| [-1.0, 1.0].map(|way| Part::Changed(i, field.clone(), way * SIZE_CHANGE)))
     });
-    own.chain(changed).collect()
+    unchanged.chain(changed).collect()
 }
 
 /// The sizes of a scene's mechanism that are not 0.
@@ -103,9 +103,9 @@ fn sizes(scene: &Scene) -> Vec<String> {
     numeric_fields(scene).into_iter().filter(is_size).collect()
 }
 
-/// Rates the scenes, on `pool`; each run from rest, and followed until its motion repeats or up to a time in
-/// s (1000 forcing periods beyond the run where there is none). None where it was cancelled. The same for any
-/// number of threads.
+/// Rates the scenes on `pool`. Each run begins at rest and is followed until its motion repeats, or up to
+/// `until_settled` in s (by default 1000 forcing periods beyond the run). `None` if cancelled. The result
+/// does not depend on the number of threads.
 pub fn alternatives(
     scenes: &[Alternative],
     until_settled: Option<f64>,
@@ -113,12 +113,12 @@ pub fn alternatives(
     task: &Task,
 ) -> Option<Vec<Rated>> {
     let parts = parts(scenes);
-    // a part is done at its end, whatever its searches tell of
+    // progress is counted by parts, not by the searches within them
     let silent = Task { tick: &|| (), cancel: task.cancel };
     let rating = Rating { until_settled, pool, task: &silent };
     let work = |_: &mut (), index: usize| {
         let done = match &parts[index] {
-            Part::Own(i) => rating.rate(&scenes[*i]).map(|rated| Done::Own(Box::new(rated))),
+            Part::Unchanged(i) => rating.rate(&scenes[*i]).map(|rated| Done::Unchanged(Box::new(rated))),
             Part::Changed(i, field, by) => rating.changed(&scenes[*i], (field, *by)).map(Done::Changed),
         };
         (task.tick)();
@@ -132,11 +132,11 @@ pub fn alternatives(
                 let Some(before) = rated[*i].crossing_g() else { continue };
                 let change = threshold.map_or(f64::INFINITY, |after| (after - before).abs() / before);
                 let sensitivity = &mut rated[*i].sensitivity;
-                if sensitivity.as_ref().is_none_or(|(most, _)| change > *most) {
+                if sensitivity.as_ref().is_none_or(|(largest, _)| change > *largest) {
                     *sensitivity = Some((change, field.clone()));
                 }
             }
-            (_, Done::Own(scene)) => rated.push(*scene),
+            (_, Done::Unchanged(scene)) => rated.push(*scene),
             _ => {}
         }
     }
@@ -151,7 +151,7 @@ struct Rating<'a> {
 }
 
 impl Rated {
-    /// The least amplitude in g whose settled motion crosses; none where none does.
+    /// The least amplitude in g whose settled motion crosses; `None` if none does.
     pub fn crossing_g(&self) -> Option<f64> {
         self.crossing?.value
     }
@@ -160,7 +160,7 @@ impl Rated {
 impl Rating<'_> {
     fn rate(&self, scene: &Alternative) -> Option<Rated> {
         let trial = Scene { start: Start::Rest, ..scene.scene.clone() };
-        let crossing = self.crossing(&trial, &scene.mechanism, Above::LookedAt)?;
+        let crossing = self.crossing(&trial, &scene.mechanism, Above::Searched)?;
         let model = Model::build(&trial, Arc::clone(&scene.mechanism)).ok()?;
         Some(Rated {
             name: scene.name.clone(),
@@ -172,7 +172,7 @@ impl Rating<'_> {
         })
     }
 
-    /// The crossing threshold; none inside where there is none, none where it was cancelled.
+    /// The crossing threshold; the inner `None` if there is none, the outer one if cancelled.
     fn crossing(&self, trial: &Scene, mechanism: &Arc<Mechanism>, above: Above) -> Option<Option<Found>> {
         let how = (Some(self.pool), self.until_settled);
         let found = crossing(trial, mechanism, how, above, self.task);
@@ -191,11 +191,11 @@ impl Rating<'_> {
             Ok(mechanism) => Arc::new(mechanism),
             Err(BuildError::Wrong(_) | BuildError::Unsolved(_)) => return Some(None),
         };
-        Some(self.crossing(&trial, &mechanism, Above::LeftOut)?.and_then(|found| found.value))
+        Some(self.crossing(&trial, &mechanism, Above::Skipped)?.and_then(|found| found.value))
     }
 
-    /// The band of frequencies that cross. The steps of a scan are all run, and only the ends of the band are
-    /// bisected: what is narrower than a step, a gap or a band, may be missed.
+    /// The band of frequencies that cross. All steps of a scan are run, and only the ends of the band are
+    /// bisected: a gap or band narrower than a step may be missed.
     fn band(&self, scene: &Alternative, trial: &Scene) -> Option<Option<(f64, f64)>> {
         let Excitation::Sine { frequency_hz, .. } = trial.excitation else { return Some(None) };
         let family = Family::new(trial, &scene.files, &scene.mechanism, FREQUENCY);
@@ -247,8 +247,8 @@ fn decimal(value: f64) -> f64 {
     multiple(value, 10_f64.powi(decade(value) - 4))
 }
 
-/// A row a scene: its name, the thresholds, what its settled motion is like, the band of frequencies, and how
-/// much the threshold hangs on its sizes.
+/// A row for each scene: name, thresholds, numbers of the settled motion, band of frequencies, and
+/// sensitivity of the threshold to sizes.
 pub fn comparison_table(rated: &[Rated]) -> Table {
     let number =
         |of: fn(&Rated) -> Option<f64>| rated.iter().map(|row| of(row).unwrap_or(f64::NAN)).collect();

@@ -15,57 +15,57 @@ use crate::numeric::round::{ONE_TWO_FIVE, decade, round_down};
 use crate::scene::{Excitation, Files, Scene, Start, Stops};
 use crate::system::threads::Pool;
 
-/// One in the last of three significant digits of a value.
+/// The unit of the third significant digit of a value.
 fn third_digit(value: f64) -> f64 {
     10_f64.powi(decade(value) - 2)
 }
 
-/// How much shaking it takes, in g, each from rest at the scene's frequency, whatever the scene's own
+/// Threshold amplitudes in g of motions from rest at the scene's frequency, whatever the scene's
 /// amplitude is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Thresholds {
     /// The least amplitude that frees the mass from the stop it rests on, in closed form.
     pub frees_at: Option<f64>,
-    /// The least amplitude whose settled motion crosses; none where none does up to
-    /// [`searched_to`](Self::searched_to). Windows, gaps and the first amplitude that is known to cross are
-    /// looked for up to one and a half times it.
+    /// The least amplitude whose settled motion crosses; without a value if none does up to
+    /// [`searched_to`](Self::searched_to). Windows, gaps and the first amplitude known to cross are searched
+    /// up to one and a half times it.
     pub crossing: Found,
-    /// Up to where was searched.
+    /// The largest amplitude searched.
     pub searched_to: f64,
 }
 
-/// Steps of the scan up to the push that holds the mass against the mechanism's largest force, as many more
-/// of the same length above it, and by how much each further one is longer than the last.
+/// Steps of the scan up to the push that holds the mass against the mechanism's largest force, and above it.
 const FINE_STEPS: u32 = 50;
+/// Ratio of each further step to the one before.
 const GROWTH: f64 = 1.02;
 
-/// Steps that are run before it is looked whether one of them crosses.
+/// Steps run together before checking whether one of them crosses.
 const TOGETHER: usize = 32;
 
-/// How many times that push is tried at most before nothing is said to cross.
+/// The search ends at this many times the push that holds the mass.
 const MOST_PUSHES: f64 = 30.0;
 
-/// Above the least amplitude that crosses, what changes is looked for in so many steps of this share of it.
+/// Steps above the least amplitude that crosses in which changes are searched.
 const GAP_STEPS: u32 = 50;
+/// Length of such a step, as a share of that amplitude.
 const GAP_STEP: f64 = 0.01;
 
-/// Searches the amplitudes of a sine. None where the drive is no sine, nothing is to be crossed, or the
-/// search was cancelled.
+/// Searches the amplitudes of a sine. `None` if the drive is no sine, there is no barrier, or the search
+/// was cancelled.
 pub fn thresholds(scene: &Scene, mechanism: &Arc<Mechanism>, task: &Task) -> Option<Thresholds> {
-    let (crossing, searched_to) = crossing(scene, mechanism, (None, None), Above::LookedAt, task)?;
+    let (crossing, searched_to) = crossing(scene, mechanism, (None, None), Above::Searched, task)?;
     Some(Thresholds { frees_at: frees_at(scene, mechanism), crossing, searched_to })
 }
 
-/// Whether what lies above a threshold is looked at: windows, gaps, and what is known to cross.
+/// Whether the range above a threshold is searched for windows, gaps and values known to cross.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Above {
-    LookedAt,
-    LeftOut,
+    Searched,
+    Skipped,
 }
 
-/// The least amplitude of a sine whose settled motion from rest crosses, and up to where was searched; by the
-/// threads of a pool where there is one, each run followed up to a time in s where there is one. None as for
-/// [`thresholds`].
+/// The least amplitude of a sine whose settled motion from rest crosses, and the largest amplitude searched;
+/// on a pool if given, each run followed up to `until_settled` in s if given. `None` as for [`thresholds`].
 pub(super) fn crossing(
     scene: &Scene,
     mechanism: &Arc<Mechanism>,
@@ -80,7 +80,7 @@ pub(super) fn crossing(
     while let Some(last) = values.last().filter(|last| **last < MOST_PUSHES * push) {
         values.push(last * GROWTH);
     }
-    // as they are said: what is said to cross has been run
+    // rounded as reported, so that the reported value has been run
     values.iter_mut().for_each(|value| *value = multiple(*value, third_digit(*value)));
     values.dedup();
     let searched_to = values.last().copied().unwrap_or(push);
@@ -93,13 +93,13 @@ pub(super) fn crossing(
         resolution = third_digit(answers.scan.last().map_or(part[0], |last| last.0));
         search.scan(&mut answers, part, resolution)?;
         if let Some(first) = answers.first_that_does() {
-            // what was run beyond it depends on where a part ends
+            // the number of values run beyond it depends on where a part ends
             answers.scan.truncate(first + 1);
             break;
         }
     }
     let mut found = answers.found(resolution);
-    if let Some(value) = found.value.filter(|_| above == Above::LookedAt) {
+    if let Some(value) = found.value.filter(|_| above == Above::Searched) {
         let tried = (1..=GAP_STEPS).map(|i| value * (1.0 + GAP_STEP * f64::from(i)));
         let mut tried: Vec<f64> = tried.map(|value| multiple(value, third_digit(value))).collect();
         tried.dedup();
@@ -112,17 +112,17 @@ pub(super) fn crossing(
     Some((found, searched_to))
 }
 
-/// The search for stops makes at least so many steps from the well to the middle, and at most two and a half
+/// Least number of steps of the search for stops from the well to the middle; it makes up to two and a half
 /// times as many.
 const FEWEST_STOPS: f64 = 50.0;
 
-/// From the wells inward the first travel limit in mm, the same on both sides, whose motion from rest is
-/// known to be interwell under the scene's own excitation; inner `None` where there is none, outer `None`
-/// where the search was cancelled.
+/// The largest travel limit in mm inside the wells, the same on both sides, whose motion from rest is
+/// known to be interwell under the scene's excitation; the inner `None` if there is none, the outer one
+/// if cancelled.
 ///
-/// The limits that cross are no interval, so nothing is bisected: every step is run, 1, 2 or 5 of a decimal
-/// place, a tenth of a millimetre where the wells are some 7 mm away. `restitution` is that of the stops that
-/// are tried.
+/// The limits that cross form no interval, so every step is run instead of a bisection. A step is 1, 2 or 5
+/// of a decimal place: a tenth of a millimetre if the wells are some 7 mm away. `restitution` is that of the
+/// stops that are tried.
 pub fn stops_that_cross(
     scene: &Scene,
     mechanism: &Arc<Mechanism>,

@@ -1,10 +1,10 @@
-//! Bisection among the multiples of a resolution, of which several may be asked at a time.
+//! Bisection among the multiples of a resolution, several of which may be evaluated at a time.
 
 use std::collections::VecDeque;
 
-/// The next value of a bisection that is to be asked, that which follows from what is known or, where it is
-/// under way, one of those that may be asked after it; none where so many are, `ahead`. `answer` is none for
-/// a value that was not asked, and none inside where it is under way.
+/// The next value of a bisection to evaluate: the one that follows from the known answers or, while that is
+/// under way, one that may follow it. `None` if `ahead` values are under way or nothing is left. `answer` is
+/// `None` for a value that was not asked, and `Some(None)` for one under way.
 pub(super) fn next_between(
     answer: impl Fn(f64) -> Option<Option<bool>>,
     span: (f64, f64),
@@ -29,14 +29,14 @@ pub(super) fn next_between(
     None
 }
 
-/// The multiple of `resolution` in the middle between two values; none where none lies between them.
+/// The multiple of `resolution` in the middle between two values; `None` if none lies between them.
 pub(super) fn between(low: f64, high: f64, resolution: f64) -> Option<f64> {
     let middle = multiple(0.5 * (low + high), resolution);
     let near = [middle, multiple(middle - resolution, resolution), multiple(middle + resolution, resolution)];
     near.into_iter().find(|value| *value > low && *value < high)
 }
 
-/// The multiple of `unit` nearest to a value; of a decimal unit the decimal itself.
+/// The multiple of `unit` nearest to a value; for a decimal unit, the double nearest to the decimal.
 pub(super) fn multiple(value: f64, unit: f64) -> f64 {
     let count = (value / unit).round();
     let whole = (1.0 / unit).round();
@@ -51,25 +51,25 @@ mod tests {
     fn what_is_asked_ahead_changes_nothing() {
         for (ahead, at) in [1, 2, 3, 7].into_iter().flat_map(|ahead| [0.51, 0.77, 1.0].map(|at| (ahead, at)))
         {
-            let mut asked: Vec<(f64, Option<bool>)> = Vec::new();
+            let mut trials: Vec<(f64, Option<bool>)> = Vec::new();
             loop {
-                let answer = |asked: &[(f64, Option<bool>)], value| {
-                    asked.iter().find(|entry| entry.0 == value).map(|entry| entry.1)
+                let answer = |trials: &[(f64, Option<bool>)], value| {
+                    trials.iter().find(|entry| entry.0 == value).map(|entry| entry.1)
                 };
-                while let Some(next) = next_between(|value| answer(&asked, value), (0.5, 1.0), 0.01, ahead) {
-                    asked.push((next, None));
+                while let Some(next) = next_between(|value| answer(&trials, value), (0.5, 1.0), 0.01, ahead) {
+                    trials.push((next, None));
                 }
-                let open = asked.iter().filter(|entry| entry.1.is_none()).count();
+                let open = trials.iter().filter(|entry| entry.1.is_none()).count();
                 assert!(open <= ahead);
                 // the last that was asked is answered first
-                let Some(last) = asked.iter_mut().rfind(|entry| entry.1.is_none()) else { break };
+                let Some(last) = trials.iter_mut().rfind(|entry| entry.1.is_none()) else { break };
                 last.1 = Some(last.0 >= at);
             }
-            let does = |value: f64| asked.contains(&(value, Some(true)));
+            let does = |value: f64| trials.contains(&(value, Some(true)));
             let hundredths = (51..100).map(|i| f64::from(i) / 100.0);
             let least = hundredths.into_iter().find(|value| does(*value)).unwrap_or(1.0);
             assert_eq!(least, at);
-            assert!(ahead > 1 || asked.len() <= 6);
+            assert!(ahead > 1 || trials.len() <= 6);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Cells of a sweep: what each came to, and their tally.
+//! Results of the cells of a sweep, and their tally.
 
 use std::collections::BTreeMap;
 
@@ -7,13 +7,13 @@ use serde::{Deserialize, Serialize};
 use crate::dynamics::{Outcome, Summary};
 use crate::scene::Fault;
 
-/// What one cell came to.
+/// Result of one cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "nearly all cells are run")]
 pub enum Cell {
     /// It has not been run.
     NotRun,
-    /// Its mechanism is right and was not solved.
+    /// Its mechanism is valid but was not solved.
     Unsolved,
     /// It was run.
     Run(Summary),
@@ -39,8 +39,8 @@ impl Cell {
         self.summary().is_some_and(|summary| summary.outcome == Outcome::Done)
     }
 
-    /// The summary of a run that reached its settled window. Earlier there are no numbers there, and
-    /// counts of 0 would lie.
+    /// The summary of a run that reached its settled window. A run that ended earlier has no numbers there,
+    /// and counts of 0 would mislead.
     pub fn settled(&self) -> Option<&Summary> {
         self.summary().filter(|summary| summary.rms_velocity.is_some())
     }
@@ -64,7 +64,7 @@ pub enum SweepEnd<E> {
     Write(E),
 }
 
-/// What a sweep came to.
+/// Counts of the results of a sweep.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Tally {
     /// Cells run, those without a solved mechanism among them.
@@ -106,7 +106,7 @@ impl Tally {
         }
     }
 
-    /// Counts the cells of `other` too; its mechanisms may be the same ones.
+    /// Adds the counts of `other`, except its mechanisms, which may be the same ones.
     pub fn add(&mut self, other: &Self) {
         self.cells += other.cells;
         self.ended_early += other.ended_early;

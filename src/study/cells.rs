@@ -50,18 +50,18 @@ impl Direction {
     }
 }
 
-/// What one cell gave.
+/// Result of one cell.
 #[derive(Debug, Clone)]
 pub(super) struct Ran<A> {
     pub index: u64,
-    /// Where each cell goes on from the one before: in which direction.
+    /// The direction of the walk, if each cell goes on from the one before.
     pub direction: Option<Direction>,
     pub cell: Cell,
     /// What was read off its run, where it was run.
     pub answer: Option<A>,
 }
 
-/// What is asked of each cell.
+/// A question asked of each cell.
 pub(super) trait Question: Sync {
     /// What is read off a run besides its summary.
     type Answer: Send;
@@ -69,12 +69,12 @@ pub(super) trait Question: Sync {
     /// What a run keeps, and when it ends.
     fn request(&self) -> Request<'_>;
 
-    /// The model that is run, of that of the cell.
+    /// The model to run, made from that of the cell.
     fn model(&self, model: Model) -> Model {
         model
     }
 
-    /// Why this model cannot be asked; `scene` is that of its cell.
+    /// Why the question does not apply to this model; `scene` is that of its cell.
     fn fault(&self, model: &Model, scene: &Scene) -> Option<Fault>;
 
     /// Reads the answer.
@@ -92,17 +92,17 @@ pub(super) trait Question: Sync {
 /// Cells that may be begun, for each thread, before the first of them has left.
 const AHEAD: u64 = 4096;
 
-/// Walks of which this may be so however long they are: as many as a thread has under way.
+/// Walks that may be begun in any case, however long they are: as many as a thread has under way.
 const WALKS: u64 = 64;
 
-/// Mechanisms kept for the whole sweep; beyond that each cell builds its own.
+/// Mechanisms kept for the whole sweep; with more of them each cell builds its own.
 const KEPT_MECHANISMS: u64 = 4096;
 /// About the bytes of a large one (flexures with their states).
 const LARGEST_MECHANISM: u64 = 50_000;
 
 impl Cells {
     pub fn new(base: &Scene, files: &Files, grid: Grid) -> Self {
-        // What no cell needs is not copied for each.
+        // left out, so that it is not copied for each cell
         let base = Scene { notes: String::new(), sweep: Vec::new(), app: None, ..base.clone() };
         let kept = Some(grid.mechanisms()).filter(|n| *n <= KEPT_MECHANISMS).unwrap_or(0);
         let mechanisms = (0..kept).map(|_| Mutex::new(None)).collect();
@@ -118,8 +118,8 @@ impl Cells {
         built.unwrap_or_else(|| Mechanism::build(&scene.mechanism, &self.files).map(Arc::new))
     }
 
-    /// Builds `count` cells without running them, each as `cell` numbers it; the first one that is wrong,
-    /// with all its faults. A mechanism that is not solved is no fault but an outcome. A cancelled check
+    /// Builds `count` cells without running them, each as `cell` numbers it; the error is the first invalid
+    /// one, with all its faults. A mechanism that is not solved is no fault but an outcome. A cancelled check
     /// finds nothing.
     pub fn validate(
         &self,
@@ -163,8 +163,8 @@ impl Cells {
         self.in_order(question, (count, 1, ahead), pool, task, work, write)
     }
 
-    /// Hands the rows that come of `work`, as by [`Pool::in_order`], to `write`, with the tally of these
-    /// alone. What counts them is as there.
+    /// Hands the rows of `work` to `write` in order, with the tally of these alone. The counts are those
+    /// of [`Pool::in_order`].
     pub(super) fn in_order<Q: Question, E>(
         &self,
         question: &Q,
@@ -176,11 +176,11 @@ impl Cells {
     ) -> Result<Tally, SweepEnd<E>> {
         let (mut tally, mut end) = (Tally::default(), None);
         let leave = |ran: Vec<Ran<Q::Answer>>| {
-            let mut own = Tally::default();
-            ran.iter().for_each(|row| own.count(&row.cell));
-            tally.add(&own);
+            let mut part = Tally::default();
+            ran.iter().for_each(|row| part.count(&row.cell));
+            tally.add(&part);
             tally.mechanisms = self.built.load(Ordering::Relaxed);
-            let wanted = write(&question.table(&self.grid, &ran), &own);
+            let wanted = write(&question.table(&self.grid, &ran), &part);
             wanted.unwrap_or_else(|error| {
                 end = Some(SweepEnd::Write(error));
                 false
@@ -191,12 +191,12 @@ impl Cells {
         end.or(cancelled.then_some(SweepEnd::Cancelled)).map_or(Ok(tally), Err)
     }
 
-    /// Walks of so many cells that may be begun, for each thread, before the first of them has left.
+    /// Walks of `length` cells that may be begun, for each thread, before the first of them has left.
     pub(super) fn walks_ahead(length: u64) -> u64 {
         (AHEAD / length).max(WALKS)
     }
 
-    /// An upper bound of the bytes that [`run`](Self::run), or [`walk`](Self::walk) with walks of so many
+    /// An upper bound of the bytes that [`run`](Self::run), or [`walk`](Self::walk) with walks of `length`
     /// cells, keeps, however many cells there are.
     pub fn memory<Q: Question>(&self, threads: u64, length: Option<u64>) -> u64 {
         let row = size_of::<Ran<Q::Answer>>() as u64;
@@ -206,7 +206,7 @@ impl Cells {
     }
 
     /// Runs these cells on `pool`, begun in their order, and hands each over from its thread as soon as it is
-    /// there. Whether all of them were run, which a cancelled task's are not.
+    /// there. Returns whether all of them were run: false if cancelled.
     pub fn run_each(
         &self,
         question: &impl Question,
@@ -216,15 +216,15 @@ impl Cells {
         each: &(dyn Fn(u64, Cell) + Sync),
     ) -> bool {
         let queue = Queue::new(cells.len(), pool.count());
-        let done = |_, own: Ran<_>| each(own.index, own.cell);
+        let done = |_, ran: Ran<_>| each(ran.index, ran.cell);
         pool.everywhere(|| {
-            self.ask(question, &|number| cells[number], task, &|held| queue.take(held), &done)
+            self.ask(question, &|number| cells[number], task, &|under_way| queue.take(under_way), &done)
         });
         !task.is_cancelled()
     }
 
-    /// Asks cells on this thread, many at once where the processor can: those of the numbers that `next`
-    /// gives, which is told how many are under way here; each answer goes to `done` with its number.
+    /// Runs cells on this thread, many at once where the processor can. `next` gets how many are under way
+    /// here and gives the number of a further one; each result goes to `done` with its number.
     fn ask<Q: Question>(
         &self,
         question: &Q,
@@ -242,14 +242,14 @@ impl Cells {
         };
         let mut scene = self.base.clone();
         let mut next = |under_way: UnderWay| loop {
-            // Before it waits for more, which there may be none of any more.
+            // checked before waiting for more, since there may be none left
             if task.is_cancelled() {
                 return None;
             }
             let number = next(under_way)?;
             match self.model(cell(number), &mut scene, task) {
                 Some(Ok(model)) => return Some((number, question.model(model), request)),
-                // Not after the grid has been validated.
+                // cannot happen once the grid has been validated
                 Some(Err(_)) => done(number, Cell::NotRun, None),
                 None => done(number, Cell::Unsolved, None),
             }
@@ -260,8 +260,8 @@ impl Cells {
         Model::run_from(&mut next, &mut ended);
     }
 
-    /// The model of a cell, or its faults; none where its mechanism was not solved, or the task was cancelled
-    /// meanwhile.
+    /// The model of a cell, or its faults; `None` if its mechanism was not solved, or the task was
+    /// cancelled meanwhile.
     pub fn model(&self, index: u64, scene: &mut Scene, task: &Task) -> Option<Result<Model, Vec<Fault>>> {
         self.grid.apply(index, scene);
         match self.mechanism(index, scene, task.cancel)? {
@@ -271,7 +271,7 @@ impl Cells {
         }
     }
 
-    /// The mechanism of a cell; none where it was cancelled before it was built.
+    /// The mechanism of a cell; `None` if cancelled before it was built.
     fn mechanism(&self, index: u64, scene: &Scene, cancel: &AtomicBool) -> Option<Built> {
         let build = || {
             let built = Mechanism::build_unless(&scene.mechanism, &self.files, cancel)?;

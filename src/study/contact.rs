@@ -14,14 +14,14 @@ use crate::system::threads;
 /// Positions of the speed on a table: more than a picture needs.
 const SPEEDS: usize = 401;
 
-/// One impact on the model's compliant stop and nothing else, over the speed in even steps from 0 to the
-/// first of 1, 2 or 5 times a power of ten that is twice the scene's own speed; none where the stops are not
-/// compliant.
+/// A single impact on the model's compliant stop over the impact speed, in even steps from 0 to twice
+/// the speed scale of the scene, rounded up to 1, 2 or 5 times a power of ten; `None` if the stops are
+/// not compliant.
 ///
 /// Columns
 /// `speed_m_per_s,restitution,rigid_restitution,contact_time_s,depth_m,peak_force_n,peak_pressure_pa`; the
-/// restitution of a rigid stop is the constant `rigid`, and where there is no time (at speed 0) or the
-/// material is not known the value is missing. All are closed forms: see [`Hertz`].
+/// restitution of a rigid stop is the constant `rigid`, and values are missing without a contact time (at
+/// speed 0) or a known material. All are closed forms: see [`Hertz`].
 pub fn contact(model: &Model, rigid: f64) -> Option<Table> {
     let stop = model.compliant()?;
     let top = round_up(2.0 * model.scales().speed, &ONE_TWO_FIVE);
@@ -40,7 +40,7 @@ pub fn contact(model: &Model, rigid: f64) -> Option<Table> {
     Some(table)
 }
 
-/// The impact speed in m/s from which on the contact yields; none where its material is not known.
+/// The impact speed in m/s from which on the contact yields; `None` if its material is not known.
 ///
 /// By halving: the largest force grows with the speed, and the speed scale is within a factor of 1e30 of it.
 pub fn yield_speed(stop: &Hertz, mass: f64) -> Option<f64> {
@@ -49,10 +49,10 @@ pub fn yield_speed(stop: &Hertz, mass: f64) -> Option<f64> {
     Some(10_f64.powf(bisect(-30.0, 30.0, 60, |power| !yields(10_f64.powf(power))).1))
 }
 
-/// One sentence where the contact of a run was pressed beyond what its material bears.
+/// A warning, one sentence, if the contact of a run was pressed beyond the yield pressure of its material.
 pub fn yield_warning(model: &Model, summary: &Summary) -> Option<String> {
     let material = model.compliant()?.material?;
-    let pressure = summary.peak_contact_pressure.filter(|own| *own > material.yield_pressure())?;
+    let pressure = summary.peak_contact_pressure.filter(|pressure| *pressure > material.yield_pressure())?;
     let gpa = |pascal: f64| short(pascal / 1e9);
     Some(format!(
         "the contact with a stop reaches {} GPa ({} N) and yields from {} GPa on, 1.6 times its yield \
@@ -64,7 +64,7 @@ pub fn yield_warning(model: &Model, summary: &Summary) -> Option<String> {
     ))
 }
 
-/// How fast the stops of a scene are struck.
+/// Speeds of the impacts on the stops of a scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Strikes {
     /// Median speed in m/s of the first impacts.
@@ -76,7 +76,7 @@ pub struct Strikes {
 }
 
 /// The first impacts of flights in one run of `model`: those after a crossing, a release or an impact on the
-/// other stop. The rebounds that follow them, down to chatter, do not count. None where nothing is struck or
+/// other stop. The rebounds that follow them, down to chatter, do not count. `None` if there is no impact or
 /// the run is cancelled.
 pub fn strikes(model: &Model, cancel: &AtomicBool) -> Option<Strikes> {
     let run = model.run(&Request { events: true, cancel: Some(cancel), ..Request::default() });
@@ -111,10 +111,9 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// Restitutions for which `check` says what loss a compliant stop needs.
 const WANTED: [f64; 4] = [0.8, 0.5, 0.36, 0.2];
 
-/// What the speed at which the stops of `model` are struck means for compliant stops, in one sentence: their
-/// restitution at that speed and the loss for others; of rigid stops of `scene`, which `model` is of, the
-/// loss with their restitution, or why there can be no compliant ones. None where nothing is struck, or where
-/// the run takes longer than a second.
+/// One sentence on the impact speed of `model` and compliant stops: their restitution at that speed and the
+/// loss for other restitutions; for rigid stops of its `scene`, the loss that gives their restitution, or why
+/// there can be no compliant ones. `None` without impacts, or if the run takes longer than a second.
 pub fn strikes_in_words(model: &Model, scene: &Scene) -> Option<String> {
     let stops = &scene.stops;
     if *stops == Stops::None {
@@ -134,9 +133,10 @@ pub fn strikes_in_words(model: &Model, scene: &Scene) -> Option<String> {
         }
         None => {
             let there = stops.limits_mm().into_iter().zip(stops.restitutions());
-            let mut own: Vec<f64> = there.filter_map(|(limit, own)| limit.and(own)).collect();
-            own.dedup();
-            let own = own.into_iter().map(|e| match loss(e) {
+            let mut restitutions: Vec<f64> =
+                there.filter_map(|(limit, restitution)| limit.and(restitution)).collect();
+            restitutions.dedup();
+            let losses = restitutions.into_iter().map(|e| match loss(e) {
                 Some(loss) => format!("a restitution of {e} there takes loss_s_per_m: {loss}"),
                 None => format!("no loss gives a restitution of {e}"),
             });
@@ -145,7 +145,7 @@ pub fn strikes_in_words(model: &Model, scene: &Scene) -> Option<String> {
                 true => "compliant in their place (`Hertz`)",
                 false => "compliant ones (`Hertz`), which stand equally far out on both sides",
             };
-            format!("{which}, {}", own.collect::<Vec<_>>().join(", "))
+            format!("{which}, {}", losses.collect::<Vec<_>>().join(", "))
         }
     };
     let flights = if count == 1 { "one flight".to_owned() } else { format!("{count} flights") };

@@ -4,8 +4,8 @@ use crate::dynamics::Model;
 use crate::scene::{Excitation, Scene, Start};
 
 /// `scene` with the start and the phases of `here`, the model of a motion that goes on from its present state
-/// ([`Watch::from_here`](super::Watch::from_here)). None where no scene says that: a noise begins as its seed
-/// says, and a compliant stop that is pressed in is no start.
+/// ([`Watch::from_here`](super::Watch::from_here)). `None` if no scene can express it: noise begins at its
+/// seed, and no scene starts with a compliant stop pressed in.
 pub fn continued_scene(scene: &Scene, here: &Model) -> Option<Scene> {
     let (x, v) = here.start();
     if !here.excitation().noises.is_empty() || here.compliant().is_some() && here.pressed_depth(x).is_some() {
@@ -20,8 +20,8 @@ pub fn continued_scene(scene: &Scene, here: &Model) -> Option<Scene> {
     put_phases(&mut scene.excitation, &mut turns).then_some(scene)
 }
 
-/// Gives every sine of an excitation its phase, from turns and what the sign of its amplitude adds; false
-/// where it has another part that has one.
+/// Gives every sine of an excitation its phase, from turns and the half turn of a negative amplitude; false
+/// if another part has a phase.
 fn put_phases(excitation: &mut Excitation, turns: &mut impl Iterator<Item = (f64, f64)>) -> bool {
     match excitation {
         Excitation::None | Excitation::Constant { .. } => true,

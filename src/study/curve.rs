@@ -6,10 +6,10 @@ use crate::numeric::Decimal;
 use crate::numeric::round::decade;
 use crate::scene::Scene;
 
-/// Positions of a force curve where nobody says how many.
+/// Default number of positions of a force curve.
 pub const CURVE_POINTS: u32 = 401;
 
-/// Positions of a picture of it: more than it has columns.
+/// Positions of its picture: more than the picture has columns.
 pub const CURVE_PICTURE_POINTS: usize = 3001;
 
 /// A position at which the curve is not known.
@@ -74,8 +74,8 @@ fn two_digits_up(value: f64) -> f64 {
 
 /// `mm` in m: the double nearest to the decimal that `mm` spells, so that 0.3 mm is 3e-4 m.
 pub fn metres(mm: f64) -> f64 {
-    let shifted = Decimal::shortest(mm).map(|own| Decimal { exponent: own.exponent - 3, ..own });
-    shifted.map_or(mm / 1e3, |own| own.value().copysign(mm))
+    let shifted = Decimal::shortest(mm).map(|decimal| Decimal { exponent: decimal.exponent - 3, ..decimal });
+    shifted.map_or(mm / 1e3, |decimal| decimal.value().copysign(mm))
 }
 
 /// Positions in m of the left and the right stop; NaN where there is none.
@@ -92,9 +92,9 @@ pub fn even_positions(range: (f64, f64), points: usize) -> Vec<f64> {
     (0..points).map(|i| (range.0 * (last - i as f64) + range.1 * i as f64) / last).collect()
 }
 
-/// Frequency in Hz of small free oscillations of `mass` in kg about an equilibrium; none where it is
-/// not stable to first order. On a corner of the curve each half swing has its own stiffness:
-/// 1/f = pi sqrt(m/k_left) + pi sqrt(m/k_right), which without a corner is the usual formula.
+/// Frequency in Hz of small free oscillations of `mass` in kg about an equilibrium; `None` if it is not
+/// stable to first order. On a corner of the curve the half swings differ in stiffness: 1/f = pi
+/// sqrt(m/k_left) + pi sqrt(m/k_right), which without a corner is the usual formula.
 pub fn small_amplitude_frequency(mass: f64, equilibrium: &Equilibrium) -> Option<f64> {
     let Equilibrium { stable, stiffness_left, stiffness_right, .. } = *equilibrium;
     let half = |stiffness: f64| std::f64::consts::PI * (mass / stiffness).sqrt();

@@ -1,14 +1,14 @@
 //! Path of the mass between two known samples, by the equation of motion.
 //!
 //! For pictures: samples that are dense enough for an oscillation are too few where taut flexures turn the
-//! mass round in a hundredth of it. The classical Runge-Kutta method goes from one sample towards the next,
-//! the base's acceleration taken as linear between them, and what it misses the next one by is spread over
-//! the way.
+//! mass round in a hundredth of it. The classical Runge-Kutta method goes from one sample towards the
+//! next, the base's acceleration taken as linear between them, and its error at the next one is spread
+//! over the way.
 
 use crate::dynamics::{Model, Phase, Sample};
 
 /// Displacements in m and velocities in m/s at `count` - 1 times, even between two samples of a flight,
-/// neither of them included. None between samples at the same time or at rest.
+/// neither of them included. Empty between samples at the same time or at rest.
 pub fn between(model: &Model, from: &Sample, to: &Sample, count: usize) -> Vec<(f64, f64)> {
     let whole = to.t - from.t;
     if !(whole > 0.0) || from.phase != Phase::Free || count < 2 {
@@ -34,7 +34,7 @@ pub fn between(model: &Model, from: &Sample, to: &Sample, count: usize) -> Vec<(
     }
     let missed = (to.x - at.0, to.v - at.1);
     if !(missed.0.is_finite() && missed.1.is_finite()) {
-        // beyond the known curve on the way: as straight as it was
+        // it left the known curve on the way: no points in between
         return Vec::new();
     }
     way.pop();

@@ -2,23 +2,23 @@
 
 use super::watch::Watch;
 
-/// Share of the samples that have to be at common times to be the only ones that are taken.
+/// Least share of samples at common times for which these alone are compared.
 const ENOUGH: f64 = 0.25;
 
-/// Times in s from `from` to `to` and the distance in m of two motions at each, at most some `most` of them.
+/// Times in s from `from` to `to` and the distance in m of two motions at each: at most some `limit` of them.
 ///
 /// Motions that are sampled in the same steps are compared at their common samples, which are exact; others
 /// between samples, where the distance is good to a millionth of the way between two of these.
-pub fn distances(a: &Watch, b: &Watch, (from, to): (f64, f64), most: usize) -> Vec<(f64, f64)> {
-    let (own, other) = (a.samples(), b.samples());
+pub fn distances(a: &Watch, b: &Watch, (from, to): (f64, f64), limit: usize) -> Vec<(f64, f64)> {
+    let (samples, other) = (a.samples(), b.samples());
     let to = to.min(a.time()).min(b.time());
     let from = from.max(a.begin()).max(b.begin());
-    let first = own.partition_point(|sample| sample.t < from);
-    let last = own.partition_point(|sample| sample.t <= to);
-    // a power of two: the samples that are taken stay the same while others come
-    let stride = (last.saturating_sub(first) / most.max(1)).max(1).next_power_of_two();
+    let first = samples.partition_point(|sample| sample.t < from);
+    let last = samples.partition_point(|sample| sample.t <= to);
+    // a power of two, so that the samples taken stay the same while others are added
+    let stride = (last.saturating_sub(first) / limit.max(1)).max(1).next_power_of_two();
     let first = first.next_multiple_of(stride);
-    let taken = || (first..last).step_by(stride).map(|i| &own[i]);
+    let taken = || (first..last).step_by(stride).map(|i| &samples[i]);
     let mut found: Vec<(f64, f64)> = taken()
         .filter_map(|sample| {
             let at = other.partition_point(|twin| twin.t < sample.t);

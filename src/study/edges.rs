@@ -35,12 +35,12 @@ impl Edges {
         Self { values, edges }
     }
 
-    /// Which of the values this is.
+    /// The index of this value.
     pub fn place(&self, value: f64) -> Option<usize> {
-        self.values.binary_search_by(|own| own.total_cmp(&value)).ok()
+        self.values.binary_search_by(|known| known.total_cmp(&value)).ok()
     }
 
-    /// In which cell a number lies; none outside all of them.
+    /// The cell in which a number lies; `None` outside all of them.
     pub fn cell(&self, value: f64) -> Option<usize> {
         let above = self.edges.partition_point(|edge| *edge <= value);
         (1..=self.values.len()).contains(&above).then(|| above - 1)
@@ -61,7 +61,7 @@ pub fn first_crossing_edge(
     up: &Edges,
 ) -> Vec<Vec<(f64, f64)>> {
     let (Some(xs), Some(ys)) = (table.numbers(x), table.numbers(y)) else { return Vec::new() };
-    // The other field's cells are as wide as they are.
+    // the line spans the width of the other field's cells
     let amplitude_up = table.columns().first().is_some_and(|column| column.name == x);
     let mut parts: Vec<Vec<(f64, f64)>> = vec![Vec::new()];
     for (px, py) in xs.iter().zip(ys) {
@@ -79,8 +79,7 @@ pub fn first_crossing_edge(
     parts
 }
 
-/// Where a line over a map meets the places whose first number (`upright`), or second one, is `value`: their
-/// other number.
+/// The other coordinate of the points of a line over a map whose first (`upright`) or second one is `value`.
 pub fn line_meets(line: &[(f64, f64)], value: f64, upright: bool) -> Vec<f64> {
     let turned = |(a, b): (f64, f64)| if upright { (a, b) } else { (b, a) };
     let meets = |pair: &[(f64, f64)]| {

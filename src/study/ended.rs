@@ -4,11 +4,11 @@ use crate::dynamics::{Model, Outcome};
 use crate::numeric::short;
 use crate::scene::TOLERANCES;
 
-/// From so many times on a contact with a compliant stop is called shorter than the motion.
+/// A contact with a compliant stop is called short if the motion takes this many times as long.
 const SHORT: f64 = 100.0;
 
-/// What makes a run of `model` that ended so last longer or closer, a clause; none where it is done, was
-/// cancelled, or the end says it.
+/// A clause on how to make a run of `model` with this outcome last longer or be more accurate; `None` if it
+/// is done, was cancelled, or the outcome says it.
 pub fn ended_remedy(model: &Model, outcome: Outcome) -> Option<String> {
     let tolerance = model.tolerance();
     match outcome {
@@ -32,8 +32,8 @@ pub fn ended_remedy(model: &Model, outcome: Outcome) -> Option<String> {
     }
 }
 
-/// What keeps a run within its work that had done it at a time in s, a clause: a shorter run always, a larger
-/// tolerance where its cheaper steps would do, fewer lines where most of the work is theirs.
+/// A clause on how to keep a run within its steps, which it used up at `at` in s: a shorter run, a larger
+/// tolerance if its cheaper steps suffice, fewer lines if most of the work is theirs.
 fn fewer_steps(model: &Model, at: f64) -> String {
     let (step, of_drive) = model.cost_of_a_step(model.tolerance());
     let (coarse, _) = model.cost_of_a_step(TOLERANCES.1);

@@ -21,8 +21,8 @@ impl<'a> Family<'a> {
         Self { scene, files, mechanism, path: FieldPath::new(field) }
     }
 
-    /// The model where the field has this value; else what is wrong with the scene, which is nothing where it
-    /// has no such number or its mechanism is not solved.
+    /// The model where the field has this value; else the faults of the scene, none if it has no such field
+    /// or its mechanism is not solved.
     pub fn model(&self, value: f64) -> Result<Model, Vec<Fault>> {
         let mut scene = self.scene.clone();
         if !self.path.set(&mut scene, value) {

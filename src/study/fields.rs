@@ -3,8 +3,8 @@
 use super::table::Values;
 use crate::dynamics::{First, Firsts, STANDARD_GRAVITY, Summary};
 
-/// What a field of a summary is, and how it is read. A number, count or flag of none and an empty word are
-/// missing.
+/// What a field of a summary is, and how it is read. A number, count or flag of `None` and an empty word are
+/// missing values.
 #[derive(Debug, Clone, Copy)]
 pub enum Read {
     /// A real number.
@@ -76,9 +76,9 @@ pub const SUMMARY_FIELDS: &[SummaryField] = &[
     plain("period", Read::Count(|s| s.period.map(u64::from))),
     plain("peak_contact_force_n", Read::Number(|s| s.peak_contact_force)),
     plain("peak_contact_pressure_pa", Read::Number(|s| s.peak_contact_pressure)),
-    plain("mean_load_power_w", Read::Number(|s| s.harvest.and_then(|own| own.mean_load_power))),
-    plain("mean_coil_power_w", Read::Number(|s| s.harvest.and_then(|own| own.mean_coil_power))),
-    plain("voltage_rms_v", Read::Number(|s| s.harvest.and_then(|own| own.voltage_rms))),
+    plain("mean_load_power_w", Read::Number(|s| s.harvest.and_then(|harvest| harvest.mean_load_power))),
+    plain("mean_coil_power_w", Read::Number(|s| s.harvest.and_then(|harvest| harvest.mean_coil_power))),
+    plain("voltage_rms_v", Read::Number(|s| s.harvest.and_then(|harvest| harvest.voltage_rms))),
     plain("outcome", Read::Word(|s| s.outcome.name())),
     plain("ended_at_s", Read::Number(|s| s.outcome.ended_at())),
     plain("steps", Read::Count(|s| Some(s.steps))),
@@ -101,7 +101,7 @@ fn time(summary: &Summary, of: fn(&Firsts) -> Option<First>) -> Option<f64> {
 }
 
 fn amplitude(summary: &Summary, of: fn(&Firsts) -> Option<First>) -> Option<f64> {
-    summary.firsts.as_ref().and_then(of)?.amplitude.map(|own| own / STANDARD_GRAVITY)
+    summary.firsts.as_ref().and_then(of)?.amplitude.map(|value| value / STANDARD_GRAVITY)
 }
 
 impl SummaryField {
@@ -114,15 +114,15 @@ impl SummaryField {
     pub fn column<'a>(&self, summaries: impl Iterator<Item = Option<&'a Summary>>) -> Values {
         match self.read {
             Read::Number(of) => {
-                // (that of a run that blew up is no number)
-                let number = |own: &Summary| of(own).filter(|number| number.is_finite());
-                Values::Numbers(summaries.map(|own| own.and_then(number).unwrap_or(f64::NAN)).collect())
+                // (not finite after a run that diverged)
+                let number = |summary: &Summary| of(summary).filter(|number| number.is_finite());
+                Values::Numbers(summaries.map(|s| s.and_then(number).unwrap_or(f64::NAN)).collect())
             }
-            Read::Count(of) => Values::Counts(summaries.map(|own| own.and_then(of)).collect()),
-            Read::Word(of) => Values::Words(summaries.map(|own| own.map_or("", of)).collect()),
+            Read::Count(of) => Values::Counts(summaries.map(|s| s.and_then(of)).collect()),
+            Read::Word(of) => Values::Words(summaries.map(|s| s.map_or("", of)).collect()),
             Read::Flag(of) => {
                 let word = |flag: bool| if flag { "true" } else { "false" };
-                Values::Words(summaries.map(|own| own.and_then(of).map_or("", word)).collect())
+                Values::Words(summaries.map(|s| s.and_then(of).map_or("", word)).collect())
             }
         }
     }

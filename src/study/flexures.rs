@@ -1,6 +1,6 @@
 //! Shapes, compression and stress of the flexures over the displacement.
 //!
-//! Unlike the force curve, which is a polynomial, every position here is a solution of its own.
+//! Unlike the force curve, which is a polynomial, every position here is solved separately.
 
 use super::Task;
 use super::curve::{OutsideCurve, check_positions, curve};
@@ -29,7 +29,7 @@ pub enum StatesError {
     Cancelled,
 }
 
-/// The flexures of a mechanism, once the positions in m are seen to be on its curve.
+/// The flexures of a mechanism, after a check that the positions in m are on its curve.
 pub fn flexures_at<'a>(mechanism: &'a Mechanism, positions: &[f64]) -> Result<&'a Flexures, StatesError> {
     let flexures = mechanism.flexures.as_deref().ok_or(StatesError::NoFlexures)?;
     check_positions(mechanism, positions)?;
@@ -74,7 +74,8 @@ pub fn shapes(states: &[State]) -> Table {
     for state in states {
         for line in &state.lines {
             // Adding 0 makes -0 a plain 0.
-            let row = |[s, px, py]: &[f64; 3]| (line.flexure, [state.x, *s, *px, *py].map(|own| own + 0.0));
+            let row =
+                |[s, px, py]: &[f64; 3]| (line.flexure, [state.x, *s, *px, *py].map(|value| value + 0.0));
             rows.extend(line.points.iter().map(row));
         }
     }
@@ -86,15 +87,15 @@ pub fn shapes(states: &[State]) -> Table {
         .each("py_m", &rows, |row| row.1[3])
 }
 
-/// One sentence where the bending stress of some of the `states` exceeds what the scene allows; it names from
-/// which |x| on, the largest stress and the limit.
+/// A warning, one sentence, if the bending stress of some `states` exceeds the limit of the scene: the range
+/// of |x|, the largest stress and the limit.
 pub fn stress_warning(flexures: &Flexures, states: &[State]) -> Option<String> {
     let limit = flexures.geometry().yield_stress;
-    let farthest = states.iter().fold(0.0_f64, |most, state| most.max(state.x.abs()));
+    let farthest = states.iter().fold(0.0_f64, |largest, state| largest.max(state.x.abs()));
     let above: Vec<&State> = states.iter().filter(|state| state.max_stress > limit).collect();
     let worst = above.iter().max_by(|a, b| a.max_stress.total_cmp(&b.max_stress))?;
     let from = above.iter().fold(f64::INFINITY, |least, state| least.min(state.x.abs()));
-    let to = above.iter().fold(0.0_f64, |most, state| most.max(state.x.abs()));
+    let to = above.iter().fold(0.0_f64, |largest, state| largest.max(state.x.abs()));
     let (gpa, mm) = (|pascal: f64| short(pascal / 1e9), |metres: f64| short(metres * 1e3));
     let end = if to < farthest { format!("to {} mm", mm(to)) } else { "on".to_owned() };
     Some(format!(

@@ -39,11 +39,11 @@ pub fn inspect(scene: &Scene, mechanism: &Arc<Mechanism>) -> Result<Vec<String>,
     Ok(lines)
 }
 
-/// The flexures, where there are such, and the force curve.
+/// The flexures, if any, and the force curve.
 fn force(mechanism: &Mechanism) -> Vec<String> {
-    let Some(own) = &mechanism.flexures else { return vec![force_curve(mechanism)] };
-    let [shape, theory] = flexures(own.geometry());
-    vec![shape, theory, accuracy(mechanism, own.accuracy())]
+    let Some(solved) = &mechanism.flexures else { return vec![force_curve(mechanism)] };
+    let [shape, theory] = flexures(solved.geometry());
+    vec![shape, theory, accuracy(mechanism, solved.accuracy())]
 }
 
 /// What the flexures are and which beams model them.
@@ -79,7 +79,7 @@ fn flexures(geometry: &Geometry) -> [String; 2] {
     ]
 }
 
-/// How good the curve of solved flexures is. What does not exist, such as a barrier, has no error.
+/// How good the curve of solved flexures is. Errors of what does not exist, such as a barrier, are left out.
 fn accuracy(mechanism: &Mechanism, accuracy: &Accuracy) -> String {
     let parts = [
         (accuracy.force, "of the largest inner force"),

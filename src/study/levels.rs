@@ -42,7 +42,7 @@ impl Levels {
         Self { order, ends, lengths }
     }
 
-    /// The finest level that is whole once so many cells of the order are known.
+    /// The finest level that is complete once `known` cells of the order are known.
     pub fn whole(&self, known: usize) -> Option<usize> {
         self.ends.iter().rposition(|end| known >= *end)
     }

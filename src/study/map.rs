@@ -7,8 +7,9 @@ use crate::mechanics::Mechanism;
 use crate::numeric::extent;
 use crate::scene::{Axis, Excitation, Scene, Start};
 
-/// The fields that the release in closed form joins.
+/// The travel limit, over which the release is known in closed form.
 const LIMIT: &str = "stops.travel_limit_mm";
+/// The amplitude of that release.
 const AMPLITUDE: &str = "excitation.amplitude_g";
 
 /// Points of the line of releases.
@@ -21,13 +22,13 @@ const POINTS: usize = 400;
 /// Only for a grid over these two fields, from rest; only for travel limits inside the right-hand
 /// well, because further out the mass rests in the well and not on the stop.
 pub fn release_line(scene: &Scene, mechanism: &Mechanism, grid: &Grid) -> Option<Table> {
-    let asked = scene.stops.travel_limit_mm().is_some()
+    let applies = scene.stops.travel_limit_mm().is_some()
         && matches!(scene.excitation, Excitation::Sine { .. })
         && scene.start == Start::Rest;
-    let limits = axis(grid, LIMIT).filter(|_| asked && axis(grid, AMPLITUDE).is_some())?;
+    let limits = axis(grid, LIMIT).filter(|_| applies && axis(grid, AMPLITUDE).is_some())?;
     let well = mechanism.landscape.right_stable()?.x;
-    let (from, most) = extent(limits.values.iter().copied());
-    let to = most.min(well * 1e3);
+    let (from, last) = extent(limits.values.iter().copied());
+    let to = last.min(well * 1e3);
     if from >= to {
         return None;
     }
@@ -48,34 +49,34 @@ pub fn release_line(scene: &Scene, mechanism: &Mechanism, grid: &Grid) -> Option
 pub fn first_crossing(grid: &Grid, rows: &Table) -> Option<Table> {
     let [a, b] = grid.axes() else { return None };
     let amplitude = |axis: &Axis| axis.field == "amplitude_g" || axis.field.ends_with(".amplitude_g");
-    let (other, own) = match (amplitude(a), amplitude(b)) {
+    let (other, amplitude_axis) = match (amplitude(a), amplitude(b)) {
         (false, true) => (0, 1),
         (true, false) => (1, 0),
         _ => return None,
     };
-    let others = rows.numbers(&grid.columns()[other])?;
-    let amplitudes = rows.numbers(&grid.columns()[own])?;
+    let swept = rows.numbers(&grid.columns()[other])?;
+    let amplitudes = rows.numbers(&grid.columns()[amplitude_axis])?;
     let Values::Words(regimes) = &rows.column("regime")?.values else { return None };
     let mut values = grid.axes()[other].values.clone();
     values.sort_by(f64::total_cmp);
     values.dedup();
     let mut least = vec![f64::NAN; values.len()];
-    for (i, other) in others.iter().enumerate() {
+    for (i, other) in swept.iter().enumerate() {
         let counts = regimes.get(i).is_some_and(|regime| crosses(regime)) && amplitudes[i] >= 0.0;
-        if let Ok(place) = values.binary_search_by(|own| own.total_cmp(other))
+        if let Ok(place) = values.binary_search_by(|value| value.total_cmp(other))
             && counts
         {
-            // f64::min passes over the NaN of a place that has none yet.
+            // f64::min ignores the NaN of a place that has none yet.
             least[place] = least[place].min(amplitudes[i]);
         }
     }
     let table = Table::new().with(&grid.columns()[other], Values::Numbers(values));
-    Some(table.with(&grid.columns()[own], Values::Numbers(least)))
+    Some(table.with(&grid.columns()[amplitude_axis], Values::Numbers(least)))
 }
 
 /// Whether a regime is one of motions that cross at all.
 fn crosses(regime: &str) -> bool {
-    [Regime::Interwell, Regime::Irregular, Regime::Crossing].iter().any(|own| own.name() == regime)
+    [Regime::Interwell, Regime::Irregular, Regime::Crossing].iter().any(|known| known.name() == regime)
 }
 
 fn axis<'a>(grid: &'a Grid, field: &str) -> Option<&'a Axis> {

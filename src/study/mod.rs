@@ -1,8 +1,8 @@
 //! Studies: questions about a scene, answered by tables.
 //!
-//! A study takes models and plain numbers, tells its progress and lets itself be cancelled through a
-//! [`Task`], and answers with a [`Table`]. It reads no arguments and writes no files: the window and
-//! the command line ask the same studies and show the same tables.
+//! A study takes models and plain numbers, reports its progress and can be cancelled through a [`Task`], and
+//! answers with a [`Table`]. It reads no arguments and writes no files: the window and the command line ask
+//! the same studies and show the same tables.
 
 pub mod accuracy;
 mod alternatives;
@@ -112,7 +112,7 @@ pub use walk::Carry;
 pub use watch::Watch;
 pub use watched_events::watched_events;
 
-/// How a study that takes long is watched and stopped.
+/// Progress and cancellation of a long study.
 #[derive(Clone, Copy)]
 pub struct Task<'a> {
     /// Called from any thread when another part is done.

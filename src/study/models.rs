@@ -1,4 +1,4 @@
-//! History of the models by which a motion went.
+//! History of the models of a motion.
 //!
 //! While a slider is dragged there is another model with every frame. One that held too briefly to be seen
 //! gives way to the next, and of too many the one that held the shortest time is forgotten, so that memory
@@ -38,7 +38,7 @@ impl Models {
         self.before.push_back(std::mem::replace(&mut self.now, (t, model)));
         if self.before.len() > MOST_MODELS {
             let ends = self.before.iter().skip(1).chain([&self.now]);
-            let lengths = self.before.iter().zip(ends).map(|(own, next)| next.0 - own.0);
+            let lengths = self.before.iter().zip(ends).map(|(entry, next)| next.0 - entry.0);
             let shortest = lengths.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |found| found.0);
             self.before.remove(shortest);
         }
@@ -49,17 +49,17 @@ impl Models {
         if t >= self.now.0 {
             return &self.now.1;
         }
-        let after = self.before.partition_point(|own| own.0 <= t);
-        self.before.get(after.saturating_sub(1)).map_or(&self.now.1, |own| &own.1)
+        let after = self.before.partition_point(|entry| entry.0 <= t);
+        self.before.get(after.saturating_sub(1)).map_or(&self.now.1, |entry| &entry.1)
     }
 
-    /// From when on in s the model held that held at a time in s.
+    /// The time in s from which the model held that held at a time in s.
     pub fn since(&self, t: f64) -> f64 {
         if t >= self.now.0 {
             return self.now.0;
         }
-        let after = self.before.partition_point(|own| own.0 <= t);
-        self.before.get(after.saturating_sub(1)).map_or(self.now.0, |own| own.0)
+        let after = self.before.partition_point(|entry| entry.0 <= t);
+        self.before.get(after.saturating_sub(1)).map_or(self.now.0, |entry| entry.0)
     }
 
     /// Forgets what held only before a time in s.
@@ -68,15 +68,15 @@ impl Models {
         }
     }
 
-    /// Who held from `from` to `to` in s, in order of time; the first and the last are cut there.
+    /// The models that held from `from` to `to` in s, in order of time; the first and the last are cut there.
     pub fn between(&self, from: f64, to: f64) -> impl Iterator<Item = Held<'_>> {
-        let first = self.before.partition_point(|own| own.0 <= from).saturating_sub(1);
+        let first = self.before.partition_point(|entry| entry.0 <= from).saturating_sub(1);
         let all = self.before.iter().skip(first).chain([&self.now]);
         let ends =
             self.before.iter().chain([&self.now]).skip(first + 1).map(|next| next.0).chain([f64::INFINITY]);
         all.zip(ends)
-            .map(move |(own, end)| (own.0.max(from), end.min(to), &own.1))
-            .filter(|held| held.1 > held.0)
+            .map(move |(entry, end)| (entry.0.max(from), end.min(to), &entry.1))
+            .filter(|span| span.1 > span.0)
     }
 
     /// How many there are.
@@ -92,7 +92,7 @@ mod tests {
     use crate::mechanics::Mechanism;
     use crate::scene::Document;
 
-    /// A model that is told by its mass.
+    /// A model that is identified by its mass.
     fn of(grams: f64) -> Arc<Model> {
         let mut document = Document::load("nominal-cubic").unwrap();
         document.scene.mass_g = grams;
@@ -100,46 +100,46 @@ mod tests {
         Arc::new(Model::build(&document.scene, Arc::new(mechanism)).unwrap())
     }
 
-    fn mass(own: &Models, t: f64) -> f64 {
-        (own.at(t).mass() * 1e3).round()
+    fn mass(models: &Models, t: f64) -> f64 {
+        (models.at(t).mass() * 1e3).round()
     }
 
     #[test]
     fn each_time_has_its_model() {
-        let mut own = Models::new(of(1.0));
-        own.change(2.0, of(2.0), 0.1);
-        own.change(5.0, of(3.0), 0.1);
+        let mut models = Models::new(of(1.0));
+        models.change(2.0, of(2.0), 0.1);
+        models.change(5.0, of(3.0), 0.1);
         assert_eq!(
-            [-1.0, 0.0, 1.999, 2.0, 4.0, 5.0, 9.0].map(|t| mass(&own, t)),
+            [-1.0, 0.0, 1.999, 2.0, 4.0, 5.0, 9.0].map(|t| mass(&models, t)),
             [1.0, 1.0, 1.0, 2.0, 2.0, 3.0, 3.0]
         );
-        assert_eq!([1.0, 3.0, 7.0].map(|t| own.since(t)), [0.0, 2.0, 5.0]);
-        let held: Vec<(f64, f64)> = own.between(1.0, 6.0).map(|held| (held.0, held.1)).collect();
-        assert_eq!(held, [(1.0, 2.0), (2.0, 5.0), (5.0, 6.0)]);
-        assert_eq!(own.between(2.5, 3.0).count(), 1);
+        assert_eq!([1.0, 3.0, 7.0].map(|t| models.since(t)), [0.0, 2.0, 5.0]);
+        let spans: Vec<(f64, f64)> = models.between(1.0, 6.0).map(|span| (span.0, span.1)).collect();
+        assert_eq!(spans, [(1.0, 2.0), (2.0, 5.0), (5.0, 6.0)]);
+        assert_eq!(models.between(2.5, 3.0).count(), 1);
         // one that held for no time, and one for too little of it, are gone
-        own.change(5.0, of(4.0), 0.1);
-        own.change(5.05, of(5.0), 0.1);
-        assert_eq!((own.len(), mass(&own, 5.0)), (3, 5.0));
-        own.forget(1.0);
-        assert_eq!(own.len(), 3);
-        own.forget(2.0);
-        assert_eq!((own.len(), mass(&own, 0.0)), (2, 2.0));
-        own.forget(100.0);
-        assert_eq!((own.len(), mass(&own, 0.0)), (1, 5.0));
+        models.change(5.0, of(4.0), 0.1);
+        models.change(5.05, of(5.0), 0.1);
+        assert_eq!((models.len(), mass(&models, 5.0)), (3, 5.0));
+        models.forget(1.0);
+        assert_eq!(models.len(), 3);
+        models.forget(2.0);
+        assert_eq!((models.len(), mass(&models, 0.0)), (2, 2.0));
+        models.forget(100.0);
+        assert_eq!((models.len(), mass(&models, 0.0)), (1, 5.0));
     }
 
     #[test]
     fn memory_is_bounded_and_the_briefest_go_first() {
         let (long, brief, last) = (of(1.0), of(2.0), of(3.0));
-        let mut own = Models::new(Arc::clone(&long));
+        let mut models = Models::new(Arc::clone(&long));
         let mut t = 10.0;
         for _ in 0..3 * MOST_MODELS {
             t += 0.2;
-            own.change(t, Arc::clone(&brief), 0.1);
+            models.change(t, Arc::clone(&brief), 0.1);
         }
-        own.change(t + 5.0, last, 0.1);
-        assert_eq!(own.len(), MOST_MODELS + 1);
-        assert_eq!((mass(&own, 4.0), mass(&own, t + 4.0), mass(&own, t + 5.0)), (1.0, 2.0, 3.0));
+        models.change(t + 5.0, last, 0.1);
+        assert_eq!(models.len(), MOST_MODELS + 1);
+        assert_eq!((mass(&models, 4.0), mass(&models, t + 4.0), mass(&models, t + 5.0)), (1.0, 2.0, 3.0));
     }
 }

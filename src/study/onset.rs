@@ -1,4 +1,5 @@
-//! Onsets of a motion, and what a run says of one: whether the motion does it, and whether that is known.
+//! Onsets of a motion, and the verdict of a run on one: whether the motion does it, and whether that
+//! is known.
 
 use crate::dynamics::{Outcome, Regime, Summary};
 
@@ -13,14 +14,14 @@ pub enum Onset {
     Interwell,
 }
 
-/// What a run says of an onset.
+/// Verdict of a run on an onset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Verdict {
     /// Whether the motion does it in the last window of the run.
     pub does: bool,
     /// Whether it goes on so: the motion repeats or rests. A motion that does not, up to the end of the time
     /// for which it is followed, may be a transient: one that crosses may stay in one well later, and one in
-    /// one well may cross later. Under a drive that does not repeat, the run itself is what is asked about.
+    /// one well may cross later. Under a drive that does not repeat, the verdict is about the run itself.
     pub known: bool,
 }
 
@@ -42,7 +43,7 @@ impl Onset {
         }
     }
 
-    /// What the run with this summary says.
+    /// The verdict of the run with this summary.
     pub fn verdict(self, summary: &Summary) -> Verdict {
         let does = match self {
             Self::Release => summary.releases > 0,

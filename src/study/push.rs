@@ -17,7 +17,7 @@ pub(super) fn holding_push(scene: &Scene, mechanism: &Mechanism) -> Option<f64> 
         None => barrier.right_well,
     };
     let between = |x: f64| x >= barrier.x && x <= rests;
-    let inside = extrema.iter().filter(|own| between(own.x)).map(|own| own.force.abs());
+    let inside = extrema.iter().filter(|extremum| between(extremum.x)).map(|extremum| extremum.force.abs());
     let force = inside.fold(mechanism.curve.force(rests).abs(), f64::max);
     Some(force / (scene.mass_g / 1e3) / STANDARD_GRAVITY).filter(|push| *push > 0.0 && push.is_finite())
 }

@@ -22,8 +22,7 @@ pub const MAX_SECTION: u64 = 1 << 22;
 /// States that are kept in memory before their rows are written.
 const KEPT: u64 = 1 << 21;
 
-/// The column that is in the table of states beside those of its rows: how many impacts the settled window
-/// holds.
+/// Extra column of the table of states: the number of impacts in the settled window.
 pub const IMPACTS: &str = "impacts";
 
 /// Where a section is taken.
@@ -146,8 +145,8 @@ impl Question for SectionOptions {
     }
 
     fn table(&self, grid: &Grid, ran: &[Ran<Points>]) -> Table {
-        let table = fields(grid, ran, |own| own.answer.as_ref().map_or(0, Points::len), self.carry.is_some());
-        let each = ran.iter().filter_map(|own| own.answer.as_ref().zip(own.cell.summary()));
+        let table = fields(grid, ran, |row| row.answer.as_ref().map_or(0, Points::len), self.carry.is_some());
+        let each = ran.iter().filter_map(|row| row.answer.as_ref().zip(row.cell.summary()));
         self.rows(table, &each.collect::<Vec<_>>())
     }
 
@@ -167,28 +166,28 @@ impl SectionOptions {
                 let states: Vec<(SectionPoint, u64)> = runs
                     .iter()
                     .flat_map(|(points, summary)| {
-                        let own: &[SectionPoint] =
+                        let states: &[SectionPoint] =
                             if let Points::States(states) = points { states } else { &[] };
-                        own.iter().map(|state| (*state, summary.impacts))
+                        states.iter().map(|state| (*state, summary.impacts))
                     })
                     .collect();
                 table
-                    .each("t_s", &states, |own| own.0.t)
-                    .each("x_m", &states, |own| own.0.x)
-                    .each("v_m_per_s", &states, |own| own.0.v)
-                    .each(IMPACTS, &states, |own| Some(own.1))
+                    .each("t_s", &states, |state| state.0.t)
+                    .each("x_m", &states, |state| state.0.x)
+                    .each("v_m_per_s", &states, |state| state.0.v)
+                    .each(IMPACTS, &states, |state| Some(state.1))
             }
             SectionAt::Impacts => {
                 let impacts: Vec<Struck> = runs
                     .iter()
-                    .flat_map(|(points, _)| if let Points::Impacts(own) = points { &own[..] } else { &[] })
+                    .flat_map(|(points, _)| if let Points::Impacts(all) = points { &all[..] } else { &[] })
                     .copied()
                     .collect();
                 table
-                    .each("t_s", &impacts, |own| own.t)
-                    .each("side", &impacts, |own| own.side.name())
-                    .each("phase_deg", &impacts, |own| own.phase)
-                    .each("v_in_m_per_s", &impacts, |own| own.v_in)
+                    .each("t_s", &impacts, |impact| impact.t)
+                    .each("side", &impacts, |impact| impact.side.name())
+                    .each("phase_deg", &impacts, |impact| impact.phase)
+                    .each("v_in_m_per_s", &impacts, |impact| impact.v_in)
             }
         }
     }
@@ -255,7 +254,7 @@ impl Sections {
         self.options.table(self.grid(), &[])
     }
 
-    /// The model of the first cell as it is run, or its faults; none where its mechanism was not solved.
+    /// The model of the first cell as it is run, or its faults; `None` if its mechanism was not solved.
     pub fn first_model(&self, task: &Task) -> Option<Result<Model, Vec<Fault>>> {
         let built = self.cells.model(0, &mut self.cells.base.clone(), task)?;
         Some(built.map(|model| self.options.model(model)))
@@ -268,8 +267,8 @@ impl Sections {
         self
     }
 
-    /// Builds every cell without running it; the first one that is wrong, with all its faults. A cancelled
-    /// check finds nothing.
+    /// Builds every cell without running it; the error is the first invalid one, with all its faults. A
+    /// cancelled check finds nothing.
     pub fn validate(&self, pool: &Pool, task: &Task) -> Result<(), CellFaults> {
         self.cells.validate(&self.options, (self.grid().cells(), |cell| cell), pool, task)
     }

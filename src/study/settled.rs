@@ -1,17 +1,16 @@
-//! Settled motion of a scene, for how long it is waited for, and the place in the landscape of a mass that
-//! nothing shakes.
+//! Settled motion of a scene, the time it is waited for, and the place of an undriven mass in the landscape.
 
 use std::sync::atomic::AtomicBool;
 
 use crate::dynamics::{Model, Outcome, Phase, Request, Sample, Summary};
 
 /// Forcing periods beyond the scene's own run for which a motion is followed until it repeats: five times
-/// what the transients of the prototype take but for a few. Just above a threshold they grow without bound:
+/// what nearly all transients of the prototype take. Just above a threshold their length is unbounded:
 /// without stops, of 40 amplitudes within 1 % of it, five take between 1000 and 4500 periods.
 pub(super) const PATIENCE: u32 = 1000;
 
-/// Forcing periods for which it is followed at least, where the fastest of several sines is much faster than
-/// they repeat together.
+/// Least number of forcing periods for which it is followed, for sums whose fastest sine is much faster than
+/// their common period.
 const LEAST_PATIENCE: f64 = 16.0;
 
 /// The time in s up to which a run of `model` is followed until its motion repeats: 1000 periods of
@@ -22,8 +21,8 @@ pub fn followed_until(model: &Model) -> f64 {
     model.duration() + (f64::from(PATIENCE) * fastest).max(LEAST_PATIENCE * period)
 }
 
-/// Forcing periods of a settled window in place of one that holds less than two: in fewer nothing is seen to
-/// repeat.
+/// Forcing periods of a settled window in place of one that holds less than two: with fewer a repetition
+/// cannot be seen.
 const WINDOW: f64 = 8.0;
 
 /// The model with a settled window in which a motion can be seen to repeat, where its drive does.
@@ -35,7 +34,7 @@ pub fn widened(model: Model) -> Model {
 }
 
 /// A model, and the request by which its run is followed until the motion repeats, or up to a time in s
-/// ([`followed_until`] where there is none).
+/// ([`followed_until`] if not given).
 pub(super) fn followed<'a>(model: Model, until: Option<f64>) -> (Model, Request<'a>) {
     let model = widened(model);
     let until_settled = until.or(Some(followed_until(&model)));
@@ -43,12 +42,12 @@ pub(super) fn followed<'a>(model: Model, until: Option<f64>) -> (Model, Request<
 }
 
 /// Runs `model` for its settled motion, on beyond its duration until the motion repeats, at most up to
-/// [`followed_until`]; under an amplitude ramp to the ramp's end, but no longer. None where it was cancelled.
+/// [`followed_until`]; under an amplitude ramp to the ramp's end, but no longer. `None` if cancelled.
 pub fn settled(model: &Model, cancel: &AtomicBool) -> Option<Summary> {
     settled_within(model, None, cancel)
 }
 
-/// The same, followed up to a time in s where there is one.
+/// The same, followed up to a time in s if given.
 pub(super) fn settled_within(model: &Model, until: Option<f64>, cancel: &AtomicBool) -> Option<Summary> {
     let model = &widened(model.clone());
     let until_settled = until.or(model.forcing_period().map(|_| followed_until(model)));
@@ -65,7 +64,7 @@ pub fn lasts(model: &Model, seconds: f64) -> bool {
     model.with_duration(seconds, 0.0).run(&Request::default()).summary.outcome == Outcome::Done
 }
 
-/// Where a mass stands, or swings, that nothing shakes.
+/// Place of an undriven mass at rest or swinging.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Standing {
     /// The number of the well that it is in, from the left and from 0.
@@ -78,7 +77,7 @@ pub struct Standing {
     pub needed_j: f64,
 }
 
-/// Where the mass is in the landscape, in words' numbers; none where there is no barrier.
+/// Where the mass is in the landscape; `None` without a barrier.
 pub fn standing(model: &Model, state: &Sample) -> Option<Standing> {
     let curve = &model.mechanism().curve;
     let wells = model.mechanism().landscape.wells();

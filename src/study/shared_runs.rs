@@ -6,9 +6,9 @@ use super::Task;
 use crate::dynamics::{Model, Request, Run};
 use crate::system::threads::{Pool, Queue, UnderWay, share_from};
 
-/// The answers of `count` runs, in order, by the threads of a pool or by this one. `model` gives the model of
-/// a number with what is asked of it, or the answer where there is nothing to run, and `answer` is read off
-/// its run. None where the task was cancelled.
+/// The answers of `count` runs, in order, by the threads of a pool or by this one. `model` gives the model
+/// and the request of a number, or its answer if there is nothing to run; `answer` reads it off the run.
+/// `None` if the task was cancelled.
 pub(super) fn shared_runs<'q, R: Send>(
     pool: Option<&Pool>,
     task: &'q Task,
@@ -17,10 +17,10 @@ pub(super) fn shared_runs<'q, R: Send>(
     answer: impl Fn(&Run) -> R + Sync,
 ) -> Option<Vec<R>> {
     let queue = Queue::new(count, pool.map_or(1, Pool::count));
-    runs_from(pool, task, &|held| queue.take(held), model, |_, run| answer(run))
+    runs_from(pool, task, &|under_way| queue.take(under_way), model, |_, run| answer(run))
 }
 
-/// The same of the numbers that `take` gives, as of a [`Queue`]. Each answer is told its number.
+/// The same of the numbers that `take` gives, as of a [`Queue`]. `answer` also gets the number.
 pub(super) fn runs_from<'q, R: Send>(
     pool: Option<&Pool>,
     task: &'q Task,

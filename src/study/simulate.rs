@@ -76,7 +76,7 @@ pub fn simulate(model: &Model, keep: &Keep, cancel: Option<&AtomicBool>) -> Simu
     let run = model.run(&Request { ledger: true, until_settled: keep.until_settled, ..request });
     let samples = if ascending { run.samples } else { in_order(&keep.times, &run.samples) };
     Simulation {
-        samples: samples_table(&samples, |own| model.output(own)),
+        samples: samples_table(&samples, |sample| model.output(sample)),
         events: events_table(&run.events),
         summary: run.summary,
     }
@@ -95,28 +95,28 @@ pub(super) fn in_order(times: &[f64], samples: &[Sample]) -> Vec<Sample> {
 /// transducer also `voltage_v,current_a,power_w`, which the others miss.
 pub fn samples_table(samples: &[Sample], output: impl Fn(&Sample) -> Option<Output>) -> Table {
     let table = Table::new()
-        .each("t_s", samples, |own| own.t)
-        .each("x_m", samples, |own| own.x)
-        .each("v_m_per_s", samples, |own| own.v)
-        .each("base_accel_m_per_s2", samples, |own| own.base_accel)
-        .each("phase", samples, |own| own.phase.name());
+        .each("t_s", samples, |sample| sample.t)
+        .each("x_m", samples, |sample| sample.x)
+        .each("v_m_per_s", samples, |sample| sample.v)
+        .each("base_accel_m_per_s2", samples, |sample| sample.base_accel)
+        .each("phase", samples, |sample| sample.phase.name());
     let outputs: Vec<Option<Output>> = samples.iter().map(output).collect();
     if outputs.iter().all(Option::is_none) {
         return table;
     }
-    let column = |of: fn(&Output) -> f64| move |own: &Option<Output>| own.as_ref().map_or(f64::NAN, of);
+    let column = |of: fn(&Output) -> f64| move |output: &Option<Output>| output.as_ref().map_or(f64::NAN, of);
     table
-        .each("voltage_v", &outputs, column(|own| own.voltage))
-        .each("current_a", &outputs, column(|own| own.current))
-        .each("power_w", &outputs, column(|own| own.power))
+        .each("voltage_v", &outputs, column(|output| output.voltage))
+        .each("current_a", &outputs, column(|output| output.current))
+        .each("power_w", &outputs, column(|output| output.power))
 }
 
 /// Events as a table: `t_s,kind,side,v_in_m_per_s,v_out_m_per_s`, a row an event, SI.
 pub fn events_table(events: &[Event]) -> Table {
     Table::new()
-        .each("t_s", events, |own| own.t)
-        .each("kind", events, |own| own.kind.name())
-        .each("side", events, |own| own.side.name())
-        .each("v_in_m_per_s", events, |own| own.v_in)
-        .each("v_out_m_per_s", events, |own| own.v_out)
+        .each("t_s", events, |event| event.t)
+        .each("kind", events, |event| event.kind.name())
+        .each("side", events, |event| event.side.name())
+        .each("v_in_m_per_s", events, |event| event.v_in)
+        .each("v_out_m_per_s", events, |event| event.v_out)
 }

@@ -1,8 +1,8 @@
 //! Shards of a sweep: which of its rows each of several processes computes.
 //!
 //! The rows are cut into blocks of whole units, about [`ROUNDS`] for each shard, and dealt in rounds: each
-//! shard gets one block of every round, so that each has cells from all over the grid and costs even out. In
-//! which order the shards are served changes from round to round by a fixed generator: in a fixed order a
+//! shard gets one block of every round, so that each has cells from all over the grid and costs even out. The
+//! order in which the shards are served changes from round to round by a fixed generator: in a fixed order a
 //! shard would get the same columns of a map again and again.
 
 use std::fmt;
@@ -49,7 +49,7 @@ impl Shard {
         Self::new(number, count)
     }
 
-    /// Which one it is, from 1.
+    /// Its number, from 1.
     pub fn number(self) -> u64 {
         self.number
     }
@@ -72,13 +72,15 @@ pub struct Slice {
     shard: Shard,
     /// Rows of a unit.
     unit: u64,
-    /// Units of a block, units of the whole sweep, and those of the shard.
+    /// Units of a block.
     block: u64,
+    /// Units of the whole sweep.
     units: u64,
-    own: u64,
+    /// Units of the shard.
+    shard_units: u64,
 }
 
-/// By how many places the order of the shards is turned in a round (splitmix64, Steele, Lea and Flood 2014).
+/// Rotation of the order of the shards in a round (splitmix64, Steele, Lea and Flood 2014).
 fn turn(round: u64, count: u64) -> u64 {
     let mut z = round.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -87,19 +89,19 @@ fn turn(round: u64, count: u64) -> u64 {
 }
 
 impl Slice {
-    /// The rows of `shard` of a sweep of so many `rows`, cut only between units. Precondition: `rows` is a
+    /// The rows of `shard` of a sweep of `rows` rows, cut only between units. Precondition: `rows` is a
     /// multiple of `unit`, which is at least 1.
     pub fn new(rows: u64, unit: u64, shard: Shard) -> Self {
         let units = rows / unit;
         let block = units.div_ceil(ROUNDS * shard.count).clamp(1, (LONGEST / unit).max(1));
-        let mut slice = Self { shard, unit, block, units, own: 0 };
-        // All rounds but the last are full, and in it all blocks but the last of all.
+        let mut slice = Self { shard, unit, block, units, shard_units: 0 };
+        // All rounds but the last are full, and all blocks but the very last.
         let (full, left) = (slice.blocks() / shard.count, slice.blocks() % shard.count);
         let place = slice.place(full);
-        slice.own = full * block + if place < left { block } else { 0 };
+        slice.shard_units = full * block + if place < left { block } else { 0 };
         let last = slice.blocks().checked_sub(1).map(|last| (last / shard.count, last % shard.count));
         if last.is_some_and(|(round, place)| slice.place(round) == place) {
-            slice.own -= slice.blocks() * block - units;
+            slice.shard_units -= slice.blocks() * block - units;
         }
         slice
     }
@@ -122,7 +124,7 @@ impl Slice {
 
     /// The number of its rows.
     pub fn rows(&self) -> u64 {
-        self.own * self.unit
+        self.shard_units * self.unit
     }
 
     /// Rows that are computed one after the other.
@@ -160,9 +162,9 @@ mod tests {
                     (1..=count).map(|i| Slice::new(rows, unit, Shard::new(i, count).unwrap())).collect();
                 let mut owner = vec![0; rows as usize];
                 for slice in &slices {
-                    let own: Vec<u64> = (0..slice.rows()).map(|place| slice.row(place)).collect();
-                    assert!(own.is_sorted_by(|a, b| a < b), "{rows} {unit} {}", slice.shard());
-                    for row in own {
+                    let numbers: Vec<u64> = (0..slice.rows()).map(|place| slice.row(place)).collect();
+                    assert!(numbers.is_sorted_by(|a, b| a < b), "{rows} {unit} {}", slice.shard());
+                    for row in numbers {
                         assert_eq!(std::mem::replace(&mut owner[row as usize], slice.shard().number()), 0);
                     }
                 }
@@ -173,7 +175,7 @@ mod tests {
                 assert_eq!(owner, dealt, "{rows} {unit} {count}");
                 let even = rows / count;
                 let block = slices[0].block * unit;
-                assert!(slices.iter().all(|own| own.rows() <= even + 2 * block), "{rows} {unit} {count}");
+                assert!(slices.iter().all(|slice| slice.rows() <= even + 2 * block), "{rows} {unit} {count}");
             }
         }
     }
@@ -182,12 +184,12 @@ mod tests {
     fn costs_that_repeat_along_the_rows_even_out() {
         // one column of a map of 128 columns costs all
         for count in [2, 4, 8, 16] {
-            let expensive = |own: &Slice| (0..own.rows()).filter(|p| own.row(*p) % 128 < 8).count();
+            let expensive = |slice: &Slice| (0..slice.rows()).filter(|p| slice.row(*p) % 128 < 8).count();
             let costs: Vec<usize> = (1..=count)
                 .map(|i| expensive(&Slice::new(128 * 256, 1, Shard::new(i, count).unwrap())))
                 .collect();
             let mean = 2048.0 / count as f64;
-            assert!(costs.iter().all(|own| *own as f64 <= 2.0 * mean), "{count}: {costs:?}");
+            assert!(costs.iter().all(|cost| *cost as f64 <= 2.0 * mean), "{count}: {costs:?}");
         }
     }
 

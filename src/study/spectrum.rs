@@ -44,16 +44,16 @@ impl Signal {
     }
 }
 
-/// What a spectrum is asked for.
+/// Options of a spectrum.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpectrumOptions {
-    /// Of what.
+    /// The signal.
     pub signal: Signal,
-    /// How the samples are weighted; left out, not at all where the motion repeats, else by the window of
+    /// How the samples are weighted; by default not at all if the motion repeats, else by the window of
     /// von Hann.
     pub taper: Option<Taper>,
-    /// Samples a second, made more until a whole number falls into a forcing period; left out, enough for
-    /// 128 in the shortest period of excitation and mechanism, and for 4096 in all.
+    /// Samples a second, raised until a whole number falls into a forcing period; by default enough for 128
+    /// in the shortest period of excitation and mechanism, and for 4096 in all.
     pub rate_hz: Option<f64>,
     /// Goes on until the motion repeats, or up to this time in s; the spectrum is that of the last window.
     pub until_settled: Option<f64>,
@@ -64,7 +64,7 @@ pub struct SpectrumOptions {
 pub struct Spectrum {
     /// `frequency_hz,amplitude,psd`, one-sided: from 0 to half the rate, a row a line.
     pub table: Table,
-    /// Of what.
+    /// The signal.
     pub signal: Signal,
     /// How the samples were weighted.
     pub taper: Taper,
@@ -123,11 +123,11 @@ pub enum NoSpectrum {
     Rate {
         /// Samples a second.
         rate_hz: f64,
-        /// What that makes.
+        /// Number of samples at that rate.
         samples: String,
         /// Length of the window in s.
         length: f64,
-        /// What would be right.
+        /// How to correct it.
         remedy: String,
     },
 }
@@ -135,14 +135,15 @@ pub enum NoSpectrum {
 /// Samples in the shortest period of excitation and mechanism.
 const PER_CYCLE: f64 = 128.0;
 
-/// The fewest samples of a spectrum, and the fewest where no rate was asked for.
+/// The fewest samples of a spectrum.
 const FEWEST: f64 = 4.0;
+/// The fewest samples by default.
 const PLENTY: f64 = 4096.0;
 
-/// The spectrum of the settled motion of `model`. The motion is run twice: for its verdict, then for its
-/// samples.
+/// The spectrum of the settled motion of `model`. The motion is run twice: for its verdict, then for
+/// its samples.
 ///
-/// What a motion holds above half the rate is folded back below it. Of a smooth motion that is nothing: its
+/// Frequencies above half the rate are folded back below it. In a smooth motion that is negligible: its
 /// spectrum falls faster than any power of the frequency. Impacts are jumps of the velocity, whose amplitude
 /// falls like 1/f, and that of the displacement like 1/f^2: with impacts four times the rate leaves a quarter
 /// of what is folded into each line of the velocity, a sixteenth into each of the displacement.
@@ -195,13 +196,13 @@ struct Plan {
     samples: usize,
     /// Forcing periods in it; 0 where there are none.
     periods: u64,
-    /// Cycles of this frequency in so many seconds, or 1 in the whole: the frequencies of the lines are its
-    /// fractions, rounded once.
+    /// A frequency in Hz and its number of cycles in the window, or 1 Hz and the length in s: the frequencies
+    /// of the lines are multiples of their quotient, rounded once.
     cycles: (f64, f64),
 }
 
 impl Plan {
-    /// Of a window with so many forcing periods, after some of which the motion repeats.
+    /// The plan of a window of `periods` forcing periods, whose motion repeats after `repeats` of them.
     fn new(
         model: &Model,
         (from, to): (f64, f64),
@@ -211,16 +212,16 @@ impl Plan {
         if !(to > from) {
             return Err(NoSpectrum::NoWindow(from, to));
         }
-        let own = model.forcing_period().filter(|_| periods > 0);
+        let forcing = model.forcing_period().filter(|_| periods > 0);
         let lap = u64::from(repeats.unwrap_or(1));
-        let whole = own.map(|period| (period, periods / lap * lap)).filter(|(_, count)| *count > 0);
+        let whole = forcing.map(|period| (period, periods / lap * lap)).filter(|(_, count)| *count > 0);
         let (from, parts) = match whole {
             Some((period, count)) => (from + (periods - count) as f64 * period, count as f64),
             None => (from, 1.0),
         };
         let length = whole.map_or(to - from, |(period, count)| period * count as f64);
         let rate = rate_hz.unwrap_or_else(|| (PER_CYCLE / shortest(model)).max(PLENTY / length));
-        // a decimal rate may make a whole number but for its rounding
+        // a decimal rate may miss a whole number only by its rounding
         let least = (length / parts * rate - 1e-9).ceil().max(1.0);
         let each = if rate_hz.is_some() || least > MAX_SAMPLES as f64 { least } else { round_up(least) };
         let samples = each * parts;

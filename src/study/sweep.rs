@@ -69,22 +69,22 @@ impl Question for SweepOptions {
 pub(super) fn fields<A>(grid: &Grid, ran: &[Ran<A>], rows: impl Fn(&Ran<A>) -> usize, walked: bool) -> Table {
     let mut table = Table::new();
     for (i, name) in grid.columns().iter().enumerate() {
-        let value = |own: &Ran<A>| {
-            let value = grid.values(own.index).nth(i).unwrap_or(f64::NAN);
-            std::iter::repeat_n(value, rows(own))
+        let value = |row: &Ran<A>| {
+            let value = grid.values(row.index).nth(i).unwrap_or(f64::NAN);
+            std::iter::repeat_n(value, rows(row))
         };
         table = table.with(name, ran.iter().flat_map(value).collect());
     }
     if !walked {
         return table;
     }
-    let word = |own: &Ran<A>| std::iter::repeat_n(own.direction.map_or("", |way| way.name()), rows(own));
+    let word = |row: &Ran<A>| std::iter::repeat_n(row.direction.map_or("", |way| way.name()), rows(row));
     table.with(DIRECTION, ran.iter().flat_map(word).collect())
 }
 
 fn column(name: &str, ran: &[Ran<()>]) -> Values {
     match SummaryField::find(name) {
-        // Of a cell that has no run too.
+        // also for cells without a run
         _ if name == "outcome" => Values::Words(ran.iter().map(|row| row.cell.outcome()).collect()),
         Some(field) => field.column(ran.iter().map(|row| row.cell.summary())),
         None => Values::Words(vec![""; ran.len()]),
@@ -131,8 +131,8 @@ impl Sweep {
         &self.options
     }
 
-    /// About the most bytes that a run of it keeps, however many cells there are. Walks are kept while they
-    /// are walked.
+    /// Approximate upper bound of the bytes that a run of it keeps, however many cells there are. Walks are
+    /// kept while they go on.
     pub fn memory(&self, threads: usize) -> u64 {
         let length = self.options.carry.map(|_| self.unit());
         self.cells.memory::<SweepOptions>(threads as u64, length)
@@ -156,14 +156,14 @@ impl Sweep {
         self.cells.first_mechanism()
     }
 
-    /// The model of the first cell, or its faults; none where its mechanism was not solved.
+    /// The model of the first cell, or its faults; `None` if its mechanism was not solved.
     pub fn first_model(&self, task: &Task) -> Option<Result<Model, Vec<Fault>>> {
         self.cells.model(0, &mut self.cells.base.clone(), task)
     }
 
-    /// Builds every cell without running it; the first one that is wrong, with all its faults: where they are
-    /// walked, also one whose drive does not repeat. A mechanism that is not solved is no fault but an
-    /// outcome. A cancelled check finds nothing.
+    /// Builds every cell without running it; the error is the first invalid one, with all its faults. In a
+    /// walk, a drive that does not repeat is one. A mechanism that is not solved is no fault but an outcome.
+    /// A cancelled check finds nothing.
     pub fn validate(&self, pool: &Pool, task: &Task) -> Result<(), CellFaults> {
         self.validate_rows(&self.slice(Shard::WHOLE), 0, pool, task)
     }
@@ -208,7 +208,7 @@ impl Sweep {
     }
 
     /// Runs these cells on `pool`, none of them carried, begun in their order, and hands each over from its
-    /// thread as soon as it is there. Whether all of them were run, which a cancelled task's are not.
+    /// thread as soon as it is there. Returns whether all of them were run: false if cancelled.
     pub fn run_cells(
         &self,
         pool: &Pool,

@@ -5,8 +5,8 @@
 /// Values of one column, all of one type.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Values {
-    /// Real numbers. NaN and plus infinity stand for a missing value; minus infinity is the logarithm of
-    /// nothing.
+    /// Real numbers. NaN and plus infinity stand for a missing value; minus infinity is the logarithm
+    /// of nothing.
     Numbers(Vec<f64>),
     /// Whole numbers; `None` is a missing value.
     Counts(Vec<Option<u64>>),
@@ -142,7 +142,7 @@ impl Table {
         self
     }
 
-    /// The table with one more column on its right: what `of` says of each row.
+    /// The table with one more column on its right: the value of `of` for each row.
     #[must_use]
     pub fn each<R, V>(self, name: &str, rows: &[R], of: impl Fn(&R) -> V) -> Self
     where
@@ -169,9 +169,9 @@ impl Table {
         }
     }
 
-    /// The words of the column called `name`; none where it has other values or is not there.
+    /// The words of the column called `name`; empty if it has other values or is not there.
     pub fn words(&self, name: &str) -> &[&'static str] {
-        match self.column(name).map(|own| &own.values) {
+        match self.column(name).map(|column| &column.values) {
             Some(Values::Words(words)) => words,
             _ => &[],
         }
@@ -189,12 +189,12 @@ impl Table {
             self.columns.clone_from(&more.columns);
             return;
         }
-        for (own, more) in self.columns.iter_mut().zip(&more.columns) {
-            match (&mut own.values, &more.values) {
-                (Values::Numbers(own), Values::Numbers(more)) => own.extend_from_slice(more),
-                (Values::Counts(own), Values::Counts(more)) => own.extend_from_slice(more),
-                (Values::Words(own), Values::Words(more)) => own.extend_from_slice(more),
-                (Values::Names(own), Values::Names(more)) => own.extend_from_slice(more),
+        for (column, more) in self.columns.iter_mut().zip(&more.columns) {
+            match (&mut column.values, &more.values) {
+                (Values::Numbers(values), Values::Numbers(more)) => values.extend_from_slice(more),
+                (Values::Counts(values), Values::Counts(more)) => values.extend_from_slice(more),
+                (Values::Words(values), Values::Words(more)) => values.extend_from_slice(more),
+                (Values::Names(values), Values::Names(more)) => values.extend_from_slice(more),
                 _ => debug_assert!(false, "tables of one study have the same columns"),
             }
         }

@@ -1,11 +1,10 @@
 //! Thresholds: least values of a field from which on a motion from rest is released, crosses or is interwell.
 //!
-//! The values that do are no interval: without stops, and near a resonance, they come in windows. So nothing
-//! is bisected before every step of a scan from below has been run; then the first step that changes the
-//! answer is, and the changes above it are counted. Each run is followed until its motion repeats, so that a
-//! crossing on the way to a motion that does not cross is no answer. Where it does not repeat in time, what
-//! it does at the end of that time is what the bisection goes by, and `low` and `high` are the nearest values
-//! whose answers are known.
+//! These values form no interval: without stops, and near a resonance, they come in windows. So every step of
+//! a scan from below is run first; then the first step that changes the answer is bisected, and the changes
+//! above it are counted. Each run is followed until its motion repeats, so that a crossing on the way to a
+//! motion that does not cross is no answer. If it does not repeat in time, the bisection uses what it does at
+//! the end of that time, and `low` and `high` are the nearest values whose answers are known.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -24,8 +23,7 @@ use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, Files, Scene, Start};
 use crate::system::threads::{Pool, Queue, UnderWay};
 
-/// What a threshold is searched for over: the values of a scan, ascending, and how closely the first one is
-/// located.
+/// Scan for a threshold: the values of a field, ascending, and the resolution of the threshold.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scan {
     /// Dotted path of the field.
@@ -42,23 +40,24 @@ pub struct Scan {
 /// A threshold.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Found {
-    /// The least value; none where no value of the scan does it.
+    /// The least value; `None` if no value of the scan does it.
     pub value: Option<f64>,
     /// The last value below it, of those tried, that is known not to do it.
     pub low: Option<f64>,
     /// The first value from it on, of those tried, that is known to do it.
     pub high: Option<f64>,
-    /// Whether the answer just below the value, or at it, is not known; of no value, that at the scan's end.
+    /// Whether the answer just below the value, or at it, is not known; without a value, that at the end of
+    /// the scan.
     pub undecided: bool,
     /// How often the answer changes above it, within the scan.
     pub windows: u64,
-    /// From this value of the scan on nothing changes any more: that of the last change upward; none where
-    /// the scan ends with the answer no.
+    /// The value of the last change upward, from which on the answer does not change; `None` if the scan ends
+    /// with the answer no.
     pub without_gap: Option<f64>,
 }
 
-/// Runs the scan of `scene`, each run from rest. `mechanism` is the scene's own, built from `files`. None
-/// where the search was cancelled.
+/// Runs the scan of `scene`, each run from rest. `mechanism` is the scene's own, built from `files`. `None`
+/// if cancelled.
 ///
 /// A value that makes no valid model does not do it. A release under one sine that moves a mass from the stop
 /// it is pressed on, over the amplitude, is known in closed form: exactly there the mass is not released yet,
@@ -73,7 +72,7 @@ pub fn threshold(
     threshold_on((None, 1), scene, mechanism, files, (scan, onset), task)
 }
 
-/// The same, by the threads of a pool; so many values of a bisection are asked at a time.
+/// The same on a pool, with `ahead` values of a bisection asked at a time.
 fn threshold_on(
     (pool, ahead): (Option<&Pool>, usize),
     scene: &Scene,
@@ -104,9 +103,9 @@ fn threshold_on(
 
 /// The thresholds of every cell of `grid` over `scene`, in order: the swept fields, then
 /// `of,value,low,high,undecided,windows`. A value that is not found is missing, as is that of a cell whose
-/// mechanism is not solved. Ticks as often as there are cells and values of the scan. An error has every cell
-/// in which no value makes a valid model, or for interwell motion none under a drive that repeats, and then
-/// nothing has been run. None where the search was cancelled.
+/// mechanism is not solved. Ticks for each value of the scan in each cell. The error lists every cell in
+/// which no value makes a valid model (for interwell motion, one with a drive that repeats); then nothing has
+/// been run. `None` if cancelled.
 pub fn threshold_table(
     (scene, files): (&Scene, &Files),
     grid: Option<&Grid>,
@@ -137,7 +136,7 @@ pub fn threshold_table(
     if !wrong.is_empty() {
         return Some(Err(wrong));
     }
-    // of several cells each has a thread of its own
+    // several cells have a thread each
     let ahead = if cells == 1 { pool.count() } else { 1 };
     let cell = |scene: &mut Scene, index: usize| match prepared(scene, index) {
         Ok(mechanism) => {
@@ -171,7 +170,7 @@ fn from_rest(scene: &Scene) -> Scene {
     Scene { start: Start::Rest, ..scene.clone() }
 }
 
-/// The faults of the model at the first value of the scan, where none of them makes one that can do it.
+/// The faults at the first value of the scan, if no value makes a model that can do it.
 fn faults(
     trial: &Scene,
     mechanism: &Arc<Mechanism>,
@@ -200,7 +199,7 @@ fn no_period(trial: &Scene) -> Fault {
     Fault { field: "excitation".into(), value: kind, problem: problem.into() }
 }
 
-/// A value of the field and what its run says; none where that is not known yet.
+/// A value of the field and the verdict of its run; `None` while it is not known.
 type Answer = (f64, Option<Verdict>);
 
 /// What is known of a scan and of the bisection at its first change.
@@ -208,10 +207,10 @@ type Answer = (f64, Option<Verdict>);
 pub(super) struct Answers {
     /// The values of the scan, ascending.
     pub scan: Vec<Answer>,
-    /// Those of the bisection, in the order in which they were taken up.
+    /// Those of the bisection, in the order in which they were begun.
     between: Vec<Answer>,
-    /// The values of the scan from its first on that do not do it.
-    not: usize,
+    /// How many values of the scan, from the first on, are known not to do it.
+    below: usize,
 }
 
 impl Answers {
@@ -226,11 +225,11 @@ impl Answers {
         self.scan.iter().position(|(_, verdict)| verdict.is_some_and(|verdict| verdict.does))
     }
 
-    /// The values of the scan between which the answer changes first, once nothing below is open.
+    /// The values of the scan between which the answer changes first, once all below are known.
     fn first_change(&mut self) -> Option<(f64, f64)> {
         let does = |answer: &Answer| answer.1.map(|verdict| verdict.does);
-        self.not += self.scan[self.not..].iter().take_while(|answer| does(answer) == Some(false)).count();
-        let (below, above) = (self.scan.get(self.not.checked_sub(1)?)?, self.scan.get(self.not)?);
+        self.below += self.scan[self.below..].iter().take_while(|answer| does(answer) == Some(false)).count();
+        let (below, above) = (self.scan.get(self.below.checked_sub(1)?)?, self.scan.get(self.below)?);
         does(above)?.then_some((below.0, above.0))
     }
 
@@ -245,17 +244,17 @@ impl Answers {
         next_between(does, span, resolution, ahead)
     }
 
-    /// What the scan and its bisection came to, once all is known.
+    /// The result of the scan and its bisection, once all is known.
     pub fn found(mut self, resolution: f64) -> Found {
         let mut tried: Vec<(f64, Verdict)> = Vec::with_capacity(self.scan.len());
         tried.extend(self.scan.iter().filter_map(|(value, verdict)| Some((*value, (*verdict)?))));
-        let changes = tried.windows(2).skip(self.not).filter(|pair| pair[0].1.does != pair[1].1.does);
+        let changes = tried.windows(2).skip(self.below).filter(|pair| pair[0].1.does != pair[1].1.does);
         let last_up = changes.clone().next_back().map(|pair| pair[1].0);
         let windows = changes.count() as u64;
         let ends_with_yes = tried.last().is_some_and(|(_, verdict)| verdict.does);
-        // what was asked ahead is left out: which that is depends on the threads
+        // values asked ahead are left out, since they depend on the number of threads
         let span = self.first_change();
-        let mut place = self.not;
+        let mut place = self.below;
         let (mut low, mut high) = span.unwrap_or_default();
         while span.is_some()
             && let Some(middle) = between(low, high, resolution)
@@ -281,10 +280,10 @@ impl Answers {
     }
 }
 
-/// Runs that a thread has under way from which on a further one shares their lanes, and values of a bisection
-/// that are then asked at a time.
-const COMPANY: usize = 5;
-const IN_COMPANY: usize = 3;
+/// Runs under way on a thread from which on a further one shares their lanes.
+const SHARING: usize = 5;
+/// Values of a bisection that are then asked at a time.
+const SHARED_AHEAD: usize = 3;
 
 /// A search over the values of a field.
 pub(super) struct Search<'a> {
@@ -294,14 +293,13 @@ pub(super) struct Search<'a> {
     pub until_settled: Option<f64>,
     pub task: &'a Task<'a>,
     pub pool: Option<&'a Pool>,
-    /// Values of a bisection that are asked at a time, by themselves.
+    /// Values of a bisection that are asked at a time by a thread without other runs.
     pub ahead: usize,
 }
 
 impl<'a> Search<'a> {
-    /// Goes on with a scan by further values, and with what can be asked meanwhile of the bisection at its
-    /// first change: in the lanes it takes little more time. Then makes the rest of the bisection. Ticks for
-    /// each value of the scan.
+    /// Runs further values of a scan, and beside them values of the bisection at its first change, which take
+    /// little more time in the same lanes. Then completes the bisection. Ticks for each value of the scan.
     pub fn scan(&self, answers: &mut Answers, values: &[f64], resolution: f64) -> Option<()> {
         let first = answers.scan.len();
         answers.scan.extend(values.iter().map(|value| (*value, None)));
@@ -309,15 +307,15 @@ impl<'a> Search<'a> {
         let queue = Queue::new(values.len(), self.pool.map_or(1, Pool::count));
         let shared = Mutex::new(answers);
         let lock = || shared.lock().unwrap_or_else(PoisonError::into_inner);
-        let take = |held: UnderWay| {
-            let ahead = match held.runs {
+        let take = |under_way: UnderWay| {
+            let ahead = match under_way.runs {
                 0 => self.ahead,
-                COMPANY.. => self.ahead.max(IN_COMPANY),
+                SHARING.. => self.ahead.max(SHARED_AHEAD),
                 _ => 1,
             };
             let mut answers = lock();
             let Some(next) = answers.next_between(resolution, ahead) else {
-                return queue.take(held).map(|number| first + number);
+                return queue.take(under_way).map(|number| first + number);
             };
             answers.between.push((next, None));
             Some(count + answers.between.len() - 1)
@@ -345,7 +343,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The model of a value, where there is one, and what is asked of it.
+    /// The model of a value, if it is valid, and the request of its run.
     fn model(&self, value: f64) -> Option<(Model, Request<'a>)> {
         self.family.model(value).ok().map(|model| followed(model, self.until_settled))
     }

@@ -45,10 +45,10 @@ struct Fraction {
 }
 
 impl Fraction {
-    /// The decimal number that the shortest text of `value` spells; none where it is not above 0 or
-    /// needs more than 38 digits, in which case decimals mean nothing to a person either.
+    /// The decimal number that the shortest text of `value` spells; `None` if it is not above 0 or needs more
+    /// than 38 digits.
     fn decimal(value: f64) -> Option<Self> {
-        let Decimal { digits, exponent } = Decimal::shortest(value).filter(|own| own.digits > 0)?;
+        let Decimal { digits, exponent } = Decimal::shortest(value).filter(|decimal| decimal.digits > 0)?;
         let digits = digits.unsigned_abs();
         let power = 10_u128.checked_pow(exponent.unsigned_abs())?;
         Some(if exponent >= 0 {

@@ -1,7 +1,7 @@
 //! Samples of a run for a picture: its path, every jump of the velocity, and the spans at rest.
 //!
-//! A picture must be right however sparse the samples are that were asked for, so it has its own:
-//! the run is asked for both at once, and each gets its own back.
+//! A picture must be right however sparse the requested samples are, so it has separate ones; a single run
+//! gives both.
 
 use super::simulate::{Keep, Simulation, events_table, in_order, samples_table};
 use super::table::Table;
@@ -42,15 +42,15 @@ const PER_PERIOD: f64 = 80.0;
 /// Forcing periods in a phase portrait: as many as a period of the response may have.
 const PORTRAIT_PERIODS: f64 = 12.0;
 
-/// A run of more forcing periods than this is a filled band over time; then so many of its last ones are
-/// shown.
+/// A run of more forcing periods than this is a filled band over time.
 const BAND_PERIODS: f64 = 60.0;
+/// The last forcing periods that are then shown.
 const SHOWN_PERIODS: f64 = 24.0;
 
 /// Samples in a phase portrait.
 const PORTRAIT: f64 = 24_000.0;
 
-/// The most rows in a phase portrait; more of them, as of a million impacts, only blacken it.
+/// The most rows in a phase portrait; more of them, as from a million impacts, only blacken it.
 const MOST_PORTRAIT: usize = 60_000;
 
 /// Runs `model` once and keeps, besides what `keep` says, what a picture needs; a `window` in s, which lies
@@ -73,12 +73,12 @@ pub fn simulate_with_trace(
     let run = model.run(&Request { sample_times: &times, events: true, ledger: true, ..request });
     let stop = |side: Option<f64>| side.unwrap_or(f64::NAN);
     let stops = model.stops().map_or((f64::NAN, f64::NAN), |pair| {
-        (stop(pair.left.map(|own| own.x)), stop(pair.right.map(|own| own.x)))
+        (stop(pair.left.map(|stop| stop.x)), stop(pair.right.map(|stop| stop.x)))
     });
     let end = run.summary.outcome.ended_at().unwrap_or(span.1);
     let mut shown = in_order(&seen, &run.samples);
     if end < span.1 && !matches!(run.summary.outcome, Outcome::Cancelled { .. }) {
-        // It ended where hardly a sample had been asked for: the same run again, looked at more closely.
+        // it ended where there are few samples: the same run again, with samples up to its end
         close = window.filter(|(from, _)| *from < end).map_or((0.0, end), |(from, to)| (from, to.min(end)));
         seen = picture_times(model, close, end);
         shown = model.run(&Request { sample_times: &seen, ..request }).samples;
@@ -106,7 +106,7 @@ pub fn simulate_with_trace(
         stops,
         end,
     };
-    let samples = samples_table(&in_order(&keep.times, &run.samples), |own| model.output(own));
+    let samples = samples_table(&in_order(&keep.times, &run.samples), |sample| model.output(sample));
     let events = events_table(if keep.events { &run.events } else { &[] });
     (Simulation { samples, events, summary: run.summary }, trace)
 }
@@ -169,7 +169,7 @@ fn impacts(events: &[Event]) -> Table {
         event.kind == EventKind::Impact || (event.kind == EventKind::Contact && event.v_in != 0.0)
     };
     let impacts: Vec<&Event> = events.iter().filter(struck).collect();
-    Table::new().each("t_s", &impacts, |own| own.t).each("side", &impacts, |own| own.side.name())
+    Table::new().each("t_s", &impacts, |impact| impact.t).each("side", &impacts, |impact| impact.side.name())
 }
 
 /// Contacts with a compliant stop that take a smaller share of the run are impacts to the eye.

@@ -18,15 +18,15 @@ pub struct Visit {
     pub direction: Direction,
     /// The value of the field.
     pub value: f64,
-    /// What it came to.
+    /// Its summary.
     pub summary: Summary,
     /// Displacements in m at the drive's phase 0, once a forcing period: the last 60 of the settled window.
     pub strobes: Vec<f64>,
 }
 
 /// Walks a family over `values`, ascending, upwards and downwards side by side, and hands over each run as
-/// soon as it is known, those of a direction in their order. A value that makes no model is passed over.
-/// False where it was cancelled.
+/// soon as it is known, those of a direction in their order. A value that makes no model is skipped. Returns
+/// false if cancelled.
 pub fn up_and_down(
     family: &Family,
     values: &[f64],
@@ -57,7 +57,7 @@ pub fn up_and_down(
 }
 
 /// Runs the family at one value after the other, each from the state in which the one before ended, until
-/// `each` has seen enough. The values that make no model are passed over; how many there were.
+/// `each` returns false. Values that make no model are skipped; returns their number.
 pub(super) fn walk_over(
     family: &Family,
     values: &[f64],

@@ -26,7 +26,7 @@ pub enum Carry {
 impl Carry {
     /// What is called `up`, `down` or `both`.
     pub fn named(word: &str) -> Option<Self> {
-        [Self::Up, Self::Down, Self::Both].into_iter().find(|own| own.name() == word)
+        [Self::Up, Self::Down, Self::Both].into_iter().find(|carry| carry.name() == word)
     }
 
     /// The word in an argument.
@@ -48,18 +48,19 @@ impl Carry {
     }
 }
 
-/// One walk: where it is.
+/// State of one walk.
 struct Walk {
-    /// The first cell of its row of the grid, in which direction it goes, and how many it has gone through.
+    /// The first cell of its row of the grid.
     begin: u64,
     direction: Direction,
+    /// Number of cells it has gone through.
     done: u64,
     /// The model of the last cell that was run, and the state from which the next one goes on.
     last: Option<(Model, (f64, f64))>,
 }
 
 impl Walk {
-    /// The cell that comes next of a row of so many.
+    /// The next cell, in a row of `length` cells.
     fn cell(&self, length: u64) -> u64 {
         self.begin
             + match self.direction {
@@ -69,7 +70,7 @@ impl Walk {
     }
 }
 
-/// Why no state of a drive's phase 0 can be carried from a cell to the next.
+/// The fault of a drive without a period, which `what` needs.
 pub(super) fn without_a_period(model: &Model, scene: &Scene, what: &str) -> Option<Fault> {
     (!model.repeats()).then(|| {
         let word = format!("{:?}", scene.excitation);
@@ -125,8 +126,9 @@ impl Cells {
                 if task.is_cancelled() {
                     return None;
                 }
-                let own = ready.borrow_mut().pop();
-                let (number, walk) = own.or_else(|| take(under_way).map(|number| (number, begin(number))))?;
+                let kept = ready.borrow_mut().pop();
+                let (number, walk) =
+                    kept.or_else(|| take(under_way).map(|number| (number, begin(number))))?;
                 match self.model(walk.cell(length as u64), &mut scene, task) {
                     Some(Ok(model)) => {
                         let model = question.model(model);

@@ -1,9 +1,9 @@
 //! Live run with a memory of its path.
 //!
-//! The path is sampled for the eye: some eighty times a period, and at every event, so that rebounds are
-//! corners and rests are flat. The energy ledger is kept at the end of every forcing period while somebody
-//! looks at it. The oldest of it is forgotten. The models by which it went are kept with it
-//! ([`models`](super::models)).
+//! The path is sampled for the eye: some eighty times a period, and at every event, so that rebounds
+//! are corners and rests are flat. The energy ledger is kept at the end of every forcing period
+//! while somebody looks at it. The oldest part is forgotten. The models of the motion are kept with
+//! it ([`models`](super::models)).
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -15,15 +15,17 @@ use super::models::{Held, Models};
 /// Samples in a period of the drive or of small oscillations, whichever is shorter.
 const PER_PERIOD: f64 = 80.0;
 
-/// How many samples and events are remembered: some minutes of the prototype.
+/// How many samples are remembered: some minutes of the prototype.
 const MOST_SAMPLES: usize = 200_000;
+/// How many events are remembered.
 const MOST_EVENTS: usize = 50_000;
 
-/// How many ledgers are remembered, and the most that one call makes: of a longer way the last ones.
+/// How many ledgers are remembered.
 const MOST_LEDGERS: usize = 10_000;
+/// The most ledgers that one call makes: over a longer time the last ones.
 const LEDGERS_AT_ONCE: f64 = 64.0;
 
-/// The most samples that one call makes; a longer way is gone with fewer.
+/// The most samples that one call makes: over a longer time they are further apart.
 const MOST_AT_ONCE: f64 = 20_000.0;
 
 /// A live run and its past.
@@ -33,7 +35,7 @@ pub struct Watch {
     models: Models,
     samples: VecDeque<Sample>,
     events: VecDeque<Event>,
-    /// How many events were there that are no longer remembered.
+    /// How many events are no longer remembered.
     forgotten: usize,
     /// Ledgers at the start and at multiples of the forcing period.
     ledgers: VecDeque<(f64, LiveLedger)>,
@@ -49,7 +51,7 @@ impl Watch {
     pub fn new(model: &Model) -> Self {
         let live = Live::new(model);
         let now = live.state();
-        let mut own = Self {
+        let mut watch = Self {
             live,
             models: Models::new(Arc::new(model.clone())),
             samples: VecDeque::new(),
@@ -60,13 +62,13 @@ impl Watch {
             now,
             step: sampling_step(model),
         };
-        own.take(LiveOutput { samples: vec![now], events: Vec::new() });
-        own.advance(0.0);
-        own
+        watch.take(LiveOutput { samples: vec![now], events: Vec::new() });
+        watch.advance(0.0);
+        watch
     }
 
-    /// Whether from now on a ledger is kept at the end of every forcing period: each takes the last step once
-    /// more. What has been kept stays, and the present one is there in any case.
+    /// Whether from now on a ledger is kept at the end of every forcing period: each repeats the last step.
+    /// Ledgers already kept stay, and the present one is always available.
     pub fn keep_ledgers(&mut self, keep: bool) {
         self.keeps_ledgers = keep;
     }
@@ -138,8 +140,8 @@ impl Watch {
         self.now = self.live.state();
     }
 
-    /// Remembers the present state, so that a change is a jump at its instant and not a way from the last
-    /// sample.
+    /// Remembers the present state, so that a change is a jump at its instant and not a way from the
+    /// last sample.
     fn leave(&mut self) {
         if self.samples.back().is_none_or(|last| last.t < self.now.t) {
             self.samples.push_back(self.now);
@@ -167,7 +169,7 @@ impl Watch {
     }
 
     /// Where the energy went up to a time in s: at the present, and in the past up to the last period's end.
-    /// None in a past that had no period or in which no ledger was kept.
+    /// `None` in a past without a period or without ledgers.
     pub fn ledger_at(&self, t: f64) -> Option<(f64, LiveLedger)> {
         if t >= self.now.t {
             return Some((self.now.t, self.ledger()));
@@ -178,7 +180,7 @@ impl Watch {
         (t - mark.0 < period * (1.0 + 1e-9)).then_some(*mark)
     }
 
-    /// Where the energy went in the last whole forcing period that had ended at a time in s. None without a
+    /// Where the energy went in the last whole forcing period that had ended at a time in s. `None` without a
     /// period, and while the first one since the period was changed, or since ledgers are kept, still lasts.
     pub fn last_period(&self, t: f64) -> Option<LiveLedger> {
         let period = self.models.at(t).forcing_period()?;
@@ -189,7 +191,7 @@ impl Watch {
         (whole && last).then(|| end.1.since(&begin.1))
     }
 
-    /// What will become of the motion: see [`Live::from_here`].
+    /// The model of the motion from here on: see [`Live::from_here`].
     pub fn from_here(&self) -> Option<Model> {
         self.live.from_here()
     }
@@ -214,7 +216,7 @@ impl Watch {
         self.models.at(t)
     }
 
-    /// From when on in s it held.
+    /// The time in s from which it held.
     pub fn model_since(&self, t: f64) -> f64 {
         self.models.since(t)
     }
@@ -254,7 +256,7 @@ impl Watch {
             base_accel: a.base_accel + s * (b.base_accel - a.base_accel),
             phase: Phase::Free,
             electrical: match b.electrical - a.electrical {
-                // (a corner does not know it)
+                // (corners have no electrical state)
                 change if change.is_nan() => {
                     if a.electrical.is_nan() {
                         b.electrical
@@ -267,8 +269,7 @@ impl Watch {
         }
     }
 
-    /// The event before or after a time in s, releases and crossings and the first impact after a flight:
-    /// what one would call one thing that happened.
+    /// The event before or after a time in s: a release, a crossing, or the first impact after a flight.
     pub fn neighbour(&self, t: f64, later: bool) -> Option<Event> {
         // a chatter is one event, at its first impact
         let lone = |i: &usize| {
@@ -278,7 +279,7 @@ impl Watch {
             !(struck(event.kind) || event.kind == EventKind::Rest)
                 || before.is_none_or(|before| !struck(before.kind) || before.side != event.side)
         };
-        let split = |own: f64| self.events.partition_point(|event| event.t <= own);
+        let split = |time: f64| self.events.partition_point(|event| event.t <= time);
         let found = if later {
             (split(t)..self.events.len()).find(lone)
         } else {
@@ -288,7 +289,7 @@ impl Watch {
         found.map(|i| self.events[i])
     }
 
-    /// Takes in a passage, the corners of the path at its events included.
+    /// Records a passage, with the corners of the path at its events.
     fn take(&mut self, passage: LiveOutput) {
         let mut events = passage.events.iter().peekable();
         for sample in &passage.samples {
@@ -313,7 +314,7 @@ impl Watch {
         let (left, right) = self.live.model().stop_positions();
         let Some(x) = (if event.side == Side::Left { left } else { right }) else { return };
         let base_accel = self.live.base_acceleration(event.t);
-        // An event does not say it: a missing number in a table.
+        // Events do not carry it: a missing number in a table.
         let electrical = if self.live.model().has_electrical_state() { f64::NAN } else { 0.0 };
         let sample = |v: f64, phase: Phase| Sample { t: event.t, x, v, base_accel, phase, electrical };
         match event.kind {

@@ -93,16 +93,16 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let pool = pool(common)?;
     let mut sinks = open(&inputs(&options.scene, &document), [Some(("--out", common.out()))])?;
     let bar = bar(scan_runs(&question), "runs", common.quiet, common.out());
-    // how many runs follow the scan is not known before
+    // the number of runs after the scan is not known in advance
     let tick = || bar.inc_beyond();
     let task = Task { tick: &tick, cancel: interrupt::listen() };
     let mut so_far = None;
-    let found = best(&question, &pool, &task, &mut |own| so_far = Some(own.clone()));
+    let found = best(&question, &pool, &task, &mut |design| so_far = Some(design.clone()));
     bar.finish_and_clear();
-    if let (Err(NoBest::Cancelled), Some(own)) = (&found, &so_far) {
+    if let (Err(NoBest::Cancelled), Some(design)) = (&found, &so_far) {
         let maximised = question.maximise.name;
-        let at = place(&names(&question), &own.at);
-        let value = quantity(own.value, maximised);
+        let at = place(&names(&question), &design.at);
+        let value = quantity(design.value, maximised);
         say(&format!("{}: best so far at {at}: {maximised} {value}", document.name));
     }
     let design = found.map_err(|why| failure(why, options, &question, &document))?;
@@ -113,16 +113,16 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     finish(sinks)
 }
 
-/// A field that is changed must be there in every environment: a record has no amplitude.
+/// Checks that every field that is changed exists in every environment: a record has no amplitude.
 fn has_fields(question: &BestQuestion) -> Result<(), Failure> {
-    let over = question.over.iter().map(|own| ("--over", &own.field));
-    let vary = question.vary.iter().map(|own| ("--vary", &own.field));
+    let over = question.over.iter().map(|range| ("--over", &range.field));
+    let vary = question.vary.iter().map(|variation| ("--vary", &variation.field));
     for (option, field) in over.chain(vary) {
-        let missing = |own: &&Environment| FieldPath::new(field).get(&own.scene).is_none();
-        if let Some(own) = question.environments.iter().find(missing) {
+        let missing = |environment: &&Environment| FieldPath::new(field).get(&environment.scene).is_none();
+        if let Some(environment) = question.environments.iter().find(missing) {
             return Err(Failure::argument(format!(
                 "{option} {field}: the environment {} has no such number; change a field that all have",
-                own.name
+                environment.name
             )));
         }
     }
@@ -134,10 +134,10 @@ fn failure(why: NoBest, options: &Arguments, question: &BestQuestion, document: 
         NoBest::Cancelled => Failure::interrupted(),
         NoBest::Invalid(faults) => document.error_from(faults).into(),
         NoBest::NoValue => {
-            let without = |own: &Environment| own.scene.transducer == Transducer::None;
-            let asked =
-                std::iter::once(question.maximise).chain(question.subject_to.iter().map(|own| own.of));
-            let electrical = asked.map(|own| own.name).find(|name| OF_TRANSDUCER.contains(name));
+            let without = |environment: &Environment| environment.scene.transducer == Transducer::None;
+            let columns = std::iter::once(question.maximise)
+                .chain(question.subject_to.iter().map(|constraint| constraint.of));
+            let electrical = columns.map(|field| field.name).find(|name| OF_TRANSDUCER.contains(name));
             let missing = electrical.filter(|_| question.environments.iter().any(without));
             Failure::argument(match missing {
                 Some(name) => format!(
@@ -154,8 +154,9 @@ fn failure(why: NoBest, options: &Arguments, question: &BestQuestion, document: 
         }
         NoBest::NoneMeets { nearest, results } => {
             let results = question.subject_to.iter().zip(results);
-            let results =
-                results.map(|(own, value)| format!("{} is {}", own.of.name, quantity(value, own.of.name)));
+            let results = results.map(|(constraint, value)| {
+                format!("{} is {}", constraint.of.name, quantity(value, constraint.of.name))
+            });
             Failure::argument(format!(
                 "--subject-to {}: nothing that was tried in the range keeps to it; nearest is {}, where {}",
                 options.subject_to.join(", "),
@@ -206,7 +207,7 @@ fn ranges(over: &[String], document: &Document) -> Result<Vec<DesignRange>, Fail
                 intervals as usize
             }
         };
-        if ranges.iter().any(|own| own.field == axis.field) {
+        if ranges.iter().any(|range| range.field == axis.field) {
             return Err(wrong("is given twice; give each field one range".into()));
         }
         ranges.push(DesignRange::new(axis.field, (low, high), intervals));
@@ -220,19 +221,19 @@ fn ranges(over: &[String], document: &Document) -> Result<Vec<DesignRange>, Fail
     Ok(ranges)
 }
 
-/// Numbers that only a scene with a transducer has.
+/// Columns that only a scene with a transducer has.
 const OF_TRANSDUCER: [&str; 3] = ["mean_load_power_w", "mean_coil_power_w", "voltage_rms_v"];
 
-/// A shorter name of the power into the load.
+/// A shorter name for the column of the power into the load, and the column.
 const POWER: (&str, &str) = ("mean_power_w", "mean_load_power_w");
 
-/// The column called `name`, where it is a number.
+/// The column called `name`; an error if it is not a number.
 fn number(option: &str, name: &str) -> Result<&'static SummaryField, Failure> {
-    let is_number = |own: &&SummaryField| matches!(own.read, Read::Number(_) | Read::Count(_));
+    let is_number = |field: &&SummaryField| matches!(field.read, Read::Number(_) | Read::Count(_));
     let name = if name == POWER.0 { POWER.1 } else { name };
     let found = SummaryField::find(name).filter(is_number);
     found.ok_or_else(|| {
-        let known: Vec<&str> = SUMMARY_FIELDS.iter().filter(is_number).map(|own| own.name).collect();
+        let known: Vec<&str> = SUMMARY_FIELDS.iter().filter(is_number).map(|field| field.name).collect();
         Failure::argument(format!("{option} {name}: no such number; there are {}", known.join(", ")))
     })
 }
@@ -247,7 +248,7 @@ fn constraint(text: &str) -> Result<Constraint, Failure> {
         (None, Some((name, limit))) => (name, limit, false),
         _ => return Err(wrong()),
     };
-    let limit = limit.trim().parse().ok().filter(|own: &f64| own.is_finite()).ok_or_else(wrong)?;
+    let limit = limit.trim().parse().ok().filter(|limit: &f64| limit.is_finite()).ok_or_else(wrong)?;
     Ok(Constraint { of: number(&format!("--subject-to {text}:"), name.trim())?, at_most, limit })
 }
 
@@ -271,7 +272,7 @@ fn variation(text: &str, document: &Document) -> Result<Variation, Failure> {
     }
     let by = by.trim().trim_start_matches("+-").trim_start_matches('\u{b1}');
     let (number, relative) = by.strip_suffix('%').map_or((by, false), |share| (share, true));
-    let number = number.trim().parse().ok().filter(|own: &f64| *own >= 0.0 && own.is_finite());
+    let number = number.trim().parse().ok().filter(|number: &f64| *number >= 0.0 && number.is_finite());
     let number = number.ok_or_else(|| wrong(form))?;
     if relative && value == 0.0 {
         return Err(wrong("a share of 0 is nothing; give the tolerance in the unit of the field"));
@@ -280,23 +281,23 @@ fn variation(text: &str, document: &Document) -> Result<Variation, Failure> {
     Ok(Variation { field: field.to_owned(), by, relative })
 }
 
-/// A text and the weight after its last `*`.
+/// Splits a text from the weight after its last `*`, which is 1 if left out.
 fn weighted<'a>(text: &'a str, option: &str) -> Result<(&'a str, f64), Failure> {
-    let Some((own, weight)) = text.rsplit_once('*') else { return Ok((text.trim(), 1.0)) };
-    let weight = weight.trim().parse().ok().filter(|own: &f64| *own > 0.0 && own.is_finite());
+    let Some((text, weight)) = text.rsplit_once('*') else { return Ok((text.trim(), 1.0)) };
+    let weight = weight.trim().parse().ok().filter(|weight: &f64| *weight > 0.0 && weight.is_finite());
     let wrong = || Failure::argument(format!("{option}: the weight after * must be a number above 0"));
-    Ok((own.trim(), weight.ok_or_else(wrong)?))
+    Ok((text.trim(), weight.ok_or_else(wrong)?))
 }
 
-const MOST_ENVIRONMENTS: usize = 1000;
+const MAX_ENVIRONMENTS: usize = 1000;
 
-/// The environments of the design; without any given, the scene's own.
+/// The environments of the design; if none are given, that of the scene.
 fn environments(given: &[String], document: &Document) -> Result<Vec<Environment>, Failure> {
-    let of = |name: String, weight: f64, own: &Document| Environment {
+    let of = |name: String, weight: f64, document: &Document| Environment {
         name,
         weight,
-        scene: own.scene.clone(),
-        files: own.files.clone(),
+        scene: document.scene.clone(),
+        files: document.files.clone(),
     };
     if given.is_empty() {
         return Ok(vec![of(document.name.clone(), 1.0, document)]);
@@ -304,26 +305,27 @@ fn environments(given: &[String], document: &Document) -> Result<Vec<Environment
     let mut all = Vec::new();
     for text in given {
         let option = format!("--environment {text}");
-        let mut own = document.clone();
-        own.scene.sweep.clear(); // its fields may not be those of another excitation
+        let mut changed = document.clone();
+        changed.scene.sweep.clear(); // its fields may not be those of another excitation
         if let Some((field, values)) = text.split_once('=').filter(|_| !is_file(text.as_ref())) {
             for value in values.split(',') {
                 let (value, weight) = weighted(value, &option)?;
                 let axis = Axis::parse(&format!("{field}={value}"), &document.scene);
                 let axis = axis.map_err(|problem| Failure::argument(format!("{option}: {problem}")))?;
-                axis.apply(&mut own.scene, 0);
-                own.check()?;
-                all.push(of(format!("{} = {value}", axis.field), weight, &own));
+                axis.apply(&mut changed.scene, 0);
+                changed.check()?;
+                all.push(of(format!("{} = {value}", axis.field), weight, &changed));
             }
         } else {
             let (name, weight) = weighted(text, &option)?;
             let wrong = |problem: String| Failure::argument(format!("{option}: {problem}"));
             if name.to_ascii_lowercase().ends_with(".csv") {
-                // (a name that is no file may be that of a table of the program)
+                // a name that is no file may be that of a built-in table
                 let path = canonical(name.as_ref()).unwrap_or_else(|| name.into());
-                let set = own.set(&format!("excitation=Recorded(path: {:?})", path.display().to_string()));
+                let set =
+                    changed.set(&format!("excitation=Recorded(path: {:?})", path.display().to_string()));
                 let set = set.map_err(|error| error.to_string());
-                let checked = set.and_then(|()| own.check().map_err(|error| error.to_string()));
+                let checked = set.and_then(|()| changed.check().map_err(|error| error.to_string()));
                 checked.map_err(|problem| match is_file(name.as_ref()) {
                     true => wrong(problem),
                     false => wrong("no such file; give a record with columns t_s and accel_m_per_s2".into()),
@@ -332,17 +334,17 @@ fn environments(given: &[String], document: &Document) -> Result<Vec<Environment
                 let other = Document::of_argument(name).map_err(|error| wrong(error.to_string()))?;
                 other.check()?;
                 let RunSettings { tolerance, recurrence, .. } = document.scene.run;
-                own.scene.excitation = other.scene.excitation;
-                own.scene.run = RunSettings { tolerance, recurrence, ..other.scene.run };
+                changed.scene.excitation = other.scene.excitation;
+                changed.scene.run = RunSettings { tolerance, recurrence, ..other.scene.run };
             }
-            own.check()?;
-            all.push(of(name.to_owned(), weight, &own));
+            changed.check()?;
+            all.push(of(name.to_owned(), weight, &changed));
         }
     }
     match all.len() {
-        0..=MOST_ENVIRONMENTS => Ok(all),
+        0..=MAX_ENVIRONMENTS => Ok(all),
         n => {
-            Err(Failure::argument(format!("--environment: {n} of them; at most {MOST_ENVIRONMENTS} are run")))
+            Err(Failure::argument(format!("--environment: {n} of them; at most {MAX_ENVIRONMENTS} are run")))
         }
     }
 }

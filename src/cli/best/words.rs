@@ -1,16 +1,16 @@
-//! What `best` found, in sentences.
+//! Sentences about the result of `best`.
 
 use interwell::numeric::short;
 use interwell::scene::column_names;
 use interwell::study::{BestDesign, BestQuestion, SAMPLES};
 
-/// The answer in sentences.
+/// The result in sentences.
 pub fn words(design: &BestDesign, question: &BestQuestion) -> Vec<String> {
     let names = names(question);
     let maximised = question.maximise.name;
     let at = place(&names, &design.optimum.at);
     let mean = if question.environments.len() > 1 { "the mean of " } else { "" };
-    let value = |own: f64| quantity(own, maximised);
+    let value = |number: f64| quantity(number, maximised);
     let mut lines = vec![format!("{mean}{maximised} is largest at {at}: {}", value(design.optimum.value))];
     if design.flat {
         lines.push(format!("{maximised} is the same wherever it was looked, so that no place is better"));
@@ -34,12 +34,12 @@ pub fn words(design: &BestDesign, question: &BestQuestion) -> Vec<String> {
         }
     }
     if question.environments.len() > 1 {
-        for (own, each) in question.environments.iter().zip(&design.optimum.of_each) {
-            lines.push(format!("{}: {}", own.name, value(*each)));
+        for (environment, each) in question.environments.iter().zip(&design.optimum.of_each) {
+            lines.push(format!("{}: {}", environment.name, value(*each)));
         }
     }
     if !question.vary.is_empty() {
-        let number = |own: f64| if own.is_nan() { "no result".to_owned() } else { value(own) };
+        let number = |result: f64| if result.is_nan() { "no result".to_owned() } else { value(result) };
         let spread = &design.spread;
         lines.push(format!(
             "of {SAMPLES} samples of what varies the worst gives {}, one in twenty less than {}",
@@ -50,13 +50,13 @@ pub fn words(design: &BestDesign, question: &BestQuestion) -> Vec<String> {
             None => {
                 "no place beside it along the first field, of those tried, has a better worst case".into()
             }
-            Some((own, spread)) => format!(
+            Some((other, spread)) => format!(
                 "at {} the worst gives {}, one in twenty less than {}; the value there is {}, {} % less",
-                place(&names[..1], &own.at),
+                place(&names[..1], &other.at),
                 number(spread.worst),
                 number(spread.quantile_5),
-                value(own.value),
-                short(100.0 * (1.0 - own.value / design.optimum.value))
+                value(other.value),
+                short(100.0 * (1.0 - other.value / design.optimum.value))
             ),
         });
     }
@@ -87,7 +87,7 @@ fn with_unit(number: &str, name: &str) -> String {
     unit.map_or_else(|| number.to_owned(), |(_, unit)| format!("{number} {unit}"))
 }
 
-/// Units by the ends of names; of two ends of one name the longer one comes first.
+/// Units by the endings of names; where two endings match a name, the longer one comes first.
 const UNITS: [(&str, &str); 26] = [
     ("_v_s_per_m", "V s/m"),
     ("_n_s_per_m", "N s/m"),
@@ -126,7 +126,7 @@ mod tests {
 
     #[test]
     fn a_number_has_the_unit_of_its_name() {
-        for (name, said) in [
+        for (name, expected) in [
             ("travel_limit_mm", "2 mm"),
             ("n_per_m", "2 N/m"),
             ("1.n_per_m", "2 N/m"),
@@ -137,20 +137,20 @@ mod tests {
             ("impacts", "2"),
             ("coefficients_si.2", "2"),
         ] {
-            assert_eq!(quantity(2.0, name), said);
+            assert_eq!(quantity(2.0, name), expected);
         }
     }
 
-    /// A name whose end is one letter of a unit that is longer would be given a wrong one.
+    /// A name that ends with a compound unit must not get the unit of its last letter alone.
     #[test]
     fn no_unit_is_part_of_a_longer_one() {
-        let scenes = PRESETS.iter().map(|own| Document::load(own.name).unwrap().scene);
-        let fields = scenes.flat_map(|own| numeric_fields(&own));
-        let columns = SUMMARY_FIELDS.iter().map(|own| own.name.to_owned());
+        let scenes = PRESETS.iter().map(|preset| Document::load(preset.name).unwrap().scene);
+        let fields = scenes.flat_map(|scene| numeric_fields(&scene));
+        let columns = SUMMARY_FIELDS.iter().map(|field| field.name.to_owned());
         for name in fields.chain(columns) {
-            let said = quantity(2.0, &name);
+            let text = quantity(2.0, &name);
             let per = name.contains("_per_") || name.contains(".n_per_");
-            assert_eq!(said.contains('/'), per, "{name}: {said}");
+            assert_eq!(text.contains('/'), per, "{name}: {text}");
         }
     }
 }

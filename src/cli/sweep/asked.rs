@@ -1,4 +1,4 @@
-//! What a sweep is asked for, by its arguments or by the manifest that it is given as its scene.
+//! Settings of a sweep, from its arguments or from the manifest that is given as its scene.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -15,8 +15,8 @@ use super::super::shard::shard;
 use super::super::support::unbuilt;
 use super::Arguments;
 
-/// What is asked for.
-pub struct Asked {
+/// The settings of a sweep.
+pub struct Settings {
     columns: Vec<String>,
     pub until_settled: Option<String>,
     pub carry: Option<Carry>,
@@ -25,7 +25,7 @@ pub struct Asked {
     pub data: PathBuf,
 }
 
-/// With `--check` the scene is a manifest.
+/// Checks that with `--check` the scene is a manifest.
 pub fn has_manifest(options: &Arguments) -> Result<(), Failure> {
     if !options.check || is_manifest(options.scene.as_ref()) {
         return Ok(());
@@ -36,8 +36,8 @@ pub fn has_manifest(options: &Arguments) -> Result<(), Failure> {
     )))
 }
 
-impl Asked {
-    /// An argument counts more than a manifest.
+impl Settings {
+    /// The settings; an argument overrides the manifest.
     pub fn new(options: &Arguments, document: &Document) -> Result<Self, Failure> {
         let swept = document.swept.clone().unwrap_or_default();
         let words = options.columns.is_empty().then_some(swept.columns);
@@ -46,15 +46,18 @@ impl Asked {
         let number = options.shard.as_ref().or(swept.shard.as_ref());
         Ok(Self {
             columns: words.unwrap_or_else(|| options.columns.clone()),
-            until_settled: options.until_settled.clone().or(swept.until_settled.map(|own| own.to_string())),
+            until_settled: options
+                .until_settled
+                .clone()
+                .or(swept.until_settled.map(|limit| limit.to_string())),
             carry: carry.and_then(|word| Carry::named(word)),
             shard: number.map_or(Ok(Shard::WHOLE), |text| shard(text, variable))?,
             data: Path::new(&options.scene).with_file_name(swept.data),
         })
     }
 
-    /// The columns of the rows that were asked for, and all of them: those of the swept fields and the
-    /// direction of a walk before.
+    /// The columns chosen by `--columns`, and all columns: those of the swept fields, the direction of a walk
+    /// and the chosen ones.
     pub fn columns(&self, grid: &Grid) -> Result<(Vec<String>, Vec<String>), Failure> {
         let mut names = grid.columns().to_vec();
         names.extend(self.carry.map(|_| DIRECTION.to_owned()));
@@ -88,8 +91,8 @@ impl Asked {
     }
 }
 
-/// The most cuts beside a map.
-const MOST_CUTS: usize = 2;
+/// Largest number of cuts beside a map.
+const MAX_CUTS: usize = 2;
 
 /// How the picture shows a sweep of this grid.
 pub fn view(options: &Arguments, grid: &Grid) -> Result<View, Failure> {
@@ -122,16 +125,16 @@ pub fn view(options: &Arguments, grid: &Grid) -> Result<View, Failure> {
                 near.join(" and ")
             )));
         }
-        if cuts.len() == MOST_CUTS {
-            return Err(wrong(format!("at most {MOST_CUTS} cuts stand beside a map")));
+        if cuts.len() == MAX_CUTS {
+            return Err(wrong(format!("at most {MAX_CUTS} cuts stand beside a map")));
         }
         cuts.push(Cut { column, value });
     }
     Ok(if cuts.is_empty() { View::Top } else { View::Cuts(cuts) })
 }
 
-/// The mechanism of the sweep's first cell. Where it was not solved: none, if the mechanism is swept, since
-/// that is an outcome of the cell; an error, if it is that of every cell.
+/// The mechanism of the sweep's first cell. If its flexures have no solution, this is `None` if the mechanism
+/// is swept, because it is then an outcome of the cell, and an error if all cells have this mechanism.
 pub fn first_mechanism(document: &Document, sweep: &Sweep) -> Result<Option<Arc<Mechanism>>, Failure> {
     match sweep.first_mechanism() {
         Ok(mechanism) => Ok(Some(mechanism)),

@@ -1,4 +1,4 @@
-//! What a sweep will cost, by a few of its cells, and the commands that run it.
+//! Forecast of a sweep: its cost, estimated from a few cells, and the commands that run it.
 
 use std::sync::Mutex;
 use std::time::Duration;
@@ -14,21 +14,23 @@ use super::super::progress::duration;
 use super::super::shard::{command, value};
 use super::super::support::located;
 
-/// Cells that are run at first for each thread, after how many seconds it is enough of them, and for how long
-/// they are run at most.
-const CELLS: u64 = 64;
-const ENOUGH: f64 = 0.3;
+/// Cells of the first sample for each thread.
+const CELLS_PER_THREAD: u64 = 64;
+/// Time in s that a sample must take for its mean to be used.
+const MIN_SAMPLE_S: f64 = 0.3;
+/// Longest time of a sample.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// A long time for one process in s, and a short one for each of many.
-const LONG: f64 = 3600.0;
-const SHORT: f64 = 1800.0;
+/// Time in s above which a sweep is split into more than the usual number of shards.
+const LONG_S: f64 = 3600.0;
+/// Time in s of each shard of such a sweep.
+const SHARD_S: f64 = 1800.0;
 
-/// About the bytes of the program itself.
-const PROGRAM: u64 = 20_000_000;
+/// Approximate memory of the program itself in bytes.
+const PROGRAM_BYTES: u64 = 20_000_000;
 
-/// Prints cells, time, memory and commands.
-pub fn tell(
+/// Prints the number of cells, the time, the memory and the commands.
+pub fn print(
     (document, sweep, slice): (&Document, &Sweep, &Slice),
     columns: &[String],
     (picture, sharded): (bool, bool),
@@ -38,9 +40,9 @@ pub fn tell(
         within(PATIENCE, |cancel| sweep.validate_rows(slice, 0, pool, &Task { tick: &|| (), cancel }));
     wrong.map_err(|cell| located(document, cell))?;
     let (count, threads) = (slice.rows(), pool.count());
-    // Evenly spread and in no step with the axes: multiples of the golden section (Weyl 1916).
+    // Multiples of the golden section are evenly spread and do not resonate with the axes (Weyl 1916).
     let place = |i: u64| ((i as f64 + 0.5) * 0.618_033_988_749_895).fract() * count as f64;
-    let mut sample = count.min(CELLS * threads as u64);
+    let mut sample = count.min(CELLS_PER_THREAD * threads as u64);
     let (run, bytes, seconds) = loop {
         let cells: Vec<u64> = (0..sample).map(|i| sweep.cell(slice.row(place(i) as u64))).collect();
         let found = Mutex::new((0_u64, 0));
@@ -55,7 +57,7 @@ pub fn tell(
             sweep.run_cells(pool, &Task { tick: &|| (), cancel }, &cells, &each)
         });
         let (run, bytes) = found.into_inner().unwrap_or_default();
-        if clock.seconds() > ENOUGH || sample == count {
+        if clock.seconds() > MIN_SAMPLE_S || sample == count {
             break (run, bytes, clock.seconds() / run.max(1) as f64 * count as f64);
         }
         sample = (4 * sample).min(count);
@@ -77,12 +79,12 @@ pub fn tell(
             );
         }
     }
-    let memory = PROGRAM + sweep.memory(threads) + if picture { picture_bytes(sweep) } else { 0 };
+    let memory = PROGRAM_BYTES + sweep.memory(threads) + if picture { picture_bytes(sweep) } else { 0 };
     let kept = if picture { ", with the table that the picture needs" } else { "" };
     println!("at most about {} MB of memory{kept}", memory.div_ceil(1_000_000));
 
     let arguments: Vec<String> =
-        std::env::args_os().skip(1).map(|own| own.to_string_lossy().into()).collect();
+        std::env::args_os().skip(1).map(|argument| argument.to_string_lossy().into()).collect();
     let out = value(&arguments, "--out").unwrap_or("map.csv");
     if sharded {
         let shard = slice.shard().to_string();
@@ -94,7 +96,7 @@ pub fn tell(
     if picture {
         return Ok(());
     }
-    let shards = if seconds > LONG { (seconds / SHORT).ceil().min(1000.0) as u64 } else { 4 };
+    let shards = if seconds > LONG_S { (seconds / SHARD_S).ceil().min(1000.0) as u64 } else { 4 };
     let stem = out.strip_suffix(".csv").unwrap_or(out);
     let name = format!("{stem}-{{shard}}.csv");
     println!("In {shards} processes, on any machines:");
@@ -110,7 +112,7 @@ pub fn tell(
     Ok(())
 }
 
-/// The bytes of the table that a picture needs.
+/// Memory in bytes of the table that a picture needs.
 fn picture_bytes(sweep: &Sweep) -> u64 {
     16 * sweep.rows() * sweep.empty_table().columns().len() as u64
 }

@@ -1,4 +1,4 @@
-//! `sweep`: a grid of runs, a row a cell, with progress on standard error.
+//! `sweep`: a grid of runs, one row for each cell, with progress on standard error.
 
 mod asked;
 mod dry_run;
@@ -22,8 +22,8 @@ use super::support::{
 };
 pub use super::support::{file_name, located, manifest_path, pool};
 use super::{interrupt, say};
-use asked::{Asked, view};
-use rows::{Begin, Blocks, Compared, Rows};
+use asked::{Settings, view};
+use rows::{Blocks, Compared, RowFile, Rows};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -92,34 +92,34 @@ pub struct Arguments {
     pub chart: ChartOptions,
 }
 
-/// Runs the grid and writes a row a cell.
+/// Runs the grid and writes one row for each cell.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     asked::has_manifest(options)?;
-    let picture = Picture::asked(&options.chart.plot, common)?;
+    let picture = Picture::new(&options.chart.plot, common)?;
     let axes = ranges(&options.chart, "--plot-x")?;
     let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
-    // Rows, plan and manifest are of the same bytes, whatever becomes of the files meanwhile.
+    // Rows, plan and manifest then refer to the same bytes, even if the files change during the sweep.
     document.hold_files();
-    let asked = Asked::new(options, &document)?;
-    let out = shard::placed(common.out(), options.shard.as_deref(), asked.shard)?;
+    let settings = Settings::new(options, &document)?;
+    let out = shard::placed(common.out(), options.shard.as_deref(), settings.shard)?;
     let beside = manifest_path(&out).filter(|_| !options.check);
     let sweep = Sweep::new(&document.scene, &document.files, Grid::new(document.axes(&options.over)?)?);
     let mechanism = asked::first_mechanism(&document, &sweep)?;
-    if asked.carry.is_some() {
+    if settings.carry.is_some() {
         refuse_electrical_state(&document, sweep.grid().axes(), "--carry")?;
     }
-    let (more, columns) = asked.columns(sweep.grid())?;
-    let looked_at = Task { tick: &|| (), cancel: interrupt::listen() };
-    let until_settled = match &sweep.first_model(&looked_at).and_then(Result::ok) {
-        Some(model) => until_settled(asked.until_settled.as_deref(), &document, model)?,
-        None => None, // said below, cell by cell
+    let (more, columns) = settings.columns(sweep.grid())?;
+    let trial = Task { tick: &|| (), cancel: interrupt::listen() };
+    let until_settled = match &sweep.first_model(&trial).and_then(Result::ok) {
+        Some(model) => until_settled(settings.until_settled.as_deref(), &document, model)?,
+        None => None, // `validate_rows` reports the fault below, with its cell
     };
-    // what is shown need not be written
+    // the quantity of the picture is computed even if its column is not written
     let quantity = picture.is_some().then_some(&options.quantity);
     let shown = quantity.filter(|name| !columns.contains(name));
     let fields = columns.iter().chain(shown).filter_map(|name| SummaryField::find(name)).collect();
-    let sweep = sweep.with(SweepOptions { columns: fields, until_settled, carry: asked.carry });
-    let slice = sweep.slice(asked.shard);
+    let sweep = sweep.with(SweepOptions { columns: fields, until_settled, carry: settings.carry });
+    let slice = sweep.slice(settings.shard);
     warn(&document, common, &warnings, mechanism.as_deref());
     let view = view(options, sweep.grid())?;
     if picture.is_some() {
@@ -128,13 +128,13 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let pool = pool(common)?;
     if options.dry_run {
         let parts = (picture.is_some(), options.shard.is_some());
-        return dry_run::tell((&document, &sweep, &slice), &columns, parts, &pool);
+        return dry_run::print((&document, &sweep, &slice), &columns, parts, &pool);
     }
     let manifest_out = beside.as_deref().map(|path| (MANIFEST, path));
     let [plot, data] = Picture::outputs(picture);
     let rows_out = Some(("--out", &*out)).filter(|_| !options.check);
     let mut sinks = open(&inputs(&options.scene, &document), [rows_out, plot, data, manifest_out])?;
-    // It is opened again when it is written: a kill would leave its unfinished file behind.
+    // The manifest is opened again when it is written: a killed process would leave its unfinished file.
     sinks[3] = None;
     let mut shown = picture.map(|_| Table::new());
 
@@ -144,20 +144,21 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let mut before = Tally::default();
     let mut rows = match sinks[0].take() {
         None => {
-            let mut file = Compared::new(&asked.data)?;
+            let mut file = Compared::new(&settings.data)?;
             file.put(&first)?;
             Rows::Compared(file)
         }
         Some(_) if beside.is_some() => {
             let (unit, header) = (slice.unit(), &*first);
-            let (shard, rows, plan, out) = (asked.shard, slice.rows(), &plan, &*out);
+            let (shard, rows, plan, out) = (settings.shard, slice.rows(), &plan, &*out);
             let Arguments { resume, force, .. } = *options;
             let table = sweep.empty_table();
             let mut needed =
                 Some(&*options.quantity).into_iter().chain(table.columns().iter().map(|c| &*c.name));
-            let lacking = needed.find(|name| picture.is_some() && !columns.iter().any(|own| own == name));
+            let lacking =
+                needed.find(|name| picture.is_some() && !columns.iter().any(|column| column == name));
             let lacking = lacking.map(str::to_owned);
-            match (Begin { out, plan, shard, rows, unit, header, resume, force, lacking }).begin()? {
+            match (RowFile { out, plan, shard, rows, unit, header, resume, force, lacking }).open()? {
                 Some((blocks, tally)) => {
                     before = tally;
                     Rows::Blocks(blocks)
@@ -177,7 +178,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         }
         Some(mut sink) => {
             sink.put(&first).map_err(|error| Failure::writing(sink.name(), error))?;
-            Rows::Straight(sink)
+            Rows::Stream(sink)
         }
     };
     let from = before.cells;
@@ -192,26 +193,26 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let result = (|| {
         let valid = sweep.validate_rows(&slice, from, &pool, &task);
         valid.map_err(|cell| SweepEnd::Write(located(&document, cell)))?;
-        let write = |table: &Table, own: &Tally| {
+        let write = |table: &Table, tally: &Tally| {
             if let Some(shown) = &mut shown {
                 shown.append(table);
             }
             let text = interwell::output::rows(&table.only(&columns), 0..usize::MAX);
-            // Where the reader of a pipe has gone, a picture may still be wanted.
-            Ok(rows.put(text, own)? || shown.is_some())
+            // A picture needs all rows, even if the reader of a pipe has gone.
+            Ok(rows.put(text, tally)? || shown.is_some())
         };
         sweep.run_rows(&slice, from, &pool, &task, write)
     })();
     bar.finish_and_clear();
     let tally = match (result, rows) {
-        (Ok(tally), own) => {
-            rows = own;
+        (Ok(tally), kept) => {
+            rows = kept;
             tally
         }
         (Err(SweepEnd::Cancelled), Rows::Blocks(blocks)) => return Err(blocks.interrupted()),
         (Err(SweepEnd::Cancelled), _) => return Err(Failure::interrupted()),
-        (Err(SweepEnd::Write(failure)), own) => {
-            if let Rows::Blocks(blocks) = own {
+        (Err(SweepEnd::Write(failure)), rows) => {
+            if let Rows::Blocks(blocks) = rows {
                 blocks.leave();
             }
             return Err(failure);
@@ -219,8 +220,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     };
     if let Some((picture, rows)) = picture.zip(shown) {
         let grid = sweep.grid();
-        // They are about runs from rest.
-        let overlay = match asked.carry {
+        // The overlay holds for runs from rest only.
+        let overlay = match settings.carry {
             Some(_) => Overlay::default(),
             None => Overlay::of(&document.scene, mechanism.as_deref(), grid, &rows),
         };
@@ -231,28 +232,28 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     before.add(&tally);
     let all = before;
     match rows {
-        Rows::Straight(sink) => sinks[0] = Some(sink),
+        Rows::Stream(sink) => sinks[0] = Some(sink),
         Rows::Compared(mut file) => {
             file.end()?;
             if !common.quiet {
-                say(&format!("{}: all {} rows are the same", asked.data.display(), all.cells));
+                say(&format!("{}: all {} rows are the same", settings.data.display(), all.cells));
             }
         }
         Rows::Blocks(mut blocks) => {
             let sha256 = blocks.close()?;
-            let made = Made { plan: &plan, shard: asked.shard, sha256: &sha256 };
+            let made = Made { plan: &plan, shard: settings.shard, sha256: &sha256 };
             let (grid, origin) = (sweep.grid(), watch.origin(pool.count()));
             let text = manifest(("sweep", &document), grid, &all, Some(made), &origin, &file_name(&out));
             sinks[3] = beside.as_deref().map(Sink::open).transpose()?;
             write_text(&mut sinks[3], &text)?;
-            // The rows come last: as long as they have their old name they can be gone on with.
+            // The rows get their name last: until then --resume can continue them.
             finish(sinks)?;
             sinks = [const { None }; 4];
             blocks.finish()?;
         }
     }
     finish(sinks)?;
-    tell(common.quiet, &document, &tally, (slice.rows(), from), watch.wall_s());
+    report(common.quiet, &document, &tally, (slice.rows(), from), watch.wall_s());
     let early = all.ended_early + all.not_converged;
     if options.strict && early > 0 {
         let cells = format!("{early} of {} cells did not come to their end", all.cells);
@@ -261,7 +262,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The rows of an earlier process for a picture.
+/// Reads the rows of an earlier process for a picture.
 fn shown_before(blocks: &Blocks, sweep: &Sweep, from: u64) -> Result<Table, Failure> {
     if from == 0 {
         return Ok(Table::new());
@@ -270,9 +271,9 @@ fn shown_before(blocks: &Blocks, sweep: &Sweep, from: u64) -> Result<Table, Fail
     read.map_err(|problem| Failure::Failed(anyhow::anyhow!("the rows that are there: {problem}")))
 }
 
-/// Says what came of so many `rows`, of which some were there `before`.
-fn tell(quiet: bool, document: &Document, tally: &Tally, (rows, before): (u64, u64), wall_s: f64) {
-    // Fewer cells than there are: the reader of a pipe has gone, which is no news to anyone.
+/// Prints a summary of the sweep of `rows` rows, of which `before` were there already.
+fn report(quiet: bool, document: &Document, tally: &Tally, (rows, before): (u64, u64), wall_s: f64) {
+    // With fewer cells the reader of a pipe has gone, which is not worth a message.
     if quiet || tally.cells != rows - before {
         return;
     }

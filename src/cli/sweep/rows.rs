@@ -1,4 +1,4 @@
-//! Rows of a sweep on their way out: straight, into a file that is written in blocks, or compared with one.
+//! Output of the rows of a sweep: to a stream, to a file in blocks, or compared with a file.
 
 use std::io::{BufReader, Read};
 use std::path::Path;
@@ -13,36 +13,37 @@ use serde_json::{Value, json};
 use super::super::failure::Failure;
 use super::super::support::manifest_path;
 
-/// The most rows of a block, where a walk is not longer, and the time in s after which it ends.
-const MOST_ROWS: u64 = 4096;
-const LONGEST: f64 = 5.0;
+/// Rows after which a block ends; a walk that is longer stays in one block.
+const MAX_BLOCK_ROWS: u64 = 4096;
+/// Time in s after which a block ends.
+const MAX_BLOCK_S: f64 = 5.0;
 
-/// Where the rows go.
+/// The destination of the rows.
 pub enum Rows {
     /// To a pipe, a device or standard output.
-    Straight(Sink),
+    Stream(Sink),
     /// To a file that is written in blocks.
     Blocks(Blocks),
-    /// Nowhere: they are compared with those of a file.
+    /// To no output: they are compared with those of a file.
     Compared(Compared),
 }
 
 impl Rows {
-    /// Takes some rows with their tally; whether more are wanted.
-    pub fn put(&mut self, text: String, own: &Tally) -> Result<bool, Failure> {
+    /// Writes or compares rows with their tally. Returns whether more rows are needed.
+    pub fn put(&mut self, text: String, tally: &Tally) -> Result<bool, Failure> {
         match self {
-            Self::Straight(sink) => {
+            Self::Stream(sink) => {
                 let put = sink.put(&text).and_then(|()| sink.flush());
                 put.map_err(|error| Failure::writing(sink.name(), error))?;
                 Ok(!sink.is_closed())
             }
-            Self::Blocks(blocks) => blocks.put(text, own).map(|()| true),
+            Self::Blocks(blocks) => blocks.put(text, tally).map(|()| true),
             Self::Compared(compared) => compared.put(&text).map(|()| true),
         }
     }
 }
 
-/// A file in work, and its block in work.
+/// An unfinished file, and its unfinished block.
 pub struct Blocks {
     part: Part,
     rows: u64,
@@ -51,28 +52,31 @@ pub struct Blocks {
     clock: WallClock,
 }
 
-/// A sweep into a file: what is to be written, and what is to become of what an earlier process left.
-pub struct Begin<'a> {
-    /// The file.
+/// The file of a sweep: what is to be written, and how to treat rows that an earlier process left.
+pub struct RowFile<'a> {
+    /// Path of the file.
     pub out: &'a Path,
-    /// The plan of the sweep, which of its rows these are, how many, and how many are computed one after the
-    /// other.
+    /// The plan of the sweep.
     pub plan: &'a Value,
+    /// The shard whose rows these are.
     pub shard: Shard,
+    /// Number of rows.
     pub rows: u64,
+    /// Number of rows that are computed one after the other: 1, or the length of a walk.
     pub unit: u64,
     /// The first line of the file.
     pub header: &'a str,
-    /// Whether to go on with what is there, and whether to give it up.
+    /// Whether to continue the rows of an earlier process.
     pub resume: bool,
+    /// Whether to discard those rows or, with `resume`, those from a damaged one on.
     pub force: bool,
     /// A column that a picture needs and the rows do not have.
     pub lacking: Option<String>,
 }
 
-impl Begin<'_> {
-    /// Begins a file or goes on with it, and the tally of the rows that it has; none where it is whole.
-    pub fn begin(&self) -> Result<Option<(Blocks, Tally)>, Failure> {
+impl RowFile<'_> {
+    /// Begins the file or continues it. Returns it with the tally of its rows, or `None` if it is complete.
+    pub fn open(&self) -> Result<Option<(Blocks, Tally)>, Failure> {
         let opened = Opened::new(self.out).map_err(refused)?;
         let part = opened.part().display().to_string();
         let head = json!({ "plan": self.plan, "shard": self.shard.to_string() });
@@ -83,22 +87,22 @@ impl Begin<'_> {
         if self.resume
             && !self.force
             && !opened.has_rows()
-            && let Some(there) = self.beside().filter(|there| *there != head)
+            && let Some(existing) = self.existing_head().filter(|existing| *existing != head)
         {
             opened.leave();
             return Err(Failure::argument(format!(
                 "--resume: {} is of another sweep: {}; give the arguments that it was made with, name \
                  another --out, or start anew with --force",
                 self.out.display(),
-                plan_differences(&flat(&there), &flat(&head))
+                plan_differences(&plan_with_shard(&existing), &plan_with_shard(&head))
             )));
         }
         if !opened.has_rows() || (self.force && !self.resume) {
             let part = opened.begin(&head.to_string(), self.header).map_err(refused)?;
             return Ok(Some((self.blocks(part), Tally::default())));
         }
-        let there: Option<Value> = opened.head().and_then(|text| serde_json::from_str(text).ok());
-        let problem = match there {
+        let existing: Option<Value> = opened.head().and_then(|text| serde_json::from_str(text).ok());
+        let problem = match existing {
             None => {
                 let journal = format!("{part} stands there, and its journal is gone or cannot be read");
                 format!("{journal}: --force starts anew, or name another --out")
@@ -108,10 +112,10 @@ impl Begin<'_> {
                 let left = format!("{part} has {rows} of {all} rows of a sweep that did not come to its end");
                 format!("{left}: go on with --resume, or start anew with --force")
             }
-            Some(there) if there != head => format!(
+            Some(existing) if existing != head => format!(
                 "--resume: {part} is of another sweep: {}; give the arguments that it was begun with, name \
                  another --out, or start anew with --force",
-                plan_differences(&flat(&there), &flat(&head))
+                plan_differences(&plan_with_shard(&existing), &plan_with_shard(&head))
             ),
             Some(_) if self.lacking.is_some() => format!(
                 "--resume: the rows in {part} have no column {}, which --plot needs: leave --plot out, or \
@@ -122,7 +126,7 @@ impl Begin<'_> {
                 let (part, blocks) = opened.go_on(self.force).map_err(refused)?;
                 let mut tally = Tally::default();
                 let notes = blocks.iter().filter_map(|block| serde_json::from_str(&block.note).ok());
-                notes.for_each(|own| tally.add(&own));
+                notes.for_each(|note| tally.add(&note));
                 return Ok(Some((self.blocks(part), tally)));
             }
         };
@@ -135,41 +139,41 @@ impl Begin<'_> {
         Blocks { part, rows: self.rows, unit: self.unit, block, clock: WallClock::start() }
     }
 
-    /// The manifest of the file, where both are there.
+    /// The manifest of the file, if both exist.
     fn manifest(&self) -> Option<Value> {
         let text = files::bytes(&manifest_path(self.out)?).ok().filter(|_| files::exists(self.out));
         text.and_then(|text| serde_json::from_slice::<Value>(&text).ok())
     }
 
-    /// The plan and the shard of a sweep that stands in the file.
-    fn beside(&self) -> Option<Value> {
-        let own = self.manifest()?;
-        own["plan"].is_object().then(|| json!({ "plan": own["plan"], "shard": own["shard"] }))
+    /// The plan and the shard of the sweep in the file, from its manifest.
+    fn existing_head(&self) -> Option<Value> {
+        let manifest = self.manifest()?;
+        manifest["plan"].is_object().then(|| json!({ "plan": manifest["plan"], "shard": manifest["shard"] }))
     }
 
-    /// Whether the file is there with all its rows, as its manifest says.
+    /// Whether the file has all rows of this sweep, according to its manifest and checksum.
     fn is_whole(&self) -> bool {
-        self.manifest().is_some_and(|own| {
-            own["plan"] == *self.plan
-                && own["shard"].as_str() == Some(&self.shard.to_string())
-                && own["sha256"].as_str() == file_checksum(self.out).as_deref()
+        self.manifest().is_some_and(|manifest| {
+            manifest["plan"] == *self.plan
+                && manifest["shard"].as_str() == Some(&self.shard.to_string())
+                && manifest["sha256"].as_str() == file_checksum(self.out).as_deref()
         })
     }
 }
 
-/// The plan in a head with the shard in it.
-fn flat(head: &Value) -> Value {
-    let mut own = head["plan"].clone();
-    own["shard"] = head["shard"].clone();
-    own
+/// The plan of a head, with the shard as a further key.
+fn plan_with_shard(head: &Value) -> Value {
+    let mut plan = head["plan"].clone();
+    plan["shard"] = head["shard"].clone();
+    plan
 }
 
 fn file_checksum(path: &Path) -> Option<String> {
-    let (mut file, mut own, mut bytes) = (files::open(path).ok()?, Checksum::default(), vec![0; 1 << 16]);
+    let (mut file, mut sum, mut bytes) = (files::open(path).ok()?, Checksum::default(), vec![0; 1 << 16]);
     loop {
         match file.read(&mut bytes).ok()? {
-            0 => return Some(own.text()),
-            n => own.add(&bytes[..n]),
+            0 => return Some(sum.text()),
+            n => sum.add(&bytes[..n]),
         }
     }
 }
@@ -188,28 +192,28 @@ fn refused(error: PartError) -> Failure {
 }
 
 impl Blocks {
-    fn put(&mut self, text: String, own: &Tally) -> Result<(), Failure> {
+    fn put(&mut self, text: String, tally: &Tally) -> Result<(), Failure> {
         self.part.put(text).map_err(|error| self.failed(&error))?;
-        self.block.add(own);
+        self.block.add(tally);
         let whole = self.block.cells.is_multiple_of(self.unit);
-        if whole && (self.block.cells >= MOST_ROWS || self.clock.seconds() >= LONGEST) {
+        if whole && (self.block.cells >= MAX_BLOCK_ROWS || self.clock.seconds() >= MAX_BLOCK_S) {
             self.end_block().map_err(|error| self.failed(&error))?;
         }
         Ok(())
     }
 
     fn end_block(&mut self) -> std::io::Result<()> {
-        let own = std::mem::take(&mut self.block);
+        let block = std::mem::take(&mut self.block);
         self.clock = WallClock::start();
-        self.part.end_block(own.cells, serde_json::to_string(&own)?)
+        self.part.end_block(block.cells, serde_json::to_string(&block)?)
     }
 
-    /// Rows on the disk.
+    /// Number of rows on the disk.
     pub fn kept(&self) -> u64 {
         self.part.kept()
     }
 
-    /// What is said where the rows cannot be written.
+    /// The failure for rows that cannot be written.
     fn failed(&self, error: &std::io::Error) -> Failure {
         Failure::Failed(anyhow::anyhow!(
             "cannot write {}: {error}; {} of {} rows are kept there: once there is room, the same command \
@@ -220,7 +224,7 @@ impl Blocks {
         ))
     }
 
-    /// Ends where no more rows come; what is said of an interruption.
+    /// Ends the file after an interruption. Returns the failure to report.
     pub fn interrupted(mut self) -> Failure {
         if self.block.cells.is_multiple_of(self.unit) && self.block.cells > 0 {
             let _ = self.end_block();
@@ -240,12 +244,12 @@ impl Blocks {
         failure
     }
 
-    /// Leaves it as it is: nothing is left of it where it has no rows.
+    /// Leaves the unfinished file as it is, or removes it if it has no rows.
     pub fn leave(self) {
         self.part.discard();
     }
 
-    /// Waits until all rows are on the disk; the checksum of the file.
+    /// Waits until all rows are on the disk. Returns the checksum of the file.
     pub fn close(&mut self) -> Result<String, Failure> {
         let ended = if self.block.cells > 0 { self.end_block() } else { Ok(()) };
         ended.and_then(|()| self.part.close()).map_err(|error| self.failed(&error))
@@ -257,10 +261,11 @@ impl Blocks {
         self.part.finish().map_err(|error| Failure::writing(&name, error))
     }
 
-    /// The text of the rows that are there.
+    /// The text of the rows that were written.
     pub fn text(&self) -> Result<String, Failure> {
         let path = self.part.path();
-        let bytes = files::bytes(path).and_then(|own| String::from_utf8(own).map_err(std::io::Error::other));
+        let bytes =
+            files::bytes(path).and_then(|bytes| String::from_utf8(bytes).map_err(std::io::Error::other));
         bytes.map_err(|error| Failure::Failed(anyhow::anyhow!("cannot read {}: {error}", path.display())))
     }
 }
@@ -282,28 +287,28 @@ impl Compared {
         Ok(Self { name, file: Box::new(BufReader::new(file)), line: 1 })
     }
 
-    /// Compares some lines with those that come next.
+    /// Compares lines with the next ones of the file.
     pub fn put(&mut self, text: &str) -> Result<(), Failure> {
-        let mut there = Vec::new();
-        let read = (&mut self.file).take(text.len() as u64).read_to_end(&mut there);
+        let mut expected = Vec::new();
+        let read = (&mut self.file).take(text.len() as u64).read_to_end(&mut expected);
         read.map_err(|error| Failure::Failed(anyhow::anyhow!("cannot read {}: {error}", self.name)))?;
-        if there == text.as_bytes() {
+        if expected == text.as_bytes() {
             self.line += text.matches('\n').count() as u64;
             return Ok(());
         }
-        let there = String::from_utf8_lossy(&there).into_owned();
-        let pairs = || text.lines().zip(there.lines().chain(std::iter::repeat("")));
-        let same = pairs().take_while(|(here, there)| here == there).count();
-        let (here, there) = pairs().nth(same).unwrap_or_default();
+        let expected = String::from_utf8_lossy(&expected).into_owned();
+        let pairs = || text.lines().zip(expected.lines().chain(std::iter::repeat("")));
+        let same = pairs().take_while(|(found, expected)| found == expected).count();
+        let (found, expected) = pairs().nth(same).unwrap_or_default();
         let line = self.line + same as u64;
-        Err(self.differs(format!("line {line} is `{there}` there and `{here}` now")))
+        Err(self.differs(format!("line {line} is `{expected}` there and `{found}` now")))
     }
 
     fn differs(&self, how: String) -> Failure {
         Failure::Failed(anyhow::anyhow!("{} differs: {how}", self.name))
     }
 
-    /// Whether that was all of it.
+    /// Checks that the file ends here.
     pub fn end(&mut self) -> Result<(), Failure> {
         let mut more = [0];
         match self.file.read(&mut more) {

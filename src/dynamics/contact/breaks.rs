@@ -13,8 +13,9 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         self.state.touch = Some(Touch { end: end.other(), multiplicity: BY_SPEED });
     }
 
-    /// The mass stands on the break at `end` of its mode with no speed: the first derivative of its motion
-    /// that is not 0 (to the rounding of its terms) chooses the side; where none is, it stays on this one.
+    /// The mass stands on the break at `end` of its mode with no speed. The first derivative of its
+    /// motion that is not 0 (to the rounding of its terms) chooses the side; if all are 0, the mass stays
+    /// on this side.
     pub fn balance(&mut self, end: End) {
         let sign = end.sign::<T>();
         let mode = self.stepper.mode(&self.state);

@@ -5,13 +5,13 @@
 //! and ends where the root of the depth is 0 again; outside it the stop costs the steps of free flight
 //! nothing.
 //!
-//! Resting on such a stop is an oscillation of some kilohertz about a depth of a tenth of a micrometre, and
-//! it is followed as long as it shows: on the prototype's stops at tolerance 1e-9 some 36 steps a period
-//! where it reaches up to the surface, and one or two where it is small. Once it is below the tolerance, the
-//! mass follows its load (`quasi_static`).
+//! A mass that rests on such a stop oscillates at some kilohertz about a depth of a tenth of a micrometre.
+//! The oscillation is integrated while it is above the tolerance: on the prototype's stops at tolerance 1e-9
+//! this takes some 36 steps a period if the oscillation reaches the surface, and one or two if it is small.
+//! Below the tolerance the mass follows its load (`quasi_static`).
 //!
-//! Most impacts are over before anything but the stop changes much. Such a one is a single step (`impact`);
-//! any other takes 12 to 18 from tolerance 1e-3 to 1e-14.
+//! Most impacts end before anything but the stop force changes much. Such an impact is a single step
+//! (`impact`); any other takes 12 to 18 steps at tolerances from 1e-3 to 1e-14.
 
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::{Compliant, End, EndKind};
@@ -26,13 +26,14 @@ use crate::dynamics::step::penetration::Penetration;
 use crate::dynamics::step::quasi_static::QuasiStatic;
 use crate::numeric::Scalar;
 
-/// Least speed of a touch, in eps^2 times the speed scale. The parameter of a contact needs a speed to begin
-/// with. A mass that is pressed onto the surface at rest gets this one, which no output shows: it grows by
-/// some e-foldings within one or two steps.
-const NUDGE: f64 = 1.0;
+/// Minimum speed of a touch, in eps^2 times the speed scale. The parameter of a contact needs a speed at its
+/// start. A mass pressed onto the surface at rest gets this speed, which no output shows: it grows by some
+/// e-foldings within one or two steps.
+const MIN_TOUCH_SPEED: f64 = 1.0;
 
 impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
-    /// Whether the run begins with the mass beyond the surface of a stop, where it then is.
+    /// Puts the mass into contact if the run begins with it beyond the surface of a stop. Returns whether
+    /// it does.
     pub fn start_inside_a_stop(&mut self) -> bool {
         for end in [End::Low, End::High] {
             let (sign, level) = (end.sign::<T>(), self.stepper.equation.surface(end));
@@ -54,8 +55,8 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         false
     }
 
-    /// The mass is at the surface of the compliant stop of `end`, with this outward speed, 0 or of either
-    /// sign.
+    /// The mass is at the surface of the compliant stop of `end`. Its outward speed may be 0 or of
+    /// either sign.
     pub fn meet(&mut self, end: End, outward: T) {
         if outward > T::zero() {
             return self.enter_stop(end, outward);
@@ -71,9 +72,9 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         }
     }
 
-    /// The mass passes the surface of the compliant stop of `end` inward of the stop, at `speed`.
+    /// The mass enters the compliant stop of `end` through its surface at `speed`.
     pub fn enter_stop(&mut self, end: End, speed: T) {
-        let least = self.stepper.settings.speed * T::of(NUDGE * T::EPSILON * T::EPSILON);
+        let least = self.stepper.settings.speed * T::of(MIN_TOUCH_SPEED * T::EPSILON * T::EPSILON);
         let speed = speed.larger(least);
         self.state.v = end.sign::<T>() * speed;
         self.state.enter(end);
@@ -101,7 +102,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         flow
     }
 
-    /// A whole impact as one step; whether it was taken.
+    /// Takes a whole impact as one step if possible. Returns whether it was taken.
     fn take_impact(&mut self, end: End, left: T, stop: Compliant<T>) -> bool {
         let mut path = self.stepper.impact.take().unwrap_or_else(|| Box::new(Impact::new(stop)));
         let barrier = self.record.barrier;
@@ -109,7 +110,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         if let Some(Separation { time, speed }) = found {
             let whole = T::of(2.0);
             let (x, v) = (self.state.x, end.sign::<T>() * speed);
-            self.record_contact(&*path, (whole, whole, time), path.most * path.most, (x, v));
+            self.record_contact(&*path, (whole, whole, time), path.max_root * path.max_root, (x, v));
             self.state.at = self.stepper.clock.advance(&self.state.at, time);
             self.state.v = v;
             self.leave_stop(end);
@@ -118,7 +119,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         found.is_some()
     }
 
-    /// A step of quasi-static motion, where the mass does not ring; whether it was taken.
+    /// Takes a quasi-static step if the mass does not oscillate. Returns whether it was taken.
     fn take_quasi_static_step(&mut self, end: End, left: T, stop: Compliant<T>) -> bool {
         let new = || Box::new(QuasiStatic::new(stop));
         let mut path = self.stepper.quasi_static.take().unwrap_or_else(new);
@@ -181,8 +182,8 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         None
     }
 
-    /// Records a step of contact along a path: as chosen and as kept, the time that it takes, a bound of the
-    /// way, and the state at its end.
+    /// Records a step of contact along a path. `lengths`: the chosen length, the length kept, and its
+    /// duration; `bound`: a bound of the displacement; `end`: the state at the end.
     fn record_contact<P: InStop<T>>(&mut self, path: &P, lengths: (T, T, T), bound: T, end: (T, T)) {
         self.steps += 1;
         let view = self.stepper.view(&self.state, path, lengths, bound, end);
@@ -190,11 +191,11 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         self.record.contact(&view);
     }
 
-    /// The root of the depth is 0 again.
+    /// The mass leaves the stop: the root of the depth is 0 again.
     fn leave_stop(&mut self, end: End) {
         self.record.separate(&self.state.at, end.side(), self.state.v);
         let sign = end.sign::<T>();
-        // one mode inward; more where a break lies so close outside the surface that the step has passed both
+        // one mode inward; more if a break lies so close outside the surface that the step has passed both
         while sign * (self.stepper.mode(&self.state).end(end).0 - self.state.x) > T::zero() {
             self.state.enter(end.other());
         }

@@ -49,15 +49,15 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         }
     }
 
-    /// The mass has reached an end of its mode; `at_once` where the step began there and led outward.
+    /// The mass has reached an end of its mode. `at_once`: the step began at that end and led outward.
     pub fn reach(&mut self, end: End, at_once: bool) -> Flow {
         let outward = end.sign::<T>() * self.state.v;
         let (level, kind) = self.stepper.mode(&self.state).end(end);
         match kind {
             EndKind::Stop if outward > T::zero() => self.strike(end, outward),
             EndKind::Stop if at_once => {
-                // It was released where the contact acceleration is 0 to rounding, and does not leave: it
-                // rests on.
+                // It was released where the contact acceleration is 0 to rounding, and does not leave, so the
+                // rest goes on.
                 self.state.refused = Some(self.state.at);
                 self.state.v = T::zero();
                 self.begin_rest(end);
@@ -67,7 +67,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
             EndKind::Compliant => self.meet(end, outward),
             EndKind::Break if outward > T::zero() => self.enter_neighbour(end),
             EndKind::Break => {
-                // A touch of the break; where both sides lead out, by rounding, it stays on this one.
+                // A touch of the break. If rounding makes both sides lead out, the mass stays on this side.
                 self.state.v = T::zero();
                 if !at_once {
                     self.balance(end);

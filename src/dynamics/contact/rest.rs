@@ -11,14 +11,13 @@ use crate::dynamics::step::stepper::Stepper;
 use crate::numeric::{Scalar, decay};
 
 /// Share of the clock's cycle by which the search for a release skips an instant at which the contact
-/// acceleration only touched 0: well above what the rounding of a double root spans, well below any change
-/// worth resolving.
-const PAST_A_TOUCH: f64 = 1e-6;
+/// acceleration only touched 0: well above the rounding of a double root, well below any relevant time.
+const TOUCH_SKIP: f64 = 1e-6;
 
 impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
-    /// The mass stands at the stop of `end` with no speed: none where it is pressed on it, else the touch
-    /// with which it leaves. The first derivative of the contact acceleration that is not 0 (to the rounding
-    /// of its terms) decides; if all are 0, it stays there, free.
+    /// The touch with which a mass that stands at the stop of `end` with no speed leaves it, or `None` if it
+    /// is pressed onto the stop. The first derivative of the contact acceleration that is not 0 (to the
+    /// rounding of its terms) decides; if all are 0, the mass stays at the stop in free flight.
     pub fn leaves(&mut self, end: End) -> Option<Touch> {
         let rates = self.stepper.contact_acceleration(&self.state, end);
         let rounding = self.stepper.contact_acceleration_rounding(end);
@@ -45,17 +44,17 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         }
     }
 
-    /// From now on the mass rests on the stop of `end`.
+    /// The mass rests on the stop of `end` from now on.
     pub fn begin_rest(&mut self, end: End) {
         self.state.contact = Contact::Resting(end);
-        self.tell(Call::Rest { at: self.state.at, side: end.side() });
+        self.report(Call::Rest { at: self.state.at, side: end.side() });
     }
 
     /// The mass stands still until `until`.
     pub fn stand(&mut self, until: Instant<T>, phase: Phase) {
         let MotionState { at, x, v, circuit: state, .. } = self.state;
         let samples = self.record.samples.len();
-        self.tell(Call::Stand { at, until, state: (x, v), phase });
+        self.report(Call::Stand { at, until, state: (x, v), phase });
         if let Some(circuit) = self.stepper.drive.circuit() {
             self.record.circuit_decays(circuit, (&at, &until), state, samples);
             let time = self.stepper.clock.between(&at, &until);
@@ -71,8 +70,8 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         let until = self.stepper.segment_limit(&self.state);
         let mut from = self.state.at;
         if self.state.refused == Some(self.state.at) {
-            // The contact acceleration only touched 0 here, to rounding: look beyond.
-            from = self.stepper.clock.advance(&from, self.stepper.clock.period() * T::of(PAST_A_TOUCH));
+            // The contact acceleration only touched 0 here, to rounding: search beyond this instant.
+            from = self.stepper.clock.advance(&from, self.stepper.clock.period() * T::of(TOUCH_SKIP));
         }
         let threshold = self.stepper.equation.stop(end).map_or(T::zero(), |s| s.acceleration);
         let circuit = self.stepper.drive.circuit().map_or(T::zero(), |circuit| {
@@ -112,7 +111,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     }
 
     fn release(&mut self, end: End, multiplicity: usize) {
-        self.tell(Call::Release { at: self.state.at, side: end.side() });
+        self.report(Call::Release { at: self.state.at, side: end.side() });
         self.state.contact = Contact::Free;
         self.state.touch = Some(Touch { end, multiplicity });
     }

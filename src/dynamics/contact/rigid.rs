@@ -1,4 +1,4 @@
-//! Impacts on a rigid stop, and the sum of what remains of a chatter.
+//! Impacts on a rigid stop, and the closed-form sum of the rest of a chatter.
 
 use crate::dynamics::clock::Instant;
 use crate::dynamics::drive::Drive;
@@ -18,7 +18,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         self.stepper.work.add_impacts(1);
         // 0 - keeps a rebound of 0 from being -0
         let (v_in, v_out) = (sign * speed, T::zero() - sign * rebound);
-        self.tell(Call::Impact { at: self.state.at, side: end.side(), v_in, v_out });
+        self.report(Call::Impact { at: self.state.at, side: end.side(), v_in, v_out });
         if rebound > T::zero() {
             self.state.v = -(sign * rebound);
             self.state.touch = Some(Touch { end, multiplicity: BY_SPEED });
@@ -27,12 +27,12 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         }
     }
 
-    /// After a rebound that is slow enough and pressed back: sums what remains of the chatter in closed form.
+    /// After a slow rebound that is pressed back to the stop: sums the rest of the chatter in closed form.
     /// Expects the drive to be seeded.
     ///
-    /// The sum of the flights is S (1 - (2 j/a + g) S/6) + O(S^3), S = 2 v/(a (1 - e)), a the contact
-    /// acceleration, j its rate, g = c/m. It is used where its own error is below the tolerance and the
-    /// contact acceleration keeps its sign until the sum's end.
+    /// The sum of the flight times is S (1 - (2 j/a + g) S/6) + O(S^3), S = 2 v/(a (1 - e)), a the contact
+    /// acceleration, j its rate, g = c/m. It is used if its error is below the tolerance and the contact
+    /// acceleration keeps its sign until the end of the chatter.
     pub fn sum_chatter(&mut self, end: End, rates: [T; 3]) -> bool {
         let Some(stop) = self.stepper.equation.stop(end) else { return false };
         let one = T::of(1.0);
@@ -61,20 +61,21 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         if self.stepper.clock.between(&until, &limit) <= T::zero() {
             return false;
         }
-        self.tell(Call::Chatter { at: self.state.at, v: speed });
+        self.report(Call::Chatter { at: self.state.at, v: speed });
         self.rest_after(until, end);
         true
     }
 
-    /// After a rebound that is pressed back with this acceleration: where it and those after it are sure to
-    /// end in rest before the next stroboscopic state, those of a pursuit are passed over, since what comes
-    /// later does not depend on them.
+    /// After a rebound that is pressed back with this acceleration, in a pursuit: if this rebound and those
+    /// after it are sure to end in rest before the next stroboscopic state, they are skipped, since the later
+    /// motion does not depend on them. Returns whether they were.
     ///
-    /// As long as the acceleration towards the stop stays between a and b, a flight from the speed v takes 2
-    /// v / a at most, goes v^2 / (2 a) far and is followed by one from q v at most, q = e (b / a)^(1/2): all
-    /// of them take no longer than 2 v / (a (1 - q)). Bounds of a and b over twice the time that they would
-    /// take if nothing changed are known from the drive at its ends and its second derivative, and from what
-    /// force and damping change where a is half as much as now at least, and b four times a at most.
+    /// As long as the acceleration towards the stop stays between a and b, a flight that starts at speed v
+    /// takes at most 2 v / a, reaches at most v^2 / (2 a), and is followed by one that starts at no more than
+    /// q v, where q = e (b / a)^(1/2). All flights together take at most 2 v / (a (1 - q)). The bounds a and
+    /// b hold over twice the time that the flights would take at constant acceleration. They follow from the
+    /// drive at both ends of that time and its second derivative, and from the change of force and damping if
+    /// a is at least half the present acceleration and b at most 4 a.
     pub fn will_rest(&mut self, end: End, acceleration: T) -> bool {
         let Self { stepper, record, state, .. } = &self;
         let (Some(_), Some(stop), Some(bend), Some(strobe)) =
@@ -96,21 +97,21 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         let drag = stepper.equation.damping * two * speed;
         let base = stepper.drive.acceleration(&stepper.clock, &until, state.segment);
         let last = stop.acceleration - end.sign::<T>() * base;
-        let aside = bend * whole * whole * T::of(0.125) + push;
-        let low = acceleration.smaller(last) - (aside + drag);
-        let high = acceleration.larger(last) + aside;
-        let slower = one - stop.restitution * (high / low).sqrt();
+        let variation = bend * whole * whole * T::of(0.125) + push;
+        let low = acceleration.smaller(last) - (variation + drag);
+        let high = acceleration.larger(last) + variation;
+        let reduction = one - stop.restitution * (high / low).sqrt();
         let rests = height < (level - other).abs()
             && low > T::of(0.5) * acceleration
             && high < T::of(4.0) * low
-            && two * speed < low * slower * whole;
+            && two * speed < low * reduction * whole;
         if rests {
             self.rest_after(until, end);
         }
         rests
     }
 
-    /// The mass, whose last flights end at `until`, rests from there on.
+    /// The mass, whose last flight ends at `until`, rests from then on.
     pub fn rest_after(&mut self, until: Instant<T>, end: End) {
         self.stand(until, Phase::Free);
         self.state.v = T::zero();

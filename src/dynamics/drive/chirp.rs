@@ -7,17 +7,19 @@ use crate::numeric::{DoubleDouble, Number, Scalar};
 #[derive(Debug, Clone)]
 pub(crate) struct Chirp<T> {
     pub amplitude: T,
-    /// Frequencies at time 0 and from the end on in Hz, and the length in s.
+    /// Frequency at time 0 in Hz.
     pub from: f64,
+    /// Frequency from the end of the chirp on in Hz.
     pub to: f64,
+    /// Length in s.
     pub over: f64,
     /// The segment of the drive that begins where the chirp ends.
     pub holds_from_segment: usize,
 }
 
 impl<T: Scalar> Chirp<T> {
-    /// (sin, cos) at an instant, angular frequency there and its growth, in kernel units. The phase is formed
-    /// in twice the digits and only its fraction of a turn rounded.
+    /// (sin, cos) at an instant, angular frequency there and its growth, in kernel units. The phase is
+    /// computed in double-double arithmetic; only its fraction of a turn is rounded.
     pub fn state(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize) -> (T, T, T, T) {
         let dd = DoubleDouble::of;
         let time = clock.exact_seconds(at);
@@ -47,7 +49,7 @@ pub(crate) fn next_chirp<T: Scalar>(last: &mut ChirpState<T>, share: T) {
     last.cosine = [cosine[1], c];
 }
 
-/// The last two coefficients of a chirp's sine and cosine, and what continues them.
+/// The last two coefficients of a chirp's sine and cosine, and what their recurrence needs.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ChirpState<T> {
     pub sine: [T; 2],

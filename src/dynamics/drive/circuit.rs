@@ -1,7 +1,7 @@
-//! Circuit of a transducer whose state goes on with the motion, in kernel units.
+//! Circuit of a transducer that has a state of its own, in kernel units.
 //!
-//! The state w of the circuit (a current or a voltage) is scaled so that w^2/2 is its energy over the mass;
-//! it is a velocity then, and the coupling is the same in both directions:
+//! The state w of the circuit (a current or a voltage) is scaled so that w^2/2 is its energy over the mass.
+//! It then has the unit of a velocity, and the coupling is the same in both directions:
 //!
 //! ```text
 //! x'' = .. - g w,    w' = g x' - d w.
@@ -21,7 +21,7 @@ pub(crate) struct Circuit<T> {
     pub decay: T,
     /// d/k, by which coefficient k follows from the one before.
     pub rates: [T; ROOM],
-    /// What the tolerance of its state is relative to.
+    /// Magnitude of the state to which the tolerance is relative.
     pub scale: T,
 }
 
@@ -34,8 +34,7 @@ impl<T: Scalar> Circuit<T> {
         Self { coupling, decay, rates, scale }
     }
 
-    /// What the state `w` takes from the acceleration of a mass that is held in place, and its first two
-    /// derivatives.
+    /// The acceleration that the state `w` takes from a mass held in place, and its first two derivatives.
     pub fn push(&self, w: T) -> [T; 3] {
         let push = self.coupling * w;
         let falling = -(self.decay * push);

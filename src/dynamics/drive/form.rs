@@ -18,12 +18,13 @@ use crate::numeric::pieces::Piece;
 use crate::numeric::{Ratio, Scalar};
 use crate::scene;
 
-/// By how much a polynomial in place of the lines of a record may change speed and displacement, as shares of
-/// the tolerance. Neither adds up from piece to piece; only the displacement acts on the force.
+/// Permitted change of the speed by a polynomial that replaces lines of a record, as a share of the
+/// tolerance. It does not add up from piece to piece.
 const SPEED_SHARE: f64 = 1.0;
+/// The same for the displacement; only the displacement acts on the force.
 const LENGTH_SHARE: f64 = 0.02;
 
-/// Cycle of the clock without a drive, in kernel time units.
+/// Shortest cycle of the clock without a drive, in kernel time units.
 const SHORTEST_CYCLE: f64 = 1.0 / 65536.0;
 
 impl Model {
@@ -46,7 +47,7 @@ pub(crate) enum Form<T> {
     General(General<T>),
 }
 
-/// Evaluates an expression with the drive of a form in its own type.
+/// Evaluates an expression with the drive of a form in its concrete type.
 macro_rules! with_drive {
     ($form:expr, $drive:ident => $call:expr) => {
         match $form {
@@ -88,7 +89,7 @@ pub(crate) fn form<T: Scalar>(model: &Model, clock: &Clock<T>) -> Form<T> {
     }
 }
 
-/// This model's drive in the one type that any drive has.
+/// This model's drive as the general type, which any drive fits.
 pub(crate) fn general<T: Scalar>(model: &Model, clock: &Clock<T>) -> General<T> {
     let (kind, unit) = (Kind::of(model), clock.unit());
     General {
@@ -101,8 +102,8 @@ pub(crate) fn general<T: Scalar>(model: &Model, clock: &Clock<T>) -> General<T> 
 
 pub(crate) fn clock<T: Scalar>(model: &Model, unit: f64) -> Clock<T> {
     let frequency = model.excitation.fastest().unwrap_or_else(|| {
-        // Without a drive: so short a cycle that its phase is exact, a power of two of the time unit, and not
-        // so many cycles that they could not be counted.
+        // Without a drive: a power of two of the time unit, short enough for the phase to be exact and long
+        // enough for the cycles to be countable.
         let units = model.duration / unit;
         1.0 / (unit * SHORTEST_CYCLE.max((units.log2().ceil() - 50.0).exp2()))
     });
@@ -115,7 +116,7 @@ fn circuit<T: Scalar>(model: &Model, unit: f64) -> Option<Circuit<T>> {
     let (coupling, decay) = (circuit.coupling * unit, circuit.decay * unit);
     let Scales { speed, time, .. } = model.scales;
     let (speed, time) = (speed * unit, time / unit);
-    // As large as the motion makes it: by what it moves, and by what it can give.
+    // The size that the motion gives it: limited by what the mass moves and by what the coupling supplies.
     let moved = speed * (coupling.abs() * time / (1.0 + decay * time)).min(1.0);
     let scale = if moved > 0.0 { moved } else { circuit.state(model.start_electrical) * unit };
     Some(Circuit::new(T::of(coupling), T::of(decay), T::of(scale.abs())))
@@ -202,7 +203,7 @@ fn sum<T: Scalar>(model: &Model, unit: f64, clock: &Clock<T>) -> General<T> {
     }
 }
 
-/// The times of the samples at which lines or polynomials meet, and of the last one.
+/// The times of the samples at which lines or polynomials meet, and that of the last sample.
 fn corners(source: &scene::Record, pieces: &[Piece]) -> impl Iterator<Item = f64> {
     let ends = pieces.iter().flat_map(|piece| {
         let begins = if piece.polynomial.is_some() { 1 } else { piece.lines };
@@ -211,7 +212,7 @@ fn corners(source: &scene::Record, pieces: &[Piece]) -> impl Iterator<Item = f64
     ends.map(|sample| source.times[sample]).chain(source.times.last().copied())
 }
 
-/// The lines of a record and the polynomials in place of lines, as far as the run goes.
+/// The lines of a record and the polynomials that replace lines, as far as the run goes.
 fn record<T: Scalar>(
     (source, pieces): (&Arc<scene::Record>, Arc<Vec<Piece>>),
     model: &Model,
@@ -249,9 +250,9 @@ fn record<T: Scalar>(
     Record { lines, source: Arc::clone(source), pieces, clock: *clock }
 }
 
-/// The pieces of a record: with polynomials in place of lines as the tolerance allows it. In some 31 digits
-/// there are none, nor beside another part of the drive, a circuit or rigid stops, since a release is
-/// searched for over the lines of a record alone: a flight along a polynomial might begin pressed back.
+/// The pieces of a record, with polynomials in place of lines as the tolerance allows. There are no
+/// polynomials in double-double arithmetic, nor with another part of the drive, a circuit or rigid stops: the
+/// search for a release uses the lines of a record, and a flight along a polynomial might begin pressed back.
 fn pieces<T: Scalar>(model: &Model, source: &scene::Record) -> Arc<Vec<Piece>> {
     let drive = &model.excitation;
     let parts = drive.tones.len() + drive.chirps.len() + drive.records.len();

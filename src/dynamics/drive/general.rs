@@ -1,9 +1,9 @@
-//! Any drive: a constant and any number of tones, chirps and records; beside it the circuit of a transducer
-//! whose state goes on with the motion.
+//! General drive: a constant and any number of tones, chirps and records, and the circuit of a transducer
+//! that has a state of its own.
 //!
-//! A constant and a sine alone are also types of their own, [`Still`](super::Still) and [`Sine`], which are
-//! faster. In some 31 digits every drive is of this type; a constant or a sine alone has the same arithmetic
-//! here as there.
+//! A constant alone and a sine alone also have faster types, [`Still`](super::Still) and [`Sine`]. In
+//! double-double arithmetic every drive is of the general type; a constant or a sine alone has the same
+//! arithmetic here as there.
 
 use super::chirp::{Chirp, ChirpState, next_chirp};
 use super::circuit::Circuit;
@@ -16,30 +16,30 @@ use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::series::{ROOM, SEEDED, Tail};
 use crate::numeric::Scalar;
 
-/// Up to so many tones the check of a step evaluates each anew; more of them cannot cancel in the series by
-/// chance. More steady ones than that are advanced side by side.
+/// Maximum number of tones that the check of a step evaluates one by one. The series of more tones cannot
+/// cancel by chance. More steady tones than this are advanced side by side.
 pub(super) const FEW_TONES: usize = 8;
 
 /// A constant and any number of tones, chirps and records, and a circuit.
 #[derive(Debug, Clone)]
 pub(crate) struct General<T> {
-    /// The sine, where that is all there is: the other parts are then not asked.
+    /// The sine, if the drive is nothing else; the other parts are then not evaluated.
     pub sine: Option<Sine<T>>,
     pub constant: T,
     pub tones: Vec<Tone<T>>,
-    /// Further tones, many.
+    /// Steady tones, if there are many.
     pub lines: Lines<T>,
     pub chirps: Vec<Chirp<T>>,
     pub records: Vec<Record<T>>,
     pub circuit: Option<Circuit<T>>,
-    /// Whether the constant is all there is.
+    /// Whether the drive is nothing but the constant.
     pub still: bool,
     /// Ends of ramps and chirps and the samples of records, ascending.
     pub segment_ends: Vec<Instant<T>>,
-    /// Cycles of the clock after which, from the last segment's start on, all parts are where they were; none
-    /// where they never are within the run, or it is not known.
+    /// Cycles of the clock after which all parts repeat, from the start of the last segment on. `None` if
+    /// they do not repeat within the run, or if it is not known whether they do.
     pub common_cycles: Option<i64>,
-    /// No acceleration but the constant passes this.
+    /// Bound of the acceleration without the constant.
     pub reach: T,
     /// Angular frequency of the fastest part that moves, kernel units; 0 without one.
     pub fastest: T,
@@ -109,7 +109,8 @@ impl<T: Scalar> Tail<T> for General<T> {
 }
 
 impl<T: Scalar> Base<T> for General<T> {
-    /// As the first coefficient, in the same order of sums, but for records, which are told as they are.
+    /// As the first coefficient, with the same order of sums, except that records are evaluated by
+    /// their lines.
     fn acceleration(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize) -> T {
         if let Some(sine) = &self.sine {
             return sine.acceleration(clock, at, segment);
@@ -158,7 +159,7 @@ impl<T: Scalar> Drive<T> for General<T> {
         if let Some(sine) = &self.sine {
             return sine.seed(clock, at, segment, a, &mut cursor.sine);
         }
-        // Clearing keeps the room: nothing is allocated after the first call.
+        // Clearing keeps the capacity: nothing is allocated after the first call.
         cursor.tones.clear();
         cursor.chirps.clear();
         let mut sums = [self.constant, T::zero(), T::zero(), T::zero()];
@@ -234,9 +235,9 @@ impl<T: Scalar> Drive<T> for General<T> {
         self.segment_ends.get(segment).copied()
     }
 
-    /// The push of the circuit on a mass at rest decays. As long as it is there, the contact acceleration is
-    /// a polynomial over strides that suit the decay too, and no root of it is missed; then the search goes
-    /// on without it. A push that stays is part of the threshold.
+    /// The push of the circuit on a mass at rest decays. While it lasts, the contact acceleration is a
+    /// polynomial over strides short enough for the decay too, so no root is missed; after that the search
+    /// goes on without the push. A push that does not decay is part of the threshold.
     fn next_release(
         &self,
         clock: &Clock<T>,
@@ -252,7 +253,7 @@ impl<T: Scalar> Drive<T> for General<T> {
         };
         let ContactAcceleration { threshold, sign, circuit } = acceleration;
         let (push, rate) = (*coupling * circuit, *rate);
-        // What was passed while there was a push says nothing of the time without it.
+        // Time searched with the push says nothing of the search without it.
         let span = Span { since: span.from, ..*span };
         let without = |threshold: T| ContactAcceleration { threshold, sign, circuit: T::zero() };
         if rate == T::zero() {
@@ -298,7 +299,7 @@ impl<T: Scalar> General<T> {
         self.search(clock, acceleration, span.segment).first(span, cursor)
     }
 
-    /// A search for a release in one of its segments.
+    /// A search for a release in one segment of the drive.
     fn search<'a>(
         &'a self,
         clock: &'a Clock<T>,

@@ -9,11 +9,11 @@ use crate::dynamics::series::{ROOM, SEEDED};
 use crate::numeric::{Scalar, widest};
 
 /// Tones that are advanced together.
-const BESIDE: usize = 16;
+const GROUP_SIZE: usize = 16;
 
-type Columns<T> = [T; BESIDE];
+type Columns<T> = [T; GROUP_SIZE];
 
-/// Sixteen tones; what is left over has no amplitude.
+/// Sixteen tones; unused places have amplitude 0.
 #[derive(Debug, Clone)]
 struct Group<T> {
     amplitude: Columns<T>,
@@ -21,7 +21,7 @@ struct Group<T> {
     /// Angular frequency.
     omega: Columns<T>,
     phase: Columns<T>,
-    ratio: [TurnsPerCycle; BESIDE],
+    ratio: [TurnsPerCycle; GROUP_SIZE],
 }
 
 /// Tones of constant amplitude.
@@ -34,8 +34,9 @@ pub(crate) struct Lines<T> {
 /// What continues the series of the tones.
 #[derive(Debug, Clone)]
 pub(crate) struct LinesCursor<T> {
-    /// The cycle of the clock for which `starts` holds, and the turns of the tones at its beginning.
+    /// The cycle of the clock for which `starts` holds.
     cycle: Option<i64>,
+    /// The turns of the tones at the beginning of that cycle.
     starts: Vec<Columns<T>>,
     /// The last coefficients of even and of odd order.
     terms: [Vec<Columns<T>>; 2],
@@ -48,7 +49,7 @@ impl<T> Default for LinesCursor<T> {
 }
 
 impl<T: Scalar> Lines<T> {
-    /// Of tones without a ramp, none a quarter turn ahead.
+    /// From tones without a ramp and not a quarter turn ahead.
     pub fn new(tones: &[Tone<T>]) -> Self {
         let group = |tones: &[Tone<T>]| {
             let of =
@@ -63,10 +64,10 @@ impl<T: Scalar> Lines<T> {
                 }),
             }
         };
-        Self { groups: tones.chunks(BESIDE).map(group).collect(), count: tones.len() }
+        Self { groups: tones.chunks(GROUP_SIZE).map(group).collect(), count: tones.len() }
     }
 
-    /// How many there are.
+    /// The number of tones.
     pub fn count(&self) -> usize {
         self.count
     }
@@ -81,7 +82,7 @@ impl<T: Scalar> Lines<T> {
             cursor.starts.clear();
             cursor.starts.extend(self.groups.iter().map(|group| group.starts(at.cycle)));
         }
-        let zero = [T::zero(); BESIDE];
+        let zero = [T::zero(); GROUP_SIZE];
         cursor.terms.iter_mut().for_each(|term| term.resize(self.groups.len(), zero));
         let [even, odd] = &mut cursor.terms;
         let of_all = widest(
@@ -93,19 +94,19 @@ impl<T: Scalar> Lines<T> {
                     let Group { amplitude, frequency, omega, phase, .. } = group;
                     // column by column, so that each is one instruction
                     let [mut value, mut slope, mut second, mut third] = [zero; SEEDED];
-                    for i in 0..BESIDE {
+                    for i in 0..GROUP_SIZE {
                         let (s, c) = T::sin_cos_turns(at.phase * frequency[i] + (start[i] + phase[i]));
                         value[i] = amplitude[i] * s;
                         slope[i] = amplitude[i] * (c * omega[i]);
                     }
-                    for i in 0..BESIDE {
+                    for i in 0..GROUP_SIZE {
                         let curvature = -(omega[i] * omega[i]);
                         second[i] = curvature * value[i] * T::of(0.5);
                         third[i] = curvature * slope[i] * T::of(1.0 / 6.0);
                     }
                     (*even, *odd) = (second, third);
                     for (column, more) in columns.iter_mut().zip([value, slope, second, third]) {
-                        for i in 0..BESIDE {
+                        for i in 0..GROUP_SIZE {
                             column[i] += more[i];
                         }
                     }
@@ -118,7 +119,7 @@ impl<T: Scalar> Lines<T> {
         }
     }
 
-    /// Their coefficient of order `k`, after that of `k - 1`.
+    /// Their coefficient of order `k`; the one of order `k - 1` must have been computed before.
     pub fn next(&self, k: usize, inverse: &[T; ROOM], cursor: &mut LinesCursor<T>) -> T {
         if self.count == 0 {
             return T::zero();
@@ -127,10 +128,10 @@ impl<T: Scalar> Lines<T> {
         let of_all = widest(
             #[inline(always)]
             || {
-                let mut columns = [T::zero(); BESIDE];
+                let mut columns = [T::zero(); GROUP_SIZE];
                 for (group, term) in self.groups.iter().zip(terms.iter_mut()) {
                     let mut next = *term;
-                    for i in 0..BESIDE {
+                    for i in 0..GROUP_SIZE {
                         next[i] = -(group.omega[i] * group.omega[i]) * next[i] * share;
                         columns[i] += next[i];
                     }
@@ -151,7 +152,7 @@ impl<T: Scalar> Lines<T> {
 }
 
 impl<T: Scalar> Group<T> {
-    /// The turns of the tones at the beginning of a cycle, less whole ones.
+    /// The turns of the tones at the beginning of a cycle, without whole turns.
     fn starts(&self, cycle: i64) -> Columns<T> {
         self.ratio.map(|ratio| T::of(ratio.fraction(cycle)))
     }
@@ -159,7 +160,7 @@ impl<T: Scalar> Group<T> {
 
 /// The sum of the columns, by halves.
 fn total<T: Scalar>(mut columns: Columns<T>) -> T {
-    let mut half = BESIDE / 2;
+    let mut half = GROUP_SIZE / 2;
     while half > 0 {
         for i in 0..half {
             columns[i] += columns[i + half];

@@ -1,9 +1,9 @@
 //! Drive: acceleration of the base in kernel units, as a series about any instant.
 //!
-//! There are three types: a constant, one sine, and a sum of anything with or without a circuit beside it.
-//! One is chosen for a run, so that a scene pays only for what it names. A tone is evaluated from the clock's
-//! exact phase at the start of a step and continued by its series, d\[k+2\] = -w^2 d\[k\] / ((k+1)(k+2)),
-//! so nothing drifts and no library function is called.
+//! There are three types: a constant, one sine, and a sum of anything with or without a circuit. One is
+//! chosen for a run, so that a scene pays only for what it uses. A tone is evaluated from the clock's exact
+//! phase at the start of a step and continued by its series, d\[k+2\] = -w^2 d\[k\] / ((k+1)(k+2)), so
+//! nothing drifts and no library function is called.
 
 mod chirp;
 pub(crate) mod circuit;
@@ -19,7 +19,7 @@ use crate::dynamics::series::{ROOM, Tail};
 use crate::numeric::Scalar;
 use circuit::Circuit;
 
-/// Acceleration of the base at any instant, in kernel units: all that a record asks of a drive.
+/// Acceleration of the base at any instant, in kernel units: all that a recorder needs of a drive.
 pub(crate) trait Base<T> {
     /// a(t) at `at`.
     fn acceleration(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize) -> T;
@@ -27,18 +27,18 @@ pub(crate) trait Base<T> {
 
 /// Acceleration of the base, in kernel units.
 pub(crate) trait Drive<T: Scalar>: Tail<T> + Base<T> {
-    /// Whether half a cycle of the clock later it is always the opposite.
+    /// Whether the drive half a cycle of the clock later is always the opposite.
     fn is_odd(&self) -> bool {
         false
     }
 
-    /// What it adds to the cost of a step with a series of this order, in units of
-    /// [`work`](crate::dynamics::step::work).
+    /// What the drive adds to the cost of a step with a series of this order, in units
+    /// of [`work`](crate::dynamics::step::work).
     fn cost(&self, _order: usize) -> u64 {
         0
     }
 
-    /// The circuit beside it, where there is one.
+    /// The circuit, if there is one.
     #[inline(always)]
     fn circuit(&self) -> Option<&Circuit<T>> {
         None
@@ -50,16 +50,16 @@ pub(crate) trait Drive<T: Scalar>: Tail<T> + Base<T> {
         None
     }
 
-    /// Lets the series of the circuit's state begin.
+    /// Begins the series of the circuit's state.
     #[inline(always)]
     fn begin_circuit(_: &mut Self::Cursor, _state: T) {}
 
-    /// Cycles of the clock after which it repeats, where it does.
+    /// Cycles of the clock after which the drive repeats, if it does.
     fn common_cycles(&self) -> i64 {
         1
     }
 
-    /// Bound of the second derivative at any time, where there is a simple one.
+    /// Bound of the second derivative at any time, if a simple one is known.
     fn bend(&self) -> Option<T> {
         None
     }
@@ -74,8 +74,8 @@ pub(crate) trait Drive<T: Scalar>: Tail<T> + Base<T> {
         cursor: &mut Self::Cursor,
     );
 
-    /// a(t) at `at` by itself, not by the series: what a step is checked against. A drive of many tones may
-    /// answer with `by_series`, the value of its series.
+    /// a(t) at `at`, computed directly and not by the series: a step is checked against it. A drive of many
+    /// tones may return `by_series`, the value of its series.
     fn value(
         &self,
         clock: &Clock<T>,
@@ -85,7 +85,7 @@ pub(crate) trait Drive<T: Scalar>: Tail<T> + Base<T> {
         cursor: &mut Self::Cursor,
     ) -> T;
 
-    /// The instant at which segment `segment` ends, where one follows.
+    /// The instant at which segment `segment` ends, if another one follows.
     fn segment_end(&self, segment: usize) -> Option<Instant<T>>;
 
     /// The next instant in the span at which the contact acceleration, positive now, changes sign, and the
@@ -102,35 +102,35 @@ pub(crate) trait Drive<T: Scalar>: Tail<T> + Base<T> {
 /// Release root: the instant at which the contact acceleration on a stop changes sign.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum ReleaseRoot<T> {
-    /// Here. Where the drive repeats and the root was computed from the drive alone, the clock's cycle within
-    /// the common period comes with it: a root of equal cycle and phase is the same.
+    /// At this instant. If the drive repeats and the root was computed from the drive alone, the clock's
+    /// cycle within the common period comes with it: roots of equal cycle and phase are the same.
     At(Instant<T>, Option<i64>),
     /// Not within the span.
     Never,
-    /// Not up to here; the search goes on from here (it is interrupted now and then, so that its work is
-    /// counted).
+    /// Not before this instant, from which the search goes on. (It is interrupted regularly, so that its work
+    /// is counted.)
     NotBefore(Instant<T>),
 }
 
 impl<T: Scalar> ReleaseRoot<T> {
-    /// At `root` where that lies before the end of the span.
+    /// At `root` if that lies before the end of the span.
     pub fn within(clock: &Clock<T>, root: Instant<T>, turn: Option<i64>, until: &Instant<T>) -> Self {
         if clock.between(&root, until) > T::zero() { Self::At(root, turn) } else { Self::Never }
     }
 }
 
-/// From an instant to before another, within one segment of the drive.
+/// A time interval within one segment of the drive; the end is not included.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Span<T> {
     pub from: Instant<T>,
     pub until: Instant<T>,
     pub segment: usize,
-    /// The instant since which no root was found within this segment; `from` where none was searched for.
+    /// The instant since which no root was found within this segment; `from` if none was searched for.
     pub since: Instant<T>,
 }
 
-/// Contact acceleration: the outward acceleration that a mass at rest on a stop would have without it,
-/// threshold - sign a(t). While it is positive the mass stays.
+/// Contact acceleration: threshold - sign a(t), the outward acceleration that a mass at rest on a stop would
+/// have if the stop were not there. While it is positive the mass stays.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ContactAcceleration<T> {
     /// What the mechanism contributes.

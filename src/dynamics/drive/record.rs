@@ -1,8 +1,8 @@
-//! A recorded acceleration: straight lines between its samples, and polynomials that stand for many of them.
+//! A recorded acceleration: straight lines between its samples, and polynomials that replace many lines.
 //!
-//! Where a record is smooth at the spacing of its samples, a polynomial stands for many lines in the motion,
-//! to a share of its tolerance ([`pieces`](crate::numeric::pieces)); it is made once for all runs that share
-//! the record. What is told of the base are the lines.
+//! If a record is smooth at the spacing of its samples, the motion uses a polynomial in place of many lines,
+//! accurate to a share of the tolerance ([`pieces`](crate::numeric::pieces)). The polynomials are fitted once
+//! for all runs that share the record. The base acceleration that is reported is that of the lines.
 
 use std::sync::Arc;
 
@@ -18,14 +18,16 @@ pub(crate) struct Line<T> {
     pub first_segment: usize,
     /// When it begins.
     pub at: Instant<T>,
-    /// Its value there and its slope, kernel units.
+    /// Its value at `at`, kernel units.
     pub value: T,
+    /// Its slope, kernel units.
     pub slope: T,
-    /// The number of the piece whose polynomial is there in place of lines.
+    /// The number of the piece whose polynomial replaces the lines.
     pub piece: Option<usize>,
 }
 
-/// The lines of one record in their order; the last one is zero. Before the first the record is zero too.
+/// The lines of one record in order of time; the last one is zero. Before the first line the record is
+/// zero too.
 #[derive(Debug, Clone)]
 pub(crate) struct Record<T> {
     pub lines: Vec<Line<T>>,
@@ -34,7 +36,7 @@ pub(crate) struct Record<T> {
     pub clock: Clock<T>,
 }
 
-/// The coefficients of a drive's record in kernel units, and how many there are.
+/// The coefficients of a drive's records in kernel units, and how many there are.
 #[derive(Debug, Clone)]
 pub(crate) struct RecordSeries<T> {
     pub a: [T; DEGREE + 1],
@@ -47,12 +49,12 @@ impl<T: Scalar> Default for RecordSeries<T> {
     }
 }
 
-/// What is there of a record.
+/// The part of a record at an instant.
 enum Place<'a, T> {
-    /// Nothing yet.
+    /// The record has not begun.
     Before,
     Line(&'a Line<T>),
-    /// A polynomial, at a place from -1 to 1, and half its length in s.
+    /// A polynomial, the position in it from -1 to 1, and half its length in s.
     Piece(&'a Piece, T, f64),
 }
 
@@ -86,7 +88,7 @@ impl<T: Scalar> Record<T> {
         }
     }
 
-    /// The value by the lines; at the last sample that one, and zero from there on.
+    /// The value by the lines: at the last sample its value, and zero after it.
     pub fn exact(&self, at: &Instant<T>, segment: usize) -> T {
         match self.place(at, segment) {
             Place::Line(_) if self.is_last_sample(at) => {
@@ -103,7 +105,7 @@ impl<T: Scalar> Record<T> {
         end.is_some_and(|end| self.clock.at(*end) == *at)
     }
 
-    /// The value of the line that a piece stands for at an instant.
+    /// The value at an instant of the line that a piece replaces.
     fn by_line(&self, at: &Instant<T>, piece: &Piece) -> T {
         let (times, values) = (&self.source.times, &self.source.accelerations);
         let t = self.clock.seconds(at);
@@ -115,7 +117,7 @@ impl<T: Scalar> Record<T> {
         (T::of(values[sample]) + slope * since) * T::of(self.clock.unit() * self.clock.unit())
     }
 
-    /// Adds its series to that of other records.
+    /// Adds its coefficients to those of other records.
     pub fn seed(&self, at: &Instant<T>, segment: usize, series: &mut RecordSeries<T>) {
         let (value, slope) = match self.place(at, segment) {
             Place::Before => return,

@@ -1,25 +1,25 @@
 //! Search for the release root under a drive of any form.
 //!
-//! The search walks ahead in strides. Over each the contact acceleration is a polynomial, the series of the
-//! drive, and its first root is the release. A stride in which it has none is passed.
+//! The search advances in strides. Over a stride the contact acceleration is a polynomial, the series of the
+//! drive; its first root is the release. If it has none, the search goes on with the next stride.
 
 use super::{ContactAcceleration, Drive, ReleaseRoot, Span};
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::series::{ROOM, SEEDED};
 use crate::numeric::{PolynomialRoots, Scalar, decay};
 
-/// How long a stride is, in radians of the fastest tone, and the order of its series: the first neglected
-/// term, 2^27/27!, is below rounding.
+/// Length of a stride in radians of the fastest tone.
 const STRIDE_RADIANS: f64 = 2.0;
+/// Order of the series of a stride: the first neglected term, 2^27/27!, is below rounding.
 const STRIDE_ORDER: usize = 26;
 
-/// Work of a search before it reports where it stands: some milliseconds, and for two or three tones of
-/// everyday frequencies longer than their common period.
+/// Work after which a search is interrupted: some milliseconds, and for two or three tones of everyday
+/// frequencies more than their common period needs.
 const SEARCH_WORK: u64 = 500_000;
 
-/// What a stride costs beside the parts of the drive, and what each of them costs, in units of
-/// [`work`](crate::dynamics::step::work).
+/// Cost of a stride without the parts of the drive, in units of [`work`](crate::dynamics::step::work).
 const STRIDE_WORK: u64 = 80;
+/// Cost that each part of the drive adds to a stride.
 const STRIDE_WORK_OF_A_PART: u64 = 8;
 
 /// Two searches that differ by no more than this share of a quarter cycle have found the same root.
@@ -33,19 +33,19 @@ pub(super) struct Search<'a, T: Scalar, D: Drive<T>> {
     pub segment: usize,
     /// Angular frequency of the fastest part of the drive that moves; 0 without one.
     pub fastest: T,
-    /// No acceleration of the drive passes this.
+    /// Bound of the acceleration of the drive.
     pub reach: T,
-    /// Cycles of the clock after which the drive repeats from this segment on, where it does.
+    /// Cycles of the clock after which the drive repeats from this segment on, if it does.
     pub common_cycles: Option<i64>,
-    /// Parts of the drive, each as often as it costs.
+    /// Number of parts of the drive, each weighted by its cost.
     pub parts: usize,
-    /// An acceleration beside the drive's that decays, where there is one.
+    /// An acceleration that decays and adds to the drive's, if there is one.
     pub decaying: Option<Decaying<T>>,
     a: [T; ROOM],
     inverse: [T; ROOM],
 }
 
-/// An acceleration as of the base, `push` at first, which decays exponentially.
+/// An acceleration that acts like the base's, `push` at first, and decays exponentially.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Decaying<T> {
     pub push: T,
@@ -53,7 +53,7 @@ pub(super) struct Decaying<T> {
     pub since: Instant<T>,
 }
 
-/// The contact acceleration over a stride, as a polynomial in the share of it.
+/// The contact acceleration over a stride, as a polynomial in the fraction of the stride.
 struct Stride<T> {
     g: [T; STRIDE_ORDER + 1],
     order: usize,
@@ -104,7 +104,7 @@ impl<'a, T: Scalar, D: Drive<T>> Search<'a, T, D> {
             }
             let h = if turning { longest.smaller(left) } else { left };
             let Stride { g, order } = self.stride(&at, h, cursor);
-            // Below 0 by no more than rounding it only touches: the way to the bottom of a parabola.
+            // A parabola below 0 by no more than rounding only touches 0; this is the distance to its bottom.
             let rounding = (self.acceleration.threshold.abs() + self.reach) * T::of(8.0 * T::EPSILON);
             let touches = |slope: T, curvature: T| {
                 curvature > T::zero() && slope * slope <= T::of(2.0) * curvature * rounding
@@ -167,14 +167,14 @@ impl<'a, T: Scalar, D: Drive<T>> Search<'a, T, D> {
     }
 
     /// The root near `found`, computed from the drive alone, and the clock's cycle within the common period:
-    /// it is the same number whenever the search began. None where the drive does not repeat, or by more than
-    /// rounding.
+    /// the same number whenever the search began. `None` if the drive does not repeat, or if the two roots
+    /// differ by more than rounding.
     fn exact_root(&mut self, root: &Instant<T>, cursor: &mut D::Cursor) -> Option<(Instant<T>, i64)> {
         let cycles = self.common_cycles?;
         if !(self.fastest > T::zero()) {
             return None;
         }
-        // Strides that do not depend on the search: quarters of the cycle, in each cycle alike.
+        // Quarters of the cycle: strides that do not depend on the search and are alike in each cycle.
         let clock = self.clock;
         let stride = clock.period() * T::of(0.25);
         let quarter = (root.phase / stride).floor().smaller(T::of(3.0));

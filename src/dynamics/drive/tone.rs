@@ -19,17 +19,17 @@ pub(crate) struct Ramp<T> {
 /// amplitude sin(2 pi (frequency t) + phase).
 #[derive(Debug, Clone)]
 pub(crate) struct Tone<T> {
-    /// Amplitude (that after the ramp, where there is one), any sign.
+    /// Amplitude (after the ramp, if there is one), any sign.
     pub amplitude: T,
     /// Turns per kernel time unit.
     pub frequency: T,
     /// This tone's frequency over the clock's.
     pub ratio: TurnsPerCycle,
-    /// Phase at time 0 in turns, beyond the quarter.
+    /// Phase at time 0 in turns, without the quarter turn.
     pub phase: T,
-    /// A quarter turn ahead: a cosine.
+    /// Whether the tone is a quarter turn ahead: a cosine.
     pub quarter: bool,
-    /// Growth of the amplitude, where there is one.
+    /// Growth of the amplitude, if there is one.
     pub ramp: Option<Ramp<T>>,
 }
 
@@ -43,7 +43,7 @@ pub(crate) enum TurnsPerCycle {
 }
 
 impl TurnsPerCycle {
-    /// The turn that a tone is in at the start of a cycle, less whole turns.
+    /// The fraction of a turn that the tone has completed at the start of a cycle.
     #[inline]
     pub fn fraction(self, cycle: i64) -> f64 {
         match self {
@@ -91,7 +91,7 @@ impl<T: Scalar> Tone<T> {
     }
 }
 
-/// One sine. Its frequency is the clock's, so its release root is at one phase of the cycle.
+/// One sine. Its frequency is the clock's, so its release root has the same phase in every cycle.
 #[derive(Debug, Clone)]
 pub(crate) struct Sine<T> {
     pub tone: Tone<T>,
@@ -233,9 +233,9 @@ impl<T: Scalar> Drive<T> for Sine<T> {
             phase = T::zero();
         }
         let behind = from.phase - phase;
-        // A root that is past by no more than rounding is now.
+        // A root that lies in the past by no more than rounding counts as now.
         let slack = clock.period() * T::of(8.0 * T::EPSILON);
-        // The one root of each cycle; "now" is a guess at it.
+        // There is one root in each cycle; "now" only approximates it.
         let (root, turn) = if behind <= T::zero() {
             (Instant { cycle: from.cycle, phase }, Some(0))
         } else if behind <= slack {

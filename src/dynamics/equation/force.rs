@@ -34,9 +34,9 @@ impl<T: Number> PieceForce<T> {
     /// Force over mass at displacement `y` from the origin.
     #[inline(always)]
     pub fn at(&self, y: T) -> T {
-        let Some((last, others)) = self.coefficients.split_last() else { return T::zero() };
+        let Some((last, lower)) = self.coefficients.split_last() else { return T::zero() };
         let mut sum = *last;
-        for c in others.iter().rev() {
+        for c in lower.iter().rev() {
             sum = sum * y + *c;
         }
         sum

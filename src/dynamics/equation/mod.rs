@@ -17,7 +17,7 @@ use mode::cut;
 pub(crate) use mode::{End, EndKind, Mode};
 pub(crate) use stop::{Compliant, Stop};
 
-/// Stands in for an end that does not exist; far, yet safe to compute with.
+/// Stands for an end that does not exist: far away, yet safe to compute with.
 pub(crate) const FAR: f64 = 1e200;
 
 /// The equation of motion in kernel units.
@@ -38,9 +38,9 @@ impl<T: Scalar> Equation<T> {
     pub fn new(model: &Model, unit: f64) -> Self {
         let curve = &model.mechanism.curve;
         let square = T::of(unit * unit) / T::of(model.mass);
-        let compliant = model.compliant.map(|own| Compliant {
-            stiffness: T::of(own.stiffness) * square,
-            loss: T::of(own.loss) / T::of(unit),
+        let compliant = model.compliant.map(|stop| Compliant {
+            stiffness: T::of(stop.stiffness) * square,
+            loss: T::of(stop.loss) / T::of(unit),
         });
         let left_stop = model.stops.as_ref().and_then(|s| s.left);
         let right_stop = model.stops.as_ref().and_then(|s| s.right);
@@ -90,8 +90,8 @@ impl<T: Scalar> Equation<T> {
         self.modes.iter().map(|mode| mode.force.degree()).max().unwrap_or(0)
     }
 
-    /// The mode of a mass at `x`, which lies on `piece` of the force curve; on the surface of a compliant
-    /// stop the one outside it.
+    /// The mode of a mass at `x`, which lies on `piece` of the force curve. On the surface of a compliant
+    /// stop it is the mode outside the stop.
     pub fn mode_at(&self, x: T, piece: usize) -> usize {
         if self.compliant.is_none() {
             return piece;

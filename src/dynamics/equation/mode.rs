@@ -13,7 +13,7 @@ pub(crate) enum EndKind {
     Compliant,
     /// A break: the neighbouring piece begins.
     Break,
-    /// Nothing is known beyond.
+    /// The end of the known curve.
     Unknown,
 }
 
@@ -50,7 +50,7 @@ impl End {
     }
 }
 
-/// The interval in which one polynomial rules.
+/// The interval in which the mass moves under one polynomial.
 #[derive(Debug, Clone)]
 pub(crate) struct Mode<T> {
     /// The piece of the force curve that it lies in.
@@ -61,8 +61,8 @@ pub(crate) struct Mode<T> {
     pub high: T,
     pub low_kind: EndKind,
     pub high_kind: EndKind,
-    /// Coefficients of force over mass about its low and its high end, where that is a stop's and the force
-    /// of degree 4 or more.
+    /// Coefficients of force over mass about its low and its high end, if that end is a stop and the degree
+    /// of the force is 4 or more.
     about: [Vec<T>; 2],
 }
 
@@ -87,8 +87,8 @@ impl<T: Scalar> Mode<T> {
         }
     }
 
-    /// Coefficients of force over mass about `x`, where that is the stop at an end and they are known;
-    /// otherwise none.
+    /// Coefficients of force over mass about `x`, if that is the stop at an end and they are known; otherwise
+    /// an empty slice.
     #[inline]
     pub fn about(&self, end: End, x: T) -> &[T] {
         match end {
@@ -107,8 +107,8 @@ impl<T: Scalar> Mode<T> {
     }
 }
 
-/// The modes with the surface of a compliant stop at `x` between two of them; a curve that ends there or
-/// before has no stop.
+/// Cuts the modes at the surface of a compliant stop at `x`. A curve that ends at or before `x` has no
+/// stop there.
 pub(super) fn cut<T: Scalar>(modes: Vec<Mode<T>>, x: T) -> Vec<Mode<T>> {
     let mut parts = Vec::with_capacity(modes.len() + 1);
     let last = modes.len() - 1;

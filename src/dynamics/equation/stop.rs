@@ -1,8 +1,8 @@
 //! Laws of the stops.
 //!
 //! A rigid stop returns the mass with its restitution times the speed (Newton). A compliant one pushes with k
-//! d^1.5 (1 + a d'), d the depth: contact by Hertz, loss by Hunt and Crossley (1975). The contact is clipped
-//! where that would pull.
+//! d^1.5 (1 + a d'), d the depth: contact by Hertz, loss by Hunt and Crossley (1975). The force is clipped to
+//! 0 where the law would pull.
 
 use crate::numeric::Scalar;
 
@@ -10,7 +10,7 @@ use crate::numeric::Scalar;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Stop<T> {
     pub restitution: T,
-    /// Outward acceleration by the mechanism alone at the stop: positive presses.
+    /// Outward acceleration by the mechanism alone at the stop: a positive one presses the mass onto it.
     pub acceleration: T,
     /// Its rounding error.
     pub acceleration_rounding: T,
@@ -44,7 +44,7 @@ impl<T: Scalar> Compliant<T> {
         T::of(1.0) + self.loss * w < T::zero()
     }
 
-    /// The inward speed below which it is.
+    /// The inward speed below which the contact is clipped.
     pub fn clipping_speed(&self) -> T {
         T::of(-1.0) / self.loss
     }

@@ -10,7 +10,7 @@ use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::result::{Outcome, Pursuit, Request};
-use crate::dynamics::run::ending::Begun;
+use crate::dynamics::run::ending::Initial;
 use crate::dynamics::series::{Integrals, SEEDED, Series};
 use crate::dynamics::state::Contact;
 use crate::dynamics::step::stepper::Step;
@@ -20,44 +20,45 @@ use crate::system::threads::UnderWay;
 /// Steps of a group between two checks of the budget and the cancel flag.
 const BATCH_STEPS: u64 = 256;
 
-/// The most motions that are under way at a time, in widths of the batch: so many that, where their forces
-/// have two or three degrees, one group can fill its lanes.
-const UNDER_WAY: usize = 4;
+/// Maximum number of motions under way at a time, in widths of the batch: enough for one group to fill its
+/// lanes if the forces have two or three different degrees.
+const MOTIONS_PER_LANE: usize = 4;
 
-/// Fewer motions than this go on faster one after the other: a step of all lanes takes as long as some five
-/// steps alone, however many lanes are in use.
-const FEWEST: usize = 5;
+/// Fewer motions than this are faster one after the other: a step of all lanes takes as long as some five
+/// single steps, however many lanes are in use.
+const MIN_MOTIONS: usize = 5;
 
-/// A run and what it is made of.
+/// A run and the data it needs.
 pub(super) struct Prepared<'a> {
     pub model: &'a Model,
     pub request: &'a Request<'a>,
     pub equation: &'a Equation<f64>,
     pub drive: &'a Sine<f64>,
-    /// Of a motion that is pursued.
+    /// The pursuit, if the motion is pursued.
     pub pursuit: Option<&'a Pursuit<'a>>,
     pub place: usize,
 }
 
-/// Where runs come from, and where they go.
+/// Supplier of runs and receiver of their results.
 pub(super) trait Source<'a> {
-    /// One more run; none where there is none at present, and with none under way where there is none left.
+    /// The next run. Returns `None` if there is none at present; if no run is under way, `None` means that
+    /// there will be no more.
     fn next(&mut self, under_way: UnderWay) -> Option<Prepared<'a>>;
 
-    /// Takes a motion that has ended, what it began as, and its outcome.
-    fn ended(&mut self, own: &Prepared<'a>, motion: LaneMotion<'a>, begun: &Begun<f64>, outcome: Outcome);
+    /// Takes a motion that has ended, its initial values, and its outcome.
+    fn ended(&mut self, run: &Prepared<'a>, motion: LaneMotion<'a>, start: &Initial<f64>, outcome: Outcome);
 }
 
-/// A motion under way, and what it began as.
+/// A motion under way and its initial values.
 struct Member<'a> {
-    /// Its number among those of the batch.
+    /// Its number in order of start.
     index: usize,
-    own: Prepared<'a>,
+    run: Prepared<'a>,
     motion: Box<LaneMotion<'a>>,
-    begun: Begun<f64>,
+    start: Initial<f64>,
 }
 
-/// Motions of one order whose force has one degree at present.
+/// Motions of one order whose forces have the same degree at present.
 struct Group<const W: usize> {
     order: usize,
     tolerance_log2: f64,
@@ -68,13 +69,13 @@ struct Group<const W: usize> {
     trial: Box<Trial<W>>,
     /// The motion in each lane.
     lanes: [Option<usize>; W],
-    /// Motions that wait for a lane, in turn.
+    /// Motions that wait for a lane, first come first served.
     waiting: VecDeque<usize>,
     rounds: u64,
 }
 
 impl<const W: usize> Group<W> {
-    /// Motions whose next step is one of this group's.
+    /// Number of motions whose next step is taken by this group.
     fn ready(&self) -> usize {
         self.lanes.iter().flatten().count() + self.waiting.len()
     }
@@ -82,10 +83,10 @@ impl<const W: usize> Group<W> {
 
 pub(super) struct Batch<'a, 'r, const W: usize> {
     source: &'r mut dyn Source<'a>,
-    /// How many were started.
+    /// Number of runs started so far.
     started: usize,
     members: Vec<Option<Member<'a>>>,
-    /// Places among the members that are free.
+    /// Free places among the members.
     free: Vec<usize>,
     groups: Vec<Group<W>>,
 }
@@ -95,8 +96,8 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         Self {
             source,
             started: 0,
-            members: (0..UNDER_WAY * W).map(|_| None).collect(),
-            free: (0..UNDER_WAY * W).rev().collect(),
+            members: (0..MOTIONS_PER_LANE * W).map(|_| None).collect(),
+            free: (0..MOTIONS_PER_LANE * W).rev().collect(),
             groups: Vec::new(),
         }
     }
@@ -108,14 +109,14 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         }
     }
 
-    /// The group with the most motions that are ready for it, once it can fill its lanes or no more can be
-    /// started; none at the end. The last few go on alone.
+    /// The group with the most motions ready for it, once it can fill its lanes or no more runs can be
+    /// started. Returns `None` at the end. The last few motions are finished alone.
     fn fullest(&mut self) -> Option<usize> {
         loop {
-            let fullest = (0..self.groups.len()).max_by_key(|own| self.groups[*own].ready());
-            let ready = fullest.map_or(0, |own| self.groups[own].ready());
+            let fullest = (0..self.groups.len()).max_by_key(|group| self.groups[*group].ready());
+            let ready = fullest.map_or(0, |group| self.groups[group].ready());
             if ready >= W || !self.start_next(false) {
-                if ready >= FEWEST.min(W / 2) {
+                if ready >= MIN_MOTIONS.min(W / 2) {
                     while ready >= W && self.under_way() < 2 * W && self.start_next(true) {}
                     return fullest;
                 }
@@ -127,21 +128,21 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         }
     }
 
-    /// Goes on with each motion alone to its end.
+    /// Runs each motion alone to its end.
     #[inline(never)] // once a batch
     fn finish_alone(&mut self) {
         for group in 0..self.groups.len() {
             for lane in 0..W {
-                if let Some((_, own, member)) = self.member(group, lane) {
-                    own.columns.store(lane, &mut member.motion);
-                    own.lanes[lane] = None;
+                if let Some((_, group, member)) = self.member(group, lane) {
+                    group.columns.store(lane, &mut member.motion);
+                    group.lanes[lane] = None;
                 }
             }
             self.groups[group].waiting.clear();
         }
         for place in 0..self.members.len() {
-            if let Some(own) = &mut self.members[place] {
-                let outcome = own.motion.go_on();
+            if let Some(member) = &mut self.members[place] {
+                let outcome = member.motion.go_on();
                 self.end(place, outcome);
             }
         }
@@ -151,20 +152,22 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         self.members.len() - self.free.len()
     }
 
-    /// Starts the next run; false where there is none, or no room. `full`: the lanes are.
+    /// Starts the next run; returns false if there is none, or no room. `full`: whether the lanes are full.
     fn start_next(&mut self, full: bool) -> bool {
         let Some(place) = self.free.last().copied() else { return false };
-        let Some(own) = self.source.next(UnderWay { runs: self.under_way(), full }) else { return false };
+        let Some(run) = self.source.next(UnderWay { runs: self.under_way(), full }) else {
+            return false;
+        };
         self.free.pop();
-        let clock = clock(own.model, own.equation.unit);
-        let (model, request) = (own.model, own.request);
-        let motion = Motion::new(model, request, model.tolerance, own.equation, clock, own.drive);
-        let mut motion = Box::new(match own.pursuit {
+        let clock = clock(run.model, run.equation.unit);
+        let (model, request) = (run.model, run.request);
+        let motion = Motion::new(model, request, model.tolerance, run.equation, clock, run.drive);
+        let mut motion = Box::new(match run.pursuit {
             Some(pursuit) => motion.pursuing(pursuit, model),
             None => motion.with_recurrence(model.recurrence, model),
         });
-        let begun = motion.begin(model);
-        self.members[place] = Some(Member { index: self.started, own, motion, begun });
+        let start = motion.begin(model);
+        self.members[place] = Some(Member { index: self.started, run, motion, start });
         self.started += 1;
         self.wait(place);
         true
@@ -172,31 +175,31 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
 
     /// Ends the run of a member.
     fn end(&mut self, place: usize, outcome: Outcome) {
-        if let Some(Member { own, motion, begun, .. }) = self.members[place].take() {
-            self.source.ended(&own, *motion, &begun, outcome);
+        if let Some(Member { run, motion, start, .. }) = self.members[place].take() {
+            self.source.ended(&run, *motion, &start, outcome);
             self.free.push(place);
         }
     }
 
-    /// Lets a member wait for a lane of the group of its force, once its steps are event-free.
+    /// Puts a member in the queue of the group of its force, once its steps are event-free.
     fn wait(&mut self, place: usize) {
         if let Some(group) = self.prepare(place) {
             self.groups[group].waiting.push_back(place);
         }
     }
 
-    /// Goes on with a motion alone until its steps are event-free; the group of its force then, none where
+    /// Runs a motion alone until its steps are event-free. Returns the group of its force then, or `None` if
     /// the run has ended.
     fn prepare(&mut self, place: usize) -> Option<usize> {
-        while let Some(own) = &mut self.members[place] {
-            let left = match own.motion.left() {
+        while let Some(member) = &mut self.members[place] {
+            let left = match member.motion.left() {
                 Ok(left) => left,
                 Err(outcome) => {
                     self.end(place, outcome);
                     continue;
                 }
             };
-            let motion = &mut own.motion;
+            let motion = &mut member.motion;
             if motion.state.contact == Contact::Free
                 && motion.stepper.flies_freely(&motion.state)
                 && motion.has_budget_for(4 * BATCH_STEPS)
@@ -204,8 +207,9 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
                 let force = &motion.stepper.mode(&motion.state).force;
                 let settings = &motion.stepper.settings;
                 let (order, tolerance_log2) = (settings.order, settings.tolerance_log2);
-                let alike = |own: &Group<W>| {
-                    own.columns.takes(force) && (own.order, own.tolerance_log2) == (order, tolerance_log2)
+                let alike = |group: &Group<W>| {
+                    group.columns.takes(force)
+                        && (group.order, group.tolerance_log2) == (order, tolerance_log2)
                 };
                 let found = self.groups.iter().position(alike);
                 return Some(found.unwrap_or_else(|| {
@@ -230,7 +234,7 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         None
     }
 
-    /// Steps a group until it has fewer motions than lanes, or once more than that.
+    /// Steps a group until it has fewer motions than lanes, but at least once.
     #[inline(always)]
     fn step(&mut self, group: usize) {
         loop {
@@ -266,7 +270,7 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         }
     }
 
-    /// Loads motions that wait into the lanes that are free.
+    /// Loads waiting motions into free lanes.
     fn fill(&mut self, group: usize) {
         for lane in 0..W {
             if self.groups[group].lanes[lane].is_none() {
@@ -276,7 +280,7 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         }
     }
 
-    /// The motion of a lane, where it holds one.
+    /// The motion of a lane, if it holds one.
     fn member(&mut self, group: usize, lane: usize) -> Option<(usize, &mut Group<W>, &mut Member<'a>)> {
         let group = &mut self.groups[group];
         let place = group.lanes[lane]?;
@@ -284,21 +288,21 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         Some((place, group, member))
     }
 
-    /// Stores a lane back to its motion, which takes the step on which an event is possible; loads it again
-    /// where it stays in the group.
+    /// Stores a lane back to its motion, which alone takes the step on which an event is possible; loads it
+    /// again if it stays in the group.
     fn store(&mut self, group: usize, lane: usize) {
-        let Some((place, own, member)) = self.member(group, lane) else { return };
-        let trial = &own.trial;
+        let Some((place, current, member)) = self.member(group, lane) else { return };
+        let trial = &current.trial;
         let motion = &mut member.motion;
-        own.lanes[lane] = None;
-        own.columns.store(lane, motion);
+        current.lanes[lane] = None;
+        current.columns.store(lane, motion);
         let left = motion.stepper.clock.between(&motion.state.at, &motion.stepper.end);
         let flow = if trial.holds[lane] && trial.length.0[lane] < left {
-            copy_lane(&own.series, lane, own.order, &mut motion.stepper.series);
-            let alone = &mut motion.stepper.series;
+            copy_lane(&current.series, lane, current.order, &mut motion.stepper.series);
+            let single = &mut motion.stepper.series;
             let measured =
                 Integrals { until: trial.length.0[lane], squared: trial.squared.0[lane], work: 0.0 };
-            alone.measured.set(trial.measured[lane].then_some(measured));
+            single.measured.set(trial.measured[lane].then_some(measured));
             motion.stepper.evaluations += 1;
             motion.stepper.cursor = Some(trial.drive_at_end(lane));
             motion.take(&Step { length: trial.length.0[lane], arrival: None, end: trial.end(lane) })
@@ -315,13 +319,13 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         }
     }
 
-    /// Lets the motion of a lane, which stands on a break, enter the neighbouring mode.
+    /// Moves the motion of a lane, which stands on a break, into the neighbouring mode.
     fn enter_neighbour(&mut self, group: usize, lane: usize) {
-        let Some((place, own, member)) = self.member(group, lane) else { return };
-        if !own.columns.enter_neighbour(lane, &member.own.equation.modes) {
-            own.lanes[lane] = None;
-            own.columns.store(lane, &mut member.motion);
-            let exit = own.columns.exit(lane);
+        let Some((place, group, member)) = self.member(group, lane) else { return };
+        if !group.columns.enter_neighbour(lane, &member.run.equation.modes) {
+            group.lanes[lane] = None;
+            group.columns.store(lane, &mut member.motion);
+            let exit = group.columns.exit(lane);
             member.motion.enter_neighbour(exit);
             self.wait(place);
         }
@@ -329,18 +333,18 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
 
     /// Loads a motion into a lane.
     fn load(&mut self, group: usize, lane: usize, place: usize) {
-        if let Some(own) = &self.members[place] {
-            self.groups[group].columns.load(lane, own.index, &own.motion);
+        if let Some(member) = &self.members[place] {
+            self.groups[group].columns.load(lane, member.index, &member.motion);
             self.groups[group].lanes[lane] = Some(place);
         }
     }
 
     /// Logs the step that a lane has just taken.
     fn log_step(&mut self, group: usize, lane: usize) {
-        let Some((_, own, member)) = self.member(group, lane) else { return };
-        let trial = &own.trial;
+        let Some((_, group, member)) = self.member(group, lane) else { return };
+        let trial = &group.trial;
         let motion = &mut member.motion;
-        copy_lane(&own.series, lane, own.order, &mut motion.stepper.series);
+        copy_lane(&group.series, lane, group.order, &mut motion.stepper.series);
         let mode = motion.stepper.mode(&motion.state);
         let (length, end) = (trial.length.0[lane], trial.end(lane));
         let state = (end.y + mode.origin, end.v);
@@ -349,18 +353,18 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         if let Some(log) = &mut motion.log {
             log.add_step(&view);
         }
-        own.columns.copy_state(lane, motion);
+        group.columns.copy_state(lane, motion);
         motion.mark();
-        own.columns.logged[lane] = motion.log.is_some();
+        group.columns.logged[lane] = motion.log.is_some();
     }
 
     /// Checks budgets and the cancel flag.
     fn check_budgets(&mut self, group: usize) {
         for lane in 0..W {
-            let Some((place, own, member)) = self.member(group, lane) else { continue };
+            let Some((place, group, member)) = self.member(group, lane) else { continue };
             let motion = &mut member.motion;
-            own.lanes[lane] = None;
-            own.columns.store(lane, motion);
+            group.lanes[lane] = None;
+            group.columns.store(lane, motion);
             if motion.stepper.work.is_cancelled() {
                 let outcome = Outcome::Cancelled { at: motion.stepper.clock.seconds(&motion.state.at) };
                 self.end(place, outcome);
@@ -371,13 +375,13 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
     }
 }
 
-/// Makes the series of one lane that of a motion alone.
-fn copy_lane<const W: usize>(all: &Series<Lanes<W>>, lane: usize, order: usize, alone: &mut Series<f64>) {
+/// Copies the series of one lane to that of a single motion.
+fn copy_lane<const W: usize>(all: &Series<Lanes<W>>, lane: usize, order: usize, single: &mut Series<f64>) {
     for k in 0..=order {
-        alone.y[k] = all.y[k].0[lane];
+        single.y[k] = all.y[k].0[lane];
     }
     for k in 0..(order - 1).max(SEEDED) {
-        alone.a[k] = all.a[k].0[lane];
+        single.a[k] = all.a[k].0[lane];
     }
-    alone.known = order + 1;
+    single.known = order + 1;
 }

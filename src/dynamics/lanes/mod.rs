@@ -1,15 +1,14 @@
 //! Batched runs: the event-free steps of several motions by the same instructions.
 //!
-//! Each lane holds a motion, with its own time and its own step length. As long as the steps of a lane are
-//! event-free, all that they need (series, step length, end state, residual, clock and drive, sums and
-//! extremes of the settled window) lies in columns and is computed for all lanes by the same instructions.
-//! Breaks of the force curve and turning points are found there too, where there is one in a step. A step on
-//! which another event is possible (a stop or the barrier near by, a border of the window, a stroboscopic
-//! state) is not taken there: the lane is stored back to its motion, which takes that step alone, and is then
-//! loaded again. The lanes of a group hold forces of one degree; a motion that enters a piece of the curve of
-//! another degree waits for a lane of that group. A run that has ended makes room for the next. The
-//! arithmetic is that of a motion alone, operation for operation, so the result has the same bits for any
-//! width, batch and processor.
+//! Each lane holds a motion with its own time and step length. While the steps of a lane are event-free,
+//! their data (series, step length, end state, residual, clock and drive, sums and extremes of the settled
+//! window) lies in columns and is computed for all lanes by the same instructions. Breaks of the force curve
+//! and turning points are found there too, if a step has one. A step on which another event is possible (near
+//! a stop or the barrier, a border of the window, a stroboscopic state) is not taken there: the lane is
+//! stored back to its motion, which takes that step alone and is then loaded again. The lanes of a group hold
+//! forces of one degree; a motion that enters a piece of the curve of another degree waits for a lane of the
+//! group of that degree. A run that has ended makes room for the next. The arithmetic is that of a single
+//! motion, operation for operation, so the result has the same bits for any width, batch and processor.
 //!
 //! The width is chosen at run time by the processor.
 
@@ -25,37 +24,37 @@ use crate::dynamics::drive::tone::Sine;
 use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::result::{Outcome, Pursued, Pursuit, Request, Run};
-use crate::dynamics::run::ending::Begun;
+use crate::dynamics::run::ending::Initial;
 use crate::dynamics::run::pursue::pursue_alone;
 use crate::system::clock::ThreadClock;
 use crate::system::threads::UnderWay;
 use batch::{Batch, Prepared, Source};
 use columns::LaneMotion;
 
-/// Lanes where registers hold eight numbers: two registers a column, so that one addition need not wait for
-/// the last.
-const WIDEST: usize = 16;
+/// Lanes if registers hold eight numbers: two registers a column, so that one addition need not wait for the
+/// previous one.
+const MAX_LANES: usize = 16;
 
-/// Runs of which what they are made of is kept together, and given back when all of them have ended.
-const KEPT: usize = 1024;
+/// Runs whose data is kept together, and freed when all of them have ended.
+const RUNS_PER_BLOCK: usize = 1024;
 
 impl Model {
-    /// Runs several models with nothing listed, many at once where the processor can: what [`run`](Self::run)
-    /// gives for each, bit for bit, in their order; `until_settled` as in [`Request`]. The CPU time of all is
-    /// shared evenly between them.
+    /// Runs several models without any lists, many at once if the processor can. Returns in order what
+    /// [`run`](Self::run) gives for each, bit for bit; `until_settled` as in [`Request`]. The CPU time is
+    /// shared evenly between the runs.
     pub fn run_all(models: &[Self], until_settled: Option<f64>, cancel: Option<&AtomicBool>) -> Vec<Run> {
         Self::run_together(models, &Request { cancel, until_settled, ..Request::default() })
     }
 
-    /// The same with what `request` asks of each. With a ledger, events or samples they are run one by one.
+    /// The same with `request` for each. With a ledger, events or samples they are run one by one.
     pub fn run_together(models: &[Self], request: &Request) -> Vec<Run> {
         run_all(models, request, usize::MAX)
     }
 
-    /// The same with models that are asked for while others are under way, so that several threads may take
-    /// them from each other. `next` is told what is under way here and gives a number, a model, and what is
-    /// asked of it: none where there is none at present, and with none under way where there is none left.
-    /// `ended` gets each run with its number and model as soon as it has ended. No CPU time is told.
+    /// The same with models that are requested while others are under way, so that several threads can share
+    /// them. `next` gets what is under way here and returns a number, a model and its request, or `None` if
+    /// there is none at present; if nothing is under way, `None` means that there will be no more. `ended`
+    /// gets each run with its number and model as soon as it has ended. No CPU time is measured.
     pub fn run_from<'q>(
         next: &mut dyn FnMut(UnderWay) -> Option<(usize, Self, Request<'q>)>,
         ended: &mut dyn FnMut(usize, &Self, Run),
@@ -63,12 +62,11 @@ impl Model {
         run_from(usize::MAX, next, ended);
     }
 
-    /// Pursues motions of this model from starts of their own, many at once where the processor can; what
-    /// each has come to, the same bit for bit in any company. `next` gives the places of those that are to be
-    /// pursued here, as for [`run_from`](Self::run_from), and `ended` gets what each has come to. The model's
-    /// scales are those of all of them, so that motions that meet in one release from rest go on alike. Its
-    /// start and duration do not matter. Precondition: its drive [repeats](Self::repeats), and the starts lie
-    /// in its curve and between its stops.
+    /// Pursues motions of this model from given starts, many at once if the processor can. `next` gives the
+    /// places of the pursuits to be made here, as for [`run_from`](Self::run_from); `ended` gets the result
+    /// of each, the same bit for bit in any company. All use the model's scales, so that motions that meet in
+    /// one release from rest continue alike. The model's start and duration do not matter. Precondition: its
+    /// drive [repeats](Self::repeats), and the starts lie in its curve and between its stops.
     pub fn pursue(
         &self,
         pursuits: &[Pursuit],
@@ -79,8 +77,8 @@ impl Model {
         pursue(self, pursuits, &Request { cancel, ..Request::default() }, usize::MAX, (next, ended));
     }
 
-    /// [`pursue`](Self::pursue) one by one or in 4, 8 or 16 lanes, for tests; none where the processor has
-    /// not so many.
+    /// [`pursue`](Self::pursue) one by one or in 4, 8 or 16 lanes, for tests; `None` if the processor does
+    /// not have as many.
     #[doc(hidden)]
     pub fn pursue_in_lanes(&self, pursuits: &[Pursuit], width: usize) -> Option<Vec<Pursued>> {
         let request = Request::default();
@@ -94,42 +92,43 @@ impl Model {
         pursued.into_iter().collect()
     }
 
-    /// [`run_all`](Self::run_all) in 4, 8 or 16 lanes, for tests; none where the processor has not so many.
+    /// [`run_all`](Self::run_all) in 4, 8 or 16 lanes, for tests; `None` if the processor does not have
+    /// as many.
     #[doc(hidden)]
     pub fn run_all_in_lanes(models: &[Self], width: usize) -> Option<Vec<Run>> {
         has_lanes(width).then(|| run_all(models, &Request::default(), width))
     }
 }
 
-/// Runs several models, as [`Model::run`] does; the results in their order. No more than `most` lanes are
-/// used.
-fn run_all(models: &[Model], request: &Request, most: usize) -> Vec<Run> {
+/// Runs several models, as [`Model::run`] does, in at most `max_lanes` lanes. Returns the results in order.
+fn run_all(models: &[Model], request: &Request, max_lanes: usize) -> Vec<Run> {
     let watch = ThreadClock::start();
     let mut runs: Vec<Option<Run>> = models.iter().map(|_| None).collect();
     let mut all = models.iter().cloned().enumerate().map(|(place, model)| (place, model, *request));
-    let mut next = |held: UnderWay| if !held.full || all.len() <= WIDEST { all.next() } else { None };
-    run_from(most, &mut next, &mut |place, _, run| runs[place] = Some(run));
+    let mut next =
+        |under_way: UnderWay| if !under_way.full || all.len() <= MAX_LANES { all.next() } else { None };
+    run_from(max_lanes, &mut next, &mut |place, _, run| runs[place] = Some(run));
     let share = watch.seconds() / models.len() as f64;
     runs.iter_mut().flatten().for_each(|run| run.summary.cpu_s = share);
     runs.into_iter().flatten().collect()
 }
 
 fn run_from<'q>(
-    most: usize,
+    max_lanes: usize,
     next: &mut dyn FnMut(UnderWay) -> Option<(usize, Model, Request<'q>)>,
     ended: &mut dyn FnMut(usize, &Model, Run),
 ) {
-    let mut whole = false;
-    while !whole {
-        let berths: Vec<OnceCell<Box<Berth>>> = (0..KEPT).map(|_| OnceCell::new()).collect();
-        let mut runs = Runs { berths: berths.iter(), next, ended };
-        run_batch(&mut runs, most);
-        whole = runs.berths.len() > 0;
+    let mut finished = false;
+    while !finished {
+        let slots: Vec<OnceCell<Box<PreparedRun>>> = (0..RUNS_PER_BLOCK).map(|_| OnceCell::new()).collect();
+        let mut runs = Runs { slots: slots.iter(), next, ended };
+        run_batch(&mut runs, max_lanes);
+        finished = runs.slots.len() > 0;
     }
 }
 
-/// A model and what its run is made of.
-struct Berth<'q> {
+/// A model and the data of its run.
+struct PreparedRun<'q> {
     model: Model,
     request: Request<'q>,
     equation: Equation<f64>,
@@ -138,14 +137,14 @@ struct Berth<'q> {
 
 /// Runs of models. Those that cannot share their steps with others are run alone.
 struct Runs<'a, 'q, 'r> {
-    berths: std::slice::Iter<'a, OnceCell<Box<Berth<'q>>>>,
+    slots: std::slice::Iter<'a, OnceCell<Box<PreparedRun<'q>>>>,
     next: &'r mut dyn FnMut(UnderWay) -> Option<(usize, Model, Request<'q>)>,
     ended: &'r mut dyn FnMut(usize, &Model, Run),
 }
 
 impl<'a> Source<'a> for Runs<'a, '_, '_> {
     fn next(&mut self, under_way: UnderWay) -> Option<Prepared<'a>> {
-        let berth = self.berths.as_slice().first()?;
+        let slot = self.slots.as_slice().first()?;
         loop {
             let (place, model, request) = (self.next)(under_way)?;
             let lists = request.ledger || request.events || !request.sample_times.is_empty();
@@ -153,10 +152,10 @@ impl<'a> Source<'a> for Runs<'a, '_, '_> {
             let unit = model.scales.unit();
             match shares.then(|| form(&model, &clock(&model, unit))) {
                 Some(Form::Sine(drive)) => {
-                    self.berths.next();
+                    self.slots.next();
                     let equation = Equation::new(&model, unit);
-                    let own = berth.get_or_init(|| Box::new(Berth { model, request, equation, drive }));
-                    let Berth { model, request, equation, drive } = &**own;
+                    let run = slot.get_or_init(|| Box::new(PreparedRun { model, request, equation, drive }));
+                    let PreparedRun { model, request, equation, drive } = &**run;
                     return Some(Prepared { model, request, equation, drive, pursuit: None, place });
                 }
                 _ => (self.ended)(place, &model, model.run(&request)),
@@ -164,16 +163,22 @@ impl<'a> Source<'a> for Runs<'a, '_, '_> {
         }
     }
 
-    fn ended(&mut self, own: &Prepared<'a>, motion: LaneMotion<'a>, begun: &Begun<f64>, outcome: Outcome) {
-        (self.ended)(own.place, own.model, motion.finish(own.model, begun, outcome));
+    fn ended(&mut self, run: &Prepared<'a>, motion: LaneMotion<'a>, start: &Initial<f64>, outcome: Outcome) {
+        (self.ended)(run.place, run.model, motion.finish(run.model, start, outcome));
     }
 }
 
-/// What gives the places of pursuits, and what gets what they have come to.
-type Through<'r> = (&'r mut dyn FnMut(UnderWay) -> Option<usize>, &'r mut dyn FnMut(usize, Pursued));
+/// The callback that gives the places of pursuits, and the one that gets their results.
+type Callbacks<'r> = (&'r mut dyn FnMut(UnderWay) -> Option<usize>, &'r mut dyn FnMut(usize, Pursued));
 
 /// Pursues motions of one model.
-fn pursue(model: &Model, pursuits: &[Pursuit], request: &Request, most: usize, (next, ended): Through) {
+fn pursue(
+    model: &Model,
+    pursuits: &[Pursuit],
+    request: &Request,
+    max_lanes: usize,
+    (next, ended): Callbacks,
+) {
     let unit = model.scales.unit();
     match form(model, &clock(model, unit)) {
         Form::Sine(drive) if model.compliant.is_none() => {
@@ -186,7 +191,7 @@ fn pursue(model: &Model, pursuits: &[Pursuit], request: &Request, most: usize, (
                 pursuit: Some(&pursuits[place]),
                 place,
             };
-            run_batch(&mut Pursuits { prepared, next, ended }, most);
+            run_batch(&mut Pursuits { prepared, next, ended }, max_lanes);
         }
         _ => {
             while let Some(place) = next(UnderWay::default()) {
@@ -196,7 +201,7 @@ fn pursue(model: &Model, pursuits: &[Pursuit], request: &Request, most: usize, (
     }
 }
 
-/// Pursuits, each by its place.
+/// Pursuits by their place.
 struct Pursuits<'r, P> {
     prepared: P,
     next: &'r mut dyn FnMut(UnderWay) -> Option<usize>,
@@ -208,34 +213,34 @@ impl<'a, P: Fn(usize) -> Prepared<'a>> Source<'a> for Pursuits<'_, P> {
         (self.next)(under_way).map(&self.prepared)
     }
 
-    fn ended(&mut self, own: &Prepared<'a>, motion: LaneMotion<'a>, begun: &Begun<f64>, outcome: Outcome) {
-        (self.ended)(own.place, motion.arrived(own.model, begun, outcome));
+    fn ended(&mut self, run: &Prepared<'a>, motion: LaneMotion<'a>, start: &Initial<f64>, outcome: Outcome) {
+        (self.ended)(run.place, motion.arrived(run.model, start, outcome));
     }
 }
 
-/// Whether the processor at hand has so many lanes.
+/// Whether the processor has this many lanes.
 fn has_lanes(width: usize) -> bool {
     match width {
         4 => true,
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         8 => pulp::x86::V3::is_available(),
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        WIDEST => pulp::x86::V4::is_available(),
+        MAX_LANES => pulp::x86::V4::is_available(),
         _ => false,
     }
 }
 
-/// Runs what a source gives in as many lanes as the processor has, at most `most`.
-fn run_batch<'a>(source: &mut dyn Source<'a>, most: usize) {
-    debug_assert!(most >= 4, "every processor has 4 lanes");
+/// Runs what a source gives in as many lanes as the processor has, at most `max_lanes`.
+fn run_batch<'a>(source: &mut dyn Source<'a>, max_lanes: usize) {
+    debug_assert!(max_lanes >= 4, "every processor has 4 lanes");
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {
-        if most >= WIDEST
+        if max_lanes >= MAX_LANES
             && let Some(wide) = pulp::x86::V4::try_new()
         {
-            return wide.vectorize(Wide(Batch::<WIDEST>::new(source)));
+            return wide.vectorize(Wide(Batch::<MAX_LANES>::new(source)));
         }
-        if most >= 8
+        if max_lanes >= 8
             && let Some(wide) = pulp::x86::V3::try_new()
         {
             return wide.vectorize(Wide(Batch::<8>::new(source)));
@@ -244,8 +249,8 @@ fn run_batch<'a>(source: &mut dyn Source<'a>, most: usize) {
     Batch::<4>::new(source).run();
 }
 
-/// What is run by instructions that not every processor has. (A type of its own and no closure: a closure's
-/// body would be compiled apart, for every processor.)
+/// A batch to be run by instructions that not every processor has. (A type and not a closure, since the body
+/// of a closure would be compiled separately, for any processor.)
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 struct Wide<'a, 'r, const W: usize>(Batch<'a, 'r, W>);
 

@@ -1,4 +1,4 @@
-//! Instants, sums and a step of all lanes.
+//! Instants, compensated sums and a trial step of all lanes.
 
 use crate::dynamics::clock::Instant;
 use crate::dynamics::series::Endpoint;
@@ -20,8 +20,8 @@ impl<const W: usize> Clocks<W> {
         Instant { cycle: self.cycle.0[lane] as i64, phase: self.phase.0[lane] }
     }
 
-    /// As [`Clock::advance`](crate::dynamics::clock::Clock::advance) by up to a cycle; of more the phase lies
-    /// beyond the cycle.
+    /// As [`Clock::advance`](crate::dynamics::clock::Clock::advance), for steps of up to a cycle; a longer
+    /// step leaves the phase beyond the cycle.
     #[inline(always)]
     pub fn advance(&self, by: &Lanes<W>, period: &Lanes<W>) -> Self {
         let mut later = *self;
@@ -35,7 +35,7 @@ impl<const W: usize> Clocks<W> {
     }
 }
 
-/// Sums with compensation.
+/// Compensated sums.
 #[derive(Clone, Copy)]
 pub(super) struct CompensatedSums<const W: usize> {
     pub sum: Lanes<W>,
@@ -52,33 +52,34 @@ impl<const W: usize> CompensatedSums<W> {
         CompensatedSum::of_parts(self.sum.0[lane], self.carry.0[lane])
     }
 
-    /// What a sum becomes with one more term.
+    /// The parts of a sum with one more term.
     #[inline(always)]
     pub fn with(&self, lane: usize, term: f64) -> (f64, f64) {
-        let mut own = self.get(lane);
-        own.add(term);
-        own.parts()
+        let mut sum = self.get(lane);
+        sum.add(term);
+        sum.parts()
     }
 }
 
 /// A step computed in all lanes.
 pub(crate) struct Trial<const W: usize> {
-    /// Active lanes that did not take it, since an event is possible on it.
+    /// Active lanes that did not take the step, since an event is possible on it.
     pub stopped: [bool; W],
-    /// Those that took it.
+    /// Lanes that took the step.
     pub taken: [bool; W],
-    /// Those that took it up to a break of the force curve, and have the neighbouring mode to enter.
+    /// Lanes that took the step up to a break of the force curve and are to enter the neighbouring mode.
     pub passed: [bool; W],
     /// Whether the polynomial satisfies the equation at the step's end.
     pub holds: [bool; W],
     pub length: Lanes<W>,
     pub end: Endpoint<Lanes<W>>,
-    /// When it ends, and the drive and its time derivative per unit amplitude there.
+    /// The end of the step.
     pub at: Clocks<W>,
+    /// The drive and its time derivative per unit amplitude there.
     pub unit: (Lanes<W>, Lanes<W>),
-    /// Integral of the squared velocity over the whole of it, where that is known.
+    /// Integral of the squared velocity over the whole step, if `measured`.
     pub squared: Lanes<W>,
-    /// Where that is.
+    /// Whether `squared` is known.
     pub measured: [bool; W],
 }
 
@@ -99,13 +100,13 @@ impl<const W: usize> Trial<W> {
         }
     }
 
-    /// Where the polynomial of a lane leads.
+    /// The end of the polynomial of a lane.
     pub fn end(&self, lane: usize) -> Endpoint<f64> {
         let Endpoint { y, v, acceleration, bound } = &self.end;
         Endpoint { y: y.0[lane], v: v.0[lane], acceleration: acceleration.0[lane], bound: bound.0[lane] }
     }
 
-    /// When the step of a lane ends, and the drive and its time derivative there.
+    /// The end of the step of a lane, and the drive and its time derivative there.
     pub fn drive_at_end(&self, lane: usize) -> (Instant<f64>, (f64, f64)) {
         (self.at.get(lane), (self.unit.0.0[lane], self.unit.1.0[lane]))
     }

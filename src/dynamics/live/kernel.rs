@@ -1,7 +1,7 @@
 //! Kernel of a live run: continues from a step's end, samples within a step, stops within one.
 //!
-//! Built once for a model; a [`Motion`] is made from it for every call and thrown away. That costs some
-//! microseconds and keeps the integrator free of any thought of being continued.
+//! It is built once for a model. Every call makes a [`Motion`] from it and drops it again; this costs some
+//! microseconds and keeps the integrator free of any provision for being continued.
 
 use crate::dynamics::clock::Clock;
 use crate::dynamics::drive::form::{Form, clock, form, with_drive};
@@ -13,8 +13,8 @@ use crate::dynamics::result::{Event, Outcome, Request, Sample};
 use crate::dynamics::state::{Checkpoint, Contact, MotionState};
 use crate::numeric::decay;
 
-/// Work of one call, in units of [`work`](crate::dynamics::step::work): some tens of milliseconds. More is
-/// only asked for where impacts crowd without end, or a step takes long.
+/// Work of one call, in units of [`work`](crate::dynamics::step::work): some tens of milliseconds. Only a
+/// chatter without end or a very expensive step needs more.
 const WORK_PER_CALL: u64 = 2_000_000;
 
 /// Energies in kernel units, per mass.
@@ -27,7 +27,7 @@ pub(crate) struct Sums {
 }
 
 impl Sums {
-    pub fn less(&self, other: &Self) -> Self {
+    pub fn minus(&self, other: &Self) -> Self {
         Self {
             work: self.work - other.work,
             squared_velocity: self.squared_velocity - other.squared_velocity,
@@ -45,16 +45,16 @@ pub(crate) struct Kernel {
     drive: std::sync::Arc<Form<f64>>,
 }
 
-/// What came of stepping on.
+/// Result of stepping forward.
 pub(crate) struct Stretch {
     pub samples: Vec<Sample>,
     pub events: Vec<Event>,
     pub head: Checkpoint<f64>,
     pub sums: Sums,
-    /// Where the last step began, and the energies up to there; none where no step was taken.
+    /// State and energies at the beginning of the last step; `None` if no step was taken.
     pub last: Option<(Checkpoint<f64>, Sums)>,
     pub ended: Option<Outcome>,
-    /// The work of one call was used up.
+    /// Whether the work of one call was used up.
     pub exhausted: bool,
 }
 
@@ -114,7 +114,7 @@ impl Kernel {
         motion
     }
 
-    /// The model's start put into the time `now` in s, and what happens there at once.
+    /// The model's start at the time `now` in s, and the events that happen there at once.
     pub fn start(&self, model: &Model, now: f64) -> (Checkpoint<f64>, Vec<Event>) {
         with_drive!(&*self.drive, drive => self.start_with(model, now, drive))
     }
@@ -128,7 +128,7 @@ impl Kernel {
         (motion.checkpoint(), motion.record.events.take().unwrap_or_default())
     }
 
-    /// Steps on from `head` until a step has passed `to` in s.
+    /// Steps from `head` until a step has passed `to` in s.
     pub fn proceed(&self, model: &Model, head: &Checkpoint<f64>, to: f64, times: &[f64]) -> Stretch {
         with_drive!(&*self.drive, drive => self.proceed_with(model, head, to, times, drive))
     }
@@ -169,8 +169,8 @@ impl Kernel {
         }
     }
 
-    /// Takes the steps from `tail` to `head` once more for the samples at `times`, all before the head.
-    pub fn look(
+    /// Takes the steps from `tail` to `head` again for the samples at `times`, all before the head.
+    pub fn resample(
         &self,
         model: &Model,
         tail: &Checkpoint<f64>,
@@ -179,11 +179,11 @@ impl Kernel {
         into: &mut Vec<Sample>,
     ) {
         if !times.is_empty() {
-            with_drive!(&*self.drive, drive => self.look_with(model, tail, head, times, into, drive));
+            with_drive!(&*self.drive, drive => self.resample_with(model, tail, head, times, into, drive));
         }
     }
 
-    fn look_with<D: Drive<f64>>(
+    fn resample_with<D: Drive<f64>>(
         &self,
         model: &Model,
         tail: &Checkpoint<f64>,
@@ -193,7 +193,7 @@ impl Kernel {
         drive: &D,
     ) {
         if matches!(tail.state.contact, Contact::Resting(_) | Contact::Motionless) {
-            // It stands still, and the search for its release need not be made again.
+            // It stands still; the search for its release need not be repeated.
             let (x, phase) = (tail.state.x, tail.state.phase());
             into.extend(times.iter().map(|&t| {
                 let base_accel =
@@ -220,8 +220,8 @@ impl Kernel {
         into.extend(motion.record.samples);
     }
 
-    /// The state at `now` in s, where that lies between `tail` and `head`, and the energies from the tail to
-    /// there.
+    /// The state at `now` in s and the energies from the tail to there, if `now` lies between `tail`
+    /// and `head`.
     pub fn present(
         &self,
         model: &Model,

@@ -1,4 +1,5 @@
-//! Derivatives of the map against finite differences in double-double arithmetic, on every kind of event.
+//! Tests of the derivatives of the map against finite differences in double-double arithmetic, for
+//! every event.
 
 use std::sync::Arc;
 
@@ -24,7 +25,7 @@ fn differences(model: &Model, seconds: f64, (x, v): (f64, f64)) -> Jacobian {
     let kernel = Kernel::<DoubleDouble>::new(&map.model);
     let unit = model.scales.unit();
     let dd = DoubleDouble::of;
-    // The error of a central difference is of the order of its square.
+    // The error of a central difference is of the order of the square of its step.
     let step = dd(1e-9);
     let end = |dx: DoubleDouble, dv: DoubleDouble| {
         let start = (dd(x) + dx, (dd(v) + dv) * dd(unit));
@@ -41,22 +42,22 @@ fn differences(model: &Model, seconds: f64, (x, v): (f64, f64)) -> Jacobian {
     Jacobian { rows: [[by_x[0], by_v[0]], [by_x[1], by_v[1]]] }
 }
 
-/// Asserts that both agree to a share of the largest derivative, and that what must happen happens.
+/// Asserts that both agree to a share of the largest derivative, and that the `must` events happen.
 #[track_caller]
 fn agree(fields: &str, seconds: f64, start: (f64, f64), must: &[EventKind], share: f64) {
     let model = model(fields);
-    let (passage, own) = StroboscopicMap::over(&model, seconds).pass_with_jacobian(start, 1);
+    let (passage, jacobian) = StroboscopicMap::over(&model, seconds).pass_with_jacobian(start, 1);
     let other = differences(&model, seconds, start);
     for kind in must {
         assert!(passage.events.iter().any(|event| event.kind == *kind), "{kind:?} {:?}", passage.events);
     }
-    let largest = other.rows.iter().flatten().fold(0.0_f64, |most, own| most.max(own.abs()));
-    for (own, other) in own.rows.iter().flatten().zip(other.rows.iter().flatten()) {
-        assert!((own - other).abs() <= share * largest, "{own:e} {other:e}, of {largest:e}");
+    let largest = other.rows.iter().flatten().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
+    for (entry, other) in jacobian.rows.iter().flatten().zip(other.rows.iter().flatten()) {
+        assert!((entry - other).abs() <= share * largest, "{entry:e} {other:e}, of {largest:e}");
     }
     if let Some(exact) = passage.determinant {
         let rounding = share * largest * largest;
-        assert!((own.determinant() - exact).abs() <= rounding, "{} {exact}", own.determinant());
+        assert!((jacobian.determinant() - exact).abs() <= rounding, "{} {exact}", jacobian.determinant());
     }
 }
 
@@ -106,9 +107,9 @@ fn a_rest_forgets_where_it_came_from() {
     let model = model(&format!("{WELL}, {weak}, {DAMPED}, {stops}"));
     for seconds in [4.0, 6.0, 20.0] {
         let map = StroboscopicMap::over(&model, seconds);
-        let (passage, own) = map.pass_with_jacobian((0.3, 0.2), 1);
+        let (passage, jacobian) = map.pass_with_jacobian((0.3, 0.2), 1);
         assert!(passage.rests() > 0);
-        assert_eq!((own.rows, passage.determinant), ([[0.0; 2]; 2], Some(0.0)), "{seconds}");
+        assert_eq!((jacobian.rows, passage.determinant), ([[0.0; 2]; 2], Some(0.0)), "{seconds}");
     }
 }
 
@@ -123,14 +124,14 @@ fn breaks_of_the_curve() {
     let pieces = vec![line(-1.0, 0.0, 3.0), line(0.0, 0.1, 0.1), line(0.0, 0.1, -0.1), line(1.0, 0.0, 3.0)];
     let infinity = f64::INFINITY;
     let curve = ForceCurve::from_pieces(pieces, vec![-1.0, 0.0, 1.0], (-infinity, infinity), false, None);
-    let own = model(&format!("{WELL}, {SINE}, {DAMPED}"));
-    let model = Model { mechanism: Arc::new(Mechanism::new(curve)), ..own };
+    let smooth = model(&format!("{WELL}, {SINE}, {DAMPED}"));
+    let model = Model { mechanism: Arc::new(Mechanism::new(curve)), ..smooth };
     let start = (0.4, -0.9);
-    let (passage, own) = StroboscopicMap::over(&model, 6.0).pass_with_jacobian(start, 1);
+    let (passage, jacobian) = StroboscopicMap::over(&model, 6.0).pass_with_jacobian(start, 1);
     assert!(passage.crossings() == 2 && passage.state.0 > 1.0, "{passage:?}");
     let other = differences(&model, 6.0, start);
-    for (own, other) in own.rows.iter().flatten().zip(other.rows.iter().flatten()) {
-        assert!((own - other).abs() < 1e-10, "{own:e} {other:e}");
+    for (entry, other) in jacobian.rows.iter().flatten().zip(other.rows.iter().flatten()) {
+        assert!((entry - other).abs() < 1e-10, "{entry:e} {other:e}");
     }
 }
 

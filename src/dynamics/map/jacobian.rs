@@ -1,7 +1,7 @@
-//! Derivatives of a state by an earlier one, and their eigenvalues.
+//! Derivatives of a state with respect to an earlier one, and their eigenvalues.
 
-/// Derivatives of displacement and velocity (rows) by displacement and velocity at an earlier time (columns),
-/// in SI.
+/// Derivatives of displacement and velocity (rows) with respect to displacement and velocity at an earlier
+/// time (columns), in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Jacobian {
     /// By rows: the unit of the second column is s, that of the second row 1/s.
@@ -25,7 +25,7 @@ impl Multiplier {
 }
 
 impl Jacobian {
-    /// No change.
+    /// The identity.
     pub const IDENTITY: Self = Self { rows: [[1.0, 0.0], [0.0, 1.0]] };
 
     /// Determinant.
@@ -39,23 +39,23 @@ impl Jacobian {
         self.rows[0][0] + self.rows[1][1]
     }
 
-    /// The derivatives of a change of this state by an earlier one, of which `earlier` are its derivatives.
+    /// The chain rule: these derivatives, of the later part of a motion, times those of the part before it.
     #[must_use]
     pub fn after(&self, earlier: &Self) -> Self {
-        let (own, other) = (&self.rows, &earlier.rows);
-        let entry = |i: usize, j: usize| own[i][0] * other[0][j] + own[i][1] * other[1][j];
+        let (later, other) = (&self.rows, &earlier.rows);
+        let entry = |i: usize, j: usize| later[i][0] * other[0][j] + later[i][1] * other[1][j];
         Self { rows: [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]] }
     }
 
-    /// The same of the mirrored state.
+    /// The derivatives of the mirrored state.
     #[must_use]
     pub fn mirrored(&self) -> Self {
         Self { rows: self.rows.map(|row| row.map(|entry| -entry)) }
     }
 
-    /// Eigenvalues, the larger magnitude first, of a pair of conjugates the one above the real axis. The
-    /// smaller real one is `determinant` over the larger: known apart, it keeps its digits however small it
-    /// is.
+    /// Eigenvalues, the one of larger magnitude first; of a conjugate pair first the one above the real axis.
+    /// The smaller real one is `determinant` over the larger: since the determinant is known separately, it
+    /// keeps its digits however small it is.
     pub fn multipliers(&self, determinant: f64) -> [Multiplier; 2] {
         let half = 0.5 * self.trace();
         // (a - d)^2 / 4 + b c loses no digits where the eigenvalues are close
@@ -79,20 +79,20 @@ mod tests {
     fn eigenvalues_of_both_kinds() {
         let real = Jacobian { rows: [[2.0, 1.0], [1.0, 2.0]] };
         assert_eq!(
-            real.multipliers(real.determinant()).map(|own| (own.re, own.im)),
+            real.multipliers(real.determinant()).map(|multiplier| (multiplier.re, multiplier.im)),
             [(3.0, 0.0), (1.0, 0.0)]
         );
         let turned = Jacobian { rows: [[0.0, -0.5], [0.5, 0.0]] };
         assert_eq!(
-            turned.multipliers(turned.determinant()).map(|own| (own.re, own.im)),
+            turned.multipliers(turned.determinant()).map(|multiplier| (multiplier.re, multiplier.im)),
             [(0.0, 0.5), (0.0, -0.5)]
         );
         assert!((turned.multipliers(0.25)[0].magnitude() - 0.5).abs() < 1e-15);
         let nothing = Jacobian { rows: [[0.0, 0.0], [0.0, 0.0]] };
-        assert!(nothing.multipliers(0.0).iter().all(|own| own.magnitude() == 0.0));
+        assert!(nothing.multipliers(0.0).iter().all(|multiplier| multiplier.magnitude() == 0.0));
         let twice = real.after(&turned);
         assert_eq!(twice.rows, [[0.5, -1.0], [1.0, -0.5]]);
         let stiff = Jacobian { rows: [[-1e9, 0.0], [1e9, -1e-12]] };
-        assert_eq!(stiff.multipliers(1e-3).map(|own| own.re), [-1e9, -1e-12]);
+        assert_eq!(stiff.multipliers(1e-3).map(|multiplier| multiplier.re), [-1e9, -1e-12]);
     }
 }

@@ -1,10 +1,10 @@
-//! Stroboscopic map: the state once a forcing period, and its derivatives through every event.
+//! Stroboscopic map: the state after one forcing period, and its derivatives through every event.
 //!
-//! The stepper is written for any number type. With [`Dual`] numbers a stretch of motion comes with the
-//! derivatives of its end by its beginning. Those of a step follow from the arithmetic of its series. The
-//! instant of an event is a root, and one step of Newton's method there gives its derivatives; what they make
-//! of the state at an impact is the saltation matrix (Müller 1995; Kong et al. 2024). A mass that rests has
-//! no derivatives left, since its release depends on the drive alone.
+//! The stepper is written for any number type. With [`Dual`] numbers it also computes the derivatives of the
+//! end of a motion with respect to its beginning. Those of a step follow from the arithmetic of its series.
+//! The instant of an event is a root, and one step of Newton's method at the root gives its derivatives; at
+//! an impact this amounts to the saltation matrix (Müller 1995; Kong et al. 2024). After a rest on a stop all
+//! derivatives are 0, since the release depends on the drive alone.
 
 #[cfg(test)]
 mod differences;
@@ -38,7 +38,7 @@ impl<T: Scalar> Kernel<T> {
     }
 }
 
-/// How long one application of the map takes.
+/// Length of one application of the map.
 #[derive(Debug, Clone, Copy)]
 enum Length {
     /// Cycles of the clock.
@@ -47,13 +47,13 @@ enum Length {
     Seconds(f64),
 }
 
-/// The map of a state to that one forcing period later.
+/// The map from a state to the state one forcing period later.
 #[derive(Debug)]
 pub struct StroboscopicMap {
     model: Model,
     plain: Kernel<f64>,
     dual: Kernel<Dual>,
-    /// Cycles of the clock up to the strobe, whole and not.
+    /// Cycles of the clock up to the strobe: their whole number and the fraction.
     phase: (i64, f64),
     length: Length,
     /// Time in s that one application takes.
@@ -61,8 +61,8 @@ pub struct StroboscopicMap {
 }
 
 impl Model {
-    /// The map of the state at a phase of the drive, in forcing periods from 0 to 1, to that one forcing
-    /// period later. None where the drive has no period, and where a transducer has a state of its own.
+    /// The map from the state at a phase of the drive, in forcing periods from 0 to 1, to the state one
+    /// forcing period later. `None` if the drive has no period, or if a transducer has a state of its own.
     pub fn stroboscopic_map(&self, phase: f64) -> Option<StroboscopicMap> {
         let alone = self.repeats() && !self.has_electrical_state();
         let period = self.forcing_period.filter(|_| alone)?;
@@ -77,12 +77,12 @@ impl Model {
 }
 
 impl StroboscopicMap {
-    /// The map of the state at time 0 to that after `seconds`, whatever the drive.
+    /// The map from the state at time 0 to the state after `seconds`, for any drive.
     pub fn over(model: &Model, seconds: f64) -> Self {
         Self {
             plain: Kernel::new(model),
             dual: Kernel::new(model),
-            // nothing is judged, so that the settled window is empty
+            // the settled window is empty, so nothing is classified
             model: model.with_duration(seconds, seconds),
             phase: (0, 0.0),
             length: Length::Seconds(seconds),
@@ -106,9 +106,9 @@ impl StroboscopicMap {
         self.period
     }
 
-    /// What becomes of a displacement in m and a velocity in m/s over so many forcing periods.
+    /// The motion from a displacement in m and a velocity in m/s over this many forcing periods.
     ///
-    /// A displacement beyond a stop or the curve is the caller's error: the motion then begins there.
+    /// The displacement must not lie beyond a stop or the curve; this is not checked.
     pub fn pass(&self, state: (f64, f64), periods: u32) -> Passage {
         self.pass_between(state, (0.0, f64::from(periods)))
     }
@@ -118,27 +118,27 @@ impl StroboscopicMap {
         self.pass_between(state, (0.0, part))
     }
 
-    /// The same from the one to the other of two times after a strobe, in forcing periods.
+    /// The same between two times after a strobe, in forcing periods.
     pub(crate) fn pass_between(&self, (x, v): (f64, f64), span: (f64, f64)) -> Passage {
         let unit = self.model.scales.unit();
         self.trace(&self.plain, (x, v * unit), span).passage
     }
 
-    /// The same with the derivatives of the state at the end by that at the start. All are 0 where the mass
-    /// has rested on a stop. Some are infinite or not a number where it has touched one without speed. Those
-    /// of a mass that stands on a stop or a break of the curve are of one side alone.
+    /// The same with the derivatives of the state at the end with respect to that at the start. All are 0 if
+    /// the mass has rested on a stop. Some are infinite or NaN if it has touched one without speed. Those of
+    /// a mass that stands on a stop or a break of the curve are one-sided.
     pub fn pass_with_jacobian(&self, state: (f64, f64), periods: u32) -> (Passage, Jacobian) {
         self.pass_part_with_jacobian(state, (0.0, f64::from(periods)))
     }
 
-    /// The same from the one to the other of two times after a strobe, in forcing periods.
+    /// The same between two times after a strobe, in forcing periods.
     pub(crate) fn pass_part_with_jacobian(
         &self,
         (x, v): (f64, f64),
         span: (f64, f64),
     ) -> (Passage, Jacobian) {
         let unit = self.model.scales.unit();
-        // Changes of the size of the scales, so that the length of a step suits them as it suits the state.
+        // Derivatives in units of the scales, so that they affect the length of a step as the state does.
         let scales = [self.model.scales.length, self.model.scales.speed * unit];
         let start =
             (Dual { value: x, slopes: [scales[0], 0.0] }, Dual { value: v * unit, slopes: [0.0, scales[1]] });

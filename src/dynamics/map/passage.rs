@@ -1,4 +1,4 @@
-//! A stretch of motion between two strobes, and what happened on it.
+//! A part of a motion between two strobes, and its events.
 
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::drive::Drive;
@@ -11,30 +11,30 @@ use crate::dynamics::state::{Contact, HELD, MotionState};
 use crate::dynamics::step::settings::ROUNDINGS;
 use crate::numeric::{PolynomialRoots, Scalar};
 
-/// What happens between two strobes.
+/// The motion between two strobes.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Passage {
     /// Displacement in m and velocity in m/s at the end.
     pub state: (f64, f64),
-    /// Events in order of time, in s from the start of the drive. A mass that is at rest on a stop from the
+    /// Events in order of time, in s from the start of the drive. A mass that rests on a stop from the
     /// beginning has no event for that.
     pub events: Vec<Event>,
-    /// Determinant of the map from the start to here, without integration: exp(-c t/m), times the squared
-    /// restitution of each impact, 0 where the mass has rested. None with compliant stops, whose loss depends
-    /// on the motion.
+    /// Determinant of the map from the start to here, computed without integration: exp(-c t/m) times the
+    /// squared restitution of each impact, 0 if the mass has rested. `None` with compliant stops, whose loss
+    /// depends on the motion, and with a circuit.
     pub determinant: Option<f64>,
-    /// Where the mass turned back before a stop without touching it, in order of time. A mass that begins at
-    /// rest has not turned back there.
+    /// Points at which the mass turned back before a stop without touching it, in order of time. The
+    /// beginning of a motion from rest is not one of them.
     pub(crate) misses: Vec<Miss>,
-    /// `Done`, or how the motion ended before.
+    /// `Done`, or how the motion ended early.
     pub outcome: Outcome,
-    /// Impacts faster than [`least_impact_speed`](Model::least_impact_speed), the contacts of compliant stops
-    /// among them.
+    /// Number of impacts faster than [`least_impact_speed`](Model::least_impact_speed), with the contacts of
+    /// compliant stops.
     pub impacts: u64,
 }
 
-/// A place where the mass turned back before a stop without touching it.
+/// A point at which the mass turned back before a stop without touching it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Miss {
     /// Time in s from the start of the drive.
@@ -46,13 +46,13 @@ pub(crate) struct Miss {
 }
 
 impl Passage {
-    /// Smallest distance in m between a stop and a place where the mass turned back without touching it; none
-    /// where it never did.
+    /// Smallest distance in m between a stop and a point at which the mass turned back without touching it;
+    /// `None` if there is no such point.
     pub fn nearest_miss(&self) -> Option<f64> {
         self.misses.iter().map(|miss| miss.gap).reduce(f64::min)
     }
 
-    /// This passage and then its mirror image, `later` seconds after it, which ends mirrored too.
+    /// This passage followed by its mirror image, `later` seconds after it, which ends mirrored too.
     #[must_use]
     pub(crate) fn with_mirror_image(mut self, later: f64) -> Self {
         let image = |event: &Event| Event {
@@ -77,7 +77,7 @@ impl Passage {
         self.events.iter().filter(|event| kinds.contains(&event.kind)).count() as u64
     }
 
-    /// Whether the mass has met a stop with a speed, however small.
+    /// Whether the mass has hit a stop, at any speed.
     pub fn strikes(&self) -> bool {
         self.count([EventKind::Impact, EventKind::Contact]) > 0
     }
@@ -100,7 +100,7 @@ pub(super) struct Traced<T> {
     pub rested: bool,
 }
 
-/// Follows the motion from a state in kernel units at an instant to another.
+/// Integrates the motion between two instants, from a state in kernel units.
 pub(super) fn trace<T: Scalar, D: Drive<T>>(
     model: &Model,
     equation: &Equation<T>,
@@ -166,8 +166,8 @@ fn squared_restitutions(model: &Model, events: &[Event]) -> f64 {
     impacts.map(|event| restitution(event.side).powi(2)).product()
 }
 
-/// Adds the places before a stop at which the mass turned back on the step that was just taken from the state
-/// `before`.
+/// Adds the points before a stop at which the mass turned back during the last step, which began in the
+/// state `before`.
 fn add_misses<T: Scalar, D: Drive<T>>(
     motion: &Motion<'_, T, D>,
     before: &MotionState<T>,
@@ -181,7 +181,7 @@ fn add_misses<T: Scalar, D: Drive<T>>(
     let series = &motion.stepper.series;
     let clock = &motion.stepper.clock;
     let length = clock.between(&before.at, &motion.state.at).to_f64();
-    // where it leaves a surface, what is 0 by definition is so but for rounding
+    // where it leaves a surface, coefficients that are 0 by definition may differ from 0 by rounding
     let multiplicity =
         before.touch.map_or(1, |touch| if touch.multiplicity == HELD { 1 } else { touch.multiplicity });
     let (mut velocity, mut power) = (Vec::with_capacity(series.known), 1.0);
@@ -189,7 +189,7 @@ fn add_misses<T: Scalar, D: Drive<T>>(
         velocity.push(if k < multiplicity { 0.0 } else { k as f64 * c.to_f64() * power });
         power *= length;
     }
-    // A mass that begins at rest has not turned there, and one that stands still to rounding turns nowhere.
+    // A mass that begins at rest has not turned there, and one that stands still to rounding does not turn.
     let Some(first) = velocity.iter().find(|coefficient| **coefficient != 0.0) else { return };
     let mut rises = *first > 0.0;
     let place = |t: f64| series.coefficients().iter().rev().fold(0.0, |sum, c| sum * t + c.to_f64());

@@ -1,4 +1,4 @@
-//! Characteristic times, accelerations and signal ranges of a model, by which a picture is scaled.
+//! Characteristic times, accelerations and signal ranges of a model, by which pictures are scaled.
 
 use std::f64::consts::TAU;
 
@@ -7,18 +7,18 @@ use super::Model;
 /// Range of an axis of base acceleration without an excitation, in m/s^2.
 const UNSHAKEN: f64 = super::excitation::STANDARD_GRAVITY;
 
-/// Multiple of its root mean square that a noise is given room for; more is rare.
+/// Range of a noise, as a multiple of its root mean square; larger values are rare.
 const NOISE_ROOM: f64 = 2.5;
 
 impl Model {
-    /// Characteristic time of the motion in s: the forcing period; without one the period of the excitation's
-    /// middle frequency; without an excitation the [`natural_time`](Self::natural_time).
+    /// Characteristic time of the motion in s: the forcing period; if there is none, the period of the
+    /// excitation's middle frequency; without an excitation the [`natural_time`](Self::natural_time).
     pub fn characteristic_time(&self) -> f64 {
         self.forcing_period.or_else(|| self.rhythm()).unwrap_or_else(|| self.natural_time())
     }
 
-    /// Characteristic period in s of an excitation that has none: of the middle of a noise's band, of the
-    /// fast end of a chirp, of the mean crossings of a record.
+    /// Characteristic period in s of an excitation without a forcing period: of the middle of a noise's band,
+    /// of the fast end of a chirp, of the mean crossings of a record.
     fn rhythm(&self) -> Option<f64> {
         let drive = &self.excitation;
         let noises = drive.noises.iter().map(|noise| 2.0 / (noise.low + noise.high));
@@ -30,11 +30,11 @@ impl Model {
     }
 
     /// Characteristic time of the mechanism in s: the period of small oscillations in the stiffest well;
-    /// without a stiffness twice the time of flight to a stop; without both the scene's time scale.
+    /// without a stiffness, twice the time of flight to a stop; without both, the scene's time scale.
     pub fn natural_time(&self) -> f64 {
         let landscape = &self.mechanism.landscape;
-        let wells = landscape.equilibria.iter().filter(|own| own.stable);
-        let stiffness = wells.map(|own| landscape.inner_stiffness(own)).fold(0.0, f64::max);
+        let wells = landscape.equilibria.iter().filter(|equilibrium| equilibrium.stable);
+        let stiffness = wells.map(|well| landscape.inner_stiffness(well)).fold(0.0, f64::max);
         let small = TAU * (self.mass / stiffness).sqrt();
         let usable = |time: &f64| time.is_finite() && *time > 0.0;
         Some(small)
@@ -72,8 +72,7 @@ impl Model {
         drive.constant.abs() + parts.iter().sum::<f64>()
     }
 
-    /// Amplitude in m/s^2 and angular frequency in 1/s of the drive, where it is a single sine and nothing
-    /// else.
+    /// Amplitude in m/s^2 and angular frequency in 1/s of the drive, if it is a single sine and nothing else.
     pub fn single_sine(&self) -> Option<(f64, f64)> {
         let drive = &self.excitation;
         let alone = drive.constant == 0.0 && drive.chirps.is_empty() && drive.records.is_empty();
@@ -157,8 +156,8 @@ mod tests {
 
     #[test]
     fn the_acceleration_is_that_of_the_equation_of_motion() {
-        let own = model("duffing", &[]);
+        let duffing = model("duffing", &[]);
         // x'' = x - x^3 - 0.3 x' - a_b
-        near(own.acceleration(0.5, 0.2, 0.1), 0.5 - 0.125 - 0.06 - 0.1);
+        near(duffing.acceleration(0.5, 0.2, 0.1), 0.5 - 0.125 - 0.06 - 0.1);
     }
 }

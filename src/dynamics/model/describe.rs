@@ -6,8 +6,8 @@ use crate::numeric::short;
 use crate::scene::number_text;
 
 impl Model {
-    /// The model in words: a line for each thing that is modelled, then what is left out. The force curve and
-    /// the meaning of a damping ratio are told elsewhere.
+    /// The model in words: a line for each part that is modelled, then the parts left out. The force curve
+    /// and the meaning of a damping ratio are described elsewhere.
     pub fn describe(&self) -> Vec<String> {
         let mut lines = vec![format!("proof mass {} g", short(self.mass * 1e3))];
         let mut absent = Vec::new();
@@ -18,7 +18,7 @@ impl Model {
         }
         match &self.stops {
             _ if self.compliant.is_some() => {
-                lines.extend(self.compliant.iter().flat_map(|own| compliant(self, own)))
+                lines.extend(self.compliant.iter().flat_map(|stop| compliant(self, stop)))
             }
             Some(pair) => {
                 let stop = |side: &str, at: Option<StopAt>| match at {
@@ -87,8 +87,8 @@ impl Model {
             absent.push("excitation");
         }
         match &self.transducer {
-            Some(own) => {
-                lines.push(own.describe());
+            Some(transducer) => {
+                lines.push(transducer.describe());
                 lines.extend(self.fast_circuit());
             }
             None => absent.push("transducer"),
@@ -118,11 +118,11 @@ impl Model {
 const SPEEDS: [f64; 2] = [0.1, 0.5];
 
 /// Steps of the integrator in a period of the oscillation on a compliant stop, measured on the prototype at
-/// the default tolerance: at a quiet rest, whose depth follows the drive, and trembling without loss as far
-/// as the surface.
+/// the default tolerance: in a quiet rest, whose depth follows the drive, and in an oscillation without loss
+/// that reaches the surface.
 const STEPS_PER_PERIOD: (f64, f64) = (1.5, 36.0);
 
-/// What a compliant stop is, what one impact on it does, and what resting on it costs.
+/// Description of a compliant stop, of an impact on it, and of the cost of a rest on it.
 fn compliant(model: &Model, stop: &Hertz) -> Vec<String> {
     let place = |at: Option<f64>| short(at.unwrap_or(f64::NAN) * 1e3);
     let (left, right) = model.stop_positions();
@@ -136,7 +136,7 @@ fn compliant(model: &Model, stop: &Hertz) -> Vec<String> {
     )];
     for speed in SPEEDS {
         let force = stop.peak_force(model.mass, speed);
-        let pressure = stop.pressure(force).map(|own| format!(", {} GPa", short(own / 1e9)));
+        let pressure = stop.pressure(force).map(|pressure| format!(", {} GPa", short(pressure / 1e9)));
         lines.push(format!(
             "an impact at {speed} m/s on one: {} ms of contact, restitution {}, {} um deep, {} N{}",
             short(stop.contact_time(model.mass, speed) * 1e3),

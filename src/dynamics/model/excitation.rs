@@ -1,4 +1,4 @@
-//! Excitation of a scene in SI: its parts, which add up.
+//! Excitation of a scene in SI: the sum of its parts.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -11,36 +11,36 @@ use crate::scene::{Excitation, Fault, Record};
 
 pub use crate::scene::STANDARD_GRAVITY;
 
-/// The longest common period of several tones, in periods of the fastest.
+/// Longest common period of several tones, in periods of the fastest.
 const LONGEST_COMMON_PERIOD: u64 = 10_000;
 
-/// Noise rarely passes this multiple of its root mean square.
+/// Multiple of its root mean square that a noise rarely exceeds.
 const NOISE_PEAK: f64 = 3.0;
 
-/// The drive, as a judgement needs it.
+/// Whether the drive repeats.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Rhythm {
-    /// It repeats.
+    /// The drive repeats.
     Periodic,
-    /// It has no period, or another amplitude in each.
+    /// The drive has no period, or its amplitude changes from one period to the next.
     Changing,
-    /// There is none.
+    /// There is no drive.
     Absent,
 }
 
-/// Base acceleration in SI: a constant, tones, chirps and records; its parts add up.
+/// Base acceleration in SI: the sum of a constant, tones, chirps and records.
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]
 pub struct ExcitationParts {
     /// Constant acceleration in m/s^2.
     pub constant: f64,
-    /// Sines, the lines of each noise among them.
+    /// Sines, including the lines of each noise.
     pub tones: Vec<TonePart>,
     /// Chirps.
     pub chirps: Vec<ChirpPart>,
     /// Recorded accelerations.
     pub records: Vec<Arc<Record>>,
-    /// What each noise among the tones is.
+    /// Parameters of each noise among the tones.
     pub noises: Vec<NoisePart>,
 }
 
@@ -48,17 +48,17 @@ pub struct ExcitationParts {
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct TonePart {
-    /// Amplitude in m/s^2, that after the ramp where there is one; any sign.
+    /// Amplitude in m/s^2, after the ramp if there is one; any sign.
     pub amplitude: f64,
     /// Frequency in Hz.
     pub frequency: f64,
-    /// Phase in turns beyond the quarter, 0 <= phase < 1.
+    /// Phase in turns without the quarter turn, 0 <= phase < 1.
     pub phase: f64,
-    /// A quarter turn ahead.
+    /// Whether the tone is a quarter turn ahead.
     pub quarter: bool,
     /// Amplitude at time 0 and length of the ramp in s.
     pub ramp: Option<(f64, f64)>,
-    /// One line of a noise.
+    /// Whether the tone is one line of a noise.
     pub noise: bool,
 }
 
@@ -76,7 +76,7 @@ pub struct ChirpPart {
     pub over: f64,
 }
 
-/// What a noise was made from. SI.
+/// Parameters of a noise. SI.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct NoisePart {
@@ -93,7 +93,7 @@ pub struct NoisePart {
 }
 
 impl ExcitationParts {
-    /// Fails where a record has not been read.
+    /// Fails if a record has not been read.
     pub(crate) fn new(excitation: &Excitation) -> Result<Self, Fault> {
         let mut motion = Self::default();
         motion.add(excitation, "excitation")?;
@@ -105,7 +105,7 @@ impl ExcitationParts {
             Excitation::None => {}
             Excitation::Constant { accel_g } => self.constant += accel_g * STANDARD_GRAVITY,
             Excitation::Sine { frequency_hz, amplitude_g, phase_deg } => {
-                // Exact: the remainder and the multiple of 90 degrees are.
+                // Exact, since the remainder and the multiple of 90 degrees are.
                 let reduced = phase_deg.rem_euclid(360.0);
                 let quarters = (reduced / 90.0).floor();
                 let rest = reduced - 90.0 * quarters;
@@ -182,7 +182,7 @@ impl ExcitationParts {
         self.noises.push(noise);
     }
 
-    /// Whether it never accelerates.
+    /// Whether the acceleration is always 0.
     pub(crate) fn is_still(&self) -> bool {
         self.constant == 0.0
             && self.tones.iter().all(|t| t.amplitude == 0.0 && t.ramp.is_none_or(|r| r.0 == 0.0))
@@ -190,7 +190,7 @@ impl ExcitationParts {
             && self.records.iter().all(|r| r.peak() == 0.0)
     }
 
-    /// Acceleration in m/s^2 at a time in s from the start on, without a record; odd in the amplitudes.
+    /// Acceleration in m/s^2 at a time in s since the start, without records; odd in the amplitudes.
     pub(crate) fn at(&self, t: f64) -> f64 {
         let tones = self.tones.iter().map(|tone| {
             let amplitude = match tone.ramp {
@@ -208,12 +208,12 @@ impl ExcitationParts {
         self.constant + tones.chain(chirps).sum::<f64>()
     }
 
-    /// Whether nothing of it changes.
+    /// Whether the acceleration is constant.
     pub(crate) fn is_constant(&self) -> bool {
         Self { constant: 0.0, ..self.clone() }.is_still()
     }
 
-    /// Whether it repeats; `common` are its [`common_cycles`](Self::common_cycles).
+    /// Whether it repeats; `common` is the result of [`common_cycles`](Self::common_cycles).
     pub(crate) fn rhythm(&self, common: Option<u64>) -> Rhythm {
         let empty = self.tones.is_empty() && self.chirps.is_empty() && self.records.is_empty();
         match common {
@@ -223,7 +223,7 @@ impl ExcitationParts {
         }
     }
 
-    /// Size of the amplitude in m/s^2 at a time in s, where it is one ramp.
+    /// Magnitude of the amplitude in m/s^2 at a time in s, if the drive is one ramp.
     pub(crate) fn ramped_amplitude(&self, t: f64) -> Option<f64> {
         let alone = self.constant == 0.0 && self.chirps.is_empty() && self.records.is_empty();
         match self.tones.as_slice() {
@@ -253,7 +253,7 @@ impl ExcitationParts {
         self.tones.iter().map(|t| t.frequency).reduce(f64::max)
     }
 
-    /// Periods of the fastest tone in the common period of all parts, where there is one within reach.
+    /// Periods of the fastest tone in the common period of all parts, if there is one of at most 10 000.
     pub(crate) fn common_cycles(&self) -> Option<u64> {
         if !(self.chirps.is_empty() && self.records.is_empty() && self.noises.is_empty()) {
             return None;

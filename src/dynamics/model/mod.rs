@@ -1,4 +1,4 @@
-//! The scene as run: SI units, checked, everything the integrator needs.
+//! Model: a scene prepared for a run, in SI and checked, with all that the integrator needs.
 
 mod characteristic;
 mod describe;
@@ -19,18 +19,18 @@ use start::{fault, start_state};
 use stops::{StopAt, StopPair};
 use transducer::Transducer;
 
-/// The most periods of the fastest tone that the clock counts exactly, about 2^53.
-const MOST_PERIODS: f64 = 9e15;
+/// Maximum number of periods of the fastest tone that the clock counts exactly, about 2^53.
+const MAX_PERIODS: f64 = 9e15;
 
-/// The first push of an excitation that begins with nothing is looked for from the duration over two to this
-/// power on.
+/// The first nonzero acceleration of an excitation that begins at 0 is searched for from the duration divided
+/// by two to this power on.
 const PROBES: i32 = 60;
 
-/// A scene as run.
+/// A scene prepared for a run.
 #[derive(Debug, Clone)]
 pub struct Model {
     pub(in crate::dynamics) mass: f64,
-    /// Of the mechanism alone.
+    /// Damping coefficient of the mechanism alone.
     pub(in crate::dynamics) damping: f64,
     pub(in crate::dynamics) transducer: Option<Transducer>,
     /// Shared between the cells of a sweep.
@@ -47,19 +47,19 @@ pub struct Model {
     pub(in crate::dynamics) start: (f64, f64),
     /// Electrical state at the start in A or V; 0 without one.
     pub(in crate::dynamics) start_electrical: f64,
-    /// At rest in an equilibrium with nothing to move it.
+    /// Whether the mass is at rest in an equilibrium and nothing moves it.
     pub(in crate::dynamics) motionless: bool,
-    /// Where a crossing is counted.
+    /// Displacement at which crossings are counted.
     pub(in crate::dynamics) crossing_level: Option<f64>,
     pub(in crate::dynamics) one_well: bool,
     /// Cycles of the clock in a forcing period.
     pub(in crate::dynamics) cycles_per_period: i64,
     pub(in crate::dynamics) rhythm: Rhythm,
-    /// Phase of the drive at the start in turns: the argument of a sine, 0 of a sum.
+    /// Phase of the drive at the start in turns: the argument of a sine, 0 for a sum.
     pub(in crate::dynamics) start_phase: f64,
 }
 
-/// The faults of a scene as written, but for those of its sweep, which no model has.
+/// The faults of a scene, except those of its sweep, which no model has.
 fn faults_of_check(scene: &Scene) -> Vec<Fault> {
     let mut faults = scene::check(scene).faults;
     faults.retain(|fault| !fault.field.starts_with("sweep"));
@@ -67,9 +67,9 @@ fn faults_of_check(scene: &Scene) -> Vec<Fault> {
 }
 
 impl Model {
-    /// Converts a scene that has passed its check; faults that only show here (no equilibrium to rest
-    /// at, a ratio without a stable equilibrium, a start beyond a stop or the curve) are all reported, and of
-    /// a scene with numbers that none may have those of its check.
+    /// Converts a scene that has passed its check. Returns all faults that only show here (no equilibrium to
+    /// rest at, a damping ratio without a stable equilibrium, a start beyond a stop or the curve), and those
+    /// of the check if a number of the scene is out of range.
     pub fn build(scene: &Scene, mechanism: Arc<Mechanism>) -> Result<Self, Vec<Fault>> {
         let mut faults = Vec::new();
         let mass = scene.mass_g / 1e3;
@@ -124,18 +124,18 @@ impl Model {
             ExcitationParts::default()
         });
         let periods = drive.fastest().unwrap_or(0.0) * scene.run.duration_s;
-        if periods > MOST_PERIODS {
+        if periods > MAX_PERIODS {
             faults.push(fault(
                 "run.duration_s",
                 scene.run.duration_s,
                 format!(
-                    "makes {periods:e} periods of the excitation; at most {MOST_PERIODS:e} can be counted: \
+                    "makes {periods:e} periods of the excitation; at most {MAX_PERIODS:e} can be counted: \
                      shorten the run or lower the frequency"
                 ),
             ));
         }
         if !faults.is_empty() {
-            // a number that is none is behind what it leads to
+            // a number that is not finite may have caused them: report it first
             return Err(faults_of_check(scene).into_iter().chain(faults).collect());
         }
         let common = drive.common_cycles();
@@ -147,7 +147,7 @@ impl Model {
         };
         let circuit = transducer.and_then(|transducer| transducer.circuit);
         let charged = circuit.map_or(0.0, |circuit| circuit.state(start_electrical));
-        // A charge can give the mass as much energy as a speed.
+        // A charge can give the mass as much energy as a speed does.
         let fastest = (start.0, start.1.abs().max(charged.abs()));
         let scales = scales(scene, mass, &mechanism, &drive, fastest, (stops, compliant));
         let (left, right) = (stops.and_then(|s| s.left), stops.and_then(|s| s.right));
@@ -180,14 +180,14 @@ impl Model {
             mechanism,
         };
         model.choose_barrier();
-        // Faults are looked for only where there are some: a sweep builds a model for each cell.
+        // The full check runs only if there is a fault: a sweep builds a model for each cell.
         let faults = if scene::is_sound(scene) { Vec::new() } else { faults_of_check(scene) };
         if faults.is_empty() { Ok(model) } else { Err(faults) }
     }
 
-    /// Of two barriers as near to x = 0, counts crossings at the one on the side of the start; of a start
-    /// between them without speed, at the one towards which the base first pushes the mass. Nothing crosses
-    /// where it stands there and nothing pushes it.
+    /// If two barriers are equally near to x = 0, counts crossings at the one on the side of the start; if
+    /// the mass starts at x = 0 without speed, at the one towards which the base first pushes it. If nothing
+    /// pushes it there, no crossing is counted.
     fn choose_barrier(&mut self) {
         let Some(left) = self.mechanism.landscape.left_barrier else { return };
         let pushes = || {
@@ -202,30 +202,30 @@ impl Model {
         };
     }
 
-    /// Positions of the left and the right stop in m, where there are any.
+    /// Positions of the left and the right stop in m, if there are any.
     pub fn stop_positions(&self) -> (Option<f64>, Option<f64>) {
         let at = |stop: Option<StopAt>| stop.map(|stop| stop.x);
         self.stops.map_or((None, None), |pair| (at(pair.left), at(pair.right)))
     }
 
-    /// Kinetic energy and potential in J at a displacement in m and a velocity in m/s; the potential is 0 at
-    /// x = 0 and holds what a compliant stop stores.
+    /// Kinetic and potential energy in J at a displacement in m and a velocity in m/s. The potential is 0 at
+    /// x = 0 and includes the energy stored in a compliant stop.
     pub fn energies(&self, x: f64, v: f64) -> (f64, f64) {
         let potential = self.mechanism.curve.potential(x);
-        let pressed = self.compliant.zip(self.pressed_depth(x)).map(|(own, (depth, _))| own.energy(depth));
+        let pressed = self.compliant.zip(self.pressed_depth(x)).map(|(stop, (depth, _))| stop.energy(depth));
         (0.5 * self.mass * v * v, pressed.map_or(potential, |stored| potential + stored))
     }
 
-    /// How deep in m a mass at `x` in m has pressed a stop in, and whether that is the right one; none
-    /// outside both.
+    /// Depth in m to which a mass at `x` in m presses into a stop, and whether that is the right stop; `None`
+    /// if it is in neither.
     pub fn pressed_depth(&self, x: f64) -> Option<(f64, bool)> {
         let (left, right) = self.stop_positions();
         let right = right.map(|stop| (x - stop, true));
         left.map(|stop| (stop - x, false)).into_iter().chain(right).find(|(depth, _)| *depth > 0.0)
     }
 
-    /// Whether the mirror image of a free motion is one, and crosses where the motion does: an odd curve,
-    /// stops alike on both sides.
+    /// Whether the mirror image of a free motion is a motion of the same model with mirrored crossings: an
+    /// odd curve, equal stops on both sides.
     pub(crate) fn is_symmetric(&self) -> bool {
         let (left, right) = self.stops.map_or((None, None), |pair| (pair.left, pair.right));
         let alike = match (left, right) {
@@ -236,20 +236,20 @@ impl Model {
         alike && self.mechanism.curve.is_odd() && self.crossing_level.is_none_or(|level| level == 0.0)
     }
 
-    /// Whether the mirror image of a motion is one half a forcing period later. The drive is mirrored then
-    /// where each of its tones turns an odd number of times in the period.
+    /// Whether the mirror image of a motion is a motion half a forcing period later. The drive is mirrored
+    /// then if each of its tones makes an odd number of turns in the period.
     pub(crate) fn mirrors_in_half_a_period(&self) -> bool {
         let ExcitationParts { constant, tones, .. } = &self.excitation;
         let odd = |period: f64| tones.iter().all(|tone| (tone.frequency * period).round() % 2.0 == 1.0);
         self.is_symmetric() && *constant == 0.0 && self.repeats() && self.forcing_period.is_some_and(odd)
     }
 
-    /// Whether the base moves at all.
+    /// Whether the base moves.
     pub fn is_shaken(&self) -> bool {
         !self.excitation.is_still()
     }
 
-    /// Whole forcing periods in the settled window, and the clock's cycles in one.
+    /// Number of whole forcing periods in the settled window, and the clock's cycles in one period.
     pub(crate) fn window_periods(&self) -> (u64, i64) {
         match self.forcing_period {
             Some(period) => {
@@ -260,7 +260,7 @@ impl Model {
         }
     }
 
-    /// Time in s at which the last amplitude ramp of the drive ends; none without one.
+    /// Time in s at which the last amplitude ramp of the drive ends; `None` without a ramp.
     pub fn ramp_end(&self) -> Option<f64> {
         self.excitation.tones.iter().filter_map(|tone| tone.ramp.map(|ramp| ramp.1)).reduce(f64::max)
     }
@@ -270,8 +270,8 @@ impl Model {
         self.rhythm == Rhythm::Periodic
     }
 
-    /// Whether a run may go on until the motion repeats: the drive does, and the settled window holds two
-    /// periods of it.
+    /// Whether a run may go on until the motion repeats: the drive repeats, and the settled window holds at
+    /// least two periods of it.
     pub fn can_settle(&self) -> bool {
         self.repeats() && self.window_periods().0 >= 2
     }

@@ -1,4 +1,4 @@
-//! What can be read of a model, and models that differ from it in their run alone.
+//! Accessors of a model, and copies of it that differ in their run alone.
 
 use std::sync::Arc;
 
@@ -23,10 +23,10 @@ impl Model {
         self.damping
     }
 
-    /// Damping coefficient in N s/m that acts on the motion: with that of a transducer without an electrical
-    /// state.
+    /// Damping coefficient in N s/m that acts on the motion, including that of a transducer without an
+    /// electrical state.
     pub fn total_damping(&self) -> f64 {
-        self.damping + self.transducer.map_or(0.0, |own| own.damping)
+        self.damping + self.transducer.map_or(0.0, |transducer| transducer.damping)
     }
 
     /// Whether the scene has a transducer.
@@ -34,23 +34,24 @@ impl Model {
         self.transducer.is_some()
     }
 
-    /// The transducer as the scene has it.
+    /// The transducer as given in the scene.
     pub fn transducer(&self) -> scene::Transducer {
-        self.transducer.map_or(scene::Transducer::None, |own| own.described)
+        self.transducer.map_or(scene::Transducer::None, |transducer| transducer.described)
     }
 
-    /// What the transducer gives at a sample of the motion; none without one.
+    /// Output of the transducer at a sample of the motion; `None` without a transducer.
     pub fn output(&self, sample: &Sample) -> Option<Output> {
-        self.transducer.map(|own| own.output(sample.v, sample.electrical))
+        self.transducer.map(|transducer| transducer.output(sample.v, sample.electrical))
     }
 
-    /// Whether the transducer has a state of its own, a current or a voltage, that goes on with the motion.
+    /// Whether the transducer has a state of its own, a current or a voltage, that is integrated with
+    /// the motion.
     pub fn has_electrical_state(&self) -> bool {
         self.circuit().is_some()
     }
 
-    /// Why steps are short beside a circuit that is far faster than the motion, and what the scene would be
-    /// without it; none without such a circuit.
+    /// Explains why a circuit that is far faster than the motion makes the steps short, and how to model the
+    /// scene without it; `None` if there is no such circuit.
     pub fn fast_circuit(&self) -> Option<String> {
         self.transducer.as_ref()?.fast_circuit(self.mass, self.scales.time)
     }
@@ -60,20 +61,21 @@ impl Model {
         self.start_electrical
     }
 
-    /// The circuit of the transducer, where that has a state.
+    /// The circuit of the transducer, if it has a state.
     pub(in crate::dynamics) fn circuit(&self) -> Option<&Circuit> {
-        self.transducer.as_ref().and_then(|own| own.circuit.as_ref())
+        self.transducer.as_ref().and_then(|transducer| transducer.circuit.as_ref())
     }
 
     /// Energy in J that the transducer stores in this electrical state.
-    pub(in crate::dynamics) fn charged(&self, electrical: f64) -> f64 {
-        self.circuit().map_or(0.0, |own| 0.5 * self.mass * own.state(electrical).powi(2))
+    pub(in crate::dynamics) fn electrical_energy(&self, electrical: f64) -> f64 {
+        self.circuit().map_or(0.0, |circuit| 0.5 * self.mass * circuit.state(electrical).powi(2))
     }
 
-    /// The electrical state with which this model goes on from that of another one.
-    pub(in crate::dynamics) fn taken_over(&self, before: &Self, electrical: f64) -> f64 {
+    /// The electrical state of this model when it takes over a run from another model in the
+    /// state `electrical`.
+    pub(in crate::dynamics) fn electrical_after(&self, before: &Self, electrical: f64) -> f64 {
         let pair = self.transducer.as_ref().zip(before.transducer.as_ref());
-        pair.map_or(0.0, |(own, was)| own.taken_over(was, electrical))
+        pair.map_or(0.0, |(present, previous)| present.electrical_after(previous, electrical))
     }
 
     /// The mechanism.
@@ -81,12 +83,12 @@ impl Model {
         &self.mechanism
     }
 
-    /// The stops; none where both sides are open.
+    /// The stops; `None` if both sides are open.
     pub fn stops(&self) -> Option<StopPair> {
         self.stops
     }
 
-    /// What the stops are made of, where they are compliant.
+    /// The contact law of the stops, if they are compliant.
     pub fn compliant(&self) -> Option<Hertz> {
         self.compliant
     }
@@ -101,7 +103,7 @@ impl Model {
         self.start
     }
 
-    /// Displacement in m at which crossings are counted, where the mechanism has a barrier.
+    /// Displacement in m at which crossings are counted, if the mechanism has a barrier.
     pub fn crossing_level(&self) -> Option<f64> {
         self.crossing_level
     }
@@ -116,13 +118,13 @@ impl Model {
         self.settle
     }
 
-    /// Period of the excitation in s, where it has one.
+    /// Period of the excitation in s, if it has one.
     pub fn forcing_period(&self) -> Option<f64> {
         self.forcing_period
     }
 
-    /// Phase of the drive at a time in s, in turns: the argument of its sine; of a sum, the share of the
-    /// common period since the start. None where it does not repeat.
+    /// Phase of the drive at a time in s, in turns: the argument of its sine, or for a sum the fraction of
+    /// the common period since the start. `None` if the drive does not repeat.
     pub fn drive_phase(&self, t: f64) -> Option<f64> {
         let frequency = self.excitation.fastest().filter(|_| self.repeats())?;
         let cycles = DoubleDouble::of(self.window_periods().1 as f64);
@@ -131,18 +133,18 @@ impl Model {
         Some(if share < 1.0 { share } else { 0.0 })
     }
 
-    /// Length, speed and time that the tolerance is relative to.
+    /// Length, speed and time to which the tolerance is relative.
     pub fn scales(&self) -> Scales {
         self.scales
     }
 
-    /// The speed in m/s above which an impact counts. A chatter has impacts without end, and how many of the
-    /// slower ones are computed one by one depends on the tolerance.
+    /// The speed in m/s above which an impact is counted. A chatter has infinitely many impacts, and how many
+    /// of the slower ones are computed one by one depends on the tolerance.
     pub fn least_impact_speed(&self) -> f64 {
         LEAST_IMPACT * self.scales.speed
     }
 
-    /// Local error allowed, relative to the scales.
+    /// Permitted local error, relative to the scales.
     pub fn tolerance(&self) -> f64 {
         self.tolerance
     }
@@ -152,18 +154,18 @@ impl Model {
         self.recurrence
     }
 
-    /// The same model run at another tolerance.
+    /// The same model with another tolerance.
     pub fn with_tolerance(&self, tolerance: f64) -> Self {
         Self { tolerance, ..self.clone() }
     }
 
-    /// The same model with another start, displacement in m and velocity in m/s, and the scales that it has.
+    /// The same model, with the same scales, from another start: displacement in m and velocity in m/s.
     /// Precondition: the start lies in the curve and between the stops.
     pub fn with_start(&self, start: (f64, f64)) -> Self {
         Self { start, motionless: false, ..self.clone() }
     }
 
-    /// The same model, where nothing holds the mass within its curve.
+    /// The same model without stops.
     pub(crate) fn without_stops(&self) -> Self {
         Self { stops: None, compliant: None, ..self.clone() }
     }
@@ -178,19 +180,19 @@ impl Model {
         Self { duration, settle, ..self.clone() }
     }
 
-    /// The same model, whose run goes on from a state of a run of `before`: displacement in m and velocity in
-    /// m/s, as [`Run::carried`](crate::dynamics::Run::carried) has them. A stop of this model that lies on
-    /// the other side of the mass carries it along, as the end of the known curve does, and takes its speed.
+    /// The same model, continuing from a state of a run of `before`: displacement in m and velocity in m/s,
+    /// as in [`Run::carried`](crate::dynamics::Run::carried). A stop of this model that lies on the other
+    /// side of the mass carries it along and takes its speed, as does the end of the known curve.
     #[must_use]
     pub fn carried_on(mut self, before: &Self, state: (f64, f64)) -> Self {
         let pressed = before.compliant.and(self.compliant).and_then(|_| before.pressed_depth(state.0));
-        self.start = self.held_within(state, pressed.map_or(0.0, |own| own.0));
+        self.start = self.held_within(state, pressed.map_or(0.0, |(depth, _)| depth));
         self.motionless = false;
         self
     }
 
-    /// A state with the mass between the stops, or pressed in by up to `depth`, and within the known curve;
-    /// where it had to be carried there, it has no speed.
+    /// Moves a state to between the stops, or up to `depth` into them, and into the known curve. A mass that
+    /// has to be moved loses its speed.
     pub fn held_within(&self, (x, v): (f64, f64), depth: f64) -> (f64, f64) {
         let domain = self.mechanism.curve.domain();
         let (left, right) = self.stop_positions();

@@ -1,32 +1,32 @@
-//! Scales of a scene: the length, speed and time that the tolerance is relative to.
+//! Scales of a scene: the length, speed and time to which the tolerance is relative.
 //!
-//! The rule, covariant under a change of units; from mechanism, drive and start alone, since a stop that is
-//! never reached must not change a bit:
+//! The rule is covariant under a change of units. It uses mechanism, drive and start alone, since a stop that
+//! is never reached must not change a bit of the result:
 //!
 //! - rate w: the square root of the largest stiffness magnitude over mass among the wells' inner sides and
-//!   the barrier (one well: at it; none: at the start); without stiffness the drive's fastest tone;
+//!   the barrier (one well: at the well; none: at the start); without stiffness the drive's fastest tone;
 //!   without both, sqrt(acceleration over length), or speed over length. The inner side of a well that lies
 //!   beyond a kink is the slope just inside the kink, as for a damping ratio: flexures rest some um beyond
-//!   theirs, where the force is a wall of 30 times the stiffness, and nothing here may jump while a slider
-//!   moves the well across;
+//!   theirs, where the force is a wall of 30 times the stiffness, and the scales must not jump when a slider
+//!   moves the well across the kink;
 //! - length L: the largest of half the distance between the wells, the start's distance from the barrier (or
 //!   the single equilibrium, or 0), start speed over w, and the sum over the parts of the drive of amplitude
-//!   over w and the larger of w and the part's own rate (a fast part moves the mass that far, by its first
-//!   kick);
+//!   over w and the larger of w and the rate of the part (the first kick of a fast part moves the mass as
+//!   far as that);
 //! - speed L w, time 1/w.
 //!
-//! Two stops that leave the mass less than a hundredth of L bound it more than all that: the mass is soon at
-//! one of them, or it rests. L then falls with that room, and is the room itself where it is a ten-thousandth
-//! of L; w rises to the rate at which drive and start speed move the mass as far.
+//! Two stops that leave the mass less than a hundredth of L are a tighter bound than L: the mass soon meets
+//! one of them, or it rests. L then decreases with that room, and equals the room if that is at most a
+//! ten-thousandth of L; w rises to the rate at which drive and start speed move the mass by the new L.
 
 use super::excitation::ExcitationParts;
 use super::stops::StopPair;
 use crate::mechanics::{Hertz, Mechanism};
 use crate::scene::Scene;
 
-/// Impacts that are slower than this share of the speed scale are not counted, and may be part of a chatter
-/// that is summed in closed form. The share is far above rounding and far below the slowest impact that can
-/// be seen in a trace.
+/// Impacts slower than this share of the speed scale are not counted and may be part of a chatter that is
+/// summed in closed form. The share is far above rounding and far below the slowest impact that is visible in
+/// a trace.
 pub(in crate::dynamics) const LEAST_IMPACT: f64 = 1e-6;
 
 /// Length in m, speed in m/s, time in s; all above 0 and finite.
@@ -39,21 +39,22 @@ pub struct Scales {
     pub speed: f64,
     /// Time in s.
     pub time: f64,
-    /// The longest step of the integrator in s, at a high order and at a low one: some radians of the rate;
-    /// where nothing sets a rate, the run.
+    /// The longest step of the integrator in s, at high and at low order: some radians of the rate, or the
+    /// whole run if nothing sets a rate.
     pub(crate) longest_step: (f64, f64),
 }
 
-/// The longest step in units of the time scale. Only a motion far smaller than the length would let a step be
-/// longer, since the tolerance is relative to that. At high orders what is lost then is rounding; at lower
-/// ones a step is short enough for the series of an oscillation to hold to its own size (at order 16 to
-/// 3^17/17! = 4e-7), so that small motions are as true as others, and no noise of the size of the tolerance.
+/// The longest step in units of the time scale, at high and at low order. It limits only motions far smaller
+/// than the length, since the tolerance is relative to the length. At high order a longer step would add
+/// rounding errors. At low order the limit keeps the series of an oscillation accurate relative to its size
+/// (at order 16 to 3^17/17! = 4e-7), so that small motions are as accurate as others and not noise of the
+/// size of the tolerance.
 const LONGEST_STEP: (f64, f64) = (8.0, 3.0);
 
-/// The largest ratio of the length to the room between the stops.
+/// Largest ratio of the length to the room between the stops.
 const FAR: f64 = 100.0;
 
-/// What the rule looks at. All SI, magnitudes.
+/// The input of the rule. All SI, magnitudes.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Landmarks {
     /// Largest stiffness magnitude over mass, 1/s^2.
@@ -66,11 +67,11 @@ pub(crate) struct Landmarks {
     pub start_speed: f64,
     /// Acceleration by the mechanism at the start, m/s^2.
     pub start_acceleration: f64,
-    /// Amplitude in m/s^2 and angular frequency in 1/s of each part of the drive; a rate of 0 has none.
+    /// Amplitude in m/s^2 and angular frequency in 1/s of each part of the drive; the frequency 0 means none.
     pub drive: Vec<(f64, f64)>,
     /// Duration of the run in s.
     pub duration: f64,
-    /// Half of what two stops leave the mass, m; none where a side is open.
+    /// Half of the distance that two stops leave the mass, m; `None` if a side is open.
     pub room: Option<f64>,
 }
 
@@ -163,7 +164,7 @@ pub(crate) fn scales(
     if !(stiffness > 0.0 && stiffness.is_finite()) {
         stiffness = curve.stiffness(start.0).abs();
     }
-    // Of two barriers as near to x = 0, the one on its side.
+    // If two barriers are equally near to x = 0, the one on the side of the start.
     let start_x = if landscape.left_barrier.is_some() { start.0.abs() } else { start.0 };
     let landmarks = Landmarks {
         stiffness_over_mass: stiffness / mass,
@@ -177,8 +178,8 @@ pub(crate) fn scales(
     };
     let open = Scales::new(&landmarks);
     let Some(StopPair { left: Some(left), right: Some(right) }) = stops else { return open };
-    // A compliant stop leaves as much more as the mass could press it in, even without its loss.
-    let depth = compliant.map_or(0.0, |own| Hertz { loss: 0.0, ..own }.depth(mass, open.speed));
+    // A compliant stop adds the depth to which the mass could press it without its loss.
+    let depth = compliant.map_or(0.0, |stop| Hertz { loss: 0.0, ..stop }.depth(mass, open.speed));
     let room = 0.5 * (right.x - left.x) + depth;
     Scales::new(&Landmarks { room: Some(room), ..landmarks })
 }

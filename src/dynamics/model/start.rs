@@ -1,4 +1,4 @@
-//! State at which a run begins.
+//! Start state of a run.
 
 use super::stops::StopPair;
 use crate::mechanics::{Hertz, Mechanism};
@@ -8,7 +8,7 @@ pub(crate) fn fault(field: &str, value: impl ToString, problem: impl Into<String
     Fault { field: field.into(), value: value.to_string(), problem: problem.into() }
 }
 
-/// Displacement in m and velocity in m/s.
+/// Displacement in m and velocity in m/s of the start of a scene.
 pub(crate) fn start_state(
     scene: &Scene,
     mechanism: &Mechanism,
@@ -63,15 +63,16 @@ pub(crate) fn start_state(
     }
 }
 
-/// Where a mass rests that the mechanism presses on the compliant stop at `surface` towards the equilibrium
-/// at `equilibrium` beyond it, in m: where the stop's force is the mechanism's. The two meet between the
-/// surface, where the mechanism alone presses, and the equilibrium, where it does not.
+/// Displacement in m of a mass at rest that the mechanism presses onto the compliant stop at `surface`,
+/// towards the equilibrium at `equilibrium` beyond it: the point at which the forces of stop and mechanism
+/// are equal. It lies between the surface, where only the mechanism acts, and the equilibrium, where its
+/// force is 0.
 fn pressed_in(mechanism: &Mechanism, hertz: &Hertz, surface: f64, equilibrium: f64) -> f64 {
     let sign = (equilibrium - surface).signum();
     let pressed = |depth: f64| -sign * mechanism.curve.force(surface + sign * depth);
     let excess = |depth: f64| hertz.stiffness * depth * depth.sqrt() - pressed(depth);
     let (mut low, mut high) = (0.0, (equilibrium - surface).abs());
-    // The depth is far less than the way to the equilibrium: halve its logarithm first.
+    // The depth is far less than the distance to the equilibrium: first bracket it near the static depth.
     let near = hertz.static_depth(pressed(0.0).max(0.0));
     for guess in [0.5 * near, 2.0 * near] {
         if guess > low && guess < high {

@@ -12,18 +12,18 @@ pub struct StopPair {
     pub right: Option<StopAt>,
 }
 
-/// One stop. SI. A compliant one takes energy by its own law and has the restitution 1 here.
+/// One stop. SI. A compliant stop dissipates by its contact law and has restitution 1 here.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct StopAt {
-    /// Where it is, in m.
+    /// Position in m.
     pub x: f64,
     /// Speed after an impact over the speed before it.
     pub restitution: f64,
 }
 
 impl StopPair {
-    /// The stops of a scene; none where it has none.
+    /// The stops of a scene; `None` if it has none.
     pub(crate) fn of(stops: &Stops) -> Option<Self> {
         let at = |mm: f64, sign: f64, restitution: f64| Some(StopAt { x: sign * (mm / 1e3), restitution });
         match *stops {
@@ -37,7 +37,7 @@ impl StopPair {
                 Some(Self { left, right })
             }
             Stops::Uneven { left_mm, right_mm, restitution_left, restitution_right } => {
-                let of = |own: Option<f64>, other: Option<f64>| own.or(other).unwrap_or(1.0);
+                let of = |given: Option<f64>, other: Option<f64>| given.or(other).unwrap_or(1.0);
                 Some(Self {
                     left: left_mm.and_then(|mm| at(mm, -1.0, of(restitution_left, restitution_right))),
                     right: right_mm.and_then(|mm| at(mm, 1.0, of(restitution_right, restitution_left))),

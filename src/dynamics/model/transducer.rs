@@ -1,32 +1,33 @@
-//! Transducer of a scene in SI: what it does to the motion, and what it gives.
+//! Transducer of a scene in SI: its effect on the motion, and its output.
 //!
-//! Voltage, current and powers follow from one signal. Without an electrical state that is the velocity: a
-//! coil without inductance is a damping k^2/(coil + load), exactly. Else it is the state, the current in the
-//! coil or the voltage of the piezoelectric layer.
+//! Voltage, current and powers follow from one signal. Without an electrical state the signal is the
+//! velocity: a coil without inductance is exactly a damping k^2/(coil + load). Otherwise it is the state: the
+//! current in the coil or the voltage of the piezoelectric layer.
 
 use crate::numeric::short;
 use crate::scene;
 
-/// A transducer as run. SI.
+/// A transducer prepared for a run. SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Transducer {
-    /// As the scene has it.
+    /// The transducer as given in the scene.
     pub described: scene::Transducer,
     /// Damping coefficient in N s/m that it adds.
     pub damping: f64,
-    /// The circuit whose state goes on with the motion, where there is one.
+    /// The circuit, if it has a state that is integrated with the motion.
     pub circuit: Option<Circuit>,
     /// Voltage over the load per signal.
     voltage: f64,
     /// Current through the load per signal.
     current: f64,
-    /// Power into the load, and lost in the coil, per squared signal.
+    /// Power into the load per squared signal.
     load: f64,
+    /// Power lost in the coil per squared signal.
     coil: f64,
 }
 
-/// A circuit: of its state s, in A or V, and the speed w = s/amount, x'' = .. - coupling w and
-/// w' = coupling x' - decay w.
+/// A circuit: with its state s, in A or V, and w = s/amount in m/s, x'' = .. - coupling w and w' = coupling
+/// x' - decay w.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Circuit {
     /// In 1/s.
@@ -40,7 +41,7 @@ pub(crate) struct Circuit {
 }
 
 impl Circuit {
-    /// Of a coupling in N/A or N/V, a storage in H or F, and its decay in 1/s.
+    /// From a coupling in N/A or N/V, a storage in H or F, and its decay in 1/s.
     fn new(coupling: f64, storage: f64, decay: f64, mass: f64, is_voltage: bool) -> Self {
         let amount = (mass / storage).sqrt();
         Self { coupling: coupling * amount / mass, decay, amount, is_voltage }
@@ -57,16 +58,16 @@ impl Circuit {
     }
 }
 
-/// A circuit is fast from this multiple of the motion's rate on.
-const FAST: f64 = 100.0;
+/// Multiple of the motion's rate from which a circuit is fast.
+const FAST_RATIO: f64 = 100.0;
 
-/// The share of the motion up to which a fast circuit may be left out.
-const NEARLY: f64 = 1e-2;
+/// Relative error of the motion up to which a fast circuit may be left out.
+const NEGLIGIBLE_SHARE: f64 = 1e-2;
 
-/// A coil that damps the motion by less than this share while that changes lets no current through.
-const OPEN: f64 = 1e-9;
+/// A coil that damps the motion by less than this share during one time scale is an open circuit.
+const OPEN_CIRCUIT_SHARE: f64 = 1e-9;
 
-/// What a transducer gives at an instant.
+/// Output of a transducer at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Output {
@@ -79,10 +80,10 @@ pub struct Output {
 }
 
 impl Transducer {
-    /// The transducer of a scene whose mass in kg is given; none where it has none.
+    /// The transducer of a scene with a mass in kg; `None` if it has none.
     pub fn of(transducer: &scene::Transducer, mass: f64) -> Option<Self> {
         use scene::Transducer::{Electromagnetic, Piezoelectric};
-        let nothing = Self {
+        let zero = Self {
             described: *transducer,
             damping: 0.0,
             circuit: None,
@@ -94,11 +95,11 @@ impl Transducer {
         Some(match *transducer {
             scene::Transducer::None => return None,
             Electromagnetic { coupling_v_s_per_m, load_ohm, .. } if load_ohm.is_infinite() => {
-                Self { voltage: coupling_v_s_per_m, ..nothing }
+                Self { voltage: coupling_v_s_per_m, ..zero }
             }
             Electromagnetic { coupling_v_s_per_m, coil_ohm, load_ohm, inductance_mh } => {
                 let (resistance, inductance) = (coil_ohm + load_ohm, inductance_mh / 1e3);
-                // per current, which is the signal or follows from it
+                // per unit current: the current is the signal or is proportional to it
                 let (gain, circuit) = match transducer.has_state() {
                     true => {
                         let (k, decay) = (coupling_v_s_per_m, resistance / inductance);
@@ -113,28 +114,28 @@ impl Transducer {
                     current: gain,
                     load: load_ohm * gain * gain,
                     coil: coil_ohm * gain * gain,
-                    ..nothing
+                    ..zero
                 }
             }
             Piezoelectric { coupling_n_per_v, load_kohm: 0.0, .. } => {
-                Self { current: coupling_n_per_v, ..nothing }
+                Self { current: coupling_n_per_v, ..zero }
             }
             Piezoelectric { coupling_n_per_v, capacitance_nf, load_kohm } => {
                 let (conductance, capacitance) = (1.0 / (load_kohm * 1e3), capacitance_nf / 1e9);
                 let decay = conductance / capacitance;
                 let circuit = Some(Circuit::new(coupling_n_per_v, capacitance, decay, mass, true));
-                Self { circuit, voltage: 1.0, current: conductance, load: conductance, ..nothing }
+                Self { circuit, voltage: 1.0, current: conductance, load: conductance, ..zero }
             }
         })
     }
 
-    /// Whether a motion can be computed with it.
+    /// Whether all its numbers are finite, so that a motion can be computed with it.
     pub fn is_finite(&self) -> bool {
         let numbers = [self.damping, self.voltage, self.current, self.load, self.coil];
-        numbers.into_iter().all(f64::is_finite) && self.circuit.is_none_or(|own| own.is_finite())
+        numbers.into_iter().all(f64::is_finite) && self.circuit.is_none_or(|circuit| circuit.is_finite())
     }
 
-    /// What it gives at a velocity in m/s and an electrical state in A or V.
+    /// Output at a velocity in m/s and an electrical state in A or V.
     pub fn output(&self, v: f64, electrical: f64) -> Output {
         let signal = if self.circuit.is_some() { electrical } else { v };
         Output {
@@ -144,7 +145,7 @@ impl Transducer {
         }
     }
 
-    /// Energy into the load and lost in the coil in J, from the integral of the squared signal over time; of
+    /// Energies in J into the load and lost in the coil, from the time integral of the squared signal; from
     /// its mean, the mean powers in W.
     pub fn energies(&self, squared: f64) -> (f64, f64) {
         (self.load * squared, self.coil * squared)
@@ -155,54 +156,54 @@ impl Transducer {
         self.voltage.abs() * signal
     }
 
-    /// The state of this transducer after one of `before` had the state `electrical`: a current goes on as a
-    /// current and a voltage as a voltage.
-    pub fn taken_over(&self, before: &Self, electrical: f64) -> f64 {
+    /// The state of this transducer if it takes over from `before` in the state `electrical`: a current goes
+    /// on as a current and a voltage as a voltage.
+    pub fn electrical_after(&self, before: &Self, electrical: f64) -> f64 {
         match (&self.circuit, &before.circuit) {
-            (Some(own), Some(was)) if own.is_voltage == was.is_voltage => electrical,
+            (Some(circuit), Some(previous)) if circuit.is_voltage == previous.is_voltage => electrical,
             _ => 0.0,
         }
     }
 
-    /// Why steps are short beside a circuit that is far faster than a motion of this time scale in s, and
-    /// what the scene would be without it; none of another one. `mass` in kg.
+    /// Explains why a circuit that is far faster than a motion of this time scale in s makes the steps short,
+    /// and how to model the scene without it; `None` for a slower circuit. `mass` in kg.
     pub fn fast_circuit(&self, mass: f64, time: f64) -> Option<String> {
-        let own = self.circuit.as_ref()?;
-        let (coupling, decay) = (own.coupling.abs(), own.decay);
-        if !(coupling.max(decay) * time > FAST) {
+        let circuit = self.circuit.as_ref()?;
+        let (coupling, decay) = (circuit.coupling.abs(), circuit.decay);
+        if !(coupling.max(decay) * time > FAST_RATIO) {
             return None;
         }
-        // what is left out with the state: its lag, and the mass that this takes or gives
+        // the error of leaving out the state: its lag, and the mass that it adds or removes
         let apart = (1.0 / (decay * time)).max((coupling / decay).powi(2));
-        if !(apart < NEARLY) {
-            let storage = if own.is_voltage { "capacitance_nf" } else { "inductance_mh" };
+        if !(apart < NEGLIGIBLE_SHARE) {
+            let storage = if circuit.is_voltage { "capacitance_nf" } else { "inductance_mh" };
             return Some(format!(
                 "mass and circuit exchange their energy in {} s, and a step covers but a few of it; a larger \
                  {storage} or a weaker coupling makes that slower",
                 short(1.0 / coupling)
             ));
         }
-        let instead = if own.is_voltage {
-            let (load, force) = (1.0 / self.current, coupling * mass / own.amount);
+        let alternative = if circuit.is_voltage {
+            let (load, force) = (1.0 / self.current, coupling * mass / circuit.amount);
             format!(
                 "transducer=Electromagnetic(coupling_v_s_per_m: {}, coil_ohm: 0, load_ohm: {}) gives the \
                  same voltage, current and power without a state of its own",
                 short(force * load),
                 short(load)
             )
-        } else if coupling * coupling / decay * time < OPEN {
+        } else if coupling * coupling / decay * time < OPEN_CIRCUIT_SHARE {
             "load_ohm: inf is the open circuit that this is".to_owned()
         } else {
             "without inductance_mh the coil is a damping".to_owned()
         };
         let constant = short(1.0 / decay);
         Some(format!(
-            "the circuit's time constant is {constant} s, and a step covers but a few of it; {instead}, but \
+            "the circuit's time constant is {constant} s, and a step covers but a few of it; {alternative}, but \
              for a share of some {apart:.0e}"
         ))
     }
 
-    /// It in words, for `check`.
+    /// Description in words, for `check`.
     pub fn describe(&self) -> String {
         match &self.circuit {
             None => format!(
@@ -211,10 +212,10 @@ impl Transducer {
                 short(self.voltage),
                 short(self.current)
             ),
-            Some(own) => format!(
+            Some(circuit) => format!(
                 "transducer: {} with a time constant of {} s beside the motion",
-                if own.is_voltage { "a voltage" } else { "a current" },
-                short(1.0 / own.decay)
+                if circuit.is_voltage { "a voltage" } else { "a current" },
+                short(1.0 / circuit.decay)
             ),
         }
     }

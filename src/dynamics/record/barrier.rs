@@ -16,20 +16,20 @@ pub(crate) fn side_of<T: Scalar>(x: T, barrier: T) -> i8 {
 
 /// The crossings of the barrier within one step.
 pub(crate) struct StepCrossings<'a, T> {
-    /// The side that the mass comes from.
+    /// The side from which the mass comes.
     pub from: i8,
-    /// 1 where the step begins with a crossing: the barrier was reached at the end of the last step.
+    /// 1 if the step begins with a crossing, because the last step ended on the barrier; else 0.
     pub at_once: usize,
-    /// Those that follow are its changes of sign.
+    /// The further crossings are its sign changes.
     pub roots: PolynomialRoots<'a, T>,
     /// The side on which the step ends.
     end: i8,
 }
 
 impl<'a, T: Scalar> StepCrossings<'a, T> {
-    /// Of the step whose displacement from the barrier has these coefficients, its length being 1. With
-    /// `from` 0 the motion started on the barrier and counts as coming from the side that it leaves to. None
-    /// where it stays on the barrier.
+    /// From the coefficients of the displacement from the barrier over a step of length 1. If `from` is 0,
+    /// the motion started on the barrier and counts as coming from the side to which it leaves. `None` if it
+    /// stays on the barrier.
     pub fn new(g: &'a mut [T], from: i8, end: i8) -> Option<Self> {
         // A step that starts on the barrier leaves it by its first coefficient that is not 0.
         let first = g.iter().position(|c| *c != T::zero())?;
@@ -42,14 +42,14 @@ impl<'a, T: Scalar> StepCrossings<'a, T> {
         Some(Self { from, at_once: usize::from(departs != from), roots: PolynomialRoots::new(g), end })
     }
 
-    /// Their number.
+    /// Number of crossings.
     pub fn count(&self) -> usize {
-        self.settle(self.at_once + self.roots.count_sign_changes())
+        self.corrected_count(self.at_once + self.roots.count_sign_changes())
     }
 
-    /// The number of crossings where `count` roots were found: the step's end decides the parity, since
+    /// The number of crossings if `count` roots were found. The end of the step decides the parity, since
     /// rounding may put a root just beyond it or split a touch.
-    pub fn settle(&self, count: usize) -> usize {
+    pub fn corrected_count(&self, count: usize) -> usize {
         match count % 2 == 1 {
             odd if self.end == 0 => count - usize::from(odd), // on the barrier: the next step decides
             odd if odd == (self.end != self.from) => count,
@@ -57,7 +57,7 @@ impl<'a, T: Scalar> StepCrossings<'a, T> {
         }
     }
 
-    /// The side after `count` of them.
+    /// The side after `count` crossings.
     pub fn side_after(&self, count: usize) -> i8 {
         if count % 2 == 1 { -self.from } else { self.from }
     }

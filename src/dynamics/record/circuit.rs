@@ -8,12 +8,12 @@ use crate::dynamics::step::path::{Path, StepView};
 use crate::numeric::{GaussLegendre, Scalar, decay};
 
 impl<T: Scalar> Recorder<'_, T> {
-    /// The electrical state of a sample in its own unit.
+    /// The electrical state of a sample in A or V.
     pub(crate) fn electrical(&self, state: T) -> f64 {
         self.model.circuit().map_or(0.0, |circuit| circuit.amount * state.to_f64() / self.unit)
     }
 
-    /// Records the circuit's state over a step, where there is one.
+    /// Records the circuit's state over a step, if there is a circuit.
     #[inline(always)]
     pub(crate) fn circuit<P: Path<T>>(
         &mut self,
@@ -31,8 +31,8 @@ impl<T: Scalar> Recorder<'_, T> {
         }
     }
 
-    /// Records the circuit's state, `state` at first, while the mass stands still; the samples from number
-    /// `first` on are of that time.
+    /// Records the circuit's state, which begins at `state`, while the mass stands still. The samples from
+    /// index `first` on belong to that time.
     pub(crate) fn circuit_decays(
         &mut self,
         circuit: &Circuit<T>,

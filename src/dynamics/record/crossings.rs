@@ -13,7 +13,7 @@ impl<T: Scalar> Recorder<'_, T> {
     /// Records the crossings of the barrier within a step that starts `gap` to the right of it and ends on
     /// `end_side`.
     pub fn crossings<P: Path<T>>(&mut self, step: &StepView<T, P>, gap: T, end_side: i8) {
-        // Where the velocity keeps its sign the ends decide.
+        // If the velocity keeps its sign, the ends decide.
         if end_side == self.barrier_side
             && end_side == side_of(gap, T::zero())
             && let Some(y) = step.path.in_time()
@@ -51,16 +51,16 @@ impl<T: Scalar> Recorder<'_, T> {
         if count == 0 {
             found[0] = step.length;
         }
-        for t in &found[..crossings.settle(count)] {
+        for t in &found[..crossings.corrected_count(count)] {
             self.crossing(step, *t);
         }
     }
 
-    /// Whether the instants of crossings within the step are needed, not only their number: for the list of
-    /// events, for the regime, and on a step cut short or near an end of the window, which may hold a
-    /// crossing beyond it.
+    /// Whether the instants of crossings within the step are needed and not only their number: for the list
+    /// of events, for the regime, and for a step that was cut short or lies near an end of the window, which
+    /// may hold a crossing beyond it.
     fn instants_matter<P: Path<T>>(&self, step: &StepView<T, P>) -> bool {
-        // By two lengths: more than rounding can hide.
+        // Two lengths of the step are more than the rounding of its end.
         let clear = |border: &Instant<T>| {
             let left = self.clock.between(&step.at, border);
             left <= T::zero() || left > step.duration + step.duration

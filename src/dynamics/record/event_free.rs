@@ -4,8 +4,8 @@ use super::recorder::Recorder;
 use crate::dynamics::clock::Instant;
 use crate::numeric::{CompensatedSum, GaussLegendre, Scalar};
 
-/// Share of the clock's cycle by which an event-free step ends before the next border: more than rounding can
-/// hide.
+/// Share of the clock's cycle by which an event-free step must end before the next border: more
+/// than rounding.
 pub(crate) const MARGIN: f64 = 1e-9;
 
 /// The part of a record that event-free steps change, and the instant up to which they may be taken.
@@ -13,12 +13,13 @@ pub(crate) const MARGIN: f64 = 1e-9;
 pub(crate) struct EventFree<T> {
     /// The end of the run, a border of the settled window or a strobe, whichever comes first.
     pub border: Instant<T>,
-    /// Whether the time up to there is in the settled window.
+    /// Whether the time up to `border` is in the settled window.
     pub inside: bool,
-    /// Whether the instant of every crossing matters.
+    /// Whether the instant of every crossing is needed.
     pub listed: bool,
-    /// The barrier that crossings are counted at, and the side of it.
+    /// The barrier whose crossings are counted.
     pub barrier: Option<T>,
+    /// The side of the barrier.
     pub side: i8,
     pub low: T,
     pub high: T,
@@ -27,13 +28,13 @@ pub(crate) struct EventFree<T> {
 }
 
 impl<T: Scalar> Recorder<'_, T> {
-    /// Whether event-free steps need not be recorded one by one: no samples are left to take.
+    /// Whether no samples are left to take, so that event-free steps need not be recorded one by one.
     #[inline]
     pub fn needs_no_samples(&self) -> bool {
         self.next_time >= self.times.len()
     }
 
-    /// Begins a row of event-free steps at `at`, up to `end` at the latest.
+    /// Begins a sequence of event-free steps at `at`, which ends at `end` at the latest.
     pub fn begin_event_free(&self, at: &Instant<T>, end: &Instant<T>) -> EventFree<T> {
         let until = |border: &Instant<T>| self.clock.between(at, border);
         let (from, to) = (&self.window.0, &self.window.1);
@@ -58,7 +59,7 @@ impl<T: Scalar> Recorder<'_, T> {
         }
     }
 
-    /// Ends the row: takes over what its steps have changed.
+    /// Ends the sequence: takes over what its steps have changed.
     pub fn end_event_free(
         &mut self,
         (low, high): (T, T),
@@ -70,7 +71,7 @@ impl<T: Scalar> Recorder<'_, T> {
         self.covered = covered;
     }
 
-    /// The same of crossings of the barrier before the settled window, and the side after them.
+    /// The same for crossings of the barrier before the settled window, and the side after them.
     pub fn end_event_free_crossings(&mut self, side: i8, count: u64) {
         self.barrier_side = side;
         self.counts.total_crossings += count;

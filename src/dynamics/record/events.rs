@@ -1,4 +1,4 @@
-//! Recording of what happens between steps: rests, impacts, releases, contacts.
+//! Recording of events between steps: rests, impacts, releases, contacts.
 
 use super::recorder::Recorder;
 use super::window::STILL;
@@ -9,8 +9,8 @@ use crate::numeric::Scalar;
 /// A recorder call other than a step. Velocities are signed, in kernel units.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Call<T> {
-    /// The mass stands still in this state (at rest on a stop, in an equilibrium, or in the last, unresolved
-    /// bounces of a chatter: with phase free, and with the speed at its first instant).
+    /// The mass stands still in this state: at rest on a stop, in an equilibrium, or during the unresolved
+    /// last bounces of a chatter (then with phase free and the speed of its first instant).
     Stand {
         at: Instant<T>,
         until: Instant<T>,
@@ -23,7 +23,7 @@ pub(crate) enum Call<T> {
         v_in: T,
         v_out: T,
     },
-    /// A chatter is summed in closed form from speed `v`: what is left of the kinetic energy goes.
+    /// A chatter that begins at speed `v` is summed in closed form and dissipates its kinetic energy.
     Chatter {
         at: Instant<T>,
         v: T,
@@ -39,7 +39,7 @@ pub(crate) enum Call<T> {
 }
 
 impl<T: Scalar> Call<T> {
-    /// The same at other instants.
+    /// The same call at other instants.
     pub fn when(self, instant: impl Fn(&Instant<T>) -> Instant<T>) -> Self {
         match self {
             Self::Stand { at, until, state, phase } => {
@@ -75,9 +75,9 @@ impl<T: Scalar> Call<T> {
 }
 
 impl<T: Scalar> Recorder<'_, T> {
-    /// Records a call, in this segment of the drive.
+    /// Records a call in this segment of the drive.
     #[inline(always)]
-    pub fn tell(&mut self, call: &Call<T>, segment: usize) {
+    pub fn report(&mut self, call: &Call<T>, segment: usize) {
         match call {
             Call::Stand { at, until, state, phase } => self.stand((at, until), *state, *phase, segment),
             Call::Impact { at, side, v_in, v_out } => self.impact(at, *side, *v_in, *v_out),
@@ -143,7 +143,7 @@ impl<T: Scalar> Recorder<'_, T> {
         self.event(at, EventKind::Impact, side, v_in.to_f64() / self.unit, v_out.to_f64() / self.unit);
     }
 
-    /// Counts an impact at this signed velocity, where it is fast enough.
+    /// Counts an impact at this signed velocity, if it is fast enough.
     fn count_impact(&mut self, at: &Instant<T>, v: T) {
         if v.to_f64().abs() / self.unit <= self.model.least_impact_speed() {
             return;
@@ -155,8 +155,8 @@ impl<T: Scalar> Recorder<'_, T> {
         }
     }
 
-    /// The mass touches a compliant stop with this signed velocity in kernel units. `strikes`: it came from
-    /// outside, and does not stand there from the start.
+    /// The mass touches a compliant stop with this signed velocity in kernel units. `strikes`: it comes from
+    /// outside and has not been there since the start.
     pub fn touch(&mut self, at: &Instant<T>, side: Side, v: T, strikes: bool) {
         if strikes {
             self.count_impact(at, v);

@@ -1,12 +1,12 @@
-//! Goal of a motion that is pursued: what it is found to go to.
+//! Goal of a pursued motion: the motion, region or event that ends the pursuit.
 
 use super::regime::Judge;
 use crate::dynamics::result::{Arrival, Pursuit};
 
-/// Stroboscopic states beyond two periods of a motion that must have come back.
-const MORE: u64 = 12;
+/// Number of stroboscopic states, beyond two periods of the motion, that must also have come back.
+const CONFIRMING_STATES: u64 = 12;
 
-/// What a motion is pursued to, and what it has reached.
+/// The goal of a pursuit, and what it has reached.
 #[derive(Debug)]
 pub(crate) struct Goal<'a> {
     pursuit: Pursuit<'a>,
@@ -18,7 +18,7 @@ impl<'a> Goal<'a> {
         Self { pursuit, reached: None }
     }
 
-    /// Another stroboscopic state, which `judge` has been told.
+    /// Checks another stroboscopic state, which `judge` already holds.
     pub fn strobe(&mut self, judge: &Judge, state: (f64, f64)) {
         if self.reached.is_some() {
             return;
@@ -29,12 +29,12 @@ impl<'a> Goal<'a> {
         } else if let Some(which) = self.pursuit.regions.iter().position(|region| region.holds(state)) {
             self.reached = Some(Arrival::Entered { which, periods });
         } else if periods >= self.pursuit.repeats_from {
-            let period = judge.strobes().repeats_for(MORE);
+            let period = judge.strobes().repeats_for(CONFIRMING_STATES);
             self.reached = period.map(|period| Arrival::Repeats { period, state, periods });
         }
     }
 
-    /// A release; one that is not passed over ends the pursuit.
+    /// A release. It ends the pursuit unless it is one of those to be skipped.
     pub fn release(&mut self, arrival: Arrival) {
         match self.pursuit.releases.checked_sub(1) {
             Some(left) => self.pursuit.releases = left,
@@ -42,7 +42,7 @@ impl<'a> Goal<'a> {
         }
     }
 
-    /// Ends the pursuit where nothing has yet.
+    /// Ends the pursuit if it has not ended yet.
     pub fn end(&mut self, arrival: Arrival) {
         self.reached.get_or_insert(arrival);
     }

@@ -6,7 +6,7 @@ use super::sums::{Counts, Sums};
 use crate::dynamics::clock::Instant;
 use crate::numeric::{CompensatedSum, Scalar};
 
-/// Share of the clock's cycle that keeps a stretch of time clear of a border.
+/// Share of the clock's cycle by which a time interval must be clear of a border.
 const CLEAR: f64 = 1e-9;
 
 /// The sums and counts of a recorder at an instant.
@@ -17,7 +17,7 @@ pub(crate) struct Totals<T> {
     covered: CompensatedSum<T>,
     work_moved: f64,
     counts: Counts,
-    /// What the judge has kept.
+    /// Number of observations that the judge has kept.
     taped: usize,
     next_strobe: Option<Instant<T>>,
     listed: Listed<T>,
@@ -37,8 +37,8 @@ impl<T: Scalar> Recorder<'_, T> {
         }
     }
 
-    /// Whether the time from `start` to `end` lies wholly inside the settled window, or wholly outside; none
-    /// where it does neither, or ends within rounding of a border.
+    /// Whether the time from `start` to `end` lies wholly inside the settled window (true) or wholly outside
+    /// it (false); `None` if it does neither, or ends within rounding of a border.
     pub fn lies_inside(&self, start: &Instant<T>, end: &Instant<T>) -> Option<bool> {
         let clear = self.clock.period() * T::of(CLEAR);
         let (from, to) = &self.window;
@@ -52,22 +52,23 @@ impl<T: Scalar> Recorder<'_, T> {
         }
     }
 
-    /// Up to when the time after `at` is on the same side of the window's borders, `end` at the latest.
-    pub fn alike_until(&self, at: &Instant<T>, end: &Instant<T>, inside: bool) -> Instant<T> {
+    /// The instant up to which the time after `at` is on the same side of the window's borders, at
+    /// most `end`.
+    pub fn same_side_until(&self, at: &Instant<T>, end: &Instant<T>, inside: bool) -> Instant<T> {
         let (from, to) = self.window;
         let border =
             if inside { Some(to) } else { Some(from).filter(|w| self.clock.between(at, w) > T::zero()) };
         border.filter(|border| self.clock.between(border, end) > T::zero()).unwrap_or(*end)
     }
 
-    /// From when on, at `at` or later, anything is listed; none where nothing is.
+    /// The first instant, at `at` or later, at which something is listed; `None` if nothing is.
     pub fn next_listed(&self, at: &Instant<T>) -> Option<Instant<T>> {
         let sample = self.times.get(self.next_time).map(|t| self.clock.at(*t));
         if self.events.is_some() { Some(*at) } else { sample }
     }
 
-    /// Takes sums and counts back to what they were; what has been listed since stays.
-    pub fn take_back(&mut self, totals: &Totals<T>) {
+    /// Restores sums and counts to earlier values; events and samples listed since then stay.
+    pub fn restore(&mut self, totals: &Totals<T>) {
         self.whole = totals.whole;
         self.settled = totals.settled;
         self.covered = totals.covered;
@@ -76,8 +77,8 @@ impl<T: Scalar> Recorder<'_, T> {
         self.next_strobe = totals.next_strobe;
     }
 
-    /// Adds `laps` more laps of `cycles` cycles of the clock, each like the one that led from `before` to
-    /// `after`, the present; all of them inside or all of them outside the window.
+    /// Adds `laps` more laps of `cycles` cycles of the clock, each like the one from `before` to `after`, the
+    /// present. All of them lie inside or all of them outside the window.
     pub fn repeat(&mut self, before: &Totals<T>, after: &Totals<T>, laps: i64, cycles: i64) {
         let times = T::of(laps as f64);
         let more = |sum: &mut CompensatedSum<T>, before: &CompensatedSum<T>, after: &CompensatedSum<T>| {

@@ -1,39 +1,40 @@
-//! Stroboscopic states that a run lists: those of its settled window at a phase of the drive, and the last at
-//! the phase of its start.
+//! Stroboscopic states that a run lists: those of its settled window at a phase of the drive, and the last
+//! one at the phase of its start.
 
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::result::{Request, SectionPoint};
 use crate::numeric::Scalar;
 
-/// Instants closer than this share of a forcing period are the same: more than rounding can set apart.
+/// Instants closer than this share of a forcing period are the same: more than the rounding of an instant.
 pub(super) const SAME: f64 = 1e-9;
 
-/// The most stroboscopic states that are recorded one by one: some tenths of a second of one core, and more
-/// than a run makes whose steps are shorter than a forcing period. Later ones are not judged.
-pub(crate) const MOST_STROBES: u32 = 1 << 22;
+/// Maximum number of stroboscopic states that are recorded one by one: some tenths of a second of one core,
+/// and more than a run has whose steps are shorter than a forcing period. Later states are ignored.
+pub(crate) const MAX_STROBES: u32 = 1 << 22;
 
-/// States once a forcing period.
+/// States listed once a forcing period.
 #[derive(Debug, Clone)]
 pub(crate) struct Listing<T> {
-    /// The instant of the next one, and how many are still to be listed.
+    /// The instant of the next state.
     next: Instant<T>,
+    /// Number of states still to be listed.
     left: u64,
-    /// Cycles of the clock from one to the next.
+    /// Cycles of the clock between two states.
     cycles: i64,
-    /// Displacement in m and velocity in m/s of those since `first`; where only the last is kept, of that.
+    /// Displacement in m and velocity in m/s of the states since `first`, or of the last one if `last_only`.
     states: Vec<(f64, f64)>,
     first: Instant<T>,
     last_only: bool,
 }
 
-/// What a run lists.
+/// The listings of a run.
 #[derive(Debug, Clone)]
 pub(crate) struct Listings<T> {
     section: Option<Listing<T>>,
     carried: Option<Listing<T>>,
 }
 
-/// How far the listings had come at an instant: the states of the section, and the next instants.
+/// Progress of the listings at an instant: the number of states of the section, and the next instants.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Listed<T> {
     states: usize,
@@ -51,7 +52,7 @@ impl<T: Scalar> Listing<T> {
         self.next.cycle += self.cycles;
     }
 
-    /// Passes over states of a mass that stands still up to `until`, where only the last is kept.
+    /// Skips states of a mass that stands still up to `until`, if only the last is kept.
     pub fn skip_still(&mut self, clock: &Clock<T>, period: T, until: &Instant<T>) {
         if self.last_only {
             let periods = (clock.between(&self.next, until) / period).floor().to_f64();
@@ -59,7 +60,7 @@ impl<T: Scalar> Listing<T> {
         }
     }
 
-    /// The next instant, where one is still to be listed.
+    /// The next instant, if there is a state still to be listed.
     pub fn due(&self) -> Option<Instant<T>> {
         (self.left > 0).then_some(self.next)
     }
@@ -72,8 +73,9 @@ impl<T> Default for Listings<T> {
 }
 
 impl<T: Scalar> Listings<T> {
-    /// What `request` asks of a run whose settled window begins at `from` and holds so many `periods`, each
-    /// of so many `cycles` of the clock; `start` is the drive's phase at the start in turns.
+    /// The listings that `request` asks for, in a run whose settled window begins at `from` and holds
+    /// `periods` forcing periods of `cycles` cycles of the clock each; `start` is the drive's phase at the
+    /// start in turns.
     pub fn new(
         request: &Request,
         clock: &Clock<T>,
@@ -100,13 +102,13 @@ impl<T: Scalar> Listings<T> {
             if clock.between(&from, &first).abs() <= same {
                 first = from;
             }
-            listing(first, periods.min(MOST_STROBES.into()), false)
+            listing(first, periods.min(MAX_STROBES.into()), false)
         });
         let start = Instant { cycle: 0, phase: T::zero() };
         Self { section, carried: request.carry.then(|| listing(start, u64::MAX, true)) }
     }
 
-    /// Whether there are none.
+    /// Whether there are no listings.
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.section.is_none() && self.carried.is_none()
@@ -116,7 +118,7 @@ impl<T: Scalar> Listings<T> {
         self.section.iter_mut().chain(&mut self.carried)
     }
 
-    /// The instants that come next.
+    /// The next instants of the listings.
     #[inline]
     pub fn due(&self) -> impl Iterator<Item = Instant<T>> {
         self.section.iter().chain(&self.carried).filter_map(Listing::due)
@@ -144,16 +146,16 @@ impl<T: Scalar> Listings<T> {
         }
     }
 
-    /// The settled window of so many `periods` begins anew at its end.
+    /// Begins the section again for a settled window of `periods` that follows the last one.
     pub fn next_window(&mut self, periods: u64) {
         if let Some(section) = &mut self.section {
             section.states.clear();
             section.first = section.next;
-            section.left = periods.min(MOST_STROBES.into());
+            section.left = periods.min(MAX_STROBES.into());
         }
     }
 
-    /// The section, and the state that is carried.
+    /// The section, and the last state of `carried`.
     pub fn finish(self, clock: &Clock<T>) -> (Vec<SectionPoint>, Option<(f64, f64)>) {
         let points = self.section.into_iter().flat_map(|Listing { first, cycles, states, .. }| {
             states.into_iter().zip(0..).map(move |((x, v), number)| {

@@ -1,4 +1,4 @@
-//! Log of recorder calls: what a motion did since the first labelled release, kept for replay.
+//! Log of the recorder calls since the first labelled release, kept for replay.
 
 use std::cell::Cell;
 
@@ -11,19 +11,19 @@ use crate::dynamics::state::{Checkpoint, Label, MotionState};
 use crate::dynamics::step::path::StepView;
 use crate::numeric::Scalar;
 
-/// The most entries of a log: a motion whose period has more would hardly repeat within a run.
-const MOST_ENTRIES: usize = 1 << 15;
+/// Maximum number of entries of a log: a motion with more in a period would hardly repeat within a run.
+const MAX_ENTRIES: usize = 1 << 15;
 
 /// One recorder call, kept for replay.
 #[derive(Debug, Clone)]
 enum Entry<T: Copy> {
-    Step(Kept<T>),
+    Step(KeptStep<T>),
     Call(Call<T>),
 }
 
 /// A step of flight; its coefficients lie in the log.
 #[derive(Debug, Clone)]
-struct Kept<T: Copy> {
+struct KeptStep<T: Copy> {
     origin: T,
     at: Instant<T>,
     whole: T,
@@ -32,11 +32,13 @@ struct Kept<T: Copy> {
     limits: (T, T),
     x: T,
     v: T,
-    /// Where its coefficients begin, and the numbers of those of the displacement and of the base.
+    /// Index of its first coefficient in the log.
     first: usize,
+    /// Number of coefficients of the displacement.
     known: usize,
+    /// Number of coefficients of the base's acceleration.
     base: usize,
-    /// Which of the log's integrals are those over all of it; a step and its mirror image share them.
+    /// Index of its integrals in the log; a step and its mirror image share them.
     integrals: usize,
 }
 
@@ -44,27 +46,27 @@ struct Kept<T: Copy> {
 #[derive(Debug, Clone, Copy)]
 struct Mark<T> {
     point: Checkpoint<T>,
-    /// Entries before it.
+    /// Number of entries before it.
     entries: usize,
 }
 
-/// Everything since the first labelled release.
+/// The recorder calls and checkpoints since the first labelled release.
 #[derive(Debug, Clone)]
 pub(crate) struct Log<T: Copy> {
     entries: Vec<Entry<T>>,
     coefficients: Vec<T>,
-    /// Integrals over whole steps, once they have been taken.
+    /// Integrals over whole steps, once they have been computed.
     integrals: Vec<Cell<Option<Integrals<T>>>>,
     marks: Vec<Mark<T>>,
-    /// The releases with a label: where they stand, and what the recorder had then.
+    /// The labelled releases: the label, the index of the mark, and the totals of the recorder at that time.
     labels: Vec<(Label<T>, usize, Totals<T>)>,
 }
 
 /// A shift in time by whole cycles of the clock.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Later(pub i64);
+pub(crate) struct CycleShift(pub i64);
 
-impl Later {
+impl CycleShift {
     fn instant<T: Scalar>(self, at: &Instant<T>) -> Instant<T> {
         Instant { cycle: at.cycle + self.0, phase: at.phase }
     }
@@ -81,9 +83,9 @@ impl<T: Scalar> Log<T> {
         }
     }
 
-    /// Whether there is room for more.
+    /// Whether there is room for more entries.
     pub fn has_room(&self) -> bool {
-        self.entries.len() < MOST_ENTRIES
+        self.entries.len() < MAX_ENTRIES
     }
 
     pub fn add(&mut self, call: Call<T>) {
@@ -96,7 +98,7 @@ impl<T: Scalar> Log<T> {
         let first = self.coefficients.len();
         self.coefficients.extend_from_slice(y);
         self.coefficients.extend_from_slice(a);
-        self.entries.push(Entry::Step(Kept {
+        self.entries.push(Entry::Step(KeptStep {
             origin: step.origin,
             at: step.at,
             whole: step.whole,
@@ -139,31 +141,32 @@ impl<T: Scalar> Log<T> {
         self.marks.len()
     }
 
-    /// When the motion stood at a mark.
+    /// The instant of a mark.
     pub fn at(&self, mark: usize) -> Instant<T> {
         self.marks[mark].point.state.at
     }
 
-    /// The last mark from `first` on that is not after `end` when it is `later`.
-    pub fn last_before(&self, first: usize, later: Later, end: &Instant<T>, clock: &Clock<T>) -> usize {
+    /// The last mark from `first` on that, shifted by `later`, is not after `end`.
+    pub fn last_before(&self, first: usize, later: CycleShift, end: &Instant<T>, clock: &Clock<T>) -> usize {
         let reached = |mark: &Mark<T>| clock.between(&later.instant(&mark.point.state.at), end) >= T::zero();
         first + self.marks[first + 1..].partition_point(reached)
     }
 
-    /// The motion that was kept at a mark, `later`.
-    pub fn point_later(&self, mark: usize, later: Later) -> Checkpoint<T> {
+    /// The checkpoint of a mark, shifted by `later`.
+    pub fn point_later(&self, mark: usize, later: CycleShift) -> Checkpoint<T> {
         let Checkpoint { state, barrier_side } = self.marks[mark].point;
         let state = MotionState { at: later.instant(&state.at), refused: None, ..state };
         Checkpoint { state, barrier_side }
     }
 
-    /// Replays the recorder calls between two marks (to the end without a second), `later`, in this segment
-    /// of the drive, with each step in `series`. Returns their number, and that of the impacts among them.
+    /// Replays the recorder calls between two marks (up to the end if there is no second one), shifted by
+    /// `later`, in this segment of the drive, with each step in `series`. Returns the number of calls, and of
+    /// impacts among them.
     pub fn play(
         &self,
         (record, series): (&mut Recorder<T>, &mut Series<T>),
         (from, to): (usize, Option<usize>),
-        later: Later,
+        later: CycleShift,
         segment: usize,
     ) -> (usize, u64) {
         let mut impacts = 0;
@@ -197,15 +200,15 @@ impl<T: Scalar> Log<T> {
                 }
                 Entry::Call(call) => {
                     impacts += u64::from(matches!(call, Call::Impact { .. }));
-                    record.tell(&call.when(|at| later.instant(at)), segment);
+                    record.report(&call.when(|at| later.instant(at)), segment);
                 }
             }
         }
         (entries.len(), impacts)
     }
 
-    /// Appends the mirror image of everything from mark `first` on, later by half a cycle of the clock and
-    /// `cycles` whole ones; `modes` is their number.
+    /// Appends the mirror image of everything from mark `first` on, later by half a cycle and `cycles` whole
+    /// cycles of the clock; `modes` is the number of modes.
     pub fn append_mirrored(&mut self, first: usize, cycles: i64, modes: usize, clock: &Clock<T>) {
         let half = clock.period() * T::of(0.5);
         let instant = |at: &Instant<T>| {
@@ -229,7 +232,7 @@ impl<T: Scalar> Log<T> {
                     let first = self.coefficients.len();
                     self.coefficients.extend_from_within(step.first..step.first + step.known + step.base);
                     self.coefficients[first..].iter_mut().for_each(|c| *c = minus(*c));
-                    Entry::Step(Kept {
+                    Entry::Step(KeptStep {
                         origin: minus(step.origin),
                         at: instant(&step.at),
                         limits: (minus(step.limits.1), minus(step.limits.0)),

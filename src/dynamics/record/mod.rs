@@ -1,4 +1,4 @@
-//! Record of a run: samples, events, statistics, ledger. Nothing here acts on the motion.
+//! Record of a run: samples, events, statistics, ledger. It does not affect the motion.
 
 pub(crate) mod barrier;
 mod circuit;

@@ -1,4 +1,4 @@
-//! Record of a motion that is pursued: when it reaches its goal.
+//! Record of a pursued motion: when it reaches its goal.
 
 use super::goal::Goal;
 use super::recorder::Recorder;
@@ -10,39 +10,39 @@ use crate::numeric::Scalar;
 const WINDOW: u64 = 100;
 
 impl<'a, T: Scalar> Recorder<'a, T> {
-    /// Pursues a goal: stroboscopic states from time 0 on, and a settled window of some last periods before
-    /// `most`. The time at which that ends.
-    pub fn pursue(&mut self, goal: Goal<'a>, most: u64) -> Instant<T> {
+    /// Begins a pursuit: stroboscopic states are taken from time 0 on, and the settled window is the last
+    /// periods before `max_periods`. Returns the end of the window.
+    pub fn pursue(&mut self, goal: Goal<'a>, max_periods: u64) -> Instant<T> {
         let at = |period: u64| Instant { cycle: period as i64 * self.period_cycles, phase: T::zero() };
-        self.periods = most.min(WINDOW);
-        let from = most - self.periods;
-        self.window = (at(from), at(most));
+        self.periods = max_periods.min(WINDOW);
+        let from = max_periods - self.periods;
+        self.window = (at(from), at(max_periods));
         self.origin = at(0);
         self.next_strobe = Some(self.origin);
-        self.judge = self.judge.anew(self.periods, from);
+        self.judge = self.judge.for_window(self.periods, from);
         self.goal = Some(goal);
         self.window.1
     }
 
-    /// Whether the motion has reached what it was pursued to.
+    /// Whether the motion has reached its goal.
     #[inline]
     pub fn has_arrived(&self) -> bool {
         self.goal.as_ref().is_some_and(|goal| goal.reached.is_some())
     }
 
-    /// What it has reached.
+    /// Takes what the motion has reached.
     pub fn arrival(&mut self) -> Option<Arrival> {
         self.goal.as_mut().and_then(|goal| goal.reached.take())
     }
 
-    /// The mass was released with this identity; whether it is pursued.
+    /// The mass was released with this identity. Returns whether the motion is pursued.
     pub fn released(&mut self, at: &Instant<T>, identity: ReleaseIdentity) -> bool {
         let periods = self.periods_until(at);
         let goal = self.goal.as_mut().map(|goal| goal.release(Arrival::Released { identity, periods }));
         goal.is_some()
     }
 
-    /// The mass rests from `at` on, and will not be released.
+    /// The mass rests from `at` on and will never be released.
     pub fn rests_forever(&mut self, at: &Instant<T>, side: Side) {
         let periods = self.periods_until(at);
         if let Some(goal) = &mut self.goal {
@@ -50,7 +50,7 @@ impl<'a, T: Scalar> Recorder<'a, T> {
         }
     }
 
-    /// The number of the first stroboscopic state from `at` on.
+    /// The number of the first stroboscopic state at or after `at`.
     fn periods_until(&self, at: &Instant<T>) -> u64 {
         self.in_periods(at).ceil().max(0.0) as u64
     }

@@ -1,10 +1,10 @@
-//! The recorder: samples, events, sums and counts of a run.
+//! Recorder of the samples, events, sums and counts of a run.
 
 use std::sync::atomic::AtomicBool;
 
 use super::barrier::side_of;
 use super::goal::Goal;
-use super::listing::{Listings, MOST_STROBES};
+use super::listing::{Listings, MAX_STROBES};
 use super::regime::Judge;
 use super::sums::{Counts, Sums};
 use crate::dynamics::clock::{Clock, Instant};
@@ -23,15 +23,16 @@ pub(crate) struct Recorder<'a, T: Copy> {
     pub times: &'a [f64],
     pub next_time: usize,
     pub cancel: Option<&'a AtomicBool>,
-    /// Samples between two checks of the cancel flag, and since the last.
-    pub samples_per_look: u64,
-    pub samples_since_look: u64,
-    /// Samples were left out since the run was cancelled.
+    /// Samples between two checks of the cancel flag.
+    pub samples_per_check: u64,
+    /// Samples since the last check.
+    pub samples_since_check: u64,
+    /// Whether samples were left out because the run was cancelled.
     pub cut_short: bool,
     pub samples: Vec<Sample>,
     pub events: Option<Vec<Event>>,
     pub window: (Instant<T>, Instant<T>),
-    /// Forcing period in kernel units; 0 where the drive has none.
+    /// Forcing period in kernel units; 0 if the drive has none.
     pub period: T,
     pub whole: Sums<T>,
     pub settled: Sums<T>,
@@ -40,13 +41,13 @@ pub(crate) struct Recorder<'a, T: Copy> {
     pub covered: CompensatedSum<T>,
     pub work_moved: f64,
     pub peak_kinetic: f64,
-    /// Lowest and highest displacement at the ends of steps over the whole run, where there is a ledger.
+    /// Lowest and highest displacement at the ends of steps over the whole run, if there is a ledger.
     pub places: (f64, f64),
     pub barrier: Option<T>,
     /// -1, 0 (on it since the start) or 1.
     pub barrier_side: i8,
     pub judge: Judge,
-    /// What the motion is followed to, where it is pursued.
+    /// The goal of the motion, if it is pursued.
     pub goal: Option<Goal<'a>>,
     /// The first instant of the run at the window's phase.
     pub origin: Instant<T>,
@@ -54,7 +55,7 @@ pub(crate) struct Recorder<'a, T: Copy> {
     pub listings: Listings<T>,
     /// Cycles of the clock in a forcing period.
     pub period_cycles: i64,
-    /// How many stroboscopic states may still be recorded one by one.
+    /// Number of stroboscopic states that may still be recorded one by one.
     pub strobes_left: u32,
     /// Forcing periods in the window.
     pub periods: u64,
@@ -102,8 +103,8 @@ impl<'a, T: Scalar> Recorder<'a, T> {
             times: request.sample_times,
             next_time: 0,
             cancel: request.cancel,
-            samples_per_look: 1,
-            samples_since_look: 0,
+            samples_per_check: 1,
+            samples_since_check: 0,
             cut_short: false,
             samples,
             events: request.events.then(Vec::new),
@@ -125,7 +126,7 @@ impl<'a, T: Scalar> Recorder<'a, T> {
             next_strobe: (periods > 0).then_some(origin),
             listings: Listings::new(request, &clock, from, (periods, cycles), model.start_phase),
             period_cycles: cycles,
-            strobes_left: MOST_STROBES,
+            strobes_left: MAX_STROBES,
             periods,
             impact_speed: T::zero(),
             counts: Counts::default(),
@@ -139,7 +140,7 @@ impl<'a, T: Scalar> Recorder<'a, T> {
         base_at(self.base, &self.clock, segment, at, self.unit)
     }
 
-    /// The part of [at, at + length) inside the settled window, from the start of the step.
+    /// The part of \[at, at + length) inside the settled window, relative to `at`.
     #[inline]
     pub(crate) fn overlap(&self, at: &Instant<T>, length: T) -> Option<(T, T)> {
         let from = self.clock.between(at, &self.window.0).larger(T::zero());
@@ -153,17 +154,17 @@ impl<'a, T: Scalar> Recorder<'a, T> {
             && self.clock.between(at, &self.window.1) > T::zero()
     }
 
-    /// Forcing periods since the first stroboscopic state; NaN where the drive has no period.
+    /// Forcing periods since the first stroboscopic state; NaN if the drive has no period.
     pub(crate) fn in_periods(&self, at: &Instant<T>) -> f64 {
         (self.clock.between(&self.origin, at) / self.period).to_f64()
     }
 
-    /// Whether the instant of every crossing matters.
+    /// Whether the instant of every crossing is needed.
     pub(crate) fn lists_crossings(&self) -> bool {
         self.events.is_some() || self.judge.times_all_crossings()
     }
 
-    /// Lists an event, where events are listed.
+    /// Lists an event, if events are listed.
     #[inline]
     pub fn event(&mut self, at: &Instant<T>, kind: EventKind, side: Side, v_in: f64, v_out: f64) {
         if let Some(events) = &mut self.events {

@@ -1,14 +1,14 @@
-//! Judgement of a run: period, whether the motion has settled, whether its averages are steady, and what
-//! happened first.
+//! Classification of a run: the period, whether the motion has settled, whether its averages are steady, and
+//! the first crossing and release.
 
 use super::repeats::{Crossings, Strobe, Strobes};
 use crate::dynamics::model::excitation::Rhythm;
 use crate::dynamics::result::{First, Firsts, Side};
 
-/// Forcing periods of a window whose halves can be compared.
-const ENOUGH_TO_COMPARE: u64 = 8;
+/// Minimum number of forcing periods of a window for its halves to be compared.
+const MIN_PERIODS_TO_COMPARE: u64 = 8;
 
-/// Two halves agree where their means differ by at most so many standard errors.
+/// Number of standard errors by which the means of two halves may differ.
 const STANDARD_ERRORS: f64 = 3.0;
 
 /// An observation of the judge, kept for replay.
@@ -19,7 +19,7 @@ enum Observation {
     Release { time: f64, seconds: f64 },
 }
 
-/// Integral of the squared velocity, and crossings, over a stretch of time.
+/// Integral of the squared velocity, and number of crossings, over a time interval.
 pub(crate) type Gain = (f64, u64);
 
 /// One quantity over the forcing periods of half a window.
@@ -54,7 +54,7 @@ impl Half {
     }
 }
 
-/// The forcing periods of a window in which something happened.
+/// Count of the forcing periods of a window with at least one event of a kind.
 #[derive(Debug, Clone, Copy, Default)]
 struct PeriodsWith {
     count: u64,
@@ -62,26 +62,28 @@ struct PeriodsWith {
 }
 
 impl PeriodsWith {
-    fn tell(&mut self, period: i64) {
+    fn add(&mut self, period: i64) {
         self.count += u64::from(self.last != Some(period));
         self.last = Some(period);
     }
 }
 
-/// The data by which a run is judged. Times are in forcing periods since the first stroboscopic state, which
-/// is the first instant of the run at the window's phase, unless said otherwise.
+/// The data by which a run is classified. Times are in forcing periods since the first stroboscopic state,
+/// which is the first instant of the run at the window's phase, unless stated otherwise.
 #[derive(Debug, Clone)]
 pub(crate) struct Judge {
     rhythm: Rhythm,
-    /// Forcing periods in the window, and the one at which it begins.
+    /// Forcing periods in the window.
     periods: u64,
+    /// Number of the forcing period at which the window begins.
     from: u64,
     strobes: Strobes,
     crossings: Crossings,
     crossing_periods: PeriodsWith,
     release_periods: PeriodsWith,
-    /// Integral of the squared velocity, and crossings, over each period of either half of the window.
+    /// Integral of the squared velocity over each period of either half of the window.
     speed: [Half; 2],
+    /// Crossings in each period of either half of the window.
     crossed: [Half; 2],
     last: Gain,
     firsts: Firsts,
@@ -91,8 +93,8 @@ pub(crate) struct Judge {
 }
 
 impl Judge {
-    /// Of a settled window of so many forcing periods, which begins with the stroboscopic state number
-    /// `from`.
+    /// For a settled window of `periods` forcing periods that begins with the stroboscopic state
+    /// number `from`.
     pub fn new(rhythm: Rhythm, scales: (f64, f64), periods: u64, from: u64) -> Self {
         Self {
             rhythm,
@@ -111,8 +113,8 @@ impl Judge {
         }
     }
 
-    /// One like this, before the run has begun, of another window.
-    pub fn anew(&self, periods: u64, from: u64) -> Self {
+    /// A copy for another window, made before the run has begun.
+    pub fn for_window(&self, periods: u64, from: u64) -> Self {
         let mut strobes = self.strobes.clone();
         strobes.begin_window(periods, from);
         Self { periods, from, strobes, crossings: Crossings::new(periods), ..self.clone() }
@@ -123,29 +125,29 @@ impl Judge {
         &self.strobes
     }
 
-    /// Whether the instants of crossings outside the window matter too: under a drive that changes the first
-    /// ones are reported.
+    /// Whether the instants of crossings outside the window are needed too: under a drive that changes, the
+    /// first ones are reported.
     pub fn times_all_crossings(&self) -> bool {
         self.rhythm == Rhythm::Changing
     }
 
-    fn keep(&mut self, own: Observation) {
+    fn keep(&mut self, observation: Observation) {
         if let Some(tape) = &mut self.tape {
-            tape.push(own);
+            tape.push(observation);
         }
     }
 
-    /// A stroboscopic state; the integral of the squared velocity and the number of crossings since the
-    /// window's begin.
+    /// Adds a stroboscopic state, with the integral of the squared velocity and the number of crossings since
+    /// the begin of the window.
     pub fn strobe(&mut self, state: Strobe, total: Gain) {
         let gain = (total.0 - self.last.0, total.1 - self.last.1);
         self.last = total;
         self.keep(Observation::Strobe(state, gain));
         self.gain(self.strobes.seen(), gain);
-        self.strobes.tell(state);
+        self.strobes.add(state);
     }
 
-    /// Adds what was gained over the period before the stroboscopic state of this number.
+    /// Adds the gain of the period before the stroboscopic state of this number.
     fn gain(&mut self, number: u64, gain: Gain) {
         if number > self.from && number <= self.from + self.periods {
             let half = usize::from(2 * (number - self.from) > self.periods);
@@ -154,8 +156,8 @@ impl Judge {
         }
     }
 
-    /// The same of so many states, `lap` periods apart.
-    fn gain_often(&mut self, number: u64, times: u64, lap: u64, gain: Gain) {
+    /// The same for `times` states, `lap` periods apart.
+    fn gain_repeated(&mut self, number: u64, times: u64, lap: u64, gain: Gain) {
         let up_to = |end: u64| (end + 1).saturating_sub(number).div_ceil(lap).min(times);
         let ends = [self.from, self.from + self.periods / 2, self.from + self.periods].map(up_to);
         for (half, pair) in ends.windows(2).enumerate() {
@@ -164,7 +166,7 @@ impl Judge {
         }
     }
 
-    /// A crossing into the well on `side`; `seconds` since the run's begin.
+    /// Adds a crossing into the well on `side`; `seconds` is the time since the start of the run.
     pub fn crossing(&mut self, time: f64, side: Side, seconds: f64) {
         self.keep(Observation::Crossing { time, side, seconds });
         if self.rhythm == Rhythm::Changing {
@@ -180,24 +182,24 @@ impl Judge {
         }
         if let Some(inside) = self.in_window(time) {
             if self.rhythm == Rhythm::Periodic {
-                self.crossings.tell(inside, side);
+                self.crossings.add(inside, side);
             }
-            self.crossing_periods.tell(inside.floor() as i64);
+            self.crossing_periods.add(inside.floor() as i64);
         }
     }
 
-    /// A release from rest on a stop.
+    /// Adds a release from rest on a stop.
     pub fn release(&mut self, time: f64, seconds: f64) {
         self.keep(Observation::Release { time, seconds });
         if self.rhythm == Rhythm::Changing {
             self.firsts.release.get_or_insert(First { t: seconds, amplitude: None });
         }
         if let Some(inside) = self.in_window(time) {
-            self.release_periods.tell(inside.floor() as i64);
+            self.release_periods.add(inside.floor() as i64);
         }
     }
 
-    /// The time since the window's begin, where it is inside.
+    /// The time since the begin of the window, if it is inside the window.
     fn in_window(&self, time: f64) -> Option<f64> {
         let inside = time - self.from as f64;
         (inside >= 0.0 && inside < self.periods as f64).then_some(inside)
@@ -208,7 +210,7 @@ impl Judge {
         self.tape = Some(Vec::with_capacity(64));
     }
 
-    /// Ends keeping them.
+    /// Stops keeping observations.
     pub fn end_tape(&mut self) {
         self.tape = None;
     }
@@ -218,8 +220,8 @@ impl Judge {
         self.tape.as_ref().map_or(0, Vec::len)
     }
 
-    /// Adds `laps` more laps like the one kept between these two indices, each of so many forcing periods and
-    /// with so much gained in it.
+    /// Adds `laps` more laps like the one kept between these two indices, each of `periods` forcing periods
+    /// and with the gain `total`.
     pub fn repeat(&mut self, (from, to): (usize, usize), laps: u64, periods: u64, total: Gain) {
         let Some(tape) = self.tape.take() else { return };
         let lap = tape.get(from..to).unwrap_or_default();
@@ -228,17 +230,17 @@ impl Judge {
             _ => None,
         };
         let mut strobes: Vec<(Strobe, Gain)> = lap.iter().filter_map(strobe).collect();
-        // what is gained up to the first of them begins in the lap before, which may have been another one
-        if let Some(((_, first), others)) = strobes.split_first_mut() {
+        // the gain up to the first state begins in the lap before, which may have been different
+        if let Some(((_, first), later_states)) = strobes.split_first_mut() {
             let rest =
                 |rest: Gain, other: &(Strobe, Gain)| (rest.0 - other.1.0, rest.1.saturating_sub(other.1.1));
-            *first = others.iter().fold(total, rest);
+            *first = later_states.iter().fold(total, rest);
         }
         self.last = (self.last.0 + total.0 * laps as f64, self.last.1 + total.1.saturating_mul(laps));
-        // As many laps as any judgement looks back, and one more to see what each of them adds.
-        let told = laps.min(2 * self.strobes.longest() as u64 / periods.max(1) + 4);
+        // Replay as many laps as any classification looks back, and one more to see what a lap adds.
+        let replayed = laps.min(2 * self.strobes.longest() as u64 / periods.max(1) + 4);
         let mut before = (0, 0);
-        for number in 1..=told {
+        for number in 1..=replayed {
             before = (self.crossing_periods.count, self.release_periods.count);
             let (later, mut next) = ((number * periods) as f64, strobes.iter());
             for entry in lap {
@@ -246,7 +248,7 @@ impl Judge {
                     Observation::Strobe(..) => {
                         let Some((state, gain)) = next.next() else { continue };
                         self.gain(self.strobes.seen(), *gain);
-                        self.strobes.tell(*state);
+                        self.strobes.add(*state);
                     }
                     Observation::Crossing { time, side, seconds } => {
                         self.crossing(time + later, side, seconds)
@@ -255,7 +257,7 @@ impl Judge {
                 }
             }
         }
-        let left = laps - told;
+        let left = laps - replayed;
         if left > 0 {
             let later = left * periods;
             let more = |count: &mut PeriodsWith, before: u64| {
@@ -266,7 +268,7 @@ impl Judge {
             more(&mut self.release_periods, before.1);
             if strobes.len() as u64 == periods {
                 for (number, (_, gain)) in (self.strobes.seen()..).zip(&strobes) {
-                    self.gain_often(number, left, periods, *gain);
+                    self.gain_repeated(number, left, periods, *gain);
                 }
                 self.strobes.skip(later, periods, |place| strobes[place as usize].0);
             }
@@ -276,20 +278,20 @@ impl Judge {
         self.tape = Some(tape);
     }
 
-    /// Adds `more` stroboscopic states equal to `state`, the last one, none of them beyond the next border of
-    /// the window.
+    /// Adds `more` stroboscopic states equal to `state`, the last one; none of them is beyond the next border
+    /// of the window.
     pub fn skip_still(&mut self, more: u64, state: Strobe) {
-        self.gain_often(self.strobes.seen(), more, 1, (0.0, 0));
+        self.gain_repeated(self.strobes.seen(), more, 1, (0.0, 0));
         self.strobes.skip(more, 1, |_| state);
     }
 
-    /// Whether the crossings of the window repeat, by themselves or with the motion.
+    /// Whether the crossings of the window repeat, either alone or with the motion.
     pub fn crossings_repeat(&self) -> bool {
         self.period().is_some() || self.crossings.repeat()
     }
 
     /// The smallest number of forcing periods, at most 12, after which the motion repeats over the whole
-    /// window, which must hold it twice, and the number of the state since which it has.
+    /// window, and the number of the state since which it does. The window must hold the period twice.
     fn repeats(&self) -> Option<(u32, u64)> {
         self.strobes.period().filter(|_| self.rhythm == Rhythm::Periodic)
     }
@@ -299,8 +301,8 @@ impl Judge {
         self.repeats().map(|(period, _)| period)
     }
 
-    /// Whether the motion has settled, where the drive is such that this can be said: it repeats, or `rests`
-    /// throughout the window.
+    /// Whether the motion has settled: it repeats, or `rests` throughout the window. `None` under a drive
+    /// that changes, for which this is not defined.
     pub fn settled(&self, rests: bool) -> Option<bool> {
         match self.rhythm {
             Rhythm::Changing => None,
@@ -309,17 +311,17 @@ impl Judge {
         }
     }
 
-    /// Whether the averages of the window's halves agree, where this can be judged. Those of a motion that
-    /// has settled do.
+    /// Whether the averages of the window's halves agree, if this can be determined. They do if the motion
+    /// has settled.
     pub fn steady(&self, rests: bool) -> Option<bool> {
         match self.settled(rests)? {
             true => Some(true),
-            false if self.periods < ENOUGH_TO_COMPARE => None,
+            false if self.periods < MIN_PERIODS_TO_COMPARE => None,
             false => Some([self.speed, self.crossed].iter().all(|[first, second]| first.agrees(second))),
         }
     }
 
-    /// Time in s since when the motion has repeated; `at` gives the time of a stroboscopic state.
+    /// Time in s since which the motion has repeated; `at` gives the time of a stroboscopic state.
     pub fn settles_at(&self, at: impl Fn(u64) -> f64) -> Option<f64> {
         self.repeats().map(|(_, since)| at(since))
     }
@@ -329,7 +331,8 @@ impl Judge {
         (self.crossing_periods.count, self.release_periods.count)
     }
 
-    /// What happened first under a drive that changes, up to so many forcing periods.
+    /// The first crossing and release under a drive that changes; `end` is the end of the run in
+    /// forcing periods.
     pub fn firsts(&self, end: f64, amplitude: impl Fn(f64) -> Option<f64>) -> Option<Firsts> {
         let mut firsts = self.firsts;
         let lasting = |last: i64| last >= end.floor() as i64 - 1;
@@ -341,7 +344,7 @@ impl Judge {
         (self.rhythm == Rhythm::Changing).then_some(firsts)
     }
 
-    /// The settled window begins anew at its end, which is where the run stands.
+    /// Begins another settled window at the end of the last one, where the run is.
     pub fn open_window(&mut self) {
         self.from += self.periods;
         self.strobes.open_window();
@@ -369,7 +372,7 @@ mod tests {
         }
     }
 
-    /// What has been gained up to a stroboscopic state, each lap alike.
+    /// The gain up to a stroboscopic state if all laps are alike.
     fn total(number: u64, period: u64) -> Gain {
         let (laps, place) = (number / period, number % period);
         ((laps * 3 * period + place * place) as f64, laps * (period - 1) + place)
@@ -382,7 +385,7 @@ mod tests {
             for more in [0, 1, 250] {
                 let periods = laps * period + more;
                 let (mut long, mut short) = (judge(periods), judge(periods));
-                // before the laps the motion may have been another
+                // the motion before the laps may have been different
                 let transient = |judge: &mut Judge| {
                     (1..=more)
                         .for_each(|i| judge.strobe(Strobe { x: -((i * i) as f64), v: 0.0 }, (i as f64, 0)));

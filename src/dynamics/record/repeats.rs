@@ -1,21 +1,21 @@
-//! Repetition of a motion: of its stroboscopic states and of its crossings, judged as they come.
+//! Repetition of a motion: of its stroboscopic states and of its crossings, determined while they arrive.
 //!
-//! Of the past only the last twelve forcing periods and some states at the window's begin and middle are
-//! kept, so a window may be as long as it likes.
+//! Only the last twelve forcing periods and some states at the begin and the middle of the window are kept,
+//! so a window may have any length.
 
 use std::collections::VecDeque;
 
 use crate::dynamics::result::Side;
 
-/// Most forcing periods after which a motion may repeat and still count as periodic.
+/// Maximum number of forcing periods after which a motion may repeat and still count as periodic.
 pub(crate) const LONGEST: usize = 12;
 
-/// Two crossings repeat where their times within the period agree to this share of a forcing period: well
-/// above what is left of a transient after half a run, well below the scatter of irregular motion.
+/// Two crossings repeat if their times within the period agree to this share of a forcing period: well above
+/// the rest of a transient after half a run, well below the scatter of irregular motion.
 const CROSSING_MATCH: f64 = 1e-2;
 
-/// Two stroboscopic states repeat where they agree to this share of the scene's scales: fine enough to see
-/// a period doubling soon after its onset, coarse enough for a transient that has died to a thousandth.
+/// Two stroboscopic states repeat if they agree to this share of the scene's scales: fine enough to see a
+/// period doubling soon after its onset, coarse enough for a transient that has decayed to a thousandth.
 const STATE_MATCH: f64 = 1e-3;
 
 /// A motion that moves by no more than this share of the scales over half a window stands still: well above
@@ -43,26 +43,29 @@ impl Strobe {
 /// The stroboscopic states of a run, numbered from 0.
 #[derive(Debug, Clone)]
 pub(crate) struct Strobes {
-    /// Length and speed that states are compared by.
+    /// Length and speed to which differences of states are relative.
     scales: (f64, f64),
-    /// The longest period that is looked for.
+    /// The longest period that is searched for.
     longest: usize,
     seen: u64,
-    /// The last of them, each at its number modulo [`LONGEST`].
+    /// The last states, each at its number modulo [`LONGEST`].
     recent: [Strobe; LONGEST],
-    /// For each number of periods up to [`LONGEST`] the state from which on each has come back after so many.
+    /// For each period up to [`LONGEST`], the number of the state from which on all states have come back
+    /// after it.
     since: [u64; LONGEST],
-    /// Forcing periods in the settled window, and the number of its first state.
+    /// Forcing periods in the settled window.
     periods: u64,
+    /// Number of the first state of the window.
     from: u64,
-    /// The first states of the window, and those around its middle.
+    /// The first states of the window.
     opening: [Strobe; 2 * LONGEST],
+    /// The states around the middle of the window.
     middle: [Strobe; 2 * LONGEST],
 }
 
 impl Strobes {
-    /// Of a settled window of so many `periods` that begins with the state number `from`. A period is only
-    /// accepted if the window holds it twice.
+    /// For a settled window of `periods` that begins with the state number `from`. A period is only accepted
+    /// if the window holds it twice.
     pub fn new(scales: (f64, f64), periods: u64, from: u64) -> Self {
         Self {
             scales,
@@ -77,13 +80,13 @@ impl Strobes {
         }
     }
 
-    /// Of another window, before the first state. All periods are looked for, however short it is.
+    /// Changes the window, before the first state. All periods are searched for, however short the window is.
     pub fn begin_window(&mut self, periods: u64, from: u64) {
         *self = Self { longest: LONGEST, ..Self::new(self.scales, periods, from) };
     }
 
-    /// The smallest number of states after which those of the last two periods, and so many `more`, have come
-    /// back.
+    /// The smallest number of states after which those of the last two periods, and `more` states before
+    /// them, have come back.
     pub fn repeats_for(&self, more: u64) -> Option<u32> {
         (1..=self.longest as u64).find_map(|q| {
             let back = self.since[q as usize - 1] + q + 2 * q + more < self.seen;
@@ -96,14 +99,14 @@ impl Strobes {
         self.seen
     }
 
-    /// Adds a state; those after the window are not judged.
-    pub fn tell(&mut self, state: Strobe) {
+    /// Adds a state; those after the window are ignored.
+    pub fn add(&mut self, state: Strobe) {
         if self.is_complete() {
             return;
         }
         let number = self.seen;
-        for (own, since) in self.since.iter_mut().enumerate().take(self.longest) {
-            let Some(before) = number.checked_sub(own as u64 + 1) else { break };
+        for (index, since) in self.since.iter_mut().enumerate().take(self.longest) {
+            let Some(before) = number.checked_sub(index as u64 + 1) else { break };
             if !state.is_near(&self.recent[before as usize % LONGEST], self.scales) {
                 *since = before + 1;
             }
@@ -118,7 +121,7 @@ impl Strobes {
         self.seen > self.from + self.periods
     }
 
-    /// Keeps the state of this number where it is one at the window's begin or middle.
+    /// Keeps the state of this number if it is at the begin or the middle of the window.
     fn keep(&mut self, number: u64, state: Strobe) {
         let Some(inside) = number.checked_sub(self.from) else { return };
         if let Some(kept) = self.opening.get_mut(inside as usize) {
@@ -130,14 +133,14 @@ impl Strobes {
         }
     }
 
-    /// Forcing periods from the window's begin to the first of the states around its middle that are kept.
+    /// Forcing periods from the begin of the window to the first state kept around its middle.
     fn before_middle(&self) -> u64 {
         self.periods.div_ceil(2).saturating_sub(LONGEST as u64 - 1)
     }
 
     /// Adds `more` states of a motion that repeats exactly after every `lap` states, which divides `more`,
-    /// and has done so for twice as many states as are looked back at and four laps; `state` gives those of a
-    /// lap.
+    /// and has done so for four laps and twice as many states as are looked back at; `state` gives the states
+    /// of a lap.
     pub fn skip(&mut self, more: u64, lap: u64, state: impl Fn(u64) -> Strobe) {
         if self.is_complete() {
             return;
@@ -149,7 +152,7 @@ impl Strobes {
             }
         }
         for since in &mut self.since {
-            // one that has not come back lately will not either
+            // a period that has not come back lately will not do so either
             if *since + self.longest as u64 + lap >= self.seen {
                 *since += more;
             }
@@ -158,13 +161,13 @@ impl Strobes {
         self.seen += more;
     }
 
-    /// The longest period that is looked for.
+    /// The longest period that is searched for.
     pub fn longest(&self) -> usize {
         self.longest
     }
 
-    /// The smallest number of states after which all states of the window have come back, where they stand
-    /// still over the window, and the number of the state since which they have come back.
+    /// The smallest number of states after which all states of the window have come back and stay where they
+    /// are over the window, and the number of the state since which they have come back.
     pub fn period(&self) -> Option<(u32, u64)> {
         let back = |q: &u64| self.since[*q as usize - 1] <= self.from;
         let q =
@@ -172,9 +175,9 @@ impl Strobes {
         Some((q as u32, self.since[q as usize - 1]))
     }
 
-    /// Whether a motion whose states come back after `q` of them stays where it is. A slow drift leaves
-    /// neighbours alike, so the last states of the window are compared with those half a window and a window
-    /// before, as nearly as laps allow.
+    /// Whether a motion whose states come back after `q` of them stays where it is. In a slow drift
+    /// neighbouring states are alike too, so the last states of the window are compared with those about half
+    /// a window and a window before.
     fn stands_still(&self, q: u64) -> bool {
         let apart = self.periods / (2 * q) * q;
         let whole = 2 * apart;
@@ -184,14 +187,14 @@ impl Strobes {
                 let first = &self.opening[(end - whole) as usize];
                 let middle = &self.middle[(end - apart - self.before_middle()) as usize];
                 let last = &self.recent[(self.from + end) as usize % LONGEST];
-                self.has_arrived([first, middle, last])
+                self.has_converged([first, middle, last])
             })
     }
 
-    /// Whether three states, the same time apart, agree with each other and with what they go to: where the
-    /// second change is `r` times the first one (of their directions, the part that they share), those that
-    /// follow add up to r / (1 - r) of it.
-    fn has_arrived(&self, [first, middle, last]: [&Strobe; 3]) -> bool {
+    /// Whether three states, equally spaced in time, agree with each other and with their limit. If the
+    /// second change is `r` times the first one (projected on its direction), the later changes add up to r /
+    /// (1 - r) times the second.
+    fn has_converged(&self, [first, middle, last]: [&Strobe; 3]) -> bool {
         let near = |a: &Strobe, b: &Strobe| a.is_near(b, self.scales);
         if !(near(first, middle) && near(middle, last) && near(first, last)) {
             return false;
@@ -200,12 +203,12 @@ impl Strobes {
         let (before, after) = (first.change(middle, self.scales), middle.change(last, self.scales));
         let [moved_before, moved] = [before, after].map(|change| product(change, change).sqrt());
         let ratio = product(before, after) / product(before, before);
-        // changes that grow lead away, also in turn to both sides or on a spiral
+        // growing changes lead away, also if they alternate in sign or follow a spiral
         let shrinks = moved <= moved_before + STILL;
         moved <= STILL || (shrinks && ratio < 1.0 && moved * ratio / (1.0 - ratio) <= STATE_MATCH)
     }
 
-    /// The settled window begins anew with the last state.
+    /// Begins another settled window with the last state.
     pub fn open_window(&mut self) {
         self.from = self.seen.saturating_sub(1);
         self.keep(self.from, self.recent[self.from as usize % LONGEST]);
@@ -217,30 +220,30 @@ impl Strobes {
 pub(crate) struct Crossings {
     /// Forcing periods in the window.
     periods: f64,
-    /// Those that may still wait for a partner: time in forcing periods since the window's start, and the
+    /// Crossings that may still get a partner: time in forcing periods since the start of the window, and the
     /// well entered.
     recent: VecDeque<(f64, Side)>,
-    /// Crossings before the first of `recent`.
+    /// Number of crossings before the first of `recent`.
     gone: u64,
-    /// For each number of periods the first crossing without a partner so many periods later; none where one
-    /// was missed.
+    /// For each period, the first crossing without a partner one period later; `None` if a partner
+    /// was missing.
     waiting: [Option<u64>; LONGEST],
     paired: [bool; LONGEST],
 }
 
 impl Crossings {
-    /// A window of so many forcing periods. A period is only accepted if the window holds it twice, so that
-    /// every crossing has a partner to be compared with.
+    /// For a window of `periods` forcing periods. A period is only accepted if the window holds it twice, so
+    /// that every crossing has a partner to be compared with.
     pub fn new(periods: u64) -> Self {
-        let waiting = std::array::from_fn(|own| (2 * (own as u64 + 1) <= periods).then_some(0));
+        let waiting = std::array::from_fn(|index| (2 * (index as u64 + 1) <= periods).then_some(0));
         let paired = [false; LONGEST];
         Self { periods: periods as f64, recent: VecDeque::new(), gone: 0, waiting, paired }
     }
 
-    pub fn tell(&mut self, time: f64, side: Side) {
+    pub fn add(&mut self, time: f64, side: Side) {
         let number = self.gone + self.recent.len() as u64;
-        for (own, waiting) in self.waiting.iter_mut().enumerate() {
-            let (q, Some(first)) = (own as f64 + 1.0, *waiting) else { continue };
+        for (index, waiting) in self.waiting.iter_mut().enumerate() {
+            let (q, Some(first)) = (index as f64 + 1.0, *waiting) else { continue };
             if time < q - CROSSING_MATCH {
                 continue;
             }
@@ -249,7 +252,7 @@ impl Crossings {
                 .is_some_and(|partner| partner.1 == side && (time - partner.0 - q).abs() <= CROSSING_MATCH);
             if meets {
                 *waiting = Some(first + 1);
-                self.paired[own] = true;
+                self.paired[index] = true;
             } else if !(time <= q + CROSSING_MATCH && first == 0) {
                 // (one near the edge may have its partner before the window)
                 *waiting = None;
@@ -265,18 +268,18 @@ impl Crossings {
         }
     }
 
-    /// Adds whole repetitions that last `periods` in all, of a motion that has repeated exactly for as long
-    /// as a period is looked for, and once more.
+    /// Adds whole repetitions that last `periods` in all, of a motion that has repeated exactly for the
+    /// longest period searched for, and once more.
     pub fn skip(&mut self, periods: f64) {
         for crossing in &mut self.recent {
             crossing.0 += periods;
         }
     }
 
-    /// Whether they repeat with a period of at most [`LONGEST`] forcing periods.
+    /// Whether the crossings repeat with a period of at most [`LONGEST`] forcing periods.
     pub fn repeat(&self) -> bool {
-        self.waiting.iter().zip(self.paired).enumerate().any(|(own, (waiting, paired))| {
-            let q = own as f64 + 1.0;
+        self.waiting.iter().zip(self.paired).enumerate().any(|(index, (waiting, paired))| {
+            let q = index as f64 + 1.0;
             paired
                 && waiting.is_some_and(|first| {
                     let alone = self.recent.get((first - self.gone) as usize);
@@ -293,7 +296,7 @@ mod tests {
     fn repeat(periods: u64, times: &[f64]) -> bool {
         let side = |i: usize| if i.is_multiple_of(2) { Side::Right } else { Side::Left };
         let mut crossings = Crossings::new(periods);
-        times.iter().enumerate().for_each(|(i, t)| crossings.tell(*t, side(i)));
+        times.iter().enumerate().for_each(|(i, t)| crossings.add(*t, side(i)));
         assert!(crossings.recent.len() <= 2 * LONGEST + 2);
         crossings.repeat()
     }
@@ -328,23 +331,23 @@ mod tests {
     #[test]
     fn crossings_that_are_skipped_are_as_if_told() {
         let times = |from: i32, to: i32| (from..to).map(|i| 0.25 + 0.5 * f64::from(i));
-        let told = |crossings: &mut Crossings, from: i32, to: i32| {
+        let add_all = |crossings: &mut Crossings, from: i32, to: i32| {
             times(from, to)
                 .zip([Side::Right, Side::Left].into_iter().cycle())
-                .for_each(|(t, side)| crossings.tell(t, side));
+                .for_each(|(t, side)| crossings.add(t, side));
         };
         let mut crossings = Crossings::new(1_000_000);
-        told(&mut crossings, 0, 60);
+        add_all(&mut crossings, 0, 60);
         crossings.skip(1_000_000.0 - 30.0);
         assert!(crossings.repeat());
         // the last period is another
-        crossings.tell(1e6 - 0.1, Side::Right);
+        crossings.add(1e6 - 0.1, Side::Right);
         assert!(!crossings.repeat());
     }
 
     fn strobes(periods: u64, x: impl Fn(u64) -> f64) -> Strobes {
         let mut strobes = Strobes::new((1.0, 1.0), periods, 0);
-        (0..=periods).for_each(|i| strobes.tell(Strobe { x: x(i), v: 0.0 }));
+        (0..=periods).for_each(|i| strobes.add(Strobe { x: x(i), v: 0.0 }));
         strobes
     }
 
@@ -355,14 +358,14 @@ mod tests {
         assert_eq!(strobes(9, |i| (i % 5) as f64).period(), None); // the window holds it once
         assert_eq!(strobes(10, |i| (i % 5) as f64).period(), Some((5, 0)));
         assert_eq!(strobes(40, |i| (i * i % 37) as f64).period(), None);
-        // three states of their own, then two in turn
+        // three different states, then two alternating ones
         assert_eq!(strobes(40, |i| if i < 3 { 7 + i } else { i % 2 } as f64).since[1], 3);
     }
 
     #[test]
     fn an_approach_repeats_once_what_remains_of_it_is_small() {
-        // Towards 0 at this rate a period, from one side or from both in turn, or away from it: neighbours
-        // may have agreed for long.
+        // Towards 0 at this rate per period, from one side or alternating, or away from it: neighbours may
+        // have agreed for a long time.
         for rate in [0.5, 0.9, 0.99, 0.999, 0.9999, 1.0001, 1.01, -0.5, -0.9, -0.99, -0.9999, -1.01_f64] {
             for window in [2, 3, 7, 30, 101] {
                 for remains in [2e-2, 2e-3, 5e-4, 1e-6, 1e-12] {
@@ -372,7 +375,7 @@ mod tests {
                     let case = format!("{rate} {window} {remains}: {found:?}");
                     if let Some((period, _)) = found {
                         assert!(period == 1 || (period == 2 && rate < 0.0), "{case}");
-                        // it stays where it is, or has moved by no more than can be told
+                        // it stays where it is, or has moved by no more than can be detected
                         let moves = (first - last).abs() > 2.5 * STILL;
                         assert!(!moves || (last <= 2.0 * STATE_MATCH && rate.abs() < 1.0), "{case}");
                     } else if first.max(last) <= 0.5 * STATE_MATCH && window >= 4 {
@@ -392,7 +395,7 @@ mod tests {
                     for i in 0..=window {
                         let size = 4e-4 * growth.powi(i as i32 - window as i32);
                         let (v, x) = (turn * i as f64).sin_cos();
-                        strobes.tell(Strobe { x: size * x, v: size * v });
+                        strobes.add(Strobe { x: size * x, v: size * v });
                     }
                     let first = 4e-4 * growth.powi(-(window as i32));
                     let case = format!("{turn} {growth} {window}: {:?}", strobes.period());
@@ -419,17 +422,17 @@ mod tests {
             for (from, periods) in [(0, 1200), (7, 41), (100, 23), (3, 1090), (600, 500)] {
                 let state = |i: u64| Strobe { x: (i % lap) as f64, v: 0.0 };
                 let mut skipped = Strobes::new((1.0, 1.0), periods, from);
-                let mut told = skipped.clone();
+                let mut full = skipped.clone();
                 let enough = 2 * LONGEST as u64 + 4 * lap;
                 let more = (from + periods + 1).saturating_sub(enough) / lap * lap;
-                (0..enough).for_each(|i| skipped.tell(state(i)));
+                (0..enough).for_each(|i| skipped.add(state(i)));
                 skipped.skip(more, lap, |place| state(enough + place));
-                (enough + more..=from + periods).for_each(|i| skipped.tell(state(i)));
-                (0..=from + periods).for_each(|i| told.tell(state(i)));
-                assert_eq!(skipped.seen(), told.seen());
-                assert_eq!(skipped.period(), told.period(), "{lap} {from} {periods}");
+                (enough + more..=from + periods).for_each(|i| skipped.add(state(i)));
+                (0..=from + periods).for_each(|i| full.add(state(i)));
+                assert_eq!(skipped.seen(), full.seen());
+                assert_eq!(skipped.period(), full.period(), "{lap} {from} {periods}");
                 let expected = (lap <= 12 && 2 * lap <= periods).then_some(lap as u32);
-                assert_eq!(told.period().map(|own| own.0), expected, "{lap} {from} {periods}");
+                assert_eq!(full.period().map(|period| period.0), expected, "{lap} {from} {periods}");
             }
         }
     }

@@ -12,8 +12,8 @@ use crate::dynamics::step::path::{InStop, Path, StepView};
 use crate::numeric::{GaussLegendre, PolynomialRoots, Scalar, single_root};
 
 impl<T: Scalar> Recorder<'_, T> {
-    /// What integrals over a step are taken with: half as many points as a full series has coefficients, and
-    /// no more than a shorter one needs.
+    /// The rule for integrals over a step: half as many points as a full series has coefficients, and no more
+    /// than a shorter series needs.
     #[inline]
     fn rule_of<P: Path<T>>(&self, path: &P) -> &'static GaussLegendre<T> {
         let points = self.order / 2 + 1;
@@ -41,8 +41,7 @@ impl<T: Scalar> Recorder<'_, T> {
         }
         self.circuit(step, rule, overlap);
         if let Some((begin, end)) = overlap {
-            // (a time of contact is inverted to half its digits, which the ends of a whole step need not
-            // suffer)
+            // (A time of contact is inverted to half its digits only; this must not affect a whole step.)
             let (from, to) = match full {
                 true => (T::zero(), step.length),
                 false => (step.path.parameter(begin, step.length), step.path.parameter(end, step.length)),
@@ -98,13 +97,14 @@ impl<T: Scalar> Recorder<'_, T> {
         }
     }
 
-    /// The time in s of the next sample, where it comes before `end`. A single step, or a rest, may hold all
-    /// that there are, each with the sum of a drive's tones: once the run is cancelled there are no more.
+    /// The time in s of the next sample, if it comes before `end`. A single step or rest may hold all
+    /// samples, and each sums the tones of the drive; so the cancel flag is checked here, and a cancelled run
+    /// takes no more.
     pub fn next_sample(&mut self, end: f64) -> Option<f64> {
         let next = self.times.get(self.next_time).copied().filter(|t| *t < end)?;
-        self.samples_since_look += 1;
-        if self.samples_since_look >= self.samples_per_look {
-            self.samples_since_look = 0;
+        self.samples_since_check += 1;
+        if self.samples_since_check >= self.samples_per_check {
+            self.samples_since_check = 0;
             if self.cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed)) {
                 self.times = &self.times[..self.next_time];
                 self.cut_short = true;
@@ -120,11 +120,11 @@ impl<T: Scalar> Recorder<'_, T> {
             false => (step.x_at(from), step.x_at(to)),
         };
         let endless = T::of(f64::INFINITY);
-        let (nothing, limits) = ((T::zero(), T::zero()), step.limits);
+        let (zero, limits) = ((T::zero(), T::zero()), step.limits);
         let deviations = (endless, endless, endless);
         let bound = if full { step.bound } else { step.bound + step.bound };
         let chord =
-            Chord { start: first, end: last, bound, deviations, ways: nothing, bends: nothing, limits };
+            Chord { start: first, end: last, bound, deviations, slopes: zero, curvatures: zero, limits };
         let (low, high, mut turns) = chord.extremes((self.low, self.high));
         (self.low, self.high) = (low, high);
         if turns
@@ -161,8 +161,8 @@ impl<T: Scalar> Recorder<'_, T> {
         }
     }
 
-    /// Records what a compliant stop dissipated, and its largest force, over a step of contact that has been
-    /// recorded.
+    /// Records the energy dissipated in a compliant stop, and its largest force, over a step of contact that
+    /// has been recorded.
     pub fn contact<P: InStop<T>>(&mut self, step: &StepView<T, P>) {
         if self.ledger {
             let rule = self.rule_of(step.path);
@@ -184,12 +184,12 @@ impl<T: Scalar> Recorder<'_, T> {
     }
 }
 
-/// When the mass turns in a step of length `h` in which it does so once. A batch does the same arithmetic
-/// (`lanes/columns/landing.rs`).
+/// The time at which the mass turns, in a step of length `h` in which it turns once. A batch does the same
+/// arithmetic (`lanes/columns/landing.rs`).
 fn turning_point<T: Scalar>(y: &[T], h: T, chord: &Chord<T>) -> Option<T> {
     let velocity = polynomial::scaled_slope(y, h);
     let pair = |value: T, slope: T| (value.to_f64(), slope.to_f64());
-    let (ways, bends) = (chord.ways, chord.bends);
-    let guess = single_root::guess(pair(ways.0, bends.0), pair(ways.1, bends.1));
+    let (slopes, curvatures) = (chord.slopes, chord.curvatures);
+    let guess = single_root::guess(pair(slopes.0, curvatures.0), pair(slopes.1, curvatures.1));
     Some(single_root::single_root(&velocity[..y.len() - 1], T::of(guess))? * h)
 }

@@ -7,10 +7,10 @@ use crate::dynamics::model::excitation::Rhythm;
 use crate::dynamics::result::{Harvest, Ledger, Outcome, Phase, Place, Regime, Run, Sample, Summary};
 use crate::numeric::{CompensatedSum, Scalar};
 
-/// Below this share of the length scale a motion is rounding: the mass has not moved.
+/// Share of the length scale below which a motion is rounding: the mass has not moved.
 const STILL: f64 = 1e-12;
 
-/// How a run ended, as the recorder needs it.
+/// The end of a run, as the recorder needs it.
 pub(crate) struct Ending<T> {
     pub at: Instant<T>,
     /// Displacement and velocity, kernel units.
@@ -33,7 +33,7 @@ impl<T: Scalar> Recorder<'_, T> {
         let &Ending { at: end, state: (x, v), start_v, circuit, phase, segment, potential, outcome } = ending;
         let final_x = x.to_f64();
         let final_v = v.to_f64() / self.unit;
-        // What was asked for at the very end (to rounding) is the final state.
+        // A sample requested at the very end (to rounding) is the final state.
         let last = self.clock.seconds(&end);
         while let Some(t) = self.times.get(self.next_time).copied() {
             if t > last * (1.0 + 4.0 * f64::EPSILON) {
@@ -66,8 +66,10 @@ impl<T: Scalar> Recorder<'_, T> {
             let stored_j = (kinetic(v) - kinetic(start_v) + charged) * energy + potential;
             let (taken, moved) = ((work_j - damping_j) - impact_j, self.work_moved + self.peak_kinetic);
             let moved = moved * energy + damping_j + impact_j.abs() + stored_j.abs();
-            let electrical = transducer.map(|own| own.energies(self.squared_signal(&self.whole)));
-            let (harvested_j, coil_j) = (electrical.map(|own| own.0), electrical.map(|own| own.1));
+            let electrical =
+                transducer.map(|transducer| transducer.energies(self.squared_signal(&self.whole)));
+            let (harvested_j, coil_j) =
+                (electrical.map(|energies| energies.0), electrical.map(|energies| energies.1));
             let (residual_j, moved) = match electrical {
                 Some((load, coil)) => ((taken - load - coil) - stored_j, moved + load + coil),
                 None => (taken - stored_j, moved),
@@ -81,15 +83,15 @@ impl<T: Scalar> Recorder<'_, T> {
         });
         let rms = (value(&self.settled.squared_velocity) / covered).sqrt() / self.unit;
         let work = value(&self.settled.work);
-        let harvest = transducer.map(|own| {
-            let load = own.energies(self.squared_signal(&self.settled)).0;
+        let harvest = transducer.map(|transducer| {
+            let load = transducer.energies(self.squared_signal(&self.settled)).0;
             let load_share = (self.ledger && seen && work.abs() > 0.0).then(|| load / (work * energy));
             let squared = Some(self.squared_signal(&self.settled) / (covered * self.unit));
             let squared = squared.filter(|squared| seen && squared.is_finite());
             Harvest {
-                mean_load_power: squared.map(|squared| own.energies(squared).0),
-                mean_coil_power: squared.map(|squared| own.energies(squared).1),
-                voltage_rms: squared.map(|squared| own.voltage_rms(squared.sqrt())),
+                mean_load_power: squared.map(|squared| transducer.energies(squared).0),
+                mean_coil_power: squared.map(|squared| transducer.energies(squared).1),
+                voltage_rms: squared.map(|squared| transducer.voltage_rms(squared.sqrt())),
                 load_share,
             }
         });
@@ -98,15 +100,16 @@ impl<T: Scalar> Recorder<'_, T> {
         let counts = &self.counts;
         let left = counts.crossings + counts.impacts + counts.releases > 0;
         let compliant = self.model.compliant;
-        // Pressed on a compliant stop throughout, it trembles there and has not left it.
+        // A mass pressed onto a compliant stop throughout oscillates there but has not left it.
         let pressed = compliant.is_some() && value(&self.settled.rested) == covered;
         let moved = seen && (left || (travel > STILL * scales.length && !pressed));
         let rests = seen && !moved;
-        let pressed_by = |force: f64| compliant.and_then(|own| own.pressure(force));
+        let pressed_by = |force: f64| compliant.and_then(|stop| stop.pressure(force));
         let force = compliant.map(|_| self.peak_contact.to_f64() * m / (self.unit * self.unit));
         let pressure = force.and_then(pressed_by);
-        let material = compliant.and_then(|own| own.material);
-        let yields = pressure.zip(material).is_some_and(|(own, of)| own > of.yield_pressure());
+        let material = compliant.and_then(|stop| stop.material);
+        let yields =
+            pressure.zip(material).is_some_and(|(pressure, material)| pressure > material.yield_pressure());
         let impact_share =
             (self.ledger && seen && work.abs() > 0.0).then(|| value(&self.settled.impact) / work);
         let regime = if self.model.one_well {
@@ -187,7 +190,7 @@ impl<T: Scalar> Recorder<'_, T> {
     /// Integral over time in s of the squared signal of the transducer, SI.
     fn squared_signal(&self, sums: &Sums<T>) -> f64 {
         let squared = match self.model.circuit() {
-            Some(own) => own.amount * own.amount * sums.circuit.value().to_f64(),
+            Some(circuit) => circuit.amount * circuit.amount * sums.circuit.value().to_f64(),
             None => sums.squared_velocity.value().to_f64(),
         };
         squared / self.unit

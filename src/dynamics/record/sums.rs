@@ -54,14 +54,14 @@ impl Counts {
 }
 
 impl<T: Scalar> Sums<T> {
-    /// Does the same with each sum and what it was at two instants.
+    /// Applies `more` to each sum and its values at two instants.
     pub fn each(
         &mut self,
         before: &Self,
         after: &Self,
         more: impl Fn(&mut CompensatedSum<T>, &CompensatedSum<T>, &CompensatedSum<T>),
     ) {
-        // no sum can be forgotten
+        // destructured, so that no sum can be forgotten
         let Self { squared_velocity, work, impact, rested, displacement, circuit } = self;
         more(squared_velocity, &before.squared_velocity, &after.squared_velocity);
         more(work, &before.work, &after.work);

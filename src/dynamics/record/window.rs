@@ -1,5 +1,5 @@
-//! The settled window of a record: its borders, the stroboscopic states within and before it, and the next
-//! one; those that a run lists.
+//! Settled window of a record: its borders, the stroboscopic states in and before it, and the states that a
+//! run lists.
 
 use super::listing::SAME;
 use super::recorder::Recorder;
@@ -10,8 +10,8 @@ use crate::dynamics::result::SectionPoint;
 use crate::dynamics::step::path::{Path, StepView};
 use crate::numeric::{CompensatedSum, Scalar};
 
-/// Stroboscopic states of a mass at rest that are recorded one by one before some are skipped: more than the
-/// longest period that is looked for.
+/// Number of stroboscopic states of a mass at rest that are recorded one by one before some are skipped: more
+/// than the longest period that is searched for.
 pub(crate) const STILL: u32 = 32;
 
 impl<T: Scalar> Recorder<'_, T> {
@@ -43,8 +43,8 @@ impl<T: Scalar> Recorder<'_, T> {
         }
     }
 
-    /// Passes over stroboscopic states of a mass that stands still at `x` up to `until`, all like the last
-    /// ones, but for some before the next border of the window.
+    /// Skips stroboscopic states of a mass that stands still at `x` up to `until`, which equal the last ones,
+    /// except for some before the next border of the window.
     pub(crate) fn skip_strobes(&mut self, x: T, until: &Instant<T>) {
         let Some(strobe) = &mut self.next_strobe else { return };
         let left = |border: &Instant<T>| {
@@ -60,7 +60,7 @@ impl<T: Scalar> Recorder<'_, T> {
         }
     }
 
-    /// The stroboscopic state at `end`, the end of the run, where the window ends there too.
+    /// Records the stroboscopic state at `end`, the end of the run, if the window ends there too.
     pub(crate) fn last_strobe(&mut self, end: &Instant<T>, (x, v): (T, T)) {
         let due = |strobe: &Instant<T>| self.clock.between(strobe, end).abs() <= self.period * T::of(1e-9);
         if self.next_strobe.as_ref().is_some_and(due) {
@@ -73,20 +73,20 @@ impl<T: Scalar> Recorder<'_, T> {
         self.origin
     }
 
-    /// Whole forcing periods in the settled window; 0 where it holds none.
+    /// Whole forcing periods in the settled window; 0 if it holds none.
     pub(crate) fn periods(&self) -> u64 {
         self.periods
     }
 
-    /// Begin and end of the settled window in s, as far as a run that ended at `end` came.
+    /// Begin and end of the settled window in s, as far as a run that ended at `end` reached it.
     pub(crate) fn window_seconds(&self, end: &Instant<T>) -> (f64, f64) {
         let (from, to) = &self.window;
         let reached = if self.clock.between(to, end) > T::zero() { to } else { end };
-        // as it was written, where it was
+        // the number of the scene, if the instant is that number
         let written = [self.model.settle, self.model.duration];
         let seconds = |at: &Instant<T>| {
-            let own = written.into_iter().find(|t| self.clock.at(*t) == *at);
-            own.unwrap_or_else(|| self.clock.seconds(at))
+            let as_written = written.into_iter().find(|t| self.clock.at(*t) == *at);
+            as_written.unwrap_or_else(|| self.clock.seconds(at))
         };
         let (from, reached) = (seconds(from), seconds(reached));
         (from, reached.max(from))
@@ -97,8 +97,8 @@ impl<T: Scalar> Recorder<'_, T> {
         self.window.1
     }
 
-    /// The settled window begins anew at its end, where the run stands; where the new one ends, if that is
-    /// not after `until` in s and can be judged.
+    /// Begins another settled window at the end of the last one, where the run is. Returns its end, or `None`
+    /// if that is after `until` in s or the window has too many stroboscopic states.
     pub fn next_window(&mut self, until: f64) -> Option<Instant<T>> {
         let from = self.window.1;
         let length = self.periods as i64 * self.period_cycles;
@@ -120,38 +120,38 @@ impl<T: Scalar> Recorder<'_, T> {
 
     /// Lists the states within a step.
     pub(crate) fn list_states<P: Path<T>>(&mut self, step: &StepView<T, P>) {
-        for own in self.listings.each() {
-            while let Some(next) = own.due() {
+        for listing in self.listings.each() {
+            while let Some(next) = listing.due() {
                 let into = self.clock.between(&step.at, &next).larger(T::zero());
                 if into >= step.duration {
                     break;
                 }
                 let into = step.path.parameter(into, step.length);
-                own.add((step.x_at(into).to_f64(), step.path.velocity(into).to_f64() / self.unit));
+                listing.add((step.x_at(into).to_f64(), step.path.velocity(into).to_f64() / self.unit));
             }
         }
     }
 
     /// Lists the states of a mass that stands still at `x` up to `until`.
     pub(crate) fn list_still(&mut self, x: T, until: &Instant<T>) {
-        for own in self.listings.each() {
-            own.skip_still(&self.clock, self.period, until);
-            while own.due().is_some_and(|next| self.clock.between(&next, until) > T::zero()) {
-                own.add((x.to_f64(), 0.0));
+        for listing in self.listings.each() {
+            listing.skip_still(&self.clock, self.period, until);
+            while listing.due().is_some_and(|next| self.clock.between(&next, until) > T::zero()) {
+                listing.add((x.to_f64(), 0.0));
             }
         }
     }
 
-    /// Closes the listings at `end`, the end of the run: the section, and the state that is carried.
+    /// Closes the listings at `end`, the end of the run. Returns the section and the state to be carried on.
     pub(crate) fn listed(
         &mut self,
         end: &Instant<T>,
         (x, v): (f64, f64),
     ) -> (Vec<SectionPoint>, Option<(f64, f64)>) {
         let same = self.period * T::of(SAME);
-        for own in self.listings.each() {
-            if own.due().is_some_and(|next| self.clock.between(&next, end).abs() <= same) {
-                own.add((x, v));
+        for listing in self.listings.each() {
+            if listing.due().is_some_and(|next| self.clock.between(&next, end).abs() <= same) {
+                listing.add((x, v));
             }
         }
         std::mem::take(&mut self.listings).finish(&self.clock)

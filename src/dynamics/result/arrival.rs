@@ -1,18 +1,19 @@
-//! Arrival: what a motion was found to go to, and what is looked for on its way.
+//! Arrival of a pursued motion: what it goes to, and what is searched for on the way.
 
 use super::event::Side;
 use super::summary::Summary;
 
-/// An ellipse around a stroboscopic state of a known motion, from which a motion is known to go to that one.
+/// An ellipse around a stroboscopic state of a known motion. Motions inside it are known to go to
+/// that motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Capture {
     /// Displacement in m and velocity in m/s of the known motion.
     pub state: (f64, f64),
-    /// The ellipse is where a x^2 + 2 b x v + c v^2 < 1, x and v from the state, in 1 over their units: a, b
-    /// and c.
+    /// The coefficients a, b and c of the ellipse a x^2 + 2 b x v + c v^2 < 1, with x and v relative to the
+    /// state and a, b and c in SI.
     pub form: [f64; 3],
-    /// Largest displacement and velocity from the state at which a motion has arrived; inside the ellipse a
-    /// larger one is followed until it has.
+    /// Largest displacement and velocity from the state at which a motion has arrived. A motion inside the
+    /// ellipse but further away is followed until it is this near.
     pub near: (f64, f64),
 }
 
@@ -26,7 +27,7 @@ impl Capture {
 
     /// Whether a motion in this state has arrived.
     pub fn is_reached(&self, state: (f64, f64)) -> bool {
-        let near = |own: f64, other: f64, most: f64| (own - other).abs() <= most;
+        let near = |value: f64, other: f64, limit: f64| (value - other).abs() <= limit;
         near(state.0, self.state.0, self.near.0)
             && near(state.1, self.state.1, self.near.1)
             && self.holds(state)
@@ -40,14 +41,14 @@ pub struct Region {
     pub corner: (f64, f64),
     /// Width and height of a cell.
     pub size: (f64, f64),
-    /// The cells, ascending: which along the displacement, and which along the velocity.
+    /// The cells, ascending: index along the displacement and index along the velocity.
     pub cells: Vec<(i32, i32)>,
 }
 
 impl Region {
     /// The cell in which a state lies.
     pub fn cell(&self, (x, v): (f64, f64)) -> (i32, i32) {
-        let place = |own: f64, corner: f64, size: f64| ((own - corner) / size).floor() as i32;
+        let place = |value: f64, corner: f64, size: f64| ((value - corner) / size).floor() as i32;
         (place(x, self.corner.0, self.size.0), place(v, self.corner.1, self.size.1))
     }
 
@@ -58,7 +59,7 @@ impl Region {
 }
 
 /// Identity of a release from rest on a rigid stop, known from the drive alone. Motions of one scene that
-/// were released with equal identities are equal from there on, to the last bit.
+/// were released with equal identities are equal from then on, to the last bit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReleaseIdentity {
     /// The stop that the mass left.
@@ -69,38 +70,38 @@ pub struct ReleaseIdentity {
     pub phase: f64,
 }
 
-/// Where a pursuit begins, and what ends it.
+/// Start and termination criteria of a pursuit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pursuit<'a> {
     /// Displacement in m and velocity in m/s at time 0.
     pub start: (f64, f64),
-    /// Known motions, which it may go to.
+    /// Known motions to which it may go.
     pub known: &'a [Capture],
-    /// Known regions, which it may enter.
+    /// Known regions that it may enter.
     pub regions: &'a [Region],
-    /// The stroboscopic state from which on a repetition ends it.
+    /// The number of the stroboscopic state from which on a repetition ends it.
     pub repeats_from: u64,
     /// Forcing periods after which it is given up.
     pub most_periods: u64,
-    /// Releases with an identity that are passed over.
+    /// Number of releases with an identity that do not end it.
     pub releases: u32,
-    /// Work after which it is given up, in units of some ten nanoseconds; at most that of a run counts.
+    /// Work after which it is given up, in units of some ten nanoseconds; at most the work budget of a run.
     pub most_work: u64,
 }
 
-/// What a pursuit has come to, and its way there.
+/// Result of a pursuit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pursued {
     /// What ended it.
     pub arrival: Arrival,
-    /// Crossings of the barrier up to then.
+    /// Crossings of the barrier up to the arrival.
     pub crossings: u64,
     /// Work done, in units of some ten nanoseconds.
     pub work: u64,
 }
 
-/// What ended a pursuit; `periods` is the number of the first stroboscopic state after it, that of the start
-/// being 0.
+/// What ended a pursuit. `periods` is the number of the first stroboscopic state after it; the start has the
+/// number 0.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Arrival {
     /// A known motion.
@@ -132,7 +133,7 @@ pub enum Arrival {
         periods: u64,
     },
     /// The stroboscopic states have come back, to a thousandth of the scales, for two periods of the motion
-    /// and twelve more.
+    /// and twelve states more.
     Repeats {
         /// Period of the motion in forcing periods, at most 12.
         period: u32,
@@ -141,6 +142,7 @@ pub enum Arrival {
         /// See above.
         periods: u64,
     },
-    /// None of it. The summary's settled window is the last hundred periods, as far as there were so many.
+    /// None of these. The settled window of the summary is the last hundred periods, or all if there
+    /// were fewer.
     Unsettled(Box<Summary>),
 }

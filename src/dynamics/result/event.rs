@@ -22,7 +22,7 @@ impl Phase {
     }
 }
 
-/// The state at a requested time; at an event's instant, the state after it.
+/// The state at a requested time; at the instant of an event, the state after it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Sample {
@@ -36,13 +36,12 @@ pub struct Sample {
     pub base_accel: f64,
     /// Free or resting.
     pub phase: Phase,
-    /// Electrical state of a transducer that has one, current in A or voltage in V; else 0.
+    /// Electrical state of a transducer that has one, current in A or voltage in V; otherwise 0.
     pub electrical: f64,
 }
 
 impl Sample {
-    /// Work of the base on the mass in a second, -m a_b v, in W; `mass` in kg. Its integral is the ledger's
-    /// work.
+    /// Power of the base on the mass, -m a_b v, in W; `mass` in kg. Its integral is the ledger's work.
     pub fn work_rate(&self, mass: f64) -> f64 {
         -mass * self.base_accel * self.v
     }
@@ -58,7 +57,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// The side opposite.
+    /// The opposite side.
     pub fn other(self) -> Self {
         match self {
             Self::Left => Self::Right,

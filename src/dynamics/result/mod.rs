@@ -1,4 +1,4 @@
-//! What a run is asked for and what it returns: samples, events, statistics, outcome and ledger. All SI.
+//! Request and results of a run: samples, events, statistics, outcome and ledger. All SI.
 
 mod arrival;
 mod event;
@@ -18,13 +18,13 @@ pub use summary::{First, Firsts, Harvest, Ledger, Summary};
 pub struct Run {
     /// The state at the requested times, up to the end of the run.
     pub samples: Vec<Sample>,
-    /// Events in order of time, where they were asked for.
+    /// Events in order of time, if they were requested.
     pub events: Vec<Event>,
-    /// The states of the settled window at the phase asked for, one a forcing period, where they were asked
-    /// for and the drive repeats; at most some 4 million, and up to the end of the run.
+    /// The states of the settled window at the requested phase, one a forcing period, if they were requested
+    /// and the drive repeats; at most some 4 million, and up to the end of the run.
     pub section: Vec<SectionPoint>,
     /// Displacement in m and velocity in m/s at the last instant that is a whole number of forcing periods
-    /// after the start, where it was asked for and the drive repeats.
+    /// after the start, if it was requested and the drive repeats.
     pub carried: Option<(f64, f64)>,
     /// Statistics, outcome and ledger.
     pub summary: Summary,

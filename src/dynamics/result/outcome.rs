@@ -1,20 +1,20 @@
-//! Verdicts on a run: the regime, the place of the motion, and how the run ended.
+//! Classification of a run: the regime, the side of the barrier, and how the run ended.
 
-/// What the motion is over the settled window.
+/// Regime of the motion over the settled window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Regime {
-    /// Never left the stop or the equilibrium.
+    /// The mass never left the stop or the equilibrium.
     Rest,
-    /// Moved without a crossing.
+    /// The mass moved without crossing the barrier.
     Intrawell,
-    /// Crosses, and the crossings repeat with a period of at most 12 forcing periods.
+    /// The mass crosses, and the crossings repeat with a period of at most 12 forcing periods.
     Interwell,
-    /// Crosses without such a period.
+    /// The mass crosses without such a period.
     Irregular,
-    /// Crosses under a drive that has no period or another amplitude in each, or under none.
+    /// The mass crosses under a drive without a period or with a changing amplitude, or without a drive.
     Crossing,
-    /// The curve has one well or none: nothing to cross.
+    /// The curve has one well or none, so there is no barrier to cross.
     OneWell,
 }
 
@@ -62,9 +62,9 @@ pub enum Outcome {
         at: f64,
     },
     /// It reached its duration, but its energy does not balance: by more than a hundred tolerances, or by a
-    /// tenth of what was moved. Only for a run with a ledger.
+    /// tenth of the energy moved. Only for a run with a ledger.
     Inaccurate {
-        /// What is unaccounted for over the sum of the magnitudes moved.
+        /// The unaccounted energy over the sum of the magnitudes of the terms.
         residual: f64,
     },
     /// It was cancelled.
@@ -75,7 +75,7 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// All words that [`name`](Self::name) gives.
+    /// All values of [`name`](Self::name).
     pub const NAMES: &[&str] =
         &["done", "left_table", "impact_budget", "step_budget", "not_finite", "inaccurate", "cancelled"];
 
@@ -92,7 +92,7 @@ impl Outcome {
         }
     }
 
-    /// Time in s at which the run ended early; none where it has reached its duration.
+    /// Time in s at which the run ended early; `None` if it reached its duration.
     pub fn ended_at(self) -> Option<f64> {
         match self {
             Self::Done | Self::Inaccurate { .. } => None,

@@ -1,35 +1,33 @@
-//! Verdict on a run that has reached its end: whether its numbers are finite, and whether its energy
-//! balances.
+//! Check of a run that has reached its end: whether its numbers are finite and its energy balances.
 //!
-//! A ledger whose terms are integrated each by itself closes to the tolerance. Where it does not, by more
-//! than rounding makes of its terms, the motion is not one of the scene's: the outcome says so. A run without
-//! a ledger (a cell of a sweep) is only asked whether its numbers are finite.
+//! The terms of a ledger are integrated separately, so their sum closes to the tolerance. If it is off by
+//! more than that and the rounding of its terms, the computed motion is wrong and the outcome says so. For a
+//! run without a ledger (a cell of a sweep) only the numbers are checked to be finite.
 
 use crate::dynamics::model::Model;
 use crate::dynamics::result::{Ledger, Outcome, Run};
 
-/// The residual of a ledger that is allowed, in tolerances. The most of tens of thousands of drawn scenes was
-/// 4.
+/// Permitted residual of a ledger, in tolerances. The largest in tens of thousands of random scenes was 4.
 const TOLERANCES: f64 = 100.0;
 
-/// The tolerance below which rounding is all that a ledger shows, and the roundings of force and place that
-/// add up in it.
-const FINEST: f64 = 1e-13;
-const PLACES: f64 = 16.0;
+/// Tolerance below which the residual of a ledger is rounding.
+const MIN_TOLERANCE: f64 = 1e-13;
+/// Roundings of force and displacement that add up in a ledger.
+const FORCE_ROUNDINGS: f64 = 16.0;
 
-/// Steps whose errors add up to no more than the tolerance: those of an undamped mass between elastic stops
-/// all err to one side.
-const MANY_STEPS: f64 = 1000.0;
+/// Steps whose errors add up to no more than the tolerance. The errors of an undamped mass between elastic
+/// stops all have one sign.
+const STEPS_WITHIN_TOLERANCE: f64 = 1000.0;
 
-/// The share of the energy moved that may be missing of a motion so small that the tolerance, which is
-/// relative to the scene's scales, does not hold it to more. Below this share of the length scale nothing has
-/// moved.
-const MISSING: f64 = 0.1;
+/// Share of the energy moved that may be missing in a motion so small that the tolerance, which is relative
+/// to the scene's scales, does not limit the error further.
+const MAX_MISSING_SHARE: f64 = 0.1;
+/// Share of the length scale below which nothing has moved.
 const STILL: f64 = 1e-12;
 
-/// A circuit whose coupling is this many times as fast as the motion holds the mass fast. What little moves
-/// then is what is asked for, be it below the rounding of displacement and force.
-const STRONG: f64 = 1e3;
+/// Ratio of coupling to the motion's rate above which a circuit holds the mass fast. The small motion that is
+/// left must balance its energy even if it is below the rounding of displacement and force.
+const STRONG_COUPLING: f64 = 1e3;
 
 /// Range and largest speed of a motion, in m and m/s.
 #[derive(Debug, Clone, Copy)]
@@ -39,8 +37,8 @@ pub(super) struct Excursion {
     pub speed: f64,
 }
 
-/// The outcome of a run that ended with the one that it has.
-pub(super) fn judged(model: &Model, run: &Run, reach: Excursion) -> Outcome {
+/// The outcome of a run after this check.
+pub(super) fn checked_outcome(model: &Model, run: &Run, reach: Excursion) -> Outcome {
     let summary = &run.summary;
     if summary.outcome != Outcome::Done {
         return summary.outcome;
@@ -57,30 +55,31 @@ pub(super) fn judged(model: &Model, run: &Run, reach: Excursion) -> Outcome {
         return Outcome::NotFinite { at: model.duration };
     }
     let moved = residual_j.abs() / energy_residual;
-    let strong = model.circuit().is_some_and(|circuit| circuit.coupling.abs() * model.scales.time > STRONG);
-    if strong && residual_j.abs() > MISSING * moved {
+    let strong =
+        model.circuit().is_some_and(|circuit| circuit.coupling.abs() * model.scales.time > STRONG_COUPLING);
+    if strong && residual_j.abs() > MAX_MISSING_SHARE * moved {
         return Outcome::Inaccurate { residual: energy_residual };
     }
     let missing = residual_j.abs() - rounding(model, reach, summary.steps);
     if !(missing > 0.0) {
         return Outcome::Done;
     }
-    let many = (summary.steps as f64 / MANY_STEPS).max(1.0);
-    let allowed = TOLERANCES * model.tolerance.max(FINEST) * many;
+    let many = (summary.steps as f64 / STEPS_WITHIN_TOLERANCE).max(1.0);
+    let allowed = TOLERANCES * model.tolerance.max(MIN_TOLERANCE) * many;
     let by_tolerance = allowed * (moved + model.mass * model.scales.speed * reach.speed);
     let moves = reach.high - reach.low > STILL * model.scales.length;
-    match missing > by_tolerance || (moves && missing > MISSING * moved) {
+    match missing > by_tolerance || (moves && missing > MAX_MISSING_SHARE * moved) {
         true => Outcome::Inaccurate { residual: energy_residual },
         false => Outcome::Done,
     }
 }
 
-/// What the rounding of places and forces makes of an energy, in J.
+/// Energy in J by which rounding of displacements and forces changes the ledger.
 fn rounding(model: &Model, Excursion { low, high, .. }: Excursion, steps: u64) -> f64 {
     let curve = &model.mechanism.curve;
     let largest = |of: &dyn Fn(f64) -> f64| of(low).abs().max(of(high).abs());
     let terms = largest(&|x| curve.stiffness(x) * x) * (high - low) + largest(&|x| curve.force(x) * x);
-    // They err to either side.
-    let many = (steps as f64 / MANY_STEPS).max(1.0).sqrt();
-    PLACES * f64::EPSILON * terms * many
+    // These errors have both signs.
+    let many = (steps as f64 / STEPS_WITHIN_TOLERANCE).max(1.0).sqrt();
+    FORCE_ROUNDINGS * f64::EPSILON * terms * many
 }

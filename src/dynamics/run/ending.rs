@@ -1,6 +1,6 @@
 //! Start and end of a run.
 
-use super::balance::{Excursion, judged};
+use super::balance::{Excursion, checked_outcome};
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::Compliant;
 use crate::dynamics::model::Model;
@@ -10,26 +10,28 @@ use crate::dynamics::result::{Outcome, Run};
 use crate::dynamics::state::MotionState;
 use crate::numeric::Scalar;
 
-/// What is kept of a run's first instant: the velocity, the mode and the place in it, and in J what a
-/// compliant stop stores; the state of a circuit.
-pub(crate) struct Begun<T> {
+/// The first instant of a run.
+pub(crate) struct Initial<T> {
+    /// Velocity.
     v: T,
+    /// State of the circuit.
     circuit: T,
+    /// Mode, displacement in m, and energy in J stored in a compliant stop.
     place: (usize, f64, f64),
 }
 
 impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// Starts the motion.
-    pub fn begin(&mut self, model: &Model) -> Begun<T> {
+    pub fn begin(&mut self, model: &Model) -> Initial<T> {
         let MotionState { v, circuit, .. } = self.state;
         self.place_at_start();
-        Begun { v, circuit, place: (self.state.mode, self.state.x.to_f64(), self.stop_energy_j(model)) }
+        Initial { v, circuit, place: (self.state.mode, self.state.x.to_f64(), self.stop_energy_j(model)) }
     }
 
     /// Closes the record.
-    pub fn finish(self, model: &Model, begun: &Begun<T>, outcome: Outcome) -> Run {
+    pub fn finish(self, model: &Model, start: &Initial<T>, outcome: Outcome) -> Run {
         let phase = self.state.phase();
-        let (start_v, potential) = (begun.v, self.potential_since(model, begun.place));
+        let (start_v, potential) = (start.v, self.potential_since(model, start.place));
         let unit = self.stepper.equation.unit;
         let (low, high) = self.record.places;
         let reach = Excursion { low, high, speed: (2.0 * self.record.peak_kinetic).sqrt() / unit };
@@ -37,7 +39,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
             at: self.state.at,
             state: (self.state.x, self.state.v),
             start_v,
-            circuit: (begun.circuit, self.state.circuit),
+            circuit: (start.circuit, self.state.circuit),
             phase,
             segment: self.state.segment,
             potential,
@@ -45,11 +47,12 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         });
         run.summary.steps = self.steps;
         run.summary.evaluations = self.stepper.evaluations;
-        run.summary.outcome = judged(model, &run, reach);
+        run.summary.outcome = checked_outcome(model, &run, reach);
         run
     }
 
-    /// Change in J, since a start in a mode at a place, of the potential and of what a compliant stop stores.
+    /// Change in J of the potential and of the energy in a compliant stop, since a start in a mode at
+    /// a place.
     fn potential_since(&self, model: &Model, (mode, from, stored): (usize, f64, f64)) -> f64 {
         let piece = |mode: usize| &model.mechanism.curve.pieces()[self.stepper.equation.modes[mode].piece];
         let (first, last, x) = (piece(mode), piece(self.state.mode), self.state.x.to_f64());

@@ -1,10 +1,10 @@
-//! Fast path for consecutive steps without an event.
+//! Fast path of consecutive steps without an event.
 //!
-//! Most steps of most scenes meet no stop, no break, no border of the drive or of the settled window. What
-//! the general step checks each time (touch, rest, release, sample, stroboscopic state, budgets) is checked
-//! here once, before the first of them; from one to the next only state, clock and sums change. The first
+//! Most steps of most scenes meet no stop, no break, no border of the drive or of the settled window. The
+//! checks that the general step makes each time (touch, rest, release, sample, stroboscopic state, budgets)
+//! are made here once, before the first step; from step to step only state, clock and sums change. The first
 //! step on which an event is possible is left to the general step. The event-free step is written three
-//! times: here, as the general step of a motion alone (`step/choose.rs` with `run/flight.rs`), and for a
+//! times: here, as the general step of a single motion (`step/choose.rs` with `run/flight.rs`), and for a
 //! batch (`lanes/columns/step.rs`). The three do the same arithmetic and must stay equal to the bit.
 
 use crate::dynamics::drive::Drive;
@@ -17,15 +17,15 @@ use crate::dynamics::step::chord::{CLEARANCE, Chord};
 use crate::dynamics::step::stepper::{Step, Stepper};
 use crate::numeric::Scalar;
 
-/// How a row of event-free steps has ended.
+/// How a sequence of event-free steps has ended.
 pub(crate) enum FastPath<T> {
-    /// It has not: budgets and the cancel flag are due.
+    /// It has not ended: budgets and the cancel flag are to be checked.
     Paused,
-    /// With this step, on which an event is possible; the series holds it.
+    /// At this step, on which an event is possible; the series holds it.
     EventPossible(Step<T>),
-    /// Before a step of up to this length, which must be chosen with more care; the series holds it.
+    /// Before a step of up to this length, which the general step must choose; the series holds it.
     TooLong(T),
-    /// It has not begun.
+    /// No step was taken.
     NotTaken,
 }
 
@@ -38,11 +38,15 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         if self.record.ledger || !alone || !free || self.log.is_some() || !self.record.needs_no_samples() {
             return FastPath::NotTaken;
         }
-        let most = self.stepper.work.pieces_until_look(self.stepper.costs.step);
-        if self.has_budget_for(most) { self.take_event_free_steps(most) } else { FastPath::NotTaken }
+        let max_steps = self.stepper.work.pieces_until_check(self.stepper.costs.step);
+        if self.has_budget_for(max_steps) {
+            self.take_event_free_steps(max_steps)
+        } else {
+            FastPath::NotTaken
+        }
     }
 
-    fn take_event_free_steps(&mut self, most: u64) -> FastPath<T> {
+    fn take_event_free_steps(&mut self, max_steps: u64) -> FastPath<T> {
         if self.stepper.pass_segment_end(&mut self.state) {
             return FastPath::Paused;
         }
@@ -59,7 +63,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         let (mut at, mut x, mut v) = (state.at, state.x, state.v);
         let mut ended = FastPath::Paused;
         let (mut steps, mut crossed) = (0, 0);
-        for _ in 0..most {
+        for _ in 0..max_steps {
             drive.seed(clock, &at, segment, &mut series.a, cursor);
             series.begin(x - origin, v);
             series.extend(settings.order, &mode.force, damping, *drive, cursor);
@@ -85,18 +89,18 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
                 end: end.y + origin,
                 bound: end.bound,
                 deviations: (T::of(f64::INFINITY), T::of(f64::INFINITY), T::of(f64::INFINITY)),
-                ways: (v * length, end.v * length),
-                bends: (T::zero(), T::zero()),
+                slopes: (v * length, end.v * length),
+                curvatures: (T::zero(), T::zero()),
                 limits,
             };
             let deviations = || polynomial::chord_deviations(&series.y[..=settings.order], length);
             let clear = x - limits.0 > end.bound && limits.1 - x > end.bound || {
                 let square = length * length;
-                let bends = ((series.y[2] + series.y[2]) * square, end.acceleration * square);
-                Chord { deviations: deviations(), bends, ..chord }.stays_clear()
+                let curvatures = ((series.y[2] + series.y[2]) * square, end.acceleration * square);
+                Chord { deviations: deviations(), curvatures, ..chord }.stays_clear()
             };
             let mut event_free = clear && end.v.is_finite();
-            // (without a barrier it is infinitely far away)
+            // (a missing barrier counts as infinitely far away)
             let gap = chord.start - now.barrier.unwrap_or(T::of(f64::NEG_INFINITY));
             if event_free && !(gap.abs() > end.bound * T::of(CLEARANCE)) {
                 let step = (&series.y[..=settings.order], length);
@@ -137,9 +141,9 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
 }
 
 impl<T: Scalar> EventFree<T> {
-    /// The side of the barrier after a step that comes near it, and the number of crossings; none where their
-    /// instants are needed. Of the step are given coefficients and length, and whether it ends well
-    /// before the border.
+    /// The side of the barrier after a step that comes near it, and the number of crossings; `None` if their
+    /// instants are needed. `y` and `length` are the coefficients and the length of the step, `early` whether
+    /// it ends well before the border.
     #[inline(never)] // rare, and large
     fn crossings(&self, chord: &Chord<T>, (y, length): (&[T], T), early: bool) -> Option<(i8, u64)> {
         let Some(barrier) = self.barrier else { return Some((self.side, 0)) };
@@ -147,9 +151,9 @@ impl<T: Scalar> EventFree<T> {
         if end == self.side && gap.abs() > chord.bound {
             return Some((end, 0));
         }
-        // Inside the window, and where it is listed, it must.
+        // Instants are needed inside the window, and if crossings are listed.
         let countable = early && !self.inside && !self.listed;
-        // Where the velocity keeps its sign the ends decide.
+        // If the velocity keeps its sign, the ends decide.
         let monotone = Chord { deviations: polynomial::chord_deviations(y, length), ..*chord }.is_monotone();
         if monotone && self.side != 0 && end != 0 && side_of(gap, T::zero()) == self.side {
             return (countable || end == self.side).then(|| (end, u64::from(end != self.side)));
@@ -166,9 +170,9 @@ impl<T: Scalar> EventFree<T> {
         Some((crossings.side_after(count), count as u64))
     }
 
-    /// Records a step inside the settled window of this length and integral of the squared velocity; false
-    /// where a turning point within it may be an extreme. Its deviations from its chords are only computed
-    /// where that decides.
+    /// Records a step inside the settled window of this length and integral of the squared velocity. Returns
+    /// false if a turning point within it may be an extreme. The deviations from the chords are only computed
+    /// if needed for that.
     #[inline(always)]
     fn record_step(
         &mut self,

@@ -11,7 +11,7 @@ use crate::dynamics::step::work::ARRIVAL;
 use crate::numeric::Scalar;
 
 impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
-    /// Whether it may take `steps` more of free flight without its budget being spent.
+    /// Whether `steps` more steps of free flight fit into the budget.
     pub fn has_budget_for(&self, steps: u64) -> bool {
         self.stepper.work.has_room_for(steps * self.stepper.costs.step)
     }
@@ -36,15 +36,15 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         let mode = stepper.mode(state);
         stepper.series.begin(state.x - mode.origin, state.v);
         let alone = stepper.drive.circuit().is_none();
-        let enough = flight.is_some_and(|flight| alone && stepper.expand_for(state, flight));
-        if enough
+        let extended = flight.is_some_and(|flight| alone && stepper.expand_for(state, flight));
+        if extended
             && let Some(flight) = flight
             && let Some((end, length, landing)) = stepper.rebound(state, flight, left)
         {
             let on_the_stop = (mode.end(end).0, landing.v);
             return self.arrive((length, length), landing.bound, on_the_stop, None, Some(end));
         }
-        let step = stepper.choose_step(state, (flight, enough), left);
+        let step = stepper.choose_step(state, (flight, extended), left);
         self.take_any(step)
     }
 
@@ -68,8 +68,9 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         }
     }
 
-    /// Records a step that was chosen `h` long, of which `length` is kept, and goes to its end: at the state
-    /// `(x, v)` and, where that is known, the instant `arrival`, on the surface of the end `touched`.
+    /// Records a step that was chosen `h` long, of which `length` is kept, and moves to its end: the state
+    /// `(x, v)` at the instant `arrival`, if that is known, on the surface of the end `touched`, if there
+    /// is one.
     pub fn arrive(
         &mut self,
         (h, length): (T, T),

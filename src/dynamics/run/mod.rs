@@ -1,4 +1,4 @@
-//! The run: from event to event, up to its end.
+//! Run from event to event, up to its end.
 
 mod balance;
 pub(crate) mod ending;
@@ -23,8 +23,8 @@ use event_free::FastPath;
 impl Model {
     /// Runs the model once.
     ///
-    /// Returns samples, events and statistics in SI. Never fails: a run that cannot go on says so in its
-    /// outcome. The result does not depend on what is asked for or on threads.
+    /// Returns samples, events and statistics in SI. Never fails: if a run cannot go on, its outcome says so.
+    /// The motion does not depend on what is requested or on threads.
     pub fn run(&self, request: &Request) -> Run {
         let watch = ThreadClock::start();
         let unit = self.scales.unit();
@@ -38,7 +38,8 @@ impl Model {
         run
     }
 
-    /// What a step of free flight costs at a tolerance, and what of it the excitation does, in units of work.
+    /// Cost of a step of free flight at a tolerance, and the part of it due to the excitation, in units
+    /// of work.
     pub fn cost_of_a_step(&self, tolerance: f64) -> (u64, u64) {
         let unit = self.scales.unit();
         let order = Settings::<f64>::new(self, unit, tolerance).order;
@@ -49,9 +50,9 @@ impl Model {
         with_drive!(&form(self, &clock(self, unit)), drive => of(order, degree, drive))
     }
 
-    /// Runs the model once in double-double arithmetic, some 31 digits, with its own `tolerance` (1e-28 is
-    /// sensible): the reference that a run in doubles is measured against. About a hundred times slower;
-    /// nothing of it is completed from a cycle.
+    /// Runs the model once in double-double arithmetic, some 31 digits, at the given `tolerance` (1e-28 is
+    /// sensible): the reference for a run in doubles. It is about a hundred times slower, and no part of it
+    /// is completed from a recurrence.
     pub fn run_reference(&self, request: &Request, tolerance: f64) -> Run {
         let watch = ThreadClock::start();
         let unit = self.scales.unit();
@@ -64,11 +65,11 @@ impl Model {
 }
 
 impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
-    /// Runs from its start to its end.
+    /// Runs from start to end.
     fn run(mut self, model: &Model) -> Run {
-        let begun = self.begin(model);
+        let start = self.begin(model);
         let outcome = self.go_on();
-        self.finish(model, &begun, outcome)
+        self.finish(model, &start, outcome)
     }
 
     /// Goes on from event to event until the run has ended.
@@ -94,11 +95,11 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         }
     }
 
-    /// The time to the end of the run, or how it has ended. A motion that has come back is completed first.
+    /// The time to the end of the run, or how it has ended. A motion that recurs is completed first.
     #[inline]
     pub fn left(&mut self) -> Result<T, Outcome> {
         if let Some(label) = self.label.take() {
-            self.let_go(label);
+            self.handle_release(label);
         }
         if self.record.has_arrived() {
             return Err(Outcome::Done);
@@ -117,8 +118,8 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         Ok(left)
     }
 
-    /// At the end of a settled window: whether the run goes on with another, since the motion does not repeat
-    /// yet.
+    /// At the end of a settled window: begins another one if the motion does not repeat yet and the run may
+    /// go on. Returns whether it does.
     fn goes_on(&mut self) -> bool {
         let Some(until) = self.until_settled else { return false };
         self.record.last_strobe(&self.state.at, (self.state.x, self.state.v));
@@ -131,10 +132,10 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         true
     }
 
-    /// How the run ends where a budget is spent or it is cancelled.
+    /// How the run ends if a budget is spent or it is cancelled.
     #[inline]
     pub fn spent(&mut self) -> Flow {
-        let cancelled = self.stepper.work.is_told_to_stop();
+        let cancelled = self.stepper.work.check_cancelled();
         let at = || self.stepper.seconds(&self.state);
         if cancelled {
             return Some(Outcome::Cancelled { at: at() });
@@ -148,7 +149,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         None
     }
 
-    /// Goes on by one step of flight or one rest; `left` is the time to the end of the run.
+    /// Advances by one step of flight or contact or one rest; `left` is the time to the end of the run.
     #[inline]
     pub fn proceed(&mut self, left: T) -> Flow {
         match self.state.contact {

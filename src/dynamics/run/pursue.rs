@@ -1,6 +1,6 @@
-//! Pursuit of a motion from a start of its own, until it is known what it goes to.
+//! Pursuit of a motion from a given start, until it is known what it goes to.
 
-use super::ending::Begun;
+use super::ending::Initial;
 use crate::dynamics::drive::Drive;
 use crate::dynamics::drive::form::{clock, form, with_drive};
 use crate::dynamics::equation::Equation;
@@ -13,8 +13,8 @@ use crate::dynamics::state::{Contact, MotionState};
 use crate::numeric::Scalar;
 
 impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
-    /// Puts it at the start of a pursuit, whose end is its own. A release from rest ends it, so no recurrence
-    /// completes it.
+    /// Puts the motion at the start of a pursuit and sets the end of the pursuit. A release from rest ends
+    /// it, so it is never completed from a recurrence.
     pub fn pursuing(mut self, pursuit: &Pursuit<'a>, model: &Model) -> Self {
         let Self { stepper, record, state, .. } = &mut self;
         let (x, v) = (T::of(pursuit.start.0), T::of(pursuit.start.1 * stepper.equation.unit));
@@ -27,11 +27,11 @@ impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
         self
     }
 
-    /// What it has come to.
-    pub fn arrived(mut self, model: &Model, begun: &Begun<T>, outcome: Outcome) -> Pursued {
+    /// Result of the pursuit.
+    pub fn arrived(mut self, model: &Model, start: &Initial<T>, outcome: Outcome) -> Pursued {
         let (crossings, work) = (self.record.counts.total_crossings, self.stepper.work.done());
         let arrival = self.record.arrival().filter(|_| outcome == Outcome::Done);
-        let unsettled = || Arrival::Unsettled(Box::new(self.finish(model, begun, outcome).summary));
+        let unsettled = || Arrival::Unsettled(Box::new(self.finish(model, start, outcome).summary));
         Pursued { arrival: arrival.unwrap_or_else(unsettled), crossings, work }
     }
 }
@@ -43,8 +43,8 @@ pub(crate) fn pursue_alone(model: &Model, pursuit: &Pursuit, request: &Request) 
     with_drive!(&form(model, &clock), drive => {
         let motion = Motion::new(model, request, model.tolerance, &equation, clock, drive);
         let mut motion = motion.pursuing(pursuit, model);
-        let begun = motion.begin(model);
+        let start = motion.begin(model);
         let outcome = motion.go_on();
-        motion.arrived(model, &begun, outcome)
+        motion.arrived(model, &start, outcome)
     })
 }

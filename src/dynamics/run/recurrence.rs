@@ -1,43 +1,42 @@
-//! Recurrence: a run whose motion has come back to an earlier state is completed without integration.
+//! Recurrence: completion, without integration, of a run whose motion has come back to an earlier state.
 //!
-//! A mass that is released from rest under a drive that repeats starts from a state that is known without
-//! comparing computed numbers: it is on the stop, has no speed, and the drive is where it is at that release
-//! root. So a release has a *label*: the stop, and the root within the drive's common period. Two releases
-//! with equal labels are followed by the same motion, bit for bit, one some cycles of the clock later: the
-//! integrator would do the same arithmetic again. (Where curve, stops and drive are symmetric, a release from
+//! A mass released from rest under a drive that repeats starts from a state that can be identified without
+//! comparing computed numbers: it is on the stop, has no speed, and the phase of the drive is that of the
+//! release root. So a release has a *label*: the stop, and the root within the drive's common period. Two
+//! releases with equal labels are followed by the same motion, bit for bit, since the integrator does the
+//! same arithmetic some cycles of the clock later. (If curve, stops and drive are symmetric, a release from
 //! the other stop half a period later is followed by the mirror image, to rounding.)
 //!
-//! From the first labelled release on, every recorder call is kept in a log. Once a label comes back, the
-//! calls of that lap are replayed, lap by lap, which gives samples, events, windows that open or close within
-//! a lap, stroboscopic states and sums by the same code. Laps that lie wholly inside or wholly outside the
-//! settled window are added to sums and counts by multiplication, and replayed only where something in them
-//! is listed. The last, incomplete lap is replayed up to its last step, which is integrated.
+//! From the first labelled release on, every recorder call is kept in a log. When a label comes back, the
+//! calls of that lap are replayed, lap by lap. So the same code produces samples, events, stroboscopic states
+//! and sums, also if a window opens or closes within a lap. Laps that lie wholly inside or wholly outside the
+//! settled window are added to sums and counts by multiplication, and replayed only if something in them is
+//! listed. The last, incomplete lap is replayed up to its last step, which is integrated.
 //!
-//! No labels: a release at once after an incomplete chatter or a plastic impact, one at the start or at a
-//! jump of the drive, one under a ramp, chirp, noise or record (no common period, or not yet), and compliant
-//! stops, on which nothing rests.
+//! These have no label: a release immediately after an incomplete chatter or a plastic impact, one at the
+//! start or at a jump of the drive, and one under a ramp, chirp, noise or record (which have no common
+//! period, or not yet). On compliant stops there is no rest and so no release.
 
 use crate::dynamics::clock::Instant;
 use crate::dynamics::drive::Drive;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::record::laps::Totals;
-use crate::dynamics::record::log::{Later, Log};
+use crate::dynamics::record::log::{CycleShift, Log};
 use crate::dynamics::result::ReleaseIdentity;
 use crate::dynamics::state::Label;
-use crate::dynamics::step::work::TOLD;
+use crate::dynamics::step::work::REPLAYED;
 use crate::numeric::Scalar;
 
-/// Share of the clock's cycle by which a lap must keep clear of what would set it apart: more than rounding
-/// can hide.
+/// Share of the clock's cycle by which a lap must be clear of any border: more than rounding.
 const CLEAR: f64 = 1e-9;
 
-/// Common periods of the drive after which a motion that has not come back is no longer kept: most cycles
-/// take one or two, and a motion that never rests again would be kept to its end.
-const PATIENCE: i64 = 8;
+/// Common periods of the drive after which a motion that has not come back is no longer logged: most cycles
+/// take one or two, and a motion that never rests again would be logged to its end.
+const MAX_LOGGED_PERIODS: i64 = 8;
 
-/// A run of laps that are alike for the recorder, and what one of them adds.
+/// Totals before and after a lap that lies wholly inside or wholly outside the settled window.
 #[derive(Debug, Clone, Copy)]
-struct Like<T> {
+struct LapTotals<T> {
     inside: bool,
     before: Totals<T>,
     after: Totals<T>,
@@ -50,26 +49,26 @@ struct Lap<T> {
     first: usize,
     /// Cycles of the clock that it takes.
     cycles: i64,
-    like: Option<Like<T>>,
+    lap_totals: Option<LapTotals<T>>,
 }
 
 impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
-    /// The mass has just been released with this label: completes the run where a release had the same label
-    /// before. Where it is pursued, it has arrived.
-    pub fn let_go(&mut self, label: Label<T>) {
+    /// Handles a release of the mass with this label: completes the run if an earlier release had the same
+    /// label. In a pursuit, the release is reported to the goal instead.
+    pub fn handle_release(&mut self, label: Label<T>) {
         let Label { end, turn, phase } = label;
         let identity = ReleaseIdentity { side: end.side(), cycle: turn, phase: phase.to_f64() };
         if self.record.released(&self.state.at, identity) {
             return;
         }
         let Some(log) = self.log.take().filter(|log| log.has_room()) else {
-            self.keep_from(Box::new(Log::new()), label);
+            self.log_release(Box::new(Log::new()), label);
             return;
         };
         if let Some((first, before)) = log.find(|known| *known == label) {
             let cycles = self.state.at.cycle - log.at(first).cycle;
-            let like = self.like(first, &log, before);
-            self.complete(&log, Lap { first, cycles, like });
+            let lap_totals = self.lap_totals(first, &log, before);
+            self.complete(&log, Lap { first, cycles, lap_totals });
             self.record.judge.end_tape();
         } else if let Some((first, before)) = log.find(|known| known.end == label.end.other())
             && self.stepper.drive.is_odd()
@@ -79,11 +78,11 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
             self.complete_mirrored(log, first, cycles, before);
             self.record.judge.end_tape();
         } else {
-            self.keep_from(log, label);
+            self.log_release(log, label);
         }
     }
 
-    fn keep_from(&mut self, mut log: Box<Log<T>>, label: Label<T>) {
+    fn log_release(&mut self, mut log: Box<Log<T>>, label: Label<T>) {
         if log.marks() == 0 {
             self.record.judge.begin_tape();
         }
@@ -91,14 +90,14 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         self.log = Some(log);
     }
 
-    /// Adds a checkpoint to the log, where there is one.
+    /// Adds a checkpoint to the log, if there is one.
     #[inline]
     pub fn mark(&mut self) {
         if self.log.is_some() {
             let point = self.checkpoint();
-            let patience = PATIENCE.saturating_mul(self.stepper.drive.common_cycles());
+            let max_cycles = MAX_LOGGED_PERIODS.saturating_mul(self.stepper.drive.common_cycles());
             if let Some(log) = &mut self.log {
-                if log.cycles_until(&point.state.at) > patience || !log.has_room() {
+                if log.cycles_until(&point.state.at) > max_cycles || !log.has_room() {
                     self.log = None; // the next release begins another
                     self.record.judge.end_tape();
                 } else {
@@ -108,7 +107,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         }
     }
 
-    /// The odd number of half cycles of the clock since `at`, where it is one.
+    /// The number of half cycles of the clock since `at`, if it is odd and whole.
     fn half_cycles_since(&self, at: &Instant<T>) -> Option<i64> {
         let halves =
             self.stepper.clock.between(at, &self.state.at) / (self.stepper.clock.period() * T::of(0.5));
@@ -118,13 +117,13 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         (close && count % 2 == 1).then_some(count)
     }
 
-    /// What the lap since mark `first` has added, where it lay wholly inside or outside the settled window.
-    fn like(&self, first: usize, log: &Log<T>, before: Totals<T>) -> Option<Like<T>> {
+    /// The totals of the lap since mark `first`, if it lay wholly inside or outside the settled window.
+    fn lap_totals(&self, first: usize, log: &Log<T>, before: Totals<T>) -> Option<LapTotals<T>> {
         let inside = self.record.lies_inside(&log.at(first), &self.state.at)?;
-        Some(Like { inside, before, after: self.record.totals() })
+        Some(LapTotals { inside, before, after: self.record.totals() })
     }
 
-    /// The half lap since mark `first` and its mirror image make a lap.
+    /// Completes the run from the half lap since mark `first` and its mirror image, which make a lap.
     fn complete_mirrored(&mut self, mut log: Box<Log<T>>, first: usize, cycles: i64, before: Totals<T>) {
         let (at, middle) = (log.at(first), log.marks());
         let back = Instant { cycle: at.cycle + cycles, phase: at.phase };
@@ -133,13 +132,13 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
             return;
         }
         log.append_mirrored(first, cycles / 2, self.stepper.equation.modes.len(), &self.stepper.clock);
-        self.replay(&log, (middle, None), Later(0));
-        self.resume(&log.point_later(first, Later(cycles)));
-        let like = self.like(first, &log, before);
-        self.complete(&log, Lap { first, cycles, like });
+        self.replay(&log, (middle, None), CycleShift(0));
+        self.resume(&log.point_later(first, CycleShift(cycles)));
+        let lap_totals = self.lap_totals(first, &log, before);
+        self.complete(&log, Lap { first, cycles, lap_totals });
     }
 
-    /// Completes the run from here, where a lap has just ended.
+    /// Completes the run from here, at the end of a lap.
     fn complete(&mut self, log: &Log<T>, mut lap: Lap<T>) {
         self.recurs = false;
         let mut later = 0;
@@ -151,11 +150,11 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
             if self.stepper.work.is_cancelled() || self.stepper.work.is_spent() {
                 return; // as it stands it goes on
             }
-            if let Some(like) = lap.like {
-                let alike = self.laps_alike(&lap, like.inside);
-                if alike > 0 {
-                    let laps = self.list(log, &lap, later, alike);
-                    self.record.repeat(&like.before, &like.after, laps, lap.cycles);
+            if let Some(lap_totals) = lap.lap_totals {
+                let ahead = self.laps_on_this_side(&lap, lap_totals.inside);
+                if ahead > 0 {
+                    let laps = self.list(log, &lap, later, ahead);
+                    self.record.repeat(&lap_totals.before, &lap_totals.after, laps, lap.cycles);
                     later += laps * lap.cycles;
                     self.state.at.cycle += laps * lap.cycles;
                     continue;
@@ -163,66 +162,67 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
             }
             let before = self.record.totals();
             later += lap.cycles;
-            self.replay(log, (lap.first, None), Later(later));
+            self.replay(log, (lap.first, None), CycleShift(later));
             let inside = self.record.lies_inside(&self.state.at, &next);
             let after = self.record.totals();
-            lap.like = inside.map(|inside| Like { inside, before, after });
+            lap.lap_totals = inside.map(|inside| LapTotals { inside, before, after });
             self.state.at = next;
         }
-        let rest = Later(later + lap.cycles);
+        let rest = CycleShift(later + lap.cycles);
         let last = log.last_before(lap.first, rest, &self.stepper.end, &self.stepper.clock);
         self.replay(log, (lap.first, Some(last)), rest);
         self.resume(&log.point_later(last, rest));
     }
 
-    /// Replays those of the next `laps` in which something is listed; the sums stay, so that they do not
-    /// depend on what is listed. A replay is work: the number of laps for which it was done.
+    /// Replays those of the next `laps` in which something is listed. The sums are restored afterwards, so
+    /// that they do not depend on what is listed. A replay counts as work: returns the number of laps for
+    /// which it was done.
     fn list(&mut self, log: &Log<T>, lap: &Lap<T>, later: i64, laps: i64) -> i64 {
         let (sums, judge) = (self.record.totals(), self.record.judge.clone());
-        // The stroboscopic states are those of the lap.
+        // The stroboscopic states of these laps are added by multiplication.
         self.record.next_strobe = None;
         let listings = std::mem::take(&mut self.record.listings);
         let start = self.state.at;
         let length = self.stepper.clock.period() * T::of(lap.cycles as f64);
         let begin =
             |lap_before: i64| Instant { cycle: start.cycle + lap_before * lap.cycles, phase: start.phase };
-        let mut told = 0;
-        while let Some(next) = self.record.next_listed(&begin(told)) {
-            // (by rounding it may lie in the lap before)
+        let mut done = 0;
+        while let Some(next) = self.record.next_listed(&begin(done)) {
+            // (by rounding it may lie in the previous lap)
             let between = (self.stepper.clock.between(&start, &next) / length).floor().to_f64() as i64 - 1;
-            let number = between.max(told) + 1;
+            let number = between.max(done) + 1;
             if number > laps {
                 break;
             }
             if self.stepper.work.is_cancelled() || self.stepper.work.is_spent() {
-                self.record.take_back(&sums);
+                self.record.restore(&sums);
                 (self.record.judge, self.record.listings) = (judge, listings);
-                return told;
+                return done;
             }
             if self.stepper.clock.between(&next, &begin(number)) >= T::zero() {
-                let impacts = self.replay(log, (lap.first, None), Later(later + number * lap.cycles));
+                let impacts = self.replay(log, (lap.first, None), CycleShift(later + number * lap.cycles));
                 self.stepper.work.add_impacts(impacts);
             }
-            told = number;
+            done = number;
         }
-        self.record.take_back(&sums);
+        self.record.restore(&sums);
         (self.record.judge, self.record.listings) = (judge, listings);
         laps
     }
 
-    /// Replays a part of the log; the number of impacts in it.
-    fn replay(&mut self, log: &Log<T>, marks: (usize, Option<usize>), later: Later) -> u64 {
+    /// Replays a part of the log. Returns the number of impacts in it.
+    fn replay(&mut self, log: &Log<T>, marks: (usize, Option<usize>), later: CycleShift) -> u64 {
         let recorded = (&mut self.record, &mut self.stepper.series);
         let (calls, impacts) = log.play(recorded, marks, later, self.state.segment);
-        self.stepper.work.add(TOLD * calls as u64);
+        self.stepper.work.add(REPLAYED * calls as u64);
         impacts
     }
 
-    /// Laps from here on that are wholly inside (or outside) the settled window, as the last one was.
-    fn laps_alike(&self, lap: &Lap<T>, inside: bool) -> i64 {
+    /// Number of laps from here on that are on the same side of the window's borders as the last one.
+    fn laps_on_this_side(&self, lap: &Lap<T>, inside: bool) -> i64 {
         let clear = self.stepper.clock.period() * T::of(CLEAR);
         let length = self.stepper.clock.period() * T::of(lap.cycles as f64);
-        let until = self.record.alike_until(&self.state.at, &self.stepper.end, inside);
+        let until = self.record.same_side_until(&self.state.at, &self.stepper.end, inside);
         let laps = ((self.stepper.clock.between(&self.state.at, &until) - clear) / length).floor();
         laps.larger(T::zero()).to_f64() as i64
     }

@@ -1,41 +1,41 @@
-//! Power series in time of the force, from that of the displacement.
+//! Power series in time of the force, computed from that of the displacement.
 //!
-//! The force is a polynomial of the displacement. About the place where the step begins it is
+//! The force is a polynomial of the displacement. About the displacement at the start of the step it is
 //!
 //! ```text
 //! a[0] + w (a[1] + w (a[2] + ...)),  w = y - y[0],
 //! ```
 //!
-//! and w begins with its first order, so the bracket at depth l, b(l), is needed only up to an order l below
-//! that of the force:
+//! and w has no constant term, so the bracket at depth l, b(l), is needed only up to an order l below that of
+//! the force:
 //!
 //! ```text
 //! b(l)[n] = sum of y[i] b(l+1)[n-i] over i = 1..=n,  b(l)[0] = a[l],  f = b(0).
 //! ```
 //!
-//! That takes a third of the products that powers of y take where the degree is near the order. Coefficients
-//! of one order do not wait for each other, so four depths are summed side by side. The newest coefficient,
-//! y\[k\], enters coefficient k of the force by one product only, with the stiffness a\[1\] where the step
-//! begins; all other terms are there before it is, so that the processor has summed them by the time.
+//! If the degree is near the order, this takes a third of the products of the powers of y. Coefficients of
+//! one order do not depend on each other, so four depths are summed side by side. The newest coefficient,
+//! y\[k\], enters coefficient k of the force by a single product, with the stiffness a\[1\] at the start of
+//! the step; all other terms are known earlier, so that the processor can sum them in advance.
 
 use super::order::ROOM;
 use crate::dynamics::equation::force::{PieceForce, shift};
 use crate::numeric::Number;
 
-/// Depths of brackets that are summed side by side.
+/// Number of depths that are summed side by side.
 const BLOCK: usize = 4;
 
-/// The force about the place where a step begins, in nested form.
+/// The force about the displacement at the start of a step, in nested form.
 #[derive(Debug, Clone)]
 pub(crate) struct ForceSeries<T> {
     /// Row n holds coefficient n of the brackets, the outermost first, and zeros beyond the degree.
     rows: Vec<T>,
     stride: usize,
-    /// The degree that they are zeros beyond.
+    /// The degree beyond which they are zeros.
     degree: usize,
     /// The bracket of a cubic.
     row: [T; ROOM],
-    /// The highest order of the force that the rows are enough for.
+    /// The highest order of the force for which the rows are computed.
     last: usize,
 }
 
@@ -48,7 +48,7 @@ impl<T: Number> ForceSeries<T> {
         Self { rows, stride, degree, row: [zero; ROOM], last: 0 }
     }
 
-    /// Coefficient `k` of the force, from y\[0..=k\]; the lower ones have been asked for before.
+    /// Coefficient `k` of the force, from y\[0..=k\]; the lower ones must have been computed before.
     #[inline(always)]
     pub fn coefficient(&mut self, force: &PieceForce<T>, y: &[T; ROOM], k: usize) -> T {
         match force.coefficients() {
@@ -63,15 +63,15 @@ impl<T: Number> ForceSeries<T> {
         }
     }
 
-    /// What gives the coefficients of a cubic from the displacement `start` on.
+    /// A cubic force about the displacement `start`.
     #[inline(always)]
     pub fn cubic(&mut self, mut about: [T; 4], start: T) -> Cubic<'_, T> {
         shift(&mut about, start);
         Cubic { about, row: &mut self.row }
     }
 
-    /// Makes ready for coefficients of these orders of a force of degree 4 or more, where its own about y\[0]
-    /// are known with those; the lower ones are known.
+    /// Prepares coefficients of these orders, for a force of degree 4 or more. `about` are its coefficients
+    /// about y\[0], if they are known, and otherwise empty. The lower orders must have been computed.
     #[inline(always)]
     pub fn prepare(
         &mut self,
@@ -100,7 +100,7 @@ impl<T: Number> ForceSeries<T> {
         self.last = last;
     }
 
-    /// Coefficient `k` of the force, and what is added to it.
+    /// Coefficient `k` of the force, plus `more`.
     #[inline(always)]
     pub fn nested(&mut self, y: &[T; ROOM], k: usize, more: Option<T>) -> T {
         if k > 0 {
@@ -112,22 +112,22 @@ impl<T: Number> ForceSeries<T> {
     /// Sums coefficient `n` of the brackets of these depths, four side by side.
     #[inline(always)]
     fn sum(&mut self, y: &[T; ROOM], n: usize, mut depths: std::ops::Range<usize>) {
-        // (by names, since of an array the compiler would gather the same lane of all)
+        // (Named variables: from an array the compiler would gather the same lane of all.)
         macro_rules! side_by_side {
             ($first:expr, $($at:literal $sum:ident)*) => {{
-                let (above, own) = self.rows.split_at_mut(n * self.stride);
+                let (above, current) = self.rows.split_at_mut(n * self.stride);
                 let first = $first;
                 let mut rows = above.chunks_exact(self.stride).rev().zip(&y[1..=n]);
                 if let Some((row, y)) = rows.next() {
                     let row = &row[first + 1..first + 1 + BLOCK];
-                    // (no sum begins with 0: the next would wait for it)
+                    // (no sum begins with 0: the next addition would wait for it)
                     $(let mut $sum = *y * row[$at];)*
                     for (row, y) in rows {
                         let row = &row[first + 1..first + 1 + BLOCK];
                         $($sum += *y * row[$at];)*
                     }
-                    let own = &mut own[first..first + BLOCK];
-                    $(own[$at] = $sum;)*
+                    let current = &mut current[first..first + BLOCK];
+                    $(current[$at] = $sum;)*
                 }
             }};
         }
@@ -143,7 +143,7 @@ impl<T: Number> ForceSeries<T> {
     }
 }
 
-/// A cubic about the place where a step begins, with what stays from order to order at hand.
+/// A cubic about the displacement at the start of a step, with the terms that are reused from order to order.
 pub(crate) struct Cubic<'a, T> {
     about: [T; 4],
     /// a\[1\] + a\[2\] w + a\[3\] w^2.
@@ -151,24 +151,24 @@ pub(crate) struct Cubic<'a, T> {
 }
 
 impl<T: Number> Cubic<'_, T> {
-    /// Coefficient `k` of the force, and what is added to it.
+    /// Coefficient `k` of the force, plus `more`.
     #[inline(always)]
     pub fn coefficient(&mut self, y: &[T; ROOM], k: usize, more: Option<T>) -> T {
         let [a0, a1, a2, a3] = self.about;
         if k == 0 {
             return plus(a0, more);
         }
-        let own = a1 * y[k];
+        let linear_term = a1 * y[k];
         match k {
             1 => {}
             2 => self.row[1] = a2 * y[1],
             _ => self.row[k - 1] = a2 * y[k - 1] + a3 * inner_square(y, k - 1),
         }
-        plus(inner_convolve(y, self.row, k), more) + own
+        plus(inner_convolve(y, self.row, k), more) + linear_term
     }
 }
 
-/// Coefficient `k` of a force that does not change, and `more`.
+/// Coefficient `k` of a constant force, plus `more`.
 #[inline(always)]
 pub(crate) fn constant<T: Number>(c0: T, k: usize, more: Option<T>) -> T {
     match more {
@@ -178,14 +178,14 @@ pub(crate) fn constant<T: Number>(c0: T, k: usize, more: Option<T>) -> T {
     }
 }
 
-/// Coefficient `k` of a force that is a straight line, and `more`.
+/// Coefficient `k` of a linear force, plus `more`.
 #[inline(always)]
 pub(crate) fn linear<T: Number>(c0: T, c1: T, y: &[T; ROOM], k: usize, more: Option<T>) -> T {
-    let own = c1 * y[k];
-    if k == 0 { plus(own + c0, more) } else { plus(own, more) }
+    let linear_term = c1 * y[k];
+    if k == 0 { plus(linear_term + c0, more) } else { plus(linear_term, more) }
 }
 
-/// The sum, where there is something to add; otherwise no addition is executed.
+/// `sum` plus `more`; without `more` no addition is executed.
 #[inline(always)]
 fn plus<T: Number>(sum: T, more: Option<T>) -> T {
     match more {
@@ -209,7 +209,8 @@ pub(crate) fn square<T: Number>(a: &[T; ROOM], k: usize) -> T {
 }
 
 /// Sum of a\[i\] b\[k-i\] over i = 1..k, from the middle outwards: the terms of the highest orders, which
-/// have only just become known, come last. Two running sums, since one addition waits for the last.
+/// have only just become known, come last. There are two running sums, since one addition waits for the
+/// previous one.
 #[inline(always)]
 fn inner_convolve<T: Number>(a: &[T; ROOM], b: &[T; ROOM], k: usize) -> T {
     if k < 2 {
@@ -220,7 +221,7 @@ fn inner_convolve<T: Number>(a: &[T; ROOM], b: &[T; ROOM], k: usize) -> T {
     if k == 2 {
         return middle;
     }
-    // (no sum begins with 0: the next would wait for it)
+    // (no sum begins with 0: the next addition would wait for it)
     let (mut low, mut high) = match k.is_multiple_of(2) {
         true => (middle + a[half - 1] * b[half + 1], a[half + 1] * b[half - 1]),
         false => (middle, a[half] * b[k - half]),
@@ -232,7 +233,7 @@ fn inner_convolve<T: Number>(a: &[T; ROOM], b: &[T; ROOM], k: usize) -> T {
     low + high
 }
 
-/// Sum of a\[i\] a\[k-i\] over i = 1..k by symmetry, in that order.
+/// Sum of a\[i\] a\[k-i\] over i = 1..k by symmetry, in the same order.
 #[inline(always)]
 fn inner_square<T: Number>(a: &[T; ROOM], k: usize) -> T {
     match k {
@@ -264,7 +265,7 @@ mod tests {
         (PieceForce::new(force), y)
     }
 
-    /// The same by Horner's rule on whole series, in some 31 digits.
+    /// The series of the force by Horner's rule on whole series, in double-double arithmetic.
     fn by_horner(degree: usize) -> Vec<f64> {
         let (force, y) = some::<DoubleDouble>(degree);
         let mut sum = [DoubleDouble::zero(); ROOM];
@@ -282,12 +283,12 @@ mod tests {
     fn of_every_degree_it_is_the_series_of_the_polynomial() {
         for degree in 0..=13 {
             let exact = by_horner(degree);
-            let largest = exact[..18].iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+            let largest = exact[..18].iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));
             let (force, y) = some::<f64>(degree);
             let mut series = ForceSeries::new(degree);
             for (k, exact) in exact.iter().enumerate().take(18) {
-                let own = series.coefficient(&force, &y, k);
-                assert!((own - exact).abs() < 1e-13 * largest, "{degree} {k}: {own:e} {exact:e}");
+                let value = series.coefficient(&force, &y, k);
+                assert!((value - exact).abs() < 1e-13 * largest, "{degree} {k}: {value:e} {exact:e}");
             }
         }
     }
@@ -296,8 +297,8 @@ mod tests {
     fn after_a_force_of_another_degree_the_bits_are_the_same() {
         let (low, y) = some::<f64>(5);
         let (high, other) = some::<f64>(11);
-        let series = |own: &mut ForceSeries<f64>, force, y| -> Vec<f64> {
-            (0..18).map(|k| own.coefficient(force, y, k)).collect()
+        let series = |force_series: &mut ForceSeries<f64>, force, y| -> Vec<f64> {
+            (0..18).map(|k| force_series.coefficient(force, y, k)).collect()
         };
         let alone = series(&mut ForceSeries::new(11), &low, &y);
         let mut used = ForceSeries::new(11);

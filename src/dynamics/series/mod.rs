@@ -1,10 +1,9 @@
 //! Taylor series of the motion in time.
 //!
 //! Taylor coefficients of x'' = -g x' - f(x) - a(t) by recurrence, one order at a time and only as many as
-//! are asked for: a flight of a microsecond between two small impacts needs four where a motion across the
-//! barrier needs sixteen. f is the polynomial of the current piece. (Moore 1966, "Interval Analysis", ch. 11;
-//! Jorba and Zou 2005, "A software package for the numerical integration of ODEs by means of high-order
-//! Taylor methods".)
+//! are needed: a flight of a microsecond between two small impacts needs four, a motion across the barrier
+//! sixteen. f is the polynomial of the current piece. (Moore 1966, "Interval Analysis", ch. 11; Jorba and Zou
+//! 2005, "A software package for the numerical integration of ODEs by means of high-order Taylor methods".)
 
 mod force;
 mod order;
@@ -28,7 +27,7 @@ pub(crate) struct Series<T: Copy> {
     pub a: [T; ROOM],
     /// Number of coefficients of y that are known.
     pub known: usize,
-    /// The integrals that have been taken, where some have.
+    /// The integrals computed last, if any.
     pub measured: Cell<Option<Integrals<T>>>,
     forces: ForceSeries<T>,
     inverse: [T; ROOM],
@@ -45,14 +44,14 @@ pub(crate) struct Integrals<T> {
     pub work: T,
 }
 
-/// Where a step's polynomial leads.
+/// The state at the end of a step's polynomial.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Endpoint<T> {
     /// Displacement from the piece's origin.
     pub y: T,
     pub v: T,
     pub acceleration: T,
-    /// Sum of the magnitudes of the terms above the constant: the mass is never further from the start.
+    /// Sum of the magnitudes of the terms above the constant: a bound of the distance from the start.
     pub bound: T,
 }
 
@@ -74,8 +73,8 @@ impl<T: Number> Series<T> {
         }
     }
 
-    /// Starts from displacement `y` (from the piece's origin) and velocity `v`; the first
-    /// [`SEEDED`] coefficients of the drive are already in `a`.
+    /// Starts from displacement `y` (from the piece's origin) and velocity `v`; the first [`SEEDED`]
+    /// coefficients of the drive are already in `a`.
     #[inline(always)]
     pub fn begin(&mut self, y: T, v: T) {
         self.y[0] = y;
@@ -105,8 +104,8 @@ impl<T: Number> Series<T> {
         );
     }
 
-    /// Adds coefficients up to `order`, as long as `more` asks for another one after the last, which it is
-    /// told with its order. Those of the force about where the series begins need not be known.
+    /// Adds coefficients up to `order`, as long as `more`, called with the order and value of the last one,
+    /// returns true. `about` are the coefficients of the force about the start of the series, or empty.
     #[inline(always)]
     pub fn extend_while<D: Tail<T>>(
         &mut self,
@@ -158,24 +157,24 @@ impl<T: Number> Series<T> {
         self.known = last + 1;
     }
 
-    /// Coefficient `k` of the force, from y\[0..=k\]; the lower ones have been asked for before.
+    /// Coefficient `k` of the force, from y\[0..=k\]; the lower ones must have been computed before.
     #[inline(always)]
     pub(crate) fn force_coefficient(&mut self, force: &PieceForce<T>, k: usize) -> T {
         self.forces.coefficient(force, &self.y, k)
     }
 
-    /// Adds coefficient `k` of the drive, at or above [`SEEDED`]; once each and in ascending order.
+    /// Adds coefficient `k` of the drive, at or above [`SEEDED`]; once for each `k`, in ascending order.
     pub(crate) fn extend_drive<D: Tail<T>>(&mut self, k: usize, drive: &D, cursor: &mut D::Cursor) {
         drive.extend(k, &mut self.a, &self.inverse, cursor);
     }
 
-    /// The state at time `t` into the step, and a bound of the way up to there.
+    /// The state at time `t` into the step, and a bound of the distance moved up to then.
     #[inline(always)]
     pub fn state(&self, t: T) -> Endpoint<T> {
         let zero = T::zero();
         let (mut y, mut v, mut acceleration, mut bound) = (zero, self.y[1], zero, zero);
-        // Powers, and sums of terms: where Horner's rule waits for a product and a sum at each coefficient,
-        // this waits for one.
+        // Powers, and sums of terms: Horner's rule waits for a product and a sum at each coefficient, this
+        // only for one of them.
         let (mut before, mut power) = (T::of(1.0), t);
         each_order::<2>(
             T::QUICK,
@@ -201,7 +200,7 @@ impl<T: Number> Series<T> {
         &self.y[..self.known]
     }
 
-    /// The coefficients of the base's acceleration that go with those of the motion.
+    /// The coefficients of the base's acceleration that belong to those of the motion.
     #[inline]
     pub fn base_coefficients(&self) -> &[T] {
         &self.a[..(self.known - 2).max(SEEDED)]
@@ -209,7 +208,7 @@ impl<T: Number> Series<T> {
 }
 
 impl<T: Scalar> Series<T> {
-    /// As [`Self::extend_to`], compiled once: it is large.
+    /// As [`Self::extend_to`], but compiled only once, since it is large.
     #[inline(never)]
     pub fn extend<D: Tail<T>>(
         &mut self,
@@ -237,8 +236,8 @@ impl<T: Scalar> Series<T> {
     }
 }
 
-/// As [`Series::natural_step`], of coefficients up to `order`, for several series at once; from several of
-/// the last ones, since single ones vanish at symmetry points. NaN where one is.
+/// As [`Series::natural_step`], from coefficients up to `order`, for several series at once. It uses several
+/// of the last coefficients, since single ones vanish at symmetry points. NaN if one of them is NaN.
 #[inline(always)]
 pub(crate) fn natural_steps<const W: usize>(
     order: usize,
@@ -254,8 +253,8 @@ pub(crate) fn natural_steps<const W: usize>(
         let inverse = 1.0 / (k as f64 - 1.0);
         for lane in 0..W {
             let size = coefficients[lane].abs() * k as f64;
-            let own = (speed_log2[lane] - fast_log2(size)) * inverse;
-            radius[lane] = if (size > 1e-300) & (own < radius[lane]) { own } else { radius[lane] };
+            let estimate = (speed_log2[lane] - fast_log2(size)) * inverse;
+            radius[lane] = if (size > 1e-300) & (estimate < radius[lane]) { estimate } else { radius[lane] };
             sum[lane] += size;
         }
     }
@@ -269,8 +268,8 @@ pub(crate) fn natural_steps<const W: usize>(
     steps
 }
 
-/// The recurrence of the equation of motion over the orders `known`, the force's coefficients and what is
-/// added to them by `force`; ends early once there need not be `more`.
+/// The recurrence of the equation of motion over the orders `known`. `force` gives the coefficients of the
+/// force plus its third argument. Ends early once `more` returns false.
 #[inline(always)]
 fn recur<T: Number, D: Tail<T>, const SIMPLE: bool>(
     known: std::ops::Range<usize>,
@@ -302,8 +301,8 @@ fn recur<T: Number, D: Tail<T>, const SIMPLE: bool>(
     );
 }
 
-/// Does something for each of the orders; where `unrolled`, and the first of them is `USUAL`, with numbers
-/// that the compiler knows: the bookkeeping of a loop may cost as much as what is done in it.
+/// Calls `next` for each of the orders. If `unrolled` and the first order is `USUAL`, the loop is unrolled
+/// with constant orders: the bookkeeping of a loop may cost as much as its body.
 #[inline(always)]
 pub(crate) fn each_order<const USUAL: usize>(
     unrolled: bool,
@@ -321,7 +320,7 @@ pub(crate) fn each_order<const USUAL: usize>(
     );
 }
 
-/// The same up to the first that ends it.
+/// The same until `next` returns false.
 #[inline(always)]
 fn each_order_while<const USUAL: usize>(
     unrolled: bool,

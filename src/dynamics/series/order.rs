@@ -1,4 +1,4 @@
-//! Orders of the series, room for their coefficients, and the trait by which a drive continues its own.
+//! Orders of the series, room for their coefficients, and the trait by which a drive continues its series.
 
 use crate::numeric::Number;
 
@@ -6,7 +6,7 @@ use crate::numeric::Number;
 pub(crate) const MAX_ORDER: usize = 32;
 /// Room for coefficients 0..=MAX_ORDER.
 pub(crate) const ROOM: usize = MAX_ORDER + 2;
-/// Coefficients of the drive that are there from the start.
+/// Number of coefficients of the drive that are known from the start.
 pub(crate) const SEEDED: usize = 4;
 
 /// Continuation of the series of a drive.
@@ -14,19 +14,19 @@ pub(crate) trait Tail<T: Number> {
     /// State carried along a series.
     type Cursor: Default;
 
-    /// The order from which on all coefficients are 0. If it is a constant, their addition is compiled away.
+    /// The order from which on all coefficients are 0. If it is a compile-time constant, no code adds them.
     #[inline(always)]
     fn zero_from(&self) -> usize {
         usize::MAX
     }
 
-    /// What a circuit takes from the acceleration at order `k`, from y\[0..=k+1\]; none without one. Asked
-    /// for in ascending order; its own next coefficient becomes known with it.
+    /// The acceleration that a circuit takes at order `k`, from y\[0..=k+1\]; `None` without a circuit. To be
+    /// called in ascending order; each call also computes the next coefficient of the circuit's state.
     #[inline(always)]
     fn couple(&self, _k: usize, _y: &[T; ROOM], _cursor: &mut Self::Cursor) -> Option<T> {
         None
     }
 
-    /// Fills a\[k\], k >= `SEEDED`, once each and in ascending order; `inverse[n]` is 1/(n(n-1)).
+    /// Computes a\[k\], k >= `SEEDED`, once for each `k`, in ascending order; `inverse[n]` is 1/(n(n-1)).
     fn extend(&self, k: usize, a: &mut [T; ROOM], inverse: &[T; ROOM], cursor: &mut Self::Cursor);
 }

@@ -1,6 +1,6 @@
 //! Functions of a polynomial in time: value, slope, integrals, deviation from the chord.
 //!
-//! They take coefficients alone, so that a logged step is read as one that has just been computed.
+//! They use coefficients alone, so that a logged step is evaluated like one that has just been computed.
 
 use super::each_order;
 use super::order::ROOM;
@@ -60,8 +60,8 @@ pub(crate) fn curvature<T: Number>(y: &[T], t: T) -> T {
     sum
 }
 
-/// Bounds of the deviations of the displacement, of the velocity times `h` and of the acceleration times its
-/// square from the chords between the ends of a step of length `h`: an eighth of the square of the length
+/// Bounds of the deviations from the chords between the ends of a step of length `h`: of the displacement, of
+/// the velocity times `h` and of the acceleration times `h`^2. Each is an eighth of the square of the length
 /// times the largest second derivative.
 #[inline(always)]
 pub(crate) fn chord_deviations<T: Number>(y: &[T], h: T) -> (T, T, T) {
@@ -82,9 +82,9 @@ pub(crate) fn chord_deviations<T: Number>(y: &[T], h: T) -> (T, T, T) {
     (second * T::of(0.125), third * T::of(0.125), fourth * T::of(0.125))
 }
 
-/// Integrals over (from, to) within the step: of the squared velocity and, where `WORK`, of base acceleration
-/// (`a`) times velocity; of the step's own polynomials by Gauss' rule. (Products truncated at their order
-/// miss, on a long step under a fast drive, a thousand times the tolerance.)
+/// Integrals over (from, to) within the step: of the squared velocity and, if `WORK`, of base acceleration
+/// (`a`) times velocity, by Gauss' rule from the polynomials of the step. (The product of the series,
+/// truncated at their order, is off by a thousand tolerances on a long step under a fast drive.)
 #[inline(always)]
 pub(crate) fn integrals<T: Number, const WORK: bool>(
     y: &[T],
@@ -108,7 +108,7 @@ pub(crate) fn integrals<T: Number, const WORK: bool>(
     (sums.0 * (to - from), sums.1 * (to - from))
 }
 
-/// Adds what `COUNT` nodes from the one numbered `first` on contribute to them, up to four side by side.
+/// Adds the contributions of `COUNT` nodes, beginning with the one numbered `first`; up to four side by side.
 #[inline(always)]
 fn at_nodes<T: Number, const WORK: bool, const COUNT: usize>(
     y: &[T],
@@ -120,17 +120,17 @@ fn at_nodes<T: Number, const WORK: bool, const COUNT: usize>(
 ) {
     let (length, nodes) = (to - from, &rule.nodes()[first..first + COUNT]);
     let weights = &rule.weights()[first..first + COUNT];
-    // Each by name: arrays would go through memory. What is there twice is computed once.
+    // Named variables: arrays would go through memory. Common expressions are computed once.
     let time = |i: usize| from + length * nodes[i.min(COUNT - 1)];
     let times = (time(0), time(1), time(2), time(3));
     let v = at_four_times(y.len(), |k| y[k] * T::whole(k), 1, times);
     let base = if WORK { at_four_times(a.len(), |k| a[k], 0, times) } else { v };
     macro_rules! add {
-        ($($own:tt)*) => {
-            $(if $own < COUNT {
-                *squared += v.$own * v.$own * weights[$own];
+        ($($index:tt)*) => {
+            $(if $index < COUNT {
+                *squared += v.$index * v.$index * weights[$index];
                 if WORK {
-                    *power += base.$own * v.$own * weights[$own];
+                    *power += base.$index * v.$index * weights[$index];
                 }
             })*
         };
@@ -153,7 +153,7 @@ pub(crate) fn moment<T: Scalar>(y: &[T], rule: &GaussLegendre<T>, from: T, to: T
     parts.fold(T::zero(), |sum, (node, weight)| sum + value(y, from + length * *node) * *weight) * length
 }
 
-/// The polynomial of the coefficients `first..count`, the lowest of them the constant, at four times.
+/// The polynomial of the coefficients `first..count`, the lowest being the constant, at four times.
 #[inline(always)]
 pub(crate) fn at_four_times<T: Number>(
     count: usize,

@@ -1,35 +1,35 @@
 //! Choice of the length of a step of free flight.
 //!
-//! The event-free step is written three times: here, with what `run/flight.rs` does with the step, as the
-//! fast path of a motion alone (`run/event_free.rs`), and for a batch (`lanes/columns/step.rs`). The three do
-//! the same arithmetic and must stay equal to the bit.
+//! The event-free step is written three times: here (with `run/flight.rs`, which takes the step), as the fast
+//! path of a single motion (`run/event_free.rs`), and for a batch (`lanes/columns/step.rs`). The three do the
+//! same arithmetic and must stay equal to the bit.
 
 use super::settings::{RESIDUAL, ROUNDINGS};
-use super::stepper::{MOST_HALVINGS, Step, Stepper};
+use super::stepper::{MAX_HALVINGS, Step, Stepper};
 use crate::dynamics::drive::Drive;
 use crate::dynamics::series::Endpoint;
 use crate::dynamics::state::{BY_JERK, MotionState, Touch};
 use crate::numeric::Scalar;
 
-/// The order that the series of most rebounds is enough with.
-const FEW: usize = 8;
+/// Order that is sufficient for the series of most rebounds.
+const LOW_ORDER: usize = 8;
 
 impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
-    /// Extends the series as far as the step needs, where it is not `enough` for a `flight`; none where the
-    /// coefficients are not finite.
+    /// Extends the series as far as the step needs, unless it is already `extended` for a `flight`. Returns
+    /// `None` if the coefficients are not finite.
     ///
-    /// Coefficients may vanish one after the other without the next one vanishing (a high power from its flat
-    /// middle, tones that cancel), and then the last ones promise too long a step. So each step is checked
-    /// against the equation of motion at its end, and halved until it holds.
+    /// Several consecutive coefficients may vanish although the next one does not (a high power near its flat
+    /// middle, tones that cancel); the last coefficients then suggest too long a step. So each step is
+    /// checked against the equation of motion at its end, and halved until it satisfies it.
     #[inline(always)]
     pub fn choose_step(
         &mut self,
         state: &MotionState<T>,
-        (flight, enough): (Option<T>, bool),
+        (flight, extended): (Option<T>, bool),
         left: T,
     ) -> Option<Step<T>> {
         let length = match flight {
-            Some(flight) if enough => flight,
+            Some(flight) if extended => flight,
             _ => {
                 self.expand(state);
                 let natural = self.natural_step();
@@ -46,11 +46,11 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         T::of(self.circuit_step().map_or(natural, |step| natural.min(step)))
     }
 
-    /// The step of up to length `h` that ends in time, and with which the equation of motion holds.
+    /// The step of up to length `h` that ends before the borders and satisfies the equation of motion.
     #[inline(always)]
     pub fn shorten(&mut self, state: &MotionState<T>, mut h: T, left: T) -> Option<Step<T>> {
         let border = self.drive.segment_end(state.segment);
-        for attempt in 0..MOST_HALVINGS {
+        for attempt in 0..MAX_HALVINGS {
             if !(h > T::zero()) {
                 return None;
             }
@@ -106,8 +106,8 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         }
     }
 
-    /// Extends the series, just begun, until two terms in a row are negligible over `flight`, against the
-    /// rebound's own speed; false where the full order is not enough for that.
+    /// Extends the series, just begun, until two consecutive terms are negligible over `flight` relative to
+    /// the speed of the rebound. Returns false if the full order is not enough for that.
     #[inline(never)] // it is large
     pub fn expand_for(&mut self, state: &MotionState<T>, flight: T) -> bool {
         let negligible = state.v.abs() * T::of(self.settings.tolerance * 0.1);
@@ -116,8 +116,8 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let Self { series, drive, cursor, .. } = self;
         let about = state.touch.map_or(&[][..], |touch| mode.about(touch.end, state.x));
         let (mut power, mut small) = (flight, 0);
-        // (the longer the series may get, the more of a force of high degree is made ready for it)
-        for order in [order.min(FEW), order] {
+        // (A force of high degree is prepared for a longer series only if it is needed.)
+        for order in [order.min(LOW_ORDER), order] {
             series.extend_while(
                 order,
                 (&mode.force, about),
@@ -141,8 +141,8 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         false
     }
 
-    /// Whether the step's polynomial satisfies the equation of motion at its end, as far as the tolerance and
-    /// rounding ask: the residual is what the first neglected terms leave.
+    /// Whether the polynomial satisfies the equation of motion at the end of the step, within tolerance and
+    /// rounding: the residual is left by the first neglected terms.
     #[inline]
     pub fn step_holds(
         &mut self,
@@ -164,7 +164,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         if residual <= allowed {
             return self.circuit_holds(h, v);
         }
-        // larger than asked for: rounding?
+        // larger than permitted: it may be rounding
         let (_, _, rounding) = mode.force.value(y);
         let size = acceleration.abs() + (self.equation.damping * v).abs() + base.abs();
         let size = push.map_or(size, |push| size + push.abs());

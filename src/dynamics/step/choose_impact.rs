@@ -1,4 +1,4 @@
-//! Choice of a whole impact as one step: whether nothing else happens in it.
+//! Choice of a whole impact as one step, and the check that no other event happens in it.
 
 use super::impact::{DRIVE_TERMS, FORCE_TERMS, Impact, Separation};
 use super::penetration::neglected;
@@ -10,16 +10,16 @@ use crate::dynamics::series::SEEDED;
 use crate::dynamics::state::{Contact, MotionState};
 use crate::numeric::{Collocation, Scalar};
 
-/// The tolerance of a step below which rounding decides.
-const FINEST: f64 = 1e-14;
+/// Tolerance of a step below which rounding dominates.
+const MIN_TOLERANCE: f64 = 1e-14;
 
-/// Points short of one a binary digit of the tolerance.
-const LESS_POINTS: f64 = 2.0;
+/// Difference between the binary digits of the tolerance and the number of points.
+const FEWER_POINTS: f64 = 2.0;
 
 impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
-    /// The impact that begins with this touch of the stop of `end`, where it can be taken in one step:
-    /// nothing but the stop changes much in it, neither a break of the curve nor `barrier` is within its
-    /// reach, and it ends before the run and the drive's segment do.
+    /// The impact that begins with this touch of the stop of `end`, if it can be taken in one step: nothing
+    /// but the stop force changes much in it, neither a break of the curve nor `barrier` is within its reach,
+    /// and it ends before the run and the drive's segment do.
     pub fn choose_impact(
         &mut self,
         state: &MotionState<T>,
@@ -30,7 +30,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     ) -> Option<Separation<T>> {
         let (sign, speed) = (end.sign::<T>(), end.sign::<T>() * state.v);
         let touches = matches!(state.contact, Contact::Compressing(_)) && state.depth.root == T::zero();
-        if !touches || self.settings.tolerance < FINEST {
+        if !touches || self.settings.tolerance < MIN_TOLERANCE {
             return None;
         }
         let mode = self.mode(state);
@@ -48,11 +48,11 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             path.about.resize(path.about.len().max(FORCE_TERMS), T::zero());
             path.about_mode = Some(state.mode);
         }
-        path.rule = Collocation::of((-self.settings.tolerance_log2 - LESS_POINTS) as usize);
+        path.rule = Collocation::of((-self.settings.tolerance_log2 - FEWER_POINTS) as usize);
         let share = scale / speed;
-        let asked = (T::of(tolerance) * share, T::of(RESIDUAL * self.settings.tolerance) * share);
-        let found = path.solve(speed, asked)?;
-        let depth = path.most * path.most;
+        let tolerances = (T::of(tolerance) * share, T::of(RESIDUAL * self.settings.tolerance) * share);
+        let found = path.solve(speed, tolerances)?;
+        let depth = path.max_root * path.max_root;
         let missed = neglected(&path.series.a, DRIVE_TERMS, (&path.about, FORCE_TERMS), (found.time, depth));
         let before = |border| found.time < self.clock.between(&state.at, &border);
         let in_time = found.time < left && self.drive.segment_end(state.segment).is_none_or(before);

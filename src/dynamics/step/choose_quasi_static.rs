@@ -1,4 +1,5 @@
-//! Choice of a step of quasi-static motion: whether the mass rings, and how far the series holds.
+//! Choice of a step of quasi-static motion: whether the mass rings, and the length over which the
+//! series holds.
 
 use super::quasi_static::QuasiStatic;
 use super::settings::RESIDUAL;
@@ -10,31 +11,32 @@ use crate::dynamics::series::{MAX_ORDER, SEEDED, natural_steps, polynomial};
 use crate::dynamics::state::{Contact, MotionState};
 use crate::numeric::{Scalar, fast_log2};
 
-/// Sweeps from which on the iteration has settled: each takes the error to a thousandth or less where a step
-/// is worth it at all. Each costs two orders, those of d''.
-const SWEEPS: usize = 3;
+/// Sweeps after which the iteration has converged at a coarse tolerance: each reduces the error to a
+/// thousandth or less if the step is long enough to be useful. Each costs two orders, those of d''.
+const FEW_SWEEPS: usize = 3;
+/// The same at a fine tolerance.
 const MORE_SWEEPS: usize = 5;
 
-/// The tolerance of a step from which on few sweeps do.
+/// Tolerance of a step above which few sweeps are enough.
 const COARSE: f64 = 1e-9;
 
-/// The speed of the ringing that is left out, in tolerances of a step.
-const RING: f64 = 1.0;
+/// Speed of ringing that may be neglected, in tolerances of a step.
+const MAX_RINGING: f64 = 1.0;
 
-/// The tolerance of a step below which rounding keeps the ringing up.
-const FINEST: f64 = 1e-13;
+/// Tolerance of a step below which rounding sustains the ringing.
+const MIN_TOLERANCE: f64 = 1e-13;
 
-/// Radians of the ringing that a step must be longer than to be worth it.
-const WORTH: f64 = 12.0;
+/// Minimum length of a useful step, in radians of the ringing.
+const MIN_RADIANS: f64 = 12.0;
 
-/// Halvings of a step before it is given up.
-const MOST_HALVINGS: usize = 4;
+/// Maximum number of halvings of a step before it is given up.
+const MAX_HALVINGS: usize = 4;
 
-/// Share of its speed by which the first term of the quasi-static motion may be off.
+/// Relative error that the first term of the quasi-static speed may have.
 const FIRST_TERM: f64 = 2e-3;
 
-/// The same where the mechanism's own stiffness is left out.
-const ROUGHLY: f64 = 0.1;
+/// The same if the stiffness of the mechanism is left out.
+const FIRST_TERM_ROUGH: f64 = 0.1;
 
 /// A quasi-static step that has been chosen.
 pub(crate) struct QuasiStaticStep<T> {
@@ -47,8 +49,8 @@ pub(crate) struct QuasiStaticStep<T> {
 }
 
 impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
-    /// A step of quasi-static motion; none where the mass rings by more than the tolerance, or the load
-    /// changes too fast for it.
+    /// A step of quasi-static motion; `None` if the mass rings by more than the tolerance, or if the load
+    /// changes too fast.
     pub fn quasi_static_step(
         &mut self,
         state: &MotionState<T>,
@@ -60,17 +62,18 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let (speed, damping, mode) = (sign * state.v, self.equation.damping, self.mode(state));
         let stop = self.equation.compliant?;
         let (scale, tolerance) = self.contact_tolerance(state)?;
-        let ring = T::of(RING * self.settings.tolerance) * scale;
+        let ring = T::of(MAX_RINGING * self.settings.tolerance) * scale;
         let compressing = matches!(state.contact, Contact::Compressing(_)) && root > T::zero();
-        if !compressing || self.settings.tolerance < FINEST {
+        if !compressing || self.settings.tolerance < MIN_TOLERANCE {
             return None;
         }
-        // Does the mass ring? The first term of its quasi-static motion says whether to look further.
+        // Does the mass ring? The first term of its quasi-static motion shows whether the series is
+        // worth computing.
         let a = &mut path.series.a;
         self.drive.seed(&self.clock, &state.at, state.segment, a, &mut self.cursor);
         let (jerk, snap) = (-(sign * a[1]), a[2].abs() * T::of(2.0));
         let stiffness = T::of(1.5) * stop.stiffness * root;
-        if !((speed * stiffness - jerk).abs() <= ring * stiffness + jerk.abs() * T::of(ROUGHLY)) {
+        if !((speed * stiffness - jerk).abs() <= ring * stiffness + jerk.abs() * T::of(FIRST_TERM_ROUGH)) {
             return None;
         }
         let surface = self.equation.surface(end)? - mode.origin;
@@ -89,13 +92,13 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         if !(acceleration.abs() <= ringing * ring + slow + slow) {
             return None;
         }
-        // Yes or no: by the series.
-        let sweeps = if self.settings.tolerance > COARSE { SWEEPS } else { MORE_SWEEPS };
+        // The series decides.
+        let sweeps = if self.settings.tolerance > COARSE { FEW_SWEEPS } else { MORE_SWEEPS };
         let order = (self.settings.order + 1).min(MAX_ORDER - 2 * sweeps);
         (path.stop, path.sign) = (stop, sign);
         mode.force.about(surface, &mut path.about);
         path.about.resize(path.about.len().max(3), T::zero());
-        // Two terms say whether the mass is on it, and all of them where that leads.
+        // Two terms show whether the mass follows the quasi-static motion; all terms are needed for the step.
         let few = 1 + 2 * sweeps;
         for k in SEEDED..=few {
             path.series.extend_drive(k, self.drive, &mut self.cursor);
@@ -121,7 +124,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         );
         let mut length = T::of(natural);
         let border = self.drive.segment_end(state.segment);
-        for _ in 0..MOST_HALVINGS {
+        for _ in 0..MAX_HALVINGS {
             let mut arrival = None;
             let mut until = |time: T, instant| {
                 if time <= length {
@@ -132,7 +135,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             if let Some(border) = border {
                 until(self.clock.between(&state.at, &border), border);
             }
-            if !(length * ringing > T::of(WORTH)) {
+            if !(length * ringing > T::of(MIN_RADIANS)) {
                 return None;
             }
             let (mut bound, mut fastest, mut power) = (T::zero(), T::zero(), T::of(1.0));
@@ -149,8 +152,8 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             for t in [T::zero(), half, length] {
                 residual = residual.larger(path.residual(t, surface, &mode.force, damping).abs());
             }
-            let most = T::of(RESIDUAL * order as f64 * tolerance) * scale;
-            if deep && bound < start && stop.loss * fastest < T::of(1.0) && residual * length <= most {
+            let allowed = T::of(RESIDUAL * order as f64 * tolerance) * scale;
+            if deep && bound < start && stop.loss * fastest < T::of(1.0) && residual * length <= allowed {
                 let depth = polynomial::value(&path.depth[..=order], length);
                 let speed = polynomial::slope(&path.depth[..=order], length);
                 return Some(QuasiStaticStep { length, arrival, end: (depth.sqrt(), speed), bound });

@@ -1,4 +1,4 @@
-//! State of a circuit along a step of free flight, beside the motion's.
+//! State of a circuit along a step of free flight.
 
 use super::settings::{RESIDUAL, ROUNDINGS};
 use super::stepper::Stepper;
@@ -7,7 +7,7 @@ use crate::dynamics::series::{natural_steps, polynomial};
 use crate::numeric::{Scalar, fast_log2};
 
 impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
-    /// Coefficients of the circuit's state that go with those of the motion; none without a circuit.
+    /// Coefficients of the circuit's state that belong to those of the motion; `None` without a circuit.
     #[inline(always)]
     pub fn circuit_series(&self) -> Option<&[T]> {
         self.drive.circuit_state(&self.cursor).map(|state| &state[..self.series.known - 1])
@@ -19,8 +19,8 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         self.circuit_series().map(|state| polynomial::value(state, t))
     }
 
-    /// What the circuit does to a mass that moves little, as a stiffness over mass: the square of the
-    /// coupling.
+    /// Effect of the circuit on a mass that moves little, as a stiffness over mass: the square of
+    /// the coupling.
     #[inline(always)]
     pub fn circuit_stiffness(&self) -> Option<T> {
         self.drive.circuit().map(|circuit| circuit.coupling * circuit.coupling)
@@ -31,15 +31,15 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     pub fn circuit_step(&self) -> Option<f64> {
         let (circuit, state) = (self.drive.circuit()?, self.circuit_series()?);
         let (s, order) = (&self.settings, self.series.known - 1);
-        // (as the velocity's, whose coefficient k - 1 is k times that of the displacement)
+        // (as for the velocity, whose coefficient k - 1 is k times that of the displacement)
         let coefficient = |k: usize| [state[k - 1].magnitude() / k as f64];
         let scale = fast_log2(circuit.scale.to_f64());
         let [step] = natural_steps(order, coefficient, &[scale], s.tolerance_log2, &[s.longest]);
         Some(step)
     }
 
-    /// Whether its polynomial satisfies its equation at time `h` into the step, where the velocity is `v`, as
-    /// far as tolerance and rounding ask.
+    /// Whether the polynomial of the state satisfies the circuit's equation at time `h` into the step, where
+    /// the velocity is `v`, within tolerance and rounding.
     #[inline(always)]
     pub fn circuit_holds(&self, h: T, v: T) -> bool {
         let Some((circuit, state)) = self.drive.circuit().zip(self.circuit_series()) else { return true };
@@ -49,7 +49,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         if residual <= allowed {
             return true;
         }
-        // larger than asked for: rounding?
+        // larger than permitted: it may be rounding
         let (mut size, mut power) = (T::zero(), T::of(1.0));
         for (k, c) in state.iter().enumerate() {
             size += c.abs() * power * (T::whole(k) + circuit.decay * h);

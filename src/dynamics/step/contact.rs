@@ -4,7 +4,7 @@ use super::contact_path::{Changes, ContactState};
 use super::path::Path;
 use super::penetration::{Penetration, Start, Terms};
 use super::settings::{RESIDUAL, ROUNDINGS};
-use super::stepper::{MOST_HALVINGS, Stepper};
+use super::stepper::{MAX_HALVINGS, Stepper};
 use crate::dynamics::clock::Instant;
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::{End, EndKind};
@@ -12,29 +12,30 @@ use crate::dynamics::series::MAX_ORDER;
 use crate::dynamics::state::{Contact, HELD, MotionState};
 use crate::numeric::{PolynomialRoots, Scalar, fast_log2};
 
-/// The least speed that the tolerance in contact is relative to, as a share of the scene's. It is relative to
-/// the speed that the energy in the contact makes, up to the scene's own: a mass that trembles on its stop
-/// moves at some thousandth of that, and errors of the scene's size would be all that is seen of it. Far
-/// below, they are not seen at all.
-const LEAST_SPEED: f64 = 1e-4;
+/// Minimum of the speed to which the tolerance in contact is relative, as a share of the scene's speed. The
+/// tolerance is relative to the speed that corresponds to the energy in the contact, up to the scene's speed:
+/// a mass that oscillates on its stop moves at some thousandth of that, and errors relative to the scene's
+/// speed would hide this motion. Motions far below are not visible.
+const MIN_SPEED_SHARE: f64 = 1e-4;
 
-/// The tolerance of a step in contact relative to that of free flight. A contact takes a dozen steps, which
-/// all err to one side, and an elastic mass makes thousands of contacts: its energy then drifts by
+/// Tolerance of a step in contact relative to that of free flight. A contact takes a dozen steps whose errors
+/// have one sign, and an elastic mass makes thousands of contacts; with this share its energy drifts by
 /// thousandths of the tolerance in each. It costs one step in ten.
 const CONTACT_SHARE: f64 = 0.03;
 
-/// What the order of a contact's series is above that of free flight, for that.
+/// Orders by which the series of a contact exceeds that of free flight, because of this tolerance.
 const CONTACT_ORDERS: usize = 2;
 
-/// The tolerance from which on few terms of force and drive are tried first, and the share of the scene's
-/// speed: what is slower takes longer steps, over which the drive changes.
+/// Tolerance above which few terms of force and drive are tried first.
 const COARSE: f64 = 1e-9;
-const TREMBLING: f64 = 0.01;
+/// Share of the scene's speed above which they are: slower motions take longer steps, in which the drive
+/// changes more.
+const SLOW_SHARE: f64 = 0.01;
 
-/// Where a step of contact ends.
+/// The event at the end of a step of contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Reached {
-    /// Where it was chosen to, or at the end of the run or the drive's segment.
+    /// No event: the chosen end, the end of the run or that of the drive's segment.
     Time,
     Surface,
     ClipChange,
@@ -43,21 +44,22 @@ pub(crate) enum Reached {
 
 /// A step of contact that has been chosen.
 pub(crate) struct ContactStep<T> {
-    /// As chosen, and as kept, in the parameter.
+    /// Length as chosen, in the parameter.
     pub whole: T,
+    /// Length that is kept, in the parameter.
     pub length: T,
-    /// State at the end of what is kept.
+    /// State at the end of the kept length.
     pub end: ContactState<T>,
-    /// The time that it takes.
+    /// The duration of the kept length.
     pub duration: T,
-    /// Bound of the change of the depth over the whole.
+    /// Bound of the change of the depth over the chosen length.
     pub bound: T,
     pub reached: Reached,
     pub arrival: Option<Instant<T>>,
 }
 
 impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
-    /// Expands the contact and chooses how far it holds. None where the coefficients are not finite.
+    /// Expands the contact and chooses its length. Returns `None` if the coefficients are not finite.
     pub fn choose_contact_step(
         &mut self,
         state: &MotionState<T>,
@@ -79,12 +81,12 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         self.drive.seed(&self.clock, &state.at, state.segment, path.seeded(), &mut self.cursor);
         self.evaluations += 1;
         self.work.add(self.costs.contact);
-        // As far as the speed of the step's start would bring it in the longest time.
+        // At most as far as the initial speed would lead in the longest time.
         let (u, w) = (start.root.to_f64(), start.speed.abs().to_f64());
         let longest = self.settings.longest;
         let cap = 2.0 * longest / (u + (u * u + w * longest).sqrt());
         let (speed, tolerance) = self.contact_tolerance(state)?;
-        let fast = speed > self.settings.speed * T::of(TREMBLING);
+        let fast = speed > self.settings.speed * T::of(SLOW_SHARE);
         let few = fast && self.settings.tolerance > COARSE;
         let mut terms = if few { Terms::Few } else { Terms::More };
         let force = (&mode.force, state.mode);
@@ -93,7 +95,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let mut whole = T::of(path.natural_step(settings.0, settings.1, cap));
         let border = self.drive.segment_end(state.segment);
         let allowed = T::of(RESIDUAL * order as f64 * tolerance) * speed;
-        for _ in 0..MOST_HALVINGS {
+        for _ in 0..MAX_HALVINGS {
             if !(whole > T::zero()) {
                 return None;
             }
@@ -106,7 +108,8 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
                 let deepest = path.depth[0] + changes.depth;
                 let neglected = path.neglected(self.drive, &mut self.cursor, (duration, deepest));
                 if neglected > T::of(tolerance) * speed {
-                    // A drive as fast as the contact, or a stop so soft that the force changes in it.
+                    // The drive is as fast as the contact, or the stop so soft that the force changes
+                    // during it.
                     self.work.add(self.costs.contact);
                     terms = match terms {
                         Terms::Few => Terms::More,
@@ -144,16 +147,16 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         None
     }
 
-    /// The tolerance of a step in contact, and the speed that it is relative to.
+    /// The speed to which the tolerance of a step in contact is relative, and that tolerance.
     pub(super) fn contact_tolerance(&self, state: &MotionState<T>) -> Option<(T, f64)> {
         let stored = self.equation.compliant?.stored(state.depth.root);
         let energetic = (state.v * state.v + stored + stored).sqrt();
-        let least = self.settings.speed * T::of(LEAST_SPEED);
+        let least = self.settings.speed * T::of(MIN_SPEED_SHARE);
         let speed = self.settings.speed.smaller(energetic.larger(least));
         Some((speed, self.settings.tolerance * CONTACT_SHARE))
     }
 
-    /// The first event within a step of `whole`, as a share of it.
+    /// The first event within a step of length `whole`, as a fraction of it.
     fn first_event(
         &self,
         state: &MotionState<T>,

@@ -1,4 +1,5 @@
-//! Reading of a step of contact: bounds, events, residual, position, integrals, dissipation, largest force.
+//! Evaluation of a step of contact: bounds, events, residual, position, integrals, dissipation,
+//! largest force.
 
 use super::path::{InStop, Path};
 use super::penetration::Penetration;
@@ -8,7 +9,7 @@ use crate::dynamics::series::polynomial::{self, at_four_times};
 use crate::dynamics::series::{ROOM, convolve};
 use crate::numeric::{GaussLegendre, PolynomialRoots, Scalar};
 
-/// Bounds of what changes over a step of contact.
+/// Bounds of the changes over a step of contact.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Changes<T> {
     pub root: T,
@@ -16,7 +17,7 @@ pub(crate) struct Changes<T> {
     pub depth: T,
 }
 
-/// What the polynomials of a step say of one place: root of the depth, inward speed and its slope, time.
+/// The state at a point of a step: root of the depth, inward speed and its slope, time.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ContactState<T> {
     pub root: T,
@@ -26,7 +27,7 @@ pub(crate) struct ContactState<T> {
 }
 
 impl<T: Scalar> Penetration<T> {
-    /// Bounds, over a step of `h`, of the change of the depth's root, of the speed and of the depth.
+    /// Bounds, over a step of length `h`, of the changes of the depth's root, of the speed and of the depth.
     pub fn changes(&self, h: T) -> Changes<T> {
         let zero = T::zero();
         let (mut root, mut speed, mut depth, mut power) = (zero, zero, zero, T::of(1.0));
@@ -39,22 +40,22 @@ impl<T: Scalar> Penetration<T> {
         Changes { root, speed, depth }
     }
 
-    /// The share of a step of `h` at which the mass separates from the stop.
+    /// The fraction of a step of length `h` at which the mass separates from the stop.
     pub fn separation(&self, h: T, changes: &Changes<T>) -> Option<T> {
         let rise = self.root[1] * h;
-        // (at touch-down the root is 0 and rises)
+        // (at touch the root is 0 and rises)
         if self.root[0] > changes.root || self.root[0] == T::zero() && rise + rise > changes.root {
             return None;
         }
         let g = self.powers(&self.root, h);
         let n = self.order + 1;
-        // That 0 is divided out.
+        // A root at the start is divided out.
         let from = usize::from(g[0] == T::zero());
         if g[from] > T::zero() { PolynomialRoots::new(&g[from..n]).first() } else { Some(T::zero()) }
     }
 
-    /// The share of a step of `h` at which the contact becomes clipped or ceases to be: 1 + a w changes its
-    /// sign. `passed`: it is 0 by definition at the step's start.
+    /// The fraction of a step of length `h` at which the contact becomes clipped or ceases to be: 1 + a w
+    /// changes its sign. `passed`: it is 0 by definition at the start of the step.
     pub fn clip_change(&self, h: T, passed: bool, changes: &Changes<T>) -> Option<T> {
         let start = T::of(1.0) + self.stop.loss * self.speed[0];
         if !(self.stop.loss > T::zero()) || start.abs() > self.stop.loss * changes.speed {
@@ -70,12 +71,12 @@ impl<T: Scalar> Penetration<T> {
         }
         g[0] += if self.clipped { T::of(-1.0) } else { T::of(1.0) };
         let from = usize::from(passed);
-        // On the wrong side it is there by rounding: the change was a mere touch, and the contact goes on as
-        // it was.
+        // If the sign is wrong, it is so by rounding: the change was a mere touch, and the contact continues
+        // as it was.
         if g[from] > T::zero() { PolynomialRoots::new(&g[from..n]).first() } else { None }
     }
 
-    /// What the polynomials say of `s`.
+    /// The state at `s`.
     pub fn state(&self, s: T) -> ContactState<T> {
         let zero = T::zero();
         let (mut root, mut speed, mut slope, mut time) = (zero, zero, zero, zero);
@@ -88,14 +89,13 @@ impl<T: Scalar> Penetration<T> {
         ContactState { root, speed, slope, time }
     }
 
-    /// How the polynomials satisfy the equation of motion in this state: dw/ds by them less what the equation
-    /// says.
+    /// Residual of the equation of motion in this state: dw/ds of the polynomials minus that of the equation.
     pub fn residual(&self, at: &ContactState<T>, force: &PieceForce<T>, damping: T) -> T {
         let (f, base, pushed) = self.forces(at, force.at(self.displacement(at)));
         at.slope + at.root * (damping * at.speed + self.sign * (f + base) + pushed)
     }
 
-    /// What rounding may make of that.
+    /// Bound of the rounding of the residual.
     pub fn residual_rounding(&self, at: &ContactState<T>, force: &PieceForce<T>, damping: T) -> T {
         let (f, _, rounding) = force.value(self.displacement(at));
         let (f, base, pushed) = self.forces(at, f);
@@ -108,7 +108,8 @@ impl<T: Scalar> Penetration<T> {
         self.surface + self.sign * (at.root * at.root)
     }
 
-    /// Forces over mass in a state: the mechanism's, as given, the base's by its series, the stop's.
+    /// Forces over mass in a state: the given one of the mechanism, that of the base by its series, that of
+    /// the stop.
     fn forces(&self, at: &ContactState<T>, force: T) -> (T, T, T) {
         let levels = self.known_drive.min(self.terms.of_drive());
         let base = self.inner.a[..levels].iter().rev().fold(T::zero(), |sum, c| sum * at.time + *c);
@@ -118,7 +119,7 @@ impl<T: Scalar> Penetration<T> {
 }
 
 impl<T: Scalar> InStop<T> for Penetration<T> {
-    /// By its loss, or, where it is clipped, what it had stored.
+    /// By the loss of the stop or, if the contact is clipped, the energy that it had stored.
     fn loss(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T {
         if self.clipped {
             return self.stop.stored(self.root_at(from)) - self.stop.stored(self.root_at(to));
@@ -192,8 +193,8 @@ impl<T: Scalar> Path<T> for Penetration<T> {
     fn time(&self, parameter: T) -> T {
         self.at(&self.time, parameter)
     }
-    /// Time grows along a step of contact, but ceases to at its ends, where it can be inverted to half the
-    /// digits; the mass moves as little there.
+    /// Time increases along a step of contact, but its slope is 0 at touch and separation, where it can be
+    /// inverted to half the digits only; the mass moves correspondingly little there.
     fn parameter(&self, time: T, length: T) -> T {
         if !(time > T::zero()) {
             return T::zero();

@@ -1,4 +1,4 @@
-//! The first surface that a step of free flight runs into.
+//! First surface that a step of free flight meets.
 
 use super::chord::Chord;
 use super::stepper::Stepper;
@@ -9,10 +9,10 @@ use crate::dynamics::state::{BY_SPEED, HELD, MotionState, Touch};
 use crate::numeric::{PolynomialRoots, Scalar, single_root};
 
 impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
-    /// The end of the mode that a step of length `h` runs into, when, and with what velocity: the one ahead
-    /// where the velocity keeps its sign, or the one just left where the acceleration does. Then there is one
-    /// such contact. In the second case the one ahead may be met before. A batch does the same arithmetic
-    /// (`lanes/columns/landing.rs`).
+    /// The end of the mode that a step of length `h` meets, with its time and velocity, in the two cases in
+    /// which there is only one such contact: the end ahead, if the velocity keeps its sign, or the end just
+    /// left, if the acceleration does. In the second case the end ahead may be met before. A batch does the
+    /// same arithmetic (`lanes/columns/landing.rs`).
     #[inline(always)]
     fn plain_exit(&self, state: &MotionState<T>, h: T, end: &Endpoint<T>) -> Option<(T, T, End)> {
         let mode = self.mode(state);
@@ -34,7 +34,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let (v, last, to) = (state.v * h, end.v * h, to - level);
         let mut g = polynomial::scaled(y, h);
         let (g, ends) = if returns {
-            // (the gap over the time since the start)
+            // (the gap divided by the time since the start)
             (&g[1..=y.len()], ((v, g[2]), (to, last - to)))
         } else {
             g[0] = from;
@@ -49,8 +49,8 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         (alone && sign * v > T::zero()).then_some((length, v, exit))
     }
 
-    /// The first contact with an end of the mode within a step of length `h`: when, and with what velocity;
-    /// of the step's end is known how it lies in the piece.
+    /// The first contact with an end of the mode within a step of length `h`: its time, its velocity and the
+    /// end of the mode. `end` is the end of the step.
     #[inline(always)]
     pub fn find_exit(&self, state: &MotionState<T>, h: T, end: &Endpoint<T>) -> Option<(T, T, End)> {
         let y = self.series.coefficients();
@@ -71,7 +71,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         Some(plain)
     }
 
-    /// The first contact anywhere, as a share of the step.
+    /// The first contact with either end, as a fraction of the step.
     #[inline(always)]
     fn first_exit(
         &self,
@@ -90,8 +90,9 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             let (y, to) = (self.series.coefficients(), end + mode.origin);
             let deviations = polynomial::chord_deviations(y, h);
             let square = h * h;
-            let (ways, bends) = ((state.v * h, v * h), ((y[2] + y[2]) * square, acceleration * square));
-            let chord = Chord { start: state.x, end: to, bound, deviations, ways, bends, limits };
+            let (slopes, curvatures) =
+                ((state.v * h, v * h), ((y[2] + y[2]) * square, acceleration * square));
+            let chord = Chord { start: state.x, end: to, bound, deviations, slopes, curvatures, limits };
             if chord.stays_clear() {
                 return None;
             }
@@ -106,7 +107,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         first
     }
 
-    /// The first contact with this end, as a share of a step that leads no further than `bound`.
+    /// The first contact with this end, as a fraction of a step that leads no further than `bound`.
     #[inline(always)]
     fn contact(&self, state: &MotionState<T>, h: T, end: End, bound: T) -> Option<T> {
         let (zero, sign, n) = (T::zero(), end.sign::<T>(), self.series.known);
@@ -120,10 +121,10 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             g[1..n].iter_mut().for_each(|c| *c = -*c);
         }
         g[0] = gap;
-        // Beyond the surface only by rounding, after it was held, and not on the way out: it is touched.
+        // Beyond the surface by rounding only, after it was held, and not moving outward: it is touched.
         let returns = touch.is_none() && gap < zero && sign * state.v <= zero;
         let mut from = if returns { BY_SPEED } else { touch.map_or(0, |t| t.multiplicity.min(n - 1)) };
-        // A coefficient that is exactly 0 decides nothing.
+        // A coefficient that is exactly 0 is divided out.
         while from + 1 < n && g[from] == zero {
             from += 1;
         }
@@ -131,7 +132,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         if g[0] > zero {
             PolynomialRoots::new(g).first()
         } else {
-            // outward at once, or it stays where it is
+            // outward at once, or all coefficients are 0 and it stays
             (g[0] < zero).then_some(zero)
         }
     }

@@ -1,22 +1,23 @@
 //! An impact on a compliant stop in one step, from touch to separation.
 //!
-//! Depth d in the stop and inward speed w obey d' = w and w' = A - k d^1.5 (1 + a w), A what everything but
-//! the stop does, A0 at touch. With G(w) = w/a - ln(1 + a w)/a^2, which is w^2/2 without loss,
+//! Depth d in the stop and inward speed w obey d' = w and w' = A - k d^1.5 (1 + a w), where A is the
+//! acceleration by everything but the stop, A0 at touch. With G(w) = w/a - ln(1 + a w)/a^2, which is w^2/2
+//! without loss,
 //!
 //! ```text
 //! J = G(w) + (2/5) k d^2.5 - A0 d
 //! ```
 //!
-//! would stay what it is if A were A0 (1 + a w) (Hunt and Crossley 1975, for A0 = 0). So it changes little,
+//! would be constant if A were A0 (1 + a w) (Hunt and Crossley 1975, for A0 = 0). So it changes little,
 //! however slow the impact:
 //!
 //! ```text
 //! dJ/dt = w B,    B = (A - A0 - a w A0)/(1 + a w).
 //! ```
 //!
-//! Let m be the root of the depth at which the mass would turn with this J, J = (2/5) k m^5 - A0 m^2, and y
-//! from -1 at touch to 1 at separation be such that the root of the depth is m c, c = 1 - y^2. Then w is a
-//! function of m and y,
+//! Let m be the root of the depth at which the mass would turn with this J, J = (2/5) k m^5 - A0 m^2, and let
+//! y, from -1 at touch to 1 at separation, be such that the root of the depth is m c, c = 1 - y^2. Then w is
+//! a function of m and y,
 //!
 //! ```text
 //! G(w) = q^2/2,    q = -y m r,    r^2 = (4/5) k m^3 (1 + c + c^2 + c^3 + c^4) - 2 A0 (1 + c),
@@ -28,13 +29,13 @@
 //! dt/dy = -y 4 m^2 c/(w (1 - c^2 B/D)),    dm/dy = w B/(2 m D) dt/dy,
 //! ```
 //!
-//! both analytic from end to end. m is nearly constant, and found by iteration: each sweep integrates the
-//! slopes that the last m and t give, by collocation at Gauss-Legendre points, and takes the error to some
-//! hundredths or less. It takes the slopes of t on to the new m, to first order, since t depends on m as q
-//! does, and m on t only by what the drive changes. (Picard iteration at these points: Clenshaw and Norton
-//! 1963, "The solution of nonlinear ordinary differential equations in Chebyshev series".) The singularities
-//! of an elastic impact, where c^5 = 1, lie on an ellipse about -1 and 1 with half axes of sum 2, whatever
-//! the speed.
+//! both analytic from end to end. m is nearly constant and is found by iteration: each sweep integrates the
+//! slopes from the last m and t, by collocation at Gauss-Legendre points, and reduces the error to some
+//! hundredths or less. The slopes of t are corrected for the new m to first order, since t depends on m as q
+//! does, whereas m depends on t only through the change of the drive. (Picard iteration at these points:
+//! Clenshaw and Norton 1963, "The solution of nonlinear ordinary differential equations in Chebyshev
+//! series".) The singularities of an elastic impact, where c^5 = 1, lie on an ellipse with foci -1 and 1 and
+//! a sum of half axes of 2, at any speed.
 
 use std::cell::OnceCell;
 
@@ -44,12 +45,12 @@ use crate::numeric::{
     Collocation, GROUP, Lanes, MOST_GROUPS, Number, Scalar, Values, fast_exp2, fast_log2, widest,
 };
 
-/// w/q as a series in p = a q: G(w) = q^2/2 is p^2/2 = z - ln(1 + z) for z = a w. It converges up to
-/// |p| = 2 sqrt(pi), where 1 + z is 1 again, once around 0.
+/// w/q as a series in p = a q: G(w) = q^2/2 is p^2/2 = z - ln(1 + z) for z = a w.
 const STRETCH: [f64; 40] = stretch();
+/// Radius of convergence, |p| = 2 sqrt(pi), where 1 + z is 1 again after one turn around 0.
 const STRETCH_RADIUS: f64 = 3.544;
 
-/// From z z' = p (1 + z).
+/// The coefficients, from z z' = p (1 + z).
 const fn stretch() -> [f64; 40] {
     let mut c = [0.0; 40];
     c[0] = 1.0;
@@ -66,27 +67,29 @@ const fn stretch() -> [f64; 40] {
     c
 }
 
-/// The most sweeps before it is given up.
-const MOST_SWEEPS: usize = 12;
+/// Maximum number of sweeps before the step is given up.
+const MAX_SWEEPS: usize = 12;
 
-/// The largest share of the elastic force that may press at the turn, times 5/2: beyond it is not an impact
-/// but a mass that trembles on its stop.
-const MOST_PRESSED: f64 = 0.8;
+/// Largest ratio of the pressing force to the elastic force at the turn, times 5/2; beyond it the mass does
+/// not make an impact but oscillates on its stop.
+const MAX_PRESSED: f64 = 0.8;
 
-/// Terms that count of the base's acceleration over time, and of the mechanism's force over depth.
+/// Terms used of the base's acceleration over time.
 pub(crate) const DRIVE_TERMS: usize = 6;
+/// Terms used of the mechanism's force over depth.
 pub(crate) const FORCE_TERMS: usize = 5;
 
-/// The most by which a mass may leave faster than it came, for which the series of its speed is still known.
-const MOST_GAIN: f64 = 1.1;
+/// Largest ratio of the speeds after and before the impact for which the series of the speed is valid.
+const MAX_GAIN: f64 = 1.1;
 
 /// An impact from touch to separation in y, and the workspace.
 #[derive(Debug, Clone)]
 pub(crate) struct Impact<T: Copy> {
     /// The base's acceleration over time.
     pub series: Series<T>,
-    /// The mechanism's force about the surface, and the mode that it is of.
+    /// The mechanism's force about the surface.
     pub about: Vec<T>,
+    /// The mode of that force.
     pub about_mode: Option<usize>,
     pub stop: Compliant<T>,
     pub sign: T,
@@ -97,38 +100,39 @@ pub(crate) struct Impact<T: Copy> {
     /// Inward acceleration by everything but the stop at touch, A0.
     pub pressing: T,
     /// Speed at touch.
-    pub struck: T,
-    /// m at touch, and what no m is above.
+    pub touch_speed: T,
+    /// m at touch.
     pub first: T,
-    pub most: T,
+    /// Upper bound of m.
+    pub max_root: T,
     /// Terms of [`STRETCH`].
     terms: usize,
     amplitude: Values<T>,
-    /// At the points: root of the depth, inward speed, time (as the last sweep began), and what m and t
-    /// change by over y.
+    /// At the points: root of the depth, inward speed, time (at the beginning of the last sweep), and the
+    /// slopes of m and t over y.
     pub root: Values<T>,
     pub speed: Values<T>,
     pub time: Values<T>,
     pub amplitude_slope: Values<T>,
     pub time_slope: Values<T>,
-    /// By how much the last sweep changed them, over m and the time that the impact takes.
+    /// Change of the slopes by the last sweep, over m and the duration of the impact.
     change: Values<T>,
-    /// The slopes of m and t in polynomials of Legendre, once they are asked for.
+    /// Coefficients of the slopes of m and t in Legendre polynomials, once they are needed.
     pub between: OnceCell<[Values<T>; 2]>,
 }
 
-/// The motion at a place: root of the depth, inward speed, and what t and m change by over y.
+/// The motion at a point: root of the depth, inward speed, and the slopes of t and m over y.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Place<N> {
     pub root: N,
     pub speed: N,
     pub time_slope: N,
     pub amplitude_slope: N,
-    /// By how much ln w changes with ln m, everything else as it is.
+    /// Derivative of ln w with respect to ln m at constant y and t.
     gain: N,
 }
 
-/// How an impact ends.
+/// End of an impact.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Separation<T> {
     pub time: T,
@@ -149,9 +153,9 @@ impl<T: Scalar> Impact<T> {
             damping: T::zero(),
             rule: Collocation::of(1),
             pressing: T::zero(),
-            struck: T::zero(),
+            touch_speed: T::zero(),
             first: T::zero(),
-            most: T::zero(),
+            max_root: T::zero(),
             terms: 1,
             amplitude: zeros,
             root: zeros,
@@ -164,17 +168,17 @@ impl<T: Scalar> Impact<T> {
         }
     }
 
-    /// Solves for the impact that begins at `speed`, to the share `tolerance` of its speed and, between its
-    /// ends, `between` of it; none where it is no such impact, or not resolved.
+    /// Solves for the impact that begins at `speed`, to `tolerance` relative to the speed, and to `between`
+    /// inside the step. Returns `None` if it is not such an impact, or not resolved.
     pub fn solve(&mut self, speed: T, (tolerance, between): (T, T)) -> Option<Separation<T>> {
         let stiffness = self.stop.stiffness;
         self.pressing = -(self.sign * (self.about[0] + self.series.a[0]));
-        self.struck = speed;
+        self.touch_speed = speed;
         self.between.take();
         let q = self.begin(speed, tolerance)?;
         self.first = self.turn_of(q * q * T::of(0.5))?;
         let cube = self.first * self.first * self.first;
-        if !(self.pressing < stiffness * cube * T::of(0.4 * MOST_PRESSED)) {
+        if !(self.pressing < stiffness * cube * T::of(0.4 * MAX_PRESSED)) {
             return None;
         }
         let (amplitude, time) = widest(
@@ -186,19 +190,19 @@ impl<T: Scalar> Impact<T> {
         if !(unresolved <= between && unresolved * unresolved <= tolerance) {
             return None;
         }
-        let end = self.motion(|own| own, T::sqrt, [amplitude, time, T::of(1.0)]).speed;
+        let end = self.motion(|value| value, T::sqrt, [amplitude, time, T::of(1.0)]).speed;
         let groups = self.amplitude[..self.rule.groups()].iter();
         // (between the points too)
-        self.most = groups.flat_map(|own| own.0).fold(self.first, T::larger) * T::of(1.001);
-        (end < T::zero() && -end <= speed * T::of(MOST_GAIN)).then_some(Separation { time, speed: end })
+        self.max_root = groups.flat_map(|group| group.0).fold(self.first, T::larger) * T::of(1.001);
+        (end < T::zero() && -end <= speed * T::of(MAX_GAIN)).then_some(Separation { time, speed: end })
     }
 
-    /// |q| at touch, and how many terms of the series tell speeds up to there.
+    /// |q| at touch. Also sets the number of terms of the series needed for speeds up to there.
     fn begin(&mut self, speed: T, tolerance: T) -> Option<T> {
         // p^2 = 2 (z - ln(1 + z)) is near z^2/(1 + 2z/3), and below z^2/(1 + z/2).
-        let own = self.stop.loss * speed;
-        let near = |share: f64| own / (T::of(1.0) + own * T::of(share)).sqrt();
-        let size = near(0.5).to_f64().max(1e-9) * MOST_GAIN;
+        let z_at_touch = self.stop.loss * speed;
+        let near = |share: f64| z_at_touch / (T::of(1.0) + z_at_touch * T::of(share)).sqrt();
+        let size = near(0.5).to_f64().max(1e-9) * MAX_GAIN;
         let needed = fast_log2(tolerance.to_f64() * 1e-3) / (fast_log2(size) - fast_log2(STRETCH_RADIUS));
         self.terms = needed as usize + 2;
         if !(needed >= 0.0 && self.terms <= STRETCH.len()) {
@@ -211,7 +215,7 @@ impl<T: Scalar> Impact<T> {
         for _ in 0..6 {
             // z' = p (1 + z)/z
             let z = p * self.stretch(p);
-            let change = (own - z) * z / (p * (T::of(1.0) + z));
+            let change = (z_at_touch - z) * z / (p * (T::of(1.0) + z));
             p += change;
             if change.abs() <= p * T::of(T::ROUGH) {
                 break;
@@ -243,12 +247,12 @@ impl<T: Scalar> Impact<T> {
         None
     }
 
-    /// Sweeps until m and t at the end stand still; both.
+    /// Sweeps until m and t at the end converge. Returns both.
     #[inline(always)]
     fn iterate(&mut self, tolerance: T) -> Option<(T, T)> {
         let groups = self.rule.groups();
-        // About the time that it takes, and how much of it has passed at the points.
-        let (mut m, mut t) = (self.first, self.first * self.first / self.struck * T::of(3.0));
+        // Estimates of the duration, and of the share of it that has passed at the points.
+        let (mut m, mut t) = (self.first, self.first * self.first / self.touch_speed * T::of(3.0));
         self.amplitude[..groups].fill(Lanes::all(m));
         self.amplitude_slope[..groups].fill(Lanes::zero());
         self.time_slope[..groups].fill(Lanes::zero());
@@ -258,14 +262,14 @@ impl<T: Scalar> Impact<T> {
             self.time[group] = Lanes::all(t) * passed;
         }
         let (mut last, mut rate) = (T::of(1.0), T::zero());
-        for sweep in 0..MOST_SWEEPS {
+        for sweep in 0..MAX_SWEEPS {
             self.sweep((m, t));
             m = self.first + self.rule.total(&self.amplitude_slope);
             t = self.rule.total(&self.time_slope);
             let change = self.rule.total(&self.change);
             if sweep > 0 {
                 rate = rate.larger(change / last);
-                // (the first change is from no slopes at all, and tells no rate)
+                // (the first change is relative to slopes of 0 and does not measure the rate)
                 if sweep > 1 && change * rate <= tolerance {
                     return Some((m, t));
                 }
@@ -279,8 +283,8 @@ impl<T: Scalar> Impact<T> {
         None
     }
 
-    /// m at all points by the slopes that the last m and t give, and the motion with it, to first order in
-    /// its change.
+    /// Computes m at all points from the slopes by the last m and t, and corrects the motion to first order
+    /// in the change of m.
     #[inline(always)]
     fn sweep(&mut self, (m, t): (T, T)) {
         let all = Lanes::<GROUP, T>::all;
@@ -313,7 +317,7 @@ impl<T: Scalar> Impact<T> {
     #[inline(always)]
     fn motion_at(&self, group: usize) -> Place<Lanes<GROUP, T>> {
         let (m, t, y) = (self.amplitude[group], self.time[group], self.rule.places(group));
-        self.motion(Lanes::all, |own| own.map(T::sqrt), [m, t, y])
+        self.motion(Lanes::all, |value| value.map(T::sqrt), [m, t, y])
     }
 
     /// The motion at m, t and y.
@@ -350,8 +354,8 @@ impl<T: Scalar> Impact<T> {
         Place { root: u, speed: w, time_slope: two * slope * m * net, amplitude_slope: slope * w * b, gain }
     }
 
-    /// Change of the inward acceleration by everything but the stop since touch, at a time, a depth and a
-    /// speed.
+    /// Change since touch of the inward acceleration by everything but the stop, at a time, a depth and
+    /// a speed.
     #[inline(always)]
     pub fn changed<N: Number>(&self, all: impl Fn(T) -> N, [t, d, w]: [N; 3]) -> N {
         let outward =

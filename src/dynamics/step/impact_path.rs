@@ -1,4 +1,4 @@
-//! Reading of an impact that was solved in one step: position, time, integrals, dissipation, largest force.
+//! Evaluation of an impact solved in one step: position, time, integrals, dissipation, largest force.
 
 use super::impact::{DRIVE_TERMS, Impact, Place};
 use super::path::{InStop, Path};
@@ -9,57 +9,57 @@ use crate::numeric::{GROUP, GaussLegendre, Lanes, MOST_GROUPS, Number, Scalar, V
 /// Numbers at the points of a group.
 type Group<T> = Lanes<GROUP, T>;
 
-/// Halvings that find the largest force: it changes by the square of what is left.
+/// Halvings to find the largest force; its error is of the order of the square of the last interval.
 const HALVINGS: u32 = 30;
 
-/// The most steps to the place of a time; each takes the error to its square.
-const MOST_STEPS: usize = 60;
+/// Maximum number of Newton steps to the parameter of a time; each squares the error.
+const MAX_STEPS: usize = 60;
 
 impl<T: Scalar> Impact<T> {
-    /// m at `y`, and the time there with its slope, by the slopes between the points.
+    /// m at `y`, and the time there with its slope, from the slopes interpolated between the points.
     #[inline(always)]
     fn sums<N: Number>(&self, y: N, all: impl Fn(T) -> N + Copy) -> (N, (N, N)) {
         let slopes = [&self.amplitude_slope, &self.time_slope];
-        let [m, t] = self.between.get_or_init(|| slopes.map(|own| self.rule.coefficients(own)));
+        let [m, t] = self.between.get_or_init(|| slopes.map(|slope| self.rule.coefficients(slope)));
         (all(self.first) + self.rule.integral(m, y, all).0, self.rule.integral(t, y, all))
     }
 
     /// The time at `y` and its slope.
     fn time_at(&self, y: T) -> (T, T) {
-        self.sums(y, |own| own).1
+        self.sums(y, |value| value).1
     }
 
-    /// Root of the depth where y is 0: m, which hardly changes.
+    /// Root of the depth at y = 0: m, which hardly changes.
     fn turn(&self) -> T {
         self.first + self.rule.half(&self.amplitude_slope)
     }
 
     /// The motion and the time at `y`.
     fn at(&self, y: T) -> (Place<T>, T) {
-        let (m, (t, _)) = self.sums(y, |own| own);
-        (self.motion(|own| own, T::sqrt, [m, t, y]), t)
+        let (m, (t, _)) = self.sums(y, |value| value);
+        (self.motion(|value| value, T::sqrt, [m, t, y]), t)
     }
 
-    /// The same as exact as at the ends: the slopes between the points are not, what they add up to is.
+    /// The same, as accurate as at the ends: the interpolated slopes are less accurate than their integrals.
     fn exactly_at(&self, y: T) -> (Place<T>, T) {
         let start = T::of(-1.0);
         let (mut m, mut t): (Values<T>, Values<T>) =
             ([Lanes::zero(); MOST_GROUPS], [Lanes::zero(); MOST_GROUPS]);
         for group in 0..self.rule.groups() {
-            let own = self.between((start, y), group).0;
-            (m[group], t[group]) = (own.amplitude_slope, own.time_slope);
+            let point = self.between((start, y), group).0;
+            (m[group], t[group]) = (point.amplitude_slope, point.time_slope);
         }
         let half = (y - start) * T::of(0.5);
         let (m, t) = (self.first + self.rule.total(&m) * half, self.rule.total(&t) * half);
-        (self.motion(|own| own, T::sqrt, [m, t, y]), t)
+        (self.motion(|value| value, T::sqrt, [m, t, y]), t)
     }
 
-    /// The motion at the points between two places, and the time there.
+    /// The motion at the quadrature points between two values of y, and the time there.
     fn between(&self, (from, to): (T, T), group: usize) -> (Place<Lanes<GROUP, T>>, Lanes<GROUP, T>) {
         let half = (to - from) * T::of(0.5);
         let y = self.rule.places(group).map(|place: T| from + half * (T::of(1.0) + place));
         let (m, (t, _)) = self.sums(y, Lanes::all);
-        (self.motion(Lanes::all, |own| own.map(T::sqrt), [m, t, y]), t)
+        (self.motion(Lanes::all, |value| value.map(T::sqrt), [m, t, y]), t)
     }
 
     /// The base's acceleration.
@@ -67,11 +67,10 @@ impl<T: Scalar> Impact<T> {
         self.series.a[..DRIVE_TERMS].iter().rev().fold(T::zero(), |sum, c| sum * t + *c)
     }
 
-    /// The parameter at which the first of what `of` gives at y, with its slope, is `time`; it begins with a
-    /// guess.
+    /// The parameter at which the value of `of` at y (given with its slope) is `time`, starting from a guess.
     fn parameter_by(&self, of: impl Fn(T) -> (T, T), time: T, guess: T) -> T {
         let (mut low, mut high, mut parameter) = (T::zero(), T::of(2.0), guess);
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MAX_STEPS {
             let (value, slope) = of(parameter - T::of(1.0));
             let late = value - time;
             *(if late > T::zero() { &mut high } else { &mut low }) = parameter;
@@ -97,8 +96,8 @@ impl<T: Scalar> Impact<T> {
             let (t, u, w, slope) = if whole {
                 (self.time[group], self.root[group], self.speed[group], self.time_slope[group])
             } else {
-                let (own, t) = self.between((from - one, to - one), group);
-                (t, own.root, own.speed, own.time_slope)
+                let (point, t) = self.between((from - one, to - one), group);
+                (t, point.root, point.speed, point.time_slope)
             };
             *value = of(t, u, w) * slope;
         }
@@ -119,8 +118,8 @@ impl<T: Scalar> Path<T> for Impact<T> {
     fn start(&self) -> T {
         self.surface
     }
-    /// The parabola through touch, turn and separation: it turns where the motion does, and nothing else is
-    /// read of it, since an impact that reaches the barrier is no such step.
+    /// The parabola through touch, turn and separation. It turns where the motion does; nothing else of it is
+    /// used, since an impact that reaches the barrier is not taken as one step.
     fn scaled(&self, _: T) -> [T; ROOM] {
         let turn = self.turn();
         let height = self.sign * (turn * turn) * T::of(4.0);
@@ -130,7 +129,7 @@ impl<T: Scalar> Path<T> for Impact<T> {
     }
     fn position(&self, parameter: T) -> T {
         let y = parameter - T::of(1.0);
-        // (the turn is read of nearly every impact)
+        // (the position at the turn is needed for nearly every impact)
         let root = if y == T::zero() { self.turn() } else { self.exactly_at(y).0.root };
         self.surface + self.sign * (root * root)
     }
@@ -149,8 +148,8 @@ impl<T: Scalar> Path<T> for Impact<T> {
         }
         let between = self.parameter_by(|y| self.time_at(y), time, length * T::of(0.5));
         let exactly = |y: T| {
-            let (own, time) = self.exactly_at(y);
-            (time, own.time_slope)
+            let (point, time) = self.exactly_at(y);
+            (time, point.time_slope)
         };
         self.parameter_by(exactly, time, between)
     }
@@ -171,19 +170,19 @@ impl<T: Scalar> InStop<T> for Impact<T> {
         self.stop.stiffness * self.stop.loss * self.integral((from, to), |_, u, w| u * u * u * (w * w))
     }
 
-    /// (On the way in, where the loss adds to it.)
+    /// (The force is largest on the way in, when the loss adds to it.)
     fn peak(&self, _: T, _: T, known: T) -> T {
-        if !(self.stop.force(self.most, self.struck) > known) {
+        if !(self.stop.force(self.max_root, self.touch_speed) > known) {
             return known;
         }
         let grows = |y: T| {
-            let (own, t) = self.at(y);
-            let (u, w) = (own.root, own.speed);
-            let net = self.stop.force(u, w) - self.pressing - self.changed(|own| own, [t, u * u, w]);
+            let (point, t) = self.at(y);
+            let (u, w) = (point.root, point.speed);
+            let net = self.stop.force(u, w) - self.pressing - self.changed(|value| value, [t, u * u, w]);
             T::of(1.5) * w * (T::of(1.0) + self.stop.loss * w) > self.stop.loss * (u * u) * net
         };
         let (_, place) = bisect(T::of(-1.0), T::zero(), HALVINGS, grows);
-        let own = self.at(place).0;
-        known.larger(self.stop.force(own.root, own.speed))
+        let point = self.at(place).0;
+        known.larger(self.stop.force(point.root, point.speed))
     }
 }

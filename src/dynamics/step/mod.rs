@@ -1,5 +1,5 @@
-//! Steps in free flight and in contact with a compliant stop: their length, their first event, and how they
-//! are read.
+//! Steps in free flight and in contact with a compliant stop: their length, their first event, and
+//! their evaluation.
 
 mod choose;
 mod choose_impact;

@@ -1,9 +1,8 @@
-//! Reading of a step, in whichever parameter it is a polynomial.
+//! Evaluation of a step, in the parameter in which it is a polynomial.
 //!
 //! A step of free flight is a polynomial in time; one of contact with a compliant stop is a polynomial in
-//! another parameter, of which time is itself a polynomial. What is asked of either is the same, and for a
-//! flight the parameter is the time since the step's start: there these methods are the series' own, and cost
-//! nothing.
+//! another parameter, and time is a polynomial in it too. Both have the same interface. For a flight the
+//! parameter is the time since the start of the step: its methods are those of the series and cost nothing.
 
 use crate::dynamics::clock::Instant;
 use crate::dynamics::result::Phase;
@@ -16,9 +15,9 @@ pub(crate) trait Path<T: Scalar> {
     /// Whether it runs in contact with a compliant stop.
     const IN_CONTACT: bool;
 
-    /// What a sample on it is.
+    /// The phase of a sample on it.
     fn phase(&self) -> Phase;
-    /// The coefficients of the displacement, where they are of powers of time.
+    /// The coefficients of the displacement, if it is a polynomial in time.
     fn in_time(&self) -> Option<&[T]> {
         None
     }
@@ -34,50 +33,51 @@ pub(crate) trait Path<T: Scalar> {
     fn velocity(&self, parameter: T) -> T;
     /// Time since the step's start.
     fn time(&self, parameter: T) -> T;
-    /// The parameter, up to `length`, of a time since the step's start.
+    /// The parameter, up to `length`, at a time since the step's start.
     fn parameter(&self, time: T, length: T) -> T;
-    /// Integrals over time between two parameters: of the squared velocity and, where `WORK`, of base
+    /// Integrals over time between two parameters: of the squared velocity and, if `WORK`, of base
     /// acceleration times velocity.
     fn integrals<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T);
     /// Integral over time between two parameters of the displacement from the piece's origin.
     fn moment(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T;
 }
 
-/// What is told of a step within a compliant stop, beside its path.
+/// Further methods of a step within a compliant stop.
 pub(crate) trait InStop<T: Scalar>: Path<T> {
-    /// Energy over mass that the stop keeps over (from, to) in the path's parameter.
+    /// Energy over mass that the stop dissipates over (from, to) in the path's parameter.
     fn loss(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T;
-    /// The largest force over mass within a step of `h`, up to its share `until`, where it may exceed
-    /// `known`.
+    /// The larger of `known` and the largest force over mass within a step of length `h`, up to its
+    /// fraction `until`.
     fn peak(&self, h: T, until: T, known: T) -> T;
 }
 
 /// One accepted step, as the recorder sees it.
 pub(crate) struct StepView<'a, T, P> {
     pub path: &'a P,
-    /// Coefficients of a circuit's state in free flight, where there is one.
+    /// Coefficients of a circuit's state in free flight, if there is a circuit.
     pub circuit: Option<&'a [T]>,
-    /// Origin that the series is about.
+    /// Origin of the series.
     pub origin: T,
     /// When the step starts.
     pub at: Instant<T>,
     /// Length of the step as it was chosen, in the path's parameter.
     pub whole: T,
-    /// Length that is kept, up to the whole.
+    /// Length that is kept, at most `whole`.
     pub length: T,
-    /// The time that it takes.
+    /// Duration of the kept length.
     pub duration: T,
     /// Bound of |x - x(start)| over the step.
     pub bound: T,
     /// Ends of the mode: x never passes them.
     pub limits: (T, T),
-    /// State at the end of what is kept.
+    /// Displacement at the end of the kept length.
     pub x: T,
+    /// Velocity at the end of the kept length.
     pub v: T,
 }
 
 impl<T: Scalar, P: Path<T>> StepView<'_, T, P> {
-    /// Displacement at a parameter of the step, never beyond the mode by the rounding of its origin.
+    /// Displacement at a parameter of the step, limited to the mode, since its origin is rounded.
     pub fn x_at(&self, t: T) -> T {
         let x = self.path.position(t) + self.origin;
         x.larger(self.limits.0).smaller(self.limits.1)

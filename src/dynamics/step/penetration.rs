@@ -1,22 +1,23 @@
 //! Series of the motion in contact with a compliant stop.
 //!
-//! Depth d in the stop and inward speed w obey d' = w and w' = A - k d^1.5 (1 + a w), A what everything but
-//! the stop does. d^1.5 has no power series in time at touch-down and at separation, so a series in time
-//! loses its order there. With the root u of the depth, d = u^2, and a parameter s with dt = u ds, the same
-//! motion is
+//! Depth d in the stop and inward speed w obey d' = w and w' = A - k d^1.5 (1 + a w), where A is the
+//! acceleration by everything but the stop. d^1.5 has no power series in time at touch and at separation, so
+//! a series in time loses its order there. With the root u of the depth, d = u^2, and a parameter s with dt =
+//! u ds, the same motion is
 //!
 //! ```text
 //! du/ds = w/2,    dw/ds = u (A - k u^3 (1 + a w)),    dt/ds = u,
 //! ```
 //!
-//! polynomial throughout. u rises from 0 with the finite slope w/2 and, at the separation, passes through 0
-//! as any smooth function does: near touch-down s is 2 sqrt(t/w), the root of the time since touch, and the
-//! whole contact is as smooth as free flight, at any order and with no grading of steps. (The change of time
-//! is Sundman's of 1912, that of the coordinate Levi-Civita's of 1920, made for collisions of bodies.) Its
-//! one singular place is a touch without speed, u = w = 0, where s never begins: see `NUDGE` in `compliant`.
+//! with polynomials throughout. u rises from 0 with the finite slope w/2 and passes through 0 at the
+//! separation like any smooth function: near touch s is 2 sqrt(t/w), proportional to the root of the time
+//! since touch, and the whole contact is as smooth as free flight, at any order and without grading of steps.
+//! (The change of time is Sundman's of 1912, that of the coordinate Levi-Civita's of 1920, made for
+//! collisions of bodies.) The only singularity is a touch without speed, u = w = 0, from which s never
+//! increases: see `MIN_TOUCH_SPEED` in `compliant`.
 //!
 //! The base's acceleration is known as a series in time and is composed with t(s). A contact lasts a fraction
-//! of a millisecond, so that a few terms of a slow drive are all there is of it; a fast one takes them all.
+//! of a millisecond, so a few terms of a slow drive are sufficient; a fast one needs them all.
 
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::Compliant;
@@ -24,7 +25,7 @@ use crate::dynamics::equation::force::PieceForce;
 use crate::dynamics::series::{MAX_ORDER, ROOM, SEEDED, Series, convolve, each_order, square};
 use crate::numeric::{Scalar, fast_exp2, fast_log2};
 
-/// Everything about one step of contact, in the parameter s, and the workspace.
+/// One step of contact, in the parameter s, and the workspace.
 #[derive(Debug, Clone)]
 pub(crate) struct Penetration<T: Copy> {
     /// Displacement from the piece's origin over s, and the base's acceleration over *time*.
@@ -39,8 +40,8 @@ pub(crate) struct Penetration<T: Copy> {
     /// Square of the depth.
     square: [T; ROOM],
     /// Outward acceleration by everything but stop and damping.
-    others: [T; ROOM],
-    /// What the force has beyond its first terms, over the square of the depth.
+    outward: [T; ROOM],
+    /// The terms of the force beyond the first ones, over the square of the depth.
     beyond: [T; ROOM],
     time_square: [T; ROOM],
     /// The base's acceleration.
@@ -51,8 +52,9 @@ pub(crate) struct Penetration<T: Copy> {
     pub(super) terms: Terms,
     /// Terms of the base's acceleration that are known.
     pub(super) known_drive: usize,
-    /// The force's coefficients about the surface, and the mode that they are of.
+    /// The force's coefficients about the surface.
     about: Vec<T>,
+    /// The mode of that force.
     about_mode: Option<usize>,
     /// 1/k.
     inverse: [T; ROOM],
@@ -62,11 +64,11 @@ pub(crate) struct Penetration<T: Copy> {
     pub(super) sign: T,
     /// Displacement of the untouched stop from the piece's origin.
     pub(super) surface: T,
-    /// The contact is clipped: the stop would have to pull.
+    /// Whether the contact is clipped: the stop would have to pull.
     pub(super) clipped: bool,
 }
 
-/// How many terms of a slow drive and of a force that hardly changes make up what they are over a contact.
+/// Number of terms of the drive over time and of the force over depth that are used in a contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Terms {
     /// Three of either.
@@ -88,7 +90,7 @@ impl Terms {
     }
 }
 
-/// Where a step of contact begins.
+/// Initial values of a step of contact.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Start<T> {
     pub root: T,
@@ -98,7 +100,7 @@ pub(crate) struct Start<T> {
     pub clipped: bool,
 }
 
-/// What stays from order to order.
+/// The constants of the recurrence.
 struct Constants<T> {
     force: [T; 5],
     stiffness: T,
@@ -118,7 +120,7 @@ impl<T: Scalar> Penetration<T> {
             time: zeros,
             depth: zeros,
             square: zeros,
-            others: zeros,
+            outward: zeros,
             beyond: zeros,
             time_square: zeros,
             base: zeros,
@@ -136,13 +138,13 @@ impl<T: Scalar> Penetration<T> {
         }
     }
 
-    /// The base's acceleration over time as the drive seeds it.
+    /// The base's acceleration over time, for the drive to seed.
     pub fn seeded(&mut self) -> &mut [T; ROOM] {
         self.known_drive = SEEDED;
         &mut self.inner.a
     }
 
-    /// Makes `levels` terms of the base's acceleration over time known.
+    /// Extends the base's acceleration over time to `levels` terms.
     pub fn extend_drive<D: Drive<T>>(&mut self, levels: usize, drive: &D, cursor: &mut D::Cursor) {
         while self.known_drive < levels {
             self.inner.extend_drive(self.known_drive, drive, cursor);
@@ -175,7 +177,7 @@ impl<T: Scalar> Penetration<T> {
         let sign = self.sign;
         let stiffness = if start.clipped { T::zero() } else { self.stop.stiffness };
         let constants = Constants {
-            // As forces outward of the stop over depth: odd ones keep their sign.
+            // As forces outward of the stop over depth; the odd ones keep their sign.
             force: [sign * f0, f1, sign * f2, f3, sign * f4],
             stiffness,
             loss: stiffness * self.stop.loss,
@@ -201,13 +203,13 @@ impl<T: Scalar> Penetration<T> {
         self.inner.known = order + 1;
     }
 
-    /// Adds the coefficients `k + 1`; with more terms of force and drive, or with all those of the force.
+    /// Adds the coefficients `k + 1`, with `MORE` terms of force and drive, or with all terms of the force.
     #[inline(always)]
     fn extend<const MORE: bool>(&mut self, k: usize, constants: &Constants<T>, all: Option<&PieceForce<T>>) {
         let displacement = self.sign * self.depth[k];
         self.inner.y[k] = if k == 0 { self.surface + displacement } else { displacement };
         self.square[k] = square(&self.depth, k);
-        let mut others = match all {
+        let mut outward = match all {
             Some(force) => {
                 let Terms::All(levels) = self.terms else { return };
                 self.compose_all(k, levels - 1);
@@ -224,13 +226,13 @@ impl<T: Scalar> Penetration<T> {
                 if k == 0 { sum + f0 } else { sum }
             }
         };
-        others += self.sign * self.base[k];
-        self.others[k] = others;
+        outward += self.sign * self.base[k];
+        self.outward[k] = outward;
         let next = self.inverse[k + 1];
         self.root[k + 1] = self.speed[k] * T::of(0.5) * next;
         self.time[k + 1] = self.root[k] * next;
         self.depth[k + 1] = square(&self.root, k + 1);
-        let change = (convolve(&self.root, &self.others, k)
+        let change = (convolve(&self.root, &self.outward, k)
             + constants.damping * T::whole(k + 1) * self.depth[k + 1])
             + (constants.stiffness * self.square[k]
                 + constants.loss * convolve(&self.square, &self.speed, k));
@@ -247,7 +249,7 @@ impl<T: Scalar> Penetration<T> {
         self.base[k] = if k == 0 { a[0] + sum } else { sum };
     }
 
-    /// The same of all its terms up to that of the power `top`: a nested form, the innermost level first.
+    /// The same with all terms up to the power `top`: a nested form, the innermost level first.
     fn compose_all(&mut self, k: usize, top: usize) {
         let a = &self.inner.a;
         let constant = |level: usize| if k == 0 { a[level] } else { T::zero() };
@@ -267,7 +269,7 @@ impl<T: Scalar> Penetration<T> {
     }
 
     /// The longest step in s whose first neglected term in the speed stays below `tolerance` times the
-    /// scene's speed; from several of the last coefficients, as in free flight.
+    /// scene's speed; computed from several of the last coefficients, as in free flight.
     pub fn natural_step(&self, speed_log2: f64, tolerance_log2: f64, cap: f64) -> f64 {
         let first = self.order.saturating_sub(3).max(1);
         let mut radius = f64::INFINITY;
@@ -283,7 +285,7 @@ impl<T: Scalar> Penetration<T> {
         if log2 < 1000.0 { fast_exp2(log2).min(cap) } else { cap }
     }
 
-    /// Speed that what is not composed of drive and force would make over `time` at up to this depth.
+    /// Speed that the neglected terms of drive and force would cause in this time, up to this depth.
     pub fn neglected<D: Drive<T>>(&mut self, drive: &D, cursor: &mut D::Cursor, whole: (T, T)) -> T {
         let levels = self.terms.of_drive();
         let zero_from = drive.zero_from();
@@ -321,9 +323,8 @@ impl<T: Scalar> Penetration<T> {
     }
 }
 
-/// Speed that drive and force beyond their first terms would make over `time` at up to this depth: the first
-/// two of those of the drive over time `a` from `levels` on, all those of the force over depth from `first`
-/// on.
+/// Speed that neglected terms would cause over `time`, up to the depth `deepest`: the first two terms of the
+/// drive `a` over time from `levels` on, and all terms of the force over depth from `first` on.
 pub(super) fn neglected<T: Scalar>(
     a: &[T],
     levels: usize,

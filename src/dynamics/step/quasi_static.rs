@@ -1,20 +1,21 @@
 //! Quasi-static motion of a mass that a slow load presses into a compliant stop.
 //!
-//! A pressed mass rings at some kilohertz, and the ringing dies. What is left follows the load:
+//! A mass pressed onto the stop rings at some kilohertz, and the ringing decays. The remaining motion follows
+//! the load:
 //!
 //! ```text
 //! k d^1.5 (1 + a d') = A(t, d) - g d' - d'',
 //! ```
 //!
-//! A what mechanism and base do inward, g = c/m, where d' and d'' are as small as the load is slow against
-//! the ringing. So the equation is solved for d by iteration: each sweep puts the last d into the right-hand
-//! side and takes the power 2/3 of its series in time. (It is the slow manifold of the motion, of Fenichel
-//! 1979, "Geometric singular perturbation theory for ordinary differential equations".)
+//! where A is the inward acceleration by mechanism and base, g = c/m, and d' and d'' are small if the load is
+//! slow compared with the ringing. So the equation is solved for d by iteration: each sweep puts the last d
+//! into the right-hand side and takes the power 2/3 of its series in time. (This is the slow manifold of the
+//! motion; Fenichel 1979, "Geometric singular perturbation theory for ordinary differential equations".)
 //!
-//! What a step leaves of the equation of motion, the residual r, would set the mass ringing at a speed of no
-//! more than the integral of |r| over the step, since neither loss nor damping adds energy. A step is taken
-//! only where that, and the ringing that there is at its start, are below the tolerance; otherwise the motion
-//! is followed as any contact, as it is before a release, where the stop becomes soft.
+//! The residual r of the equation of motion over a step would make the mass ring at a speed of at most the
+//! integral of |r| over the step, since neither loss nor damping adds energy. A step is taken only if this
+//! speed and that of the ringing at its start are below the tolerance; otherwise the motion is integrated
+//! like any contact, as it is before a release, where the stop becomes soft.
 
 use super::path::{InStop, Path};
 use crate::dynamics::equation::Compliant;
@@ -31,7 +32,7 @@ pub(crate) struct QuasiStatic<T: Copy> {
     pub depth: [T; ROOM],
     /// Elastic force of the stop over mass.
     elastic: [T; ROOM],
-    /// What the mechanism's force is about the surface of the stop.
+    /// Coefficients of the mechanism's force about the surface of the stop.
     pub about: Vec<T>,
     pub stop: Compliant<T>,
     pub sign: T,
@@ -44,8 +45,8 @@ impl<T: Scalar> QuasiStatic<T> {
         Self { series: Series::new(0), depth: zeros, elastic: zeros, about, stop, sign: T::of(1.0) }
     }
 
-    /// Solves for the depth up to `order` in `sweeps` from the root of the depth at the start; of the base's
-    /// acceleration `order + 2 sweeps` terms are known.
+    /// Solves for the depth up to `order` in `sweeps` from the root of the depth at the start; `order + 2
+    /// sweeps` terms of the base's acceleration must be known.
     pub fn solve(&mut self, root: T, (order, sweeps): (usize, usize), surface: T, damping: T) {
         let zero = T::zero();
         let Self { series: Series { y, a, .. }, depth, elastic, about, stop, sign } = self;
@@ -105,7 +106,7 @@ impl<T: Scalar> QuasiStatic<T> {
         self.series.known - 1
     }
 
-    /// What the motion at time `t` leaves of its equation.
+    /// Residual of the equation of motion at time `t`.
     pub fn residual(&self, t: T, surface: T, force: &PieceForce<T>, damping: T) -> T {
         let (mut depth, mut speed, mut half) = (T::zero(), T::zero(), T::zero());
         for c in self.depth[..=self.order()].iter().rev() {
@@ -132,7 +133,7 @@ impl<T: Scalar> InStop<T> for QuasiStatic<T> {
         self.stop.stiffness * self.stop.loss * (lost * length)
     }
 
-    /// (Of the depth: where the force is largest the speed is 0 to first order, and it is read there.)
+    /// (From the extremes of the depth: the speed there is 0, and it is nearly 0 where the force is largest.)
     fn peak(&self, h: T, _: T, known: T) -> T {
         let coefficients = &self.depth[..=self.order()];
         let force = |t: T| {
@@ -140,9 +141,9 @@ impl<T: Scalar> InStop<T> for QuasiStatic<T> {
             self.stop.force(depth.sqrt(), polynomial::slope(coefficients, t))
         };
         let scaled = polynomial::scaled(coefficients, h);
-        let most = scaled[..coefficients.len()].iter().fold(T::zero(), |sum, c| sum + c.abs());
+        let max_depth = scaled[..coefficients.len()].iter().fold(T::zero(), |sum, c| sum + c.abs());
         let speed = polynomial::chord_deviations(coefficients, h).0 * T::of(8.0) / h + coefficients[1].abs();
-        if !(self.stop.force(most.sqrt(), speed) > known) {
+        if !(self.stop.force(max_depth.sqrt(), speed) > known) {
             return known;
         }
         let mut peak = known.larger(force(T::zero())).larger(force(h));

@@ -1,10 +1,10 @@
 //! Time of flight of a rebound that is pressed back onto its stop.
 //!
-//! Before a mass comes to rest it bounces a dozen times, each time a fraction as fast; most impacts of a run
-//! are such. Their flights are all but parabolas, so they need no search: with the gap as the variable, which
-//! is 0 at the start by definition, the flight ends where a polynomial with one root is 0, and a method of
-//! third order from the parabola's own end finds that to the last digit in two or three steps, however short
-//! the flight.
+//! Before a mass comes to rest it bounces a dozen times, each time at a fraction of the speed; most impacts
+//! of a run are of this kind. Their flights are nearly parabolas, so their ends need no search: the gap is 0
+//! at the start by definition, and divided by time it is a polynomial with one root. A third-order method
+//! that starts from the end of the parabola finds the root to the last digit in two or three steps, however
+//! short the flight.
 
 use super::stepper::Stepper;
 use crate::dynamics::drive::Drive;
@@ -13,12 +13,11 @@ use crate::dynamics::series::Endpoint;
 use crate::dynamics::state::{BY_SPEED, MotionState, Touch};
 use crate::numeric::Scalar;
 
-/// The most steps to the root; each takes the error to its third power.
-const MOST_STEPS: usize = 12;
+/// Maximum number of steps to the root; each takes the error to its third power.
+const MAX_STEPS: usize = 12;
 
 impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
-    /// Whether the next step is one of the full order, from no surface or from one that it leaves by its
-    /// speed.
+    /// Whether the next step has the full order and starts from no surface or leaves one by its speed.
     pub fn flies_freely(&mut self, state: &MotionState<T>) -> bool {
         match state.touch {
             None => true,
@@ -31,8 +30,9 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         }
     }
 
-    /// The stop from which the mass has just rebounded, with the contact acceleration there and its first two
-    /// derivatives; none where it has not, or is not pressed back. Expects the drive to be seeded.
+    /// The stop from which the mass has just rebounded, with the contact acceleration there and its first
+    /// two derivatives; `None` if there is none, or if the mass is not pressed back. Expects the drive to
+    /// be seeded.
     #[inline(always)]
     pub fn pressed_rebound(&self, state: &MotionState<T>) -> Option<(End, [T; 3])> {
         let Some(Touch { end, multiplicity: BY_SPEED }) = state.touch else { return None };
@@ -43,9 +43,8 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         (rates[0] > T::zero()).then_some((end, rates))
     }
 
-    /// Bound of the time of flight of a rebound that is pressed back, where drive and mechanism change the
-    /// contact acceleration little meanwhile, and off a compliant stop in any case; none where it is a flight
-    /// like any other.
+    /// Bound of the time of flight of a rebound that is pressed back, if drive and mechanism change the
+    /// contact acceleration little during it, and always on a compliant stop; `None` for an ordinary flight.
     #[inline(always)]
     pub fn short_flight(
         &self,
@@ -61,9 +60,9 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         (self.equation.compliant.is_some() || change < acceleration * T::of(1.5)).then_some(flight)
     }
 
-    /// The flight of a rebound back to its stop: its end, its length, and where it leads; none where it may
-    /// be longer than `flight`, or is too far from a parabola for its end to be known without a search.
-    /// Expects the series to be extended far enough.
+    /// The flight of a rebound back to its stop: the stop, the length, and the state at its end; `None` if it
+    /// may be longer than `flight`, or differs too much from a parabola for its end to be found without a
+    /// search. Expects the series to be extended far enough.
     #[inline(always)]
     pub fn rebound(&mut self, state: &MotionState<T>, flight: T, left: T) -> Option<(End, T, Endpoint<T>)> {
         let Some(Touch { end, multiplicity: BY_SPEED }) = state.touch else { return None };
@@ -75,7 +74,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             return None;
         }
         let (sign, y) = (end.sign(), &self.series.coefficients()[1..]);
-        // (where their number is known, the loops over them are unrolled)
+        // (for a constant number of coefficients the loops over them are unrolled)
         let length = match y {
             [a, b, c, d] => parabola_like(&[*a, *b, *c, *d], sign, flight),
             [a, b, c, d, e] => parabola_like(&[*a, *b, *c, *d, *e], sign, flight),
@@ -84,7 +83,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             _ => parabola_like(y, sign, flight),
         }?;
         let landing = self.series.state(length);
-        // Nowhere near the other end.
+        // It must be far from the other end.
         let (other, _) = self.mode(state).end(end.other());
         if !((other - level).abs() > landing.bound) || !self.step_holds(state, length, &landing) {
             return None;
@@ -93,19 +92,19 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     }
 }
 
-/// Where gap / time, positive at 0 and falling all the way up to `flight`, is 0; `y` are the coefficients of
-/// the displacement but for the constant.
+/// The root of gap / time, which is positive at 0 and decreases up to `flight`; `y` are the coefficients of
+/// the displacement without the constant.
 #[inline(always)]
 fn parabola_like<T: Scalar>(y: &[T], sign: T, flight: T) -> Option<T> {
     let zero = T::zero();
-    // The slope is that of the parabola, give or take what all the others can come to.
-    let mut others = zero;
+    // The slope is that of the parabola, up to a bound of all other terms.
+    let mut higher_terms = zero;
     for (k, c) in y.iter().enumerate().skip(2).rev() {
-        others = others * flight + c.abs() * T::whole(k);
+        higher_terms = higher_terms * flight + c.abs() * T::whole(k);
     }
-    let others = others * flight;
+    let higher_terms = higher_terms * flight;
     let falls = sign * y[1];
-    if !(falls > others) {
+    if !(falls > higher_terms) {
         return None;
     }
     if y.iter().rev().fold(zero, |gap, c| gap * flight - sign * *c) > zero {
@@ -121,7 +120,7 @@ fn parabola_like<T: Scalar>(y: &[T], sign: T, flight: T) -> Option<T> {
         (value, slope, bend)
     };
     let mut t = -(y[0] / y[1]);
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         let (value, slope, bend) = gap(t);
         let newton = value / slope;
         let bend_share = newton * bend / slope;
@@ -132,7 +131,7 @@ fn parabola_like<T: Scalar>(y: &[T], sign: T, flight: T) -> Option<T> {
         }
         let close = T::of(T::ROUGH);
         if change.abs() <= t * close && bend_share.abs() <= close {
-            // what is left is the third power of that
+            // the remaining error is the third power of that
             return Some(T::at_root(t, |t| {
                 let (value, slope, _) = gap(t);
                 (value, slope)

@@ -1,22 +1,22 @@
-//! Settings of the stepper, from the tolerance.
+//! Settings of the stepper, derived from the tolerance.
 
 use crate::dynamics::model::Model;
 use crate::dynamics::series::MAX_ORDER;
 use crate::numeric::{Scalar, fast_log2};
 
-/// The tolerance of a step relative to that of the scene: errors of some hundred steps add up, and even the
-/// energy of an undamped run of some hundred periods then stays within the tolerance. A fifth of it costs a
-/// tenth more.
+/// Tolerance of a step relative to that of the scene: the errors of some hundred steps add up, and even the
+/// energy of an undamped run of some hundred periods then stays within the tolerance. A fifth of this share
+/// costs a tenth more.
 const LOCAL_SHARE: f64 = 0.02;
 
-/// How many times the neglected term that the step was chosen for the residual at its end may be. It is
-/// rarely above 3 where the coefficients tell the truth, and above 1e3 soon where they do not.
+/// Largest permitted ratio of the residual at the end of a step to the neglected term for which the step was
+/// chosen. It is rarely above 3 if the coefficients are representative, and soon above 1e3 if they are not.
 pub(crate) const RESIDUAL: f64 = 20.0;
 
-/// Roundings of the terms that add up in a residual.
+/// Number of roundings of the terms that add up in a residual.
 pub(crate) const ROUNDINGS: f64 = 32.0;
 
-/// From this order on, which a tolerance of 1e-12 has, the errors of a step are near rounding.
+/// Order, that of a tolerance of 1e-12, from which on the errors of a step are near rounding.
 const HIGH_ORDER: usize = 20;
 
 /// Settings of the stepper that follow from the tolerance.
@@ -30,12 +30,12 @@ pub(crate) struct Settings<T> {
 }
 
 impl<T: Scalar> Settings<T> {
-    /// The residual that a step of the full order may leave, by the tolerance.
+    /// The residual that a step of the full order may leave.
     pub fn residual_of_a_full_step(&self) -> T {
         T::of(RESIDUAL * self.order as f64 * self.tolerance) * self.speed
     }
 
-    /// The order is the cheapest one by measurement on the nominal cubic: about 5/4 coefficients a digit.
+    /// The order is the cheapest in measurements on the nominal cubic: about 5/4 coefficients per digit.
     pub fn new(model: &Model, unit: f64, tolerance: f64) -> Self {
         let local = tolerance * LOCAL_SHARE;
         let order = (3.0 - 1.25 * local.log10()).round().clamp(8.0, MAX_ORDER as f64) as usize;

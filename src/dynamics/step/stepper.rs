@@ -13,10 +13,10 @@ use crate::dynamics::series::{Endpoint, Series};
 use crate::dynamics::state::MotionState;
 use crate::numeric::Scalar;
 
-/// The most halvings of a step before it is given up.
-pub(super) const MOST_HALVINGS: u32 = 200;
+/// Maximum number of halvings of a step before it is given up.
+pub(super) const MAX_HALVINGS: u32 = 200;
 
-/// What a step needs beside the state, and nothing of what is recorded.
+/// The data of a step apart from the state and the record.
 pub(crate) struct Stepper<'a, T: Scalar, D: Drive<T>> {
     pub equation: &'a Equation<T>,
     pub drive: &'a D,
@@ -24,11 +24,11 @@ pub(crate) struct Stepper<'a, T: Scalar, D: Drive<T>> {
     pub settings: Settings<T>,
     pub series: Series<T>,
     pub cursor: D::Cursor,
-    /// Workspace of contact with a compliant stop, made at the first.
+    /// Workspace of contact with a compliant stop, made at the first contact.
     pub penetration: Option<Box<Penetration<T>>>,
-    /// The same of a contact from touch to separation.
+    /// The same for an impact from touch to separation.
     pub impact: Option<Box<Impact<T>>>,
-    /// The same of a mass that is pressed into it by a slow load.
+    /// The same for a mass that a slow load presses into the stop.
     pub quasi_static: Option<Box<QuasiStatic<T>>>,
     /// The end of the run.
     pub end: Instant<T>,
@@ -40,9 +40,9 @@ pub(crate) struct Stepper<'a, T: Scalar, D: Drive<T>> {
 /// A step of free flight that has been chosen.
 pub(crate) struct Step<T> {
     pub length: T,
-    /// The instant at which it ends, where that is the end of the run or of the drive's segment.
+    /// The instant at which it ends, if that is the end of the run or of the drive's segment.
     pub arrival: Option<Instant<T>>,
-    /// What the polynomial says of its end.
+    /// The end of its polynomial.
     pub end: Endpoint<T>,
 }
 
@@ -84,8 +84,8 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
         D::begin_circuit(&mut self.cursor, state.circuit);
     }
 
-    /// A step along a path from this state as the recorder sees it: as chosen and as kept, the time that it
-    /// takes, a bound of the way, and the state at its end.
+    /// A step along a path from this state, as the recorder sees it: the chosen and the kept length, the
+    /// duration, a bound of the displacement, and the state at its end.
     #[inline]
     pub fn view<'p, P>(
         &self,
@@ -106,7 +106,7 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
         self.clock.between(&state.at, &self.end)
     }
 
-    /// An instant in s.
+    /// The time of a state in s.
     pub fn seconds(&self, state: &MotionState<T>) -> f64 {
         self.clock.seconds(&state.at)
     }
@@ -120,7 +120,7 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
         }
     }
 
-    /// Enters the drive's next segment where the present one has ended.
+    /// Enters the drive's next segment if the present one has ended. Returns whether it has.
     #[inline]
     pub fn pass_segment_end(&self, state: &mut MotionState<T>) -> bool {
         let end = self.drive.segment_end(state.segment);
@@ -135,7 +135,7 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
         self.seeded_contact_acceleration(end)
     }
 
-    /// The same, where the drive has been seeded.
+    /// The same if the drive has already been seeded.
     #[inline]
     pub fn seeded_contact_acceleration(&self, end: End) -> [T; 3] {
         let (a, sign) = (&self.series.a, end.sign::<T>());
@@ -147,15 +147,15 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
         }
     }
 
-    /// What the circuit takes from the acceleration of a mass held in place, and its first two derivatives,
-    /// where the series begins.
+    /// The acceleration that the circuit takes from a mass held in place, and its first two derivatives, at
+    /// the start of the series.
     #[inline(always)]
     pub fn circuit_push(&self) -> Option<[T; 3]> {
         let state = self.drive.circuit_state(&self.cursor)?;
         self.drive.circuit().map(|circuit| circuit.push(state[0]))
     }
 
-    /// What rounding may make of it.
+    /// Bound of the rounding of the contact acceleration.
     #[inline]
     pub fn contact_acceleration_rounding(&self, end: End) -> T {
         let stop = self.equation.stop(end).map_or(T::zero(), |stop| stop.acceleration_rounding);

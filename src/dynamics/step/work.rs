@@ -1,42 +1,42 @@
-//! Work of a run and its budgets, which bound what is computed, not what is simulated.
+//! Work of a run and its budgets, which limit the computation and not the simulated time.
 //!
-//! Work is counted in units of about ten nanoseconds of one core. A step of free flight costs more with the
-//! order of its series, the degree of the force and each part of the drive; a step of contact with a
-//! compliant stop, a search for a release and the replay of a lap cost what they were measured to. What a
-//! completed cycle adds by multiplication costs nothing, so that a run which comes back is done however long
-//! it is. Samples, events and ledger are not counted: what is recorded does not decide how a run ends, unless
-//! laps have to be replayed for it.
+//! Work is counted in units of about ten nanoseconds of one core. The cost of a step of free flight grows
+//! with the order of its series, the degree of the force and each part of the drive; those of a step of
+//! contact with a compliant stop, a search for a release and the replay of a lap were measured. Laps that are
+//! added by multiplication cost nothing, so a run that recurs is completed however long it is. Samples,
+//! events and ledger are not counted: what is recorded does not affect how a run ends, unless laps have to be
+//! replayed for it.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::dynamics::drive::Drive;
 use crate::numeric::Scalar;
 
-/// Units that one run may take: five to twenty seconds of one core, as the pieces of the scene cost, and at
-/// least 2e7 steps of a cubic force under one sine at any tolerance.
+/// Units of work that one run may take: five to twenty seconds of one core, depending on the parts of the
+/// scene, and at least 2e7 steps of a cubic force under one sine at any tolerance.
 pub(crate) const WORK_BUDGET: u64 = 1_000_000_000;
 
-/// Impacts that one run may make one by one, those that laps add by multiplication not among them.
+/// Impacts that one run may compute one by one, without those that laps add by multiplication.
 pub(crate) const IMPACT_BUDGET: u64 = 2_000_000;
 
-/// Units between two looks at the cancel flag: 200 steps of a simple scene, some tenths of a millisecond.
-const LOOK: u64 = 10_000;
+/// Units between two checks of the cancel flag: 200 steps of a simple scene, some tenths of a millisecond.
+const CHECK_INTERVAL: u64 = 10_000;
 
-/// A sample, beside the sum of the drive's parts.
+/// Cost of a sample, without the sum of the drive's parts.
 const SAMPLE: u64 = 10;
 
-/// An arrival at a surface, whose instant is a root of the step's polynomial.
+/// Cost of an arrival at a surface, whose instant is a root of the step's polynomial.
 pub(crate) const ARRIVAL: u64 = 50;
 
-/// An entry of a log that is replayed.
-pub(crate) const TOLD: u64 = 10;
+/// Cost of a log entry that is replayed.
+pub(crate) const REPLAYED: u64 = 10;
 
-/// What the pieces of a run's work cost, in units.
+/// Costs of the parts of a run, in units of work.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Costs {
     /// A step of free flight.
     pub step: u64,
-    /// The check of a step once more, after it was halved.
+    /// Another check of a step, after it was halved.
     pub check: u64,
     /// An expansion in contact with a compliant stop, or an impact on it as one step.
     pub contact: u64,
@@ -45,7 +45,7 @@ pub(crate) struct Costs {
 }
 
 impl Costs {
-    /// Of series of this order, forces of up to this degree, and a drive.
+    /// For series of this order, forces of up to this degree, and a drive.
     pub fn new<T: Scalar, D: Drive<T>>(order: usize, degree: usize, drive: &D) -> Self {
         let (order, products) = (order as u64, degree as u64 / 2);
         let drive = drive.cost(order as usize);
@@ -58,38 +58,38 @@ impl Costs {
         }
     }
 
-    /// Samples between two looks at the cancel flag.
-    pub fn samples_per_look(&self) -> u64 {
-        (LOOK / self.sample).max(1)
+    /// Samples between two checks of the cancel flag.
+    pub fn samples_per_check(&self) -> u64 {
+        (CHECK_INTERVAL / self.sample).max(1)
     }
 }
 
-/// Work done, and when to look whether the run is to go on.
+/// Work done, its limit, and the next check of the cancel flag.
 #[derive(Debug, Clone)]
 pub(crate) struct Work<'a> {
     done: u64,
-    most: u64,
+    max_units: u64,
     impacts: u64,
-    next_look: u64,
+    next_check: u64,
     cancel: Option<&'a AtomicBool>,
 }
 
 impl<'a> Work<'a> {
     pub fn new(cancel: Option<&'a AtomicBool>) -> Self {
-        Self { done: 0, most: WORK_BUDGET, impacts: 0, next_look: LOOK, cancel }
+        Self { done: 0, max_units: WORK_BUDGET, impacts: 0, next_check: CHECK_INTERVAL, cancel }
     }
 
-    /// Allows so many units at most.
-    pub fn limit(&mut self, most: u64) {
-        self.most = self.most.min(most);
+    /// Limits the work to this many units.
+    pub fn limit(&mut self, max_units: u64) {
+        self.max_units = self.max_units.min(max_units);
     }
 
-    /// Units done.
+    /// Units of work done.
     pub fn done(&self) -> u64 {
         self.done
     }
 
-    /// Impacts made one by one.
+    /// Number of impacts computed one by one.
     pub fn impacts(&self) -> u64 {
         self.impacts
     }
@@ -104,14 +104,14 @@ impl<'a> Work<'a> {
         self.impacts += count;
     }
 
-    /// Whether this much more is within the budgets.
+    /// Whether this many more units are within the budgets.
     pub fn has_room_for(&self, units: u64) -> bool {
-        self.done + units < self.most && self.impacts < IMPACT_BUDGET
+        self.done + units < self.max_units && self.impacts < IMPACT_BUDGET
     }
 
-    /// Whether all units are done.
+    /// Whether the limit of work is reached.
     pub fn is_done(&self) -> bool {
-        self.done >= self.most
+        self.done >= self.max_units
     }
 
     /// Whether a budget is spent.
@@ -119,22 +119,22 @@ impl<'a> Work<'a> {
         !self.has_room_for(0)
     }
 
-    /// Pieces of this cost up to the next look at the cancel flag, at least one.
-    pub fn pieces_until_look(&self, cost: u64) -> u64 {
-        (self.next_look.saturating_sub(self.done) / cost.max(1)).max(1)
+    /// Number of pieces of this cost up to the next check of the cancel flag, at least one.
+    pub fn pieces_until_check(&self, cost: u64) -> u64 {
+        (self.next_check.saturating_sub(self.done) / cost.max(1)).max(1)
     }
 
-    /// Whether the run is cancelled; checks the flag now and then.
+    /// Whether the run is cancelled; checks the flag at intervals.
     #[inline]
-    pub fn is_told_to_stop(&mut self) -> bool {
-        if self.done < self.next_look {
+    pub fn check_cancelled(&mut self) -> bool {
+        if self.done < self.next_check {
             return false;
         }
-        self.next_look = self.done + LOOK;
+        self.next_check = self.done + CHECK_INTERVAL;
         self.is_cancelled()
     }
 
-    /// Whether the run is cancelled; checks the flag.
+    /// Whether the run is cancelled; checks the flag at once.
     pub fn is_cancelled(&self) -> bool {
         self.cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed))
     }
@@ -158,16 +158,16 @@ mod tests {
 
     #[test]
     fn looks_are_as_much_work_apart_whatever_a_piece_costs() {
-        let told = AtomicBool::new(true);
+        let cancel = AtomicBool::new(true);
         for cost in [1, 30, 9_999, 10_000, 3_000_000] {
-            let mut work = Work::new(Some(&told));
+            let mut work = Work::new(Some(&cancel));
             let mut pieces = 0;
-            while !work.is_told_to_stop() {
+            while !work.check_cancelled() {
                 work.add(cost);
                 pieces += 1;
             }
-            assert_eq!(pieces, LOOK.div_ceil(cost));
-            assert!(work.pieces_until_look(cost) <= pieces.max(1));
+            assert_eq!(pieces, CHECK_INTERVAL.div_ceil(cost));
+            assert!(work.pieces_until_check(cost) <= pieces.max(1));
         }
     }
 
@@ -199,6 +199,6 @@ mod tests {
         };
         let step = |lines| Costs::new(16, 3, &drive(lines)).step;
         assert!(step(4096) > 500 * step(1) && step(64) > 5 * step(1));
-        assert_eq!(Costs::new(16, 3, &drive(4096)).samples_per_look(), 1);
+        assert_eq!(Costs::new(16, 3, &drive(4096)).samples_per_check(), 1);
     }
 }

@@ -1,4 +1,4 @@
-//! Picture of work against precision: error over CPU time, both logarithmic, a frame for each problem.
+//! Picture of accuracy against cost: error over CPU time, both logarithmic, one frame for each problem.
 
 use serde_json::Map;
 
@@ -15,11 +15,12 @@ use crate::study::accuracy::{OWN, PROBLEMS};
 const LEFT: f64 = 150.0;
 const TOP: f64 = 270.0;
 const BETWEEN: f64 = 45.0;
-/// On a narrow canvas, where the frames are stacked: a frame's height, and what lies between two.
+/// Height of a frame on a narrow canvas, where the frames are stacked.
 const HEIGHT: f64 = 420.0;
+/// Room between two stacked frames.
 const UNDER: f64 = 150.0;
 
-/// Errors below this are all that a double can tell.
+/// An error of 0 is drawn here; smaller errors cannot be told apart in double precision.
 const LEAST: f64 = 1e-17;
 
 /// The picture of a table as [`work_table`](crate::study::accuracy::Report::work_table) gives it.
@@ -28,22 +29,22 @@ pub fn accuracy_figure(table: &Table, version: &str, theme: &Theme) -> Figure {
     let column = |name: &str| table.numbers(name).unwrap_or_default();
     let (errors, times) = (column("error"), column("cpu_s"));
     let distinct = |all: &[&'static str]| {
-        let mut own: Vec<&'static str> = Vec::new();
+        let mut found: Vec<&'static str> = Vec::new();
         all.iter().for_each(|word| {
-            if !own.contains(word) {
-                own.push(word);
+            if !found.contains(word) {
+                found.push(word);
             }
         });
-        own
+        found
     };
     let (shown, named) = (distinct(problems), distinct(methods));
     let floored = |error: f64| if error == 0.0 { LEAST } else { error };
-    let told = times.iter().zip(errors).filter(|(_, error)| error.is_finite()).map(|(time, _)| *time);
-    let across = PlotAxis::decades(told, 4, "CPU time, s");
+    let known = times.iter().zip(errors).filter(|(_, error)| error.is_finite()).map(|(time, _)| *time);
+    let across = PlotAxis::decades(known, 4, "CPU time, s");
     let up = PlotAxis::decades(errors.iter().map(|error| floored(*error).min(10.0)), 9, "error");
     let title = "What accuracy costs".to_owned();
     let footer = format!("interwell {version} \u{b7} CPU time on one core of the machine that drew this");
-    let about = PROBLEMS.iter().filter(|own| shown.contains(&own.name)).count();
+    let about = PROBLEMS.iter().filter(|problem| shown.contains(&problem.name)).count();
     let subtitle = match about {
         1 => "ten seconds of motion: error against the same motion in twice the digits".to_owned(),
         n => format!("{n} problems of ten seconds each: error against the same motion in twice the digits"),
@@ -81,7 +82,7 @@ pub fn accuracy_figure(table: &Table, version: &str, theme: &Theme) -> Figure {
         let y = if i == 0 || stacked { up.clone() } else { up.clone().silent() };
         let frame = Frame::new(area, across.clone(), y);
         frame.grid(&mut figure, theme);
-        // the own method last, so that it lies on top
+        // the method of this program is drawn last, so that it lies on top
         for (k, method) in named.iter().enumerate().rev() {
             let (shape, ink) = look(k, theme);
             let points: Vec<Point> = (0..problems.len())
@@ -108,12 +109,12 @@ pub fn accuracy_figure(table: &Table, version: &str, theme: &Theme) -> Figure {
     figure
 }
 
-/// The words over the frame of a problem.
+/// The heading over the frame of a problem.
 fn heading(problem: &str) -> &str {
-    PROBLEMS.iter().find(|own| own.name == problem).map_or(problem, |own| own.heading)
+    PROBLEMS.iter().find(|known| known.name == problem).map_or(problem, |known| known.heading)
 }
 
-/// Marker and colour of the method that stands at this place: the own one first.
+/// Marker and colour of the method at this place in the legend; the method of this program is first.
 fn look(place: usize, theme: &Theme) -> (Marker, Ink) {
     let all = [
         (Marker::Disc, theme.regimes[3]),

@@ -10,28 +10,27 @@ pub struct PlotAxis {
     pub low: f64,
     /// Value at the other end; above `low`.
     pub high: f64,
-    /// Values that have a tick, with what stands at it.
+    /// Values that have a tick, with the text at it.
     pub ticks: Vec<(f64, String)>,
     /// What the axis shows, with unit and power of ten.
     pub label: String,
 }
 
-/// The ranges of a picture's axes, where they were asked for: of the one to the right and of the (first) one
-/// upward.
+/// The requested ranges of a picture's axes: of the horizontal one and of the (first) vertical one.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Ranges {
-    /// To the right.
+    /// Range of the horizontal axis.
     pub x: Option<(f64, f64)>,
-    /// Upward.
+    /// Range of the vertical axis.
     pub y: Option<(f64, f64)>,
 }
 
-/// Values beyond this are drawn at it: no difference of two overflows.
+/// Values beyond this are drawn at it, so that no difference of two values overflows.
 const LARGEST: f64 = 1e300;
 
 impl PlotAxis {
     /// An axis from the least to the greatest of `values`, with `margin` of that range added at both ends
-    /// and some `count` ticks. Values that are not finite do not count; a range of no length is widened.
+    /// and about `count` ticks. Values that are not finite are ignored; a range of length 0 is widened.
     pub fn around(values: impl IntoIterator<Item = f64>, margin: f64, count: usize, label: &str) -> Self {
         let (low, high) = extent(values.into_iter().filter(|value| value.is_finite()));
         if low > high {
@@ -41,23 +40,23 @@ impl PlotAxis {
         Self::between(low - more, high + more, count, label)
     }
 
-    /// An axis from `low` to `high` with some `count` ticks at 1, 2 or 5 times a power of ten.
+    /// An axis from `low` to `high` with about `count` ticks at steps of 1, 2 or 5 times a power of ten.
     pub fn between(low: f64, high: f64, count: usize, label: &str) -> Self {
-        let (low, high) = proper(low, high);
+        let (low, high) = finite_range(low, high);
         let step = round_up((high - low) / count.max(1) as f64, &ONE_TWO_FIVE);
-        // The common power of ten is taken out where plain numbers would be long.
+        // Where plain numbers would be long, a common power of ten goes into the label.
         let largest = low.abs().max(high.abs());
         let power = decade(largest);
         let power = if (-3..5).contains(&power) { 0 } else { power };
         let scale = 10_f64.powi(power);
         let decimals = (power - (step.log10() + 1e-9).floor() as i32).clamp(0, 12) as usize;
-        // Numbers so large that a step is lost in their rounding get no ticks but their ends.
+        // If the step is lost in the rounding of large numbers, only the ends get ticks.
         let ticks = if step > 8.0 * f64::EPSILON * largest {
             let (first, last) = ((low / step - 1e-9).ceil(), (high / step + 1e-9).floor());
             let number = |k: i64| {
                 let value = (first + k as f64) * step;
                 let text = format!("{:.decimals$}", value / scale);
-                // The sign of a zero says nothing, and a minus is longer than a hyphen.
+                // Zero gets no sign, and negative numbers a minus sign instead of a hyphen.
                 let zero = text.bytes().all(|b| matches!(b, b'-' | b'0' | b'.'));
                 let text = if zero { text.replace('-', "") } else { text.replace('-', "\u{2212}") };
                 (value.clamp(low, high), text)
@@ -67,18 +66,18 @@ impl PlotAxis {
             [low, high].map(|value| (value, format!("{:.12}", value / scale))).into()
         };
         let label =
-            if power == 0 { label.to_owned() } else { format!("{label} (\u{d7}10{})", raised(power)) };
+            if power == 0 { label.to_owned() } else { format!("{label} (\u{d7}10{})", superscript(power)) };
         Self { low, high, ticks, label }
     }
 
-    /// The axis over a range that was asked for, where one was.
+    /// The axis over the given range, or `self` if there is none.
     #[must_use]
     pub fn or_given(self, range: Option<(f64, f64)>, count: usize, label: &str) -> Self {
         range.map_or(self, |(low, high)| Self::between(low, high, count, label))
     }
 
-    /// An axis of decimal logarithms that covers `values` (which are the numbers themselves, above 0) in
-    /// whole decades, with some `count` ticks at powers of ten.
+    /// A logarithmic axis in whole decades that covers `values`, which are not logarithms and above 0, with
+    /// about `count` ticks at powers of ten.
     pub fn decades(values: impl IntoIterator<Item = f64>, count: usize, label: &str) -> Self {
         let logs = values.into_iter().filter(|value| value.is_finite() && *value > 0.0).map(f64::log10);
         let (low, high) = extent(logs);
@@ -86,7 +85,7 @@ impl PlotAxis {
             if low > high { (0.0, 1.0) } else { (low.floor(), high.ceil().max(low.floor() + 1.0)) };
         let every = ((high - low) / count.max(1) as f64).ceil() as i32;
         let powers = (low as i32..=high as i32).filter(|power| power.rem_euclid(every) == 0);
-        let ticks = powers.map(|power| (f64::from(power), format!("10{}", raised(power)))).collect();
+        let ticks = powers.map(|power| (f64::from(power), format!("10{}", superscript(power)))).collect();
         Self { low, high, ticks, label: label.to_owned() }
     }
 
@@ -104,8 +103,8 @@ impl PlotAxis {
     }
 }
 
-/// Two ends that are finite and apart.
-fn proper(low: f64, high: f64) -> (f64, f64) {
+/// The ends of a range, made finite and distinct.
+fn finite_range(low: f64, high: f64) -> (f64, f64) {
     let tame = |value: f64| if value.is_finite() { value.clamp(-LARGEST, LARGEST) } else { 0.0 };
     let (low, high) = (tame(low.min(high)), tame(low.max(high)));
     let least = 1e-9 * low.abs().max(high.abs());
@@ -117,8 +116,8 @@ fn proper(low: f64, high: f64) -> (f64, f64) {
     (middle - half, middle + half)
 }
 
-/// A whole number as an exponent.
-fn raised(power: i32) -> String {
+/// A whole number in superscript digits.
+fn superscript(power: i32) -> String {
     let digit = |c: char| match c {
         '-' => '\u{207b}',
         '1' => '\u{b9}',

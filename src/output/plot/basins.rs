@@ -1,4 +1,4 @@
-//! Picture of basins of attraction: the attractor of each start as colour, and where the attractors are.
+//! Picture of basins of attraction: the attractor of each start as colour, and the states of the attractors.
 
 use super::axis::PlotAxis;
 use super::drawn::Drawn;
@@ -14,8 +14,8 @@ use crate::study::{Answer, Attractor, Basins, Edges, Starts, Table};
 /// Markers of attractors, in turn.
 const MARKERS: [Marker; 4] = [Marker::Disc, Marker::Square, Marker::Diamond, Marker::Triangle];
 
-/// The most attractors that the legend names, those with the largest shares.
-const MOST_NAMED: usize = 9;
+/// Number of attractors that the legend names, those with the largest shares.
+const MAX_NAMED: usize = 9;
 
 /// Whether a map of these starts can be drawn.
 pub fn can_show_starts(starts: &Starts) -> Result<(), NoPicture> {
@@ -23,11 +23,12 @@ pub fn can_show_starts(starts: &Starts) -> Result<(), NoPicture> {
     if count > MAX_PICTURE_CELLS { Err(NoPicture::Starts(count)) } else { Ok(()) }
 }
 
-/// The picture of a map as far as it is known.
+/// The picture of a map, which may be incomplete.
 pub fn basins_figure(basins: &Basins, answer: &Answer, caption: &Caption, theme: &Theme) -> Figure {
     let mut figure = Figure::new(theme, caption, LEAST);
     let entries = entries(basins, answer, theme);
-    let entries: Vec<(Sample, &str)> = entries.iter().map(|(own, words)| (*own, words.as_str())).collect();
+    let entries: Vec<(Sample, &str)> =
+        entries.iter().map(|(sample, words)| (*sample, words.as_str())).collect();
     let top = below_legend(&mut figure, theme, &entries);
     let (across, up) = match basins.starts().axes() {
         Some((x_mm, v)) => (Edges::new(x_mm).ends(), Edges::new(v).ends()),
@@ -37,7 +38,7 @@ pub fn basins_figure(basins: &Basins, answer: &Answer, caption: &Caption, theme:
                 let axis = PlotAxis::around(values, 0.02, 8, "");
                 (axis.low, axis.high)
             };
-            (around(all().map(|own| own.0).collect()), around(all().map(|own| own.1).collect()))
+            (around(all().map(|start| start.0).collect()), around(all().map(|start| start.1).collect()))
         }
     };
     let upward = PlotAxis::between(up.0, up.1, 7, "velocity at the start, m/s");
@@ -68,13 +69,13 @@ pub fn basins_figure(basins: &Basins, answer: &Answer, caption: &Caption, theme:
     figure
 }
 
-/// The starts with the attractors that they go to, and the states of these.
+/// The data of the picture: the starts with the numbers of their attractors, and the attractors' states.
 fn drawn(basins: &Basins, answer: &Answer) -> Table {
     let mut drawn = Drawn::new(["x_mm", "v_m_per_s", "attractor"], &[]);
-    let stand_in = standing(basins);
+    let source = source_row(basins);
     for row in 0..answer.rows.len() {
         let (x_mm, v) = basins.starts().at(row);
-        let number = answer.rows[stand_in(row)].map_or(f64::NAN, |own| f64::from(own.0));
+        let number = answer.rows[source(row)].map_or(f64::NAN, |found| f64::from(found.0));
         drawn.put("start", &[x_mm, v, number], &[]);
     }
     for (place, attractor) in answer.attractors.iter().enumerate() {
@@ -85,7 +86,7 @@ fn drawn(basins: &Basins, answer: &Answer) -> Table {
     drawn.table()
 }
 
-/// The colour of an attractor, by its place from 0; beyond eight they come again.
+/// The colour of an attractor by its index; the colours repeat after eight.
 pub fn attractor_colour(place: usize) -> Ink {
     KINDS[place % KINDS.len()]
 }
@@ -94,7 +95,7 @@ fn shape(place: usize) -> Marker {
     MARKERS[place % MARKERS.len()]
 }
 
-/// The hatching of an attractor whose colour is another one's too.
+/// The hatching of an attractor whose colour is used a second time.
 fn hatch(place: usize) -> Option<Ink> {
     let dark = |Ink(r, g, b): Ink| 2 * u32::from(r) + 5 * u32::from(g) + u32::from(b) < 8 * 128;
     let over = if dark(attractor_colour(place)) { style::WHITE } else { style::BLACK };
@@ -110,10 +111,10 @@ fn cells(
     theme: &Theme,
 ) {
     let (across, up) = (Edges::new(x_mm), Edges::new(v));
-    let stand_in = standing(basins);
+    let source = source_row(basins);
     for (column, x_mm) in x_mm.iter().enumerate() {
-        let own = |row: usize| answer.rows[stand_in(column * v.len() + row)].map(|own| own.0);
-        let all: Vec<Option<u32>> = (0..v.len()).map(own).collect();
+        let attractor = |row: usize| answer.rows[source(column * v.len() + row)].map(|found| found.0);
+        let all: Vec<Option<u32>> = (0..v.len()).map(attractor).collect();
         let (low, high) = basins.room();
         let outside = x_mm / 1e3 < low || x_mm / 1e3 > high;
         let mut row = 0;
@@ -139,8 +140,8 @@ fn cells(
     }
 }
 
-/// For each row the one whose answer is shown: its own, or the nearest one that has been run.
-fn standing(basins: &Basins) -> impl Fn(usize) -> usize {
+/// Maps each row to the row whose answer is shown for it: itself, or the nearest one that has been run.
+fn source_row(basins: &Basins) -> impl Fn(usize) -> usize {
     let (levels, done) = basins.levels();
     move |row| {
         if basins.is_whole() || done == 0 { row } else { levels.stand_in(row as u64, done - 1) as usize }
@@ -150,7 +151,7 @@ fn standing(basins: &Basins) -> impl Fn(usize) -> usize {
 /// Random starts as discs in the colours of their attractors.
 fn dots(figure: &mut Figure, frame: &Frame, (basins, answer): (&Basins, &Answer), theme: &Theme) {
     let size = (700.0 / (answer.rows.len() as f64).sqrt()).clamp(2.5, 9.0);
-    for (row, own) in answer.rows.iter().enumerate() {
+    for (row, found) in answer.rows.iter().enumerate() {
         let (x_mm, v) = basins.starts().at(row);
         let (low, high) = basins.room();
         if x_mm / 1e3 < low || x_mm / 1e3 > high {
@@ -158,15 +159,19 @@ fn dots(figure: &mut Figure, frame: &Frame, (basins, answer): (&Basins, &Answer)
         }
         let at = frame.place((x_mm, v));
         figure.disc(at, size, theme.soft);
-        figure.disc(at, 0.85 * size, own.map_or(theme.rest, |own| attractor_colour(own.0 as usize - 1)));
+        figure.disc(
+            at,
+            0.85 * size,
+            found.map_or(theme.rest, |found| attractor_colour(found.0 as usize - 1)),
+        );
     }
 }
 
-/// What the legend says: the attractors with their shares, the largest ones where there are many.
+/// Entries of the legend: the attractors with their shares. If there are many, only the largest are named.
 fn entries(basins: &Basins, answer: &Answer, theme: &Theme) -> Vec<(Sample, String)> {
     let mut named: Vec<usize> = (0..answer.attractors.len()).collect();
     named.sort_by_key(|place| std::cmp::Reverse(answer.attractors[*place].starts));
-    let more = named.split_off(named.len().min(MOST_NAMED)).len();
+    let more = named.split_off(named.len().min(MAX_NAMED)).len();
     named.sort_unstable();
     let mut entries: Vec<(Sample, String)> = Vec::new();
     for place in named {
@@ -182,11 +187,11 @@ fn entries(basins: &Basins, answer: &Answer, theme: &Theme) -> Vec<(Sample, Stri
     entries
 }
 
-/// An attractor in words, with its number and its share; of random starts with its interval.
-fn words(place: usize, own: &Attractor, is_grid: bool) -> String {
-    let mut words = format!("{} {}", place + 1, own.words());
+/// An attractor in words, with its number and its share; for random starts with the interval of the share.
+fn words(place: usize, attractor: &Attractor, is_grid: bool) -> String {
+    let mut words = format!("{} {}", place + 1, attractor.words());
     let percent = |share: f64| short((1e3 * share).round() / 10.0);
-    let share = &own.share;
+    let share = &attractor.share;
     words += &match is_grid {
         true => format!(": {} %", percent(share.share)),
         false => {
@@ -196,7 +201,7 @@ fn words(place: usize, own: &Attractor, is_grid: bool) -> String {
     words
 }
 
-/// What was run, in one line.
+/// The subtitle: which starts were run.
 fn about(basins: &Basins, answer: &Answer) -> String {
     let counted = match basins.starts().axes() {
         Some((x_mm, v)) => format!("{} \u{d7} {} starts", x_mm.len(), v.len()),

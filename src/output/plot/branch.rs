@@ -29,9 +29,9 @@ pub fn branch_figure(
 ) -> Figure {
     let mut figure = Figure::new(theme, caption, LEAST);
     let table = branch.table();
-    let millimetres: Vec<f64> = branch.orbits.iter().map(|own| own.state.0 * 1e3).collect();
+    let millimetres: Vec<f64> = branch.orbits.iter().map(|orbit| orbit.state.0 * 1e3).collect();
     let points: Vec<Point> = branch.values.iter().copied().zip(millimetres.iter().copied()).collect();
-    let stable: Vec<bool> = branch.orbits.iter().map(|own| own.is_stable()).collect();
+    let stable: Vec<bool> = branch.orbits.iter().map(|orbit| orbit.is_stable()).collect();
     let mut entries = Vec::new();
     if stable.contains(&true) {
         entries.push((Sample::Line(theme.ink, style::LINE, None), "stable"));
@@ -39,7 +39,7 @@ pub fn branch_figure(
     if stable.contains(&false) {
         entries.push((Sample::Line(theme.unstable, style::LINE, Some(style::DASH)), "unstable"));
     }
-    for (event, shape) in EVENTS.into_iter().filter(|own| branch.events.contains(&Some(own.0))) {
+    for (event, shape) in EVENTS.into_iter().filter(|kind| branch.events.contains(&Some(kind.0))) {
         entries.push((Sample::Marker(shape, theme.soft), event.name()));
     }
     let top = below_legend(&mut figure, theme, &entries);
@@ -50,7 +50,7 @@ pub fn branch_figure(
     let up = PlotAxis::around(millimetres, 0.08, 6, y_label).or_given(ranges.y, 6, y_label);
     let frame = Frame::whole(&figure, (LEFT, top), across, up);
     frame.grid(&mut figure, theme);
-    // a stretch of one kind ends at the point where the other begins
+    // a stable or unstable stretch ends at the point where the next one begins
     let mut from = 0;
     for to in 1..=points.len() {
         if to < points.len() && stable[to] == stable[from] {
@@ -65,7 +65,7 @@ pub fn branch_figure(
         from = to;
     }
     for (event, point) in branch.events.iter().zip(&points) {
-        let shape = event.and_then(|own| EVENTS.iter().find(|known| known.0 == own));
+        let shape = event.and_then(|event| EVENTS.iter().find(|known| known.0 == event));
         let at = frame.place(*point);
         if let Some((_, shape)) = shape.filter(|_| frame.area.contains(at)) {
             marker(&mut figure, *shape, at, style::MARKER, theme.soft, theme.ink);
@@ -76,12 +76,12 @@ pub fn branch_figure(
     for (i, value) in branch.values.iter().enumerate() {
         if (frame.x.low..=frame.x.high).contains(value) {
             let words =
-                [if stable[i] { "true" } else { "false" }, branch.events[i].map_or("", |own| own.name())];
+                [if stable[i] { "true" } else { "false" }, branch.events[i].map_or("", |event| event.name())];
             drawn.put("branch", &[*value, branch.orbits[i].state.0], &words);
         }
     }
     figure.data = drawn.table();
-    let period = branch.orbits.first().map_or(1, |own| own.period);
+    let period = branch.orbits.first().map_or(1, |orbit| orbit.period);
     let about = format!(
         "{} periodic motions of period {period}, at the drive's phase {}\u{b0}; the branch ends {}",
         branch.orbits.len(),

@@ -1,4 +1,4 @@
-//! Picture of scenes side by side: a row a scene, a panel a quantity, the best of each panel marked.
+//! Picture of scenes side by side: one row for each scene, one panel for each quantity, the best marked.
 
 use std::collections::BTreeSet;
 
@@ -16,28 +16,32 @@ use crate::study::{Rated, SEARCHED_SPAN, Table, Values};
 /// What the picture of a comparison is drawn from.
 #[derive(Debug, Clone, Copy)]
 pub struct ComparisonPicture<'a> {
-    /// A scene a row.
+    /// The scenes, one row each.
     pub rated: &'a [Rated],
     /// The drive's frequency in Hz.
     pub frequency_hz: f64,
 }
 
-/// Least width of a panel, room between panels, and the most that the names of the scenes take.
+/// Least width of a panel.
 const LEAST_WIDTH: f64 = 186.0;
+/// Room between two panels.
 const BETWEEN: f64 = 34.0;
-const MOST_NAME: f64 = 330.0;
-/// Over a panel its title in two lines, under it the numbers of its axis; least height of a row in it.
+/// Largest width of the names of the scenes.
+const NAME_WIDTH: f64 = 330.0;
+/// Room over a panel for its title in two lines.
 const TITLE: f64 = 74.0;
+/// Room under a panel for the numbers of its axis.
 const NUMBERS: f64 = 74.0;
+/// Least height of a row.
 const ROW: f64 = 46.0;
-/// Height of a bar, at most and as a share of its row.
+/// Height of a bar: the largest, and as a share of its row.
 const BAR: (f64, f64) = (46.0, 0.5);
-/// What is left free behind the longest bar for its number.
+/// Room behind the longest bar for its number.
 const NUMBER: f64 = 88.0;
-/// Where the first legend stands.
+/// Height of the first line of the legend.
 const LEGEND: f64 = 146.0;
 
-/// A frequency this near to an end of the search is at it.
+/// A frequency within this factor of an end of the search counts as that end.
 const NEAR: f64 = 1.001;
 
 /// Which value of a panel is best.
@@ -47,7 +51,7 @@ enum Best {
     Most,
 }
 
-/// A value of a scene: its end, its beginning where that is not 0, and what is written at it.
+/// A value of a scene: the ends of its bar and the text at it.
 #[derive(Clone)]
 struct Entry {
     from: f64,
@@ -60,32 +64,33 @@ struct Panel {
     unit: String,
     best: Best,
     entries: Vec<Entry>,
-    /// Frequencies in decades, each a band.
+    /// Whether the entries are bands of frequencies, on a logarithmic axis.
     is_band: bool,
 }
 
 impl Panel {
-    /// What is compared of an entry.
+    /// The number by which entries are compared.
     fn merit(&self, entry: &Entry) -> f64 {
         if self.is_band { entry.to / entry.from } else { entry.to }
     }
 
-    /// The best of at least two that have a value.
+    /// The index of the best entry. Returns `None` unless at least two have a value and one is the best
+    /// alone.
     fn best(&self) -> Option<usize> {
-        let merits: Vec<f64> = self.entries.iter().map(|own| self.merit(own)).collect();
-        let known = || merits.iter().enumerate().filter(|own| own.1.is_finite());
+        let merits: Vec<f64> = self.entries.iter().map(|entry| self.merit(entry)).collect();
+        let known = || merits.iter().enumerate().filter(|merit| merit.1.is_finite());
         let by = |a: &(usize, &f64), b: &(usize, &f64)| a.1.total_cmp(b.1);
         let best = match self.best {
             Best::Least => known().min_by(by),
             Best::Most => known().max_by(by),
         };
         let (place, merit) = best?;
-        // what others have as well is not marked
-        (merits.iter().filter(|own| *own == merit).count() == 1 && known().count() > 1).then_some(place)
+
+        (merits.iter().filter(|value| *value == merit).count() == 1 && known().count() > 1).then_some(place)
     }
 }
 
-/// To three digits.
+/// A number rounded to three digits, as text.
 fn three(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return short(value);
@@ -99,11 +104,11 @@ pub fn comparison_figure(picture: &ComparisonPicture<'_>, caption: &Caption, the
     let ComparisonPicture { rated, .. } = *picture;
     let panels = panels(picture);
     let names = names(rated);
-    let widest = names.iter().map(|own| font::width(own, style::TICK, false)).fold(0.0, f64::max);
-    // how many panels stand side by side follows from the width alone
+    let widest = names.iter().map(|name| font::width(name, style::TICK, false)).fold(0.0, f64::max);
+    // the number of panels side by side depends on the width alone
     let probe = Figure::new(theme, caption, 0.0);
     let (left, right) = probe.breadth((60.0, probe.right()));
-    let name_width = widest.min(MOST_NAME).min(0.3 * (right - left));
+    let name_width = widest.min(NAME_WIDTH).min(0.3 * (right - left));
     let room = right - left - name_width - 20.0;
     let fits = ((room + BETWEEN) / (LEAST_WIDTH + BETWEEN)).floor().max(1.0) as usize;
     let rows = panels.len().div_ceil(fits);
@@ -113,7 +118,7 @@ pub fn comparison_figure(picture: &ComparisonPicture<'_>, caption: &Caption, the
 
     let entries = legend_entries(rated, &panels, theme);
     let top = LEGEND.max(legend(&mut figure, theme, &entries, (left, right), LEGEND)) + 12.0;
-    // below each frame stand numbers, and no label
+    // below each frame are numbers but no label
     let end = figure.bottom() + 40.0 + NUMBERS;
     let height = (end - top) / rows as f64;
     let width = (room - BETWEEN * (each as f64 - 1.0)) / each as f64;
@@ -138,25 +143,25 @@ pub fn comparison_figure(picture: &ComparisonPicture<'_>, caption: &Caption, the
     figure
 }
 
-/// The height on the upward axis of a scene.
+/// The position of a scene on the vertical axis.
 fn place(rated: &[Rated], scene: usize) -> f64 {
     rated.len() as f64 - scene as f64 - 0.5
 }
 
-/// The scenes' names, without folders where they are told apart so.
+/// The names of the scenes, without folders if they stay distinct.
 fn names(rated: &[Rated]) -> Vec<String> {
-    let last = |own: &Rated| own.name.rsplit(['/', '\\']).next().unwrap_or(&own.name).to_owned();
+    let last = |scene: &Rated| scene.name.rsplit(['/', '\\']).next().unwrap_or(&scene.name).to_owned();
     let names: Vec<String> = rated.iter().map(last).collect();
     let apart: BTreeSet<&String> = names.iter().collect();
-    if apart.len() == names.len() { names } else { rated.iter().map(|own| own.name.clone()).collect() }
+    if apart.len() == names.len() { names } else { rated.iter().map(|scene| scene.name.clone()).collect() }
 }
 
 /// The quantities that are above 0 for at least one of the scenes.
 fn panels(picture: &ComparisonPicture<'_>) -> Vec<Panel> {
     let ComparisonPicture { rated, frequency_hz } = *picture;
     let panel = |title, unit: &str, best, scale: f64, of: &dyn Fn(&Rated) -> Option<f64>| {
-        let entry = |own: &Rated| {
-            let to = of(own).map_or(f64::NAN, |own| own * scale);
+        let entry = |scene: &Rated| {
+            let to = of(scene).map_or(f64::NAN, |value| value * scale);
             let words = match to {
                 to if to.is_nan() => "\u{2013}".to_owned(),
                 to if to.is_infinite() => "lost".to_owned(),
@@ -168,45 +173,46 @@ fn panels(picture: &ComparisonPicture<'_>) -> Vec<Panel> {
         let entries = rated.iter().map(entry).collect();
         Panel { title, unit: unit.to_owned(), best, entries, is_band: false }
     };
-    let speed = |own: &Rated| own.summary.rms_velocity;
-    // a motion without an impact strikes with nothing
-    let impact = |own: &Rated| speed(own).map(|_| own.summary.impact_speed_max.unwrap_or(0.0));
-    let power = |own: &Rated| own.summary.harvest.and_then(|own| own.mean_load_power);
+    let speed = |scene: &Rated| scene.summary.rms_velocity;
+    // without impacts the impact speed is 0
+    let impact = |scene: &Rated| speed(scene).map(|_| scene.summary.impact_speed_max.unwrap_or(0.0));
+    let power = |scene: &Rated| scene.summary.harvest.and_then(|harvest| harvest.mean_load_power);
     let (per_speed, speed_name) = speed_unit(rated.iter().filter_map(speed));
     let (per_impact, impact_name) = speed_unit(rated.iter().filter_map(impact));
     let (per_watt, watt) = match rated.iter().filter_map(power).fold(0.0, f64::max) {
-        most if most >= 1.0 => (1.0, "W"),
-        most if most >= 1e-3 => (1e3, "mW"),
+        largest if largest >= 1.0 => (1.0, "W"),
+        largest if largest >= 1e-3 => (1e3, "mW"),
         _ => (1e6, "\u{b5}W"),
     };
-    let sensitivity = |own: &Rated| own.sensitivity.as_ref().map(|own| own.0);
+    let sensitivity = |scene: &Rated| scene.sensitivity.as_ref().map(|change| change.0);
     let all = [
         panel("crosses from", "g", Best::Least, 1.0, &Rated::crossing_g),
         panel("RMS velocity", speed_name, Best::Most, per_speed, &speed),
         panel("power", watt, Best::Most, per_watt, &power),
-        panel("reach", "mm", Best::Least, 1e3, &|own| own.summary.max_abs_x),
+        panel("reach", "mm", Best::Least, 1e3, &|scene| scene.summary.max_abs_x),
         panel("fastest impact", impact_name, Best::Least, per_impact, &impact),
         bands(rated, frequency_hz),
         panel("sensitivity", "% for 1 % of a size", Best::Least, 100.0, &sensitivity),
     ];
-    all.into_iter().filter(|own| own.entries.iter().any(|own| own.to > 0.0)).collect()
+    all.into_iter().filter(|panel| panel.entries.iter().any(|entry| entry.to > 0.0)).collect()
 }
 
-/// The bands of frequencies; an end that is that of the search may be further out.
+/// The bands of frequencies. An end that coincides with that of the search is marked, as it may lie further
+/// out.
 fn bands(rated: &[Rated], frequency_hz: f64) -> Panel {
-    let entry = |own: &Rated| {
-        let Some((from, to)) = own.crosses_hz else {
+    let entry = |scene: &Rated| {
+        let Some((from, to)) = scene.crosses_hz else {
             return Entry { from: f64::NAN, to: f64::NAN, words: "\u{2013}".to_owned() };
         };
-        let least = if from < frequency_hz / SEARCHED_SPAN * NEAR { "\u{2264}" } else { "" };
-        let most = if to * NEAR > frequency_hz * SEARCHED_SPAN { "\u{2265}" } else { "" };
-        Entry { from, to, words: format!("{least}{}\u{2013}{most}{}", three(from), three(to)) }
+        let at_most = if from < frequency_hz / SEARCHED_SPAN * NEAR { "\u{2264}" } else { "" };
+        let at_least = if to * NEAR > frequency_hz * SEARCHED_SPAN { "\u{2265}" } else { "" };
+        Entry { from, to, words: format!("{at_most}{}\u{2013}{at_least}{}", three(from), three(to)) }
     };
     let entries = rated.iter().map(entry).collect();
     Panel { title: "crosses at", unit: "Hz".to_owned(), best: Best::Most, entries, is_band: true }
 }
 
-/// The axis of the frequencies at which crossings were looked for.
+/// The axis of the frequencies that were searched for crossings.
 fn searched(frequency_hz: f64) -> PlotAxis {
     let (low, high) = ((frequency_hz / SEARCHED_SPAN).log10(), (frequency_hz * SEARCHED_SPAN).log10());
     let powers = low.ceil() as i32..=high.floor() as i32;
@@ -223,15 +229,15 @@ fn draw(
     theme: &Theme,
 ) -> Frame {
     let ComparisonPicture { rated, frequency_hz } = *picture;
-    let ends = panel.entries.iter().map(|own| own.to).filter(|own| own.is_finite());
-    let most = ends.fold(0.0, f64::max);
+    let ends = panel.entries.iter().map(|entry| entry.to).filter(|end| end.is_finite());
+    let longest = ends.fold(0.0, f64::max);
     let count = ((area.right - area.left) / 95.0).floor().clamp(1.0, 4.0) as usize;
     let across = match panel.is_band {
         true => searched(frequency_hz),
         // with room for the number behind the longest bar
-        false if most > 0.0 => {
+        false if longest > 0.0 => {
             let width = area.right - area.left;
-            PlotAxis::between(0.0, most * width / (width - NUMBER), count, "")
+            PlotAxis::between(0.0, longest * width / (width - NUMBER), count, "")
         }
         false => PlotAxis::between(0.0, 1.0, count, ""),
     };
@@ -288,27 +294,27 @@ fn bar(figure: &mut Figure, frame: &Frame, (panel, entry): (&Panel, &Entry), row
         true => [entry.from.log10(), entry.to.log10()],
         false => [0.0, entry.to],
     };
-    if ends.iter().all(|own| own.is_finite()) {
-        let [left, right] = ends.map(|own| frame.across(own));
+    if ends.iter().all(|end| end.is_finite()) {
+        let [left, right] = ends.map(|end| frame.across(end));
         figure.rect(Area::new(left, top, right.max(left + 2.0), bottom), ink);
     } else if entry.to == f64::INFINITY {
-        // longer than any
+        // an infinite value: hatched over the whole width
         let area = Area::new(frame.area.left, top, frame.area.right, bottom);
         figure.hatch(area, style::HATCH, ink);
     }
 }
 
-/// What is written at a bar: behind it, or where that has no room in it.
+/// The text of a bar: behind it, or inside if there is no room behind.
 fn words(
     figure: &mut Figure,
     frame: &Frame,
     (panel, entry): (&Panel, &Entry),
-    (y, most): (f64, f64),
+    (y, max_size): (f64, f64),
     is_best: bool,
     theme: &Theme,
 ) {
     let Area { left, right, .. } = frame.area;
-    let size = style::FOOTER.min(most);
+    let size = style::FOOTER.min(max_size);
     let width = font::width(&entry.words, size, is_best);
     let end = match panel.is_band {
         true if entry.to.is_finite() => frame.across(entry.to.log10()),
@@ -318,59 +324,62 @@ fn words(
     let behind = end + if panel.title == "RMS velocity" { 24.0 } else { 8.0 };
     let is_behind = behind + width <= right - 4.0;
     let x = if is_behind { behind } else { (left + 8.0).min(right - width) };
-    // the colour of the best is light in either theme
+    // the colour of the best bar is light in both themes
     let ink = if is_best && !is_behind { style::BLACK } else { theme.ink };
     let text = Text::new(&entry.words, (x, y + 0.5 * size * font::CAPITAL), size, ink);
     figure.text(Text { bold: is_best, ..text });
 }
 
-/// What marks and colours mean, of those that are drawn.
+/// Entries of the legend for the marks and colours that are drawn.
 fn legend_entries(rated: &[Rated], panels: &[Panel], theme: &Theme) -> Vec<(Sample, &'static str)> {
     let mut entries = Vec::new();
-    if panels.iter().any(|own| own.best().is_some()) {
+    if panels.iter().any(|panel| panel.best().is_some()) {
         entries.push((Sample::Patch(theme.stable, None), "best of its panel"));
     }
-    if rated.iter().any(|own| own.release_g.is_some()) {
+    if rated.iter().any(|scene| scene.release_g.is_some()) {
         entries.push((Sample::Marker(Marker::Triangle, theme.unstable), "leaves its stop from"));
     }
     for (name, _) in REGIMES {
-        if rated.iter().any(|own| own.summary.regime.name() == name && own.summary.rms_velocity.is_some()) {
+        if rated
+            .iter()
+            .any(|scene| scene.summary.regime.name() == name && scene.summary.rms_velocity.is_some())
+        {
             let (shape, ink) = regime(name, theme);
             entries.push((Sample::Marker(shape, ink), name));
         }
     }
     entries.push((Sample::Line(theme.shaking, style::THIN, Some(style::DASH)), "frequency of the drive"));
-    if panels.iter().flat_map(|own| &own.entries).any(|own| own.to == f64::INFINITY) {
+    if panels.iter().flat_map(|panel| &panel.entries).any(|entry| entry.to == f64::INFINITY) {
         let patch = Sample::Patch(theme.paper, Some(theme.soft.over(theme.paper, 0.35)));
         entries.push((patch, "crossing lost by 1 % of a size"));
     }
     entries
 }
 
-/// The values that are drawn, each in a row, in SI.
+/// The data of the picture, one row for each value, in SI.
 fn drawn(rated: &[Rated]) -> Table {
     let (mut series, mut scenes, mut values) = (Vec::new(), Vec::new(), Vec::new());
-    for own in rated {
-        let summary = &own.summary;
-        let power = summary.harvest.and_then(|own| own.mean_load_power);
+    for scene in rated {
+        let summary = &scene.summary;
+        let power = summary.harvest.and_then(|harvest| harvest.mean_load_power);
         let all = [
-            ("release_g", own.release_g),
-            ("crossing_g", own.crossing_g()),
-            ("crossing_low_g", own.crossing.and_then(|found| found.low)),
-            ("crossing_high_g", own.crossing.and_then(|found| found.high)),
-            ("crossing_undecided", own.crossing.map(|found| f64::from(u8::from(found.undecided)))),
+            ("release_g", scene.release_g),
+            ("crossing_g", scene.crossing_g()),
+            ("crossing_low_g", scene.crossing.and_then(|found| found.low)),
+            ("crossing_high_g", scene.crossing.and_then(|found| found.high)),
+            ("crossing_undecided", scene.crossing.map(|found| f64::from(u8::from(found.undecided)))),
             ("rms_velocity_m_per_s", summary.rms_velocity),
             ("mean_load_power_w", power),
             ("max_abs_x_m", summary.max_abs_x),
             ("impact_speed_max_m_per_s", summary.impact_speed_max),
-            ("crosses_from_hz", own.crosses_hz.map(|band| band.0)),
-            ("crosses_to_hz", own.crosses_hz.map(|band| band.1)),
-            ("threshold_sensitivity", own.sensitivity.as_ref().map(|own| own.0)),
+            ("crosses_from_hz", scene.crosses_hz.map(|band| band.0)),
+            ("crosses_to_hz", scene.crosses_hz.map(|band| band.1)),
+            ("threshold_sensitivity", scene.sensitivity.as_ref().map(|change| change.0)),
         ];
         for (name, value) in all {
             let Some(value) = value else { continue };
             series.push(name);
-            scenes.push(own.name.clone());
+            scenes.push(scene.name.clone());
             values.push(value);
         }
     }

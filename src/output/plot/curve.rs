@@ -51,7 +51,9 @@ pub fn curve_figure(
         height(potential_range, potential, f64::NAN, &format!("potential, {potential_unit}"));
     let kinks: Vec<f64> = landscape.kinks.iter().map(|kink| kink.x).filter(|x| inside(*x)).collect();
     let mut entries = Vec::new();
-    let any = |stable: bool| landscape.equilibria.iter().any(|own| own.stable == stable && inside(own.x));
+    let any = |stable: bool| {
+        landscape.equilibria.iter().any(|equilibrium| equilibrium.stable == stable && inside(equilibrium.x))
+    };
     for (stable, words) in [(true, "stable equilibrium"), (false, "unstable equilibrium")] {
         if any(stable) {
             let (shape, ink) = kind(stable, theme);
@@ -118,12 +120,12 @@ fn drawn(table: &Table, mechanism: &Mechanism, stops: (f64, f64), inside: impl F
     for i in (0..x.len()).filter(|i| inside(x[*i])) {
         drawn.put("curve", &[x[i], force[i], potential[i]], &[]);
     }
-    for equilibrium in mechanism.landscape.equilibria.iter().filter(|own| inside(own.x)) {
+    for equilibrium in mechanism.landscape.equilibria.iter().filter(|equilibrium| inside(equilibrium.x)) {
         let name = if equilibrium.stable { "stable_equilibrium" } else { "unstable_equilibrium" };
         drawn.put(name, &[equilibrium.x, 0.0, mechanism.curve.potential(equilibrium.x)], &[]);
     }
     let kinks = mechanism.landscape.kinks.iter().map(|kink| ("kink", kink.x));
-    for (name, at) in kinks.chain([("stop", stops.0), ("stop", stops.1)]).filter(|own| inside(own.1)) {
+    for (name, at) in kinks.chain([("stop", stops.0), ("stop", stops.1)]).filter(|mark| inside(mark.1)) {
         drawn.put(name, &[at], &[]);
     }
     drawn.table()

@@ -37,9 +37,9 @@ pub(super) fn map_with_cuts(
     let panels: Vec<Panel> = cuts.iter().map(|cut| Panel::new(picture, (x, y), cut, &map.lines)).collect();
     let mut entries = map.entries(picture, theme);
     for (name, shape) in REGIMES {
-        if panels.iter().any(|panel| panel.marks.iter().any(|own| own.1 == name)) {
+        if panels.iter().any(|panel| panel.marks.iter().any(|mark| mark.1 == name)) {
             let ink = regime(name, theme).1;
-            entries.retain(|own| own.1 != name);
+            entries.retain(|entry| entry.1 != name);
             entries.push((Sample::Marker(shape, ink), name));
         }
     }
@@ -103,13 +103,13 @@ impl Panel {
         marks.sort_by(|a, b| a.0.0.total_cmp(&b.0.0));
         let cuts = |lines: &[Vec<Point>]| {
             let mut all: Vec<f64> =
-                lines.iter().flat_map(|own| line_meets(own, cut.value, upright)).collect();
+                lines.iter().flat_map(|line| line_meets(line, cut.value, upright)).collect();
             all.sort_by(f64::total_cmp);
             all.dedup();
             all
         };
-        let own = label(rows, &cut.column);
-        let (name, unit) = own.split_once(", ").unwrap_or((&own, ""));
+        let column = label(rows, &cut.column);
+        let (name, unit) = column.split_once(", ").unwrap_or((&column, ""));
         Self {
             upright,
             value: cut.value,
@@ -130,7 +130,7 @@ impl Panel {
     }
 
     fn draw(&self, figure: &mut Figure, (area, up): (Area, PlotAxis), theme: &Theme) {
-        let places = self.marks.iter().map(|own| own.0.0);
+        let places = self.marks.iter().map(|mark| mark.0.0);
         let across = PlotAxis::around(places, 0.02, 5, &self.label).or_given(self.range, 5, &self.label);
         let frame = Frame::new(area, across, up);
         frame.grid(figure, theme);
@@ -142,8 +142,8 @@ impl Panel {
                 frame.vertical(figure, at, style::LINE, style::OVER_MAP, None);
             }
         }
-        for part in self.marks.split(|own| !own.0.1.is_finite()) {
-            let points: Vec<Point> = part.iter().map(|own| own.0).collect();
+        for part in self.marks.split(|mark| !mark.0.1.is_finite()) {
+            let points: Vec<Point> = part.iter().map(|mark| mark.0).collect();
             if self.quantity.words.is_none() {
                 frame.line(figure, &points, style::FINE_LINE, theme.soft);
             }

@@ -22,20 +22,22 @@ impl Drawn {
     /// Adds a row; numbers and words left out at the end are missing.
     pub fn put(&mut self, series: &'static str, numbers: &[f64], words: &[&'static str]) {
         self.series.push(series);
-        for (i, (_, own)) in self.numbers.iter_mut().enumerate() {
-            own.push(numbers.get(i).copied().unwrap_or(f64::NAN));
+        for (i, (_, column)) in self.numbers.iter_mut().enumerate() {
+            column.push(numbers.get(i).copied().unwrap_or(f64::NAN));
         }
-        for (i, (_, own)) in self.words.iter_mut().enumerate() {
-            own.push(words.get(i).copied().unwrap_or(""));
+        for (i, (_, column)) in self.words.iter_mut().enumerate() {
+            column.push(words.get(i).copied().unwrap_or(""));
         }
     }
 
     /// All rows.
     pub fn table(self) -> Table {
         let table = Table::new().with("series", Values::Words(self.series));
-        let table =
-            self.numbers.into_iter().fold(table, |table, (name, own)| table.with(name, Values::Numbers(own)));
-        self.words.into_iter().fold(table, |table, (name, own)| table.with(name, Values::Words(own)))
+        let table = self
+            .numbers
+            .into_iter()
+            .fold(table, |table, (name, values)| table.with(name, Values::Numbers(values)));
+        self.words.into_iter().fold(table, |table, (name, values)| table.with(name, Values::Words(values)))
     }
 }
 

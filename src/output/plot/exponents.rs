@@ -60,15 +60,15 @@ pub fn exponents_figure(
 
     let first = numbers("exponent_1_per_s");
     let mut entries: Vec<(Sample, &str)> = Vec::new();
-    if first.iter().any(|own| own.is_finite()) {
-        entries.extend(lines.iter().map(|own| (Sample::Line(own.ink, style::LINE, own.dash), own.name)));
+    if first.iter().any(|value| value.is_finite()) {
+        entries.extend(lines.iter().map(|line| (Sample::Line(line.ink, style::LINE, line.dash), line.name)));
         entries.push((Sample::Patch(lines[0].band(theme), None), "standard error"));
     }
     let resting = first.contains(&f64::NEG_INFINITY);
     if resting {
         entries.push((Sample::Ticks(theme.ink), "both \u{2212}\u{221e} (rests on a stop)"));
     }
-    if first.iter().any(|own| own.is_nan()) {
+    if first.iter().any(|value| value.is_nan()) {
         entries.push((Sample::Ticks(theme.soft), "no value"));
     }
     let top = below_legend(&mut figure, theme, &entries);
@@ -81,8 +81,8 @@ pub fn exponents_figure(
     for line in &lines {
         line.draw(&mut figure, &frame, rows, (places, &order), theme);
     }
-    for (place, own) in places.iter().zip(first).filter(|(_, own)| !own.is_finite()) {
-        let ink = if own.is_nan() { theme.soft } else { theme.ink };
+    for (place, value) in places.iter().zip(first).filter(|(_, value)| !value.is_finite()) {
+        let ink = if value.is_nan() { theme.soft } else { theme.ink };
         let at = frame.across(*place);
         figure.line(&[(at, bottom - TICK), (at, bottom)], style::FINE_LINE, ink, frame.area);
     }
@@ -90,8 +90,9 @@ pub fn exponents_figure(
     let names = ["exponent_1_per_s", "exponent_1_se", "exponent_2_per_s", "exponent_2_se"];
     let columns = names.map(numbers);
     let mut drawn = Drawn::new([x.as_str()].into_iter().chain(names), &[]);
-    for (row, at) in places.iter().enumerate().filter(|own| (frame.x.low..=frame.x.high).contains(own.1)) {
-        let [a, b, c, d] = columns.map(|own| own[row]);
+    for (row, at) in places.iter().enumerate().filter(|place| (frame.x.low..=frame.x.high).contains(place.1))
+    {
+        let [a, b, c, d] = columns.map(|column| column[row]);
         drawn.put("exponents", &[*at, a, b, c, d], &[]);
     }
     figure.data = drawn.table();

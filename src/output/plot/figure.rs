@@ -218,7 +218,7 @@ impl Figure {
         let shown = self.shown;
         self.shapes.retain_mut(|shape| match shape {
             Shape::Text(text) => (shown.top..=shown.bottom).contains(&text.at.1),
-            Shape::Rect(area, _) => area.common(shown).inspect(|own| *area = *own).is_some(),
+            Shape::Rect(area, _) => area.common(shown).inspect(|part| *area = *part).is_some(),
             _ => true,
         });
         self

@@ -33,7 +33,7 @@ fn fits(label: &str, height: f64) -> bool {
 /// A label in two lines, parted at the blank next to its middle.
 fn halves(label: &str) -> Option<(&str, &str)> {
     let middle = label.len() / 2;
-    let blank = label.match_indices(' ').map(|own| own.0).min_by_key(|at| at.abs_diff(middle))?;
+    let blank = label.match_indices(' ').map(|blank| blank.0).min_by_key(|at| at.abs_diff(middle))?;
     Some((&label[..blank], &label[blank + 1..]))
 }
 
@@ -199,7 +199,8 @@ impl Frame {
         let mut last = None;
         for point in data {
             let place = self.place(point);
-            let far = kept.last().is_none_or(|own: &Point| (own.0 - place.0).hypot(own.1 - place.1) > NEAR);
+            let far =
+                kept.last().is_none_or(|last: &Point| (last.0 - place.0).hypot(last.1 - place.1) > NEAR);
             if far {
                 kept.push(place);
             }
@@ -265,7 +266,7 @@ fn extremes(column: &[Point]) -> Vec<Point> {
     let by = |better: fn(f64, f64) -> bool| {
         let mut best: Option<usize> = None;
         for (i, point) in column.iter().enumerate() {
-            if !point.1.is_nan() && best.is_none_or(|own| better(point.1, column[own].1)) {
+            if !point.1.is_nan() && best.is_none_or(|best| better(point.1, column[best].1)) {
                 best = Some(i);
             }
         }
@@ -273,8 +274,8 @@ fn extremes(column: &[Point]) -> Vec<Point> {
     };
     let mut places: Vec<usize> = [
         column.first().map(|_| 0),
-        by(|own, best| own < best),
-        by(|own, best| own > best),
+        by(|value, best| value < best),
+        by(|value, best| value > best),
         column.len().checked_sub(1),
     ]
     .into_iter()

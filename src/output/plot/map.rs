@@ -65,9 +65,9 @@ impl Mosaic {
     pub fn paint(&self, figure: &mut Figure, frame: &Frame, theme: &Theme, colour: impl Fn(f64) -> Ink) {
         let Self { across, up, cells } = self;
         for column in 0..across.values.len() {
-            let own = &cells[column * up.values.len()..][..up.values.len()];
+            let values = &cells[column * up.values.len()..][..up.values.len()];
             let mut row = 0;
-            for run in own.chunk_by(|a, b| a == b) {
+            for run in values.chunk_by(|a, b| a == b) {
                 let (left, right) =
                     (frame.across(across.edges[column]), frame.across(across.edges[column + 1]));
                 let (low, high) = (frame.down(up.edges[row]), frame.down(up.edges[row + run.len()]));
@@ -170,8 +170,8 @@ impl Map {
     /// Its cells and the points of its lines.
     pub fn drawn(&self, picture: &SweepPicture, (x, y): (&str, &str)) -> Drawn {
         let mut drawn = drawn(picture, &[(x, picture.ranges.x), (y, picture.ranges.y)]);
-        let release = self.lines.release.iter().flatten().map(|own| ("release", own));
-        let crossing = self.lines.crossing.iter().flatten().map(|own| ("first_crossing", own));
+        let release = self.lines.release.iter().flatten().map(|point| ("release", point));
+        let crossing = self.lines.crossing.iter().flatten().map(|point| ("first_crossing", point));
         for (series, (a, b)) in release.chain(crossing) {
             drawn.put(series, &[*a, *b], &[]);
         }
@@ -188,7 +188,7 @@ pub(super) fn meanings(
 ) -> Vec<(Sample, &'static str)> {
     let mut entries = Vec::new();
     let there = |place: usize| cells.contains(&Cell::Value(place as f64));
-    for (place, name) in quantity.words.unwrap_or_default().iter().enumerate().filter(|own| there(own.0)) {
+    for (place, name) in quantity.words.unwrap_or_default().iter().enumerate().filter(|word| there(word.0)) {
         entries.push((Sample::Patch(quantity.ink(place as f64, theme), None), *name));
     }
     if cells.contains(&Cell::Rest) {

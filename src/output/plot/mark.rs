@@ -33,7 +33,7 @@ pub const REGIMES: [(&str, Marker); 4] = [
 
 /// Marker and colour of a regime by its word in the tables; ink and a disc where it has none.
 pub fn regime(word: &str, theme: &Theme) -> (Marker, Ink) {
-    let place = REGIMES.iter().position(|(own, _)| *own == word);
+    let place = REGIMES.iter().position(|(regime, _)| *regime == word);
     place.map_or((Marker::Disc, theme.ink), |place| (REGIMES[place].1, theme.regimes[place]))
 }
 
@@ -101,9 +101,9 @@ fn laid_out(entries: &[(Sample, &str)], left: f64, right: f64) -> Vec<(f64, usiz
         if x > left && x + width > right {
             (x, row) = (left, row + 1);
         }
-        let own = (x, row);
+        let place = (x, row);
         x += width + BETWEEN;
-        own
+        place
     };
     entries.iter().map(place).collect()
 }
@@ -120,7 +120,7 @@ pub fn legend(
 ) -> f64 {
     let (left, right) = figure.breadth(ends);
     let places = laid_out(entries, left, right);
-    let rows = places.last().map_or(0, |own| own.1);
+    let rows = places.last().map_or(0, |place| place.1);
     figure.grow(ROW * rows as f64);
     for ((sample, words), (x, row)) in entries.iter().zip(places) {
         let y = middle + ROW * row as f64;

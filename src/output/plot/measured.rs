@@ -46,7 +46,12 @@ pub fn measured_figure(
         _ => ("x_m", (1e3, "displacement, mm".to_owned())),
     };
     let scaled = |times: &[f64], values: &[f64]| -> Vec<Point> {
-        times.iter().zip(values).map(|(t, own)| (*t, own * scale)).filter(|own| own.1.is_finite()).collect()
+        times
+            .iter()
+            .zip(values)
+            .map(|(t, value)| (*t, value * scale))
+            .filter(|point| point.1.is_finite())
+            .collect()
     };
     let computed = scaled(column("t_s"), column(name));
     let measured = scaled(&found.times, &found.measured);
@@ -54,8 +59,8 @@ pub fn measured_figure(
     let panel =
         |(top, bottom): (f64, f64), (from, to): (f64, f64), given: Option<(f64, f64)>, count: usize| {
             let inside = |data: &[Point]| -> Vec<f64> {
-                let seen = data.iter().filter(|own| (from..=to).contains(&own.0));
-                seen.map(|own| own.1).collect()
+                let seen = data.iter().filter(|point| (from..=to).contains(&point.0));
+                seen.map(|point| point.1).collect()
             };
             let all = inside(&computed).into_iter().chain(inside(&measured));
             let up = PlotAxis::around(all, 0.09, count, &label).or_given(given, count, &label);
@@ -66,8 +71,9 @@ pub fn measured_figure(
     let (bottom, right) = (figure.bottom(), figure.right());
     let first_bottom = if inset.is_some() { 0.5 * (TOP + bottom - BETWEEN) } else { bottom };
     let mut panels = vec![panel((TOP, first_bottom), whole, ranges.y, if inset.is_some() { 5 } else { 8 })];
-    panels.extend(inset.map(|own| panel((first_bottom + BETWEEN, bottom), own, None, 5)));
-    let left = |own: &(f64, f64, PlotAxis, PlotAxis)| Frame::left(&figure, &own.3, LEFT, own.1 - own.0);
+    panels.extend(inset.map(|times| panel((first_bottom + BETWEEN, bottom), times, None, 5)));
+    let left =
+        |panel: &(f64, f64, PlotAxis, PlotAxis)| Frame::left(&figure, &panel.3, LEFT, panel.1 - panel.0);
     let left = panels.iter().map(left).fold(0.0, f64::max);
     let gutter = (!figure.is_narrow()).then_some(GUTTER);
     let panels: Vec<Frame> = panels
@@ -97,7 +103,7 @@ pub fn measured_figure(
                 }
             }
         }
-        let inside = |own: &&Point| (frame.x.low..=frame.x.high).contains(&own.0);
+        let inside = |point: &&Point| (frame.x.low..=frame.x.high).contains(&point.0);
         let few = measured.iter().filter(inside).count() < DOTS;
         if !few {
             for part in measured.chunk_by(|a, b| !timing.is_gap(b.0 - a.0)) {
@@ -107,7 +113,7 @@ pub fn measured_figure(
         frame.dense_line(&mut figure, computed.iter().copied(), style::FINE_LINE, theme.ink);
         if few {
             dotted = true;
-            let places = measured.iter().filter(inside).map(|own| frame.place(*own));
+            let places = measured.iter().filter(inside).map(|point| frame.place(*point));
             places.filter(|at| frame.area.contains(*at)).for_each(|at| {
                 dot(&mut figure, Marker::Disc, at, 4.0, of_measured);
             });
@@ -126,7 +132,7 @@ pub fn measured_figure(
     legend(&mut figure, theme, &entries, (LEFT, right), 142.0);
     let mut drawn = Drawn::new(["t_s", name], &[]);
     for (series, points) in [("computed", &computed), ("measured", &measured)] {
-        points.iter().for_each(|(t, own)| drawn.put(series, &[*t, own / scale], &[]));
+        points.iter().for_each(|(t, value)| drawn.put(series, &[*t, value / scale], &[]));
     }
     figure.data = drawn.table();
     let (rms, percent) = found.rms;

@@ -58,7 +58,7 @@ pub fn png(figure: &Figure) -> Result<Vec<u8>, PaintError> {
     let large = (width * FINER, height * FINER);
     let mut pixels = vec![0; large.0 as usize * large.1 as usize * 3];
     if let Some(Shape::Rect(_, Ink(red, green, blue))) = figure.shapes.first() {
-        pixels.chunks_exact_mut(3).for_each(|own| own.copy_from_slice(&[*red, *green, *blue]));
+        pixels.chunks_exact_mut(3).for_each(|pixel| pixel.copy_from_slice(&[*red, *green, *blue]));
     }
     let terms = Terms {
         scale: f64::from(FINER) * share,
@@ -110,7 +110,9 @@ pub fn svg(figure: &Figure) -> Result<String, PaintError> {
     let (width, height) = match (figure.size_mm(), figure.size) {
         (Some((width, height)), _) => (format!("{}mm", short(width)), format!("{}mm", short(height))),
         (None, Some((width, height))) => (width.to_string(), height.to_string()),
-        (None, None) => [right - left, bottom - top].map(|own| (units(own) / SVG_UNITS).to_string()).into(),
+        (None, None) => {
+            [right - left, bottom - top].map(|length| (units(length) / SVG_UNITS).to_string()).into()
+        }
     };
     let made = figure.made().replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
     Ok(format!(

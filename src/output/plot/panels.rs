@@ -48,7 +48,7 @@ impl Panel {
 
     /// The panel that is called so.
     pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|own| own.name() == name)
+        Self::ALL.into_iter().find(|panel| panel.name() == name)
     }
 }
 
@@ -129,7 +129,7 @@ impl Places {
 }
 
 fn is_whole(shown: &[Panel]) -> bool {
-    Panel::ALL.iter().all(|own| shown.contains(own))
+    Panel::ALL.iter().all(|panel| shown.contains(panel))
 }
 
 /// The places of the panels over time that are shown, and whether the portrait is.

@@ -36,7 +36,7 @@ pub fn pdf(figure: &Figure) -> Result<Vec<u8>, PaintError> {
     let faces = FACES.map(|bytes| Font::new(bytes.to_vec().into(), 0));
     let [Some(regular), Some(bold)] = faces else { return Err(failed("the font cannot be read")) };
     let mut document = Document::new();
-    let title = figure.origin.get("title").and_then(|own| own.as_str()).unwrap_or_default();
+    let title = figure.origin.get("title").and_then(|title| title.as_str()).unwrap_or_default();
     let about = Metadata::new().title(title.to_owned()).creator(figure.software());
     document.set_metadata(about.description(figure.made()));
     let settings = PageSettings::from_wh(width as f32, height as f32);
@@ -92,8 +92,8 @@ fn fill(surface: &mut Surface, ink: Ink) {
 
 fn rect(surface: &mut Surface, Area { left, top, right, bottom }: Area) {
     let mut path = PathBuilder::new();
-    if let Some(own) = Rect::from_ltrb(left as f32, top as f32, right as f32, bottom as f32) {
-        path.push_rect(own);
+    if let Some(rect) = Rect::from_ltrb(left as f32, top as f32, right as f32, bottom as f32) {
+        path.push_rect(rect);
     }
     if let Some(path) = path.finish() {
         surface.draw_path(&path);

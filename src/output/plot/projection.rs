@@ -111,13 +111,13 @@ pub fn faces(
         for row in (0..up.len().saturating_sub(1)).rev() {
             let around = [(column, row), (column + 1, row), (column + 1, row + 1), (column, row + 1)];
             let [Some(a), Some(b), Some(c), Some(d)] = around.map(|(i, j)| height(i, j)) else { continue };
-            let own = [a, b, c, d];
-            let corner = |i: usize| (across[around[i].0], up[around[i].1], share(own[i].0));
+            let heights = [a, b, c, d];
+            let corner = |i: usize| (across[around[i].0], up[around[i].1], share(heights[i].0));
             faces.push(Face {
                 cell: (column, row),
                 corners: [0, 1, 2, 3].map(corner),
-                share: share(own.iter().map(|own| own.0).sum::<f64>() / 4.0),
-                resting: own.iter().all(|own| own.1),
+                share: share(heights.iter().map(|height| height.0).sum::<f64>() / 4.0),
+                resting: heights.iter().all(|height| height.1),
                 lined: [
                     row % step_up == 0,
                     (row + 1) % step_up == 0 || row + 2 == up.len(),
@@ -138,8 +138,8 @@ mod tests {
     fn a_box_fills_its_rectangle() {
         let projection = Projection { left: 10.0, top: 20.0, right: 110.0, bottom: 80.0 };
         let close = |at: BoxPlace, x: Option<f64>, y: Option<f64>| {
-            let own = projection.place(at);
-            x.is_none_or(|x| (own.0 - x).abs() < 1e-12) && y.is_none_or(|y| (own.1 - y).abs() < 1e-12)
+            let point = projection.place(at);
+            x.is_none_or(|x| (point.0 - x).abs() < 1e-12) && y.is_none_or(|y| (point.1 - y).abs() < 1e-12)
         };
         assert!(close((0.0, 1.0, 0.3), Some(10.0), None) && close((1.0, 0.0, 0.7), Some(110.0), None));
         assert!(close((0.0, 0.0, 0.0), None, Some(80.0)) && close((1.0, 1.0, 1.0), None, Some(20.0)));
@@ -150,7 +150,7 @@ mod tests {
         let shares = [0.0, 0.5, 1.0];
         let height = |i: usize, j: usize| (i + j < 4).then_some(((i + j) as f64, i + j == 0));
         let faces = faces(&shares, &shares, height, |value| value / 4.0);
-        assert_eq!(faces.iter().map(|own| own.cell).collect::<Vec<_>>(), [(1, 0), (0, 1), (0, 0)]);
+        assert_eq!(faces.iter().map(|face| face.cell).collect::<Vec<_>>(), [(1, 0), (0, 1), (0, 0)]);
         assert_eq!(faces[2].corners[2], (0.5, 0.5, 0.5));
         assert_eq!((faces[2].share, faces[2].resting), (0.25, false));
     }

@@ -30,7 +30,7 @@ const WORDS: [(&str, &[&str]); 5] = [
 
 /// The words that the column called `name` can have; none where it has numbers.
 pub fn words_of(name: &str) -> Option<&'static [&'static str]> {
-    WORDS.iter().find(|own| own.0 == name).map(|own| own.1)
+    WORDS.iter().find(|column| column.0 == name).map(|column| column.1)
 }
 
 /// A column to show.
@@ -54,35 +54,37 @@ pub fn quantities<'a>(table: &'a Table, grid: &'a Grid) -> impl Iterator<Item = 
     let shown = |name: &str, values: &Values| {
         !matches!(values, Values::Words(_) | Values::Names(_)) || words_of(name).is_some()
     };
-    let columns = table.columns().iter().filter(move |own| shown(&own.name, &own.values));
-    columns.map(|own| own.name.as_str()).filter(|name| !grid.columns().iter().any(|own| own == name))
+    let columns = table.columns().iter().filter(move |column| shown(&column.name, &column.values));
+    columns
+        .map(|column| column.name.as_str())
+        .filter(|name| !grid.columns().iter().any(|field| field == name))
 }
 
 impl Quantity {
     /// The column called `name` of `rows`; no values where there is none.
     pub fn of(rows: &Table, name: &str) -> Self {
         let column = rows.column(name);
-        let values: Vec<f64> = match column.map(|own| &own.values) {
+        let values: Vec<f64> = match column.map(|column| &column.values) {
             Some(Values::Numbers(values)) => values.clone(),
             Some(Values::Counts(values)) => values.iter().map(|n| n.map_or(f64::NAN, |n| n as f64)).collect(),
             Some(Values::Names(_)) => Vec::new(),
             Some(Values::Words(words)) => {
                 let known = words_of(name).unwrap_or_default();
-                let place = |word: &&str| known.iter().position(|own| own == word);
+                let place = |word: &&str| known.iter().position(|entry| entry == word);
                 words.iter().map(|word| place(word).map_or(f64::NAN, |place| place as f64)).collect()
             }
             None => Vec::new(),
         };
         let greatest = values.iter().filter(|v| v.is_finite()).fold(0.0_f64, |a, b| a.max(b.abs()));
-        let label = column.map_or_else(|| name.to_owned(), |own| own.label());
-        let words = label.split_once(", ").map_or(label.as_str(), |own| own.0);
+        let label = column.map_or_else(|| name.to_owned(), |column| column.label());
+        let words = label.split_once(", ").map_or(label.as_str(), |parts| parts.0);
         let words = match name {
             RMS => "RMS velocity",
             "max_abs_x_m" => "largest |x|",
             _ => words,
         };
         // Small lengths and speeds are short numbers in thousandths.
-        let (scale, label) = match column.map(|own| own.unit()) {
+        let (scale, label) = match column.map(|column| column.unit()) {
             Some(unit @ ("m" | "m/s")) if greatest < 2.0 => (1e3, format!("{words}, m{unit}")),
             Some(unit) if !unit.is_empty() => (1.0, format!("{words}, {unit}")),
             _ => (1.0, words.to_owned()),

@@ -152,11 +152,11 @@ pub fn measured_force_figure(
 ) -> Figure {
     let (scale, up) = unit(Quantity::Force, &found.measured);
     let mm = |values: &[f64]| -> Vec<Point> {
-        found.positions.iter().zip(values).map(|(x, own)| (x * 1e3, own * scale)).collect()
+        found.positions.iter().zip(values).map(|(x, value)| (x * 1e3, value * scale)).collect()
     };
     let apart: Vec<f64> = found.measured.iter().zip(&found.computed).map(|(m, c)| c - m).collect();
     let (low, high) = extent(found.positions.iter().copied());
-    let near = pairs(curve, scale).into_iter().filter(|own| (low * 1e3..=high * 1e3).contains(&own.0));
+    let near = pairs(curve, scale).into_iter().filter(|point| (low * 1e3..=high * 1e3).contains(&point.0));
     let name = "computed";
     let computed = Series { name, series: name, points: near.collect(), ink: theme.ink, kind: Kind::Line };
     let picture = RecordPicture {
@@ -183,8 +183,8 @@ pub fn measured_force_figure(
 /// The first number with its interval and the second one; of a force curve the wells, the barrier and the
 /// hysteresis.
 fn told(summary: &[Identity]) -> String {
-    let of = |name: &str| summary.iter().find(|own| own.name == name).map(|own| own.value);
-    let known = |name: &str, unit: f64| of(name).map(|own| short(own * unit));
+    let of = |name: &str| summary.iter().find(|number| number.name == name).map(|number| number.value);
+    let known = |name: &str, unit: f64| of(name).map(|value| short(value * unit));
     let mut parts = Vec::new();
     if let (Some(left), Some(right)) = (known("left_well_m", 1e3), known("right_well_m", 1e3)) {
         parts.push(format!("wells at {left} and {right} mm"));
@@ -193,10 +193,10 @@ fn told(summary: &[Identity]) -> String {
     if let (Some(left), Some(right)) = barrier {
         parts.push(format!("barrier of {left} mJ from the left, {right} mJ from the right"));
     }
-    parts.extend(known("hysteresis_n", 1.0).map(|own| format!("hysteresis {own} N")));
+    parts.extend(known("hysteresis_n", 1.0).map(|force| format!("hysteresis {force} N")));
     if parts.is_empty() {
         parts.extend(summary.first().map(Identity::describe));
-        parts.extend(of("frequency_hz").map(|own| format!("{} Hz", short(own))));
+        parts.extend(of("frequency_hz").map(|frequency| format!("{} Hz", short(frequency))));
     }
     parts.join(", ").replace('-', "\u{2212}")
 }
@@ -220,7 +220,7 @@ fn pairs(table: &Table, scale: f64) -> Vec<Point> {
 
 /// The factor from SI to the unit of an axis, and what the axis is called.
 fn unit(quantity: Quantity, values: &[f64]) -> (f64, String) {
-    let most = values.iter().fold(0.0, |most: f64, own| most.max(own.abs()));
+    let most = values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     match quantity {
         Quantity::Velocity => {
             let (scale, unit) = speed_unit(values.iter().copied());
@@ -237,20 +237,20 @@ impl RecordPicture {
     fn draw(&self, words: &str, ranges: Ranges, caption: &Caption, theme: &Theme) -> Figure {
         let mut figure = Figure::new(theme, caption, LEAST);
         let of_record = theme.regimes[3];
-        let inside = |own: &&Point| ranges.x.is_none_or(|(a, b)| (a..=b).contains(&own.0));
+        let inside = |point: &&Point| ranges.x.is_none_or(|(a, b)| (a..=b).contains(&point.0));
         let shown = || self.record.iter().filter(inside);
         let dots = shown().count() < DOTS;
         let mut entries = Vec::new();
         if !self.record.is_empty() {
             entries.push((if dots { disc(of_record) } else { bar(of_record) }, "measured"));
         }
-        entries.extend(self.over.iter().filter(|own| !own.name.is_empty()).map(|own| {
-            let sample = match own.kind {
-                Kind::Line => Sample::Line(own.ink, style::LINE, None),
-                Kind::Dashed => Sample::Line(own.ink, style::LINE, Some(style::DASH)),
-                Kind::Marks(mark) => Sample::Marker(mark, own.ink),
+        entries.extend(self.over.iter().filter(|series| !series.name.is_empty()).map(|series| {
+            let sample = match series.kind {
+                Kind::Line => Sample::Line(series.ink, style::LINE, None),
+                Kind::Dashed => Sample::Line(series.ink, style::LINE, Some(style::DASH)),
+                Kind::Marks(mark) => Sample::Marker(mark, series.ink),
             };
-            (sample, own.name)
+            (sample, series.name)
         }));
         if matches!(self.lower, Lower::Intervals(..)) {
             let band = theme.ink.over(theme.paper, 0.14);
@@ -261,25 +261,25 @@ impl RecordPicture {
         let (label, lower) = match &self.lower {
             Lower::Rest(label, _, points) => {
                 let unit = self.up.rsplit(", ").next().unwrap_or_default();
-                (format!("{label}, {unit}"), points.iter().map(|own| own.1).chain([0.0]).collect())
+                (format!("{label}, {unit}"), points.iter().map(|point| point.1).chain([0.0]).collect())
             }
             Lower::Intervals(label, _, rows, all) => {
-                let ends = all.iter().flat_map(|own| [own.interval.0, own.interval.1]);
-                let rows = rows.iter().flat_map(|own| own.1);
+                let ends = all.iter().flat_map(|number| [number.interval.0, number.interval.1]);
+                let rows = rows.iter().flat_map(|row| row.1);
                 ((*label).to_owned(), rows.chain(ends).collect::<Vec<f64>>())
             }
         };
-        let places = self.record.iter().map(|own| own.0).chain(match &self.lower {
-            Lower::Intervals(_, _, rows, _) => rows.iter().map(|own| own.0).collect(),
+        let places = self.record.iter().map(|point| point.0).chain(match &self.lower {
+            Lower::Intervals(_, _, rows, _) => rows.iter().map(|row| row.0).collect(),
             Lower::Rest(..) => Vec::new(),
         });
         let across = PlotAxis::around(places, 0.0, 8, self.across).or_given(ranges.x, 8, self.across);
-        let drawn = self.over.iter().flat_map(|own| &own.points).filter(inside);
-        let heights = shown().chain(drawn).map(|own| own.1);
+        let drawn = self.over.iter().flat_map(|series| &series.points).filter(inside);
+        let heights = shown().chain(drawn).map(|point| point.1);
         let up = PlotAxis::around(heights, 0.08, 6, &self.up).or_given(ranges.y, 6, &self.up);
         let below = PlotAxis::around(lower, 0.12, 4, &label);
         let [first, second] = stretched(FRAMES, 175.0 + more, figure.bottom() - 8.0);
-        let height = |own: (f64, f64)| own.1 - own.0;
+        let height = |edges: (f64, f64)| edges.1 - edges.0;
         let left = Frame::left(&figure, &up, LEFT, height(first));
         let left = left.max(Frame::left(&figure, &below, LEFT, height(second)));
         let area = |(top, bottom): (f64, f64)| Area::new(left, top, figure.right(), bottom);
@@ -290,29 +290,31 @@ impl RecordPicture {
         lower.grid(&mut figure, theme);
         match (dots, self.rises) {
             (true, _) => {
-                let at = self.record.iter().map(|own| upper.place(*own));
+                let at = self.record.iter().map(|point| upper.place(*point));
                 at.filter(|at| upper.area.contains(*at)).for_each(|at| {
                     dot(&mut figure, Marker::Disc, at, 4.0, of_record);
                 });
             }
             (_, true) => {
-                let timing = Timing::of(&self.record.iter().map(|own| own.0).collect::<Vec<_>>());
+                let timing = Timing::of(&self.record.iter().map(|point| point.0).collect::<Vec<_>>());
                 for part in self.record.chunk_by(|a, b| !timing.is_gap(b.0 - a.0)) {
                     upper.dense_line(&mut figure, part.iter().copied(), style::LINE, of_record);
                 }
             }
             (_, false) => upper.path(&mut figure, self.record.iter().copied(), style::LINE, of_record),
         }
-        for own in &self.over {
-            match own.kind {
-                Kind::Line => upper.path(&mut figure, own.points.iter().copied(), style::FINE_LINE, own.ink),
+        for series in &self.over {
+            match series.kind {
+                Kind::Line => {
+                    upper.path(&mut figure, series.points.iter().copied(), style::FINE_LINE, series.ink)
+                }
                 Kind::Dashed => {
-                    upper.dashed(&mut figure, &own.points, style::FINE_LINE, own.ink, style::DASH);
+                    upper.dashed(&mut figure, &series.points, style::FINE_LINE, series.ink, style::DASH);
                 }
                 Kind::Marks(mark) => {
-                    let at = own.points.iter().map(|own| upper.place(*own));
+                    let at = series.points.iter().map(|point| upper.place(*point));
                     at.filter(|at| upper.area.contains(*at)).for_each(|at| {
-                        marker(&mut figure, mark, at, 6.0, own.ink, theme.paper);
+                        marker(&mut figure, mark, at, 6.0, series.ink, theme.paper);
                     });
                 }
             }
@@ -330,8 +332,8 @@ impl RecordPicture {
         match &self.lower {
             Lower::Rest(_, _, points) => {
                 let every = points.len().div_ceil(MOST_LOWER).max(1);
-                for own in points.iter().step_by(every) {
-                    let at = frame.place(*own);
+                for point in points.iter().step_by(every) {
+                    let at = frame.place(*point);
                     if area.contains(at) {
                         dot(figure, Marker::Disc, at, 2.4, of_record);
                     }
@@ -339,20 +341,20 @@ impl RecordPicture {
                 frame.horizontal(figure, 0.0, style::FINE_LINE, theme.ink, None);
             }
             Lower::Intervals(_, _, rows, all) => {
-                if let Some(own) = all {
-                    let ends = [own.interval.1, own.interval.0].map(|own| frame.down(own));
-                    let [top, bottom] = ends.map(|own| own.clamp(area.top, area.bottom));
-                    if ends.iter().all(|own| own.is_finite()) {
+                if let Some(number) = all {
+                    let ends = [number.interval.1, number.interval.0].map(|end| frame.down(end));
+                    let [top, bottom] = ends.map(|end| end.clamp(area.top, area.bottom));
+                    if ends.iter().all(|end| end.is_finite()) {
                         figure.rect(
                             Area::new(area.left, top, area.right, bottom.max(top + 1.0)),
                             theme.ink.over(theme.paper, 0.14),
                         );
                     }
-                    frame.horizontal(figure, own.value, style::THIN, theme.ink, None);
+                    frame.horizontal(figure, number.value, style::THIN, theme.ink, None);
                 }
                 for (x, [value, low, high]) in rows {
-                    let (at, ends) = (frame.place((*x, *value)), [*low, *high].map(|own| frame.down(own)));
-                    if ends.iter().all(|own| own.is_finite()) {
+                    let (at, ends) = (frame.place((*x, *value)), [*low, *high].map(|end| frame.down(end)));
+                    if ends.iter().all(|end| end.is_finite()) {
                         figure.line(&[(at.0, ends[0]), (at.0, ends[1])], style::LINE, of_record, area);
                     }
                     if area.contains(at) {
@@ -377,7 +379,7 @@ impl RecordPicture {
             points.iter().for_each(|(x, y)| drawn.put(series, &[x / k, y / scale], &[]));
         };
         put("measured", &self.record);
-        self.over.iter().for_each(|own| put(own.series, &own.points));
+        self.over.iter().for_each(|series| put(series.series, &series.points));
         match &self.lower {
             Lower::Rest(_, series, points) => put(series, points),
             Lower::Intervals(_, name, rows, _) => {

@@ -99,7 +99,7 @@ impl Seen<'_> {
     }
 
     fn is_over_time(&self) -> bool {
-        self.panels.iter().any(|own| *own != Panel::Portrait)
+        self.panels.iter().any(|panel| *panel != Panel::Portrait)
     }
 
     /// The rows from a time on up to where the picture ends.
@@ -118,15 +118,15 @@ impl Seen<'_> {
         let stops = [self.trace.stops.0, self.trace.stops.1];
         let near = stops.into_iter().filter(|stop| (low - room..=high + room).contains(stop));
         let label = "displacement, mm";
-        let own = PlotAxis::around(x.iter().copied().chain(near).map(|x| x * 1e3), 0.11, 6, label);
-        own.or_given(self.displacements, 6, label)
+        let axis = PlotAxis::around(x.iter().copied().chain(near).map(|x| x * 1e3), 0.11, 6, label);
+        axis.or_given(self.displacements, 6, label)
     }
 
     /// All that is drawn.
     fn drawn(&self) -> Table {
         let Self { trace, t, x, v, accel, .. } = *self;
         let mut drawn = Drawn::new(["t_s", "x_m", "v_m_per_s", "base_accel_m_per_s2"], &["side"]);
-        let shown = [Panel::Displacement, Panel::Velocity, Panel::Acceleration].map(|own| self.has(own));
+        let shown = [Panel::Displacement, Panel::Velocity, Panel::Acceleration].map(|panel| self.has(panel));
         for i in self.rows(trace.shown_from).filter(|_| self.is_over_time()) {
             let value = |place: usize, of: &[f64]| if shown[place] { of[i] } else { f64::NAN };
             drawn.put("run", &[t[i], value(0, x), value(1, v), value(2, accel)], &[]);
@@ -141,7 +141,7 @@ impl Seen<'_> {
         if let Some(impacts) = impacts {
             let sides = impacts.words("side");
             let times = column(impacts, "t_s");
-            for (at, side) in times.iter().zip(sides).filter(|own| shown.contains(own.0)) {
+            for (at, side) in times.iter().zip(sides).filter(|impact| shown.contains(impact.0)) {
                 let stop = if *side == "left" { trace.stops.0 } else { trace.stops.1 };
                 drawn.put("impact", &[*at, stop], &[side]);
             }

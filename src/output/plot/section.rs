@@ -56,8 +56,8 @@ pub fn section_figure(picture: &SectionPicture, caption: &Caption, theme: &Theme
     let kind = kind_of(rows, phase_deg.is_some());
     let present = |place: usize| (0..rows.rows()).any(|row| kind(row) == place);
     let mut entries: Vec<(Sample, &str)> = Vec::new();
-    for (_, own) in kinds.iter().enumerate().filter(|(place, _)| present(*place)) {
-        entries.push((Sample::Marker(own.shape, own.ink), own.name));
+    for (_, kind) in kinds.iter().enumerate().filter(|(place, _)| present(*place)) {
+        entries.push((Sample::Marker(kind.shape, kind.ink), kind.name));
     }
     let wall = over.is_none() && phase_deg.is_some();
     if wall && (picture.stops.0.is_some() || picture.stops.1.is_some()) {
@@ -120,14 +120,15 @@ pub fn section_figure(picture: &SectionPicture, caption: &Caption, theme: &Theme
 fn drawn(rows: &Table, over: Option<&str>, states: bool, inside: impl Fn(f64) -> bool) -> Table {
     let series =
         if states { ["state_without_impacts", "state_with_impacts"] } else { ["left_stop", "right_stop"] };
-    let own: &[&str] = if states { &["x_m", "v_m_per_s"] } else { &["phase_deg", "v_in_m_per_s"] };
-    let names: Vec<&str> = over.into_iter().chain(own.iter().copied()).collect();
+    let pair: &[&str] = if states { &["x_m", "v_m_per_s"] } else { &["phase_deg", "v_in_m_per_s"] };
+    let names: Vec<&str> = over.into_iter().chain(pair.iter().copied()).collect();
     let columns: Vec<&[f64]> = names.iter().map(|name| rows.numbers(name).unwrap_or_default()).collect();
     let (kind, ways) = (kind_of(rows, states), rows.words(DIRECTION));
     let (across, _) = columns_of(rows, over, states);
     let mut drawn = Drawn::new(names, if ways.is_empty() { &[] } else { &[DIRECTION] });
     for row in (0..rows.rows()).filter(|row| inside(across.values[*row])) {
-        let numbers: Vec<f64> = columns.iter().map(|own| own.get(row).copied().unwrap_or(f64::NAN)).collect();
+        let numbers: Vec<f64> =
+            columns.iter().map(|column| column.get(row).copied().unwrap_or(f64::NAN)).collect();
         drawn.put(series[kind(row)], &numbers, ways.get(row..=row).unwrap_or_default());
     }
     drawn.table()
@@ -141,7 +142,7 @@ fn turn(label: &str) -> PlotAxis {
 
 /// Which of the two kinds a row is.
 fn kind_of(rows: &Table, states: bool) -> impl Fn(usize) -> usize {
-    let impacts = match rows.column(IMPACTS).map(|own| &own.values) {
+    let impacts = match rows.column(IMPACTS).map(|column| &column.values) {
         Some(Values::Counts(counts)) => counts.as_slice(),
         _ => &[],
     };

@@ -52,7 +52,7 @@ impl Sheet {
     pub fn read(text: &SheetText<'_>, has_pixels: bool) -> Result<Self, SheetError> {
         let error = |option, value: &str, problem| SheetError { option, value: value.to_owned(), problem };
         let within = |option, text: &str, (least, most): (f64, f64), what: &str, such: &str| {
-            let number = text.trim().parse().ok().filter(|own: &f64| (least..=most).contains(own));
+            let number = text.trim().parse().ok().filter(|number: &f64| (least..=most).contains(number));
             let problem = format!("give {what}, {least} to {most}, such as {such}");
             number.ok_or_else(|| error(option, text, problem))
         };
@@ -118,5 +118,5 @@ impl Sheet {
 
 /// The width of the canvas in units: that of the sheet, or that of the screen.
 pub fn canvas_width(sheet: Option<&Sheet>) -> f64 {
-    sheet.map_or(f64::from(SIZE.0), |own| own.width_mm / own.unit_mm())
+    sheet.map_or(f64::from(SIZE.0), |sheet| sheet.width_mm / sheet.unit_mm())
 }

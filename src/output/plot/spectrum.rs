@@ -49,10 +49,13 @@ pub fn spectrum_figure(
 
     let across = PlotAxis::between(0.0, shown_to(spectrum, frequencies, density), 8, "frequency, Hz");
     let across = across.or_given(ranges.x, 8, "frequency, Hz");
-    let seen = frequencies.iter().zip(values).filter(|(own, _)| (across.low..=across.high).contains(*own));
-    let seen = seen.map(|own| *own.1).filter(|own| *own > 0.0);
+    let seen = frequencies
+        .iter()
+        .zip(values)
+        .filter(|(frequency, _)| (across.low..=across.high).contains(*frequency));
+    let seen = seen.map(|pair| *pair.1).filter(|value| *value > 0.0);
     let (least, greatest) =
-        seen.fold((f64::INFINITY, 0.0_f64), |(low, high), own| (low.min(own), high.max(own)));
+        seen.fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
     let decades = if quantity == SpectrumQuantity::Density { 2.0 * DECADES } else { DECADES };
     let ends = ranges.y.unwrap_or((least.max(greatest * 10_f64.powf(-decades)), greatest * 1.5));
     let mut up = PlotAxis::decades([ends.0, ends.1], 8, label);
@@ -63,7 +66,7 @@ pub fn spectrum_figure(
 
     let mut entries = Vec::new();
     let marked: Vec<f64> = spectrum.forcing_hz.iter().copied().take(MOST_MARKED).collect();
-    let names: Vec<String> = marked.iter().map(|own| short(*own)).collect();
+    let names: Vec<String> = marked.iter().map(|hz| short(*hz)).collect();
     let words = match (names.len(), spectrum.forcing_hz.len()) {
         (1, _) => format!("forcing frequency, {} Hz", names[0]),
         (some, all) if some < all => format!("forcing frequencies, {}, .. Hz", names.join(", ")),
@@ -79,12 +82,12 @@ pub fn spectrum_figure(
     };
     let frame = Frame::whole(&figure, (LEFT, top), across, up);
     frame.grid(&mut figure, theme);
-    for own in marked.iter().copied() {
-        frame.vertical(&mut figure, own, style::GUIDE, theme.shaking, Some(style::DASH));
+    for frequency in marked.iter().copied() {
+        frame.vertical(&mut figure, frequency, style::GUIDE, theme.shaking, Some(style::DASH));
     }
     let floor = frame.y.low - 1.0;
     let height = |value: f64| if value > 0.0 { value.log10().max(floor) } else { floor };
-    let points = frequencies.iter().zip(values).map(|(own, value)| (*own, height(*value)));
+    let points = frequencies.iter().zip(values).map(|(frequency, value)| (*frequency, height(*value)));
     if spectrum.period.is_some() && spectrum.taper == Taper::None {
         sticks(&mut figure, &frame, points, theme);
     } else {
@@ -98,7 +101,7 @@ pub fn spectrum_figure(
             drawn.put("line", &[*frequency, *value], &[]);
         }
     }
-    marked.iter().for_each(|own| drawn.put("forcing", &[*own], &[]));
+    marked.iter().for_each(|frequency| drawn.put("forcing", &[*frequency], &[]));
     figure.data = drawn.table();
     caption.draw(&mut figure, theme, &spectrum.describe(), LEFT);
     figure
@@ -125,8 +128,8 @@ fn shown_to(spectrum: &Spectrum, frequencies: &[f64], density: &[f64]) -> f64 {
     let last = frequencies.last().copied().unwrap_or(1.0);
     let total: f64 = density.iter().skip(1).sum();
     let mut below = 0.0;
-    let holds = |own: &f64| {
-        below += own;
+    let holds = |density: &f64| {
+        below += density;
         below >= POWER * total
     };
     let place = density.iter().skip(1).position(holds).map_or(0, |place| place + 1);

@@ -14,8 +14,8 @@ pub struct Ink(pub u8, pub u8, pub u8);
 impl Ink {
     /// This colour at `share` of its strength over `paper`.
     pub fn over(self, paper: Ink, share: f64) -> Self {
-        let mix = |own: u8, under: u8| {
-            (f64::from(own) * share + f64::from(under) * (1.0 - share)).round().clamp(0.0, 255.0) as u8
+        let mix = |over: u8, under: u8| {
+            (f64::from(over) * share + f64::from(under) * (1.0 - share)).round().clamp(0.0, 255.0) as u8
         };
         Self(mix(self.0, paper.0), mix(self.1, paper.1), mix(self.2, paper.2))
     }

@@ -65,9 +65,9 @@ impl View {
                 let at = place(axis.share(*value));
                 figure.line(&[at, (at.0 + 0.6 * out, at.1 + 9.0)], style::FRAME, theme.ink, canvas);
                 // as many numbers as stand apart
-                let apart = last.is_none_or(|own| {
-                    (own.1 - at.1).abs() >= 0.8 * style::TICK || {
-                        (own.0 - at.0).abs() >= font::width(words, style::TICK, false) + 12.0
+                let apart = last.is_none_or(|last| {
+                    (last.1 - at.1).abs() >= 0.8 * style::TICK || {
+                        (last.0 - at.0).abs() >= font::width(words, style::TICK, false) + 12.0
                     }
                 });
                 if apart {
@@ -110,7 +110,7 @@ pub(super) fn surface(figure: &mut Figure, picture: &SweepPicture, (x, y): (&str
     let mosaic = Mosaic::new(rows, (x, y), &quantity, |row| in_x(row) && in_y(row));
     let mut entries = meanings(rows, &quantity, &mosaic.cells, theme);
     // a missing cell is a hole, and needs no patch
-    entries.retain(|own| own.1 == "at rest");
+    entries.retain(|entry| entry.1 == "at rest");
     let top = below_legend(figure, theme, &entries);
     let axis = |values: &[f64], range, name: &str| {
         let label = label(rows, name);
@@ -143,18 +143,18 @@ fn skin(figure: &mut Figure, view: &View, mosaic: &Mosaic, theme: &Theme) {
         Cell::Value(value) => Some((value, false)),
     };
     let shares =
-        |values: &[f64], axis: &PlotAxis| values.iter().map(|own| axis.share(*own)).collect::<Vec<_>>();
+        |values: &[f64], axis: &PlotAxis| values.iter().map(|value| axis.share(*value)).collect::<Vec<_>>();
     let canvas = figure.canvas;
     for face in faces(&shares(across, &view.x), &shares(up, &view.y), height, |value| view.z.share(value)) {
         let ink = if face.resting { theme.rest } else { viridis(face.share) };
-        let mut points: Vec<Point> = face.corners.iter().map(|own| view.place(*own)).collect();
+        let mut points: Vec<Point> = face.corners.iter().map(|corner| view.place(*corner)).collect();
         for three in [[0, 1, 2], [0, 2, 3]] {
             figure.polygon(three.map(|i| points[i]).to_vec(), ink);
         }
         points.push(points[0]);
         figure.line(&points, 0.9, ink, canvas);
         let edge = if face.resting { theme.rest_hatch } else { ink.over(style::BLACK, 0.62) };
-        for (side, _) in SIDES.iter().zip(face.lined).filter(|own| own.1) {
+        for (side, _) in SIDES.iter().zip(face.lined).filter(|side| side.1) {
             figure.line(&side.map(|i| points[i]), 1.1, edge, canvas);
         }
     }

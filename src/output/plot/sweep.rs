@@ -72,7 +72,7 @@ pub enum NoPicture {
 /// Whether the column `quantity` of a sweep of this grid can be shown in this way; `table` is that of its
 /// rows, which may be missing.
 pub fn can_show(grid: &Grid, (quantity, view): (&str, &View), table: &Table) -> Result<(), NoPicture> {
-    if !quantities(table, grid).any(|own| own == quantity) {
+    if !quantities(table, grid).any(|column| column == quantity) {
         let mut known: Vec<&str> = quantities(table, grid).collect();
         let more = SUMMARY_FIELDS.iter().map(|field| field.name).filter(|name| !known.contains(name));
         let more: Vec<&str> = more.collect();
@@ -242,9 +242,9 @@ fn lines(figure: &mut Figure, picture: &SweepPicture, x: &str, series: Option<&s
     }
     // One seed has nothing between it and the next, nor has one regime.
     let joined = !(x == "seed" || x.ends_with(".seed") || quantity.words.is_some());
-    for (i, own) in each.iter().enumerate() {
+    for (i, value) in each.iter().enumerate() {
         let mut order: Vec<usize> =
-            (0..values.len()).filter(|row| series.is_none() || of_series[*row] == *own).collect();
+            (0..values.len()).filter(|row| series.is_none() || of_series[*row] == *value).collect();
         order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
         for part in order.split(|row| !quantity.values[*row].is_finite()) {
             let point = |row: &usize| (values[*row], quantity.values[*row]);

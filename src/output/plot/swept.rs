@@ -36,7 +36,7 @@ impl Overlay {
     /// mechanism.
     pub fn of(scene: &Scene, mechanism: Option<&Mechanism>, grid: &Grid, rows: &Table) -> Self {
         Self {
-            release: mechanism.and_then(|own| release_line(scene, own, grid)),
+            release: mechanism.and_then(|mechanism| release_line(scene, mechanism, grid)),
             first_crossing: first_crossing(grid, rows),
         }
     }
@@ -96,13 +96,14 @@ pub(super) fn drawn(picture: &SweepPicture, asked: &[(&str, Option<(f64, f64)>)]
     let columns: Vec<&[f64]> = fields.iter().filter_map(|name| rows.numbers(name)).collect();
     for row in 0..rows.rows() {
         let within = |(name, range): &(&str, Option<(f64, f64)>)| {
-            let own = rows.numbers(name).map_or(f64::NAN, |own| own[row]);
-            range.is_none_or(|(low, high)| (low..=high).contains(&own))
+            let number = rows.numbers(name).map_or(f64::NAN, |column| column[row]);
+            range.is_none_or(|(low, high)| (low..=high).contains(&number))
         };
         if asked.iter().all(within) {
-            let places = columns.iter().map(|own| own[row]);
-            let numbers: Vec<f64> = places.chain(value.as_ref().map(|own| own[row])).collect();
-            let said: Vec<&str> = [regimes, ways].iter().filter_map(|own| own.get(row).copied()).collect();
+            let places = columns.iter().map(|column| column[row]);
+            let numbers: Vec<f64> = places.chain(value.as_ref().map(|values| values[row])).collect();
+            let said: Vec<&str> =
+                [regimes, ways].iter().filter_map(|column| column.get(row).copied()).collect();
             drawn.put("cell", &numbers, &said);
         }
     }
@@ -149,7 +150,7 @@ pub(super) fn mark_regimes<'a>(
     (edge, theme): (Ink, &Theme),
 ) {
     let placed = points.map(|(point, word)| (frame.place(point), word));
-    let marks: Vec<(Point, &str)> = placed.filter(|own| frame.area.contains(own.0)).collect();
+    let marks: Vec<(Point, &str)> = placed.filter(|mark| frame.area.contains(mark.0)).collect();
     for (at, word) in thinned(&marks, apart, 1.5 * size) {
         let (shape, ink) = regime(word, theme);
         marker(figure, shape, at, size, ink, edge);
@@ -160,8 +161,8 @@ pub(super) fn mark_regimes<'a>(
 fn thinned<'a>(marks: &[(Point, &'a str)], apart: f64, close: f64) -> Vec<(Point, &'a str)> {
     let mut kept: Vec<(Point, &str)> = Vec::new();
     for (at, word) in marks {
-        let stands = kept.last().is_none_or(|(last, own)| {
-            (at.0 - last.0).hypot(at.1 - last.1) >= if own == word { apart } else { close.min(apart) }
+        let stands = kept.last().is_none_or(|(last, other)| {
+            (at.0 - last.0).hypot(at.1 - last.1) >= if other == word { apart } else { close.min(apart) }
         });
         if stands {
             kept.push((*at, word));
@@ -184,7 +185,7 @@ mod tests {
             let step = pair[1].0.0 - pair[0].0.0;
             step >= 40.0 || (pair[0].1 != pair[1].1 && step >= 10.0)
         }));
-        let first = kept.iter().find(|own| own.1 == "interwell").unwrap();
+        let first = kept.iter().find(|mark| mark.1 == "interwell").unwrap();
         assert!(first.0.0 <= 200.0 + 10.0, "{first:?}");
         assert_eq!(thinned(&marks, 0.0, 10.0), marks);
     }

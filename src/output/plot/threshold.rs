@@ -103,8 +103,10 @@ fn lines(
     let ThresholdPicture { rows, ranges, .. } = *picture;
     let numbers = |name: &str| rows.numbers(name).unwrap_or_default();
     let (places, values) = (numbers(x), numbers("value"));
-    let gaps: Vec<bool> = match rows.column("windows").map(|own| &own.values) {
-        Some(Values::Counts(counts)) => counts.iter().map(|own| own.is_some_and(|own| own > 0)).collect(),
+    let gaps: Vec<bool> = match rows.column("windows").map(|column| &column.values) {
+        Some(Values::Counts(counts)) => {
+            counts.iter().map(|count| count.is_some_and(|count| count > 0)).collect()
+        }
         _ => Vec::new(),
     };
     let of_series = series.map(numbers).unwrap_or_default();
@@ -133,7 +135,8 @@ fn lines(
     if !missing.is_empty() {
         entries.push((Sample::Ticks(theme.soft), "none in the range".to_owned()));
     }
-    let entries: Vec<(Sample, &str)> = entries.iter().map(|(own, words)| (*own, words.as_str())).collect();
+    let entries: Vec<(Sample, &str)> =
+        entries.iter().map(|(sample, words)| (*sample, words.as_str())).collect();
     let top = below_legend(figure, theme, &entries);
 
     let x_label = label(rows, x);
@@ -153,9 +156,9 @@ fn lines(
         let at = frame.across(places[row]);
         figure.line(&[(at, bottom - TICK), (at, bottom)], style::LINE, theme.soft, frame.area);
     }
-    for (i, own) in each.iter().enumerate() {
+    for (i, value) in each.iter().enumerate() {
         let mut order: Vec<usize> =
-            (0..values.len()).filter(|row| series.is_none() || of_series[*row] == *own).collect();
+            (0..values.len()).filter(|row| series.is_none() || of_series[*row] == *value).collect();
         order.sort_by(|a, b| places[*a].total_cmp(&places[*b]));
         let size = (0.3 * (right - left) / order.len().max(1) as f64).clamp(3.5, style::MARKER);
         for part in order.split(|row| !values[*row].is_finite()) {
@@ -163,12 +166,12 @@ fn lines(
             frame.line(figure, &points, style::LINE, ink(i));
             for (row, point) in part.iter().zip(points) {
                 let at = frame.place(point);
-                let (shape, own) = match gaps.get(*row) {
+                let (shape, colour) = match gaps.get(*row) {
                     Some(true) => (Marker::Triangle, theme.unstable),
                     _ => (Marker::Disc, ink(i)),
                 };
                 if frame.area.contains(at) {
-                    marker(figure, shape, at, size, own, if size > 6.0 { theme.ink } else { theme.paper });
+                    marker(figure, shape, at, size, colour, if size > 6.0 { theme.ink } else { theme.paper });
                 }
             }
         }

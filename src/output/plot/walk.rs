@@ -129,9 +129,9 @@ fn panels(figure: &Figure, y: &PlotAxis, top: f64) -> [Area; 3] {
             Area::new(left, top, right, top + height)
         });
     }
-    let own = (width - FIRST - GAPS[0] - GAPS[1] - AFTER) / 3.0;
-    let second = FIRST + own + GAPS[0];
-    [FIRST, second, second + own + GAPS[1]].map(|left| Area::new(left, top, left + own, bottom))
+    let each = (width - FIRST - GAPS[0] - GAPS[1] - AFTER) / 3.0;
+    let second = FIRST + each + GAPS[0];
+    [FIRST, second, second + each + GAPS[1]].map(|left| Area::new(left, top, left + each, bottom))
 }
 
 /// The quantity over two fields on the way up and on the way down, and what the way down has more.

@@ -1,10 +1,10 @@
 //! Digits that the conditioning of a problem allows, and digits reached.
 //!
-//! The digits allowed follow from the problem, not from the result: an error bound is the sum, over the steps
-//! of a run, of what one step may do wrong ([`STEP_ERROR`]) times how much the answer reacts to it. The
-//! second factor is the problem's conditioning; each case derives it from the closed form or, where there is
-//! none, takes it from the reference: the answer's change under small relative changes of the data
-//! ([`Bench::sensitivity`]).
+//! The digits allowed follow from the problem, not from the result: an error bound is the sum, over the
+//! steps of a run, of the error of one step ([`STEP_ERROR`]) times the sensitivity of the answer to it.
+//! The second factor is the problem's conditioning; each case derives it from the closed form or, where
+//! there is none, takes it from the reference: the answer's change under small relative changes of the
+//! data ([`Bench::sensitivity`]).
 
 use std::sync::atomic::Ordering;
 
@@ -14,24 +14,24 @@ use crate::dynamics::{Model, Outcome, Request, Run};
 use crate::scene::{FieldPath, numeric_fields};
 use crate::study::Task;
 
-/// What one step may do to the state, relative to the scene's length and speed: four spacings of the doubles
-/// at 1. At the tolerance 1e-14 one is the series cut off (a fiftieth of the tolerance, 2e-16), one the
-/// rounding of the sums of displacement and velocity, two those of the force and its coefficients, which are
-/// data rounded once to the units of a run.
+/// Largest error of the state in one step, relative to the scene's length and speed: four spacings of the
+/// doubles at 1. At the tolerance 1e-14 one is the series cut off (a fiftieth of the tolerance, 2e-16), one
+/// the rounding of the sums of displacement and velocity, two those of the force and its coefficients, which
+/// are data rounded once to the units of a run.
 pub const STEP_ERROR: f64 = 4.0 * f64::EPSILON;
 
 /// Tolerance of runs in double-double arithmetic.
 pub const REFERENCE_TOLERANCE: f64 = 1e-27;
 
 /// Relative change of a datum from which a sensitivity is taken: small enough to be linear, large enough that
-/// the doubles in which a run reports tell the difference to seven digits.
+/// the doubles of a run's results resolve the difference to seven digits.
 pub(super) const CHANGE: f64 = 1.0 / (1_u64 << 30) as f64;
 
-/// The same for chaos, which has lost the greater change after twenty periods: four spacings of the doubles,
-/// so that the datum is changed by that to an eighth.
+/// The same for chaos, where the larger change saturates within twenty periods: four spacings of the doubles,
+/// so that rounding alters the change by at most an eighth.
 pub(super) const SMALL_CHANGE: f64 = 1.0 / (1_u64 << 50) as f64;
 
-/// What was found of one quantity.
+/// Result for one quantity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Check {
     /// A number: its error and the error that the conditioning allows, both relative to what the case names.
@@ -46,7 +46,7 @@ pub enum Check {
 }
 
 impl Check {
-    /// Whether the case holds here.
+    /// Whether the check passes.
     pub fn passes(self) -> bool {
         match self {
             Self::Error { error, allowed } => error <= allowed,
@@ -54,7 +54,7 @@ impl Check {
         }
     }
 
-    /// Decimal digits allowed, 0 to 16; none of a fact.
+    /// Decimal digits allowed, 0 to 16; `None` for a fact.
     pub fn digits_allowed(self) -> Option<f64> {
         match self {
             Self::Error { allowed, .. } => Some(digits(allowed)),
@@ -62,7 +62,7 @@ impl Check {
         }
     }
 
-    /// Decimal digits reached, 0 to 16; none of a fact.
+    /// Decimal digits reached, 0 to 16; `None` for a fact.
     pub fn digits_reached(self) -> Option<f64> {
         match self {
             Self::Error { error, .. } => Some(digits(error)),
@@ -76,7 +76,7 @@ fn digits(error: f64) -> f64 {
     if error.is_nan() { 0.0 } else { (-error.log10()).clamp(0.0, 16.0) }
 }
 
-/// One run of a case and what was found of it.
+/// One run of a case with its checks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Variant {
     /// Which of the case's runs.
@@ -87,12 +87,12 @@ pub struct Variant {
     pub evaluations: u64,
     /// CPU time of the run in s.
     pub cpu_s: f64,
-    /// What was found, by quantity.
+    /// The checks by quantity.
     pub checks: Vec<(&'static str, Check)>,
 }
 
 impl Variant {
-    /// Nothing found yet of `run`.
+    /// A variant of `run` without checks.
     pub(super) fn of(name: &'static str, run: &Run) -> Self {
         let summary = &run.summary;
         Self {
@@ -104,7 +104,7 @@ impl Variant {
         }
     }
 
-    /// A number's error and what is allowed; never less than two spacings of the doubles, in which the number
+    /// Adds a number's error and the allowed error, at least two spacings of the doubles in which the number
     /// is given.
     pub(super) fn number(mut self, quantity: &'static str, error: f64, allowed: f64) -> Self {
         let allowed = allowed.max(2.0 * f64::EPSILON);
@@ -112,8 +112,7 @@ impl Variant {
         self
     }
 
-    /// The worst, by the share of what is allowed, of pairs of error and allowed error; a failed fact where
-    /// there are none.
+    /// Adds the pair of error and allowed error with the largest ratio; a failed fact if there is no pair.
     pub(super) fn worst(self, quantity: &'static str, pairs: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let floor = 2.0 * f64::EPSILON;
         let shares = pairs.into_iter().map(|(error, allowed)| (error, allowed.max(floor)));
@@ -129,8 +128,7 @@ impl Variant {
         self
     }
 
-    /// The check with the smallest margin: one that fails, else the number nearest to what is allowed, else a
-    /// fact.
+    /// The check with the smallest margin: one that fails, else the number nearest to its bound, else a fact.
     pub fn tightest(&self) -> Option<(&'static str, Check)> {
         let share = |check: &Check| match *check {
             Check::Fact(false) => f64::INFINITY,
@@ -142,7 +140,7 @@ impl Variant {
     }
 }
 
-/// Where cases run: in doubles, and in double-doubles.
+/// Runs of the cases, in doubles and in double-doubles.
 pub(super) struct Bench<'a> {
     task: &'a Task<'a>,
 }
@@ -172,7 +170,7 @@ impl<'a> Bench<'a> {
         self.unless_cancelled(model.run(&Request { events: false, ledger: false, ..self.request(&[]) }))
     }
 
-    /// The same in double-double arithmetic.
+    /// A run in double-double arithmetic.
     pub fn reference(&self, model: &Model, times: &[f64]) -> Result<Run, Stopped> {
         self.unless_cancelled(model.run_reference(&self.request(times), REFERENCE_TOLERANCE))
     }
@@ -182,14 +180,14 @@ impl<'a> Bench<'a> {
         if cancelled || self.task.cancel.load(Ordering::Relaxed) { Err(Stopped::Cancelled) } else { Ok(run) }
     }
 
-    /// How much numbers of a run react to its data: for each number the sum, over the data, of |change of the
-    /// number| per relative change of the datum, by runs in double-double arithmetic with the datum changed
-    /// by [`CHANGE`].
+    /// Sensitivities of numbers of a run to its data: for each number the sum, over the data, of |change of
+    /// the number| per relative change of the datum, by runs in double-double arithmetic with the datum
+    /// changed by [`CHANGE`].
     ///
     /// The data are mass, start velocity, amplitude, damping, restitution, and a transducer's numbers, as far
     /// as the scene has them: a change of the mass is one of every acceleration all along the run, one of the
     /// restitution of every rebound, so that errors made on the way are covered and not only those of the
-    /// start. `numbers` answers in a fixed order and number.
+    /// start. `numbers` must return the same quantities in the same order for every run.
     pub fn sensitivity(
         &self,
         setup: &Setup,
@@ -210,9 +208,9 @@ impl<'a> Bench<'a> {
         let base = numbers(&self.reference(&setup.model()?, times)?);
         let mut sums = vec![0.0; base.len()];
         for changed in changed(setup, change) {
-            let own = numbers(&self.reference(&changed.model()?, times)?);
+            let values = numbers(&self.reference(&changed.model()?, times)?);
             for (i, sum) in sums.iter_mut().enumerate() {
-                *sum += own.get(i).map_or(f64::INFINITY, |own| (own - base[i]).abs() / change);
+                *sum += values.get(i).map_or(f64::INFINITY, |value| (value - base[i]).abs() / change);
             }
         }
         Ok(sums)
@@ -224,12 +222,12 @@ impl<'a> Bench<'a> {
     pub fn allowed(model: &Model, steps: u64, sensitivities: &[f64]) -> Vec<f64> {
         let per_scale = steps as f64 * model.scales().time / model.duration();
         let error = STEP_ERROR * per_scale.max(1.0);
-        sensitivities.iter().map(|own| own * error).collect()
+        sensitivities.iter().map(|sensitivity| sensitivity * error).collect()
     }
 }
 
-/// The scene with one datum after the other changed: mass, speed, shaking, damping, restitution, and what is
-/// electrical, each by the fields whose paths begin and end so.
+/// The scene with one datum changed at a time: mass, speed, drive, damping, restitution and electrical data,
+/// each given by the begin and the ends of its field paths.
 fn changed(setup: &Setup, change: f64) -> Vec<Setup> {
     let (more, less) = (1.0 + change, 1.0 - change);
     let data: [(&str, &[&str], f64); 9] = [
@@ -245,16 +243,16 @@ fn changed(setup: &Setup, change: f64) -> Vec<Setup> {
     ];
     let fields = numeric_fields(&setup.scene);
     let with = |(begin, ends, by): (&str, &[&str], f64)| {
-        let mut own = setup.clone();
+        let mut changed = setup.clone();
         let is_meant =
             |field: &&String| field.starts_with(begin) && ends.iter().any(|end| field.ends_with(end));
         for field in fields.iter().filter(is_meant).map(|field| FieldPath::new(field)) {
             // a restitution of 1 stays elastic
             if let Some(value) = field.get(&setup.scene).filter(|value| by > 1.0 || *value < 1.0) {
-                let _ = field.set(&mut own.scene, value * by);
+                let _ = field.set(&mut changed.scene, value * by);
             }
         }
-        (own.scene != setup.scene).then_some(own)
+        (changed.scene != setup.scene).then_some(changed)
     };
     data.into_iter().filter_map(with).collect()
 }

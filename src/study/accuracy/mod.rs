@@ -1,12 +1,11 @@
 //! Accuracy of runs, and its cost.
 //!
-//! - Of any scene ([`scene`]): the error of its run, up to when its path is to be trusted, and what a fixed
-//!   step would make of it.
-//! - Of the program on three problems ([`PROBLEMS`]): work against precision, beside the methods that people
-//!   use instead ([`methods`]). The error is measured against the program's own integrator in double-double
-//!   arithmetic.
-//! - Of the program on hard cases ([`HARD_CASES`]), which break integrators of impacts: each has its answer
-//!   ([`exact`] where there is a closed form) and the digits that its conditioning allows.
+//! - Any scene ([`scene`]): the error of its run, the time up to which its path can be trusted, and the
+//!   effect of a fixed step.
+//! - Three problems ([`PROBLEMS`]): work against precision, beside the methods that people use instead
+//!   ([`methods`]). The error is measured against the program's own integrator in double-double arithmetic.
+//! - Hard cases ([`HARD_CASES`]), which break integrators of impacts: each has its answer ([`exact`] where
+//!   there is a closed form) and the digits that its conditioning allows.
 
 mod cases;
 pub mod exact;
@@ -25,7 +24,7 @@ pub use stopped::Stopped;
 
 use super::Task;
 
-/// A name that is none of those that can be selected.
+/// A name that cannot be selected.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("there is no case `{name}`; the cases are {}", names().collect::<Vec<_>>().join(", "))]
 pub struct UnknownCase {
@@ -37,7 +36,7 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     PROBLEMS.iter().map(|problem| problem.name).chain(HARD_CASES.iter().map(|case| case.name))
 }
 
-/// What is to be done.
+/// Parts of the study to run.
 #[derive(Debug, Clone, Default)]
 pub struct Selection {
     problems: Vec<&'static Problem>,
@@ -63,7 +62,7 @@ impl Selection {
         })
     }
 
-    /// How often progress is told.
+    /// How often progress is reported.
     pub fn parts(&self) -> u64 {
         (self.problems.len() * precision::PARTS + self.cases.len()) as u64
     }
@@ -74,7 +73,7 @@ impl Selection {
     }
 }
 
-/// What the study found.
+/// Results of the study.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Report {
     /// Work against precision, by problem and method, the coarsest setting first.
@@ -98,7 +97,7 @@ impl Report {
     }
 }
 
-/// Does what was selected, one part after the other on this thread, since time is measured.
+/// Runs the selected parts one after the other on this thread, since their time is measured.
 pub fn accuracy(selection: &Selection, task: &Task) -> Result<Report, Stopped> {
     let mut report = Report::default();
     for problem in &selection.problems {

@@ -15,11 +15,12 @@ const DORMAND_PRINCE: &str = "Dormand-Prince 5(4)";
 /// Impacts faster than this in m/s count for the error.
 const HARD: f64 = 1e-2;
 
-/// A run is repeated for so long in s to measure its time, but not more often than this.
+/// Time in s for which a run is repeated to measure its CPU time.
 pub(super) const MEASURED_FOR: f64 = 0.02;
+/// Most repetitions of such a run.
 const MOST_REPEATS: usize = 25;
 
-/// Times that progress is told in a problem: the reference, the own method, Dormand-Prince and each scheme.
+/// Progress reports of a problem: the reference, the program's method, Dormand-Prince and each scheme.
 pub(super) const PARTS: usize = 3 + Scheme::ALL.len();
 
 /// How a problem's error is measured.
@@ -85,7 +86,7 @@ pub const PROBLEMS: &[Problem] = &[
     },
 ];
 
-/// What a method was told.
+/// Setting of a method.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Setting {
     /// Local error allowed, relative to the scene's scales.
@@ -101,7 +102,7 @@ pub struct Point {
     pub problem: &'static str,
     /// Name of the method.
     pub method: &'static str,
-    /// What it was told.
+    /// Its setting.
     pub setting: Setting,
     /// Error, as the problem defines it.
     pub error: f64,
@@ -126,8 +127,8 @@ impl Problem {
         Setup::preset(self.preset, self.changes)?.model()
     }
 
-    /// Tolerances 1e-3 to 1e-14 for the own method and Dormand-Prince, steps of 1/60 s down to 5 us for the
-    /// others.
+    /// Tolerances 1e-3 to 1e-14 for the program's method and Dormand-Prince, steps of 1/60 s down to 5 us for
+    /// the others.
     pub(super) fn measure(&self, task: &Task) -> Result<Vec<Point>, Stopped> {
         let model = self.model()?;
         let cancelled = || if task.is_cancelled() { Err(Stopped::Cancelled) } else { Ok(()) };
@@ -167,13 +168,13 @@ impl Problem {
         (task.tick)();
         let keep = Keep { impacts: true, cancel: Some(task.cancel), ..Keep::default() };
         let mut of = |method, setting, run: &dyn Fn(&Keep) -> super::methods::MethodRun| {
-            let own = run(&keep);
+            let result = run(&keep);
             cancelled()?;
-            let statistics = own.statistics;
+            let statistics = result.statistics;
             let answer = Answer {
                 final_x: statistics.final_x,
                 rms: statistics.rms_velocity.unwrap_or(f64::NAN),
-                impacts: own.impacts,
+                impacts: result.impacts,
             };
             let error = match statistics.ended_at {
                 Some(_) => f64::NAN,
@@ -199,14 +200,14 @@ impl Problem {
         Ok(points)
     }
 
-    fn error_of(&self, model: &Model, own: &Answer, exact: &Answer) -> f64 {
-        let rms = (own.rms / exact.rms - 1.0).abs();
+    fn error_of(&self, model: &Model, found: &Answer, exact: &Answer) -> f64 {
+        let rms = (found.rms / exact.rms - 1.0).abs();
         match self.measure {
-            Error::FinalDisplacement(length) => (own.final_x - exact.final_x).abs() / length,
+            Error::FinalDisplacement(length) => (found.final_x - exact.final_x).abs() / length,
             Error::ImpactsAndRms => {
                 let period = model.forcing_period().unwrap_or(model.duration());
                 let hard = exact.impacts.iter().filter(|impact| impact.v_in.abs() > HARD);
-                let late = hard.map(|impact| nearest(&own.impacts, impact) / period).fold(0.0, f64::max);
+                let late = hard.map(|impact| nearest(&found.impacts, impact) / period).fold(0.0, f64::max);
                 if rms.is_nan() { rms } else { late.max(rms) }
             }
         }
@@ -216,11 +217,11 @@ impl Problem {
 /// Time in s from an impact to the nearest of `impacts`, ascending in time, on the same stop; infinite
 /// without any.
 fn nearest(impacts: &[Event], impact: &Event) -> f64 {
-    let after = impacts.partition_point(|own| own.t < impact.t);
-    let same = |own: &&Event| own.side == impact.side;
+    let after = impacts.partition_point(|event| event.t < impact.t);
+    let same = |event: &&Event| event.side == impact.side;
     let before = impacts[..after].iter().rfind(same);
     let after = impacts[after..].iter().find(same);
-    before.into_iter().chain(after).map(|own| (own.t - impact.t).abs()).fold(f64::INFINITY, f64::min)
+    before.into_iter().chain(after).map(|event| (event.t - impact.t).abs()).fold(f64::INFINITY, f64::min)
 }
 
 fn tolerances() -> impl Iterator<Item = f64> {

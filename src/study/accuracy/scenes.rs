@@ -9,10 +9,10 @@ use crate::scene::{
     Damping, Document, Excitation, Files, Mechanism, RunSettings, Scene, Start, Stops, Transducer, check,
 };
 
-/// Every case runs at the tightest tolerance, so that what is left is rounding.
+/// Every case runs at the tightest tolerance, so that only rounding is left.
 pub(super) const TOLERANCE: f64 = 1e-14;
 
-/// A scene being written, and the force curve that takes the place of its mechanism's.
+/// A scene under construction, and the force curve that replaces that of its mechanism.
 #[derive(Debug, Clone)]
 pub(super) struct Setup {
     pub scene: Scene,
@@ -20,7 +20,8 @@ pub(super) struct Setup {
 }
 
 impl Setup {
-    /// 1 kg at `x` in m with `v` in m/s, undamped, unstopped, not shaken, settled from the start.
+    /// 1 kg at `x` in m with `v` in m/s, without damping, stops or drive; the settled window begins at
+    /// the start.
     pub fn new(mechanism: Mechanism, (x, v): (f64, f64), duration_s: f64) -> Self {
         Self {
             scene: Scene {
@@ -41,15 +42,15 @@ impl Setup {
         }
     }
 
-    /// The cubic of the prototype's size (wells at 7 mm, 15.2 g, damping ratio 0.023) between stops, from
-    /// rest.
+    /// The cubic of the prototype's size (wells at 7 mm, 15.2 g, damping ratio 0.023) between stops,
+    /// from rest.
     pub fn nominal(limit_mm: f64, restitution: f64, excitation: Excitation, duration_s: f64) -> Self {
         let cubic = Mechanism::Cubic { linear_n_per_m: -40.0, cubic_n_per_m3: 40.0 / 49e-6 };
-        let mut own = Self::new(cubic, (0.0, 0.0), duration_s);
-        own.scene.mass_g = 15.2;
-        own.scene.damping = Damping::Ratio(0.023);
-        own.scene.start = Start::Rest;
-        own.stops(rigid(limit_mm, restitution)).drive(excitation)
+        let mut setup = Self::new(cubic, (0.0, 0.0), duration_s);
+        setup.scene.mass_g = 15.2;
+        setup.scene.damping = Damping::Ratio(0.023);
+        setup.scene.start = Start::Rest;
+        setup.stops(rigid(limit_mm, restitution)).drive(excitation)
     }
 
     /// A built-in scene at the tightest tolerance, with fields changed, each as `FIELD=VALUE`.
@@ -60,7 +61,7 @@ impl Setup {
             document.set(change).map_err(|error| invalid(&error))?;
         }
         document.scene.run.tolerance = TOLERANCE;
-        // What is measured is the integrator.
+        // the integrator is measured, not the recurrence
         document.scene.run.recurrence = false;
         document.scene.sweep.clear();
         Ok(Self { scene: document.scene, curve: None })
@@ -95,7 +96,7 @@ impl Setup {
         self
     }
 
-    /// The force is that of `curve`, whatever the scene's mechanism says.
+    /// Replaces the force of the scene's mechanism by `curve`.
     pub fn on(mut self, curve: ForceCurve) -> Self {
         self.curve = Some(curve);
         self

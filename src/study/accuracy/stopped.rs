@@ -1,4 +1,4 @@
-//! Ends of the study without a result.
+//! Reasons why the study has no result.
 
 /// Why the study has no result.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

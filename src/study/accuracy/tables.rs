@@ -5,7 +5,7 @@ use super::precision::{Point, Setting};
 use super::{Report, Variant};
 use crate::study::Table;
 
-/// Errors that the summary of a method says the cost of.
+/// Errors whose cost the summary of a method lists.
 const LEVELS: [(&str, f64); 4] =
     [("cpu_to_1e-3_s", 1e-3), ("cpu_to_1e-6_s", 1e-6), ("cpu_to_1e-9_s", 1e-9), ("cpu_to_1e-12_s", 1e-12)];
 
@@ -13,10 +13,14 @@ impl Report {
     /// Everything in one table, a row for each point and for each quantity of each variant of a case.
     ///
     /// `part` is `work_precision` or `hard_case`; `error` and `allowed` are relative to what the problem or
-    /// case names; cells that a row has no use for are empty.
+    /// case names; unused cells are empty.
     pub fn table(&self) -> Table {
-        let rows: Vec<Row> =
-            self.points.iter().map(Row::of_point).chain(self.rows(|own| own.checks.clone())).collect();
+        let rows: Vec<Row> = self
+            .points
+            .iter()
+            .map(Row::of_point)
+            .chain(self.rows(|variant| variant.checks.clone()))
+            .collect();
         Table::new()
             .each("part", &rows, |row| row.part)
             .each("case", &rows, |row| row.case)
@@ -35,8 +39,8 @@ impl Report {
             .each("verdict", &rows, |row| row.verdict)
     }
 
-    /// The points alone, as a plot reads them: `problem`, `method`, `tolerance`, `step_s`, `error`, `steps`,
-    /// `cpu_s`.
+    /// The points alone, as a plot reads them: `problem`, `method`, `tolerance`, `step_s`, `error`,
+    /// `steps`, `cpu_s`.
     pub fn work_table(&self) -> Table {
         let rows: Vec<Row> = self.points.iter().map(Row::of_point).collect();
         Table::new()
@@ -49,7 +53,7 @@ impl Report {
             .each("cpu_s", &rows, |row| row.cpu)
     }
 
-    /// What each method pays at least for an error of 1e-3, 1e-6, 1e-9 and 1e-12, and the least error that it
+    /// The least CPU time of each method for an error of 1e-3, 1e-6, 1e-9 and 1e-12, and the least error
     /// reached: a row for each problem and method.
     pub fn cost_table(&self) -> Table {
         let mut groups: Vec<Group> = Vec::new();
@@ -60,8 +64,8 @@ impl Report {
             }
         }
         let least = |group: &Group, of: &dyn Fn(&Point) -> f64| {
-            let own = self.points.iter().filter(|point| (point.problem, point.method) == *group);
-            own.map(of).fold(f64::NAN, f64::min)
+            let points = self.points.iter().filter(|point| (point.problem, point.method) == *group);
+            points.map(of).fold(f64::NAN, f64::min)
         };
         let mut table =
             Table::new().each("problem", &groups, |group| group.0).each("method", &groups, |group| group.1);
@@ -100,7 +104,7 @@ impl Report {
 /// Problem and method.
 type Group = (&'static str, &'static str);
 
-/// One row, of either half; what it has no use for is NaN or empty.
+/// One row of either part; unused numbers are NaN, unused words empty.
 #[derive(Clone, Copy)]
 struct Row {
     part: &'static str,

@@ -10,7 +10,8 @@ use crate::study::table::Table;
 /// The quantile of the normal distribution that leaves 95 % within.
 const NORMAL_95: f64 = 1.959_963_984_540_054;
 
-/// Forcing periods of the window over which an attractor is described: two of the longest that is told.
+/// Forcing periods of the window over which an attractor is described: two of the longest period that
+/// is recognised.
 const WINDOW: u32 = 24;
 
 /// A share with its 95 % interval (Wilson 1927).
@@ -25,7 +26,7 @@ pub struct Shares {
 }
 
 impl Shares {
-    /// Of `some` out of `all`, of which there is one at least.
+    /// The share of `some` in `all`, which is at least 1.
     pub fn of(some: u64, all: u64) -> Self {
         let (n, share, square) = (all as f64, some as f64 / all as f64, NORMAL_95 * NORMAL_95);
         let middle = (share + square / (2.0 * n)) / (1.0 + square / n);
@@ -75,23 +76,23 @@ impl Attractor {
     }
 }
 
-/// What a map of basins has come to so far.
+/// Results of a map of basins so far.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
     /// The attractors, the one numbered 1 first.
     pub attractors: Vec<Attractor>,
-    /// For each start the number of its attractor and the periods that it took; none where it has not been
+    /// For each start the number of its attractor and the periods that it took; `None` if it has not been
     /// run, lies outside the room, or goes to none.
     pub rows: Vec<Option<(u32, u32)>>,
     /// Starts outside the room of the mass.
     pub outside: u64,
-    /// Whether the answer of each row is sure, see [`Basins::check`]; empty where it was not asked for.
+    /// Whether the answer of each row is sure, see [`Basins::check`]; empty if it was not checked.
     pub sure: Vec<bool>,
     /// Starts whose run ended early.
     pub lost: u64,
-    /// Those of them that had taken all the work that one start may take.
+    /// Those of them that used up the work of one start.
     pub spent: u64,
-    /// Starts of which it is not known where they go.
+    /// Starts whose attractor is not known.
     pub undecided: u64,
 }
 
@@ -135,16 +136,16 @@ impl Answer {
     }
 }
 
-/// What an attractor is told by.
+/// Identity of an attractor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Key {
     Kind(u32),
-    /// The cycle of releases that holds this one, the least of them.
+    /// A cycle of releases, by the least of their numbers.
     Cycle(u32),
 }
 
 impl Basins {
-    /// What is known so far; none where it was cancelled.
+    /// The results so far; `None` if cancelled.
     pub fn answer(&self, task: &Task) -> Option<Answer> {
         let after: Vec<Option<(Key, Way)>> =
             (0..self.rounds.releases.len()).map(|place| self.after(place as u32)).collect();
@@ -195,8 +196,8 @@ impl Basins {
         Some(Answer { attractors, rows, sure: Vec::new(), outside, lost, spent, undecided })
     }
 
-    /// The fates that follow each other from a release on, its own first, up to one that is no release or has
-    /// been passed.
+    /// The releases that follow each other from `release` on, and the first fate that is no release or
+    /// repeats one.
     pub(super) fn chain(&self, release: u32) -> (Vec<(u32, Way)>, Fate) {
         let (mut passed, mut at, mut way) = (Vec::new(), release, Way::default());
         loop {
@@ -211,7 +212,7 @@ impl Basins {
         }
     }
 
-    /// What follows a release, and after what way.
+    /// The attractor that follows a release, and the way to it.
     fn after(&self, release: u32) -> Option<(Key, Way)> {
         let (passed, end) = self.chain(release);
         match end {
@@ -225,8 +226,8 @@ impl Basins {
         }
     }
 
-    /// The summary of an attractor, and its states: of an orbit from one of them, else from the start `row`,
-    /// which takes so many periods.
+    /// The summary of an attractor, and its states: of an orbit from one of its states, else from the start
+    /// `row`, which settles after `settled` periods.
     fn describe(
         &self,
         key: Key,
@@ -239,7 +240,7 @@ impl Basins {
         match key {
             Key::Kind(kind) => match &self.rounds.kinds[kind as usize] {
                 Kind::Orbit(orbit) => {
-                    let first = self.rounds.of.iter().position(|of| of == orbit)?;
+                    let first = self.rounds.orbit_of.iter().position(|number| number == orbit)?;
                     start = self.rounds.captures[first].state;
                 }
                 Kind::Rest(side) => {
@@ -265,8 +266,8 @@ impl Basins {
     }
 }
 
-/// The state of a settled motion after each of `count` forcing periods, that with the largest displacement
-/// first.
+/// The state of a settled motion after each of `count` forcing periods, that with the largest
+/// displacement first.
 fn states(model: &Model, state: (f64, f64), count: u32, period: f64) -> Vec<(f64, f64)> {
     let times: Vec<f64> = (0..count).map(|number| f64::from(number) * period).collect();
     let request = Request { sample_times: &times, ..Request::default() };
@@ -275,8 +276,8 @@ fn states(model: &Model, state: (f64, f64), count: u32, period: f64) -> Vec<(f64
         return vec![state];
     }
     let mut states: Vec<(f64, f64)> = run.samples.iter().map(|sample| (sample.x, sample.v)).collect();
-    let most = |a: &(f64, f64), b: &(f64, f64)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1));
-    let first = (0..states.len()).max_by(|a, b| most(&states[*a], &states[*b])).unwrap_or(0);
+    let by_state = |a: &(f64, f64), b: &(f64, f64)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1));
+    let first = (0..states.len()).max_by(|a, b| by_state(&states[*a], &states[*b])).unwrap_or(0);
     states.rotate_left(first);
     states
 }

@@ -1,8 +1,8 @@
-//! Work of a map of basins: how much there is, how much is done, and how much of it a start may take.
+//! Work of a map of basins: the total, what is done, and the share of one start.
 //!
 //! A well may swing ten thousand times in a forcing period, and a map would then take days. So work is
-//! counted, in the units of a [`Pursuit`](crate::dynamics::Pursuit), and what is left of it decides between
-//! rounds alone how far a start is followed: the answer does not depend on the number of threads.
+//! counted, in the units of a [`Pursuit`](crate::dynamics::Pursuit), and what is left of it between rounds
+//! decides how far a start is followed: so the answer does not depend on the number of threads.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -12,17 +12,18 @@ use crate::dynamics::{Arrival, Pursued, Pursuit};
 /// kink of the force take some of the prototype's.
 const OF_THE_MAP: u64 = 20_000_000_000;
 
-/// Units of each start: four times what the prototype takes that is followed for 1000 forcing periods.
+/// Units of each start: four times those of the prototype followed for 1000 forcing periods.
 const OF_A_START: u64 = 20_000_000;
 
-/// Starts are unlike each other: one may take so many times its share of what is left, and always the least.
+/// Starts differ in work: one may take this many times its share of what is left.
 const SHARES: u64 = 4;
+/// Units that a start may take in any case.
 const LEAST: u64 = 2_000_000;
 
 /// Work of one map.
 #[derive(Debug)]
 pub(super) struct Effort {
-    most: u64,
+    budget: u64,
     done: AtomicU64,
     /// Forcing periods that were followed for it.
     periods: AtomicU64,
@@ -30,8 +31,8 @@ pub(super) struct Effort {
 
 impl Effort {
     pub fn of_starts(count: usize) -> Self {
-        let most = OF_THE_MAP + OF_A_START.saturating_mul(count as u64);
-        Self { most, done: AtomicU64::new(0), periods: AtomicU64::new(0) }
+        let budget = OF_THE_MAP + OF_A_START.saturating_mul(count as u64);
+        Self { budget, done: AtomicU64::new(0), periods: AtomicU64::new(0) }
     }
 
     /// Adds a pursuit whose forcing period in s is given.
@@ -52,16 +53,16 @@ impl Effort {
     }
 
     fn left(&self) -> u64 {
-        self.most.saturating_sub(self.done.load(Ordering::Relaxed))
+        self.budget.saturating_sub(self.done.load(Ordering::Relaxed))
     }
 
-    /// Units that each start may take while so many are still to be followed.
+    /// Units that each start may take while `remaining` starts are still to be followed.
     pub fn of_one(&self, remaining: usize) -> u64 {
         (SHARES * (self.left() / remaining.max(1) as u64)).max(LEAST)
     }
 
-    /// Whether so many forcing periods more, each with the mean work of those before, are within what is
-    /// left.
+    /// Whether `periods` more forcing periods, each with the mean work of those before, are within what
+    /// is left.
     pub fn has_room_for(&self, periods: u64) -> bool {
         let (done, before) = (self.done.load(Ordering::Relaxed), self.periods.load(Ordering::Relaxed));
         done as f64 / before.max(1) as f64 * periods as f64 <= self.left() as f64

@@ -1,13 +1,13 @@
-//! Something that a map of basins follows, and the way that it takes.
+//! Items that a map of basins follows, and the length of their way to an attractor.
 
 use super::starts::Starts;
 use crate::dynamics::{Capture, Pursuit, Region};
 use crate::study::settled;
 
-/// Forcing periods after which a motion that goes to nothing known is judged.
+/// Forcing periods after which a motion that reaches no known attractor is judged.
 pub(super) const PATIENCE: u64 = settled::PATIENCE as u64;
 
-/// How long a motion is followed until it is known where it goes.
+/// Length of a motion until its attractor is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Way {
     /// Forcing periods.
@@ -17,7 +17,7 @@ pub(super) struct Way {
 }
 
 impl Way {
-    /// Of counts up to an end, less those before it began.
+    /// These counts less those of `before`.
     pub fn since(self, before: Self) -> Self {
         Self {
             periods: self.periods.saturating_sub(before.periods),
@@ -25,7 +25,7 @@ impl Way {
         }
     }
 
-    /// This one, and then another.
+    /// This way followed by another.
     pub fn and(self, next: Self) -> Self {
         Self {
             periods: self.periods.saturating_add(next.periods),
@@ -34,8 +34,8 @@ impl Way {
     }
 }
 
-/// Something to follow: a start, or what comes after a release, as the continuation of a start with some
-/// releases passed over.
+/// A motion to follow: a start, or the motion after a release, as the continuation of a start past
+/// some releases.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Item {
     pub row: usize,
@@ -51,14 +51,14 @@ impl Item {
         Self { row, releases: 0, after: None, repeats_from: 0 }
     }
 
-    /// The way of a pursuit that took so many periods, from where it continues another one.
+    /// The way of a pursuit, counted from where it continues another one.
     pub fn way(&self, periods: u64, crossings: u64) -> Way {
         let count = |number: u64| u32::try_from(number).unwrap_or(u32::MAX);
         let whole = Way { periods: count(periods), crossings: count(crossings) };
         whole.since(self.after.map_or(Way::default(), |(_, before)| before))
     }
 
-    /// It as a pursuit of at most so much work.
+    /// The item as a pursuit of at most `most_work` units.
     pub fn pursuit<'a>(
         &self,
         starts: &Starts,

@@ -6,9 +6,8 @@
 //!   share a release are equal from there on, to the last bit. What follows a release is computed once.
 //! - Without rest its states once a period come within a thousandth of the scene's scales of a known stable
 //!   orbit, inside an ellipse around it from which all motions go there (see `orbit`). A start that repeats
-//!   only proposes an orbit, so that a transient near a saddle is followed on. (That a motion is told by its
-//!   coming back to known ones, and not from its whole way, is also how Datseris and Wagemakers (2022) do it,
-//!   there on a grid of cells.)
+//!   only proposes an orbit, so that a transient near a saddle is followed on. (Datseris and Wagemakers
+//!   (2022) also recognise a motion by its return to known ones, there on a grid of cells.)
 //! - It does neither for a thousand periods: `verdict` decides whether it is irregular for good. Around the
 //!   first such motions a region is looked for that no motion leaves (see `region`); later ones that enter it
 //!   need not be followed on.
@@ -91,12 +90,11 @@ pub struct Basins {
 }
 
 impl Basins {
-    /// Forcing periods after which a motion that goes to nothing known is judged.
+    /// Forcing periods after which a motion that reaches no known attractor is judged.
     pub const PATIENCE: u64 = PATIENCE;
 
-    /// The map of a scene from these starts, of which none has been run; the scene's own start does not
-    /// matter. Its mass rests or swings once a period of its excitation; without one, once a period of small
-    /// oscillations.
+    /// The map of a scene from these starts, none of which has been run; the scene's own start is ignored.
+    /// States are taken once a period of the excitation; without one, once a period of small oscillations.
     pub fn new(scene: &Scene, mechanism: Arc<Mechanism>, starts: Starts) -> Result<Self, NoBasins> {
         if scene.transducer.has_state() {
             return Err(NoBasins::ElectricalState);
@@ -140,7 +138,7 @@ impl Basins {
         Ok(basins)
     }
 
-    /// What all starts lie beyond.
+    /// The error for starts that all lie outside the room.
     fn beyond(&self) -> NoBasins {
         let (from, to) = self.room;
         let is_left = self.starts.at(0).0 / 1e3 < from;
@@ -159,7 +157,7 @@ impl Basins {
         &self.starts
     }
 
-    /// The model that follows them; its own start is the farthest of theirs.
+    /// The model that follows them; it begins at the farthest of them.
     pub fn model(&self) -> &Model {
         &self.model
     }
@@ -174,7 +172,7 @@ impl Basins {
         (&self.levels, self.done)
     }
 
-    /// Steps, and seconds of a core, that a forcing period takes some, by a run of the model's own.
+    /// Approximate steps and CPU time in s of a forcing period, measured by a run of the model.
     pub fn cost_of_a_period(&self) -> (f64, f64) {
         let period = self.model.forcing_period().unwrap_or(1.0);
         let time = period.min(MEASURED * self.model.natural_time());
@@ -188,7 +186,7 @@ impl Basins {
         self.done == STRIDES.len()
     }
 
-    /// Start `row` in m and m/s; none outside the room.
+    /// Start `row` in m and m/s; `None` outside the room.
     fn start(&self, row: usize) -> Option<(f64, f64)> {
         let (x_mm, v) = self.starts.at(row);
         let x = x_mm / 1e3;
@@ -215,8 +213,8 @@ fn loses_energy(scene: &Scene) -> bool {
         }
 }
 
-/// An excitation with a period that does the same, where the scene's has none because nothing in it moves:
-/// with a sine of amplitude 0 at the frequency of small oscillations.
+/// An equivalent excitation with a period, if the scene's has none because it is constant: with a sine of
+/// amplitude 0 added, at the frequency of small oscillations.
 fn shaken(scene: &Scene, model: &Model) -> Option<Excitation> {
     if model.forcing_period().is_some() || !model.excitation().is_constant() {
         return None;

@@ -2,11 +2,11 @@
 //! to them.
 //!
 //! A proposal comes from a motion whose states repeat. Newton's method on the map of `period` forcing periods
-//! finds the orbit near by, and the Lyapunov equation M = J^T M J + I a norm in which the linear map shrinks
-//! everything; without a solution the orbit is unstable, as that of a transient near a saddle is. How far
-//! from the orbit the map itself shrinks in that norm is then measured, on circles of growing radius, and the
-//! largest one up to which all do is the ellipse: every motion that enters it goes to the orbit. Where there
-//! is none, the map of some times the period is looked at.
+//! finds the orbit near by, and the Lyapunov equation M = J^T M J + I gives a norm in which the linear map
+//! shrinks everything; without a solution the orbit is unstable, as near a saddle. How far from the orbit the
+//! map itself shrinks in that norm is then measured, on circles of growing radius, and the largest one up to
+//! which all do is the ellipse: every motion that enters it goes to the orbit. If there is none, the map over
+//! multiples of the period is tried.
 
 use super::stroboscopic::Stroboscope;
 use crate::dynamics::{Capture, Jacobian, Outcome};
@@ -17,48 +17,52 @@ type Point = [f64; 2];
 /// Two rows.
 type Matrix = [[f64; 2]; 2];
 
-/// Steps of Newton's method, the longest of one, and the one that ends it, in units of the scales.
+/// Most steps of Newton's method.
 const MOST_STEPS: usize = 12;
+/// The longest step of it, in units of the scales.
 const LONGEST_STEP: f64 = 0.1;
+/// The length of a step that ends it, in units of the scales.
 const LAST_STEP: f64 = 1e-8;
 
 /// States of an orbit closer than this share of the scales are the same.
 const SAME: f64 = 1e-6;
 
-/// The least radius that is measured, how many there are, each so many times the one before, and the starts
-/// on a circle. The radius is that of the norm, which is never less than the distance.
+/// The least radius that is measured, in the norm, which is never less than the distance.
 const LEAST_RADIUS: f64 = 2e-5;
+/// Number of radii.
 const RADII: usize = 34;
+/// Ratio of each radius to the one before.
 const GROWTH: f64 = std::f64::consts::SQRT_2;
+/// Starts on a circle.
 const AROUND: usize = 16;
 
 /// States nearer to an orbit than this share of the scales have arrived, as for a repetition of states.
 const NEAR: f64 = 1e-3;
 
-/// How many times its period a map is taken over around an orbit, each twice the one before.
+/// Multiples of the period over which the map around an orbit is taken.
 const TIMES: [u32; 6] = [1, 2, 4, 8, 16, 32];
 
 /// Doublings of the series of the norm; a contraction by 1e-9 a period takes half of them.
 const DOUBLINGS: usize = 60;
 
-/// An orbit that was looked for near a proposal.
+/// Result of the search for an orbit near a proposal.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Found {
     /// A stable one: its states, each with its ellipse.
     Stable(Vec<Capture>),
     /// An unstable one, through this state in m and m/s.
     Unstable((f64, f64)),
-    /// None, or none around which anything is known to go to it.
+    /// No orbit, or none with an ellipse from which all motions go to it.
     Nothing,
 }
 
-/// The orbit of the proposed period, or twice that, near a state in m and m/s. None where it was cancelled.
+/// The orbit of the proposed period, or twice that, near a state in m and m/s. `None` if cancelled.
 pub(super) fn find(scope: &Stroboscope, period: u32, state: (f64, f64)) -> Option<Found> {
     let first = of_period(scope, period, state)?;
     match first {
-        // Soon after a doubling the two halves of the doubled orbit are hardly told apart.
+        // Soon after a period doubling the two halves of the doubled orbit are nearly equal.
         Found::Unstable(_) => match of_period(scope, 2 * period, state)? {
-            Found::Stable(own) => Some(Found::Stable(own)),
+            Found::Stable(captures) => Some(Found::Stable(captures)),
             _ => Some(first),
         },
         _ => Some(first),
@@ -71,27 +75,27 @@ fn of_period(scope: &Stroboscope, period: u32, state: (f64, f64)) -> Option<Foun
     let Some(states) = scope.map(&after)?.into_iter().collect::<Option<Vec<Point>>>() else {
         return Some(Found::Nothing);
     };
-    let same = |own: &Point| distance(own, &root) < SAME;
+    let same = |other: &Point| distance(other, &root) < SAME;
     let period = states.iter().position(same).map_or(period, |place| place as u32 + 1);
     let mut captures = Vec::new();
     let mut orbit = vec![root];
     orbit.extend_from_slice(&states[..period as usize - 1]);
-    for own in orbit {
-        let Some((_, jacobian)) = jacobian(scope, period, own) else { return Some(Found::Nothing) };
+    for point in orbit {
+        let Some((_, jacobian)) = jacobian(scope, period, point) else { return Some(Found::Nothing) };
         if lyapunov(&jacobian).is_none() {
             return Some(Found::Unstable(scope.state(root)));
         }
-        let Some(own) = ellipse(scope, period, own, jacobian)? else { return Some(Found::Nothing) };
-        captures.push(own);
+        let Some(capture) = ellipse(scope, period, point, jacobian)? else { return Some(Found::Nothing) };
+        captures.push(capture);
     }
     Some(Found::Stable(captures))
 }
 
-/// The ellipse around a fixed point of the map of `period` forcing periods, by the map of as few times as
-/// many as has one; none where none of them does.
+/// The ellipse around a fixed point of the map of `period` forcing periods, by the map over the least
+/// multiple of it that has one; the inner `None` if none has one.
 ///
-/// Where a motion passes a kink of the force the map bends sharply, and near an orbit it need not shrink at
-/// once in the norm of its derivative; after some periods more it does, however it bends.
+/// Where a motion passes a kink of the force the map bends sharply, so near an orbit it need not shrink at
+/// once in the norm of its derivative; after some more periods it does.
 fn ellipse(scope: &Stroboscope, period: u32, at: Point, mut jacobian: Matrix) -> Option<Option<Capture>> {
     for times in TIMES {
         let Some(norm) = lyapunov(&jacobian) else { break };
@@ -132,7 +136,7 @@ fn newton(scope: &Stroboscope, period: u32, from: Point) -> Option<Point> {
     None
 }
 
-/// The image of a point and the derivative of the map there, in units of the scales; none where the motion
+/// The image of a point and the derivative of the map there, in units of the scales; `None` if the motion
 /// ends early.
 fn jacobian(scope: &Stroboscope, period: u32, at: Point) -> Option<(Point, Matrix)> {
     let ((length, speed), map) =
@@ -156,7 +160,7 @@ fn lyapunov(jacobian: &Matrix) -> Option<[f64; 3]> {
             a * q * q + 2.0 * b * q * s + c * s * s,
         ];
         sum = [a + more[0], b + more[1], c + more[2]];
-        if !sum.iter().all(|own| own.is_finite()) {
+        if !sum.iter().all(|entry| entry.is_finite()) {
             return None;
         }
         if more[0] + more[2] <= f64::EPSILON * (sum[0] + sum[2]) {
@@ -173,7 +177,7 @@ fn square([a, b, c]: &[f64; 3], [x, v]: Point) -> f64 {
 }
 
 /// The largest radius around a fixed point up to which the map shrinks every circle in the norm, by at least
-/// half of what its derivative says; none where not even the smallest.
+/// half as much as its derivative; the inner `None` if it does not shrink even the smallest.
 fn radius(scope: &Stroboscope, period: u32, at: Point, norm: &[f64; 3]) -> Option<Option<f64>> {
     let [a, b, c] = *norm;
     // the unit circle of the norm is (u, w) by M = L L^T

@@ -10,40 +10,42 @@ use std::collections::BTreeSet;
 use super::stroboscopic::Stroboscope;
 use crate::dynamics::{Capture, Region};
 
-/// Motions that are followed to see an attractor, the periods that each is followed, and how many of the
-/// first are left out.
+/// Motions that are followed to find an attractor.
 const MOTIONS: usize = 16;
+/// Forcing periods that each is followed.
 const PERIODS: u32 = 500;
+/// First periods that are left out.
 const SKIPPED: usize = 50;
 
-/// How far apart these begin, as a share of the scales; they part by themselves.
+/// Distance of their starts, as a share of the scales; they diverge by themselves.
 const APART: f64 = 1e-6;
 
-/// Cells along each side of what an attractor spans, coarse ones first, and the most of any region.
+/// Cells along each side of the extent of an attractor, coarse ones first.
 const ALONG: [f64; 3] = [48.0, 96.0, 192.0];
+/// Most cells of a region.
 const MOST_CELLS: usize = 20_000;
 
 /// Rounds in which cells may be added.
 const ROUNDS: usize = 40;
 
-/// A region around the irregular motion that has a state in m and m/s, where no state comes to a known orbit.
-/// None where it was cancelled.
+/// A region around the irregular motion through `state` in m and m/s; the inner `None` if there is none or a
+/// state of it comes to a known orbit, the outer one if cancelled.
 pub(super) fn absorbing(scope: &Stroboscope, state: (f64, f64), known: &[Capture]) -> Option<Option<Region>> {
     let [x, v] = scope.point(state);
     let starts: Vec<(f64, f64)> = (0..MOTIONS)
-        .map(|own| [x, v + APART * own as f64])
-        .filter(|own| scope.has(*own))
-        .map(|own| scope.state(own))
+        .map(|number| [x, v + APART * number as f64])
+        .filter(|point| scope.has(*point))
+        .map(|point| scope.state(point))
         .collect();
     let Some(states) = scope.paths(&starts, PERIODS, SKIPPED)? else { return Some(None) };
-    if states.iter().any(|own| known.iter().any(|other| other.holds(*own))) {
+    if states.iter().any(|state| known.iter().any(|other| other.holds(*state))) {
         return Some(None);
     }
     let ends = |of: &dyn Fn(&(f64, f64)) -> f64| {
-        let fold = |(low, high): (f64, f64), own: f64| (low.min(own), high.max(own));
+        let fold = |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
         states.iter().map(of).fold((f64::INFINITY, f64::NEG_INFINITY), fold)
     };
-    let ((left, right), (low, high)) = (ends(&|own| own.0), ends(&|own| own.1));
+    let ((left, right), (low, high)) = (ends(&|state| state.0), ends(&|state| state.1));
     if !(right > left && high > low) {
         return Some(None);
     }
@@ -65,7 +67,7 @@ fn closed(
     known: &[Capture],
 ) -> Option<Option<Region>> {
     let mut cells: BTreeSet<(i32, i32)> = BTreeSet::new();
-    for (i, j) in states.iter().map(|own| region.cell(*own)) {
+    for (i, j) in states.iter().map(|state| region.cell(*state)) {
         cells.extend((-1..=1).flat_map(|right| (-1..=1).map(move |up| (i + right, j + up))));
     }
     let (mut new, mut seen): (Vec<_>, BTreeSet<(i32, i32)>) =
@@ -75,20 +77,20 @@ fn closed(
         let halves = new.iter().flat_map(|(i, j)| {
             [(0, 0), (2, 0), (0, 2), (2, 2), (1, 1)].map(|(right, up)| (2 * i + right, 2 * j + up))
         });
-        let asked: BTreeSet<(i32, i32)> = halves.filter(|own| !seen.contains(own)).collect();
+        let unseen: BTreeSet<(i32, i32)> = halves.filter(|half| !seen.contains(half)).collect();
         let place = |(i, j): &(i32, i32)| {
             let (x, v) = (f64::from(*i) * 0.5 * region.size.0, f64::from(*j) * 0.5 * region.size.1);
             scope.point((region.corner.0 + x, region.corner.1 + v))
         };
         let starts: Vec<_> =
-            asked.iter().map(place).filter(|own| scope.has(*own)).map(|own| (own, 1)).collect();
-        seen.extend(asked);
+            unseen.iter().map(place).filter(|point| scope.has(*point)).map(|point| (point, 1)).collect();
+        seen.extend(unseen);
         let Some(images) = scope.map(&starts)?.into_iter().collect::<Option<Vec<_>>>() else {
             return Some(None);
         };
         new.clear();
-        for image in images.into_iter().map(|own| scope.state(own)) {
-            if known.iter().any(|own| own.holds(image)) {
+        for image in images.into_iter().map(|point| scope.state(point)) {
+            if known.iter().any(|capture| capture.holds(image)) {
                 return Some(None);
             }
             let cell = region.cell(image);

@@ -11,18 +11,20 @@ use crate::dynamics::{Arrival, Capture, Outcome, Pursued, Pursuit, Region, Relea
 use crate::study::Task;
 use crate::system::threads::Pool;
 
-/// Starts of the first round of a map, and the most of any: while little is known, rounds are short.
+/// Starts of the first round of a map: while little is known, rounds are short.
 const FIRST_ROUND: usize = 64;
+/// Most starts of a round.
 pub(super) const LONGEST_ROUND: usize = 8192;
 
-/// Regions that are looked for around motions of one kind.
+/// Most searches for regions around motions of one kind.
 const MOST_SEARCHES: usize = 4;
 
-/// Motions of one verdict whose exponents are asked for in vain.
+/// Motions of one verdict whose exponents may fail to confirm it before others are no longer tested.
 const MOST_DOUBTS: usize = 4;
 
-/// States closer than this share of the scales count as one, of a proposal and of an unstable orbit.
+/// Proposals closer than this share of the scales count as one.
 const SAME_PROPOSAL: f64 = 1e-3;
+/// A state closer than this share of the scales to an unstable orbit lies on it.
 const ON_ORBIT: f64 = 1e-6;
 
 /// What is known of a start. Indices are those of the lists of [`Rounds`].
@@ -65,17 +67,21 @@ pub(super) struct Rounds {
     pub fates: Vec<Fate>,
     pub kinds: Vec<Kind>,
     pub releases: Vec<Release>,
-    /// States of stable orbits with their ellipses, and which orbit each is of.
+    /// States of stable orbits with their ellipses.
     pub captures: Vec<Capture>,
-    pub of: Vec<u32>,
-    /// States that proposed no stable orbit, and those of unstable ones.
+    /// The orbit of each capture.
+    pub orbit_of: Vec<u32>,
+    /// States that proposed no stable orbit.
     rejected: Vec<(f64, f64)>,
+    /// States of unstable orbits.
     unstable: Vec<(f64, f64)>,
-    /// Regions around irregular motions, which kind each is of, and the kind of each that was looked for.
+    /// Regions around irregular motions.
     pub regions: Vec<Region>,
+    /// The kind of each region.
     region_of: Vec<u32>,
+    /// The kind of each search for a region.
     searches: Vec<u32>,
-    /// Verdicts on motions without a period whose exponent does not bear them out.
+    /// Verdicts on motions without a period that the exponent did not confirm.
     doubted: Vec<Verdict>,
     next_round: usize,
     /// Starts that have not been followed.
@@ -89,7 +95,7 @@ impl Rounds {
             kinds: Vec::new(),
             releases: Vec::new(),
             captures: Vec::new(),
-            of: Vec::new(),
+            orbit_of: Vec::new(),
             rejected: Vec::new(),
             unstable: Vec::new(),
             regions: Vec::new(),
@@ -123,12 +129,12 @@ impl Rounds {
         self.releases.iter().position(|release| release.identity == identity).map(|place| place as u32)
     }
 
-    /// Notes what an item has come to; what is to be followed for that.
+    /// Records the result of an item; returns what to follow next for it.
     fn note(&mut self, item: Item, pursued: Pursued, scope: &Stroboscope) -> Option<Item> {
         let crossings = pursued.crossings;
         let fate = match pursued.arrival {
             Arrival::Captured { which, periods } => {
-                let orbit = Kind::Orbit(self.of[which]);
+                let orbit = Kind::Orbit(self.orbit_of[which]);
                 Fate::Kind(self.kind(|kind| *kind == orbit, || orbit.clone()), item.way(periods, crossings))
             }
             Arrival::Entered { which, periods } => {
@@ -160,12 +166,12 @@ impl Rounds {
         None
     }
 
-    /// What an item has come to that was followed once more, as far as that is known already.
+    /// The fate of an item that was followed once more; `None` if it is not among the known ones.
     pub fn known_fate(&self, item: &Item, pursued: &Pursued, scope: &Stroboscope) -> Option<Fate> {
         let kind = |same: &dyn Fn(&Kind) -> bool| self.kinds.iter().position(same).map(|place| place as u32);
         let (found, periods) = match &pursued.arrival {
             Arrival::Captured { which, periods } => {
-                (kind(&|kind| *kind == Kind::Orbit(self.of[*which])), *periods)
+                (kind(&|kind| *kind == Kind::Orbit(self.orbit_of[*which])), *periods)
             }
             Arrival::Entered { which, periods } => (Some(self.region_of[*which]), *periods),
             Arrival::Rests { side, periods } => (kind(&|kind| *kind == Kind::Rest(*side)), *periods),
@@ -182,14 +188,14 @@ impl Rounds {
         Some(Fate::Kind(found?, item.way(periods, pursued.crossings)))
     }
 
-    /// The verdict on a motion that has settled to nothing known.
+    /// The verdict on a motion that has reached no known attractor.
     fn verdict(&self, summary: &Summary, scope: &Stroboscope) -> Verdict {
         let end = (summary.final_x, summary.final_v);
         verdict(summary, self.unstable.iter().any(|state| is_near(scope, *state, end, ON_ORBIT)))
     }
 
-    /// The kind of a motion that was judged. Of those without a period the first one must be irregular by its
-    /// exponent, else one of the next few: it may be a motion that is slow to settle.
+    /// The kind of a motion that was judged. The first one without a period, or one of the next few, must be
+    /// irregular by its exponent, since it may only be slow to settle.
     fn judged(&mut self, verdict: Verdict, summary: Box<Summary>, scope: &Stroboscope, way: Way) -> Fate {
         let same = |kind: &Kind| matches!(kind, Kind::Judged(other, _) if *other == verdict);
         let repeats = matches!(verdict, Verdict::Settled { period: Some(_), .. });
@@ -210,24 +216,26 @@ impl Rounds {
         }
     }
 
-    /// Looks for an orbit near a state that proposed one. None where it was cancelled.
+    /// Looks for an orbit near a state that proposed one. `None` if cancelled.
     fn propose(&mut self, scope: &Stroboscope, period: u32, state: (f64, f64)) -> Option<()> {
-        let known = self.captures.iter().any(|own| own.holds(state));
-        let tried = self.rejected.iter().any(|own| is_near(scope, *own, state, SAME_PROPOSAL));
+        let known = self.captures.iter().any(|capture| capture.holds(state));
+        let tried = self.rejected.iter().any(|rejected| is_near(scope, *rejected, state, SAME_PROPOSAL));
         if known || tried {
             return Some(());
         }
         match find(scope, period, state)? {
-            Found::Stable(captures) if self.captures.iter().any(|own| own.holds(captures[0].state)) => {
+            Found::Stable(captures)
+                if self.captures.iter().any(|capture| capture.holds(captures[0].state)) =>
+            {
                 self.rejected.push(state);
             }
             Found::Stable(captures) => {
-                let orbit = self.of.last().map_or(0, |last| last + 1);
-                self.of.extend(captures.iter().map(|_| orbit));
+                let orbit = self.orbit_of.last().map_or(0, |last| last + 1);
+                self.orbit_of.extend(captures.iter().map(|_| orbit));
                 self.captures.extend(captures);
             }
-            Found::Unstable(own) => {
-                self.unstable.push(own);
+            Found::Unstable(unstable) => {
+                self.unstable.push(unstable);
                 self.rejected.push(state);
             }
             Found::Nothing => self.rejected.push(state),
@@ -235,16 +243,16 @@ impl Rounds {
         Some(())
     }
 
-    /// Looks for a region around the irregular motion that an item was found to go to, which has this state.
-    /// None where it was cancelled.
+    /// Looks for a region around the irregular motion to which an item goes and which passes `state`. `None`
+    /// if cancelled.
     fn surround(&mut self, scope: &Stroboscope, item: Item, state: (f64, f64)) -> Option<()> {
-        let fate = item.after.map_or(self.fates[item.row], |own| self.releases[own.0 as usize].next);
+        let fate = item.after.map_or(self.fates[item.row], |after| self.releases[after.0 as usize].next);
         let Fate::Kind(kind, _) = fate else { return Some(()) };
         let irregular = match &self.kinds[kind as usize] {
             Kind::Judged(Verdict::Settled { period, .. }, _) => period.is_none(),
             _ => false,
         };
-        let searches = self.searches.iter().filter(|own| **own == kind).count();
+        let searches = self.searches.iter().filter(|searched| **searched == kind).count();
         if !irregular || searches >= MOST_SEARCHES || self.is_surrounded(state) {
             return Some(());
         }
@@ -258,7 +266,7 @@ impl Rounds {
 
     /// Whether a state lies in a region.
     fn is_surrounded(&self, state: (f64, f64)) -> bool {
-        self.regions.iter().any(|own| own.holds(state))
+        self.regions.iter().any(|region| region.holds(state))
     }
 }
 
@@ -267,8 +275,8 @@ fn is_near(scope: &Stroboscope, a: (f64, f64), b: (f64, f64), share: f64) -> boo
     (a.0 - b.0).abs() <= share * length && (a.1 - b.1).abs() <= share * speed
 }
 
-/// Follows items with what is known now, then adds to that; what is to be followed next. None where it was
-/// cancelled.
+/// Follows items with what is known now, then adds the results to it; returns what to follow next. `None`
+/// if cancelled.
 fn round(
     rounds: &mut Rounds,
     scope: &Stroboscope,
@@ -304,7 +312,7 @@ fn round(
     for (item, state) in &unsettled {
         rounds.surround(scope, *item, *state)?;
     }
-    // Followed again, they enter the region at their own time.
+    // Followed again, each enters the region at its own time.
     next.extend(
         unsettled.into_iter().filter(|(_, state)| rounds.is_surrounded(*state)).map(|(item, _)| item),
     );
@@ -312,8 +320,8 @@ fn round(
 }
 
 impl Basins {
-    /// Runs the starts of the next level; whether it was not cancelled, after which the map is of no use. The
-    /// task's tick is called for each start.
+    /// Runs the starts of the next level, with a tick of the task for each start. Returns false if cancelled;
+    /// the map is then unusable.
     pub fn run_level(&mut self, pool: &Pool, task: &Task) -> bool {
         let Self { model, starts, levels, done, room, rounds, effort } = self;
         let scope = Stroboscope { model, room: *room, pool, cancel: task.cancel, effort };

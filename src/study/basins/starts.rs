@@ -17,7 +17,7 @@ const LARGEST: f64 = 1e15;
 /// What is wrong about a range or a number of starts, as a sentence.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum StartsError {
-    /// A range that cannot be.
+    /// An invalid range.
     #[error("{0}")]
     Range(&'static str),
     /// Too many starts.
@@ -25,7 +25,7 @@ pub enum StartsError {
     TooMany(String),
 }
 
-/// Values of one axis of a grid: so many, evenly spaced from `from` to `to`, both included.
+/// Values of one axis of a grid: `count`, evenly spaced from `from` to `to`, both included.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EvenRange {
     /// The first, in mm or m/s.
@@ -62,7 +62,7 @@ impl EvenRange {
         let last = i128::from(self.count.saturating_sub(1).max(1));
         let below = last.checked_mul(10_i128.checked_pow(exponent.unsigned_abs())?)?;
         let (from, to) = (from.in_units(exponent)?, to.in_units(exponent)?);
-        // Of whole numbers that doubles hold the quotient is rounded once.
+        // The quotient of whole numbers that doubles hold exactly is rounded once.
         let whole = |number: i128| (number.unsigned_abs() <= 1 << 53).then_some(number as f64);
         let below = whole(below)?;
         let value = |place: i128| {
@@ -88,7 +88,8 @@ fn within((from, to): (f64, f64)) -> Result<(), StartsError> {
 pub struct Starts {
     x_mm: Vec<f64>,
     v: Vec<f64>,
-    /// Whether they are all pairs of the values, displacement the slower; else each has its own.
+    /// Whether they are all pairs of the values, displacement the slower; else values of the same index are
+    /// a start.
     product: bool,
 }
 
@@ -103,7 +104,7 @@ impl Starts {
         }
     }
 
-    /// So many drawn uniformly from two ranges: from ChaCha8 seeded with `seed`, for each start first the
+    /// `count` starts drawn uniformly from two ranges by ChaCha8 seeded with `seed`: for each start first the
     /// displacement, then the velocity, each from the upper 53 bits of 64.
     pub fn random(x_mm: (f64, f64), v: (f64, f64), count: u64, seed: u64) -> Result<Self, StartsError> {
         within(x_mm).and(within(v))?;
@@ -183,7 +184,7 @@ mod tests {
 
     #[test]
     fn what_is_no_range_is_told() {
-        for (own, word) in [
+        for (wrong, word) in [
             (range(0.0, 1.0, 0), "no values"),
             (range(0.0, 1.0, 1), "A:A:1"),
             (range(1.0, 1.0, 2), "equal"),
@@ -191,7 +192,7 @@ mod tests {
             (range(f64::NAN, 0.0, 2), "finite"),
             (range(0.0, 1.0, 1_000_000_000), "1000000000 starts"),
         ] {
-            assert!(own.check().unwrap_err().to_string().contains(word), "{own:?}");
+            assert!(wrong.check().unwrap_err().to_string().contains(word), "{wrong:?}");
         }
         let many = range(0.0, 1.0, 10_000);
         assert!(Starts::grid(&many, &many).unwrap_err().to_string().contains("10000 x 10000"));
@@ -203,8 +204,8 @@ mod tests {
         let mean =
             |of: fn((f64, f64)) -> f64| (0..10_000).map(|row| of(starts.at(row))).sum::<f64>() / 10_000.0;
         // 4 standard errors of a uniform mean
-        assert!((mean(|own| own.0) - 1.0).abs() < 4.0 * 4.0 / 12.0_f64.sqrt() / 100.0);
-        assert!((mean(|own| own.1) - 1.0).abs() < 4.0 * 2.0 / 12.0_f64.sqrt() / 100.0);
+        assert!((mean(|start| start.0) - 1.0).abs() < 4.0 * 4.0 / 12.0_f64.sqrt() / 100.0);
+        assert!((mean(|start| start.1) - 1.0).abs() < 4.0 * 2.0 / 12.0_f64.sqrt() / 100.0);
         assert_eq!(starts, Starts::random((-1.0, 3.0), (0.0, 2.0), 10_000, 7).unwrap());
         assert_ne!(starts, Starts::random((-1.0, 3.0), (0.0, 2.0), 10_000, 8).unwrap());
     }

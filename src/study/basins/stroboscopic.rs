@@ -10,7 +10,7 @@ use crate::system::threads::{Pool, UnderWay, share};
 /// A displacement and a velocity in units of the scene's scales.
 type Point = [f64; 2];
 
-/// A forcing period with its derivatives costs so many without.
+/// Cost of a forcing period with its derivatives, in periods without.
 const WITH_DERIVATIVES: u64 = 4;
 
 /// A model, its range, and the threads that run it.
@@ -48,9 +48,9 @@ impl Stroboscope<'_> {
         x >= self.room.0 && x <= self.room.1 && v.is_finite()
     }
 
-    /// Where motions from points are after so many forcing periods each; none of those that begin outside the
-    /// room, end early, or come to rest on the way, after which the map has no inverse; none of any where
-    /// they are more work than is left. None at all where it was cancelled.
+    /// The images of points after a number of forcing periods each: `None` for those that begin outside the
+    /// room, end early, or come to rest on the way, after which the map has no inverse, and for all if they
+    /// take more work than is left. Returns `None` if cancelled.
     pub fn map(&self, starts: &[(Point, u32)]) -> Option<Vec<Option<Point>>> {
         let mut images = vec![None; starts.len()];
         if !self.effort.has_room_for(starts.iter().map(|(_, periods)| u64::from(*periods)).sum()) {
@@ -80,8 +80,8 @@ impl Stroboscope<'_> {
         Some(images)
     }
 
-    /// States of motions, once a period for so many `periods` without the first ones; none where one of them
-    /// ends early, or they are more work than is left. None at all where it was cancelled.
+    /// States of motions once a period for `periods`, without the first `skipped` ones; the inner `None` if a
+    /// motion ends early or they take more work than is left, the outer one if cancelled.
     pub fn paths(
         &self,
         starts: &[(f64, f64)],
@@ -110,8 +110,8 @@ impl Stroboscope<'_> {
         Some(all.map(|paths| paths.iter().flatten().map(|sample| (sample.x, sample.v)).collect()))
     }
 
-    /// Whether the motion that has a state in m and m/s once a period is irregular by its exponent, where
-    /// there is work left to tell.
+    /// Whether the motion through a stroboscopic state in m and m/s is irregular by its exponent; false if
+    /// too little work is left.
     pub fn is_irregular(&self, state: (f64, f64)) -> bool {
         if !self.effort.has_room_for(WITH_DERIVATIVES * u64::from(ExponentOptions::PERIODS)) {
             return false;
@@ -121,7 +121,7 @@ impl Stroboscope<'_> {
         found.is_ok_and(|exponents| exponents.is_irregular())
     }
 
-    /// What pursuits come to, in their order; `tick` is called for each. None where it was cancelled.
+    /// Results of pursuits, in their order; `tick` is called for each. `None` if cancelled.
     pub fn pursue(&self, pursuits: &[Pursuit], tick: &(dyn Fn(&Pursuit) + Sync)) -> Option<Vec<Pursued>> {
         let period = self.period();
         let work = |next: &dyn Fn(UnderWay) -> Option<usize>| {

@@ -1,5 +1,4 @@
-//! Which answers of a map of basins are sure: those that stay where the error of the integration is ten times
-//! as large.
+//! Sure answers of a map of basins: those that stay the same at ten times the error of the integration.
 //!
 //! A start near the border of a basin, or in a long irregular transient, goes where the last digits of the
 //! integration send it. Such a start is followed once more at another tolerance. By chance it may come to the
@@ -17,8 +16,8 @@ use crate::scene::TOLERANCES;
 use crate::study::Task;
 use crate::system::threads::Pool;
 
-/// The tolerance at which starts are followed once more, in that of the map; its inverse where that would be
-/// larger than any scene may have.
+/// Factor on the map's tolerance at which starts are followed once more; its inverse if that would exceed the
+/// largest tolerance of a scene.
 const FACTOR: f64 = 10.0;
 
 impl Basins {
@@ -40,13 +39,13 @@ impl Basins {
         settled.filter(|row| is_line || !alike(row)).collect()
     }
 
-    /// Says which answers are sure, in `answer`; whether it was not cancelled. The task's tick is called for
+    /// Marks in `answer` which answers are sure; returns false if cancelled. The task's tick is called for
     /// each start that is followed once more.
     ///
-    /// Sure is a start that goes to the same attractor at ten times the tolerance, after as many crossings of
-    /// the barrier and, where it is not the only attractor in one of two wells, after as many periods; and a
-    /// start of which [`rows_to_check`](Self::rows_to_check) has found that its neighbours all do as it does.
-    /// Where it comes to a release, all that follows that must be sure as well.
+    /// A start is sure if it goes to the same attractor at ten times the tolerance, after as many crossings
+    /// of the barrier and, unless that is the only attractor in one of two wells, as many periods; or if
+    /// [`rows_to_check`](Self::rows_to_check) found that its neighbours all do the same. If it comes to a
+    /// release, all that follows it must be sure as well.
     pub fn check(&self, answer: &mut Answer, pool: &Pool, task: &Task) -> bool {
         let finer = FACTOR * self.model.tolerance() > TOLERANCES.1;
         let factor = if finer { 1.0 / FACTOR } else { FACTOR };
@@ -75,11 +74,11 @@ impl Basins {
         true
     }
 
-    /// For each release whether what follows it is sure, as the continuation of a start that is. None where
-    /// it was cancelled.
+    /// For each release, whether what follows it is sure as the continuation of a sure start. `None`
+    /// if cancelled.
     fn sure_releases(&self, scope: &Stroboscope, answer: &Answer, sure: &[bool]) -> Option<Vec<bool>> {
         let mut known = vec![false; self.rounds.releases.len()];
-        // By their places: a start that comes to the release, the number of releases up to it, and the way.
+        // By release: the continuation of a start that comes to it.
         let mut next: BTreeMap<u32, Item> = BTreeMap::new();
         for (row, fate) in self.rounds.fates.iter().enumerate().filter(|(row, _)| sure[*row]) {
             if let Fate::Release(place, way) = *fate {
@@ -111,7 +110,7 @@ impl Basins {
         Some(known)
     }
 
-    /// What items come to in a scope, as far as it is known. None where it was cancelled.
+    /// The fates of items followed again in a scope, as far as known. `None` if cancelled.
     fn follow_again(
         &self,
         scope: &Stroboscope,
@@ -127,14 +126,14 @@ impl Basins {
         Some(items.iter().zip(&all).map(|(item, end)| self.rounds.known_fate(item, end, scope)).collect())
     }
 
-    /// Whether a motion does the same again after the way `before`; where its attractor is the only one in
-    /// its well, so many crossings say it all.
+    /// Whether a motion does the same again after the way `before`; if its attractor is the only one in its
+    /// well, equal crossings suffice.
     fn is_same(&self, (first, before): (Fate, Way), again: Option<Fate>, alone: bool) -> bool {
         match (first, again) {
             (Fate::Kind(kind, way), Some(Fate::Kind(other, now))) if kind == other => {
                 let judged = matches!(self.rounds.kinds[kind as usize], Kind::Judged(..));
                 let longest = way.periods.max(now.periods).saturating_add(before.periods);
-                // Of an irregular motion that was followed to the end the counts mean nothing.
+                // The counts of an irregular motion that was followed to the end mean nothing.
                 let ended = judged && u64::from(longest) >= PATIENCE;
                 ended || way.crossings == now.crossings && (alone || way.periods == now.periods)
             }

@@ -2,11 +2,10 @@
 
 use crate::dynamics::{Outcome, Place, Regime, Summary};
 
-/// What a motion is taken for.
+/// Classification of a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Verdict {
-    /// A motion of its own kind: all of one regime, on one side, and of one period, where they have one, are
-    /// one attractor.
+    /// A settled motion: all with the same regime, side and period (if any) are one attractor.
     Settled {
         /// See [`Regime`].
         regime: Regime,
@@ -17,13 +16,13 @@ pub(super) enum Verdict {
     },
     /// It ended early.
     Lost,
-    /// It is not known where it goes.
+    /// Its attractor is not known.
     Undecided,
 }
 
 /// The verdict by the summary of a pursuit, whose window is its last hundred forcing periods, and whether it
-/// ended on an orbit that is unstable. That of a motion without a period is borne out by an exponent, of one
-/// motion of its kind.
+/// ended on an orbit that is unstable. A verdict without a period is confirmed by the exponent of one motion
+/// of its kind.
 ///
 /// An exponent tells irregular motion from a motion that is slow to settle, but not from a long transient:
 /// the transients of a double well are themselves irregular, and end by chance. So a motion is called

@@ -1,5 +1,5 @@
-//! What is asked of a design and what is found: fields with their ranges, constraints, environments,
-//! variations, and the best place.
+//! Question and result of a design search: fields with their ranges, constraints, environments, variations,
+//! and the best design.
 
 use crate::scene::{Fault, FieldPath, Files, Scene, column_names};
 use crate::study::fields::SummaryField;
@@ -43,7 +43,7 @@ pub struct Constraint {
     pub limit: f64,
 }
 
-/// A scene as one environment has it.
+/// A scene in one environment.
 #[derive(Debug, Clone)]
 pub struct Environment {
     /// What it is called.
@@ -56,7 +56,7 @@ pub struct Environment {
     pub files: Files,
 }
 
-/// A field that may come out otherwise than designed, evenly within a tolerance to both sides.
+/// A field that varies uniformly within a tolerance to both sides of its design value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Variation {
     /// Dotted path of the field.
@@ -67,18 +67,18 @@ pub struct Variation {
     pub relative: bool,
 }
 
-/// What is asked for.
+/// A search for the best design.
 #[derive(Debug, Clone)]
 pub struct BestQuestion {
     /// The fields of the design, 1 to [`MOST_FIELDS`].
     pub over: Vec<DesignRange>,
     /// The result whose mean over the environments is to be largest; a number or a count.
     pub maximise: &'static SummaryField,
-    /// What every environment must keep to.
+    /// Constraints in every environment.
     pub subject_to: Vec<Constraint>,
     /// At least one.
     pub environments: Vec<Environment>,
-    /// What may vary about the design.
+    /// Fields that vary about the design.
     pub vary: Vec<Variation>,
     /// Seed of the samples of what varies.
     pub seed: u64,
@@ -87,13 +87,13 @@ pub struct BestQuestion {
     pub until_settled: Option<f64>,
 }
 
-/// The most fields of a design: the scan grows with their power.
+/// The most fields of a design: the scan grows exponentially with them.
 pub const MOST_FIELDS: usize = 4;
 
 /// Intervals of the scan for one field, two, three and four.
 pub const INTERVALS: [usize; MOST_FIELDS] = [256, 32, 12, 8];
 
-/// A place, and what it gives.
+/// A design and its results.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Optimum {
     /// The fields' values.
@@ -109,7 +109,7 @@ pub struct Optimum {
 pub struct Spread {
     /// The worst of the samples.
     pub worst: f64,
-    /// A twentieth of the samples are below.
+    /// The 5 % quantile of the samples.
     pub quantile_5: f64,
 }
 
@@ -118,14 +118,14 @@ pub struct Spread {
 pub struct BestDesign {
     /// The place.
     pub optimum: Optimum,
-    /// Of each field, how far below and above the value has fallen by a tenth, or a constraint is broken, the
-    /// other fields kept; none where that is nowhere in its range.
+    /// For each field, the distance below and above at which the value has fallen by a tenth or a constraint
+    /// is broken, with the other fields fixed; `None` if that is nowhere in its range.
     pub margins: Vec<[Option<f64>; 2]>,
     /// Which fields are best at an end of their range.
     pub at_border: Vec<bool>,
     /// How closely each field is located.
     pub resolution: Vec<f64>,
-    /// What variation makes of the value; where nothing varies, the value itself.
+    /// The value under variation; if nothing varies, the value itself.
     pub spread: Spread,
     /// The place with the largest worst case of those inward of the optimum along the first field.
     pub stepped_back: Option<(Optimum, Spread)>,
@@ -140,10 +140,10 @@ pub enum NoBest {
     Cancelled,
     /// No design of the scan makes a valid scene; what is wrong with the first.
     Invalid(Vec<Fault>),
-    /// No design has the result, or those with a constraint.
+    /// No design has the result and those of the constraints.
     NoValue,
-    /// None keeps to the constraints. The one that comes nearest, with what each constraint is about there,
-    /// in the environment that is furthest off.
+    /// No design meets the constraints. The nearest one, with the results that they bound, in the environment
+    /// that is furthest off.
     NoneMeets {
         /// The fields' values.
         nearest: Vec<f64>,
@@ -153,9 +153,8 @@ pub enum NoBest {
 }
 
 impl BestDesign {
-    /// One row: the fields, `maximised,value,margin_low,margin_high,worst,quantile_5`, of further fields
-    /// their margins, what stepping back in the first field costs, and of several environments the value of
-    /// each.
+    /// One row: the fields, `maximised,value,margin_low,margin_high,worst,quantile_5`, the margins of further
+    /// fields, the design stepped back in the first field, and the value in each of several environments.
     pub fn table(&self, question: &BestQuestion) -> Table {
         let fields: Vec<&str> = question.over.iter().map(|range| range.field.as_str()).collect();
         let names = column_names(&fields);
@@ -178,10 +177,10 @@ impl BestDesign {
         }
         let back = self.stepped_back.as_ref();
         table = table
-            .with("back_to", one(back.map_or(f64::NAN, |own| own.0.at[0])))
-            .with("back_value", one(back.map_or(f64::NAN, |own| own.0.value)))
-            .with("back_worst", one(back.map_or(f64::NAN, |own| own.1.worst)))
-            .with("back_quantile_5", one(back.map_or(f64::NAN, |own| own.1.quantile_5)));
+            .with("back_to", one(back.map_or(f64::NAN, |back| back.0.at[0])))
+            .with("back_value", one(back.map_or(f64::NAN, |back| back.0.value)))
+            .with("back_worst", one(back.map_or(f64::NAN, |back| back.1.worst)))
+            .with("back_quantile_5", one(back.map_or(f64::NAN, |back| back.1.quantile_5)));
         let each = self.optimum.of_each.iter().enumerate().filter(|_| question.environments.len() > 1);
         each.fold(table, |table, (i, value)| table.with(format!("value_{}", i + 1), one(*value)))
     }

@@ -12,14 +12,14 @@ use crate::study::settled::followed;
 use crate::study::shared_runs::shared_runs;
 use crate::system::threads::Pool;
 
-/// What one design came to.
+/// Result of one design.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Judged {
     /// It is no valid scene.
     Invalid(Vec<Fault>),
     /// A result is missing, or a run ended early.
     Missing,
-    /// Constraints are broken: by how much together, each relative to its limit, and the results.
+    /// Constraints are broken: the sum of the excesses, each relative to its limit, and the results.
     Broken(f64, Vec<f64>),
     /// It has a value.
     Value(f64, Vec<f64>),
@@ -38,34 +38,34 @@ impl Judged {
     }
 }
 
-/// A design with fields that came out otherwise: fields' values, then those of what varies.
+/// A varied design: values of its fields, then of those that vary.
 pub(super) type Design = (Vec<f64>, Vec<f64>);
 
 /// The summary of a run, or what is wrong with its scene.
 type Ran = Result<Box<Summary>, Vec<Fault>>;
 
-/// What evaluates designs.
+/// Evaluator of designs.
 pub(super) struct Evaluator<'a> {
     pub question: &'a BestQuestion,
-    /// The ranges of the question, in which it is known which fields hold whole numbers.
+    /// The ranges of the question, with the fields of whole numbers marked.
     pub over: Vec<DesignRange>,
     pub pool: &'a Pool,
     task: &'a Task<'a>,
     paths: Vec<FieldPath>,
     varied: Vec<FieldPath>,
-    /// Of each environment the scene's own mechanism, where it has one.
+    /// The mechanism of each environment's scene, if it could be built.
     mechanisms: Vec<Option<Arc<Mechanism>>>,
 }
 
 impl<'a> Evaluator<'a> {
     pub fn new(question: &'a BestQuestion, pool: &'a Pool, task: &'a Task<'a>) -> Result<Self, NoBest> {
         let mut mechanisms: Vec<Option<Arc<Mechanism>>> = Vec::new();
-        for (i, own) in question.environments.iter().enumerate() {
-            let same = |other: &usize| question.environments[*other].scene.mechanism == own.scene.mechanism;
+        for (i, base) in question.environments.iter().enumerate() {
+            let same = |other: &usize| question.environments[*other].scene.mechanism == base.scene.mechanism;
             let built = match (0..i).find(same) {
                 Some(other) => mechanisms[other].clone(),
                 None => {
-                    let built = Mechanism::build_unless(&own.scene.mechanism, &own.files, task.cancel);
+                    let built = Mechanism::build_unless(&base.scene.mechanism, &base.files, task.cancel);
                     built.ok_or(NoBest::Cancelled)?.ok().map(Arc::new)
                 }
             };
@@ -81,25 +81,25 @@ impl<'a> Evaluator<'a> {
             pool,
             task,
             paths: question.over.iter().map(|range| path(&range.field)).collect(),
-            varied: question.vary.iter().map(|own| path(&own.field)).collect(),
+            varied: question.vary.iter().map(|variation| path(&variation.field)).collect(),
             mechanisms,
         })
     }
 
-    /// The present value of what varies in a design.
+    /// The values of the varied fields in a design.
     pub fn values_of_varied(&self, at: &[f64]) -> Vec<f64> {
         let mut scene = self.question.environments[0].scene.clone();
         apply(&self.paths, at, &mut scene);
         self.varied.iter().map(|path| path.get(&scene).unwrap_or(f64::NAN)).collect()
     }
 
-    /// What these designs come to, in their order.
+    /// Results of these designs, in their order.
     pub fn judge(&self, designs: &[Vec<f64>]) -> Result<Vec<Judged>, NoBest> {
         let designs: Vec<Design> = designs.iter().map(|at| (at.clone(), Vec::new())).collect();
         self.judge_varied(&designs)
     }
 
-    /// The same of designs in which what varies has values of its own.
+    /// Results of designs with values of the varied fields.
     pub fn judge_varied(&self, designs: &[Design]) -> Result<Vec<Judged>, NoBest> {
         let each = self.question.environments.len();
         let constraints = self.question.subject_to.iter().map(|constraint| constraint.of);
@@ -120,8 +120,8 @@ impl<'a> Evaluator<'a> {
     }
 
     fn model(&self, (at, varied): &Design, environment: usize) -> Result<Model, Vec<Fault>> {
-        let own = &self.question.environments[environment];
-        let mut scene = Scene { sweep: Vec::new(), app: None, notes: String::new(), ..own.scene.clone() };
+        let base = &self.question.environments[environment];
+        let mut scene = Scene { sweep: Vec::new(), app: None, notes: String::new(), ..base.scene.clone() };
         apply(&self.paths, at, &mut scene);
         apply(&self.varied, varied, &mut scene);
         let faults = check(&scene).faults;
@@ -129,8 +129,8 @@ impl<'a> Evaluator<'a> {
             return Err(faults);
         }
         let mechanism = match &self.mechanisms[environment] {
-            Some(mechanism) if scene.mechanism == own.scene.mechanism => Arc::clone(mechanism),
-            _ => match Mechanism::build_unless(&scene.mechanism, &own.files, self.task.cancel) {
+            Some(mechanism) if scene.mechanism == base.scene.mechanism => Arc::clone(mechanism),
+            _ => match Mechanism::build_unless(&scene.mechanism, &base.files, self.task.cancel) {
                 Some(Ok(mechanism)) => Arc::new(mechanism),
                 Some(Err(BuildError::Wrong(fault))) => return Err(vec![fault]),
                 Some(Err(BuildError::Unsolved(_))) | None => return Err(Vec::new()),
@@ -142,8 +142,8 @@ impl<'a> Evaluator<'a> {
     /// One design from its runs in each environment.
     fn judged(&self, runs: &[Ran]) -> Judged {
         let mut summaries = Vec::new();
-        for own in runs {
-            match own {
+        for run in runs {
+            match run {
                 Ok(summary) => summaries.push(summary),
                 Err(faults) => return Judged::Invalid(faults.clone()),
             }
@@ -158,7 +158,7 @@ impl<'a> Evaluator<'a> {
                 let Some(result) = number(constraint.of, summary) else { return Judged::Missing };
                 let over =
                     if constraint.at_most { result - constraint.limit } else { constraint.limit - result };
-                if furthest.is_none_or(|(most, _)| over > most) {
+                if furthest.is_none_or(|(largest, _)| over > largest) {
                     furthest = Some((over, result));
                 }
             }
@@ -173,7 +173,7 @@ impl<'a> Evaluator<'a> {
         if broken > 0.0 {
             return Judged::Broken(broken, results);
         }
-        let weights = self.question.environments.iter().map(|own| own.weight);
+        let weights = self.question.environments.iter().map(|environment| environment.weight);
         let sum: f64 = of_each.iter().zip(weights.clone()).map(|(value, weight)| value * weight).sum();
         Judged::Value(sum / weights.sum::<f64>(), of_each)
     }

@@ -1,11 +1,11 @@
-//! Distance from the best design to where it is one no longer.
+//! Distance from the best design to where its value falls or a constraint breaks.
 
 use super::design::NoBest;
 use super::evaluate::{Evaluator, Judged};
 use super::search::{Found, resolution, rounded};
 use crate::study::bisection::multiple;
 
-/// The value falls by this share of itself.
+/// Relative fall of the value that ends the margin.
 const FALL: f64 = 0.1;
 
 /// Steps of the walk outward in one step of the scan.
@@ -22,8 +22,8 @@ pub(super) fn margins(evaluator: &Evaluator, found: &Found) -> Result<Vec<[Optio
         .collect()
 }
 
-/// The least distance in direction `way` at which the value has fallen, every finer step being tried: the
-/// values that hold are no interval.
+/// The least distance in direction `way` at which the value has fallen, with every finer step tried, since
+/// the values that hold form no interval.
 fn side(evaluator: &Evaluator, found: &Found, field: usize, way: f64) -> Result<Option<f64>, NoBest> {
     let range = &evaluator.over[field];
     let (best, middle) = (&found.optimum, found.optimum.at[field]);
@@ -48,8 +48,8 @@ fn side(evaluator: &Evaluator, found: &Found, field: usize, way: f64) -> Result<
     let mut inside = middle;
     for part in values.chunks(TOGETHER) {
         let judged = evaluator.judge(&part.iter().map(|value| at(*value)).collect::<Vec<_>>())?;
-        for (value, own) in part.iter().zip(&judged) {
-            if holds(own) {
+        for (value, design) in part.iter().zip(&judged) {
+            if holds(design) {
                 inside = *value;
                 continue;
             }
@@ -61,7 +61,7 @@ fn side(evaluator: &Evaluator, found: &Found, field: usize, way: f64) -> Result<
                     false => outside = middle,
                 }
             }
-            // a whole number of them, but for an end of the range
+            // a multiple of the resolution, except at an end of the range
             return Ok(Some(multiple((outside - middle).abs(), resolution(range))));
         }
     }

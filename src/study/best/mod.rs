@@ -21,7 +21,7 @@ pub use design::{
 use evaluate::Evaluator;
 pub use varied::SAMPLES;
 
-/// Searches for the best design. `preview` has the best place of the coarse scan, and the best place when it
+/// Searches for the best design. `preview` gets the best place of the coarse scan, and the best place when it
 /// is found, before margins and samples. The result is the same for any number of threads.
 pub fn best(
     question: &BestQuestion,
@@ -45,7 +45,7 @@ pub fn best(
     })
 }
 
-/// Runs that the first scan takes, and what it is repeated for.
+/// Number of runs of the scan of the whole range.
 pub fn scan_runs(question: &BestQuestion) -> u64 {
     let places: u64 = question.over.iter().map(|range| range.intervals as u64 + 1).product();
     places * question.environments.len() as u64

@@ -5,20 +5,20 @@ use super::evaluate::{Evaluator, Judged};
 use crate::numeric::round::{ONE_TWO_FIVE, round_down};
 use crate::study::bisection::multiple;
 
-/// Places of the scan between two of the coarse one that goes before it.
+/// Stride of the coarse scan before the full one.
 const COARSE: usize = 4;
 
-/// How many of the best places of the scan are looked at closer: beside the highest there may be a higher one
-/// in a window that the scan has only grazed.
+/// How many of the best places of the scan are refined: beside the highest there may be a higher one in a
+/// window that the scan has only grazed.
 const REFINED: usize = 5;
 
-/// Intervals to each side of the middle in a closer look, for one field, two, three and four.
+/// Intervals to each side of the middle in a refinement, for one field, two, three and four.
 const SIDES: [usize; 4] = [4, 2, 1, 1];
 
-/// Parts of a field's range that a place is located among.
+/// Parts of a field's range to which a place is located.
 const PARTS: f64 = 5e3;
 
-/// What the search came to.
+/// Result of the search.
 #[derive(Debug)]
 pub(super) struct Found {
     pub optimum: Optimum,
@@ -50,8 +50,8 @@ pub(super) fn rounded(range: &DesignRange, value: f64) -> f64 {
 /// All indices of the scan, the first field slowest.
 fn indices(over: &[DesignRange]) -> Vec<Vec<usize>> {
     over.iter().fold(vec![Vec::new()], |before, range| {
-        let longer = |own: &Vec<usize>| {
-            (0..=range.intervals).map(|i| [own.as_slice(), &[i]].concat()).collect::<Vec<_>>()
+        let longer = |prefix: &Vec<usize>| {
+            (0..=range.intervals).map(|i| [prefix.as_slice(), &[i]].concat()).collect::<Vec<_>>()
         };
         before.iter().flat_map(longer).collect()
     })
@@ -60,11 +60,11 @@ fn indices(over: &[DesignRange]) -> Vec<Vec<usize>> {
 /// The best of some places that were judged, the first of equal ones.
 fn highest(places: &[Vec<f64>], judged: &[Judged]) -> Option<Optimum> {
     let mut best: Option<Optimum> = None;
-    for (at, own) in places.iter().zip(judged) {
-        if let Some(own) = own.optimum(at)
-            && best.as_ref().is_none_or(|best| own.value > best.value)
+    for (at, design) in places.iter().zip(judged) {
+        if let Some(optimum) = design.optimum(at)
+            && best.as_ref().is_none_or(|best| optimum.value > best.value)
         {
-            best = Some(own);
+            best = Some(optimum);
         }
     }
     best
@@ -73,11 +73,11 @@ fn highest(places: &[Vec<f64>], judged: &[Judged]) -> Option<Optimum> {
 pub(super) fn search(evaluator: &Evaluator, preview: &mut dyn FnMut(&Optimum)) -> Result<Found, NoBest> {
     let over = &evaluator.over;
     let all = indices(over);
-    let coarse = |own: &Vec<usize>| own.iter().all(|index| index.is_multiple_of(COARSE));
+    let coarse = |node: &Vec<usize>| node.iter().all(|index| index.is_multiple_of(COARSE));
     let (mut places, mut judged) = (Vec::new(), Vec::new());
     for first in [true, false] {
         let part: Vec<Vec<f64>> =
-            all.iter().filter(|own| coarse(own) == first).map(|own| place(over, own)).collect();
+            all.iter().filter(|node| coarse(node) == first).map(|node| place(over, node)).collect();
         judged.extend(evaluator.judge(&part)?);
         places.extend(part);
         if let Some(best) = highest(&places, &judged).filter(|_| first) {
@@ -85,10 +85,10 @@ pub(super) fn search(evaluator: &Evaluator, preview: &mut dyn FnMut(&Optimum)) -
         }
     }
     let Some(mut best) = highest(&places, &judged) else { return Err(none(&places, &judged)) };
-    let all_equal = judged.iter().all(|own| own.value() == Some(best.value));
+    let all_equal = judged.iter().all(|design| design.value() == Some(best.value));
     let mut order: Vec<usize> = (0..places.len()).filter(|i| judged[*i].value().is_some()).collect();
     order.sort_by(|a, b| judged[*b].value().partial_cmp(&judged[*a].value()).unwrap_or(a.cmp(b)));
-    // of a plateau beside the highest place only its best: each begins a box of its own
+    // only the best place of a plateau begins a box
     let mut begins: Vec<usize> = Vec::new();
     for i in order {
         let apart = |other: &usize| {
@@ -104,9 +104,9 @@ pub(super) fn search(evaluator: &Evaluator, preview: &mut dyn FnMut(&Optimum)) -
         }
     }
     let starts = begins.iter().filter_map(|i| judged[*i].optimum(&places[*i])).collect();
-    for own in refine(evaluator, starts)? {
-        if own.value > best.value {
-            best = own;
+    for optimum in refine(evaluator, starts)? {
+        if optimum.value > best.value {
+            best = optimum;
         }
     }
     preview(&best);
@@ -134,17 +134,17 @@ fn refine(evaluator: &Evaluator, starts: Vec<Optimum>) -> Result<Vec<Optimum>, N
         .collect();
     let grid = indices(&grid);
     loop {
-        // of all boxes together, so that no thread waits
-        let places: Vec<Vec<Vec<f64>>> = boxes.iter().map(|own| around(own, over, &grid, &half)).collect();
+        // all boxes together, so that no thread waits
+        let places: Vec<Vec<Vec<f64>>> = boxes.iter().map(|area| around(area, over, &grid, &half)).collect();
         let judged = evaluator.judge(&places.concat())?;
         let mut rest = judged.as_slice();
-        for (own, places) in boxes.iter_mut().zip(places) {
-            let (judged, others) = rest.split_at(places.len());
-            rest = others;
-            if let Some(better) = highest(&places, judged).filter(|better| better.value > own.best.value) {
-                own.best = better;
+        for (area, places) in boxes.iter_mut().zip(places) {
+            let (judged, after) = rest.split_at(places.len());
+            rest = after;
+            if let Some(better) = highest(&places, judged).filter(|better| better.value > area.best.value) {
+                area.best = better;
             }
-            own.tried.extend(places);
+            area.tried.extend(places);
         }
         let finest = half.iter().zip(over).all(|(half, range)| half / sides as f64 <= resolution(range));
         // with one place to each side the best may lie anywhere in the box, so that it is only halved
@@ -153,22 +153,22 @@ fn refine(evaluator: &Evaluator, starts: Vec<Optimum>) -> Result<Vec<Optimum>, N
             *half = (*half * smaller).max(resolution(range));
         }
         if finest || sides == 1 && half.iter().zip(over).all(|(half, range)| *half <= resolution(range)) {
-            return Ok(boxes.into_iter().map(|own| own.best).collect());
+            return Ok(boxes.into_iter().map(|area| area.best).collect());
         }
     }
 }
 
-/// The places of a box that have not been tried: on a grid of so many indices, `half` to each side.
-fn around(own: &Closer, over: &[DesignRange], grid: &[Vec<usize>], half: &[f64]) -> Vec<Vec<f64>> {
+/// The untried places of a box on a grid of indices, `half` to each side.
+fn around(area: &Closer, over: &[DesignRange], grid: &[Vec<usize>], half: &[f64]) -> Vec<Vec<f64>> {
     let sides = SIDES[over.len() - 1] as f64;
     let place = |indices: &Vec<usize>| -> Vec<f64> {
         let at = |(field, index): (usize, &usize)| {
             let offset = half[field] * (*index as f64 / sides - 1.0);
-            rounded(&over[field], own.best.at[field] + offset)
+            rounded(&over[field], area.best.at[field] + offset)
         };
         indices.iter().enumerate().map(at).collect()
     };
-    let mut places: Vec<Vec<f64>> = grid.iter().map(place).filter(|at| !own.tried.contains(at)).collect();
+    let mut places: Vec<Vec<f64>> = grid.iter().map(place).filter(|at| !area.tried.contains(at)).collect();
     places.sort_by(|a: &Vec<f64>, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
     places.dedup();
     places
@@ -177,8 +177,8 @@ fn around(own: &Closer, over: &[DesignRange], grid: &[Vec<usize>], half: &[f64])
 /// Why no place has a value.
 fn none(places: &[Vec<f64>], judged: &[Judged]) -> NoBest {
     let mut nearest: Option<(f64, usize)> = None;
-    for (i, own) in judged.iter().enumerate() {
-        if let Judged::Broken(by, _) = own
+    for (i, design) in judged.iter().enumerate() {
+        if let Judged::Broken(by, _) = design
             && nearest.is_none_or(|(least, _)| *by < least)
         {
             nearest = Some((*by, i));
@@ -189,12 +189,14 @@ fn none(places: &[Vec<f64>], judged: &[Judged]) -> NoBest {
     {
         return NoBest::NoneMeets { nearest: places[i].clone(), results: results.clone() };
     }
-    let invalid = judged.iter().find_map(|own| match own {
+    let invalid = judged.iter().find_map(|design| match design {
         Judged::Invalid(faults) if !faults.is_empty() => Some(faults.clone()),
         _ => None,
     });
     match invalid {
-        Some(faults) if judged.iter().all(|own| matches!(own, Judged::Invalid(_))) => NoBest::Invalid(faults),
+        Some(faults) if judged.iter().all(|design| matches!(design, Judged::Invalid(_))) => {
+            NoBest::Invalid(faults)
+        }
         _ => NoBest::NoValue,
     }
 }

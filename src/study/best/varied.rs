@@ -1,4 +1,4 @@
-//! What becomes of a design whose fields come out a little otherwise, and how far to step back for it.
+//! Robustness of a design whose fields vary, and the step back that improves it.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -16,11 +16,11 @@ const QUANTILE: f64 = 0.05;
 /// Places from the optimum inward at which the samples are taken.
 const PLACES: usize = 16;
 
-/// How far inward is looked, in steps of the scan, where what varies is no part of the first field.
+/// Least reach of the search inward, in steps of the scan, such as when the first field does not vary.
 const LEAST_BACK: f64 = 16.0;
 
 /// The spread at the optimum, and the place with the largest worst case of those inward of it along the first
-/// field, away from the nearer cliff; none where the optimum is that place, or where nothing varies.
+/// field, away from the nearer cliff; `None` if the optimum is that place, or nothing varies.
 pub(super) fn robust(
     evaluator: &Evaluator,
     found: &Found,
@@ -32,14 +32,14 @@ pub(super) fn robust(
     }
     let range = &evaluator.over[0];
     // the nearer cliff is the one to step back from
-    let [low, high] = margins[0].map(|own| own.unwrap_or(f64::INFINITY));
+    let [low, high] = margins[0].map(|margin| margin.unwrap_or(f64::INFINITY));
     let way = if high <= low { -1.0 } else { 1.0 };
-    let shift = |own: &Variation| {
-        let size = if own.relative { best.at[0].abs() } else { 1.0 };
-        if own.field == range.field { own.by * size } else { 0.0 }
+    let shift = |variation: &Variation| {
+        let size = if variation.relative { best.at[0].abs() } else { 1.0 };
+        if variation.field == range.field { variation.by * size } else { 0.0 }
     };
-    let own: f64 = evaluator.question.vary.iter().map(shift).sum();
-    let reach = (3.0 * own).max(LEAST_BACK * range.step());
+    let shifts: f64 = evaluator.question.vary.iter().map(shift).sum();
+    let reach = (3.0 * shifts).max(LEAST_BACK * range.step());
     let mut places: Vec<Vec<f64>> = Vec::new();
     for i in 0..=PLACES {
         // closer together near the optimum
@@ -53,13 +53,13 @@ pub(super) fn robust(
         }
     }
     let judged = evaluator.judge(&places[1..])?;
-    let back = places[1..].iter().zip(&judged).filter_map(|(at, own)| own.optimum(at));
+    let back = places[1..].iter().zip(&judged).filter_map(|(at, design)| design.optimum(at));
     let mut all: Vec<Sampled> =
-        std::iter::once(best.clone()).chain(back).map(|own| Sampled::new(evaluator, own)).collect();
+        std::iter::once(best.clone()).chain(back).map(|optimum| Sampled::new(evaluator, optimum)).collect();
     let everything: Vec<usize> = (0..SAMPLES).collect();
     evaluate(evaluator, &mut all[..1], &everything)?;
-    // What is worst here is so elsewhere as a rule, and the worst that is known of a place bounds its worst
-    // case: few places need all samples to be behind.
+    // Samples that are bad here are usually bad elsewhere, and the worst known sample of a place bounds its
+    // worst case: few places need all samples to be ruled out.
     let mut order = everything;
     order.sort_by(|a, b| all[0].values[*a].total_cmp(&all[0].values[*b]));
     evaluate(evaluator, &mut all[1..], &order[..TOGETHER])?;
@@ -83,9 +83,9 @@ const TOGETHER: usize = 8;
 /// A place and its samples: the same at each.
 struct Sampled {
     at: Optimum,
-    /// Values of what varies in each.
+    /// Values of the varied fields in each sample.
     varied: Vec<Vec<f64>>,
-    /// Of those that are known the value, minus infinity where there is none; else infinity.
+    /// Values of the known samples, minus infinity if missing; infinity for unknown ones.
     values: Vec<f64>,
     /// How many are known.
     known: usize,
@@ -97,8 +97,8 @@ impl Sampled {
         let mut uniform = || (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
         let nominal = evaluator.values_of_varied(&at.at);
         let mut sample = || {
-            let vary = evaluator.question.vary.iter().zip(&nominal).map(|(own, value)| {
-                let by = if own.relative { own.by * value } else { own.by };
+            let vary = evaluator.question.vary.iter().zip(&nominal).map(|(variation, value)| {
+                let by = if variation.relative { variation.by * value } else { variation.by };
                 value + by * (2.0 * uniform() - 1.0)
             });
             vary.collect()
@@ -122,17 +122,17 @@ impl Sampled {
     }
 }
 
-/// Makes these samples of all places known.
+/// Evaluates these samples at all places.
 fn evaluate(evaluator: &Evaluator, places: &mut [Sampled], samples: &[usize]) -> Result<(), NoBest> {
-    let of = |own: &Sampled, sample: usize| (own.at.at.clone(), own.varied[sample].clone());
+    let of = |place: &Sampled, sample: usize| (place.at.at.clone(), place.varied[sample].clone());
     let designs: Vec<Design> =
-        places.iter().flat_map(|own| samples.iter().map(move |sample| of(own, *sample))).collect();
+        places.iter().flat_map(|place| samples.iter().map(move |sample| of(place, *sample))).collect();
     let judged = evaluator.judge_varied(&designs)?;
-    for (own, judged) in places.iter_mut().zip(judged.chunks(samples.len())) {
+    for (place, judged) in places.iter_mut().zip(judged.chunks(samples.len())) {
         for (sample, judged) in samples.iter().zip(judged) {
-            own.values[*sample] = judged.value().unwrap_or(f64::NEG_INFINITY);
+            place.values[*sample] = judged.value().unwrap_or(f64::NEG_INFINITY);
         }
-        own.known += samples.len();
+        place.known += samples.len();
     }
     Ok(())
 }

@@ -11,11 +11,11 @@ use crate::numeric::CompensatedSum;
 const TURNING: u32 = 20;
 
 /// The exponents of the motion through `state`, in m and m/s at a [`phase`](Model::drive_phase) of the drive
-/// from 0 to 1, over so many forcing periods: no transient is waited for and no periodic motion looked for.
-/// Without a drive a period is the natural time of the mechanism. At least one period.
+/// from 0 to 1, over `periods` forcing periods, without waiting for a transient or looking for a periodic
+/// motion. Without a drive a period is the natural time of the mechanism. At least one period.
 ///
 /// The standard errors are those of the means of batches, as many as the root of the number of periods
-/// (Flegal and Jones 2010): they cover the scatter of a motion that forgets itself within a batch.
+/// (Flegal and Jones 2010): they cover the scatter of a motion whose correlations decay within a batch.
 pub fn average_exponents(
     model: &Model,
     (state, phase): ((f64, f64), f64),
@@ -55,17 +55,17 @@ pub(super) fn average(
             first.add(growth.ln());
             second.add(passed.log_determinant() - growth.ln());
             measured.add(passed.measured);
-            exact = exact.zip(passed.exact).map(|(mut sum, own)| {
-                sum.add(own);
+            exact = exact.zip(passed.exact).map(|(mut sum, term)| {
+                sum.add(term);
                 sum
             });
         }
     }
-    let exact_sum = exact.map(|own| own.value() / time + 0.0);
+    let exact_sum = exact.map(|sum| sum.value() / time + 0.0);
     let (first, second) = (first.estimate(tangent.period()), second.estimate(tangent.period()));
-    // The sum less the first one has no rounding of its own.
+    // The sum less the first exponent adds no rounding.
     let second = Estimate { per_s: exact_sum.map_or(second.per_s, |sum| sum - first.per_s), ..second };
-    // Of two that are equal but for their scatter either may come out as the larger.
+    // If the two differ only by their scatter, either may come out as the larger.
     let (first, second) = if second.per_s > first.per_s { (second, first) } else { (first, second) };
     Ok(Exponents {
         first,
@@ -80,19 +80,19 @@ pub(super) fn average(
 /// Sums over consecutive parts of a series of known length.
 struct Batches {
     sums: Vec<f64>,
-    told: u64,
+    added: u64,
     length: u64,
 }
 
 impl Batches {
     fn new(length: u32) -> Self {
-        Self { sums: vec![0.0; length.isqrt() as usize], told: 0, length: length.into() }
+        Self { sums: vec![0.0; length.isqrt() as usize], added: 0, length: length.into() }
     }
 
     fn add(&mut self, value: f64) {
-        let batch = self.told * self.sums.len() as u64 / self.length;
+        let batch = self.added * self.sums.len() as u64 / self.length;
         self.sums[batch as usize] += value;
-        self.told += 1;
+        self.added += 1;
     }
 
     /// Mean and standard error of the series over `period`. Batches differ by at most one value in length.
@@ -108,7 +108,7 @@ impl Batches {
             (begin(batch + 1) - begin(batch)) as f64
         };
         let means = self.sums.iter().zip(0..).map(|(sum, batch)| sum / length(batch));
-        let squares: f64 = means.map(|own| (own - mean) * (own - mean)).sum();
+        let squares: f64 = means.map(|value| (value - mean) * (value - mean)).sum();
         let error = match count {
             1 => f64::NAN,
             n => (squares / (n - 1) as f64 / n as f64).sqrt(),

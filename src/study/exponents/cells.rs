@@ -20,7 +20,7 @@ pub struct ExponentCells {
     cells: Cells,
 }
 
-/// What the cells of a grid came to.
+/// Counts of the results of the cells of a grid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ExponentTally {
     /// Cells done.
@@ -32,7 +32,7 @@ pub struct ExponentTally {
     pub missing: u64,
 }
 
-/// The exponents of a cell; none where it has none.
+/// The exponents of a cell; `None` if it has none.
 type Found = Option<Exponents>;
 
 impl ExponentCells {
@@ -51,7 +51,7 @@ impl ExponentCells {
         self.cells.first_mechanism()
     }
 
-    /// The model of the first cell, or its faults; none where its mechanism was not solved.
+    /// The model of the first cell, or its faults; `None` if its mechanism was not solved.
     pub fn first_model(&self, task: &Task) -> Option<Result<Model, Vec<Fault>>> {
         self.cells.model(0, &mut self.cells.base.clone(), task)
     }
@@ -61,7 +61,8 @@ impl ExponentCells {
         self.table(0, &[])
     }
 
-    /// Builds every cell; the first one that is wrong, or whose excitation changes and does not repeat.
+    /// Builds every cell; the error is the first invalid one, or one whose excitation changes and does
+    /// not repeat.
     pub fn validate(&self, pool: &Pool, task: &Task) -> Result<(), CellFaults> {
         let faults = |scene: &mut Scene, index: u64| {
             if task.is_cancelled() {
@@ -102,8 +103,8 @@ impl ExponentCells {
         let leave = |found: Vec<Found>| {
             let table = self.table(tally.cells, &found);
             tally.cells += found.len() as u64;
-            tally.missing += found.iter().filter(|own| own.is_none()).count() as u64;
-            tally.resting += found.iter().flatten().filter(|own| own.rests()).count() as u64;
+            tally.missing += found.iter().filter(|cell| cell.is_none()).count() as u64;
+            tally.resting += found.iter().flatten().filter(|exponents| exponents.rests()).count() as u64;
             write(&table).unwrap_or_else(|error| {
                 end = Some(SweepEnd::Write(error));
                 false
@@ -125,8 +126,8 @@ impl ExponentCells {
     }
 }
 
-/// What is wrong with the excitation of a scene whose exponents are asked for: it changes and does not
-/// repeat.
+/// What is wrong with the excitation of a scene whose exponents are asked for: it changes and does
+/// not repeat.
 pub fn drive_fault(model: &Model, scene: &Scene) -> Option<Fault> {
     let suits = model.excitation().is_constant();
     if suits { None } else { without_a_period(model, scene, "an exponent") }
@@ -138,13 +139,13 @@ pub fn exponents_row(found: &Exponents) -> Table {
 }
 
 fn with_columns(table: Table, found: &[Found]) -> Table {
-    let number = |of: fn(&Exponents) -> f64| move |own: &Found| own.as_ref().map_or(f64::NAN, of);
+    let number = |of: fn(&Exponents) -> f64| move |cell: &Found| cell.as_ref().map_or(f64::NAN, of);
     table
-        .each("exponent_1_per_s", found, number(|own| own.first.per_s))
-        .each("exponent_1_se", found, number(|own| own.first.error))
-        .each("exponent_2_per_s", found, number(|own| own.second.per_s))
-        .each("exponent_2_se", found, number(|own| own.second.error))
-        .each("sum_per_s", found, number(|own| own.sum))
-        .each("exact_sum_per_s", found, number(|own| own.exact_sum.unwrap_or(f64::NAN)))
+        .each("exponent_1_per_s", found, number(|exponents| exponents.first.per_s))
+        .each("exponent_1_se", found, number(|exponents| exponents.first.error))
+        .each("exponent_2_per_s", found, number(|exponents| exponents.second.per_s))
+        .each("exponent_2_se", found, number(|exponents| exponents.second.error))
+        .each("sum_per_s", found, number(|exponents| exponents.sum))
+        .each("exact_sum_per_s", found, number(|exponents| exponents.exact_sum.unwrap_or(f64::NAN)))
         .each("dimension", found, number(Exponents::dimension))
 }

@@ -6,9 +6,9 @@ use super::tangent::{Passed, Tangent};
 /// The farthest a motion that repeats is from itself a period later, in units of the scales.
 const NEAR: f64 = 1e-2;
 
-/// The same of the periodic motion that Newton's method gives: rounding at best, and at most the error of a
-/// period.
+/// Distance of a periodic motion from itself a period later, in units of the scales, that is only rounding.
 const ROUNDING: f64 = 1e-13;
+/// Least and largest bound of that distance for a motion that Newton's method finds.
 const CLOSE: (f64, f64) = (1e-10, 1e-4);
 
 /// Steps of Newton's method: it doubles the digits.
@@ -17,9 +17,8 @@ const STEPS: usize = 12;
 /// A growth over a period that rounding can hide.
 const NEUTRAL: f64 = 1e-6;
 
-/// The exponents of the periodic motion of so many forcing periods that the motion through `start` has
-/// settled on. None where there is none near it, and where it is unstable: only a motion that is on it
-/// exactly stays there.
+/// The exponents of the periodic motion of `periods` forcing periods that the motion through `start` has
+/// settled on. `None` if there is none near it, or if it is unstable and the motion is not exactly on it.
 pub(super) fn of_orbit(
     tangent: &Tangent,
     start: (f64, f64),
@@ -42,14 +41,14 @@ pub(super) fn of_orbit(
         first: Estimate::exact(first / time),
         second: Estimate::exact(second / time),
         sum: orbit.measured / time,
-        exact_sum: orbit.exact.map(|own| own / time + 0.0),
+        exact_sum: orbit.exact.map(|sum| sum / time + 0.0),
         period: Some(periods),
         span: (periods, time),
     }))
 }
 
 /// The periodic motion near a state, how far it is from itself a period later, and whether the state had to
-/// be moved; none where Newton's method finds none.
+/// be moved; `None` if Newton's method finds none.
 fn find(
     tangent: &Tangent,
     start: (f64, f64),
@@ -65,7 +64,7 @@ fn find(
         };
         let [x, v] = tangent.scaled(state, orbit.state);
         let distance = x.hypot(v);
-        if step == 0 && !(distance <= NEAR) || best.is_some_and(|own| !(distance < own.1)) {
+        if step == 0 && !(distance <= NEAR) || best.is_some_and(|best| !(distance < best.1)) {
             break;
         }
         best = Some((orbit, distance, step > 0));
@@ -79,10 +78,10 @@ fn find(
         state = next;
     }
     let close = (10.0 * tangent.model().tolerance()).clamp(CLOSE.0, CLOSE.1);
-    Ok(best.filter(|own| own.1 <= close))
+    Ok(best.filter(|best| best.1 <= close))
 }
 
-/// Whether a mass can be there.
+/// Whether the mass can have this state.
 fn has_room(tangent: &Tangent, (x, v): (f64, f64)) -> bool {
     let model = tangent.model();
     let (low, high) = model.mechanism().curve.domain();

@@ -1,14 +1,14 @@
-//! Lyapunov exponents as they are answered, and why there are none.
+//! Lyapunov exponents of a motion, and the reasons why there are none.
 
 use crate::dynamics::Outcome;
 
 /// How exponents are measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ExponentOptions {
-    /// Forcing periods that a motion without a period of its own is averaged over.
+    /// Forcing periods over which a motion without a period is averaged.
     pub periods: u32,
-    /// Time in s up to which a motion is followed until it repeats; none: for 1000 forcing periods after the
-    /// scene's run.
+    /// Time in s up to which a motion is followed until it repeats; `None`: for 1000 forcing periods after
+    /// the scene's run.
     pub until_settled: Option<f64>,
 }
 
@@ -28,8 +28,8 @@ impl Default for ExponentOptions {
 pub struct Estimate {
     /// The value in 1/s; minus infinity where nothing is left of a change, NaN where it is not known.
     pub per_s: f64,
-    /// Its standard error in 1/s: 0 where the value is that of a periodic motion or minus infinity, NaN where
-    /// too few periods tell none.
+    /// Its standard error in 1/s: 0 where the value is that of a periodic motion or minus infinity, NaN if
+    /// there are too few periods.
     pub error: f64,
 }
 
@@ -51,7 +51,8 @@ pub struct Exponents {
     /// Their sum in 1/s by the determinants of the derivatives. NaN where a forcing period shrinks areas so
     /// much that a determinant, the difference of two products, has lost its digits.
     pub sum: f64,
-    /// Their sum in 1/s by damping and impacts; none with compliant stops, whose loss depends on the motion.
+    /// Their sum in 1/s by damping and impacts; `None` with compliant stops, whose loss depends on
+    /// the motion.
     pub exact_sum: Option<f64>,
     /// Forcing periods after which the motion repeats, where they are those of a periodic motion.
     pub period: Option<u32>,
@@ -59,11 +60,11 @@ pub struct Exponents {
     pub span: (u32, f64),
 }
 
-/// So many standard errors above 0 an exponent is called positive.
+/// Standard errors above 0 from which an exponent counts as positive.
 const CLEAR: f64 = 3.0;
 
-/// So many times the growth of a shear, which grows with the number of periods alone, an irregular motion
-/// grows at least.
+/// Least growth of an irregular motion, in multiples of that of a shear, which is linear in the number
+/// of periods.
 const BEYOND_SHEAR: f64 = 3.0;
 
 impl Exponents {

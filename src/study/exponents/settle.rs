@@ -9,15 +9,15 @@ use super::tangent::Tangent;
 use crate::dynamics::{Model, Outcome, Request};
 use crate::study::settled::{PATIENCE, followed_until};
 
-/// Forcing periods of a window in which every period of a motion up to 12 of them is told.
+/// Forcing periods of a window in which a motion that repeats after up to 12 of them is recognised.
 const WINDOW: f64 = 36.0;
 
 /// The exponents of the settled motion of `model`.
 ///
-/// Its run is made up to the end of its settled window, and on, window after window, until it repeats or the
-/// time of the options is over. If it repeats, they are those of the periodic motion there; else averages
-/// over the periods that follow. Without a drive the mass is followed for 1000 periods of its small
-/// oscillations.
+/// Its run goes to the end of its settled window, and on, window after window, until it repeats or the time
+/// of the options is over. If it repeats, the exponents are those of the periodic motion; else they are
+/// averages over the periods that follow. Without a drive the mass is followed for 1000 periods of its
+/// small oscillations.
 pub fn exponents(
     model: &Model,
     options: &ExponentOptions,

@@ -1,4 +1,4 @@
-//! Forcing period of a motion, with what becomes of small changes of it.
+//! Map of a forcing period, with the growth of small changes of the motion.
 
 use super::result::NoExponents;
 use crate::dynamics::{EventKind, Jacobian, Model, Outcome, Passage, Scales, Side, StroboscopicMap};
@@ -7,9 +7,10 @@ use crate::dynamics::{EventKind, Jacobian, Model, Outcome, Passage, Scales, Side
 /// (The error of the integration is a share of the areas themselves, of the size of the tolerance.)
 const LOST: f64 = 1e-12;
 
-/// Below this share that of a period is the product of those of its parts, so many. A mass that lingers near
-/// the top of a barrier turns all changes into the one that grows there, up to 1e6-fold in a period.
+/// Below this share the determinant of a period is the product of those of its parts. A mass that lingers
+/// near the top of a barrier turns all changes into the one that grows there, up to 1e6-fold in a period.
 const FEW_LEFT: f64 = 1e-4;
+/// Number of these parts.
 const PARTS: u32 = 8;
 
 /// The stroboscopic map of a model, with changes of a state in units of its scales.
@@ -18,11 +19,11 @@ pub(super) struct Tangent {
     scales: Scales,
     /// Logarithm of the share of an area that damping leaves in a period.
     damped: f64,
-    /// The same of an impact on the left and the right stop; none where they are compliant.
+    /// The same of an impact on the left and the right stop; `None` if they are compliant.
     struck: Option<[f64; 2]>,
 }
 
-/// What one or more forcing periods did.
+/// Result of one or more forcing periods.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Passed {
     /// The state at their end, in m and m/s.
@@ -31,7 +32,7 @@ pub(super) struct Passed {
     pub jacobian: Jacobian,
     /// Logarithm of their determinant; NaN where its digits are lost.
     pub measured: f64,
-    /// The same by damping and impacts; none with compliant stops.
+    /// The same by damping and impacts; `None` with compliant stops.
     pub exact: Option<f64>,
 }
 
@@ -41,15 +42,15 @@ impl Passed {
         self.jacobian.rows == [[0.0; 2]; 2]
     }
 
-    /// The best there is of both logarithms.
+    /// The exact logarithm if it is known, else the measured one.
     pub fn log_determinant(&self) -> f64 {
         self.exact.unwrap_or(self.measured)
     }
 }
 
 impl Tangent {
-    /// The map from a phase of the drive on, in forcing periods; without a drive over the natural time of the
-    /// mechanism.
+    /// The map from a phase of the drive on, in forcing periods; without a drive over the natural time of
+    /// the mechanism.
     pub fn of(model: &Model, phase: f64) -> Result<Self, NoExponents> {
         if model.has_electrical_state() {
             return Err(NoExponents::ElectricalState);
@@ -81,19 +82,20 @@ impl Tangent {
 
     /// The next period of the motion from a state in m and m/s.
     pub fn pass(&self, state: (f64, f64)) -> Result<Passed, NoExponents> {
-        let (passage, own) = self.map.pass_with_jacobian(state, 1);
+        let (passage, derivative) = self.map.pass_with_jacobian(state, 1);
         if passage.outcome != Outcome::Done {
             return Err(NoExponents::EndedEarly(passage.outcome));
         }
         let time = self.scales.length / self.scales.speed;
-        let [[a, b], [c, d]] = own.rows;
+        let [[a, b], [c, d]] = derivative.rows;
         let jacobian = Jacobian { rows: [[a, b / time], [c * time, d]] };
-        if !products(&own).is_finite() {
+        if !products(&derivative).is_finite() {
             return Err(NoExponents::Grazing);
         }
-        let rested = own.rows == [[0.0; 2]; 2];
+        let rested = derivative.rows == [[0.0; 2]; 2];
         let impacts = |side: Side| {
-            let hits = passage.events.iter().filter(|own| own.kind == EventKind::Impact && own.side == side);
+            let hits =
+                passage.events.iter().filter(|event| event.kind == EventKind::Impact && event.side == side);
             hits.count() as f64
         };
         let exact = self.struck.map(|[left, right]| match rested {
@@ -102,16 +104,19 @@ impl Tangent {
         });
         let measured = match rested {
             true => f64::NEG_INFINITY,
-            false => self.told((&passage, &own), 1.0, FEW_LEFT).unwrap_or_else(|| self.by_parts(state)),
+            false => {
+                self.logarithm((&passage, &derivative), 1.0, FEW_LEFT).unwrap_or_else(|| self.by_parts(state))
+            }
         };
         Ok(Passed { state: passage.state, jacobian, measured, exact })
     }
 
-    /// Logarithm of the determinant of a share of a period, where it is more than `least` of its products.
-    fn told(&self, (passage, own): (&Passage, &Jacobian), share: f64, least: f64) -> Option<f64> {
-        let determinant = own.determinant().abs();
+    /// Logarithm of the determinant of a share of a period; `None` if it is less than `least` of
+    /// its products.
+    fn logarithm(&self, (passage, derivative): (&Passage, &Jacobian), share: f64, least: f64) -> Option<f64> {
+        let determinant = derivative.determinant().abs();
         let exact = passage.determinant.unwrap_or_else(|| (self.damped * share).exp());
-        (exact.min(determinant) > least * products(own)).then(|| determinant.ln())
+        (exact.min(determinant) > least * products(derivative)).then(|| determinant.ln())
     }
 
     /// The same of a period from its parts, NaN where one has lost its digits.
@@ -119,14 +124,14 @@ impl Tangent {
         let share = 1.0 / f64::from(PARTS);
         let parts = (0..PARTS).map(|part| {
             let span = (f64::from(part) * share, f64::from(part + 1) * share);
-            let (passage, own) = self.map.pass_part_with_jacobian(state, span);
+            let (passage, derivative) = self.map.pass_part_with_jacobian(state, span);
             state = passage.state;
-            self.told((&passage, &own), share, LOST).unwrap_or(f64::NAN)
+            self.logarithm((&passage, &derivative), share, LOST).unwrap_or(f64::NAN)
         });
         parts.sum()
     }
 
-    /// So many periods of the motion together.
+    /// The result of `periods` forcing periods.
     pub fn pass_many(&self, state: (f64, f64), periods: u32) -> Result<Passed, NoExponents> {
         let mut all =
             Passed { state, jacobian: Jacobian::IDENTITY, measured: 0.0, exact: self.struck.map(|_| 0.0) };
@@ -136,7 +141,7 @@ impl Tangent {
                 state: next.state,
                 jacobian: next.jacobian.after(&all.jacobian),
                 measured: all.measured + next.measured,
-                exact: all.exact.zip(next.exact).map(|(before, own)| before + own),
+                exact: all.exact.zip(next.exact).map(|(before, more)| before + more),
             };
         }
         Ok(all)
@@ -154,8 +159,8 @@ impl Tangent {
 }
 
 /// The two products of which a determinant is the difference, without their signs.
-fn products(own: &Jacobian) -> f64 {
-    let [[a, b], [c, d]] = own.rows;
+fn products(derivative: &Jacobian) -> f64 {
+    let [[a, b], [c, d]] = derivative.rows;
     (a * d).abs() + (b * c).abs()
 }
 

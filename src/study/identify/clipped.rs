@@ -2,8 +2,8 @@
 
 use crate::numeric::extent;
 
-/// Differences of values that are whole multiples of the least one, but for this part of it, are those of a
-/// converter; of numbers that are written out in full few are.
+/// Share of the least difference within which differences are its whole multiples. Those of a converter are;
+/// of numbers that are written in full few are.
 const WHOLE: f64 = 0.01;
 
 /// The flat tops of a record.
@@ -37,7 +37,7 @@ pub fn clipped(values: &[f64]) -> Option<Clipped> {
             match tops.last_mut() {
                 Some(top) if top.1 + 1 == i => top.1 = i,
                 _ if values[i - 1] != limit => tops.push((i, i)),
-                // what the record begins with is no top
+                // a flat stretch at the start of the record is no top
                 _ => {}
             }
         }

@@ -17,23 +17,23 @@ const ENVELOPE: u32 = 400;
 /// Turning points in a row of the table.
 const GROUP: usize = 8;
 
-/// The part of a number by which it may change without a word.
+/// Relative change of a number up to which there is no remark.
 const NEGLIGIBLE: f64 = 1e-3;
 
 /// Swings count down to this many times the reach of the noise.
 const CLEAR: f64 = 1.5;
 
-/// Damping ratio, decay and frequency of a free decay, over the whole record and as they change with the
-/// amplitude.
+/// Damping ratio, decay and frequency of a free decay, over the whole record and as they change with
+/// the amplitude.
 ///
-/// Turning points are fitted each on its own (see `peaks`) and an exponential envelope through them by
-/// weighted least squares (see [`Envelope`]), whose rate r is the decay of the amplitude a second. Over half
-/// a period of T/2 the amplitude falls by d = r T/2, half the logarithmic decrement, and the damping ratio is
+/// Each turning point is fitted separately (see `peaks`) and an exponential envelope through them by weighted
+/// least squares (see [`Envelope`]), whose rate r is the decay of the amplitude a second. Over half a period
+/// of T/2 the amplitude falls by d = r T/2, half the logarithmic decrement, and the damping ratio is
 /// d/sqrt(pi^2 + d^2). Of an oscillator with mass m and damping coefficient c in a well that is straight, or
 /// straight on either side of a kink at its bottom, r is c/(2 m). The rest position need not be known, and
 /// the two sides may have unlike amplitudes. The period is the slope of a weighted straight line through the
-/// times of the turning points, with what sets maxima apart from minima. Intervals are 95 %, from the scatter
-/// of the turning points about envelope and line.
+/// times of the turning points, with an offset between maxima and minima. Intervals are 95 %, from the
+/// scatter of the turning points about envelope and line.
 ///
 /// Begins after the last flat top where the record is clipped, at the largest swing otherwise. Rows:
 /// `turns,from_s,to_s,amplitude,damping_ratio,damping_ratio_low,damping_ratio_high,frequency_hz,
@@ -80,7 +80,7 @@ pub fn damping(times: &[f64], channel: &Channel) -> Result<Identified, Unidentif
     })
 }
 
-/// What to know of the answer: where the record is cut, and what changes with the amplitude.
+/// Remarks on the result: where the record is cut, and what changes with the amplitude.
 fn remarks(
     rows: &[Decay],
     whole: &Decay,
@@ -119,7 +119,7 @@ fn remarks(
     .filter_map(|(name, changes)| changes.then_some(name))
     .collect();
     if let [others @ .., last] = &changing[..] {
-        let (names, change, is) = match others {
+        let (names, change, note) = match others {
             [] => ((*last).to_owned(), "changes", "the number for all is a mean over the amplitudes"),
             _ => (
                 format!("{} and {last}", others.join(", ")),
@@ -127,7 +127,7 @@ fn remarks(
                 "the numbers for all are means over the amplitudes",
             ),
         };
-        remarks.push(format!("{names} {change} with the amplitude by more than the intervals: {is}"));
+        remarks.push(format!("{names} {change} with the amplitude by more than the intervals: {note}"));
     }
     remarks
 }
@@ -168,7 +168,7 @@ impl Decay {
             value: of_rate(envelope.rate),
             interval: (of_rate(slowest), of_rate(fastest)),
         };
-        // without an upper end where the step may be 0
+        // no upper end if the step may be 0
         let highest = if late < step { 0.5 / (step - late) } else { f64::INFINITY };
         let frequency =
             Identity { name: "frequency_hz", value: 0.5 / step, interval: (0.5 / (step + late), highest) };
@@ -232,10 +232,10 @@ fn natural(frequency: Identity, damping: Identity) -> Identity {
 /// Whether the numbers of the rows differ from that of the whole by more than their intervals explain, and by
 /// more than counts.
 fn differ(rows: impl ExactSizeIterator<Item = Identity>, whole: f64) -> bool {
-    let most = 1 + rows.len() / 5;
+    let chance = 1 + rows.len() / 5;
     let apart = |row: &Identity| (row.value - whole).abs() > NEGLIGIBLE * whole.abs();
-    // of rows that agree one in twenty lies outside
-    rows.filter(|row| !(row.interval.0..=row.interval.1).contains(&whole) && apart(row)).count() > most
+    // one in twenty of rows that agree lies outside
+    rows.filter(|row| !(row.interval.0..=row.interval.1).contains(&whole) && apart(row)).count() > chance
 }
 
 fn table(rows: &[Decay], amplitude: &str) -> Table {

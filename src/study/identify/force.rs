@@ -7,7 +7,7 @@ use crate::numeric::regression::{Fit, least_squares, powers, student};
 use crate::numeric::{extent, short};
 use crate::study::table::{Table, Values};
 
-/// Points of a curve where none are asked for.
+/// Default number of points of a curve.
 pub const FORCE_POINTS: usize = 101;
 
 /// The part of the range of positions by which a pull goes back where it turns.
@@ -16,10 +16,10 @@ const TURN: f64 = 0.1;
 /// Standard deviations of the position next to a turn that are left out: there its noise has one sign.
 const TURNING: f64 = 6.0;
 
-/// The part of the range after a turn that is left out where the two directions differ there, in its
-/// outermost quarter, by less than half of what they do in a few times that part further in: where friction
-/// and backlash turn.
+/// The part of the range after a turn that is left out if the two directions differ in its outermost quarter
+/// by less than half of what they do further in: there friction and backlash turn.
 const LEFT_OUT: f64 = 0.01;
+/// End of the range further in, in multiples of that part.
 const FURTHER_IN: f64 = 5.0;
 
 /// Standard errors by which the force differs from 0 on both sides of an equilibrium.
@@ -66,11 +66,11 @@ struct Curve {
 /// The curve has `points` even positions over the range that all directions cover. At each of them a cubic is
 /// fitted by least squares to the samples of one direction up to the neighbouring points, or up to a kink
 /// beside an equilibrium. The force of the curve is the mean of both directions, and half their difference
-/// the friction. The equilibria are fitted for themselves (see `Rest::near`). Intervals are 95 %, from the
+/// the friction. The equilibria are fitted separately (see `Rest::near`). Intervals are 95 %, from the
 /// residuals of the fits.
 ///
-/// Rows: `x_m,force_n,force_low_n,force_high_n,force_rising_n,force_falling_n`, as a table mechanism reads
-/// them.
+/// Rows: `x_m,force_n,force_low_n,force_high_n,force_rising_n,force_falling_n`, as a table mechanism
+/// reads them.
 pub fn force(x: &[f64], force: &[f64], points: usize) -> Result<Identified, Unidentified> {
     let [rising, falling] = directions(x, force);
     let pulls: Vec<&Pull> = [&rising, &falling].into_iter().filter(|pull| !pull.is_empty()).collect();
@@ -117,7 +117,7 @@ pub fn force(x: &[f64], force: &[f64], points: usize) -> Result<Identified, Unid
 }
 
 impl Curve {
-    /// The curve of these pulls, which breaks at `kinks`; none where the samples are too few.
+    /// The curve of these pulls, which breaks at `kinks`; `None` if the samples are too few.
     fn of(pulls: &[&Pull], (low, high): (f64, f64), points: usize, kinks: &[f64]) -> Option<Self> {
         let step = (high - low) / (points - 1) as f64;
         let position = |i: usize| low + (high - low) * i as f64 / (points - 1) as f64;
@@ -153,7 +153,7 @@ impl Curve {
         signs.windows(2).filter_map(crossing).filter_map(|x| Rest::near(x, pulls, range)).collect()
     }
 
-    /// Equilibria and barrier by name, and what to know of them.
+    /// Equilibria and barrier by name, and remarks on them.
     fn landscape(&self, rests: &[Rest]) -> (Vec<Identity>, Vec<String>) {
         const WELL: [&str; 2] = ["well_m", "well_stiffness_n_per_m"];
         const LEFT: [&str; 2] = ["left_well_m", "left_well_stiffness_n_per_m"];
@@ -274,8 +274,8 @@ fn through_four(u: f64, values: &[f64]) -> f64 {
     let first = ((u.floor() - 1.0).max(0.0) as usize).min(values.len() - 4);
     let nodes = [0, 1, 2, 3].map(|k| (first + k) as f64);
     let weight = |k: usize| -> f64 {
-        let others = (0..4).filter(|j| *j != k);
-        others.map(|j| (u - nodes[j]) / (nodes[k] - nodes[j])).product()
+        let other_nodes = (0..4).filter(|j| *j != k);
+        other_nodes.map(|j| (u - nodes[j]) / (nodes[k] - nodes[j])).product()
     };
     (0..4).map(|k| weight(k) * values[first + k]).sum()
 }

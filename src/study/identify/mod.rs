@@ -53,11 +53,11 @@ pub struct Identified {
     pub rows: Table,
     /// The numbers that sum the record up.
     pub summary: Vec<Identity>,
-    /// What was fitted, for a picture: of a decay `t_s,upper,lower`, its envelope; of bounces
-    /// `t_s,x_m,rebound_t_s,rebound_x_m`, the impacts and how far each goes back; of a pull
-    /// `x_m,residual_n`, the samples less the curve.
+    /// Fitted data for a picture: of a decay `t_s,upper,lower`, its envelope; of bounces
+    /// `t_s,x_m,rebound_t_s,rebound_x_m`, the impacts and how far each goes back; of a pull `x_m,residual_n`,
+    /// the samples less the curve.
     pub fitted: Table,
-    /// What to know of them, each a sentence.
+    /// Remarks, each a sentence.
     pub remarks: Vec<String>,
 }
 

@@ -21,8 +21,9 @@ const NARROW: f64 = 0.75;
 /// Noise, in standard deviations, that this fall must exceed for its width to be measured.
 const CLEAR: f64 = 6.0;
 
-/// Widths around a turning point whose median counts, and periods and curvatures on either side of one.
+/// Widths around a turning point whose median is taken.
 const WIDTHS: usize = 5;
+/// Periods and curvatures on either side of one whose median is taken.
 const NEIGHBOURS: usize = 3;
 
 /// Standard errors of one curvature by which the median of those around must differ from that of a cosine.
@@ -31,16 +32,17 @@ const DIFFERENT: f64 = 2.0;
 /// Turning points on either side from which the time of one follows.
 const AROUND: usize = 8;
 
-/// How much shorter or longer a swing may be than those around it, and by how much of a swing the middle may
-/// move within a period.
+/// Length of a swing, relative to those around it.
 const EVEN: std::ops::RangeInclusive<f64> = 0.6..=1.6;
+/// The part of a swing by which the middle may move within a period.
 const MOVED: f64 = 0.25;
 
-/// The fewest samples of a fit, and of one with the second harmonic.
+/// The fewest samples of a fit.
 const FEWEST_SAMPLES: usize = 5;
+/// The fewest samples of a fit with the second harmonic.
 const FEWEST_OF_HARMONICS: usize = 9;
 
-/// How often all is fitted: each time follows from the fits before, and with it the decay.
+/// Number of passes: the times and the decay follow from the fits of the pass before.
 const PASSES: usize = 4;
 
 /// A turning point, fitted.
@@ -58,7 +60,7 @@ pub struct Peak {
     narrow: f64,
 }
 
-/// What the samples around a turning point say.
+/// Fit to the samples around a turning point.
 struct Local {
     value: f64,
     slope: f64,
@@ -72,15 +74,14 @@ struct Local {
     freedom: usize,
 }
 
-/// The turning points `turns` of a decay, fitted, and the time from which on they have too few samples, where
-/// they have. `noise` is the standard deviation of the values.
+/// The fitted turning points `turns` of a decay, and the time from which on they have too few samples, if
+/// any. `noise` is the standard deviation of the values.
 ///
 /// Each is the extreme of a decaying oscillation and, where samples are enough, its second harmonic, about a
-/// centre of its own: by least squares over an eighth of the period on either side, or less where the swing
-/// has turned sooner than a cosine would, as beyond a kink of the force. So the time of each is found, a
-/// straight line through some sixteen of them makes a better one of it, and the value is read there: the
-/// extreme of a noisy curve lies too far out, the value at a time that hardly depends on its own noise does
-/// not.
+/// separate centre: by least squares over an eighth of the period on either side, or less where the swing has
+/// turned sooner than a cosine would, as beyond a kink of the force. A straight line through some sixteen of
+/// the times found improves each, and the value is read there: the extreme of a noisy curve lies too far out,
+/// the value at a time that hardly depends on the same noise does not.
 ///
 /// The variance of each value follows from that of the samples, which is one part for all and one that grows
 /// with the square of the amplitude, as errors of the times make it; both from the residuals of the fits.
@@ -161,7 +162,7 @@ fn median(mut values: Vec<f64>) -> f64 {
     *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
-/// That the swings stay about one place, as they do in one well.
+/// Checks that the swings stay about one place, as they do in one well.
 fn stays(times: &[f64], values: &[f64]) -> Result<(), Unidentified> {
     let middles: Vec<f64> =
         values.windows(3).map(|turns| 0.25 * (turns[0] + turns[2]) + 0.5 * turns[1]).collect();
@@ -209,8 +210,8 @@ fn narrow(times: &[f64], values: &[f64], turns: &[Turn], periods: &[f64], noise:
     narrow
 }
 
-/// What the samples around a turning point say; nothing where the record does not reach far enough on both
-/// sides, their number where they are too few.
+/// The fit to the samples around a turning point; `None` if the record does not reach far enough on both
+/// sides. The error is the number of samples, if they are too few.
 fn local(times: &[f64], values: &[f64], peak: &Peak, rate: f64) -> Result<Option<Local>, usize> {
     let (centre, usual) = (peak.point.t, peak.narrow * REACH * peak.period);
     let frequency = FRAC_PI_4 / usual;
@@ -268,7 +269,7 @@ fn swing<const N: usize>(
     })
 }
 
-/// Gives the turning points their weights and the times that follow from themselves; the rate of decay.
+/// Sets the weights of the turning points and the times from their fits; returns the rate of decay.
 fn weigh(peaks: &mut [Peak], fits: &[Local]) -> Result<f64, Unidentified> {
     let envelope = |peaks: &[Peak]| {
         Envelope::fit(&peaks.iter().map(|peak| peak.point).collect::<Vec<_>>()).ok_or(Unidentified::NoDecay)
@@ -284,8 +285,8 @@ fn weigh(peaks: &mut [Peak], fits: &[Local]) -> Result<f64, Unidentified> {
     peaks.iter_mut().zip(&weights).for_each(|(peak, weight)| peak.point.weight = weight / mean);
     let envelope = envelope(peaks)?;
     let sizes = sizes(&envelope, peaks);
-    // the curvature over the amplitude is that of a cosine, or what those around tell where it clearly
-    // differs: a noisy one would make the scatter of the times too small or too large
+    // the curvature over the amplitude is that of a cosine, or that of those around if it clearly differs: a
+    // noisy one would make the scatter of the times too small or too large
     let side = |k: usize| if peaks[k].point.maximum { 1.0 } else { -1.0 };
     let bend = |k: usize| -side(k) * fits[k].curvature / sizes[k];
     let mut curvatures = vec![0.0; peaks.len()];
@@ -343,8 +344,8 @@ fn variances(fits: &[Local], sizes: &[f64]) -> Vec<f64> {
     variances
 }
 
-/// Puts each turning point where those around it say: on a straight line in their number, and what sets
-/// maxima apart from minima.
+/// Moves each turning point to a straight line through those around it over their number, with an offset
+/// between maxima and minima.
 fn smooth(peaks: &mut [Peak]) {
     let line = |k: usize| {
         let here = &peaks[k];

@@ -7,12 +7,12 @@ use super::force::{Known, Pull};
 use crate::numeric::regression::{Fit, least_squares};
 use crate::numeric::{bisect, golden_section};
 
-/// The parts of the range, on either side of an equilibrium, over which the force is fitted, and those over
-/// which it is where samples are too few.
+/// The parts of the range, on either side of an equilibrium, over which the force is fitted.
 const REACHES: [f64; 6] = [0.04, 0.02, 0.01, 0.005, 0.0025, 0.001];
+/// The same where samples are too few.
 const WIDE: [f64; 2] = [0.08, 0.16];
 
-/// A smaller reach, or a kink, is taken where it makes the interval of the force shorter than this part.
+/// A smaller reach, or a kink, is taken if it shortens the interval of the force to less than this share.
 const BETTER: f64 = 0.5;
 
 /// The fewest degrees of freedom of a fit.
@@ -21,13 +21,16 @@ const FEWEST: usize = 4;
 /// The part of the slope by which it jumps at a kink.
 const JUMP: f64 = 0.01;
 
-/// Places of a kink that are tried, the samples that are looked at for it, and the fewest on either side.
+/// Places of a kink that are tried.
 const TRIED: usize = 40;
+/// Most samples that are used for that.
 const LOOKED_AT: usize = 1000;
+/// The fewest samples on either side of a kink.
 const BESIDE: usize = 4;
 
-/// Places at which the sign of the force is looked at, and halvings.
+/// Places at which the sign of the force is taken.
 const PLACES: u32 = 64;
+/// Halvings of a bisection.
 const HALVINGS: u32 = 60;
 
 /// An equilibrium of a measured curve.
@@ -49,9 +52,9 @@ impl Rest {
     /// length of the whole curve.
     ///
     /// Over some part of the range on either side, of each direction: a cubic, or a cubic with another added
-    /// from a kink on, whose place is found by least squares. The largest part and no kink, unless others
-    /// make the interval of the force there half as long: where the force is known well, as it is without
-    /// noise, less of it is described better.
+    /// from a kink on, whose place is found by least squares. The largest part without a kink is taken unless
+    /// another halves the interval of the force there: if the force is known well, as without noise, a
+    /// smaller part is described better.
     pub fn near(place: f64, pulls: &[&Pull], range: f64) -> Option<Self> {
         let mut best: Option<Self> = None;
         let fitted = |reach: f64, kinked: bool| {
@@ -86,16 +89,16 @@ impl Rest {
             .min_by(|a, b| (a - place).abs().total_cmp(&(b - place).abs()))?;
         let sign = force(left).signum();
         let x = bisect(left, left + step, HALVINGS, |x| force(x) * sign > 0.0).1;
-        // where the force is no longer told from 0
+        // where the force can no longer be distinguished from 0
         let half = at(x, 0)?.half();
         let end = |side: f64| {
             let inside = |away: f64| force(x + side * away).abs() <= half;
-            let most = if side < 0.0 { x - low } else { high - x };
+            let limit = if side < 0.0 { x - low } else { high - x };
             let mut away = 1e-9 * reach;
-            while away < most && inside(away) {
+            while away < limit && inside(away) {
                 away *= 2.0;
             }
-            if away < most { x + side * bisect(0.0, away, HALVINGS, inside).1 } else { x + side * most }
+            if away < limit { x + side * bisect(0.0, away, HALVINGS, inside).1 } else { x + side * limit }
         };
         let ends = [end(-1.0), end(1.0)];
         let slope = at(x, 1)?;
@@ -166,7 +169,7 @@ enum Polynomial {
 }
 
 impl Near {
-    /// The fit to samples over u, with a kink there; none where they are too few.
+    /// The fit to samples over u, with a kink there; `None` if they are too few.
     fn fit(samples: &[(f64, f64)], centre: f64, reach: f64, kink: Option<f64>) -> Option<Self> {
         let Some(kink) = kink else {
             let smooth = |(u, force): &(f64, f64)| (std::array::from_fn(|k| u.powi(k as i32)), *force);
@@ -199,7 +202,7 @@ impl Near {
         terms(local(x), self.kink.map_or(f64::INFINITY, local), &self.beyond, order)
     }
 
-    /// What a sum of terms, a derivative of this order, makes of the coefficients; per m.
+    /// The value of a linear form of the coefficients, a derivative of this order; per m.
     fn known(&self, terms: &Terms, order: usize) -> Known {
         let ((value, error), freedom) = match &self.fit {
             Polynomial::Smooth(fit) => (fit.form(&terms.fixed_rows::<4>(0).into_owned()), fit.freedom),
@@ -255,8 +258,8 @@ fn samples(pull: &Pull, centre: f64, reach: f64) -> Vec<(f64, f64)> {
 
 /// The place of a kink that all directions have, which leaves the least squares.
 fn kink_of(directions: &[Vec<(f64, f64)>]) -> Option<f64> {
-    let most = directions.iter().map(Vec::len).max()?;
-    let stride = most.div_ceil(LOOKED_AT).max(1);
+    let samples = directions.iter().map(Vec::len).max()?;
+    let stride = samples.div_ceil(LOOKED_AT).max(1);
     let square = |kink: f64| -> f64 {
         let left = |samples: &Vec<(f64, f64)>| {
             let rows: Vec<([f64; 7], f64)> =

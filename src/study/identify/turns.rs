@@ -5,13 +5,13 @@ pub use crate::numeric::{Turn, turns};
 
 /// Noise of values that vary slowly from sample to sample: the standard deviation of what is random in each.
 ///
-/// Third differences of a smooth record vanish, those of independent errors of standard deviation s have
-/// s sqrt(20); their median magnitude does not see the few at impacts. Of values that stand still for many
+/// Third differences of a smooth record vanish, those of independent errors of standard deviation s have s
+/// sqrt(20); their median magnitude is insensitive to the few at impacts. Of values that stand still for many
 /// samples, as those of a converter with few bits do, the least change counts.
 pub fn noise(values: &[f64]) -> f64 {
     /// Median magnitude over standard deviation of normal numbers.
     const NORMAL: f64 = 0.674_489_750_196_081_7;
-    let third = |own: &[f64]| (own[3] - 3.0 * own[2] + 3.0 * own[1] - own[0]).abs();
+    let third = |window: &[f64]| (window[3] - 3.0 * window[2] + 3.0 * window[1] - window[0]).abs();
     let mut sizes: Vec<f64> = values.windows(4).map(third).collect();
     if sizes.is_empty() {
         return 0.0;
@@ -24,8 +24,8 @@ pub fn noise(values: &[f64]) -> f64 {
     if 10 * still > values.len() && least.is_finite() { random.max(least) } else { random }
 }
 
-/// How far values with noise of this standard deviation go back where they do not turn: the range that so
-/// many independent errors have (twice their expected maximum, s sqrt(2 ln n)), and two standard deviations.
+/// How far values with noise of this standard deviation go back where they do not turn: the range of as many
+/// independent errors (twice their expected maximum, s sqrt(2 ln n)), and two standard deviations.
 pub fn reach(values: &[f64], noise: f64) -> f64 {
     let count = values.len().max(2) as f64;
     let (low, high) = extent(values.iter().copied());

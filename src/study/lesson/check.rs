@@ -1,4 +1,4 @@
-//! A lesson run from its first step to its last.
+//! Check of a lesson, run from its first step to its last.
 
 use std::rc::Rc;
 
@@ -9,7 +9,7 @@ use crate::scene::lesson::{Condition, LessonDocument, Step};
 use crate::study::Task;
 use crate::system::threads::Pool;
 
-/// A bound is moved by this share of it, to see whether a verdict sits on an edge.
+/// Relative change of a bound that shows whether a verdict is close to it.
 const MOVED: f64 = 0.01;
 
 /// Something that is wrong with a lesson, or close to it.
@@ -19,11 +19,11 @@ pub struct LessonFinding {
     pub step: usize,
     /// Path of the field in the lesson: `steps.2.goal`.
     pub field: String,
-    /// What is the matter.
+    /// The problem.
     pub problem: String,
 }
 
-/// What a lesson comes to.
+/// Result of the check of a lesson.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct LessonReport {
     /// Predictions that were asked.
@@ -81,9 +81,9 @@ fn check_step(
         Step::Say(_) | Step::Explain(_) => {}
         Step::Predict { options, .. } => {
             report.predictions += 1;
-            let held = options_that_hold(step, end, begin)?;
+            let hold = options_that_hold(step, end, begin)?;
             let right: Vec<&str> =
-                options.iter().zip(&held).filter(|own| *own.1).map(|own| own.0.text.as_str()).collect();
+                options.iter().zip(&hold).filter(|pair| *pair.1).map(|pair| pair.0.text.as_str()).collect();
             if right.len() != 1 {
                 let problem = match right.len() {
                     0 => "none of the options holds; exactly one must".to_owned(),
@@ -123,14 +123,14 @@ fn turned_by(
     let mut turned = Vec::new();
     for (index, (field, bound)) in bounds.iter().enumerate() {
         let of_scene = field.strip_prefix("scene.");
-        if of_scene.is_some_and(|own| !controls.iter().any(|control| control == own)) {
+        if of_scene.is_some_and(|path| !controls.iter().any(|control| control == path)) {
             continue;
         }
         for factor in [1.0 - MOVED, 1.0 + MOVED] {
             let (mut moved, mut place) = (condition.clone(), 0);
-            moved.for_each_bound(&mut |_, own| {
+            moved.for_each_bound(&mut |_, bound| {
                 if place == index {
-                    *own *= factor;
+                    *bound *= factor;
                 }
                 place += 1;
             });

@@ -4,7 +4,7 @@ use crate::dynamics::{Outcome, Place, Regime, Summary};
 use crate::scene::lesson::ResultField;
 use crate::study::fields::{Read, SUMMARY_FIELDS, SummaryField};
 
-/// What a field has come to.
+/// Value of a field.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
     /// A number.
@@ -16,9 +16,9 @@ pub enum Value {
 }
 
 impl Value {
-    /// Of a number that is missing where it is not finite.
-    pub fn number(own: f64) -> Self {
-        if own.is_finite() { Self::Number(own) } else { Self::Missing }
+    /// A number, missing if it is not finite.
+    pub fn number(value: f64) -> Self {
+        if value.is_finite() { Self::Number(value) } else { Self::Missing }
     }
 }
 
@@ -31,7 +31,7 @@ pub fn result_fields() -> Vec<ResultField> {
     of_summary.chain([ResultField { name: PERIOD_MULTIPLE, words: &[] }]).collect()
 }
 
-/// The words that a field may be; none for a number.
+/// The words that a field may be; empty for a number.
 fn words(field: &SummaryField) -> &'static [&'static str] {
     const REGIMES: &[&str] = &[
         Regime::Rest.name(),
@@ -55,14 +55,14 @@ pub(super) fn value(summary: &Summary, name: &str) -> Value {
     if name == PERIOD_MULTIPLE {
         return Value::Number(summary.period.map_or(0.0, f64::from));
     }
-    let count = |own: u64| Value::Number(own as f64);
-    let word = |own: &str| if own.is_empty() { Value::Missing } else { Value::Word(own.to_owned()) };
+    let count = |value: u64| Value::Number(value as f64);
+    let word = |text: &str| if text.is_empty() { Value::Missing } else { Value::Word(text.to_owned()) };
     match SummaryField::find(name).map(|field| field.read) {
         Some(Read::Number(of)) => of(summary).map_or(Value::Missing, Value::number),
         Some(Read::Count(of)) => of(summary).map_or(Value::Missing, count),
         Some(Read::Word(of)) => word(of(summary)),
         Some(Read::Flag(of)) => {
-            of(summary).map_or(Value::Missing, |own| word(if own { "true" } else { "false" }))
+            of(summary).map_or(Value::Missing, |flag| word(if flag { "true" } else { "false" }))
         }
         None => Value::Missing,
     }

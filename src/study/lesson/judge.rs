@@ -1,4 +1,4 @@
-//! Whether a condition holds.
+//! Evaluation of the conditions of lessons.
 
 use super::fields::{Value, value};
 use super::subject::Subject;
@@ -28,16 +28,16 @@ impl Unjudged {
     }
 }
 
-/// A condition that does not hold, and what the field that it names has come to.
+/// A condition that does not hold, and the value of the field that it names.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lack {
-    /// The condition; none of its parts where all of these have to hold.
+    /// The condition; of an `All`, the first part that does not hold.
     pub asked: Condition,
-    /// The value of its field; missing where it names none.
+    /// The value of its field; missing if it names none.
     pub found: Value,
 }
 
-/// The first condition in the goal of a step that `subject` does not meet, none where the goal is met;
+/// The first condition in the goal of a step that `subject` does not meet, `None` if the goal is met;
 /// `before` is the scene with which the step began. A step without a goal lacks nothing.
 pub fn goal_lack(step: &Step, subject: &Subject, before: &Subject) -> Result<Option<Lack>, Unjudged> {
     match step {
@@ -62,7 +62,7 @@ pub(super) fn holds(condition: &Condition, subject: &Subject, before: &Subject) 
     Judge { subject, before, from: None }.holds(condition)
 }
 
-/// The scene, that before, and, in a condition over starts, the run from the present one.
+/// The scene, the one before, and, in a condition over starts, the run from the present start.
 struct Judge<'a> {
     subject: &'a Subject<'a>,
     before: &'a Subject<'a>,
@@ -72,19 +72,19 @@ struct Judge<'a> {
 impl Judge<'_> {
     fn holds(&self, condition: &Condition) -> Result<bool, Unjudged> {
         let compare = |field: &str, of: &dyn Fn(f64) -> bool| {
-            Ok(matches!(self.value(field)?, Value::Number(own) if of(own)))
+            Ok(matches!(self.value(field)?, Value::Number(number) if of(number)))
         };
         match condition {
             Condition::Is(field, text) => Ok(match self.value(field)? {
-                Value::Number(own) => text.trim().parse() == Ok(own),
-                Value::Word(own) => own == *text,
+                Value::Number(number) => text.trim().parse() == Ok(number),
+                Value::Word(word) => word == *text,
                 Value::Missing => false,
             }),
-            Condition::AtLeast(field, bound) => compare(field, &|own| own >= *bound),
-            Condition::AtMost(field, bound) => compare(field, &|own| own <= *bound),
-            Condition::Above(field, bound) => compare(field, &|own| own > *bound),
-            Condition::Below(field, bound) => compare(field, &|own| own < *bound),
-            Condition::Between(field, low, high) => compare(field, &|own| (*low..=*high).contains(&own)),
+            Condition::AtLeast(field, bound) => compare(field, &|number| number >= *bound),
+            Condition::AtMost(field, bound) => compare(field, &|number| number <= *bound),
+            Condition::Above(field, bound) => compare(field, &|number| number > *bound),
+            Condition::Below(field, bound) => compare(field, &|number| number < *bound),
+            Condition::Between(field, low, high) => compare(field, &|x| (*low..=*high).contains(&x)),
             Condition::Present(field) => Ok(self.value(field)? != Value::Missing),
             Condition::Absent(field) => Ok(self.value(field)? == Value::Missing),
             Condition::All(parts) => self.count(parts).map(|count| count == parts.len()),
@@ -102,14 +102,15 @@ impl Judge<'_> {
                 let values: Option<Vec<f64>> = runs
                     .iter()
                     .map(|run| match value(run, name) {
-                        Value::Number(own) => Some(own),
+                        Value::Number(number) => Some(number),
                         _ => None,
                     })
                     .collect();
                 Ok(values.is_some_and(|values| {
-                    let (low, high) = values
-                        .iter()
-                        .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), own| (a.min(*own), b.max(*own)));
+                    let (low, high) =
+                        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), number| {
+                            (a.min(*number), b.max(*number))
+                        });
                     high - low <= within * low.abs().max(high.abs())
                 }))
             }
@@ -129,7 +130,7 @@ impl Judge<'_> {
         Ok(Some(Lack { asked: condition.clone(), found }))
     }
 
-    /// How many of these hold; all are asked, so that what one of them needs is run whatever the others say.
+    /// How many of these hold. All are evaluated, so that the runs of each are made whatever the others give.
     fn count(&self, parts: &[Condition]) -> Result<usize, Unjudged> {
         let verdicts = parts.iter().map(|part| self.holds(part)).collect::<Result<Vec<_>, _>>()?;
         Ok(verdicts.into_iter().filter(|holds| *holds).count())
@@ -167,7 +168,7 @@ impl Judge<'_> {
             "mean" | "error" => {
                 let runs = self.subject.over_seeds()?;
                 let number = |run: &Summary| match value(run, name) {
-                    Value::Number(own) => own,
+                    Value::Number(number) => number,
                     _ => f64::NAN,
                 };
                 let (mean, error) = mean(&runs.iter().map(number).collect::<Vec<_>>());
@@ -182,6 +183,6 @@ impl Judge<'_> {
 fn mean(values: &[f64]) -> (f64, f64) {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
-    let squares: f64 = values.iter().map(|own| (own - mean).powi(2)).sum();
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
     (mean, (squares / (count - 1.0) / count).sqrt())
 }

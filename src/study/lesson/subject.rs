@@ -29,7 +29,7 @@ pub struct Subject<'a> {
     turns: OnceCell<Turns>,
 }
 
-/// Where the motion begins to cross on the way up, and to where it goes on crossing on the way down.
+/// Values at which the motion begins to cross on the way up and ceases to on the way down.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Turns {
     pub up_crosses_from: Option<f64>,
@@ -37,7 +37,7 @@ pub(super) struct Turns {
 }
 
 impl<'a> Subject<'a> {
-    /// Of a scene whose files are at hand, in a step of a lesson.
+    /// The subject of a scene with its files, in a step of a lesson.
     pub fn new(scene: &'a Scene, files: &'a Files, lesson: &'a Lesson, task: &'a Task<'a>) -> Self {
         Self {
             scene,
@@ -86,14 +86,14 @@ impl<'a> Subject<'a> {
 
     /// The runs from these starts.
     pub(super) fn from(&self, starts: &[Start]) -> Result<Vec<Summary>, Unjudged> {
-        let known = |start: &Start| self.from.borrow().iter().any(|own| own.0 == *start);
+        let known = |start: &Start| self.from.borrow().iter().any(|entry| entry.0 == *start);
         let new: Vec<Start> = starts.iter().filter(|start| !known(start)).copied().collect();
         let model = |start: &Start| self.model(&Scene { start: *start, ..self.scene.clone() });
         let models = new.iter().map(model).collect::<Result<Vec<_>, _>>()?;
         let runs = self.together(&models)?;
         self.from.borrow_mut().extend(new.into_iter().zip(runs));
         let from = self.from.borrow();
-        let of = |start: &Start| from.iter().find(|own| own.0 == *start).map(|own| own.1);
+        let of = |start: &Start| from.iter().find(|entry| entry.0 == *start).map(|entry| entry.1);
         Ok(starts.iter().filter_map(of).collect())
     }
 
@@ -120,14 +120,14 @@ impl<'a> Subject<'a> {
         once(&self.ends, || {
             let axis = self.axis()?;
             let path = FieldPath::new(&axis.field);
-            let own = path
+            let present = path
                 .get(self.scene)
                 .ok_or_else(|| Unjudged::of(&axis.field, "the scene has no such field"))?;
-            let mut before: Vec<f64> = axis.values.iter().copied().filter(|value| *value < own).collect();
+            let mut before: Vec<f64> = axis.values.iter().copied().filter(|value| *value < present).collect();
             let mut after: Vec<f64> =
-                axis.values.iter().rev().copied().filter(|value| *value > own).collect();
-            before.push(own);
-            after.push(own);
+                axis.values.iter().rev().copied().filter(|value| *value > present).collect();
+            before.push(present);
+            after.push(present);
             let [up, down] = self.walks(&axis.field, [before, after], |_, last, _, summary| {
                 *last = Some(*summary);
                 true
@@ -136,17 +136,17 @@ impl<'a> Subject<'a> {
         })
     }
 
-    /// Where the motion begins to cross and ends to, over the whole walk.
+    /// Where the motion begins and ceases to cross, over the whole walk.
     pub(super) fn turns(&self) -> Result<Turns, Unjudged> {
         let turns = once(&self.turns, || {
             let Axis { field, values, .. } = self.axis()?;
             let downwards: Vec<f64> = values.iter().rev().copied().collect();
-            // the last value at which it crosses, and whether it crosses at the last of all
+            // the last value at which it crosses, and whether it crosses at the last value of all
             let walks =
-                self.walks(&field, [values, downwards], |way, own: &mut (_, bool), value, summary| {
-                    own.1 = summary.crossings > 0;
-                    own.0 = if own.1 { Some(value) } else { own.0 };
-                    own.1 == (way == 1)
+                self.walks(&field, [values, downwards], |way, seen: &mut (_, bool), value, summary| {
+                    seen.1 = summary.crossings > 0;
+                    seen.0 = if seen.1 { Some(value) } else { seen.0 };
+                    seen.1 == (way == 1)
                 });
             let [up, down] = walks?;
             Ok(Turns { up_crosses_from: up.0, down_crosses_to: down.0.filter(|_| !down.1) })
@@ -160,7 +160,7 @@ impl<'a> Subject<'a> {
     }
 
     /// Runs the scene over two rows of values side by side, each run from where the one before ended, until
-    /// `each` has seen enough; what that, told the number of the row, makes of it.
+    /// `each` returns false; returns the states that `each` made for each row.
     fn walks<S: Default + Send>(
         &self,
         field: &str,
@@ -196,13 +196,13 @@ impl<'a> Subject<'a> {
 
     fn together(&self, models: &[Model]) -> Result<Vec<Summary>, Unjudged> {
         let (task, request) = (self.task, self.request());
-        let model = |own: usize| Ok((models[own].clone(), request));
+        let model = |number: usize| Ok((models[number].clone(), request));
         let summary = |run: &Run| {
             (task.tick)();
             Box::new(run.summary)
         };
         let runs = shared_runs(self.pool, task, models.len(), model, summary).ok_or(Unjudged::Cancelled)?;
-        Ok(runs.into_iter().map(|own| *own).collect())
+        Ok(runs.into_iter().map(|summary| *summary).collect())
     }
 
     /// The model of a scene that differs from the subject's in a few fields.
@@ -211,12 +211,12 @@ impl<'a> Subject<'a> {
             let fault = faults.into_iter().next();
             fault.map_or_else(
                 || Unjudged::of("", "cannot be run"),
-                |own| Unjudged::of(&own.field, &own.problem),
+                |fault| Unjudged::of(&fault.field, &fault.problem),
             )
         })
     }
 
-    /// Its mechanism: the subject's own where it is the same.
+    /// The mechanism of a scene; that of the subject if it is the same.
     fn mechanism_of(&self, scene: &Scene) -> Result<Arc<Mechanism>, Unjudged> {
         let build = || {
             Mechanism::build(&scene.mechanism, self.files)
@@ -237,7 +237,7 @@ fn needs_ledger(condition: &Condition) -> bool {
     field.is_some_and(|field| field.needs_ledger) || condition.parts().iter().any(needs_ledger)
 }
 
-/// The value of `cell`, made where there is none yet.
+/// The value of `cell`, made on first use.
 fn once<T>(cell: &OnceCell<T>, make: impl FnOnce() -> Result<T, Unjudged>) -> Result<&T, Unjudged> {
     if let Some(value) = cell.get() {
         return Ok(value);

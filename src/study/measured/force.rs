@@ -20,7 +20,7 @@ pub struct ForceComparison {
     pub rms: (f64, f64),
     /// Where the two differ most: the position in m, and computed less measured there in N.
     pub largest: (f64, f64),
-    /// What to know of it, each a sentence.
+    /// Remarks, each a sentence.
     pub remarks: Vec<String>,
 }
 
@@ -48,7 +48,7 @@ pub fn compare_force(
 ) -> Result<ForceComparison, OffTheCurve> {
     let curve = &mechanism.curve;
     let domain = curve.domain();
-    let on = |own: &(&f64, &f64)| (domain.0..=domain.1).contains(own.0);
+    let on = |sample: &(&f64, &f64)| (domain.0..=domain.1).contains(sample.0);
     let (positions, measured): (Vec<f64>, Vec<f64>) = x.iter().zip(force).filter(on).unzip();
     if positions.len() < 2 {
         let domain = (short(domain.0 * 1e3), short(domain.1 * 1e3));
@@ -56,8 +56,8 @@ pub fn compare_force(
     }
     let computed: Vec<f64> = positions.iter().map(|x| curve.force(*x)).collect();
     let apart: Vec<f64> = measured.iter().zip(&computed).map(|(m, c)| c - m).collect();
-    let most = |a: &usize, b: &usize| apart[*a].abs().total_cmp(&apart[*b].abs());
-    let worst = (0..apart.len()).max_by(most).unwrap_or(0);
+    let by_size = |a: &usize, b: &usize| apart[*a].abs().total_cmp(&apart[*b].abs());
+    let worst = (0..apart.len()).max_by(by_size).unwrap_or(0);
     let fold = |values: &[f64], of: fn(f64, f64) -> f64| values.iter().copied().fold(f64::NAN, of);
     let both = |name, of: &dyn Fn(&[f64]) -> f64| -> Row { (name, "N", of(&measured), of(&computed)) };
     let (of_measured, rms_apart) = (rms(&measured), rms(&apart));
@@ -72,7 +72,7 @@ pub fn compare_force(
     let mut remarks = Vec::new();
     if positions.len() < x.len() {
         let outside = x.len() - positions.len();
-        let [low, high] = [domain.0, domain.1].map(|own| short(own * 1e3));
+        let [low, high] = [domain.0, domain.1].map(|end| short(end * 1e3));
         remarks.push(format!(
             "{outside} of {} samples lie beyond the force curve, which reaches from {low} to {high} mm",
             x.len()

@@ -24,7 +24,7 @@ pub struct MeasuredMotion<'a> {
     pub offset: f64,
     /// What its times are multiplied by.
     pub time_scale: f64,
-    /// What is added to them then, in s; left out, it is found by least squares.
+    /// What is added to the scaled times, in s; if `None`, it is found by least squares.
     pub shift: Option<f64>,
 }
 
@@ -43,7 +43,7 @@ pub struct Comparison {
     pub shift: f64,
     /// RMS of the difference, SI, and in percent of the RMS of what was measured.
     pub rms: (f64, f64),
-    /// What to know of it, each a sentence.
+    /// Remarks, each a sentence.
     pub remarks: Vec<String>,
 }
 
@@ -70,7 +70,7 @@ pub enum NoComparison {
     },
 }
 
-/// The most values that are laid over each other to find the shift.
+/// The most values that are compared to find the shift.
 const MOST: f64 = (1_u64 << 18) as f64;
 
 /// Steps of Gauss and Newton by which a shift is made more accurate.
@@ -84,9 +84,9 @@ type Laid = (Range<usize>, Vec<f64>, Vec<Sample>);
 
 /// Lays a measured motion over the run of `model`, which is that of `scene`.
 ///
-/// A shift that is left out is the one with the least mean square difference, where at least half of the
-/// shorter of record and run overlaps: first on an even grid, then, for a displacement, by Gauss-Newton
-/// steps on the run itself, whose velocity is the derivative.
+/// Without a given shift it is the one with the least mean square difference, where at least half of the
+/// shorter of record and run overlaps: first on an even grid, then, for a displacement, by Gauss-Newton steps
+/// on the run itself, whose velocity is the derivative.
 pub fn compare(
     scene: &Scene,
     model: &Model,

@@ -20,13 +20,13 @@ pub fn table(scene: &Scene, model: &Model, quantity: Quantity, data: (&[f64], &[
         _ => "m",
     };
     let mean = |values: &[f64], of: &dyn Fn(f64) -> f64| {
-        values.iter().map(|own| of(*own)).sum::<f64>() / values.len() as f64
+        values.iter().map(|value| of(*value)).sum::<f64>() / values.len() as f64
     };
     let both = |name, of: &dyn Fn(&[f64]) -> f64| (name, unit, of(measured), of(computed));
     let fold = |values: &[f64], of: fn(f64, f64) -> f64| values.iter().copied().fold(f64::NAN, of);
     let mut rows = vec![
         both("rms", &rms),
-        both("mean", &|values| mean(values, &|own| own)),
+        both("mean", &|values| mean(values, &|value| value)),
         both("minimum", &|values| fold(values, f64::min)),
         both("maximum", &|values| fold(values, f64::max)),
     ];
@@ -41,7 +41,7 @@ pub fn table(scene: &Scene, model: &Model, quantity: Quantity, data: (&[f64], &[
 
 /// Root mean square.
 pub(super) fn rms(values: &[f64]) -> f64 {
-    (values.iter().map(|own| own * own).sum::<f64>() / values.len() as f64).sqrt()
+    (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
 }
 
 /// The table of these rows, of which `rms_difference` is given; it and the largest difference are in percent
@@ -82,12 +82,12 @@ fn crossing(scene: &Scene, model: &Model, (times, measured, computed): (&[f64], 
         let share = (barrier - values[last]) / (values[last + 1] - values[last]);
         times[last] + share * (times[last + 1] - times[last])
     };
-    let (own, other) = (first(measured), first(computed));
-    let mut rows = vec![("first_crossing", "s", own, other)];
+    let (measured_at, computed_at) = (first(measured), first(computed));
+    let mut rows = vec![("first_crossing", "s", measured_at, computed_at)];
     if let Excitation::AmplitudeRamp { from_g, to_g, over_s, .. } = scene.excitation {
         let amplitude =
             |t: f64| if t.is_nan() { t } else { from_g + (to_g - from_g) * (t / over_s).min(1.0) };
-        rows.push(("first_crossing_amplitude", "g", amplitude(own), amplitude(other)));
+        rows.push(("first_crossing_amplitude", "g", amplitude(measured_at), amplitude(computed_at)));
     }
     rows
 }
@@ -103,7 +103,7 @@ struct Rebound {
 /// each measured one is compared with the computed one nearest in time.
 fn rebounds(model: &Model, (times, measured, computed): (&[f64], &[f64], &[f64])) -> Vec<Row> {
     let Some(stops) = model.stops() else { return Vec::new() };
-    let sides = [stops.left.map(|own| own.x), stops.right.map(|own| own.x)];
+    let sides = [stops.left.map(|stop| stop.x), stops.right.map(|stop| stop.x)];
     let room = match sides {
         [Some(left), Some(right)] => right - left,
         [one, other] => 2.0 * one.or(other).unwrap_or(0.0).abs(),
@@ -129,14 +129,19 @@ fn rebounds(model: &Model, (times, measured, computed): (&[f64], &[f64], &[f64])
     ];
     for ((stop, right), [count, height, worst]) in sides.into_iter().zip([false, true]).zip(names) {
         let Some(stop) = stop else { continue };
-        let (own, other) = (found(measured, stop, right), found(computed, stop, right));
-        let pairs = paired(&own, &other);
+        let (seen, expected) = (found(measured, stop, right), found(computed, stop, right));
+        let pairs = paired(&seen, &expected);
         let mean = |of: fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>() / pairs.len() as f64;
-        rows.push((count, "", own.len() as f64, other.len() as f64));
+        rows.push((count, "", seen.len() as f64, expected.len() as f64));
         rows.push((height, "m", mean(|pair| pair.0), mean(|pair| pair.1)));
         let error = |pair: &&(f64, f64)| (pair.1 / pair.0 - 1.0).abs();
         let largest = pairs.iter().max_by(|a, b| error(a).total_cmp(&error(b)));
-        rows.push((worst, "m", largest.map_or(f64::NAN, |own| own.0), largest.map_or(f64::NAN, |own| own.1)));
+        rows.push((
+            worst,
+            "m",
+            largest.map_or(f64::NAN, |pair| pair.0),
+            largest.map_or(f64::NAN, |pair| pair.1),
+        ));
     }
     rows
 }
@@ -145,10 +150,10 @@ fn rebounds(model: &Model, (times, measured, computed): (&[f64], &[f64], &[f64])
 /// between two measured ones.
 fn paired(measured: &[Rebound], computed: &[Rebound]) -> Vec<(f64, f64)> {
     let apart = measured.windows(2).map(|pair| pair[1].t - pair[0].t).fold(f64::INFINITY, f64::min);
-    let partner = |own: &Rebound| {
-        let far = |other: &Rebound| (other.t - own.t).abs();
+    let partner = |rebound: &Rebound| {
+        let far = |other: &Rebound| (other.t - rebound.t).abs();
         let nearest = computed.iter().min_by(|a, b| far(a).total_cmp(&far(b)))?;
-        (far(nearest) < 0.5 * apart).then_some((own.height, nearest.height))
+        (far(nearest) < 0.5 * apart).then_some((rebound.height, nearest.height))
     };
     measured.iter().filter_map(partner).collect()
 }

@@ -1,13 +1,13 @@
-//! Where steps of all lanes meet a break, and where they turn.
+//! Arrivals of steps of all lanes at breaks, and their turning points.
 //!
-//! A motion alone does the same arithmetic (`step/exit.rs`, `record/steps.rs`), and gets the same bits.
+//! A single motion does the same arithmetic (`step/exit.rs`, `record/steps.rs`) and gets the same bits.
 
 use super::{Clocks, Columns};
 use crate::dynamics::series::polynomial;
 use crate::dynamics::step::chord::{CLEARANCE, Chord, ROUNDING};
 use crate::numeric::{Lanes, Scalar, single_root};
 
-/// Where steps lead.
+/// The ends of the steps of all lanes.
 pub(super) struct Arrivals<const W: usize> {
     pub length: Lanes<W>,
     pub x: Lanes<W>,
@@ -36,12 +36,12 @@ impl<const W: usize> Columns<W> {
         (value, slope)
     }
 
-    /// Ends steps that `may` be taken at the break that they meet, the one ahead or the one just left, where
-    /// it is found at once; which those are.
+    /// Shortens steps of `candidates` to the break that they meet, the one ahead or the one just left, if the
+    /// root is found at once. Returns the lanes whose steps end there.
     #[inline(always)]
     pub(super) fn land(
         &self,
-        may: &[bool; W],
+        candidates: &[bool; W],
         y: &[Lanes<W>],
         bound: &Lanes<W>,
         to: &mut Arrivals<W>,
@@ -55,7 +55,7 @@ impl<const W: usize> Columns<W> {
             let back_high = (self.touch.0[lane] > 0.0) & (from - self.low_end.0[lane] > bound.0[lane]);
             let falls = (x < low) & (ahead_low | back_low);
             let rises = (x > high) & (ahead_high | back_high);
-            meets[lane] = may[lane] & !self.logged[lane] & (falls | rises);
+            meets[lane] = candidates[lane] & !self.logged[lane] & (falls | rises);
             returns[lane] = falls & (self.touch.0[lane] < 0.0) | rises & (self.touch.0[lane] > 0.0);
             level.0[lane] = if falls { low } else { high };
         }
@@ -66,7 +66,7 @@ impl<const W: usize> Columns<W> {
         let (v, last, past) = (self.v * whole, to.v * whole, to.x - level);
         let mut g = polynomial::scaled(y, whole);
         let second = g[2];
-        // (of those that return the gap over the time since the start)
+        // (if it returns to the break: the gap divided by the time since the start)
         g[0] = from;
         for k in 0..y.len() {
             g[k] = choose(&returns, g[k], g[k + 1]);
@@ -79,11 +79,11 @@ impl<const W: usize> Columns<W> {
         let acceleration = polynomial::curvature(y, length);
         let deviations = polynomial::chord_deviations(y, length);
         let square = length * length;
-        let (ways, bends) =
+        let (slopes, curvatures) =
             ((self.v * length, arrival * length), ((y[2] + y[2]) * square, acceleration * square));
         let mut landed = [false; W];
         for lane in 0..W {
-            let chord = chord(lane, ways, bends, deviations);
+            let chord = chord(lane, slopes, curvatures, deviations);
             let alone = if returns[lane] { chord.bends_one_way() } else { chord.is_monotone() };
             let outward = (arrival.0[lane] > 0.0) == (past.0[lane] > 0.0);
             landed[lane] = found[lane] & alone & outward & (arrival.0[lane] != 0.0);
@@ -97,8 +97,8 @@ impl<const W: usize> Columns<W> {
         landed
     }
 
-    /// Looks at steps at four times within: which are `clear` of the low and of the high end of the mode
-    /// after all, and which are not `turning` beyond the extremes.
+    /// Evaluates steps at four times in their interior. Marks the lanes that are `clear` of the low and of
+    /// the high end of the mode after all, and unmarks those that are not `turning` beyond the extremes.
     #[inline(always)]
     pub(super) fn look_closer(
         &self,
@@ -113,10 +113,10 @@ impl<const W: usize> Columns<W> {
         let times = (at(0.2), at(0.4), at(0.6), at(0.8));
         let (a, b, c, d) = polynomial::at_four_times(y.len(), |k| y[k], 0, times);
         for (lane, turning) in turning.iter_mut().enumerate() {
-            let own = [a, b, c, d].map(|own| own.0[lane] + self.origin.0[lane]);
+            let positions = [a, b, c, d].map(|value| value.0[lane] + self.origin.0[lane]);
             let (start, end) = (y[0].0[lane] + self.origin.0[lane], to.x.0[lane]);
-            let lowest = own.into_iter().fold(start.min(end), f64::min);
-            let highest = own.into_iter().fold(start.max(end), f64::max);
+            let lowest = positions.into_iter().fold(start.min(end), f64::min);
+            let highest = positions.into_iter().fold(start.max(end), f64::max);
             // five chords, each of a fifth of the length
             let off = deviation.0[lane] * (CLEARANCE / 25.0) + bound.0[lane] * ROUNDING;
             clear.0[lane] |= lowest - off > self.low_end.0[lane];
@@ -125,24 +125,24 @@ impl<const W: usize> Columns<W> {
         }
     }
 
-    /// Takes turning points into the extremes of lanes that are `turning`, where they turn once; which those
-    /// are.
+    /// Includes turning points in the extremes of lanes that are `turning`, if they turn once. Returns the
+    /// lanes that do.
     #[inline(always)]
     pub(super) fn turn(
         &self,
         turning: &[bool; W],
         y: &[Lanes<W>],
         to: &Arrivals<W>,
-        (ways, bends, deviations): ((Lanes<W>, Lanes<W>), (Lanes<W>, Lanes<W>), Three<W>),
+        (slopes, curvatures, deviations): ((Lanes<W>, Lanes<W>), (Lanes<W>, Lanes<W>), Three<W>),
         (low, high): (&mut Lanes<W>, &mut Lanes<W>),
     ) -> [bool; W] {
-        let bends = (bends.0, polynomial::curvature(y, to.length) * (to.length * to.length));
+        let curvatures = (curvatures.0, polynomial::curvature(y, to.length) * (to.length * to.length));
         let mut turned = [false; W];
         for (lane, turned) in turned.iter_mut().enumerate() {
-            *turned = turning[lane] & chord(lane, ways, bends, deviations).turns_once();
+            *turned = turning[lane] & chord(lane, slopes, curvatures, deviations).turns_once();
         }
         let velocity = polynomial::scaled_slope(y, to.length);
-        let ends = ((ways.0, bends.0), (ways.1, bends.1));
+        let ends = ((slopes.0, curvatures.0), (slopes.1, curvatures.1));
         let (share, turned) = roots(&velocity[..y.len() - 1], &turned, ends.0, ends.1);
         let x = polynomial::value(y, share * to.length) + self.origin;
         for (lane, turned) in turned.iter().enumerate() {
@@ -155,12 +155,12 @@ impl<const W: usize> Columns<W> {
     }
 }
 
-/// What is known of a lane's velocity and acceleration over a step.
+/// Bounds of a lane's velocity and acceleration over a step.
 #[inline(always)]
 fn chord<const W: usize>(
     lane: usize,
-    ways: (Lanes<W>, Lanes<W>),
-    bends: (Lanes<W>, Lanes<W>),
+    slopes: (Lanes<W>, Lanes<W>),
+    curvatures: (Lanes<W>, Lanes<W>),
     deviations: Three<W>,
 ) -> Chord<f64> {
     let far = f64::INFINITY;
@@ -169,13 +169,13 @@ fn chord<const W: usize>(
         end: 0.0,
         bound: far,
         deviations: (far, deviations.1.0[lane], deviations.2.0[lane]),
-        ways: (ways.0.0[lane], ways.1.0[lane]),
-        bends: (bends.0.0[lane], bends.1.0[lane]),
+        slopes: (slopes.0.0[lane], slopes.1.0[lane]),
+        curvatures: (curvatures.0.0[lane], curvatures.1.0[lane]),
         limits: (-far, far),
     }
 }
 
-/// The roots of the lanes that are `wanted`, from values and slopes at both ends, and where they are found.
+/// The roots of the `wanted` lanes, from values and slopes at both ends, and the lanes in which one is found.
 #[inline(always)]
 fn roots<const W: usize>(
     g: &[Lanes<W>],
@@ -209,12 +209,12 @@ fn roots<const W: usize>(
     (share, found)
 }
 
-/// Of each lane the second number where `which` says so, else the first.
+/// For each lane the second number if `which` is true, else the first.
 #[inline(always)]
-fn choose<const W: usize>(which: &[bool; W], own: Lanes<W>, other: Lanes<W>) -> Lanes<W> {
-    let mut chosen = own;
+fn choose<const W: usize>(which: &[bool; W], first: Lanes<W>, second: Lanes<W>) -> Lanes<W> {
+    let mut chosen = first;
     for (lane, which) in which.iter().enumerate() {
-        chosen.0[lane] = if *which { other.0[lane] } else { own.0[lane] };
+        chosen.0[lane] = if *which { second.0[lane] } else { first.0[lane] };
     }
     chosen
 }

@@ -1,4 +1,4 @@
-//! Columns of a batch: what the lanes hold, how a motion gets there and back, and one step of all lanes.
+//! Columns of a batch: the state of all lanes, its exchange with single motions, and one step of all lanes.
 
 mod landing;
 mod step;
@@ -19,18 +19,20 @@ pub(super) type LaneMotion<'a> = Motion<'a, f64, Sine<f64>>;
 pub(crate) struct Columns<const W: usize> {
     /// Which lanes are active.
     pub active: [bool; W],
-    /// Steps taken, breaks passed and crossings of the barrier since a lane was loaded.
+    /// Steps taken since a lane was loaded.
     steps: Lanes<W>,
+    /// Breaks passed since then.
     passages: Lanes<W>,
+    /// Crossings of the barrier since then.
     crossings: Lanes<W>,
     // constant while a lane is in one mode of one run
-    /// Which run and which mode that is.
+    /// The run and its mode.
     of: [(usize, usize); W],
     force: PieceForce<Lanes<W>>,
     origin: Lanes<W>,
     low_end: Lanes<W>,
     high_end: Lanes<W>,
-    /// The same where they are breaks; else infinitely far away.
+    /// The same for an end that is a break; otherwise infinite.
     low_break: Lanes<W>,
     high_break: Lanes<W>,
     damping: Lanes<W>,
@@ -44,16 +46,17 @@ pub(crate) struct Columns<const W: usize> {
     allowed: Lanes<W>,
     period: Lanes<W>,
     // constant over event-free steps
-    /// The barrier that crossings are counted at, NaN without one, and the side of it.
+    /// The barrier whose crossings are counted; NaN without one.
     barrier: Lanes<W>,
+    /// The side of the barrier.
     side: Lanes<W>,
     border: Clocks<W>,
     /// Whether each step is logged, in case the motion recurs.
     pub logged: [bool; W],
-    /// Whether the time up to there lies in the settled window.
+    /// Whether the time up to `border` lies in the settled window.
     pub inside: [bool; W],
     // what changes with each step
-    /// -1 or 1 on the low or high end of the mode, leaving it by its speed; else 0.
+    /// -1 or 1 if the mass leaves the low or high end of the mode by its speed; else 0.
     touch: Lanes<W>,
     x: Lanes<W>,
     v: Lanes<W>,
@@ -68,7 +71,7 @@ pub(crate) struct Columns<const W: usize> {
 }
 
 impl<const W: usize> Columns<W> {
-    /// For forces of the degree that this one has.
+    /// For forces of the same degree as `force`.
     pub fn new(force: &PieceForce<f64>) -> Self {
         let zero = Lanes([0.0; W]);
         let clocks = Clocks { cycle: zero, phase: zero };
@@ -113,12 +116,12 @@ impl<const W: usize> Columns<W> {
         }
     }
 
-    /// Whether a force has the degree of those of the lanes.
+    /// Whether a force has the degree of the lanes.
     pub fn takes(&self, force: &PieceForce<f64>) -> bool {
         self.force.degree() == force.degree()
     }
 
-    /// Loads a motion, whose force has the lanes' degree, into a lane, as number `index` of the runs.
+    /// Loads a motion, whose force has the lanes' degree, into a lane; `index` is the number of its run.
     pub fn load(&mut self, lane: usize, index: usize, motion: &LaneMotion) {
         let chord = motion.record.begin_event_free(&motion.state.at, &motion.stepper.end);
         if self.of[lane] != (index, motion.state.mode) {
@@ -155,11 +158,11 @@ impl<const W: usize> Columns<W> {
         self.active[lane] = true;
     }
 
-    /// Loads a mode, whose force has the lanes' degree, into a lane, as number `index` of its equation.
+    /// Loads a mode, whose force has the lanes' degree, into a lane; `index` is its number in the equation.
     fn load_mode(&mut self, lane: usize, index: usize, mode: &Mode<f64>) {
         self.of[lane].1 = index;
-        for (degree, own) in mode.force.coefficients().iter().enumerate() {
-            self.force.coefficient_mut(degree).0[lane] = *own;
+        for (degree, coefficient) in mode.force.coefficients().iter().enumerate() {
+            self.force.coefficient_mut(degree).0[lane] = *coefficient;
         }
         let at_break = |end: End| match mode.end(end) {
             (level, EndKind::Break) => level,
@@ -170,12 +173,12 @@ impl<const W: usize> Columns<W> {
         (self.low_break.0[lane], self.high_break.0[lane]) = (at_break(End::Low), at_break(End::High));
     }
 
-    /// The end at which a lane, which stands on a break, leaves its mode.
+    /// The end at which a lane that stands on a break leaves its mode.
     pub fn exit(&self, lane: usize) -> End {
         if self.v.0[lane] > 0.0 { End::High } else { End::Low }
     }
 
-    /// Lets a lane, which stands on a break, enter the neighbouring mode; false where the force has another
+    /// Moves a lane that stands on a break into the neighbouring mode; returns false if the force has another
     /// degree there.
     pub fn enter_neighbour(&mut self, lane: usize, modes: &[Mode<f64>]) -> bool {
         let exit = self.exit(lane);
@@ -218,7 +221,7 @@ impl<const W: usize> Columns<W> {
         motion.state.mode = self.of[lane].1;
         let touched = |end: End| Touch { end, multiplicity: BY_SPEED };
         let ends = [End::Low, End::High].into_iter();
-        motion.state.touch = ends.map(touched).find(|own| own.end.sign::<f64>() == self.touch.0[lane]);
+        motion.state.touch = ends.map(touched).find(|touch| touch.end.sign::<f64>() == self.touch.0[lane]);
         motion.record.end_event_free(
             (self.low.0[lane], self.high.0[lane]),
             self.squared.get(lane),

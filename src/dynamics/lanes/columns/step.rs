@@ -1,6 +1,6 @@
 //! One step of all lanes.
 //!
-//! The event-free step is written three times: here, as the general step of a motion alone (`step/choose.rs`
+//! The event-free step is written three times: here, as the general step of a single motion (`step/choose.rs`
 //! with `run/flight.rs`), and as its fast path (`run/event_free.rs`). The three do the same arithmetic and
 //! must stay equal to the bit.
 
@@ -14,7 +14,7 @@ use crate::dynamics::step::chord::{CLEARANCE, Chord};
 use crate::numeric::{GaussLegendre, Lanes, Number};
 
 impl<const W: usize> Columns<W> {
-    /// Computes one step in all lanes and takes it where it is event-free, up to a break where it meets one.
+    /// Computes one step in all lanes and takes it where it is event-free, up to a break if it meets one.
     #[inline(always)]
     pub fn step(
         &mut self,
@@ -38,8 +38,8 @@ impl<const W: usize> Columns<W> {
         let sum = (end.acceleration + self.damping * end.v) + base;
         let residual = (self.force.at(end.y) + sum).abs() * length;
 
-        let (mut may, mut left) = ([false; W], length);
-        for (lane, may) in may.iter_mut().enumerate() {
+        let (mut candidate, mut left) = ([false; W], length);
+        for (lane, candidate) in candidate.iter_mut().enumerate() {
             let (length, period) = (length.0[lane], self.period.0[lane]);
             let cycles = self.border.cycle.0[lane] - self.at.cycle.0[lane];
             let to_border = cycles * period + (self.border.phase.0[lane] - self.at.phase.0[lane]);
@@ -47,11 +47,11 @@ impl<const W: usize> Columns<W> {
             trial.holds[lane] = (residual.0[lane] <= self.allowed.0[lane]) & (length > 0.0);
             let early = (length < left.0[lane]) & (at.phase.0[lane] < period);
             let finite = end.v.0[lane].abs() < f64::INFINITY;
-            *may = self.active[lane] & trial.holds[lane] & early & finite;
+            *candidate = self.active[lane] & trial.holds[lane] & early & finite;
         }
         let (x, acceleration) = (end.y + self.origin, end.acceleration);
         let mut to = Arrivals { length, x, v: end.v, acceleration, at, unit };
-        let landed = self.land(&may, y, &end.bound, &mut to);
+        let landed = self.land(&candidate, y, &end.bound, &mut to);
 
         let mut squared = Lanes([0.0; W]);
         let deviations = polynomial::chord_deviations(y, to.length);
@@ -59,9 +59,9 @@ impl<const W: usize> Columns<W> {
             squared = polynomial::integrals::<_, false>(y, &[], rule, squared, to.length).0;
         }
         let (start, square) = (y[0] + self.origin, to.length * to.length);
-        let (ways, bends) = ((self.v * to.length, to.v * to.length), to.acceleration * square);
-        let bends = ((y[2] + y[2]) * square, bends);
-        let (mut fine, mut turning, mut crosses) = ([false; W], [false; W], [false; W]);
+        let (slopes, curvatures) = ((self.v * to.length, to.v * to.length), to.acceleration * square);
+        let curvatures = ((y[2] + y[2]) * square, curvatures);
+        let (mut event_free, mut turning, mut crosses) = ([false; W], [false; W], [false; W]);
         let (mut clear, mut unsure) = (([false; W], [false; W]), false);
         let (mut low, mut high) = (start, start);
         for lane in 0..W {
@@ -71,15 +71,15 @@ impl<const W: usize> Columns<W> {
                 end: to.x.0[lane],
                 bound,
                 deviations: (deviations.0.0[lane], deviations.1.0[lane], deviations.2.0[lane]),
-                ways: (ways.0.0[lane], ways.1.0[lane]),
-                bends: (bends.0.0[lane], bends.1.0[lane]),
+                slopes: (slopes.0.0[lane], slopes.1.0[lane]),
+                curvatures: (curvatures.0.0[lane], curvatures.1.0[lane]),
                 limits: (self.low_end.0[lane], self.high_end.0[lane]),
             };
             let (limits, touch, monotone) = (chord.limits, self.touch.0[lane], chord.is_monotone());
             let (clear_low, clear_high) = chord.is_clear();
             let clear_low = clear_low | (self.x.0[lane] - limits.0 > bound);
             let clear_high = clear_high | (limits.1 - self.x.0[lane] > bound);
-            // from a surface: its own speed leads further away than all the rest can lead back
+            // leaving a surface: its speed leads further away than all the other terms can lead back
             let leaves = 2.0 * self.v.0[lane].abs() * to.length.0[lane] > bound * CLEARANCE;
             let clear_low = clear_low | (leaves & (touch < 0.0));
             let clear_high = clear_high | (leaves & (touch > 0.0));
@@ -87,38 +87,38 @@ impl<const W: usize> Columns<W> {
             let (clear_low, clear_high) = (clear_low | between.0, clear_high | between.1);
             clear.0[lane] = clear_low | landed[lane];
             clear.1[lane] = clear_high | landed[lane];
-            let (own_low, own_high, turns) = chord.extremes((self.low.0[lane], self.high.0[lane]));
-            (low.0[lane], high.0[lane]) = (own_low, own_high);
+            let (lane_low, lane_high, turns) = chord.extremes((self.low.0[lane], self.high.0[lane]));
+            (low.0[lane], high.0[lane]) = (lane_low, lane_high);
 
             // Without a barrier every comparison with it is false, since it is NaN.
             let (barrier, side, inside) = (self.barrier.0[lane], self.side.0[lane], self.inside[lane]);
             let (from, beyond) = ((chord.start - barrier) * side, (chord.end - barrier) * side);
             let near = (chord.start - barrier).abs() <= bound;
             let (onto, passed) = (beyond == 0.0, beyond < 0.0);
-            // outside the window only their number counts
+            // outside the window only the number of crossings counts
             let countable = !inside & (to.length.0[lane] + to.length.0[lane] < left.0[lane]) & !landed[lane];
             let clear_of_barrier =
                 !(near | passed | onto) | (monotone & (from > 0.0) & !onto & (!passed | countable));
-            fine[lane] = may[lane] & clear_of_barrier;
+            event_free[lane] = candidate[lane] & clear_of_barrier;
             turning[lane] = turns & inside;
             crosses[lane] = passed;
-            unsure |= fine[lane] & (turning[lane] | !(clear.0[lane] & clear.1[lane]));
+            unsure |= event_free[lane] & (turning[lane] | !(clear.0[lane] & clear.1[lane]));
         }
         if unsure {
             self.look_closer(y, &to, (&end.bound, &deviations.0), (&low, &high), &mut clear, &mut turning);
         }
         for lane in 0..W {
-            fine[lane] &= clear.0[lane] & clear.1[lane];
-            turning[lane] &= fine[lane];
+            event_free[lane] &= clear.0[lane] & clear.1[lane];
+            turning[lane] &= event_free[lane];
         }
         if turning.contains(&true) {
-            let turned = self.turn(&turning, y, &to, (ways, bends, deviations), (&mut low, &mut high));
+            let turned = self.turn(&turning, y, &to, (slopes, curvatures, deviations), (&mut low, &mut high));
             for lane in 0..W {
-                fine[lane] &= !turning[lane] | turned[lane];
+                event_free[lane] &= !turning[lane] | turned[lane];
             }
         }
         for lane in 0..W {
-            let (taken, inside, length) = (fine[lane], self.inside[lane], to.length.0[lane]);
+            let (taken, inside, length) = (event_free[lane], self.inside[lane], to.length.0[lane]);
             trial.taken[lane] = taken;
             trial.stopped[lane] = !taken & self.active[lane];
             trial.passed[lane] = taken & landed[lane];

@@ -38,7 +38,7 @@ fn bouncing_ball(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
         let reach = 1.0 / (1.0 - e);
         let impacts = run.events.iter().filter(|event| event.kind == EventKind::Impact);
         let (mut late, mut slow) = (Vec::new(), Vec::new());
-        // the closed form summed as it goes along: impact_time anew for each would be quadratic
+        // the closed form is summed incrementally: impact_time for each impact would be quadratic
         let mut power = dd(1.0);
         let mut sum = dd(0.0);
         for (i, impact) in impacts.enumerate() {

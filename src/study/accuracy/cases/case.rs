@@ -12,13 +12,13 @@ pub struct HardCase {
     pub problem: &'static str,
     /// What the right answer is and how it is known.
     pub answer: &'static str,
-    /// Why so many digits are allowed.
+    /// The conditioning, from which the allowed errors follow.
     pub conditioning: &'static str,
     pub(super) find: fn(&Bench) -> Result<Vec<Variant>, Stopped>,
 }
 
 impl HardCase {
-    /// Runs the case. Progress is not told within a case; a cancelled one stops soon.
+    /// Runs the case. Reports no progress within the case; stops soon after cancellation.
     pub fn find(&self, task: &Task) -> Result<Vec<Variant>, Stopped> {
         (self.find)(&Bench::new(task))
     }

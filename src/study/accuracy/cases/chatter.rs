@@ -1,4 +1,4 @@
-//! Chatter: impacts that accumulate, and those that do not come to it.
+//! Cases of complete and incomplete chatter.
 
 use super::HardCase;
 use super::ball::times;
@@ -59,20 +59,20 @@ fn incomplete(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
     let impacts = |run: &Run| times(run, EventKind::Impact);
     let run = bench.run(&model, &[])?;
     let exact = impacts(&bench.reference(&model, &[])?);
-    let own = impacts(&run);
+    let found = impacts(&run);
     let allowed = Bench::allowed(&model, run.summary.steps, &bench.sensitivity(&setup, &[], impacts)?);
-    let pairs = own
+    let pairs = found
         .iter()
         .zip(&exact)
         .zip(&allowed)
         .map(|((t, exact), allowed)| (off(*t, *exact, *exact), allowed / exact));
     let leaves = Pressed { press: 1.0, amplitude: 1.2, frequency: 1.0 }.release().to_f64();
-    let before = own.iter().filter(|t| **t < leaves).count();
+    let before = found.iter().filter(|t| **t < leaves).count();
     let rests_before = times(&run, EventKind::Rest).iter().any(|t| *t < leaves);
     Ok(vec![
         Variant::of("e = 0.9", &run)
             .worst("impact times", pairs)
-            .fact("leaves in mid-chatter", before > 0 && own.len() == exact.len() && !rests_before),
+            .fact("leaves in mid-chatter", before > 0 && found.len() == exact.len() && !rests_before),
     ])
 }
 
@@ -88,7 +88,7 @@ pub(super) const ENDS_WITH_THE_PRESS: HardCase = HardCase {
     find: ends_with_the_press,
 };
 
-/// How long after the release both are compared.
+/// Time in s after the release at which both are compared.
 const AFTER: f64 = 0.3;
 
 fn ends_with_the_press(bench: &Bench) -> Result<Vec<Variant>, Stopped> {

@@ -1,4 +1,4 @@
-//! Circuits beside a linear oscillator: stiff ones, strongly coupled ones, and limits in which they vanish.
+//! Cases of a linear oscillator with a circuit: stiff, strongly coupled, and limits in which it vanishes.
 
 use std::f64::consts::TAU;
 
@@ -13,7 +13,7 @@ use crate::study::accuracy::exact::{Coupled, Oscillator, dd};
 use crate::study::accuracy::measure::{Bench, STEP_ERROR, Variant, off};
 use crate::study::accuracy::scenes::{Setup, coil, layer, polynomial, sine};
 
-/// Of a linear oscillator with a circuit, whose energy no term but the shaking adds to.
+/// Conditioning of a linear oscillator with a circuit: only the drive adds energy.
 const LINEAR: &str = "Energy in mass, spring and circuit only falls, so that an error is carried on without \
                       growth: n steps add n d to each of the three, relative to the size that the motion \
                       gives it; the phase of the drive at a time t is a product of two doubles: 2 pi f t \
@@ -23,8 +23,8 @@ const MASS: f64 = 0.02;
 const STIFFNESS: f64 = 50.0;
 const DAMPING: f64 = 0.08;
 
-/// 20 g on a spring of 50 N/m (7.96 Hz), damped, shaken with 1 g at 7 Hz, from 2 mm with -0.1 m/s, beside a
-/// circuit without a current or voltage.
+/// 20 g on a spring of 50 N/m (7.96 Hz), damped, shaken with 1 g at 7 Hz, from 2 mm with -0.1 m/s, with a
+/// circuit whose current or voltage is 0 at the start.
 fn sprung(transducer: Transducer, duration: f64) -> Setup {
     let mut setup = Setup::new(polynomial(&[0.0, STIFFNESS]), (0.002, -0.1), duration)
         .damping(DAMPING)
@@ -34,8 +34,8 @@ fn sprung(transducer: Transducer, duration: f64) -> Setup {
     setup
 }
 
-/// The closed form of an oscillator of this stiffness and constant force beside the circuit of its scene, in
-/// the scene's own doubles.
+/// The closed form of an oscillator with this stiffness, constant force and the circuit of its scene, from
+/// the exact doubles of the scene.
 pub(super) fn closed_form(setup: &Setup, model: &Model, (stiffness, force): (f64, f64)) -> Coupled {
     let (coupling, storage, loss) = match setup.scene.transducer {
         Transducer::Electromagnetic { coupling_v_s_per_m, coil_ohm, load_ohm, inductance_mh } => {
@@ -48,14 +48,14 @@ pub(super) fn closed_form(setup: &Setup, model: &Model, (stiffness, force): (f64
     };
     let tone = model.excitation().tones.first();
     let tone =
-        tone.map(|own| (own.amplitude, own.frequency, own.phase + if own.quarter { 0.25 } else { 0.0 }));
+        tone.map(|tone| (tone.amplitude, tone.frequency, tone.phase + if tone.quarter { 0.25 } else { 0.0 }));
     let (mass, damping) = (model.mass(), model.damping());
     let tone = tone.unwrap_or((0.0, 0.0, 0.0));
     Coupled { mass, damping, stiffness, force, coupling, storage, loss, tone }
 }
 
-/// Size of the electrical state that a motion of the model's scales makes: by what it moves, and by what it
-/// can give.
+/// Size of the electrical state that a motion of the model's scales induces: limited by its coupling and by
+/// its kinetic energy, and no less than at the start.
 pub(super) fn electrical_size(model: &Model, exact: &Coupled) -> f64 {
     let (coupling, decay) = exact.rates();
     let time = model.scales().time;
@@ -63,13 +63,13 @@ pub(super) fn electrical_size(model: &Model, exact: &Coupled) -> f64 {
     (exact.amount().to_f64() * model.scales().speed * moved.min(1.0)).max(model.start_electrical().abs())
 }
 
-/// Errors of all three numbers of each sample in their sizes, each with what is allowed at its time.
+/// The largest relative error of the three states at each sample, with the error allowed at its time.
 fn errors(model: &Model, run: &Run, exact: &Coupled) -> Vec<(f64, f64)> {
     let (scales, size) = (model.scales(), electrical_size(model, exact));
     let start = [model.start().0, model.start().1, model.start_electrical()].map(dd);
     let steps = run.summary.steps as f64;
     let error = |sample: &crate::dynamics::Sample| {
-        let [x, v, s] = exact.state(start, dd(0.0), dd(sample.t)).map(|own| own.to_f64());
+        let [x, v, s] = exact.state(start, dd(0.0), dd(sample.t)).map(|value| value.to_f64());
         let mechanical = off(sample.x, x, scales.length).max(off(sample.v, v, scales.speed));
         let progress = (sample.t / model.duration()).max(1.0 / steps);
         let phase = TAU * exact.tone.1 * sample.t * f64::EPSILON;
@@ -78,12 +78,12 @@ fn errors(model: &Model, run: &Run, exact: &Coupled) -> Vec<(f64, f64)> {
     run.samples.iter().map(error).collect()
 }
 
-/// A variant on a linear oscillator.
+/// A variant compared with the closed form of a linear oscillator with a circuit.
 fn against(bench: &Bench, name: &'static str, setup: &Setup) -> Result<(Variant, Run), Stopped> {
     let model = setup.model()?;
     let run = bench.run(&model, &even(model.duration(), 41))?;
     let errors = errors(&model, &run, &closed_form(setup, &model, (STIFFNESS, 0.0)));
-    let ledger = run.summary.ledger.map_or(f64::NAN, |own| own.energy_residual);
+    let ledger = run.summary.ledger.map_or(f64::NAN, |ledger| ledger.energy_residual);
     let steps = run.summary.steps as f64;
     let variant = Variant::of(name, &run).worst("state at 41 samples", errors).number(
         "energy balance",
@@ -105,8 +105,8 @@ pub(super) const STIFF: HardCase = HardCase {
             ("coil 1 us", coil(5.0, 100.0, 1e-4)),
             ("layer 1 us", layer(1e-3, 1e-9, 1e3)),
         ];
-        let own = stiff.map(|(name, own)| Ok(against(bench, name, &sprung(own, 0.2))?.0));
-        own.into_iter().collect()
+        let variants = stiff.map(|(name, transducer)| Ok(against(bench, name, &sprung(transducer, 0.2))?.0));
+        variants.into_iter().collect()
     },
 };
 
@@ -123,8 +123,8 @@ pub(super) const STRONG: HardCase = HardCase {
             ("coil 1000 times", coil(223.6, 0.1, 1e-3)),
             ("layer 100 times", layer(0.7, 1e-6, 1e6)),
         ];
-        let own = strong.map(|(name, own)| Ok(against(bench, name, &sprung(own, 1.0))?.0));
-        own.into_iter().collect()
+        let variants = strong.map(|(name, transducer)| Ok(against(bench, name, &sprung(transducer, 1.0))?.0));
+        variants.into_iter().collect()
     },
 };
 
@@ -148,7 +148,7 @@ fn no_inductance(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
     let (scales, forcings) = (model.scales(), tones(&model));
     let pairs = run.samples.iter().map(|sample| {
         let (x, v) = damped.nearest(model.start(), 0.0, sample.t, &forcings);
-        let current = model.output(sample).map_or(f64::NAN, |own| own.current);
+        let current = model.output(sample).map_or(f64::NAN, |output| output.current);
         let exact = coupling * v / resistance;
         let size = coupling * scales.speed / resistance;
         let error = off(sample.x, x, scales.length).max(off(sample.v, v, scales.speed));
@@ -164,8 +164,8 @@ fn no_inductance(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
     let mut apart = Vec::new();
     for (name, time_constant) in [("1 ms", 1e-3), ("0.1 ms", 1e-4), ("10 us", 1e-5)] {
         let setup = sprung(coil(coupling, resistance, resistance * time_constant), 0.5);
-        let (variant, own) = against(bench, name, &setup)?;
-        let distances = own.samples.iter().zip(&run.samples).map(|(a, b)| off(a.x, b.x, scales.length));
+        let (variant, inductive) = against(bench, name, &setup)?;
+        let distances = inductive.samples.iter().zip(&run.samples).map(|(a, b)| off(a.x, b.x, scales.length));
         apart.push(distances.fold(0.0, f64::max) / time_constant);
         variants.push(variant);
     }

@@ -1,4 +1,4 @@
-//! Circuits at stops: a decay at rest, releases that it decides, impacts at which it must not jump.
+//! Cases of a circuit with stops: decay at rest, releases that it decides, impacts at which it must not jump.
 
 use super::HardCase;
 use super::ball::times;
@@ -45,13 +45,13 @@ fn at_rest(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
         let run = bench.run(&model, &at)?;
         let mut voltages: Vec<(f64, f64)> = Vec::new();
         for sample in run.samples.iter().filter(|sample| sample.t < released.to_f64()) {
-            let own = -2.0 * exp(-(rate * dd(sample.t))).to_f64();
-            voltages.push((off(sample.electrical, own, 2.0), STEP_ERROR));
+            let voltage = -2.0 * exp(-(rate * dd(sample.t))).to_f64();
+            voltages.push((off(sample.electrical, voltage, 2.0), STEP_ERROR));
         }
         let end = dd(model.duration());
         let left = [dd(1.0), dd(0.0), dd(-2.0) * exp(-(rate * released))];
-        let [x, _, voltage] = exact.state(left, released, end).map(|own| own.to_f64());
-        let own = times(&run, EventKind::Release).first().copied().unwrap_or(f64::NAN);
+        let [x, _, voltage] = exact.state(left, released, end).map(|value| value.to_f64());
+        let released_at = times(&run, EventKind::Release).first().copied().unwrap_or(f64::NAN);
         let (scales, allowed) = (model.scales(), run.summary.steps as f64 * STEP_ERROR);
         let last = run.samples.last().map_or(f64::NAN, |sample| sample.electrical);
         let size = electrical_size(&model, &exact);
@@ -59,7 +59,11 @@ fn at_rest(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
         variants.push(
             Variant::of(name, &run)
                 .worst("voltage at rest", voltages)
-                .number("time of release", off(own, released.to_f64(), released.to_f64()), 5.0 * STEP_ERROR)
+                .number(
+                    "time of release",
+                    off(released_at, released.to_f64(), released.to_f64()),
+                    5.0 * STEP_ERROR,
+                )
                 .number("state 0.3 s later", after, allowed)
                 .fact("one rest and one release", run.summary.rests == 1 && run.summary.releases == 1),
         );
@@ -80,7 +84,7 @@ pub(super) const RELEASE: HardCase = HardCase {
     find: release,
 };
 
-/// A press, a push that decays, and a sine that pulls.
+/// A constant press, a push that decays, and a sine that pulls.
 struct Pulls {
     press: f64,
     push: f64,
@@ -97,7 +101,7 @@ impl Pulls {
         (dd(self.press) + push - sin, -(self.rate * push) - DoubleDouble::tau() * cos)
     }
 
-    /// The first root within `until` in s: bracketed in steps of a 20 000th of it.
+    /// The first root up to `until` in s, bracketed in steps of a 20 000th of it.
     fn root(&self, until: f64) -> Option<DoubleDouble> {
         let at = |i: u32| dd(until * f64::from(i) / 2e4);
         let is_pressed = |t: DoubleDouble| self.net(t).0 >= dd(0.0);
@@ -128,14 +132,14 @@ fn release(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
         let amplitude = model.excitation().tones[0].amplitude;
         let pulls = Pulls { press, push, rate, amplitude };
         let run = bench.run(&model, &[])?;
-        let own = times(&run, EventKind::Release);
+        let releases = times(&run, EventKind::Release);
         let variant = Variant::of(name, &run);
         variants.push(match pulls.root(0.4) {
-            None => variant.fact("stays at rest", own.is_empty() && run.summary.final_x == 1.0),
+            None => variant.fact("stays at rest", releases.is_empty() && run.summary.final_x == 1.0),
             Some(root) => {
                 let (slope, t) = (pulls.net(root).1.to_f64().abs(), root.to_f64());
                 let allowed = STEP_ERROR * (press + push.abs() + amplitude) / slope / t + f64::EPSILON;
-                let error = own.first().map_or(f64::NAN, |own| off(*own, t, t));
+                let error = releases.first().map_or(f64::NAN, |found| off(*found, t, t));
                 variant.number("time of release", error, allowed)
             }
         });
@@ -155,7 +159,7 @@ pub(super) const AT_IMPACTS: HardCase = HardCase {
     find: at_impacts,
 };
 
-/// A time in s in which next to nothing changes but at an impact.
+/// A time in s so short that the state hardly changes in it, except at an impact.
 const JUST: f64 = 1e-12;
 
 const STOP: f64 = 0.002;
@@ -170,15 +174,15 @@ fn at_impacts(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
         .beside(coil(5.0, 100.0, 0.5), 0.0);
     setup.scene.mass_g = 20.0;
     let model = setup.model()?;
-    let own = times(&bench.run(&model, &[])?, EventKind::Impact);
+    let impacts = times(&bench.run(&model, &[])?, EventKind::Impact);
     // the current at each impact, and just before it
-    let at: Vec<f64> = own.iter().flat_map(|t| [t - JUST, *t]).collect();
+    let at: Vec<f64> = impacts.iter().flat_map(|t| [t - JUST, *t]).collect();
     let run = bench.run(&model, &at)?;
     let exact = closed_form(&setup, &model, (STIFFNESS, 0.0));
     let stop = dd(model.stop_positions().1.unwrap_or(f64::NAN));
     let (mut state, mut since) = ([dd(model.start().0), dd(model.start().1), dd(0.0)], dd(0.0));
     let (mut hits, mut currents, mut inside) = (Vec::new(), Vec::new(), true);
-    for t in &own {
+    for t in &impacts {
         let mut hit = dd(*t);
         let side = if exact.state(state, since, hit)[0] > dd(0.0) { stop } else { -stop };
         for _ in 0..3 {
@@ -198,13 +202,13 @@ fn at_impacts(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
     })?;
     let allowed = Bench::allowed(&model, run.summary.steps, &sensitivity);
     let size = electrical_size(&model, &exact);
-    let late = own
+    let late = impacts
         .iter()
         .zip(&hits)
         .zip(&allowed)
         .map(|((t, exact), allowed)| (off(*t, *exact, *exact), allowed / exact));
     let fastest = exact.coupling * model.scales().speed / exact.storage.to_f64();
-    let pairs = run.samples.chunks(2).zip(&currents).zip(&allowed[own.len()..]);
+    let pairs = run.samples.chunks(2).zip(&currents).zip(&allowed[impacts.len()..]);
     let off_by = pairs.map(|((pair, exact), allowed)| {
         let sampled = f64::EPSILON * pair[1].t * fastest;
         (off(pair[1].electrical, *exact, size), (allowed + sampled) / size)
@@ -217,7 +221,7 @@ fn at_impacts(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
         Variant::of("1 s", &run)
             .worst("impact times", late)
             .worst("current at impacts", off_by)
-            .fact("it stays inside between impacts", inside && own.len() > 20)
+            .fact("it stays inside between impacts", inside && impacts.len() > 20)
             .fact("the current is kept and the speed turned", turns),
     ])
 }

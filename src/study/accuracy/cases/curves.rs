@@ -1,4 +1,4 @@
-//! Curves with kinks, and stops in awkward places of a curve.
+//! Cases of force curves with kinks, and of stops at special points of a curve.
 
 use std::f64::consts::PI;
 
@@ -42,7 +42,7 @@ fn straight(bench: &Bench) -> Result<Variant, Stopped> {
     let each = steps / PERIODS;
     let late = slope * each * energy_step * PERIODS * (PERIODS + 1.0) / 2.0
         + steps * STEP_ERROR * scales.time
-        // the period itself, in doubles
+        // rounding of the period itself
         + PERIODS * period * 2.0 * f64::EPSILON;
     let energy = |x: f64, v: f64| 0.5 * v * v + model.mechanism().curve.potential(x);
     let drift = off(energy(summary.final_x, summary.final_v), energy(0.0, v), 0.5 * v * v);
@@ -180,8 +180,8 @@ pub(super) fn hard_impacts(run: &Run) -> Vec<f64> {
     run.events.iter().filter(hard).map(|event| event.t).collect()
 }
 
-/// A run's times against those of the reference of a scene that moves alike, with what its sensitivity
-/// allows, relative to the times.
+/// The times of a run compared with the reference run of an equivalent scene; errors and allowed errors are
+/// relative to the times.
 pub(super) fn by_reference(
     bench: &Bench,
     name: &'static str,
@@ -191,17 +191,17 @@ pub(super) fn by_reference(
     let model = setup.model()?;
     let run = bench.run(&model, &[])?;
     let exact = numbers(&bench.reference(&alike.model()?, &[])?);
-    let own = numbers(&run);
+    let found = numbers(&run);
     let allowed = Bench::allowed(&model, run.summary.steps, &bench.sensitivity(setup, &[], &numbers)?);
-    let pairs: Vec<_> = own
+    let pairs: Vec<_> = found
         .iter()
         .zip(&exact)
         .zip(&allowed)
-        .map(|((own, exact), allowed)| (off(*own, *exact, *exact), allowed / exact))
+        .map(|((value, exact), allowed)| (off(*value, *exact, *exact), allowed / exact))
         .collect();
     Ok(Variant::of(name, &run)
         .worst("impact times", pairs)
-        .fact("all impacts", own.len() == exact.len() && !own.is_empty()))
+        .fact("all impacts", found.len() == exact.len() && !found.is_empty()))
 }
 
 fn stop_at_the_force_maximum(bench: &Bench) -> Result<Vec<Variant>, Stopped> {

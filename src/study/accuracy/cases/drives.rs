@@ -1,4 +1,4 @@
-//! Shaking of every kind, on a linear oscillator, where all of it has a closed form.
+//! Cases of every kind of drive on a linear oscillator, all with a closed form.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use crate::study::accuracy::exact::{Forcing, Oscillator, dd};
 use crate::study::accuracy::measure::{Bench, STEP_ERROR, Variant, off};
 use crate::study::accuracy::scenes::{Setup, polynomial, sine};
 
-/// Of all cases here: no eigenvalue of a damped oscillator grows, so errors only add.
+/// Conditioning of all cases here: no eigenvalue of a damped oscillator grows, so errors only add up.
 const LINEAR: &str = "A linear oscillator carries an error on without growth: n steps add n d; the phase of \
                       the drive at a time t is a product of two doubles, 2 pi f t eps.";
 
@@ -26,7 +26,7 @@ fn sprung(c: f64, drive: Excitation, duration: f64) -> Setup {
     setup
 }
 
-/// The forcings of the tones of a model, in its own doubles; a ramp as what it is before its end.
+/// The forcings of the tones of a model, from its exact doubles; a ramp as it is before its end.
 pub(super) fn tones(model: &Model) -> Vec<Forcing> {
     let tone = |tone: &crate::dynamics::TonePart| {
         let (amplitude, growth) = tone.ramp.map_or((tone.amplitude, dd(0.0)), |(from, over)| {
@@ -38,12 +38,12 @@ pub(super) fn tones(model: &Model) -> Vec<Forcing> {
     model.excitation().tones.iter().map(tone).collect()
 }
 
-/// Even times within a run.
+/// Evenly spaced times within a run.
 pub(super) fn even(duration: f64, count: usize) -> Vec<f64> {
     (1..=count).map(|i| duration * i as f64 / (count as f64 + 0.5)).collect()
 }
 
-/// Errors of all samples in the scene's scales, each with what is allowed at its time.
+/// Errors of all samples in units of the scene's scales, each with the error allowed at its time.
 fn against(model: &Model, run: &Run, fastest: f64, exact: impl Fn(f64) -> (f64, f64)) -> Vec<(f64, f64)> {
     let scales = model.scales();
     let share = run.summary.steps as f64 * STEP_ERROR;
@@ -164,8 +164,8 @@ pub(super) const RECORD: HardCase = HardCase {
     answer: "Closed form of a linear acceleration, joined from line to line.",
     conditioning: LINEAR,
     find: |bench| {
-        // the fractional parts of multiples of the golden ratio: as uneven as random numbers, the same
-        // everywhere
+        // the fractional parts of multiples of the golden ratio: as uneven as random numbers, the
+        // same everywhere
         let jump = |i: u32| (f64::from(i) * 0.618_033_988_749_894_9).fract() - 0.5;
         let times = (0..1000_u32).map(|i| f64::from(i) * 0.005).collect();
         let accelerations = (0..1000_u32).map(|i| STANDARD_GRAVITY * jump(i)).collect();
@@ -180,7 +180,7 @@ fn recorded(bench: &Bench, name: &'static str, record: Record, duration: f64) ->
     let model = sprung(0.05, drive, duration).model()?;
     let run = bench.run(&model, &even(duration, 97))?;
     let oscillator = Oscillator::new(MASS, 0.05, STIFFNESS);
-    // the state at the begin of each line, and the line
+    // the state at the start of each line, and the line
     let mut joints = vec![(0.0, (dd(model.start().0), dd(model.start().1)), None)];
     let line = |i: usize| {
         let (t0, t1) = (dd(record.times[i]), dd(record.times[i + 1]));

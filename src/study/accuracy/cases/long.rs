@@ -66,8 +66,8 @@ fn chaos(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
             run.summary.steps,
             &bench.sensitivity_by(SMALL_CHANGE, &setup, &[], state)?,
         );
-        let (own, scales) = (state(&run), [model.scales().length, model.scales().speed]);
-        let pairs = (0..2).map(|i| (off(own[i], exact[i], scales[i]), allowed[i] / scales[i]));
+        let (found, scales) = (state(&run), [model.scales().length, model.scales().speed]);
+        let pairs = (0..2).map(|i| (off(found[i], exact[i], scales[i]), allowed[i] / scales[i]));
         variants.push(Variant::of(name, &run).worst("final state", pairs));
     }
     let (one, batches) = averages(bench, &preset(&[])?.model()?)?;
@@ -85,7 +85,7 @@ fn chaos(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
     Ok(variants)
 }
 
-/// A run, and the mean square velocity over each of 30 batches of 30 periods, by 64 samples a period.
+/// A run, and the mean square velocity over each of 30 batches of 30 periods, from 64 samples a period.
 fn averages(bench: &Bench, model: &Model) -> Result<(Run, Vec<f64>), Stopped> {
     const BATCHES: usize = 30;
     const PER_BATCH: usize = 30 * 64;

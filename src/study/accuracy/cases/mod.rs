@@ -1,10 +1,10 @@
-//! Hard cases: problems that break integrators of impacts, each with its answer and what its conditioning
-//! allows.
+//! Hard cases: problems that break integrators of impacts, each with its answer and what its
+//! conditioning allows.
 //!
-//! The texts of a case say what stands behind its code: the problem, where the answer comes from, and the
-//! bound of its error. Throughout, d is the error that one step may make ([`STEP_ERROR`](super::STEP_ERROR)),
-//! relative to the scene's length L and speed V, and n the number of steps. All run at the tolerance 1e-14;
-//! at 1e-9 some sixty of their checks fail, so the bounds are no formality.
+//! The texts of a case state the problem, where the answer comes from, and the bound of its error.
+//! Throughout, d is the error that one step may make ([`STEP_ERROR`](super::STEP_ERROR)), relative to the
+//! scene's length L and speed V, and n the number of steps. All run at the tolerance 1e-14; at 1e-9 some
+//! sixty of their checks fail, so the bounds are tight enough to matter.
 
 mod ball;
 mod case;

@@ -1,4 +1,4 @@
-//! Releases: near their threshold, at it, and after plastic impacts.
+//! Cases of release: near the threshold, at it, and after plastic impacts.
 
 use super::HardCase;
 use super::ball::times;
@@ -138,8 +138,8 @@ fn plastic(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
     let speed = pressed.flight((dd(0.0), dd(0.0)), first, landing).1.to_f64().abs();
     let angle = (1.0_f64 / 1.8).asin();
     let per_flight = run.summary.steps as f64 / 10.0;
-    let in_time = |own: Vec<f64>, first: DoubleDouble, allowed: f64| {
-        let pairs: Vec<_> = own
+    let in_time = |found: Vec<f64>, first: DoubleDouble, allowed: f64| {
+        let pairs: Vec<_> = found
             .into_iter()
             .enumerate()
             .map(move |(i, t)| {
@@ -154,7 +154,7 @@ fn plastic(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
     let releases = in_time(times(&run, EventKind::Release), first, released);
     let impacts = in_time(times(&run, EventKind::Impact), landing, landed);
     let rests = times(&run, EventKind::Rest);
-    // before the next release, and where the press holds it
+    // a rest at the start and one after each landing, before the next release
     let complete = (releases.len(), impacts.len()) == (10, 10) && rests.len() == 11;
     Ok(vec![
         Variant::of("10 periods", &run)

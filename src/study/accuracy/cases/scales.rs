@@ -68,18 +68,18 @@ fn units(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
     ] {
         let model = scaled(units).model()?;
         let run = bench.run(&model, &[])?;
-        let own = hard(&run, units);
+        let found = hard(&run, units);
         let allowed = Bench::allowed(&model, run.summary.steps, &sensitivity);
-        let pairs: Vec<_> = own
+        let pairs: Vec<_> = found
             .iter()
             .zip(&exact)
             .zip(&allowed)
-            .map(|((own, exact), allowed)| (off(*own, *exact, *exact), 2.0 * allowed / exact))
+            .map(|((value, exact), allowed)| (off(*value, *exact, *exact), 2.0 * allowed / exact))
             .collect();
         variants.push(
             Variant::of(name, &run)
                 .worst("impact times", pairs)
-                .fact("all impacts", own.len() == exact.len()),
+                .fact("all impacts", found.len() == exact.len()),
         );
     }
     Ok(variants)

@@ -71,7 +71,7 @@ fn crest(bench: &Bench, name: &'static str, stop: f64) -> Result<Variant, Stoppe
         let (late, slow) = impacts.first().map_or((f64::NAN, f64::NAN), |impact| {
             (off(impact.t, angle, angle), off(impact.v_in, speed, speed))
         });
-        // the crest is cut off: the rest of the wave comes sooner by the time that it takes
+        // the impact cuts off the crest: the rest of the wave comes earlier by the duration of the crest
         let cut = 2.0 * (FRAC_PI_2 - angle);
         let error = off(run.summary.final_x, (3.0 + cut).sin(), 1.0);
         variant
@@ -126,7 +126,7 @@ fn coincident(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
     let pressed = Pressed { press: 1.0, amplitude: 1.2, frequency: 1.0 };
     let leaves = pressed.release();
     let gap = 0.1;
-    // linear in the start speed: what is missing at t*, over the time
+    // the gap at t* is linear in the start speed
     let missing = pressed.flight((dd(gap), dd(0.0)), dd(0.0), leaves).0;
     let exact = -(missing / leaves);
     let end = leaves.to_f64() + 0.3;

@@ -1,4 +1,4 @@
-//! The free double well beside its separatrix.
+//! Case of the free double well near its separatrix.
 
 use std::f64::consts::SQRT_2;
 
@@ -40,7 +40,7 @@ fn separatrix(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
 
 fn beside(bench: &Bench, name: &'static str, distance: f64) -> Result<Variant, Stopped> {
     let mut setup = Setup::new(unit_well(), (SQRT_2 + distance, 0.0), 1.0);
-    // the double that the scene's millimetres become is the one that the answer is for
+    // the answer is for the double to which the scene's millimetres are converted
     let orbit = UnitWell { x0: setup.model()?.start().0 };
     let period = orbit.period().to_f64();
     setup.scene.run.duration_s = PERIODS * period;
@@ -58,8 +58,7 @@ fn beside(bench: &Bench, name: &'static str, distance: f64) -> Result<Variant, S
         let each = steps / PERIODS;
         let allowed = orbit.period_slope() * each * energy_step * k * (k + 1.0) / 2.0
             + k * each * STEP_ERROR * scales.time;
-        // it is at rest there, so that its velocity tells how late it is; a phase that is lost has none to
-        // tell
+        // the mass is at rest there, so that its velocity measures how late it is, unless the phase is lost
         let late = (sample.v / orbit.force()).abs();
         if allowed < 0.1 * period {
             let far = off(sample.x, orbit.x0, 1.0) > 0.1;

@@ -1,4 +1,4 @@
-//! A linear oscillator beside a circuit, under a constant force and a sine.
+//! A linear oscillator with a circuit, under a constant force and a sine.
 
 use super::dd;
 use super::elementary::turns;
@@ -52,7 +52,7 @@ impl Coupled {
         let (coupling, decay) = self.rates();
         let [mut x, mut v, mut w, mut sine, mut cosine] = [[DoubleDouble::zero(); N]; N - 1];
         x[1] = dd(1.0);
-        let per_mass = [self.stiffness, self.damping].map(|own| -(dd(own) / dd(self.mass)));
+        let per_mass = [self.stiffness, self.damping].map(|coefficient| -(dd(coefficient) / dd(self.mass)));
         [v[0], v[1], v[2], v[3]] = [per_mass[0], per_mass[1], -coupling, -dd(amplitude)];
         v[5] = -(dd(self.force) / dd(self.mass));
         [w[1], w[2]] = [coupling, -decay];
@@ -62,31 +62,31 @@ impl Coupled {
         let (sin, cos) = turns(dd(frequency) * from + dd(phase));
         let before = [start[0], start[1], start[2] / self.amount(), sin, cos, dd(1.0)];
         let after = |row: usize| {
-            flow[row].iter().zip(before).fold(DoubleDouble::zero(), |sum, (own, part)| sum + *own * part)
+            flow[row].iter().zip(before).fold(DoubleDouble::zero(), |sum, (entry, part)| sum + *entry * part)
         };
         [after(0), after(1), after(2) * self.amount()]
     }
 }
 
-/// The exponential of `rates` times `t`, by Taylor's series of a small part of it and squarings, each of
-/// which may cost a bit.
+/// The exponential of `rates` times `t`, by scaling and squaring of its Taylor series; each squaring may cost
+/// a bit.
 fn exponential(rates: Matrix, t: DoubleDouble) -> Matrix {
-    let sizes = rates.map(|row| row.iter().map(|own| (*own * t).abs().to_f64()).sum::<f64>());
+    let sizes = rates.map(|row| row.iter().map(|rate| (*rate * t).abs().to_f64()).sum::<f64>());
     let largest = sizes.into_iter().fold(0.0, f64::max);
     // below 1/16, where 18 terms leave 1e-38
     let squarings = (largest * 16.0).log2().ceil().max(0.0);
-    let small = rates.map(|row| row.map(|own| own * t * dd((-squarings).exp2())));
+    let small = rates.map(|row| row.map(|rate| rate * t * dd((-squarings).exp2())));
     let mut sum = unit();
     for i in (1..=18).rev() {
         let product = multiply(&small, &sum);
         sum = unit();
-        for (row, own) in sum.iter_mut().zip(product) {
-            for (entry, part) in row.iter_mut().zip(own) {
+        for (row, terms) in sum.iter_mut().zip(product) {
+            for (entry, part) in row.iter_mut().zip(terms) {
                 *entry += part / dd(f64::from(i));
             }
         }
     }
-    (0..squarings as u32).fold(sum, |own, _| multiply(&own, &own))
+    (0..squarings as u32).fold(sum, |power, _| multiply(&power, &power))
 }
 
 fn unit() -> Matrix {
@@ -104,7 +104,7 @@ mod tests {
     use super::super::{Forcing, Oscillator};
     use super::*;
 
-    /// 20 g on 50 N/m with 0.08 N s/m, shaken, beside a circuit.
+    /// 20 g on 50 N/m with 0.08 N s/m, shaken, with a circuit.
     fn coupled(coupling: f64, loss: f64) -> Coupled {
         let tone = (9.0, 7.0, 0.125);
         let (storage, loss) = (dd(0.5), dd(loss));
@@ -122,9 +122,9 @@ mod tests {
         let start = [dd(0.002), dd(-0.1), dd(0.3)];
         for t in [0.3, 1.7, 20.0] {
             let (x, v) = oscillator.state((start[0], start[1]), dd(0.1), dd(t), &[tone]);
-            let own = coupled(0.0, 4.0).state(start, dd(0.1), dd(t));
+            let found = coupled(0.0, 4.0).state(start, dd(0.1), dd(t));
             let state = start[2] * super::super::exp(-(dd(8.0) * (dd(t) - dd(0.1))));
-            let errors = [apart(own[0], x), apart(own[1], v), apart(own[2], state)];
+            let errors = [apart(found[0], x), apart(found[1], v), apart(found[2], state)];
             assert!(errors.iter().all(|error| *error < 1e-26), "{t}: {errors:?}");
         }
     }
@@ -132,24 +132,24 @@ mod tests {
     #[test]
     fn without_a_loss_it_is_a_spring() {
         // K^2/S is added to the stiffness; from x = 0 without a charge the state is K x/S
-        let own = coupled(3.0, 0.0);
+        let system = coupled(3.0, 0.0);
         let spring = Oscillator::new(0.02, 0.08, 50.0 + 18.0);
         let tone = Forcing::Tone { amplitude: 9.0, growth: dd(0.0), frequency: 7.0, phase: 0.125 };
         for t in [0.05, 1.0, 30.0] {
             let (x, v) = spring.state((dd(0.0), dd(0.4)), dd(0.0), dd(t), &[tone]);
-            let own = own.state([dd(0.0), dd(0.4), dd(0.0)], dd(0.0), dd(t));
-            let errors = [apart(own[0], x), apart(own[1], v), apart(own[2], dd(6.0) * x)];
+            let found = system.state([dd(0.0), dd(0.4), dd(0.0)], dd(0.0), dd(t));
+            let errors = [apart(found[0], x), apart(found[1], v), apart(found[2], dd(6.0) * x)];
             assert!(errors.iter().all(|error| *error < 1e-26), "{t}: {errors:?}");
         }
     }
 
     #[test]
     fn a_fast_circuit_keeps_the_digits() {
-        // time constant 0.1 us; there and on is there at once
-        let own = coupled(3.0, 5e6);
+        // time constant 0.1 us; two successive spans must give the state of the whole
+        let system = coupled(3.0, 5e6);
         let start = [dd(0.002), dd(-0.1), dd(0.3)];
-        let whole = own.state(start, dd(0.0), dd(2.0));
-        let parts = own.state(own.state(start, dd(0.0), dd(0.7)), dd(0.7), dd(2.0));
+        let whole = system.state(start, dd(0.0), dd(2.0));
+        let parts = system.state(system.state(start, dd(0.0), dd(0.7)), dd(0.7), dd(2.0));
         for (whole, part) in whole.into_iter().zip(parts) {
             assert!(apart(whole, part) < 1e-22 * whole.abs().to_f64().max(1e-6), "{whole:?} {part:?}");
         }

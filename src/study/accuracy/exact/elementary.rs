@@ -5,8 +5,8 @@ use crate::numeric::{DoubleDouble, Scalar};
 
 /// e^x, to some 29 digits, for |x| below 700.
 ///
-/// Reduced by ln 2 and halved eight times, then Taylor's series and eight squarings, which cost some two
-/// digits.
+/// Reduced by ln 2 and halved eight times, then Taylor's series and eight squarings, which cost some
+/// two digits.
 pub fn exp(x: DoubleDouble) -> DoubleDouble {
     let ln_2 = dd(std::f64::consts::LN_2) + dd(2.319_046_813_846_299_6e-17);
     let halvings = (x / ln_2 + dd(0.5)).floor().to_f64();
@@ -29,7 +29,7 @@ pub fn sin_cos(angle: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
     turns(angle / DoubleDouble::tau())
 }
 
-/// (sin, cos) of so many turns; whole ones may be many.
+/// (sin, cos) of an angle in turns, which may be large.
 pub(super) fn turns(turns: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
     DoubleDouble::sin_cos_turns(turns - turns.floor())
 }
@@ -78,10 +78,10 @@ mod tests {
     fn an_angle_comes_back_from_its_sine() {
         for angle in [0.0, 1e-9, 0.1, 0.125, 0.2, 0.249_999_999, 0.25] {
             let (sine, _) = turns(dd(angle));
-            let own = sine_turns(sine);
-            // near a quarter turn by the root of what the sine is rounded by
+            let found = sine_turns(sine);
+            // near a quarter turn the error is the root of the rounding of the sine
             let allowed = if angle < 0.249 { 1e-30 } else { 1e-15 };
-            assert!((own - dd(angle)).to_f64().abs() < allowed, "{angle}");
+            assert!((found - dd(angle)).to_f64().abs() < allowed, "{angle}");
         }
     }
 

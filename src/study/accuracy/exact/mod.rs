@@ -1,8 +1,8 @@
 //! Motions with a closed form.
 //!
-//! They are computed in double-double arithmetic (some 31 digits) from the very doubles that a model holds,
-//! so that an answer's own rounding is no part of any error measured against it. Only those for a corner are
-//! in doubles.
+//! They are computed in double-double arithmetic (some 31 digits) from the exact doubles that a model
+//! holds, so that their rounding adds nothing to an error measured against them. Only those for a corner
+//! are in doubles.
 
 mod ball;
 mod corner;
@@ -22,7 +22,7 @@ pub use well::UnitWell;
 
 use crate::numeric::DoubleDouble;
 
-/// Shorthand for a double made a double-double.
+/// A double as a double-double.
 pub(crate) fn dd(value: f64) -> DoubleDouble {
     crate::numeric::Number::of(value)
 }

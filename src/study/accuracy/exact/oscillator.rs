@@ -1,4 +1,4 @@
-//! A damped linear oscillator under anything that has a closed form.
+//! A damped linear oscillator under forcings with a closed form.
 
 use super::dd;
 use super::elementary::{exp, sin_cos, turns};
@@ -16,8 +16,8 @@ pub struct Oscillator {
 /// A base acceleration with a closed form. SI; time is that of the run.
 #[derive(Debug, Clone, Copy)]
 pub enum Forcing {
-    /// (amplitude + growth t) sin(2 pi (frequency t + phase)); growth in m/s^3, frequency in Hz, phase in
-    /// turns.
+    /// (amplitude + growth t) sin(2 pi (frequency t + phase)); growth in m/s^3, frequency in Hz, phase
+    /// in turns.
     Tone {
         /// Amplitude at time 0 in m/s^2.
         amplitude: f64,
@@ -72,7 +72,7 @@ impl Oscillator {
         (x * c + (v + half * x) * s, v * c - (self.stiffness * x + half * v) * s)
     }
 
-    /// The solution under one forcing that has no free part, at time `t` of the run.
+    /// The particular solution under one forcing at time `t` of the run.
     ///
     /// Under (a + r t) sin(w t + phase) it is the imaginary part of (P + Q t) exp(i (w t + phase)), with Q L
     /// = -r, P L + Q L' = -a, L = k - w^2 + i g w, L' = g + 2 i w.
@@ -103,16 +103,16 @@ impl Oscillator {
     pub fn state(&self, start: State, from: DoubleDouble, t: DoubleDouble, forcings: &[Forcing]) -> State {
         let sum = |at: DoubleDouble| {
             forcings.iter().fold((dd(0.0), dd(0.0)), |sum, forcing| {
-                let own = self.driven(forcing, at);
-                (sum.0 + own.0, sum.1 + own.1)
+                let part = self.driven(forcing, at);
+                (sum.0 + part.0, sum.1 + part.1)
             })
         };
         let (at_start, now) = (sum(from), sum(t));
-        let own = self.free((start.0 - at_start.0, start.1 - at_start.1), t - from);
-        (own.0 + now.0, own.1 + now.1)
+        let free = self.free((start.0 - at_start.0, start.1 - at_start.1), t - from);
+        (free.0 + now.0, free.1 + now.1)
     }
 
-    /// The same as the nearest doubles, from doubles.
+    /// The same from doubles, rounded to doubles.
     pub fn nearest(&self, start: (f64, f64), from: f64, t: f64, forcings: &[Forcing]) -> (f64, f64) {
         let state = self.state((dd(start.0), dd(start.1)), dd(from), dd(t), forcings);
         (state.0.to_f64(), state.1.to_f64())

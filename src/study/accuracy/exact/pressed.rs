@@ -10,7 +10,7 @@ use crate::numeric::{DoubleDouble, Number, Scalar, bisect};
 pub struct Pressed {
     /// Pressing acceleration in m/s^2, above 0.
     pub press: f64,
-    /// Amplitude in m/s^2, above the press where there is to be a release.
+    /// Amplitude in m/s^2, above the press if there is to be a release.
     pub amplitude: f64,
     /// Frequency in Hz.
     pub frequency: f64,
@@ -39,8 +39,9 @@ impl Pressed {
         (gap, rate)
     }
 
-    /// When a flight from rest on the stop at `from` lands again: the first root of the gap, bracketed on a
-    /// grid of 1/4096 of the period and bisected to all digits; none within four periods.
+    /// When a flight from rest on the stop at `from` lands again: the first root of the gap, bracketed
+    /// on a grid of 1/4096 of the period and bisected to all digits; `None` if it does not land within
+    /// four periods.
     pub fn landing(&self, from: DoubleDouble) -> Option<DoubleDouble> {
         let start = (DoubleDouble::zero(), DoubleDouble::zero());
         let step = dd(1.0) / dd(4096.0 * self.frequency);

@@ -1,4 +1,4 @@
-//! The unit double well left to itself: m = 1 kg, F = x^3 - x, wells at +-1 m, barrier 1/4 J.
+//! The free unit double well: m = 1 kg, F = x^3 - x, wells at +-1 m, barrier 1/4 J.
 
 use super::dd;
 use super::elementary::elliptic_k;

@@ -13,16 +13,16 @@ use crate::dynamics::{Model, Phase, Side};
 use crate::numeric::bisect;
 use crate::system::clock::ThreadClock;
 
-/// A pressed rebound slower than this share of the scene's speed is a rest: what a user of such a solver
-/// writes, who has no sum of a chatter.
+/// A pressed rebound slower than this share of the scene's speed is a rest, as a user of such a solver would
+/// define it, which does not sum chatter.
 const REST_SPEED: f64 = 1e-6;
 
-/// Attempts of one run, refused ones too.
+/// Most attempted steps of one run, rejected ones included.
 const MOST_STEPS: u64 = 20_000_000;
 
 const CANCEL_STRIDE: u64 = 1 << 10;
 
-/// Steps in which a rest is searched for its release, in a forcing period.
+/// Steps a forcing period in which the release from a rest is searched.
 const SEARCHES: f64 = 200.0;
 
 const NODES: [f64; 6] = [0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0];
@@ -34,7 +34,7 @@ const STAGES: [&[f64]; 6] = [
     &[9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0],
     &[35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0],
 ];
-/// Fifth order less fourth.
+/// Weights of the fifth order less those of the fourth.
 const ERROR: [f64; 7] =
     [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0];
 const DENSE: [f64; 7] = [
@@ -96,8 +96,8 @@ impl Step {
         [0, 1].map(|i| a[i] + s * (b[i] + r * (c[i] + s * (d[i] + r * e[i]))))
     }
 
-    /// The integral of v^2 over the first `share` of the step: Gauss's rule of four points on the continuous
-    /// extension.
+    /// The integral of v^2 over the first `share` of the step: Gauss's rule of four points on the
+    /// continuous extension.
     fn squares(&self, share: f64) -> f64 {
         const POINTS: [(f64, f64); 2] = [
             (0.339_981_043_584_856_3, 0.652_145_154_862_546_1),
@@ -108,8 +108,8 @@ impl Step {
         0.5 * share * self.h * sum
     }
 
-    /// The share at which the gap to a stop closes, where it is closed at the end. `open` where the step
-    /// began on that very stop: the gap opens first.
+    /// The share of the step at which the gap to a stop closes; `None` if it is open at the end. With
+    /// `begins_on` the step begins on that stop, and the gap opens first.
     fn contact(&self, stop: f64, sign: f64, begins_on: bool) -> Option<f64> {
         let gap = |s: f64| sign * (stop - self.at(s)[0]);
         if sign * (stop - self.end[0]) >= 0.0 {
@@ -125,7 +125,7 @@ impl Step {
                 }
             }
         }
-        // to 2^-60 of the step: a contact at its very begin has no relative digits to find
+        // to 2^-60 of the step: a contact at its very start has no relative precision
         Some(bisect(low, 1.0, 60, |share| gap(share) > 0.0).1)
     }
 }
@@ -134,8 +134,8 @@ impl Step {
 ///
 /// Samples lie on straight lines between steps, as those of [`fixed_step`](super::fixed_step). A pressed
 /// rebound slower than 1e-6 of the scene's speed is a rest, its release found by a scan in 200ths of the
-/// forcing period (or of the duration) and bisection. Ends early where the force curve ends, and after 2e7
-/// attempts.
+/// forcing period (or of the duration) and bisection. Ends early where the force curve ends, and after
+/// 2e7 attempts.
 pub fn dormand_prince(model: &Model, tolerance: f64, keep: &Keep) -> MethodRun {
     let watch = ThreadClock::start();
     let problem = Problem::new(model);
@@ -160,7 +160,7 @@ pub fn dormand_prince(model: &Model, tolerance: f64, keep: &Keep) -> MethodRun {
         if attempts > MOST_STEPS || (attempts % CANCEL_STRIDE == 0 && keep.is_cancelled()) {
             break;
         }
-        // at a stop with hardly any speed: does it press?
+        // at a stop and nearly at rest: it rests if the net force presses
         if let Some(side) = touching
             && now.v * sign(side) > -REST_SPEED * scales.speed
         {
@@ -216,7 +216,7 @@ pub fn dormand_prince(model: &Model, tolerance: f64, keep: &Keep) -> MethodRun {
                 }
                 touching = Some(side);
                 slope = None;
-                // the next flight is e times as long as one that just ended, at a guess
+                // the next step is at most the next flight under a constant press
                 let press = sign(side) * problem.acceleration(next.t, place, next.v);
                 evaluations += 1;
                 if press > 0.0 {
@@ -244,7 +244,8 @@ pub fn dormand_prince(model: &Model, tolerance: f64, keep: &Keep) -> MethodRun {
     run
 }
 
-/// When the press, positive at `from`, is no longer: by a scan and bisection; `end` where it stays.
+/// The time at which the press, positive at `from`, falls to 0, by a scan and bisection; `end` if it
+/// stays positive.
 fn release(press: impl Fn(f64) -> f64, from: f64, end: f64, stride: f64) -> f64 {
     let mut low = from;
     while low < end {

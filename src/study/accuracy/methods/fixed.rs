@@ -6,7 +6,7 @@ use super::{Keep, MethodRun, Scheme};
 use crate::dynamics::{Model, Phase, Side};
 use crate::system::clock::ThreadClock;
 
-/// Steps between two looks at the cancel flag.
+/// Steps between checks of the cancel flag.
 const CANCEL_STRIDE: u64 = 1 << 14;
 
 /// The most steps of one run: some seconds.
@@ -14,11 +14,11 @@ const MOST_STEPS: f64 = 1e8;
 
 /// Runs `model` by `scheme` in even steps of at most `step` in s; the last one ends at the duration.
 ///
-/// The model's tolerance does not act. A step that ends beyond a stop is put onto it and its velocity becomes
-/// -e times what it was; there is no rest: a pressed mass hops on for ever. Statistics and samples are those
-/// of the steps, as the user of such a method sees them; an impact has the time at the end of its step. A
-/// step that is not above 0, or makes more than 1e8 of them, is taken as the shortest allowed. Ends early
-/// where the force curve ends.
+/// The model's tolerance has no effect. A step that ends beyond a stop is put onto it and its velocity
+/// becomes -e times what it was; there is no rest: a pressed mass hops on for ever. Statistics and samples
+/// are those of the steps, as the user of such a method sees them; an impact has the time at the end of its
+/// step. A step that is not above 0, or makes more than 1e8 of them, is taken as the shortest allowed. Ends
+/// early where the force curve ends.
 pub fn fixed_step(model: &Model, scheme: Scheme, step: f64, keep: &Keep) -> MethodRun {
     let watch = ThreadClock::start();
     let problem = Problem::new(model);

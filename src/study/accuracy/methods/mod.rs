@@ -1,9 +1,8 @@
 //! Four common methods, on any scene, for comparison with the program's own.
 //!
-//! Built for that alone: no run of the program takes them. Fixed steps *clamp and bounce*, as in games and
-//! small teaching applets: a step that ends beyond a stop is put onto it and its velocity reversed. Contact
-//! is then seen up to a step late, so that the times of impacts are first order in the step whatever the
-//! scheme.
+//! They serve this comparison alone. Fixed steps *clamp and bounce*, as in games and small teaching applets:
+//! a step that ends beyond a stop is put onto it and its velocity reversed. Contact is then seen up to a step
+//! late, so that the times of impacts are first order in the step whatever the scheme.
 
 mod dormand_prince;
 mod fixed;
@@ -43,7 +42,7 @@ impl Scheme {
     }
 }
 
-/// What such a run should keep.
+/// What a run by one of these methods keeps.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Keep<'a> {
     /// Times in s at which to sample, ascending, within 0..=duration.
@@ -68,8 +67,7 @@ pub struct Statistics {
     /// Velocity at the end in m/s.
     pub final_v: f64,
     /// RMS velocity from the begin of the settled window to the end in m/s, by trapezoids over fixed steps
-    /// and by Gauss's rule over the continuous extension of adaptive ones; none where the run ended before
-    /// it.
+    /// and by Gauss's rule over the continuous extension of adaptive ones; `None` if the run ended before it.
     pub rms_velocity: Option<f64>,
     /// Largest |x| in that window in m.
     pub max_abs_x: f64,
@@ -83,8 +81,8 @@ pub struct Statistics {
     pub evaluations: u64,
     /// CPU time in s.
     pub cpu_s: f64,
-    /// Time in s at which the run ended early (it left the force curve, a number was not finite, it was told
-    /// to stop); none where it did not.
+    /// Time in s at which the run ended early (it left the force curve, a number was not finite, it was
+    /// cancelled); `None` if it did not.
     pub ended_at: Option<f64>,
 }
 

@@ -4,10 +4,10 @@ use std::f64::consts::TAU;
 
 use crate::dynamics::Model;
 
-/// The equation of motion of a model, evaluated as anyone would: library sines, force curve, no series.
+/// The equation of motion of a model, evaluated directly: library sines, force curve, no series.
 pub(super) struct Problem<'a> {
     pub model: &'a Model,
-    /// Left and right end: place in m, restitution; infinitely far where there is none.
+    /// Left and right stop: position in m and restitution; at infinity if there is none.
     pub stops: [(f64, f64); 2],
     pub start: (f64, f64),
     domain: (f64, f64),
@@ -72,7 +72,7 @@ impl<'a> Problem<'a> {
     pub fn acceleration(&self, t: f64, x: f64, v: f64) -> f64 {
         let force = match self.single {
             Some(coefficients) => coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c),
-            // a stage may look beyond the known curve, where a run does not go
+            // a stage may lie beyond the end of the curve, where a run ends
             None => self.model.mechanism().curve.force(x.clamp(self.domain.0, self.domain.1)),
         };
         -(force + self.model.total_damping() * v) / self.model.mass() - self.base(t)

@@ -40,7 +40,7 @@ impl<'a> Tally<'a> {
         }
     }
 
-    /// Takes in a step from `a` to `b`; `phase` is what the mass did in it, `squares` the integral of v^2
+    /// Records a step from `a` to `b`; `phase` is that of the mass in it, `squares` the integral of v^2
     /// over it.
     pub fn step(&mut self, problem: &Problem, a: TimedState, b: TimedState, phase: Phase, squares: f64) {
         let h = b.t - a.t;
@@ -68,7 +68,7 @@ impl<'a> Tally<'a> {
         self.next += 1;
     }
 
-    /// Takes in an impact on the stop of `side`.
+    /// Records an impact on the stop of `side`.
     pub fn impact(&mut self, t: f64, side: Side, v_in: f64, v_out: f64) {
         self.run.statistics.impacts += u64::from(v_in.abs() > self.least_speed);
         if self.keep.impacts {
@@ -76,7 +76,7 @@ impl<'a> Tally<'a> {
         }
     }
 
-    /// The run as it stands at its last state.
+    /// The finished run, which ends in the state `last`.
     pub fn finish(
         mut self,
         problem: &Problem,

@@ -2,14 +2,14 @@
 
 use crate::dynamics::{Event, EventKind, Model};
 
-/// Impacts slower than this share of the scene's speed are no arrivals: what a chatter or a hop makes.
+/// Impacts slower than this share of the scene's speed are no arrivals but come from chatter or hops.
 const SLOWEST: f64 = 0.01;
 
-/// An impact on the same stop as the one before is an arrival where it is so much faster than that one's
-/// rebound: the drive or the mechanism has pushed, and it is not the fall back of a chatter.
+/// An impact on the same stop as the one before is an arrival if it is faster than the rebound of that one by
+/// this factor: the drive or the mechanism has pushed, and it is no chatter.
 const FASTER: f64 = 1.2;
 
-/// An impact of the other run is the same arrival where it is at least so fast in comparison: hops of a mass
+/// An impact of the other run is the same arrival if it has at least this share of the speed: hops of a mass
 /// that should rest are slower.
 const LEAST_SPEED: f64 = 0.5;
 
@@ -31,19 +31,19 @@ pub struct Lateness {
 }
 
 impl Lateness {
-    /// The one that is furthest off.
+    /// The lateness of largest magnitude.
     pub fn worst(&self) -> f64 {
         if self.latest.abs() >= self.earliest.abs() { self.latest } else { self.earliest }
     }
 }
 
-/// How late the arrivals among the impacts of `exact` are in the run whose impacts are `own`, both in order
-/// of time; none without an arrival that is in both.
+/// How late the arrivals among the impacts of `exact` are in the run whose impacts are `compared`, both in
+/// order of time; `None` if no arrival is in both.
 ///
 /// An arrival is the first impact after a flight across or after a push, not the rebounds that follow it. It
 /// is looked for among the impacts of the other run on the same stop, within half the time to its neighbours.
-/// Where one is not found the other run has taken another course, and what follows is not compared.
-pub(super) fn lateness(model: &Model, own: &[Event], exact: &[Event]) -> Option<Lateness> {
+/// If one is not found, the other run has taken another course, and the rest is not compared.
+pub(super) fn lateness(model: &Model, compared: &[Event], exact: &[Event]) -> Option<Lateness> {
     let arrivals = arrivals(exact, SLOWEST * model.scales().speed);
     let mut late: Vec<f64> = Vec::new();
     for (i, arrival) in arrivals.iter().enumerate() {
@@ -51,7 +51,7 @@ pub(super) fn lateness(model: &Model, own: &[Event], exact: &[Event]) -> Option<
         let gaps = [arrivals[..i].iter().rfind(same), arrivals[i + 1..].iter().find(same)];
         let gap = gaps.into_iter().flatten().map(|other| (other.t - arrival.t).abs()).reduce(f64::min);
         let room = 0.5 * gap.unwrap_or(model.characteristic_time());
-        let Some(found) = nearest(own, arrival, room) else { break };
+        let Some(found) = nearest(compared, arrival, room) else { break };
         late.push(found.t - arrival.t);
     }
     late.sort_by(f64::total_cmp);
@@ -63,9 +63,9 @@ pub(super) fn lateness(model: &Model, own: &[Event], exact: &[Event]) -> Option<
 
 /// How many impacts of a run fall into the times in which the mass of the other one rests on a stop: hops of
 /// a mass that is pressed there. `exact` are all events of that one, in order of time.
-pub(super) fn hops(own: &[Event], exact: &[Event]) -> u64 {
+pub(super) fn hops(impacts: &[Event], exact: &[Event]) -> u64 {
     let turns = || exact.iter().filter(|event| matches!(event.kind, EventKind::Rest | EventKind::Release));
-    // what begins with a release has rested from the start
+    // a run whose first such event is a release has rested from the start
     let mut since = turns().next().filter(|first| first.kind == EventKind::Release).map(|_| 0.0);
     let mut rests: Vec<(f64, f64)> = Vec::new();
     for turn in turns() {
@@ -83,7 +83,7 @@ pub(super) fn hops(own: &[Event], exact: &[Event]) -> u64 {
         let next = rests.partition_point(|rest| rest.0 < impact.t);
         next > 0 && impact.t < rests[next - 1].1
     };
-    own.iter().filter(within).count() as u64
+    impacts.iter().filter(within).count() as u64
 }
 
 fn arrivals(impacts: &[Event], slowest: f64) -> Vec<Event> {
@@ -102,9 +102,9 @@ fn arrivals(impacts: &[Event], slowest: f64) -> Vec<Event> {
 }
 
 /// The impact on the same stop that is nearest in time, fast enough and not further than `room` in s.
-fn nearest<'a>(own: &'a [Event], arrival: &Event, room: f64) -> Option<&'a Event> {
-    let from = own.partition_point(|other| other.t < arrival.t - room);
-    let near = own[from..].iter().take_while(|other| other.t <= arrival.t + room);
+fn nearest<'a>(impacts: &'a [Event], arrival: &Event, room: f64) -> Option<&'a Event> {
+    let from = impacts.partition_point(|other| other.t < arrival.t - room);
+    let near = impacts[from..].iter().take_while(|other| other.t <= arrival.t + room);
     let alike =
         |other: &&Event| other.side == arrival.side && other.v_in.abs() >= LEAST_SPEED * arrival.v_in.abs();
     near.filter(alike).min_by(|a, b| (a.t - arrival.t).abs().total_cmp(&(b.t - arrival.t).abs()))

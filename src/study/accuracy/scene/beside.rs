@@ -3,16 +3,16 @@
 use super::TRUSTED_SHARE;
 use crate::dynamics::{Model, Sample};
 
-/// Samples in a period of the drive or in one of small oscillations, whichever is shorter, and in a whole run
-/// at least and at most.
+/// Samples in a period of the drive or in one of small oscillations, whichever is shorter.
 const PER_PERIOD: f64 = 40.0;
+/// Least and largest number of samples of a whole run.
 const SAMPLES: (f64, f64) = (2_000.0, 40_000.0);
 
-/// A motion that travels less than this share of the scene's length counts as if it travelled so far: what is
-/// left of a motion that dies away is not to be judged by its rounding.
+/// Least travel, as a share of the scene's length, with which differences are compared: a motion that has
+/// died away is not judged by its rounding.
 const LEAST_TRAVEL: f64 = 1e-3;
 
-/// Share of the compared time at whose end two runs that parted are looked at again.
+/// The last share of the compared time, over which two runs that parted are compared again.
 const END: f64 = 0.1;
 
 /// Even times in s at which two runs of `model` are compared, ascending from 0 to its duration.
@@ -26,7 +26,7 @@ pub(super) fn times(model: &Model) -> Vec<f64> {
 /// How two runs differ.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Beside {
-    /// Times in s at which both were there.
+    /// Times in s that both runs reached.
     times: Vec<f64>,
     /// The largest difference of the displacement in m up to each of these times.
     worst: Vec<f64>,
@@ -39,14 +39,14 @@ pub(super) struct Beside {
 }
 
 impl Beside {
-    /// `own` beside `better`, both sampled at the same times as far as each of them came.
-    pub fn new(model: &Model, own: &[Sample], better: &[Sample]) -> Self {
+    /// `samples` beside `better`, both sampled at the same times as far as each of them came.
+    pub fn new(model: &Model, samples: &[Sample], better: &[Sample]) -> Self {
         let mut found = Self::default();
         let (mut low, mut high, mut worst) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
-        let last = own.len().min(better.len());
+        let last = samples.len().min(better.len());
         let from_end = (last as f64 * (1.0 - END)) as usize;
-        for (i, (own, better)) in own.iter().zip(better).enumerate() {
-            let apart = (own.x - better.x).abs();
+        for (i, (sample, better)) in samples.iter().zip(better).enumerate() {
+            let apart = (sample.x - better.x).abs();
             worst = worst.max(apart);
             (low, high) = (low.min(better.x), high.max(better.x));
             found.times.push(better.t);
@@ -70,13 +70,13 @@ impl Beside {
         self.worst.last().copied().unwrap_or(0.0)
     }
 
-    /// The time in s at which the difference has first reached `level` in m; none where it never does.
+    /// The time in s at which the difference has first reached `level` in m; `None` if it never does.
     pub fn reaches(&self, level: f64) -> Option<f64> {
         let first = self.worst.partition_point(|worst| *worst < level);
         self.times.get(first).copied()
     }
 
-    /// Up to when in s the run is trusted; none where that is all of the time compared.
+    /// Time in s up to which the run is trusted; `None` if that is all of the time compared.
     pub fn parted(&self) -> Option<f64> {
         self.reaches(self.limit)
     }

@@ -2,8 +2,8 @@
 //!
 //! Three questions, each a function of a model: what the error of its run is and up to when its path can be
 //! trusted ([`trust`]); what every digit costs ([`tolerances`]); and what a fixed step makes of it, as a game
-//! or a small applet would take ([`step_size`]). Nothing here needs an exact answer: the error is the change
-//! against a run that is more accurate by far.
+//! or a small applet would take ([`step_size`]). Nothing here needs an exact answer: the error is the
+//! difference from a far more accurate run.
 
 mod arrivals;
 mod beside;

@@ -9,24 +9,24 @@ use crate::dynamics::{Event, EventKind, Model, Outcome, Request, Sample, Side};
 use crate::study::accuracy::methods::{Keep, Scheme, fixed_step};
 use crate::study::accuracy::precision::{MEASURED_FOR, median};
 
-/// Tolerance of the run that counts as the true one, where the scene's own is not tighter still.
+/// Tolerance of the true run, unless that of the scene is tighter.
 pub const TRUE_TOLERANCE: f64 = 1e-9;
 
 /// Periods of the drive, or characteristic times of the motion, that are drawn.
 const DRAWN_PERIODS: f64 = 3.0;
 
-/// Points of a drawn path: a longer path has as many, even ones in place of the steps.
+/// Most points of a drawn path; if there are more steps, evenly spaced points take their place.
 const MOST_POINTS: usize = 4_000;
 
-/// The most steps of a run, a few seconds of one core; and the number of sines in the drive that takes as
-/// long again as all else, as they are evaluated one by one.
+/// The most steps of a run, a few seconds of one core.
 const MOST_STEPS: f64 = 2e7;
+/// Number of sines in the drive that take as long as the rest of a step, since they are evaluated one by one.
 const SINES: f64 = 16.0;
 
 /// Why a scene has no such run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum Unfit {
-    /// Its stops give way, and clamp and bounce is for stops that do not.
+    /// Its stops are compliant, and clamp and bounce needs rigid ones.
     #[error("clamp and bounce is for rigid stops, and these give way")]
     Compliant,
     /// Its transducer has a state of its own, which the schemes do not step.
@@ -53,7 +53,7 @@ pub struct StepSize {
     pub truth: Vec<(f64, f64)>,
     /// The other path, a point a step.
     pub ghost: Vec<(f64, f64)>,
-    /// How late the mass arrives at its stops; none where it arrives at none, or in one run only.
+    /// How late the mass arrives at its stops; `None` if it arrives at none, or in one run only.
     pub late: Option<Lateness>,
     /// Impacts counted.
     pub impacts: (u64, u64),
@@ -61,12 +61,12 @@ pub struct StepSize {
     pub hops: u64,
     /// Crossings of the barrier counted.
     pub crossings: (u64, u64),
-    /// RMS velocity in m/s over the settled window; none where a run ended before it.
+    /// RMS velocity in m/s over the settled window; `None` if a run ended before it.
     pub rms_velocity: (Option<f64>, Option<f64>),
     /// Largest difference of the displacement in m.
     pub error: f64,
-    /// Up to when in s it follows the true path within a hundredth of the travel; none where that is all of
-    /// the time.
+    /// Time in s up to which it follows the true path within a hundredth of the travel; `None` if that is all
+    /// of the time.
     pub trusted: Option<f64>,
     /// Steps.
     pub steps: (u64, u64),
@@ -74,25 +74,24 @@ pub struct StepSize {
     pub evaluations: (u64, u64),
     /// CPU time in s.
     pub cpu_s: (f64, f64),
-    /// Time in s at which the run in fixed steps ended early; none where it did not.
+    /// Time in s at which the run in fixed steps ended early; `None` if it did not.
     pub ended_at: Option<f64>,
     /// How the true run ended.
     pub outcome: Outcome,
 }
 
 impl StepSize {
-    /// By what share the RMS velocity is wrong; above 0 where it is too high.
+    /// Relative error of the RMS velocity; above 0 if it is too high.
     pub fn rms_error(&self) -> Option<f64> {
-        let (exact, own) = (self.rms_velocity.0?, self.rms_velocity.1?);
-        (exact > 0.0).then(|| own / exact - 1.0)
+        let (exact, stepped) = (self.rms_velocity.0?, self.rms_velocity.1?);
+        (exact > 0.0).then(|| stepped / exact - 1.0)
     }
 }
 
-/// Runs `model` by `scheme` in even steps of `step` in s, and truly.
+/// Runs `model` by `scheme` in even steps of `step` in s, and once accurately.
 ///
-/// The true run is the program's own at the scene's tolerance or [`TRUE_TOLERANCE`], whichever is tighter; in
-/// chaos it is one of many true ones, and beyond the time `trusted` the numbers tell two of them apart and no
-/// more.
+/// The true run is the program's own at the scene's tolerance or [`TRUE_TOLERANCE`], whichever is tighter. In
+/// chaos the differences beyond the time `trusted` are no more than those between two equally true runs.
 pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) -> Result<StepSize, Unfit> {
     if model.compliant().is_some() {
         return Err(Unfit::Compliant);
@@ -113,11 +112,11 @@ pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) 
     let impacts: Vec<Event> = all.iter().copied().filter(|event| event.kind == EventKind::Impact).collect();
 
     let keep = |sample_times| Keep { sample_times, impacts: true, cancel: Some(cancel) };
-    let own = fixed_step(model, scheme, step, &keep(&even));
+    let stepped = fixed_step(model, scheme, step, &keep(&even));
     // the same run up to where it is drawn
     let start = model.with_duration(drawn, 0.0);
     let ghost = fixed_step(&start, scheme, step, &keep(&steps)).samples;
-    let statistics = own.statistics;
+    let statistics = stepped.statistics;
     let bare = Keep { impacts: false, ..keep(&[]) };
     let cpu_s = if statistics.cpu_s > MEASURED_FOR {
         statistics.cpu_s
@@ -128,7 +127,7 @@ pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) 
     if cancel.load(std::sync::atomic::Ordering::Relaxed) {
         return Err(Unfit::Cancelled);
     }
-    let beside = Beside::new(model, &own.samples, &exact.samples);
+    let beside = Beside::new(model, &stepped.samples, &exact.samples);
     Ok(StepSize {
         scheme,
         step,
@@ -136,9 +135,9 @@ pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) 
         drawn,
         truth: with_impacts(model, &path, &impacts),
         ghost: ghost.iter().map(|sample| (sample.t, sample.x)).collect(),
-        late: lateness(model, &own.impacts, &impacts),
+        late: lateness(model, &stepped.impacts, &impacts),
         impacts: (summary.total_impacts, statistics.impacts),
-        hops: hops(&own.impacts, &all),
+        hops: hops(&stepped.impacts, &all),
         crossings: (summary.total_crossings, statistics.crossings),
         rms_velocity: (summary.rms_velocity, statistics.rms_velocity),
         error: beside.error(),
@@ -151,8 +150,8 @@ pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) 
     })
 }
 
-/// The model with its run cut to what so small a step reaches in reasonable time, and its settled window to
-/// the second half of that where it would begin later.
+/// The model with its run shortened to what steps of this size reach in reasonable time; its settled window
+/// begins at half of that at the latest.
 fn within_reach(model: &Model, step: f64) -> Model {
     let reach = step * MOST_STEPS / (1.0 + model.excitation().tones.len() as f64 / SINES);
     match model.duration() > reach {
@@ -166,13 +165,13 @@ fn spread(end: f64, count: usize) -> Vec<f64> {
     (0..=count).map(|i| (end * (i as f64 / count as f64)).min(end)).collect()
 }
 
-/// The ends of steps from 0 to `end` in s, or as many even times as are drawn where there are more steps.
+/// The ends of steps from 0 to `end` in s, or as many even times as are drawn if there are more steps.
 fn step_times(end: f64, step: f64) -> Vec<f64> {
     let count = (end / step).ceil();
     spread(end, if count >= 1.0 { count.min(MOST_POINTS as f64) as usize } else { 1 })
 }
 
-/// The path with its corners at impacts, of which a picture with few points would cut the tips.
+/// The path with its corners at impacts, which a picture with few points would cut off.
 fn with_impacts(model: &Model, samples: &[Sample], impacts: &[Event]) -> Vec<(f64, f64)> {
     let (left, right) = model.stop_positions();
     let end = samples.last().map_or(0.0, |sample| sample.t);

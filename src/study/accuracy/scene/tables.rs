@@ -72,14 +72,14 @@ impl Row {
                 run.span,
                 run.cpu_s.1,
                 run.rms_velocity.1.unwrap_or(f64::NAN),
-                late(|own| own.median),
+                late(|lateness| lateness.median),
                 late(super::Lateness::worst),
             ],
             counts: [
                 Some(run.steps.1),
                 Some(run.evaluations.1),
                 Some(run.impacts.1),
-                run.late.map(|own| own.matched as u64),
+                run.late.map(|late| late.matched as u64),
             ],
             outcome: if run.ended_at.is_some() { "ended_early" } else { "done" },
         }

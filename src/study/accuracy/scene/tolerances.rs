@@ -17,7 +17,7 @@ pub struct AtTolerance {
     pub tolerance: f64,
     /// Largest error of the displacement in m.
     pub error: f64,
-    /// Up to when in s its path can be trusted; none where that is all of the time compared.
+    /// Time in s up to which its path can be trusted; `None` if that is all of the time compared.
     pub trusted: Option<f64>,
     /// Steps.
     pub steps: u64,
@@ -25,7 +25,7 @@ pub struct AtTolerance {
     pub evaluations: u64,
     /// CPU time in s: the median of a few that keep statistics alone.
     pub cpu_s: f64,
-    /// RMS velocity in m/s over the scene's settled window; none where the run ended before it.
+    /// RMS velocity in m/s over the scene's settled window; `None` if the run ended before it.
     pub rms_velocity: Option<f64>,
     /// Impacts.
     pub impacts: u64,
@@ -48,18 +48,18 @@ pub struct Tolerances {
 /// of the tightest of them (in double-double arithmetic where that is below 1e-14).
 ///
 /// The error is the largest of the displacement; that of a chaotic motion is as large as its travel, and then
-/// the time up to which the path is trusted is what counts. None where it was cancelled.
+/// the time up to which the path is trusted is what counts. `None` if cancelled.
 pub fn tolerances(model: &Model, cancel: &AtomicBool) -> Option<Tolerances> {
     let times = times(model);
     let request = Request { sample_times: &times, cancel: Some(cancel), ..Request::default() };
     let bare = Request { sample_times: &[], ..request };
-    let all = with_own(model.tolerance());
+    let all = tolerances_with(model.tolerance());
     let tightest = all.last().copied().unwrap_or(model.tolerance());
     let (_, exact) = better(model, tightest, &request)?;
     let mut found = Tolerances::default();
     for tolerance in all {
-        let own = model.with_tolerance(tolerance);
-        let run = finished(own.run(&request))?;
+        let trial = model.with_tolerance(tolerance);
+        let run = finished(trial.run(&request))?;
         let summary = run.summary;
         let beside = Beside::new(model, &run.samples, &exact.samples);
         (found.span, found.travel) = (beside.span(), beside.travel);
@@ -69,7 +69,7 @@ pub fn tolerances(model: &Model, cancel: &AtomicBool) -> Option<Tolerances> {
             trusted: beside.parted(),
             steps: summary.steps,
             evaluations: summary.evaluations,
-            cpu_s: median(|| own.run(&bare).summary.cpu_s),
+            cpu_s: median(|| trial.run(&bare).summary.cpu_s),
             rms_velocity: summary.rms_velocity,
             impacts: summary.total_impacts,
             outcome: summary.outcome,
@@ -79,10 +79,10 @@ pub fn tolerances(model: &Model, cancel: &AtomicBool) -> Option<Tolerances> {
 }
 
 /// The tolerances from the loosest to the tightest, the scene's own among them.
-fn with_own(own: f64) -> Vec<f64> {
+fn tolerances_with(tolerance: f64) -> Vec<f64> {
     let mut all = TOLERANCES.to_vec();
-    if !all.contains(&own) {
-        all.push(own);
+    if !all.contains(&tolerance) {
+        all.push(tolerance);
     }
     all.sort_by(|a, b| b.total_cmp(a));
     all
@@ -94,8 +94,8 @@ mod tests {
 
     #[test]
     fn the_scenes_own_tolerance_is_among_them() {
-        assert_eq!(with_own(1e-9), TOLERANCES);
-        assert_eq!(with_own(1e-14), [1e-3, 1e-6, 1e-9, 1e-12, 1e-14]);
-        assert_eq!(with_own(3e-5), [1e-3, 3e-5, 1e-6, 1e-9, 1e-12]);
+        assert_eq!(tolerances_with(1e-9), TOLERANCES);
+        assert_eq!(tolerances_with(1e-14), [1e-3, 1e-6, 1e-9, 1e-12, 1e-14]);
+        assert_eq!(tolerances_with(3e-5), [1e-3, 3e-5, 1e-6, 1e-9, 1e-12]);
     }
 }

@@ -5,20 +5,20 @@ use std::sync::atomic::AtomicBool;
 use super::beside::{Beside, times};
 use crate::dynamics::{Model, Outcome, Regime, Request, Run};
 
-/// How much tighter the tolerance is of the run that a run is compared with.
+/// Tolerance of the comparison run as a share of that of the run.
 const TIGHTER: f64 = 1e-2;
 
-/// The tightest tolerance of a run in doubles: what asks for more is computed in double-double arithmetic.
+/// The tightest tolerance of a run in doubles; tighter ones are run in double-double arithmetic.
 const TIGHTEST: f64 = 1e-14;
 
-/// Where errors add up, a hundredth of the tolerance is good for ten times the time and more; where a
-/// difference grows exponentially, for a few decades' time more. Between the two.
+/// Differences grow exponentially if a hundredth of the tolerance extends the trusted time by less than this
+/// factor. Where errors only add up, the factor is ten or more.
 const TIMES: f64 = 5.0;
 
-/// A difference is first looked at where it is so many times what one step may be wrong by.
+/// The growth of a difference is measured from this many times the error of one step on.
 const ABOVE_START: f64 = 10.0;
 
-/// What becomes of the difference between a run and a more accurate one.
+/// How the difference between a run and a more accurate one develops.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Course {
     /// They stay together.
@@ -32,12 +32,12 @@ pub enum Course {
         decade: f64,
     },
     /// They part at this time in s after exponential growth, though the motion settles: which of two ways it
-    /// goes hangs on next to nothing.
+    /// goes depends on tiny differences.
     Sensitive {
         /// Time in s.
         until: f64,
     },
-    /// They part at this time in s since the tolerance is too large.
+    /// They part at this time in s because the tolerance is too large.
     Coarse {
         /// Time in s.
         until: f64,
@@ -45,7 +45,7 @@ pub enum Course {
 }
 
 impl Course {
-    /// Up to when in s the path can be trusted; none where that is all of the time compared.
+    /// Time in s up to which the path can be trusted; `None` if that is all of the time compared.
     pub fn until(self) -> Option<f64> {
         match self {
             Self::Kept => None,
@@ -65,7 +65,7 @@ pub struct Trust {
     pub error: f64,
     /// Travel in m, peak to peak.
     pub travel: f64,
-    /// What becomes of the difference.
+    /// How the difference develops.
     pub course: Course,
     /// How the run ended: what was compared ends with it.
     pub outcome: Outcome,
@@ -76,18 +76,18 @@ pub struct Trust {
 /// Runs `model` twice, at its own tolerance and at a hundredth of it, and compares the displacements.
 ///
 /// The path is trusted until the two differ by [`TRUSTED_SHARE`](super::TRUSTED_SHARE) of the travel. Where
-/// they part, a third run with a hundredth of that tolerance says whether it would help: not so where
-/// differences grow exponentially, and the second run is good for little longer. A chaotic motion is also
-/// shaken, without a period and still apart at the end.
+/// they part, a third run with a hundredth of that tolerance shows whether a tighter tolerance helps, which
+/// it does not where differences grow exponentially. The motion is called chaotic only if it is also shaken,
+/// has no period, and the runs are still apart at the end.
 ///
-/// An estimate and no bound: an error that both runs share is not seen. A run with a tolerance below
-/// 1e-14 is made in double-double arithmetic, a hundred times as slow. None where it was cancelled.
+/// This is an estimate, not a bound: an error common to both runs is not seen. A run with a tolerance below
+/// 1e-14 is made in double-double arithmetic, a hundred times as slow. `None` if cancelled.
 pub fn trust(model: &Model, cancel: &AtomicBool) -> Option<Trust> {
     let times = times(model);
     let request = Request { sample_times: &times, cancel: Some(cancel), ..Request::default() };
-    let own = finished(model.run(&request))?;
+    let run = finished(model.run(&request))?;
     let (finer, better) = better(model, model.tolerance(), &request)?;
-    let beside = Beside::new(model, &own.samples, &better.samples);
+    let beside = Beside::new(model, &run.samples, &better.samples);
     let course = match beside.parted() {
         None => Course::Kept,
         Some(until) => {
@@ -102,19 +102,17 @@ pub fn trust(model: &Model, cancel: &AtomicBool) -> Option<Trust> {
         error: beside.error(),
         travel: beside.travel,
         course,
-        outcome: own.summary.outcome,
-        same_regime: own.summary.regime == better.summary.regime,
+        outcome: run.summary.outcome,
+        same_regime: run.summary.regime == better.summary.regime,
     })
 }
 
-/// The model with a run of another length in s: what follows the run that a scene asks for is as near or far
-/// from the truth.
+/// The model with a run of another length in s, to judge a motion beyond the run of its scene.
 pub fn lasting(model: &Model, duration: f64) -> Model {
     model.with_duration(duration, model.settle())
 }
 
-/// A run of `model` that is more accurate than one at `tolerance`, and its own tolerance. None where it was
-/// cancelled.
+/// A run of `model` that is more accurate than one at `tolerance`, and its tolerance. `None` if cancelled.
 pub(super) fn better(model: &Model, tolerance: f64, request: &Request) -> Option<(f64, Run)> {
     let finer = TIGHTER * tolerance;
     let run = if finer < TIGHTEST {
@@ -125,13 +123,13 @@ pub(super) fn better(model: &Model, tolerance: f64, request: &Request) -> Option
     finished(run).map(|run| (finer, run))
 }
 
-/// A run that was not cancelled.
+/// The run; `None` if it was cancelled.
 pub(super) fn finished(run: Run) -> Option<Run> {
     (!matches!(run.summary.outcome, Outcome::Cancelled { .. })).then_some(run)
 }
 
-/// What becomes of two runs that part at the first of `times` in s, where with both tolerances tightened they
-/// would part at the second, if at all.
+/// The course of two runs that part at the first of `times` in s; with both tolerances tightened they part at
+/// the second, if at all.
 fn parted(model: &Model, beside: &Beside, better: &Run, times: (f64, Option<f64>)) -> Course {
     let until = times.0;
     let Some(next) = times.1.filter(|next| *next < TIMES * until) else { return Course::Coarse { until } };
@@ -140,7 +138,7 @@ fn parted(model: &Model, beside: &Beside, better: &Run, times: (f64, Option<f64>
     if !model.is_shaken() || settles || !beside.stays_apart() {
         return Course::Sensitive { until };
     }
-    // over the decades that were seen, or from one pair of runs to the next
+    // from the decades observed, or from the delay gained by the tighter pair of runs
     let start = ABOVE_START * model.tolerance() * model.scales().length;
     let decades = (beside.limit / start).log10();
     let decade = match beside.reaches(start) {

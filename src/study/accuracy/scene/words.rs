@@ -29,11 +29,11 @@ pub fn duration(seconds: f64) -> String {
     format!("{} {name}", two(size / unit))
 }
 
-/// A step as it is named: a fraction of a second where it is one of a whole number.
+/// Name of a step: a fraction of a second such as 1/60 s, if it is the inverse of a whole number.
 pub fn step_name(step: f64) -> String {
     let parts = (1.0 / step).round();
     let is_whole = (1e-3..0.5).contains(&step) && (parts * step - 1.0).abs() < 1e-9;
-    // a tenth or a thousandth is written as well in ms
+    // tenths and thousandths are written in ms
     if is_whole && (parts % 10.0 != 0.0 || parts % 30.0 == 0.0) {
         return format!("1/{parts:.0} s");
     }
@@ -48,14 +48,14 @@ pub fn moment(seconds: f64) -> String {
     if seconds < 99.95 { format!("{seconds:.1} s") } else { format!("{seconds:.0} s") }
 }
 
-/// A stretch of time in s as short as it can be written.
+/// A time in s in its shortest form.
 fn stretch(seconds: f64) -> String {
     let text = moment(seconds);
     text.replace(".0 s", " s")
 }
 
-/// A length in m as an error is written: one digit, in mm. Below what a double of the size of `travel` in m
-/// can tell, that is said.
+/// A length in m as an error is written: one digit, in mm. An error below the resolution of doubles of the
+/// size of `travel` in m is stated as such.
 pub fn small_length(m: f64, travel: f64) -> String {
     let least = 2.0 * f64::EPSILON * travel;
     if m < least || m == 0.0 {
@@ -73,9 +73,9 @@ pub fn length_mm(m: f64) -> String {
 }
 
 impl Trust {
-    /// The error, or up to when the path is to be trusted, in a few words. Times are counted from `from` in s
-    /// before the start of the compared runs. None where a run ended early: then its end is what is to be
-    /// said.
+    /// The error, or the time up to which the path can be trusted, in a few words. Times are counted from
+    /// `from` in s before the start of the compared runs. `None` if a run ended early, since then its end
+    /// is reported.
     pub fn short(&self, from: f64) -> Option<String> {
         if self.outcome != Outcome::Done {
             return None;
@@ -91,9 +91,9 @@ impl Trust {
         })
     }
 
-    /// What that means and how it is known.
+    /// The meaning of [`short`](Self::short) and how it was determined.
     pub fn long(&self, from: f64) -> String {
-        let (own, finer) = self.tolerances;
+        let (loose, finer) = self.tolerances;
         let share = TRUSTED_SHARE * 100.0;
         let span = stretch(self.span);
         let after = if from > 0.0 {
@@ -103,7 +103,7 @@ impl Trust {
         };
         let leaves = |until: f64| {
             format!(
-                "Computed once more with the tolerance {finer:.0e} in place of {own:.0e}, the path is \
+                "Computed once more with the tolerance {finer:.0e} in place of {loose:.0e}, the path is \
                  another one from {} on (off by {share} % of the travel)",
                 moment(from + until)
             )
@@ -111,12 +111,12 @@ impl Trust {
         match self.course {
             Course::Kept if self.error == 0.0 => {
                 format!(
-                    "Computed once more with the tolerance {finer:.0e} in place of {own:.0e}, the path is \
+                    "Computed once more with the tolerance {finer:.0e} in place of {loose:.0e}, the path is \
                      the same over {after}."
                 )
             }
             Course::Kept => format!(
-                "Computed once more with the tolerance {finer:.0e} in place of {own:.0e}, the path changes \
+                "Computed once more with the tolerance {finer:.0e} in place of {loose:.0e}, the path changes \
                  by no more than {} mm over {after}.",
                 length_mm(self.error)
             ),
@@ -167,16 +167,16 @@ impl Lateness {
             _ if duration(worst) == duration(median.abs()) => String::new(),
             _ => format!(" (worst {})", duration(worst)),
         };
-        let others = match fewer {
+        let minority = match fewer {
             0 => String::new(),
             n => format!(", {n} of {} up to {} {}", self.matched, duration(other.abs()), way(other)),
         };
-        format!("{who} {} {}{worst}{others}{then}.", duration(median.abs()), way(median))
+        format!("{who} {} {}{worst}{minority}{then}.", duration(median.abs()), way(median))
     }
 }
 
 impl StepSize {
-    /// What the step did, a sentence each: arrivals, impacts, RMS velocity, crossings, cost.
+    /// The effects of the step, a sentence each: arrivals, impacts, RMS velocity, crossings, cost.
     pub fn sentences(&self) -> Vec<String> {
         let mut all = Vec::new();
         if let Some(at) = self.ended_at {
@@ -184,13 +184,13 @@ impl StepSize {
             return all;
         }
         all.extend(self.late.map(|late| late.words()));
-        let (exact, own) = self.impacts;
-        if exact != own {
-            all.push(format!("{own} impacts counted where there are {exact}."));
+        let (exact, counted) = self.impacts;
+        if exact != counted {
+            all.push(format!("{counted} impacts counted where there are {exact}."));
         } else if exact > 0 {
-            all.push(format!("{own} impacts counted, which is right."));
+            all.push(format!("{counted} impacts counted, which is right."));
         }
-        if own > exact && self.hops > 0 {
+        if counted > exact && self.hops > 0 {
             all.push(format!(
                 "{} of them are hops of a mass that truly rests: pressed on a stop it bounces every step or \
                  two, so that shorter steps count more.",
@@ -206,17 +206,17 @@ impl StepSize {
                 _ => format!("RMS velocity {} times what it should be.", two(1.0 + error)),
             });
         }
-        let (exact, own) = self.crossings;
-        if exact != own {
-            all.push(format!("{own} crossings where there are {exact}."));
+        let (exact, counted) = self.crossings;
+        if exact != counted {
+            all.push(format!("{counted} crossings where there are {exact}."));
         }
         if let Some(t) = self.trusted {
             all.push(format!("It leaves the true path (by 1 % of the travel) at {}.", duration(t)));
         } else if self.error > 0.0 {
             all.push(format!("Displacement wrong by {} mm at most.", length_mm(self.error)));
         }
-        let (exact, own) = self.cpu_s;
-        all.push(format!("{} of processor time; the true run takes {}.", duration(own), duration(exact)));
+        let (exact, stepped) = self.cpu_s;
+        all.push(format!("{} of processor time; the true run takes {}.", duration(stepped), duration(exact)));
         all
     }
 }

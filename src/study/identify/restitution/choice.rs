@@ -32,9 +32,9 @@ pub fn narrowest(estimates: &Estimates) -> Option<Choice> {
         let apart = |other: Setting| estimates.get(&other).map(|(other, _)| (value - other).abs());
         let fewer = apart((window, terms - 1))?;
         let narrower = |by: usize| (window.wrapping_sub(by), terms);
-        let others = [(window, terms + 1), narrower(1), narrower(2)];
-        let most = others.into_iter().filter_map(apart).fold(fewer, f64::max);
-        Some(Choice { setting, value, half: noise.hypot(most) })
+        let neighbours = [(window, terms + 1), narrower(1), narrower(2)];
+        let difference = neighbours.into_iter().filter_map(apart).fold(fewer, f64::max);
+        Some(Choice { setting, value, half: noise.hypot(difference) })
     };
     estimates.iter().filter_map(choice).min_by(|a, b| a.half.total_cmp(&b.half))
 }

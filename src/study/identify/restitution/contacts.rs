@@ -19,7 +19,7 @@ pub struct Contact {
     pub flights: Range<usize>,
 }
 
-/// What a first fit tells of an impact. SI.
+/// An impact as a first fit locates it. SI.
 #[derive(Debug, Clone, Copy)]
 pub struct Impact {
     pub t: f64,
@@ -38,7 +38,7 @@ const TERMS: usize = 3;
 /// The fewest samples on either side of an impact that is found.
 const FEWEST: usize = 4;
 
-/// Two polynomials that meet must fit better than one across by the square of so many standard deviations.
+/// Standard deviations by whose square two polynomials that meet must fit better than one across.
 const CLEAR: f64 = 6.0;
 
 /// Impacts count as those of one stop where their places differ by less than this part of the range of the

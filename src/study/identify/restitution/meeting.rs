@@ -1,4 +1,4 @@
-//! Where two polynomials meet: the instant and the place of an impact, and the speeds on both sides of it.
+//! Meeting of two polynomials: the instant and the place of an impact, and the speeds on both sides of it.
 
 use crate::numeric::orthogonal::Orthogonal;
 
@@ -30,7 +30,7 @@ pub struct Meeting {
 const MOST_STEPS: usize = 10;
 
 impl Sides {
-    /// Where the polynomials with so many coefficients meet, next to a time; `right`: the stop is above.
+    /// Where the polynomials with `terms` coefficients meet, next to a time; `right`: the stop is above.
     ///
     /// This is the joint least squares fit of two polynomials in t - t_0 with one constant x_s, where t_0 and
     /// x_s are unknown: it has as many unknowns as the two polynomials, and where these meet displacement is

@@ -24,19 +24,19 @@ const ENOUGH: usize = 8;
 /// Restitution of the impacts in a record of displacement `x` in m over `times` in s, of a mass that is
 /// shaken between stops or bounces freely.
 ///
-/// A turning point is an impact where the velocity jumps, and a stop is where the outermost impacts lie, or
-/// where those near a place `given` (left, right) lie. On either side of an impact a polynomial is fitted to
-/// the flight; both meet at the impact, where their slopes are the speeds before and after it. With the
-/// `accelerations` of the base in m/s^2, what they alone make of the displacement is known and taken off
-/// before.
+/// A turning point is an impact where the velocity jumps, and a stop is where the outermost impacts lie,
+/// or where those near a place `given` (left, right) lie. On either side of an impact a polynomial is
+/// fitted to the flight; both meet at the impact, where their slopes are the speeds before and after it.
+/// If the `accelerations` of the base in m/s^2 are given, the displacement that they alone cause is
+/// subtracted first.
 ///
 /// Window and degree are those with the narrowest interval, of which the differences from other windows and
 /// degrees are a part. The one number is of all impacts together. Where the stops differ by more than their
 /// intervals, its interval holds both of theirs; where the impacts of a stop differ by more than theirs, it
 /// is as much wider (Birge 1932).
 ///
-/// Rows, one an impact: `t_s,side`, then `v_in`, `v_out` in m/s and `restitution`, each with `_low` and
-/// `_high`.
+/// Rows, one an impact: `t_s,side`, then `v_in`, `v_out` in m/s and `restitution`, each with `_low`
+/// and `_high`.
 pub fn restitution(
     times: &[f64],
     x: &[f64],
@@ -70,7 +70,7 @@ pub fn restitution(
     Ok(Identified { rows, fitted, summary, remarks })
 }
 
-/// The restitutions, of how many impacts the first one is, and what to say of them.
+/// The restitutions, the number of impacts of the first one, and remarks.
 fn numbers(
     contacts: &[Contact],
     trials: &[Trial],
@@ -132,7 +132,8 @@ fn spanning(one: Identity, other: Identity) -> Identity {
     Identity { name: "restitution", value: (a * one.value + b * other.value) / (a + b), interval }
 }
 
-/// By how much impacts alone scatter about their common number beyond their intervals, where they do.
+/// Factor by which single impacts scatter about their common number beyond their intervals; `None` if they
+/// do not.
 fn scatter(common: Choice, singles: &[&Single]) -> Option<f64> {
     let count = singles.len() as f64;
     let apart = |single: &&Single| (single.ratio.value - common.value) / single.ratio.half.hypot(common.half);
@@ -141,7 +142,7 @@ fn scatter(common: Choice, singles: &[&Single]) -> Option<f64> {
     (square > 1.0 + 4.0 * (2.0 / count).sqrt()).then(|| square.sqrt())
 }
 
-/// What to say of a restitution above 1.
+/// Remark on a restitution above 1.
 fn above_one(number: &Identity) -> Option<String> {
     let which = match number.name {
         "restitution_left" => " of the left stop",
@@ -159,7 +160,7 @@ fn above_one(number: &Identity) -> Option<String> {
     Some(format!("the restitution{which} {text}"))
 }
 
-/// What to say where a stop lies elsewhere than was given.
+/// Remark on a stop that does not lie where it was given.
 fn elsewhere(right: bool, given: f64, place: Choice) -> Option<String> {
     let side = if right { "right" } else { "left" };
     let [found, place_given] = [place.value, given].map(|x| short(1e3 * x));
@@ -185,7 +186,7 @@ fn left_out(motion: &Motion, contacts: &[Contact], singles: &[Single], used: usi
     (!parts.is_empty()).then(text)
 }
 
-/// Why so many contacts give no restitution, and the rate that would do.
+/// The reason why `found` contacts give no restitution, and the sampling rate needed.
 fn unresolved(motion: &Motion, found: usize) -> Unidentified {
     let (noise, rate) = (short(motion.noise), 1.0 / motion.timing.step);
     match contacts::longest_rebound(motion).or((found > 0).then_some(2)) {

@@ -14,12 +14,13 @@ pub struct Motion<'a> {
     pub timing: Timing,
     /// Least and greatest displacement.
     pub extent: (f64, f64),
-    /// Noise of the displacements, and how far noise alone moves them back.
+    /// Noise of the displacements.
     pub noise: f64,
+    /// How far noise alone moves them back.
     pub back: f64,
-    /// The displacement less what the acceleration of the base alone moves the mass.
+    /// The displacement less that which the acceleration of the base alone causes.
     smooth: Vec<f64>,
-    /// What the acceleration of the base alone makes at each sample: displacement, velocity, acceleration.
+    /// Displacement, velocity and acceleration at each sample that the acceleration of the base alone causes.
     base: Vec<[f64; 3]>,
 }
 
@@ -73,7 +74,7 @@ impl<'a> Motion<'a> {
         Orthogonal::fit(&both(self.times), &both(&self.smooth))
     }
 
-    /// Displacement, velocity and acceleration at a time, of a fit with so many coefficients.
+    /// Displacement, velocity and acceleration at a time, of a fit with `terms` coefficients.
     pub fn at(&self, fit: &Orthogonal, t: f64, terms: usize) -> Tangent {
         let mut found = fit.at(t, terms);
         if !self.base.is_empty() {
@@ -106,7 +107,7 @@ fn integrated(times: &[f64], accelerations: &[f64]) -> Vec<[f64; 3]> {
     times.iter().zip(accelerations).map(next).collect()
 }
 
-/// The middle one of some values, of two the greater.
+/// The median of some values; the greater of two middle ones.
 pub fn median(mut values: Vec<f64>) -> Option<f64> {
     let middle = values.len() / 2;
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)

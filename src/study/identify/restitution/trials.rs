@@ -17,11 +17,12 @@ const TERMS: RangeInclusive<usize> = 3..=MOST_TERMS;
 /// Coefficients of the fits from which the instants are taken.
 const FIRST_TERMS: usize = 4;
 
-/// The narrowest window on one side in steps of the record, and how much wider each next one is.
+/// The narrowest window on one side in steps of the record.
 const NARROWEST: f64 = 3.5;
+/// Ratio of each further window to the one before.
 const WIDER: f64 = SQRT_2;
 
-/// An impact counts where its speed towards the stop is so many standard errors: the instant of a slower one
+/// Standard errors of its speed towards the stop from which on an impact counts: the instant of a slower one
 /// is so unsure that both speeds are biased.
 const FAST: f64 = 12.0;
 
@@ -31,8 +32,9 @@ const LEAST_FREEDOM: usize = 3;
 /// All impacts by one window and one degree.
 pub struct Trial {
     setting: Setting,
-    /// Variance of the samples, and the factor on a standard error that makes half of an interval.
+    /// Variance of the samples.
     variance: f64,
+    /// Factor on a standard error that gives half of an interval.
     student: f64,
     /// Numbers of the contacts with their impacts.
     impacts: Vec<(usize, Meeting)>,
@@ -50,7 +52,7 @@ pub struct Single {
 
 impl Trial {
     /// The impacts of those contacts that count.
-    fn those(&self, counts: &impl Fn(usize) -> bool) -> Vec<&Meeting> {
+    fn selected(&self, counts: &impl Fn(usize) -> bool) -> Vec<&Meeting> {
         self.impacts.iter().filter(|(contact, _)| counts(*contact)).map(|(_, impact)| impact).collect()
     }
 
@@ -60,8 +62,8 @@ impl Trial {
     }
 }
 
-/// Fits the impacts of all contacts, from which their instants and flights become better known. A contact
-/// that has no fit is no longer an impact.
+/// Fits the impacts of all contacts, which refines their instants and flights. A contact that has no fit is
+/// no longer an impact.
 pub fn trials(motion: &Motion, contacts: &mut [Contact], stops: &[Option<f64>; 2]) -> Vec<Trial> {
     let mut best: Vec<Option<(f64, Impact)>> = vec![None; contacts.len()];
     for trial in all(motion, contacts, FIRST_TERMS..=FIRST_TERMS) {
@@ -144,13 +146,13 @@ pub fn together(
     counts: impl Fn(usize) -> bool,
     of: fn(&[&Meeting]) -> Option<(f64, f64)>,
 ) -> Option<(Choice, usize)> {
-    let estimate = |trial: &Trial| Some((trial.setting, trial.estimate(of(&trial.those(&counts))?)));
+    let estimate = |trial: &Trial| Some((trial.setting, trial.estimate(of(&trial.selected(&counts))?)));
     let choice = narrowest(&trials.iter().filter_map(estimate).collect())?;
     let trial = trials.iter().find(|trial| trial.setting == choice.setting)?;
-    Some((choice, trial.those(&counts).len()))
+    Some((choice, trial.selected(&counts).len()))
 }
 
-/// Each impact alone, of so many contacts.
+/// Estimates of each impact alone.
 pub fn each(trials: &[Trial], contacts: usize) -> Vec<Single> {
     let mut estimates = vec![Estimates::new(); contacts];
     for trial in trials {
