@@ -198,8 +198,8 @@ impl Transducer {
         };
         let constant = short(1.0 / decay);
         Some(format!(
-            "the circuit's time constant is {constant} s, and a step covers but a few of it; {alternative}, but \
-             for a share of some {apart:.0e}"
+            "the circuit's time constant is {constant} s, and a step covers but a few of it; \
+             {alternative}, but for a share of some {apart:.0e}"
         ))
     }
 
