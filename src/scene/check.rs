@@ -48,8 +48,8 @@ pub fn check(scene: &Scene) -> Checked {
     checked
 }
 
-/// Whether the numbers of a scene, except those of its mechanism, pass its check. It is faster than [`check`],
-/// since it does not say what is wrong, and is called for each cell of a sweep.
+/// Whether the numbers of a scene, except those of its mechanism, pass its check. It is faster than
+/// [`check`], since it does not say what is wrong, and is called for each cell of a sweep.
 pub(crate) fn is_sound(scene: &Scene) -> bool {
     let mut numbers = Scene {
         title: String::new(),
