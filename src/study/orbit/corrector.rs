@@ -1,7 +1,7 @@
 //! Points of a branch of periodic motions, by Newton's method in a plane across it (pseudo-arclength; Keller
 //! 1977).
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Vector2, Vector3};
 
 use super::{Orbit, SAME, allowed, map_of};
 use crate::dynamics::{Event, EventKind, Jacobian, Outcome, Passage, Side, StroboscopicMap};
@@ -150,20 +150,22 @@ impl Corrector<'_> {
 
     /// Whether a motion is its own mirror image half its period later.
     pub fn is_mirrored(map: &StroboscopicMap, orbit: &Orbit) -> bool {
-        Self::off_mirror(map, orbit).is_some_and(|off| off <= SAME)
+        Self::asymmetry(map, orbit).is_some_and(|off| off.amax() <= SAME)
     }
 
-    /// Largest difference of a motion from its mirror image half its period later, relative to the scales;
-    /// `None` if the mirror image is no motion of the scene, or the motion ends early.
-    pub fn off_mirror(map: &StroboscopicMap, orbit: &Orbit) -> Option<f64> {
+    /// Difference of a motion from its mirror image half its period later, relative to the scales; `None` if
+    /// the mirror image is no motion of the scene, or the motion ends early.
+    pub fn asymmetry(map: &StroboscopicMap, orbit: &Orbit) -> Option<Vector2<f64>> {
         let model = map.model();
         if !model.mirrors_in_half_a_period() || orbit.period.is_multiple_of(2) {
             return None;
         }
         let half = map.pass_between(orbit.state, (0.0, 0.5 * f64::from(orbit.period)));
         let scales = model.scales();
-        let off = ((orbit.state.0 + half.state.0) / scales.length).abs();
-        let off = off.max(((orbit.state.1 + half.state.1) / scales.speed).abs());
+        let off = Vector2::new(
+            (orbit.state.0 + half.state.0) / scales.length,
+            (orbit.state.1 + half.state.1) / scales.speed,
+        );
         (half.outcome == Outcome::Done).then_some(off)
     }
 

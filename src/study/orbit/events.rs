@@ -3,6 +3,7 @@
 
 use nalgebra::Vector3;
 
+use super::SAME;
 use super::corrector::{Corrector, Point};
 
 /// What happens to a periodic motion at a value of the field.
@@ -39,9 +40,11 @@ const CHECKED: f64 = 1e-9;
 /// The distance of a multiplier from 1 or -1 that is left there: where it changes fast, no less is known.
 const AT_UNIT: f64 = 1e-6;
 
-/// Largest difference of a motion from its mirror image half a period later, relative to the scales, where a
-/// branch of motions that differ from theirs turns: the state is known less exactly there than the field.
-const MIRRORED: f64 = 1e-5;
+/// Cosine of the angle below whose negative two differences from the mirror image are opposite.
+const OPPOSITE: f64 = 0.5;
+
+/// Halvings of the step between two points, in units of which a breaking of the symmetry is bracketed.
+const HALVINGS: i32 = 20;
 
 /// The most points for it.
 const MOST_POINTS: usize = 80;
@@ -71,38 +74,64 @@ pub(super) fn between(
     (to, onward): (&Point, &Vector3<f64>),
 ) -> Option<Vec<(BranchEvent, Point)>> {
     let passes = |at: f64| characteristic(from, at) * characteristic(to, at) < 0.0;
+    let mut found = Vec::new();
     // a multiplier of the map passes through 1 where the branch turns back, and nowhere else
     let turns = along.z * onward.z < 0.0;
-    if turns != passes(1.0) {
+    if let Some((share, point)) = symmetry_breaking(corrector, from, to) {
+        found.push((share, BranchEvent::Symmetry, point));
+    } else if turns != passes(1.0) {
         return None;
     }
-    let mut found = Vec::new();
     let at_minus_one = if corrector.mirrored { BranchEvent::Symmetry } else { BranchEvent::Flip };
     for (at, event) in [(1.0, BranchEvent::Fold), (-1.0, at_minus_one)] {
-        if passes(at) {
+        let is_found = at == 1.0 && !found.is_empty();
+        if passes(at) && !is_found {
             let (share, point) = root(corrector, (from, to), |point| characteristic(point, at))?;
-            let multipliers = point.by_state.multipliers(point.determinant);
-            let unit = multipliers.iter().any(|one| (one.re - at).hypot(one.im) <= AT_UNIT);
-            if !unit {
+            if !is_at(&point, at) {
                 return None;
             }
-            let breaks = event == BranchEvent::Fold && breaks_symmetry(corrector, &point);
-            found.push((share, if breaks { BranchEvent::Symmetry } else { event }, point));
+            found.push((share, event, point));
         }
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     Some(found.into_iter().map(|(_, event, point)| (event, point)).collect())
 }
 
-/// Whether a branch of motions that are not their own mirror images turns at one that is.
-fn breaks_symmetry(corrector: &Corrector, point: &Point) -> bool {
+/// The motion that is its own mirror image at which a branch of motions that are not turns to their mirror
+/// images between two points; `None` if it does not. The map over the period is singular there, so the motion
+/// is found by the mirrored map over half of it.
+fn symmetry_breaking(corrector: &Corrector, from: &Point, to: &Point) -> Option<(f64, Point)> {
+    let asymmetry = |point: &Point| {
+        let map = corrector.map(point.value)?;
+        Corrector::asymmetry(&map, &point.orbit).filter(|off| off.amax() > SAME)
+    };
+    if corrector.mirrored {
+        return None;
+    }
+    let (before, after) = (asymmetry(from)?, asymmetry(to)?);
+    let (near, far) = (before.norm(), after.norm());
+    if before.dot(&after) > -OPPOSITE * near * far {
+        return None;
+    }
+    let share = near / (near + far);
+    let middle = from.at + (to.at - from.at) * share;
     let half = Corrector { mirrored: true, ..*corrector };
-    let off = corrector.map(point.value).and_then(|map| Corrector::off_mirror(&map, &point.orbit));
-    !corrector.mirrored
-        && off.is_some_and(|off| off <= MIRRORED)
-        && half
-            .look(&point.at)
-            .is_some_and(|half| characteristic(&half, -1.0).abs() < characteristic(&half, 1.0).abs())
+    let at = |field: f64| half.correct(Vector3::new(middle.x, middle.y, field), &Vector3::z());
+    let breaks = |point: &Point| characteristic(point, -1.0);
+    let length = (to.at - from.at).norm();
+    (0..HALVINGS).rev().find_map(|halving| {
+        let width = length * 0.5_f64.powi(halving);
+        let (low, high) = (at(middle.z - width)?, at(middle.z + width)?);
+        (breaks(&low) * breaks(&high) < 0.0).then_some(())?;
+        let (_, point) = root(&half, (&low, &high), breaks)?;
+        (is_at(&point, -1.0) && (point.at - middle).norm() <= length).then_some((share, point))
+    })
+}
+
+/// Whether a multiplier of the corrector's map is 1 or -1.
+fn is_at(point: &Point, unit: f64) -> bool {
+    let multipliers = point.by_state.multipliers(point.determinant);
+    multipliers.iter().any(|multiplier| (multiplier.re - unit).hypot(multiplier.im) <= AT_UNIT)
 }
 
 /// Where on the branch between two points a quantity of different signs at them is 0, as a share of their
