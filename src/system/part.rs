@@ -122,9 +122,11 @@ impl Opened {
         &self.paths.part
     }
 
-    /// Whether there are rows of an earlier process.
+    /// Whether an earlier process left rows, or bytes of which the journal says nothing. A process that ended
+    /// before the first line was in its journal left none.
     pub fn has_rows(&self) -> bool {
-        self.exists
+        let is_begun = self.journal.head.is_some() && !self.journal.damaged;
+        self.exists && !(is_begun && self.journal.blocks.is_empty())
     }
 
     /// The head that an earlier process began it with; `None` if its journal is missing or cannot be read.

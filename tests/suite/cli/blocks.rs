@@ -229,6 +229,15 @@ fn one_process_alone_writes_a_file() {
     own.ends("--resume");
 }
 
+#[test]
+fn killed_before_its_header_is_in_the_journal_it_begins_anew() {
+    let sweep = Unfinished::new(MAP, 400);
+    let journal = sweep.read("map.csv.part.journal");
+    let (head, _) = journal.split_once('\n').unwrap();
+    fs::write(sweep.path("map.csv.part.journal"), format!("{head}\n")).unwrap();
+    sweep.ends("--resume");
+}
+
 /// Starts the sweep with these options and waits until its journal has so many lines, or it has ended.
 #[cfg(unix)]
 fn started(own: &Unfinished, options: &str, lines: usize) -> std::process::Child {
