@@ -127,6 +127,17 @@ pub enum Unidentified {
         /// The least that is needed.
         least: usize,
     },
+    /// Swings that are cut off hide the impacts.
+    #[error(
+        "no impact is left: {swings} swings have flat tops at {limits} mm, at the limit of the sensor or its \
+         converter: widen its range so that it covers the stops"
+    )]
+    CutOff {
+        /// How many are cut off.
+        swings: usize,
+        /// At which displacements, in mm.
+        limits: String,
+    },
     /// The turning points follow no decay.
     #[error("the turning points follow no decaying oscillation: cut the record by --from and --to")]
     NoDecay,

@@ -134,8 +134,28 @@ fn drawn(seed: u64) -> Drawn {
     if draw.one_in(4.0) {
         missing(&mut draw, &mut record);
     }
-    let about = format!("{preset} at {rate:.0} Hz, noise {:.1e} of the way, seed {seed}", noise / nearer);
+    let clipped = if draw.one_in(4.0) { clip(&mut draw, &mut record[1]) } else { String::new() };
+    let noise = noise / nearer;
+    let about = format!("{preset} at {rate:.0} Hz, noise {noise:.1e} of the way, seed {seed}{clipped}");
     Drawn { record, left: left_mm.map(|_| left), right: right_mm.map(|_| right), about }
+}
+
+/// Cuts the record off at a limit on the one side, or on the other; within the outermost places, about there or
+/// beyond.
+fn clip(draw: &mut Draw, x: &mut [f64]) -> String {
+    let low = x.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = x.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let part = if draw.one_in(3.0) { draw.even(0.97..1.01) } else { draw.even(0.6..1.0) };
+    let limit = if draw.one_in(2.0) {
+        let limit = low + part * (high - low);
+        x.iter_mut().for_each(|x| *x = x.min(limit));
+        limit
+    } else {
+        let limit = high - part * (high - low);
+        x.iter_mut().for_each(|x| *x = x.max(limit));
+        limit
+    };
+    format!(", clipped at {:.3} mm, {part:.3} of the range", 1e3 * limit)
 }
 
 /// Loses some samples here and there, and some in a row.
@@ -234,12 +254,46 @@ fn clean_records_of_the_prototype_give_its_restitution_at_all_rates() {
             let e = number(&found, name);
             assert!(holds(e, 0.36) && (e.value - 0.36).abs() < 0.01, "{rate}: {}", e.describe());
         }
+        let remarks = found.remarks.clone();
         // the fastest impacts are those that cross: one at the end of each half period
         let fastest = found.rows.numbers("v_in_m_per_s").unwrap().iter().filter(|v| v.abs() > 0.2).count();
         assert!(fastest >= 28, "{rate}: {fastest}");
         let [found, used, left] =
             ["found", "used", "left_out"].map(|of| number(&found, ["impacts", of].join("_").as_str()).value);
         assert!(used >= 28.0 && found == used + left, "{found} {used} {left}");
+        // the mass rests on the stops, without noise at one value
+        assert!(!said(&remarks, "clipped"), "{rate}: {remarks:?}");
+    }
+}
+
+fn said(remarks: &[String], begin: &str) -> bool {
+    remarks.iter().any(|text| text.starts_with(begin))
+}
+
+#[test]
+fn impacts_within_flat_tops_are_left_out_and_said() {
+    for (rate, noise, digits) in [(1e3, 0.0, 0.0), (5e3, 0.0, 1e6), (5e3, 4e-6, 0.0), (2e4, 1e-5, 1e6)] {
+        let changes = changes(&["run.duration_s=5", "run.settle_s=0"]);
+        let mut record = recorded("paper", &changes, 1.0 / rate, noise, 3);
+        if digits > 0.0 {
+            record[1].iter_mut().for_each(|x| *x = (*x * digits).round() / digits);
+        }
+        let about = format!("{rate} Hz, noise {noise}, digits {digits}");
+        assert!(!said(&identified(&record).unwrap().remarks, "clipped"), "{about}");
+        record[1].iter_mut().for_each(|x| *x = x.min(1.2e-3));
+        let found = identified(&record).unwrap();
+        assert!(holds(number(&found, "restitution"), 0.36), "{about}: {:?}", found.summary);
+        let remarks = &found.remarks;
+        assert!(
+            said(remarks, "clipped: ") && remarks.iter().any(|text| text.contains("at 1.2 mm")),
+            "{remarks:?}"
+        );
+        let names: Vec<&str> = found.summary.iter().map(|number| number.name).collect();
+        assert!(names.contains(&"left_stop_m") && !names.contains(&"right_stop_m"), "{about}: {names:?}");
+        record[1].iter_mut().for_each(|x| *x = x.max(-1.2e-3));
+        let none = identified(&record).unwrap_err();
+        assert!(matches!(none, Unidentified::CutOff { .. }), "{about}: {none}");
+        assert!(none.to_string().contains("-1.2 and 1.2 mm"), "{none}");
     }
 }
 

@@ -59,9 +59,10 @@ impl Contact {
 ///
 /// A turning point is an impact where two parabolas that meet there fit the samples around it better than one
 /// polynomial of as many coefficients. A stop is where the outermost of these impacts lie, with no sample
-/// beyond, or where the impacts near a place `given` lie. Turning points elsewhere are not contacts.
+/// beyond, or where the impacts near a place `given` lie. Turning points elsewhere are not contacts, nor are
+/// those within the noise of a limit at which the record is cut off.
 pub fn contacts(motion: &Motion, given: [Option<f64>; 2]) -> (Vec<Contact>, [Option<f64>; 2]) {
-    let turning = turns(motion.x, motion.back);
+    let turning = turns(&motion.x, motion.back);
     let samples = motion.x.len();
     let mut contacts = Vec::new();
     for (k, turn) in turning.iter().enumerate() {
@@ -73,7 +74,9 @@ pub fn contacts(motion: &Motion, given: [Option<f64>; 2]) -> (Vec<Contact>, [Opt
         let after = turning.get(k + 2).map_or(samples, |turn| turn.at);
         let from = (before + 1..=turn.at).rev().find(|i| motion.is_gap(*i)).unwrap_or(before);
         let to = (turn.at + 1..after).find(|i| motion.is_gap(*i)).unwrap_or(after);
-        let impact = impact(motion, *turn, from..to);
+        let cut = motion.cut[usize::from(turn.maximum)];
+        let is_hidden = cut.is_some_and(|cut| (motion.x[turn.at] - cut.limit).abs() < motion.back);
+        let impact = if is_hidden { None } else { impact(motion, *turn, from..to) };
         contacts.push(Contact { at: turn.at, right: turn.maximum, impact, flights: turn.at..turn.at });
     }
     let stops = [false, true].map(|right| stop(motion, &contacts, right, given[usize::from(right)]));
@@ -150,7 +153,7 @@ pub fn longest_rebound(motion: &Motion) -> Option<usize> {
         // the mass may rest before or after it
         (height[0].max(height[1]) < 0.5 * motion.range()).then(|| 2 * (top - first).min(last - top))
     };
-    turns(motion.x, motion.back).windows(3).filter_map(rebound).max()
+    turns(&motion.x, motion.back).windows(3).filter_map(rebound).max()
 }
 
 /// How near to a stop samples of a mass on it lie: by noise, or by twice the way from its place to the

@@ -11,6 +11,7 @@ use self::choice::Choice;
 use self::contacts::{Contact, contacts};
 use self::meeting::{place, restitution as ratio};
 use self::motion::Motion;
+pub(super) use self::motion::median;
 use self::trials::{Single, Trial, each, together, trials};
 use super::{Identified, Identity, Unidentified};
 use crate::numeric::short;
@@ -31,7 +32,8 @@ const ENOUGH: usize = 8;
 /// subtracted first.
 ///
 /// Window and degree are those with the narrowest interval, of which the differences from other windows and
-/// degrees are a part. The one number is of all impacts together. Where the stops differ by more than their
+/// degrees are a part. Samples in flat tops, where a sensor or its converter was at its limit, are left out.
+/// The one number is of all impacts together. Where the stops differ by more than their
 /// intervals, its interval holds both of theirs; where the impacts of a stop differ by more than theirs, it
 /// is as much wider (Birge 1932).
 ///
@@ -66,6 +68,12 @@ pub fn restitution(
     let count = |(name, count)| Identity { name, value: count as f64, interval: (f64::NAN, f64::NAN) };
     summary.extend(counts.map(count));
     remarks.extend(left_out(&motion, &contacts, &singles, used));
+    remarks.extend(cut_off(&motion).map(|(swings, limits)| {
+        format!(
+            "clipped: {swings} swings have flat tops at {limits} mm, at the limit of the sensor or its \
+             converter; impacts that they hide are left out"
+        )
+    }));
     let (rows, fitted) = (rows(&contacts, &singles), fitted(&motion, &contacts, &singles));
     Ok(Identified { rows, fitted, summary, remarks })
 }
@@ -186,8 +194,20 @@ fn left_out(motion: &Motion, contacts: &[Contact], singles: &[Single], used: usi
     (!parts.is_empty()).then(text)
 }
 
+/// How many swings are cut off, and the limits in mm in words.
+fn cut_off(motion: &Motion) -> Option<(usize, String)> {
+    let cut = motion.cut.iter().flatten();
+    let limits: Vec<String> = cut.clone().map(|cut| short(1e3 * cut.limit)).collect();
+    (!limits.is_empty()).then(|| (cut.map(|cut| cut.swings).sum(), limits.join(" and ")))
+}
+
 /// The reason why `found` contacts give no restitution, and the sampling rate needed.
 fn unresolved(motion: &Motion, found: usize) -> Unidentified {
+    if found == 0
+        && let Some((swings, limits)) = cut_off(motion)
+    {
+        return Unidentified::CutOff { swings, limits };
+    }
     let (noise, rate) = (short(motion.noise), 1.0 / motion.timing.step);
     match contacts::longest_rebound(motion).or((found > 0).then_some(2)) {
         Some(longest) if longest < ENOUGH => {
@@ -240,6 +260,6 @@ fn fitted(motion: &Motion, contacts: &[Contact], singles: &[Single]) -> Table {
     Table::new()
         .each("t_s", singles, |single| single.impact.t)
         .each("x_m", singles, |single| single.impact.x)
-        .each("rebound_t_s", &ends, |end| at(motion.times, end))
-        .each("rebound_x_m", &ends, |end| at(motion.x, end))
+        .each("rebound_t_s", &ends, |end| at(&motion.times, end))
+        .each("rebound_x_m", &ends, |end| at(&motion.x, end))
 }

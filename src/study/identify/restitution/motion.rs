@@ -5,12 +5,17 @@ use std::ops::Range;
 use crate::numeric::extent;
 use crate::numeric::orthogonal::{Orthogonal, Tangent};
 use crate::scene::Timing;
+use crate::study::identify::clipped::{CutOff, cut_off};
 use crate::study::identify::turns::{noise, reach};
 
-/// A record of displacement relative to the base. SI.
-pub struct Motion<'a> {
-    pub times: &'a [f64],
-    pub x: &'a [f64],
+/// A record of displacement relative to the base, without the samples that were cut off. SI.
+pub struct Motion {
+    pub times: Vec<f64>,
+    pub x: Vec<f64>,
+    /// Where swings were cut off, at the least displacement and at the greatest.
+    pub cut: [Option<CutOff>; 2],
+    /// Whether samples between the one before and this one were cut off.
+    after_cut: Vec<bool>,
     pub timing: Timing,
     /// Least and greatest displacement.
     pub extent: (f64, f64),
@@ -24,20 +29,30 @@ pub struct Motion<'a> {
     base: Vec<[f64; 3]>,
 }
 
-impl<'a> Motion<'a> {
+impl Motion {
     /// The record, with the acceleration of the base at the same times where it was recorded: the mass obeys
     /// x'' = -a + smooth forces, so that -a, integrated twice with straight lines between its samples, is
     /// known and leaves a rest that is smoother than the displacement.
-    pub fn new(times: &'a [f64], x: &'a [f64], accelerations: Option<&[f64]>) -> Self {
-        let noise = noise(x);
-        let base = accelerations.map_or(Vec::new(), |a| integrated(times, a));
+    ///
+    /// Samples in flat tops are left out, and where they were the record has a gap.
+    pub fn new(times: &[f64], x: &[f64], accelerations: Option<&[f64]>) -> Self {
+        let timing = Timing::of(times);
+        let mut base = accelerations.map_or(Vec::new(), |a| integrated(times, a));
+        let cut = cut_off(times, x);
+        let is_cut = |x: f64| cut.iter().flatten().any(|cut| x == cut.limit);
+        let kept: Vec<usize> = (0..x.len()).filter(|i| !is_cut(x[*i])).collect();
+        let after_cut = kept.iter().map(|i| *i > 0 && is_cut(x[i - 1])).collect();
+        let [times, x] = [times, x].map(|values| kept.iter().map(|i| values[*i]).collect::<Vec<f64>>());
+        if !base.is_empty() {
+            base = kept.iter().map(|i| base[*i]).collect();
+        }
         let smooth = match base.is_empty() {
-            true => x.to_vec(),
+            true => x.clone(),
             false => x.iter().zip(&base).map(|(x, base)| x - base[0]).collect(),
         };
-        let extent = extent(x.iter().copied());
-        let (timing, back) = (Timing::of(times), reach(x, noise));
-        Self { times, x, timing, extent, noise, back, smooth, base }
+        let noise = noise(&x);
+        let (extent, back) = (extent(x.iter().copied()), reach(&x, noise));
+        Self { times, x, cut, after_cut, timing, extent, noise, back, smooth, base }
     }
 
     pub fn range(&self) -> f64 {
@@ -49,18 +64,19 @@ impl<'a> Motion<'a> {
         self.times.partition_point(|time| *time < t)
     }
 
-    /// Whether there is a gap before a sample.
+    /// Whether there is a gap before a sample, or samples were cut off there.
     pub fn is_gap(&self, sample: usize) -> bool {
         let step = |i: usize| self.times[i] - self.times[i - 1];
-        (1..self.times.len()).contains(&sample) && self.timing.is_gap(step(sample))
+        (1..self.times.len()).contains(&sample)
+            && (self.after_cut[sample] || self.timing.is_gap(step(sample)))
     }
 
     /// Whether samples are missing about a time: those before and after it are more than three usual steps
-    /// apart, in which a short rebound may hide.
+    /// apart, in which a short rebound may hide, or were cut off.
     pub fn is_missing(&self, t: f64) -> bool {
         let next = self.from(t);
         let around = (1..self.times.len()).contains(&next);
-        !around || self.times[next] - self.times[next - 1] > 3.5 * self.timing.step
+        !around || self.after_cut[next] || self.times[next] - self.times[next - 1] > 3.5 * self.timing.step
     }
 
     /// Polynomials through samples.
@@ -71,7 +87,7 @@ impl<'a> Motion<'a> {
     /// Polynomials through the samples of two ranges together.
     pub fn fit_both(&self, one: Range<usize>, other: Range<usize>) -> Orthogonal {
         let both = |of: &[f64]| [&of[one.clone()], &of[other.clone()]].concat();
-        Orthogonal::fit(&both(self.times), &both(&self.smooth))
+        Orthogonal::fit(&both(&self.times), &both(&self.smooth))
     }
 
     /// Displacement, velocity and acceleration at a time, of a fit with `terms` coefficients.
