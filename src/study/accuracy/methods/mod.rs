@@ -6,7 +6,6 @@
 
 mod dormand_prince;
 mod fixed;
-mod problem;
 mod tally;
 
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -14,7 +13,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub use dormand_prince::dormand_prince;
 pub use fixed::fixed_step;
 
-use crate::dynamics::{Event, Sample};
+use crate::dynamics::{Event, EventKind, Run, Sample};
 
 /// A scheme of fixed step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,13 +63,9 @@ impl Keep<'_> {
 pub struct Statistics {
     /// Displacement at the end in m.
     pub final_x: f64,
-    /// Velocity at the end in m/s.
-    pub final_v: f64,
     /// RMS velocity from the begin of the settled window to the end in m/s, by trapezoids over fixed steps
     /// and by Gauss's rule over the continuous extension of adaptive ones; `None` if the run ended before it.
     pub rms_velocity: Option<f64>,
-    /// Largest |x| in that window in m.
-    pub max_abs_x: f64,
     /// Impacts over the whole run.
     pub impacts: u64,
     /// Crossings of the barrier over the whole run, as seen from step to step.
@@ -95,4 +90,25 @@ pub struct MethodRun {
     pub impacts: Vec<Event>,
     /// The numbers of the run.
     pub statistics: Statistics,
+}
+
+impl From<Run> for MethodRun {
+    /// A run of the program in the same terms.
+    fn from(run: Run) -> Self {
+        let summary = run.summary;
+        Self {
+            samples: run.samples,
+            impacts: run.events.into_iter().filter(|event| event.kind == EventKind::Impact).collect(),
+            statistics: Statistics {
+                final_x: summary.final_x,
+                rms_velocity: summary.rms_velocity,
+                impacts: summary.total_impacts,
+                crossings: summary.total_crossings,
+                steps: summary.steps,
+                evaluations: summary.evaluations,
+                cpu_s: summary.cpu_s,
+                ended_at: summary.outcome.ended_at(),
+            },
+        }
+    }
 }

@@ -1,7 +1,6 @@
-//! A damped linear oscillator under forcings with a closed form.
+//! Linear systems in closed form: a damped oscillator under a sum of forcings, and one with a circuit.
 
-use super::dd;
-use super::elementary::{exp, sin_cos, turns};
+use super::{dd, exp, sin_cos, turns};
 use crate::numeric::{DoubleDouble, Number, Scalar};
 
 /// x'' + g x' + k x = -a(t).
@@ -127,4 +126,97 @@ fn divide(a: Complex, b: Complex) -> Complex {
     let size = b.0 * b.0 + b.1 * b.1;
     let z = multiply(a, (b.0, -b.1));
     (z.0 / size, z.1 / size)
+}
+
+/// m x'' + c x' + k x + f + K s = -m A sin(2 pi (frequency t + phase)) and S s' + r s = K x', whose state s
+/// is a current or a voltage. SI.
+#[derive(Debug, Clone, Copy)]
+pub struct Coupled {
+    /// Mass m in kg.
+    pub mass: f64,
+    /// Damping c in N s/m.
+    pub damping: f64,
+    /// Stiffness k in N/m; it may be 0.
+    pub stiffness: f64,
+    /// Force f in N at x = 0.
+    pub force: f64,
+    /// Coupling K in N/A or N/V.
+    pub coupling: f64,
+    /// Inductance or capacitance S in H or F.
+    pub storage: DoubleDouble,
+    /// Resistance or conductance r in ohm or S.
+    pub loss: DoubleDouble,
+    /// Amplitude A in m/s^2, frequency in Hz and phase in turns.
+    pub tone: (f64, f64, f64),
+}
+
+/// Displacement, velocity, the state as a velocity, sine and cosine of the tone, and 1.
+const N: usize = 6;
+
+type Matrix = [[DoubleDouble; N]; N];
+
+impl Coupled {
+    /// The electrical state whose energy is that of the mass at 1 m/s.
+    pub fn amount(&self) -> DoubleDouble {
+        (dd(self.mass) / self.storage).sqrt()
+    }
+
+    /// Rate of the coupling K/sqrt(m S) and of the decay r/S in 1/s.
+    pub fn rates(&self) -> (DoubleDouble, DoubleDouble) {
+        (dd(self.coupling) * self.amount() / dd(self.mass), self.loss / self.storage)
+    }
+
+    /// Displacement, velocity and electrical state in m, m/s, and A or V at time `t` of a motion that is at
+    /// `start` at `from`, both in s: sine and cosine of the tone and 1 are states too, so that it is the
+    /// exponential of a matrix.
+    pub fn state(&self, start: [DoubleDouble; 3], from: DoubleDouble, t: DoubleDouble) -> [DoubleDouble; 3] {
+        let (amplitude, frequency, phase) = self.tone;
+        let (coupling, decay) = self.rates();
+        let [mut x, mut v, mut w, mut sine, mut cosine] = [[DoubleDouble::zero(); N]; N - 1];
+        x[1] = dd(1.0);
+        let per_mass = [self.stiffness, self.damping].map(|coefficient| -(dd(coefficient) / dd(self.mass)));
+        [v[0], v[1], v[2], v[3]] = [per_mass[0], per_mass[1], -coupling, -dd(amplitude)];
+        v[5] = -(dd(self.force) / dd(self.mass));
+        [w[1], w[2]] = [coupling, -decay];
+        sine[4] = DoubleDouble::tau() * dd(frequency);
+        cosine[3] = -sine[4];
+        let flow = exponential([x, v, w, sine, cosine, [DoubleDouble::zero(); N]], t - from);
+        let (sin, cos) = turns(dd(frequency) * from + dd(phase));
+        let before = [start[0], start[1], start[2] / self.amount(), sin, cos, dd(1.0)];
+        let after = |row: usize| {
+            flow[row].iter().zip(before).fold(DoubleDouble::zero(), |sum, (entry, part)| sum + *entry * part)
+        };
+        [after(0), after(1), after(2) * self.amount()]
+    }
+}
+
+/// The exponential of `rates` times `t`, by scaling and squaring of its Taylor series; each squaring may cost
+/// a bit.
+fn exponential(rates: Matrix, t: DoubleDouble) -> Matrix {
+    let sizes = rates.map(|row| row.iter().map(|rate| (*rate * t).abs().to_f64()).sum::<f64>());
+    let largest = sizes.into_iter().fold(0.0, f64::max);
+    // below 1/16, where 18 terms leave 1e-38
+    let squarings = (largest * 16.0).log2().ceil().max(0.0);
+    let small = rates.map(|row| row.map(|rate| rate * t * dd((-squarings).exp2())));
+    let mut sum = unit();
+    for i in (1..=18).rev() {
+        let terms_of_next = product(&small, &sum);
+        sum = unit();
+        for (row, terms) in sum.iter_mut().zip(terms_of_next) {
+            for (entry, part) in row.iter_mut().zip(terms) {
+                *entry += part / dd(f64::from(i));
+            }
+        }
+    }
+    (0..squarings as u32).fold(sum, |power, _| product(&power, &power))
+}
+
+fn unit() -> Matrix {
+    let entry = |same: bool| dd(if same { 1.0 } else { 0.0 });
+    std::array::from_fn(|i| std::array::from_fn(|j| entry(i == j)))
+}
+
+fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    let entry = |i: usize, j: usize| (0..N).fold(DoubleDouble::zero(), |sum, k| sum + a[i][k] * b[k][j]);
+    std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
 }
