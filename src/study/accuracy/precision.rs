@@ -2,7 +2,7 @@
 
 use super::Stopped;
 use super::measure::REFERENCE_TOLERANCE;
-use super::methods::{Keep, MethodRun, Scheme, dormand_prince, fixed_step};
+use super::methods::{Keep, MethodRun, Scheme, Statistics, dormand_prince, fixed_step};
 use super::setup::Setup;
 use crate::dynamics::{Event, Model, Request};
 use crate::study::Task;
@@ -75,12 +75,8 @@ pub struct Point {
     pub setting: Setting,
     /// Error, as the problem defines it.
     pub error: f64,
-    /// Steps.
-    pub steps: u64,
-    /// Evaluations of the force, or Taylor expansions.
-    pub evaluations: u64,
-    /// CPU time in s: the median of a few runs that keep statistics alone.
-    pub cpu_s: f64,
+    /// Its numbers; the CPU time is the median of a few runs that keep statistics alone.
+    pub statistics: Statistics,
 }
 
 impl Problem {
@@ -106,15 +102,13 @@ impl Problem {
                 if task.is_cancelled() {
                     return Err(Stopped::Cancelled);
                 }
-                let statistics = &found.statistics;
+                let cpu_s = median(|| run(value, &bare).statistics.cpu_s);
                 points.push(Point {
                     problem: self.name,
                     method,
                     setting,
                     error: self.error_of(&model, &found, &exact),
-                    steps: statistics.steps,
-                    evaluations: statistics.evaluations,
-                    cpu_s: median(|| run(value, &bare).statistics.cpu_s),
+                    statistics: Statistics { cpu_s, ..found.statistics },
                 });
             }
             (task.tick)();

@@ -41,9 +41,9 @@ impl Report {
             .each("allowed", points, |_| f64::NAN)
             .each("digits_allowed", points, |_| f64::NAN)
             .each("digits_reached", points, |_| f64::NAN)
-            .each("steps", points, |point| Some(point.steps))
-            .each("evaluations", points, |point| Some(point.evaluations))
-            .each("cpu_s", points, |point| point.cpu_s)
+            .each("steps", points, |point| Some(point.statistics.steps))
+            .each("evaluations", points, |point| Some(point.statistics.evaluations))
+            .each("cpu_s", points, |point| point.statistics.cpu_s)
             .each("verdict", points, |_| "")
     }
 
@@ -61,7 +61,7 @@ impl Report {
         let mut table =
             Table::new().each("problem", &groups, |group| group.0).each("method", &groups, |group| group.1);
         for (name, level) in LEVELS {
-            let cost = |point: &Point| if point.error <= level { point.cpu_s } else { f64::NAN };
+            let cost = |point: &Point| if point.error <= level { point.statistics.cpu_s } else { f64::NAN };
             table = table.each(name, &groups, |group| least(group, &cost));
         }
         table.each("least_error", &groups, |group| least(group, &|point| point.error))

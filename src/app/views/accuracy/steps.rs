@@ -103,7 +103,7 @@ fn about(known: &StepSize) -> String {
          onto it, and the mass bounces from there (clamp and bounce). The true run locates each impact; it \
          counts those down to a millionth of the scene's speed, and the rest of a chatter in one sum.",
         crate::study::accuracy::scene::duration(known.span),
-        known.steps.1,
+        known.stepped.steps,
         step_name(known.step)
     )
 }

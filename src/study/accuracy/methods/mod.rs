@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub use dormand_prince::dormand_prince;
 pub use fixed::fixed_step;
 
-use crate::dynamics::{Event, EventKind, Run, Sample};
+use crate::dynamics::{Event, EventKind, Run, Sample, Summary};
 
 /// A scheme of fixed step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -58,7 +58,7 @@ impl Keep<'_> {
     }
 }
 
-/// Statistics of a run by one of these methods. SI.
+/// Statistics of a run by one of these methods or by the program. SI.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Statistics {
     /// Displacement at the end in m.
@@ -72,7 +72,7 @@ pub struct Statistics {
     pub crossings: u64,
     /// Accepted steps.
     pub steps: u64,
-    /// Evaluations of the force.
+    /// Evaluations of the force; of the program Taylor expansions.
     pub evaluations: u64,
     /// CPU time in s.
     pub cpu_s: f64,
@@ -92,23 +92,29 @@ pub struct MethodRun {
     pub statistics: Statistics,
 }
 
+impl From<&Summary> for Statistics {
+    /// The numbers of a run of the program.
+    fn from(summary: &Summary) -> Self {
+        Self {
+            final_x: summary.final_x,
+            rms_velocity: summary.rms_velocity,
+            impacts: summary.total_impacts,
+            crossings: summary.total_crossings,
+            steps: summary.steps,
+            evaluations: summary.evaluations,
+            cpu_s: summary.cpu_s,
+            ended_at: summary.outcome.ended_at(),
+        }
+    }
+}
+
 impl From<Run> for MethodRun {
     /// A run of the program in the same terms.
     fn from(run: Run) -> Self {
-        let summary = run.summary;
         Self {
+            statistics: Statistics::from(&run.summary),
             samples: run.samples,
             impacts: run.events.into_iter().filter(|event| event.kind == EventKind::Impact).collect(),
-            statistics: Statistics {
-                final_x: summary.final_x,
-                rms_velocity: summary.rms_velocity,
-                impacts: summary.total_impacts,
-                crossings: summary.total_crossings,
-                steps: summary.steps,
-                evaluations: summary.evaluations,
-                cpu_s: summary.cpu_s,
-                ended_at: summary.outcome.ended_at(),
-            },
         }
     }
 }

@@ -17,7 +17,7 @@ pub use arrivals::Lateness;
 pub use step_size::{StepSize, TRUE_TOLERANCE, Unfit, step_size};
 pub use tables::scene_table;
 pub use tolerances::{AtTolerance, TOLERANCES, Tolerances, tolerances};
-pub use trust::{Course, Trust, lasting, trust};
+pub use trust::{Course, Trust, trust};
 pub use words::{duration, length_mm, moment, small_length, step_name};
 
 /// A path is trusted until it is off by this share of the motion's travel: less than is seen in a plot.

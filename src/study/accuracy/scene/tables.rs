@@ -1,6 +1,6 @@
 //! Accuracy of a scene as one table.
 
-use super::{StepSize, Tolerances};
+use super::{Lateness, StepSize, Tolerances};
 use crate::study::Table;
 use crate::study::accuracy::OWN;
 
@@ -11,77 +11,41 @@ use crate::study::accuracy::OWN;
 /// is the median of how late arrivals at a stop are, `latest_s` the one furthest off, over `arrivals` of them
 /// in a row.
 pub fn scene_table(tolerances: &Tolerances, stepped: &[StepSize]) -> Table {
-    let rows: Vec<Row> = tolerances
-        .runs
-        .iter()
-        .map(|run| Row {
-            method: OWN,
-            numbers: [
-                run.tolerance,
-                f64::NAN,
-                run.error,
-                run.trusted.unwrap_or(f64::NAN),
-                tolerances.span,
-                run.cpu_s,
-                run.rms_velocity.unwrap_or(f64::NAN),
-                f64::NAN,
-                f64::NAN,
-            ],
-            counts: [Some(run.steps), Some(run.evaluations), Some(run.impacts), None],
-            outcome: run.outcome.name(),
-        })
-        .chain(stepped.iter().map(Row::of_steps))
-        .collect();
-    Table::new()
-        .each("method", &rows, |row| row.method)
-        .each("tolerance", &rows, |row| row.numbers[0])
-        .each("step_s", &rows, |row| row.numbers[1])
-        .each("error_m", &rows, |row| row.numbers[2])
-        .each("trusted_s", &rows, |row| row.numbers[3])
-        .each("compared_s", &rows, |row| row.numbers[4])
-        .each("steps", &rows, |row| row.counts[0])
-        .each("evaluations", &rows, |row| row.counts[1])
-        .each("cpu_s", &rows, |row| row.numbers[5])
-        .each("rms_velocity_m_per_s", &rows, |row| row.numbers[6])
-        .each("impacts", &rows, |row| row.counts[2])
-        .each("late_s", &rows, |row| row.numbers[7])
-        .each("latest_s", &rows, |row| row.numbers[8])
-        .each("arrivals", &rows, |row| row.counts[3])
-        .each("outcome", &rows, |row| row.outcome)
-}
-
-struct Row {
-    method: &'static str,
-    /// Tolerance, step, error, trusted, compared, CPU, RMS velocity, late, latest.
-    numbers: [f64; 9],
-    /// Steps, evaluations, impacts, arrivals.
-    counts: [Option<u64>; 4],
-    outcome: &'static str,
-}
-
-impl Row {
-    fn of_steps(run: &StepSize) -> Self {
-        let late = |of: fn(&super::Lateness) -> f64| run.late.as_ref().map_or(f64::NAN, of);
-        Self {
-            method: run.scheme.name(),
-            numbers: [
-                f64::NAN,
-                run.step,
-                run.error,
-                run.trusted.unwrap_or(f64::NAN),
-                run.span,
-                run.cpu_s.1,
-                run.rms_velocity.1.unwrap_or(f64::NAN),
-                late(|lateness| lateness.median),
-                late(super::Lateness::worst),
-            ],
-            counts: [
-                Some(run.steps.1),
-                Some(run.evaluations.1),
-                Some(run.impacts.1),
-                run.late.map(|late| late.matched as u64),
-            ],
-            outcome: if run.ended_at.is_some() { "ended_early" } else { "done" },
-        }
-    }
+    let known = |value: Option<f64>| value.unwrap_or(f64::NAN);
+    let runs = &tolerances.runs;
+    let mut table = Table::new()
+        .each("method", runs, |_| OWN)
+        .each("tolerance", runs, |run| run.tolerance)
+        .each("step_s", runs, |_| f64::NAN)
+        .each("error_m", runs, |run| run.error)
+        .each("trusted_s", runs, |run| known(run.trusted))
+        .each("compared_s", runs, |_| tolerances.span)
+        .each("steps", runs, |run| Some(run.statistics.steps))
+        .each("evaluations", runs, |run| Some(run.statistics.evaluations))
+        .each("cpu_s", runs, |run| run.statistics.cpu_s)
+        .each("rms_velocity_m_per_s", runs, |run| known(run.statistics.rms_velocity))
+        .each("impacts", runs, |run| Some(run.statistics.impacts))
+        .each("late_s", runs, |_| f64::NAN)
+        .each("latest_s", runs, |_| f64::NAN)
+        .each("arrivals", runs, |_| None)
+        .each("outcome", runs, |run| run.outcome.name());
+    let outcome = |run: &StepSize| if run.stepped.ended_at.is_some() { "ended_early" } else { "done" };
+    let in_steps = Table::new()
+        .each("method", stepped, |run| run.scheme.name())
+        .each("tolerance", stepped, |_| f64::NAN)
+        .each("step_s", stepped, |run| run.step)
+        .each("error_m", stepped, |run| run.error)
+        .each("trusted_s", stepped, |run| known(run.trusted))
+        .each("compared_s", stepped, |run| run.span)
+        .each("steps", stepped, |run| Some(run.stepped.steps))
+        .each("evaluations", stepped, |run| Some(run.stepped.evaluations))
+        .each("cpu_s", stepped, |run| run.stepped.cpu_s)
+        .each("rms_velocity_m_per_s", stepped, |run| known(run.stepped.rms_velocity))
+        .each("impacts", stepped, |run| Some(run.stepped.impacts))
+        .each("late_s", stepped, |run| known(run.late.map(|late| late.median)))
+        .each("latest_s", stepped, |run| known(run.late.as_ref().map(Lateness::worst)))
+        .each("arrivals", stepped, |run| run.late.map(|late| late.matched as u64))
+        .each("outcome", stepped, outcome);
+    table.append(&in_steps);
+    table
 }
