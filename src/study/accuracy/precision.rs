@@ -80,15 +80,10 @@ pub struct Point {
 }
 
 impl Problem {
-    /// The problem as run.
-    pub fn model(&self) -> Result<Model, Stopped> {
-        Setup::preset(self.preset, self.changes)?.model()
-    }
-
     /// Tolerances 1e-3 to 1e-14 for the program's method and Dormand-Prince, steps of 1/60 s down to 5 us for
     /// the others.
     pub(super) fn measure(&self, task: &Task) -> Result<Vec<Point>, Stopped> {
-        let model = self.model()?;
+        let model = Setup::preset(self.preset, self.changes)?.model()?;
         let request = Request { events: true, cancel: Some(task.cancel), ..Request::default() };
         let exact = MethodRun::from(model.run_reference(&request, REFERENCE_TOLERANCE));
         (task.tick)();

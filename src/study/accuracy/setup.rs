@@ -138,22 +138,10 @@ pub(super) fn rigid(travel_limit_mm: f64, restitution: f64) -> Stops {
     Stops::Rigid { travel_limit_mm, restitution }
 }
 
-pub(super) fn right_stop(right_mm: f64, restitution: f64) -> Stops {
-    Stops::Uneven {
-        left_mm: None,
-        right_mm: Some(right_mm),
-        restitution_left: None,
-        restitution_right: Some(restitution),
-    }
-}
-
-pub(super) fn left_stop(left_mm: f64, restitution: f64) -> Stops {
-    Stops::Uneven {
-        left_mm: Some(left_mm),
-        right_mm: None,
-        restitution_left: Some(restitution),
-        restitution_right: None,
-    }
+/// Stops of one restitution at these distances from x = 0.
+pub(super) fn stops_at(left_mm: Option<f64>, right_mm: Option<f64>, restitution: f64) -> Stops {
+    let of = |limit: Option<f64>| limit.map(|_| restitution);
+    Stops::Uneven { left_mm, right_mm, restitution_left: of(left_mm), restitution_right: of(right_mm) }
 }
 
 /// A coil of this coupling in V s/m, resistance in ohm, load and all, and inductance in H.

@@ -10,7 +10,7 @@ use crate::numeric::{DoubleDouble, Number, Scalar, bisect};
 use crate::scene::{Mechanism, Transducer};
 use crate::study::accuracy::exact::{dd, exp, sin_cos};
 use crate::study::accuracy::measure::{Bench, CHANGE, STEP_ERROR, off, pairs, times};
-use crate::study::accuracy::setup::{Setup, coil, layer, polynomial, right_stop, rigid, sine};
+use crate::study::accuracy::setup::{Setup, coil, layer, polynomial, rigid, sine, stops_at};
 
 pub(super) fn open_and_short(bench: &Bench) -> Trials {
     let nominal = || Setup::nominal(4.0, 0.36, sine(3.0, 14.7, 0.0), 1.0).start(4e-3, -0.1).damping(0.03);
@@ -53,7 +53,7 @@ pub(super) fn circuit_at_rest(bench: &Bench) -> Trials {
     for (name, constant) in [("1 ms", 1e-3), ("0.1 s", 0.1), ("4 s", 4.0)] {
         // 1 N/V and 1 uF
         let mut setup = Setup::new(polynomial(&[1.0]), (1.0, 0.0), 1.0)
-            .stops(right_stop(1000.0, 0.5))
+            .stops(stops_at(None, Some(1000.0), 0.5))
             .beside(layer(1.0, 1e-6, constant / 1e-6), -2.0);
         let exact = closed_form(&setup, &setup.model()?, 0.0, 1.0);
         let rate = exact.rates().1;
@@ -129,7 +129,7 @@ pub(super) fn circuit_release(bench: &Bench) -> Trials {
         ("dip 1e-9 short", dip, press * (1.0 + 1e-9), push, 1.0),
     ] {
         let setup = Setup::new(polynomial(&[-press]), (1.0, 0.0), 0.4)
-            .stops(right_stop(1000.0, 0.5))
+            .stops(stops_at(None, Some(1000.0), 0.5))
             .drive(sine(1.0, amplitude, 0.0))
             .beside(layer(1.0, 1e-6, constant / 1e-6), -push);
         let trial = bench.run(name, &setup, &[])?;

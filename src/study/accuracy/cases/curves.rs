@@ -4,11 +4,10 @@ use std::f64::consts::PI;
 
 use super::{Trials, hard_impacts, impacts_beside};
 use crate::dynamics::{EventKind, Outcome};
-use crate::scene::Stops;
 use crate::study::accuracy::Stopped;
 use crate::study::accuracy::exact::Corner;
 use crate::study::accuracy::measure::{Bench, CHANGE, STEP_ERROR, Trial, off, times};
-use crate::study::accuracy::setup::{Setup, polynomial, right_stop, rigid, sine, unit_well};
+use crate::study::accuracy::setup::{Setup, polynomial, rigid, sine, stops_at, unit_well};
 
 pub(super) fn kink(bench: &Bench) -> Trials {
     Ok(vec![flexures(bench)?, corner(bench)?])
@@ -76,11 +75,12 @@ fn flexures(bench: &Bench) -> Result<Trial, Stopped> {
 
 pub(super) fn stop_on_break(bench: &Bench) -> Trials {
     let b = 300.0 / 1e3;
-    let setup = |v: f64| {
-        Setup::new(polynomial(&[0.0]), (b, v), 2.0)
-            .on(Corner { at: b, outer: 1e6 }.curve())
-            .stops(right_stop(300.0, 0.5))
-    };
+    let setup =
+        |v: f64| {
+            Setup::new(polynomial(&[0.0]), (b, v), 2.0)
+                .on(Corner { at: b, outer: 1e6 }.curve())
+                .stops(stops_at(None, Some(300.0), 0.5))
+        };
     let impact = bench.run("impact", &setup(0.5), &[])?;
     let exact = b.hypot(0.25) * (2.0 + 0.25_f64.atan2(b)).cos();
     let (length, added) = (impact.model.scales().length, impact.added());
@@ -126,12 +126,7 @@ pub(super) fn stop_at_force_maximum(bench: &Bench) -> Trials {
 
 pub(super) fn stops_on_one_side(bench: &Bench) -> Trials {
     let setup = Setup::new(polynomial(&[-6.0, 11.0, -6.0, 1.0]), (0.5, -1.0), 20.0)
-        .stops(Stops::Uneven {
-            left_mm: Some(300.0),
-            right_mm: Some(500.0),
-            restitution_left: Some(0.8),
-            restitution_right: Some(0.8),
-        })
+        .stops(stops_at(Some(300.0), Some(500.0), 0.8))
         .damping(0.1);
     let reference = bench.reference(&setup, &[], CHANGE, hard_impacts)?;
     let trial = impacts_beside(bench.run("e = 0.8", &setup, &[])?, &reference, hard_impacts);

@@ -8,7 +8,7 @@ use crate::numeric::{DoubleDouble, Scalar};
 use crate::study::accuracy::Stopped;
 use crate::study::accuracy::exact::{UnitWell, dd, first_hit, impact_time, rest_time, sine_turns};
 use crate::study::accuracy::measure::{Bench, STEP_ERROR, Trial, off};
-use crate::study::accuracy::setup::{Setup, left_stop, polynomial, right_stop, rigid, unit_well};
+use crate::study::accuracy::setup::{Setup, polynomial, rigid, stops_at, unit_well};
 
 pub(super) fn separatrix(bench: &Bench) -> Trials {
     let starts = [
@@ -97,7 +97,8 @@ fn ball(bench: &Bench, name: &'static str, e: f64) -> Result<Trial, Stopped> {
     let first = first_hit(1.0, 9.81);
     let speed = (2.0 * 9.81_f64).sqrt();
     let rest = rest_time(first, e).to_f64();
-    let setup = Setup::new(polynomial(&[9.81]), (0.0, 0.0), 1.1 * rest).stops(left_stop(1000.0, e));
+    let setup =
+        Setup::new(polynomial(&[9.81]), (0.0, 0.0), 1.1 * rest).stops(stops_at(Some(1000.0), None, e));
     let trial = bench.run(name, &setup, &[])?;
     let reach = 1.0 / (1.0 - e);
     let (mut late, mut slow) = (Vec::new(), Vec::new());
@@ -126,7 +127,8 @@ fn ball(bench: &Bench, name: &'static str, e: f64) -> Result<Trial, Stopped> {
 
 pub(super) fn elastic_press(bench: &Bench) -> Trials {
     let v0: f64 = 1e-5;
-    let setup = Setup::new(polynomial(&[1.0]), (-1.0, v0), 1e6).stops(left_stop(1000.0, 1.0)).damping(1.0);
+    let setup =
+        Setup::new(polynomial(&[1.0]), (-1.0, v0), 1e6).stops(stops_at(Some(1000.0), None, 1.0)).damping(1.0);
     let trial = bench.run_bare("2e6 impacts", &setup)?;
     let impacts = match trial.run.summary.outcome {
         Outcome::ImpactBudget { count, .. } => count,
@@ -153,7 +155,8 @@ pub(super) fn excursion(bench: &Bench) -> Trials {
 
 /// The orbit sin t with an elastic stop near its crest.
 fn crest(bench: &Bench, name: &'static str, stop: f64) -> Result<Trial, Stopped> {
-    let setup = Setup::new(polynomial(&[0.0, 1.0]), (0.0, 1.0), 3.0).stops(right_stop(stop * 1e3, 1.0));
+    let setup =
+        Setup::new(polynomial(&[0.0, 1.0]), (0.0, 1.0), 3.0).stops(stops_at(None, Some(stop * 1e3), 1.0));
     let trial = bench.run(name, &setup, &[])?;
     let stop = trial.model.stop_positions().1.unwrap_or(f64::NAN);
     let (depth, added, steps) = (1.0 - stop, trial.added(), trial.run.summary.steps);

@@ -9,12 +9,12 @@ use crate::scene::{Damping, Excitation};
 use crate::study::accuracy::Stopped;
 use crate::study::accuracy::exact::{Pressed, dd, sine_turns};
 use crate::study::accuracy::measure::{Bench, CHANGE, STEP_ERROR, off, times};
-use crate::study::accuracy::setup::{Setup, constant, polynomial, right_stop, sine};
+use crate::study::accuracy::setup::{Setup, constant, polynomial, sine, stops_at};
 
 /// 1 kg that 1 N presses to a right stop at 1 m, from a gap in m with a velocity in m/s.
 fn pressed(gap: f64, v: f64, restitution: f64, drive: Excitation, duration: f64) -> Setup {
     Setup::new(polynomial(&[-1.0]), (1.0 - gap, v), duration)
-        .stops(right_stop(1000.0, restitution))
+        .stops(stops_at(None, Some(1000.0), restitution))
         .drive(drive)
 }
 

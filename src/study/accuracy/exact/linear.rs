@@ -1,6 +1,8 @@
 //! Linear systems in closed form: a damped oscillator under a sum of forcings, and one with a circuit.
 
-use super::{dd, exp, sin_cos, turns};
+use std::array::from_fn;
+
+use super::{dd, turns};
 use crate::numeric::{DoubleDouble, Number, Scalar};
 
 /// x'' + g x' + k x = -a(t).
@@ -47,35 +49,11 @@ impl Oscillator {
         Self { damping: dd(damping) / dd(mass), stiffness: dd(stiffness) / dd(mass) }
     }
 
-    /// The state a time `t` after `start` without forcing: under-, critically or overdamped.
-    pub fn free(&self, start: State, t: DoubleDouble) -> State {
-        let zero = DoubleDouble::zero();
-        let (x, v) = start;
-        let half = self.damping * dd(0.5);
-        let rest = self.stiffness - half * half;
-        // c and s solve the equation for c(0) = 1, c'(0) = 0 and s(0) = 0, s'(0) = 1, times exp(half t)
-        let (c, s) = if rest > zero {
-            let w = rest.sqrt();
-            let decay = exp(-(half * t));
-            let (sin, cos) = sin_cos(w * t);
-            (decay * cos, decay * sin / w)
-        } else if rest < zero {
-            let w = (-rest).sqrt();
-            let slow = exp(-(self.stiffness / (half + w) * t));
-            let fast = exp(-((half + w) * t));
-            ((slow + fast) * dd(0.5), (slow - fast) * dd(0.5) / w)
-        } else {
-            let decay = exp(-(half * t));
-            (decay, decay * t)
-        };
-        (x * c + (v + half * x) * s, v * c - (self.stiffness * x + half * v) * s)
-    }
-
     /// The particular solution under one forcing at time `t` of the run.
     ///
     /// Under (a + r t) sin(w t + phase) it is the imaginary part of (P + Q t) exp(i (w t + phase)), with Q L
     /// = -r, P L + Q L' = -a, L = k - w^2 + i g w, L' = g + 2 i w.
-    pub fn driven(&self, forcing: &Forcing, t: DoubleDouble) -> State {
+    fn driven(&self, forcing: &Forcing, t: DoubleDouble) -> State {
         match *forcing {
             Forcing::Line { value, slope } => {
                 let beta = -(slope / self.stiffness);
@@ -107,8 +85,10 @@ impl Oscillator {
             })
         };
         let (at_start, now) = (sum(from), sum(t));
-        let free = self.free((start.0 - at_start.0, start.1 - at_start.1), t - from);
-        (free.0 + now.0, free.1 + now.1)
+        let (x, v) = (start.0 - at_start.0, start.1 - at_start.1);
+        let rates = [[dd(0.0), dd(1.0)], [-self.stiffness, -self.damping]];
+        let [of_x, of_v] = exponential(rates, t - from).map(|row| row[0] * x + row[1] * v);
+        (of_x + now.0, of_v + now.1)
     }
 
     /// The same from doubles, rounded to doubles.
@@ -150,10 +130,7 @@ pub struct Coupled {
     pub tone: (f64, f64, f64),
 }
 
-/// Displacement, velocity, the state as a velocity, sine and cosine of the tone, and 1.
-const N: usize = 6;
-
-type Matrix = [[DoubleDouble; N]; N];
+type Matrix<const N: usize> = [[DoubleDouble; N]; N];
 
 impl Coupled {
     /// The electrical state whose energy is that of the mass at 1 m/s.
@@ -172,7 +149,8 @@ impl Coupled {
     pub fn state(&self, start: [DoubleDouble; 3], from: DoubleDouble, t: DoubleDouble) -> [DoubleDouble; 3] {
         let (amplitude, frequency, phase) = self.tone;
         let (coupling, decay) = self.rates();
-        let [mut x, mut v, mut w, mut sine, mut cosine] = [[DoubleDouble::zero(); N]; N - 1];
+        // of displacement, velocity, the state as a velocity, sine and cosine of the tone, and 1
+        let [mut x, mut v, mut w, mut sine, mut cosine, one] = [[DoubleDouble::zero(); 6]; 6];
         x[1] = dd(1.0);
         let per_mass = [self.stiffness, self.damping].map(|coefficient| -(dd(coefficient) / dd(self.mass)));
         [v[0], v[1], v[2], v[3]] = [per_mass[0], per_mass[1], -coupling, -dd(amplitude)];
@@ -180,7 +158,7 @@ impl Coupled {
         [w[1], w[2]] = [coupling, -decay];
         sine[4] = DoubleDouble::tau() * dd(frequency);
         cosine[3] = -sine[4];
-        let flow = exponential([x, v, w, sine, cosine, [DoubleDouble::zero(); N]], t - from);
+        let flow = exponential([x, v, w, sine, cosine, one], t - from);
         let (sin, cos) = turns(dd(frequency) * from + dd(phase));
         let before = [start[0], start[1], start[2] / self.amount(), sin, cos, dd(1.0)];
         let after = |row: usize| {
@@ -192,31 +170,22 @@ impl Coupled {
 
 /// The exponential of `rates` times `t`, by scaling and squaring of its Taylor series; each squaring may cost
 /// a bit.
-fn exponential(rates: Matrix, t: DoubleDouble) -> Matrix {
+fn exponential<const N: usize>(rates: Matrix<N>, t: DoubleDouble) -> Matrix<N> {
     let sizes = rates.map(|row| row.iter().map(|rate| (*rate * t).abs().to_f64()).sum::<f64>());
     let largest = sizes.into_iter().fold(0.0, f64::max);
     // below 1/16, where 18 terms leave 1e-38
     let squarings = (largest * 16.0).log2().ceil().max(0.0);
     let small = rates.map(|row| row.map(|rate| rate * t * dd((-squarings).exp2())));
-    let mut sum = unit();
-    for i in (1..=18).rev() {
-        let terms_of_next = product(&small, &sum);
-        sum = unit();
-        for (row, terms) in sum.iter_mut().zip(terms_of_next) {
-            for (entry, part) in row.iter_mut().zip(terms) {
-                *entry += part / dd(f64::from(i));
-            }
-        }
+    let unit = |i, j| dd(if i == j { 1.0 } else { 0.0 });
+    let mut sum = from_fn(|i| from_fn(|j| unit(i, j)));
+    for order in (1..=18).rev() {
+        let terms = product(&small, &sum);
+        sum = from_fn(|i| from_fn(|j| unit(i, j) + terms[i][j] / dd(f64::from(order))));
     }
     (0..squarings as u32).fold(sum, |power, _| product(&power, &power))
 }
 
-fn unit() -> Matrix {
-    let entry = |same: bool| dd(if same { 1.0 } else { 0.0 });
-    std::array::from_fn(|i| std::array::from_fn(|j| entry(i == j)))
-}
-
-fn product(a: &Matrix, b: &Matrix) -> Matrix {
+fn product<const N: usize>(a: &Matrix<N>, b: &Matrix<N>) -> Matrix<N> {
     let entry = |i: usize, j: usize| (0..N).fold(DoubleDouble::zero(), |sum, k| sum + a[i][k] * b[k][j]);
-    std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
+    from_fn(|i| from_fn(|j| entry(i, j)))
 }
