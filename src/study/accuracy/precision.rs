@@ -2,7 +2,7 @@
 
 use super::Stopped;
 use super::measure::REFERENCE_TOLERANCE;
-use super::methods::{Keep, MethodRun, Scheme, Statistics, dormand_prince, fixed_step};
+use super::methods::{MethodRun, Scheme, Statistics, dormand_prince, fixed_step};
 use super::setup::Setup;
 use crate::dynamics::{Event, Model, Request};
 use crate::study::Task;
@@ -87,13 +87,12 @@ impl Problem {
         let request = Request { events: true, cancel: Some(task.cancel), ..Request::default() };
         let exact = MethodRun::from(model.run_reference(&request, REFERENCE_TOLERANCE));
         (task.tick)();
-        let keep = Keep { impacts: true, cancel: Some(task.cancel), ..Keep::default() };
-        let bare = Keep { impacts: false, ..keep };
+        let bare = Request { events: false, ..request };
         let mut points = Vec::new();
-        let mut measure = |method, settings: &[Setting], run: &dyn Fn(f64, &Keep) -> MethodRun| {
+        let mut measure = |method, settings: &[Setting], run: &dyn Fn(f64, &Request) -> MethodRun| {
             for setting in settings.iter().copied() {
                 let (Setting::Tolerance(value) | Setting::Step(value)) = setting;
-                let found = run(value, &keep);
+                let found = run(value, &request);
                 if task.is_cancelled() {
                     return Err(Stopped::Cancelled);
                 }
@@ -113,15 +112,12 @@ impl Problem {
         let tolerances = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14]
             .map(Setting::Tolerance);
         let steps = [0, 1, 2, 3, 4, 5, 6, 7].map(|i| Setting::Step(10_f64.powf(-0.5 * f64::from(i)) / 60.0));
-        measure(OWN, &tolerances, &|tolerance, keep| {
-            let request = Request { events: keep.impacts, cancel: keep.cancel, ..Request::default() };
-            model.with_tolerance(tolerance).run(&request).into()
-        })?;
-        measure("Dormand-Prince 5(4)", &tolerances, &|tolerance, keep| {
-            dormand_prince(&model, tolerance, keep)
+        measure(OWN, &tolerances, &|tolerance, request| model.with_tolerance(tolerance).run(request).into())?;
+        measure("Dormand-Prince 5(4)", &tolerances, &|tolerance, request| {
+            dormand_prince(&model, tolerance, request)
         })?;
         for scheme in Scheme::ALL {
-            measure(scheme.name(), &steps, &|step, keep| fixed_step(&model, scheme, step, keep))?;
+            measure(scheme.name(), &steps, &|step, request| fixed_step(&model, scheme, step, request))?;
         }
         Ok(points)
     }

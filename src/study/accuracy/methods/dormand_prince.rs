@@ -7,8 +7,8 @@
 //! not seen.
 
 use super::tally::{Problem, Tally, TimedState};
-use super::{Keep, MethodRun};
-use crate::dynamics::{Model, Phase, Side};
+use super::{MethodRun, is_cancelled};
+use crate::dynamics::{Model, Phase, Request, Side};
 use crate::numeric::bisect;
 
 /// A pressed rebound slower than this share of the scene's speed is a rest, as a user of such a solver would
@@ -134,12 +134,12 @@ impl Step {
 /// rebound slower than 1e-6 of the scene's speed is a rest, its release found by a scan in 200ths of the
 /// forcing period (or of the duration) and bisection. Ends early where the force curve ends, and after
 /// 2e7 attempts.
-pub fn dormand_prince(model: &Model, tolerance: f64, keep: &Keep) -> MethodRun {
+pub fn dormand_prince(model: &Model, tolerance: f64, request: &Request) -> MethodRun {
     let problem = Problem::new(model);
     let mut march = March {
         problem,
         tolerance,
-        tally: Tally::new(problem, keep),
+        tally: Tally::new(problem, request),
         now: problem.start,
         h: 1e-2 * model.scales().time,
         slope: None,
@@ -151,7 +151,7 @@ pub fn dormand_prince(model: &Model, tolerance: f64, keep: &Keep) -> MethodRun {
     let mut attempts = 0_u64;
     while march.now.t < model.duration() {
         attempts += 1;
-        let is_stopped = attempts > MOST_STEPS || (attempts % CANCEL_STRIDE == 0 && keep.is_cancelled());
+        let is_stopped = attempts > MOST_STEPS || (attempts % CANCEL_STRIDE == 0 && is_cancelled(request));
         if is_stopped || !(march.rest() || march.step()) {
             break;
         }

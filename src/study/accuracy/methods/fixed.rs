@@ -1,8 +1,8 @@
 //! Fixed steps with clamp and bounce.
 
 use super::tally::{Problem, Tally, TimedState};
-use super::{Keep, MethodRun, Scheme};
-use crate::dynamics::{Model, Phase, Side};
+use super::{MethodRun, Scheme, is_cancelled};
+use crate::dynamics::{Model, Phase, Request, Side};
 
 /// Steps between checks of the cancel flag.
 const CANCEL_STRIDE: u64 = 1 << 14;
@@ -17,18 +17,18 @@ const MOST_STEPS: f64 = 1e8;
 /// are those of the steps, as the user of such a method sees them; an impact has the time at the end of its
 /// step. A step that is not above 0, or makes more than 1e8 of them, is taken as the shortest allowed. Ends
 /// early where the force curve ends.
-pub fn fixed_step(model: &Model, scheme: Scheme, step: f64, keep: &Keep) -> MethodRun {
+pub fn fixed_step(model: &Model, scheme: Scheme, step: f64, request: &Request) -> MethodRun {
     let problem = Problem::new(model);
     let wanted = (model.duration() / step).ceil();
     let count = if wanted >= 1.0 { wanted.min(MOST_STEPS) } else { MOST_STEPS } as u64;
     let h = model.duration() / count as f64;
-    let mut tally = Tally::new(problem, keep);
+    let mut tally = Tally::new(problem, request);
     let mut now = problem.start;
     let mut last_acceleration = problem.acceleration(0.0, now.x, now.v);
     let mut evaluations = 1;
     let mut taken = 0;
     for i in 1..=count {
-        if i % CANCEL_STRIDE == 0 && keep.is_cancelled() {
+        if i % CANCEL_STRIDE == 0 && is_cancelled(request) {
             break;
         }
         let t = if i == count { model.duration() } else { h * i as f64 };

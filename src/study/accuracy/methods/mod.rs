@@ -1,6 +1,7 @@
 //! Four common methods, on any scene, for comparison with the program's own.
 //!
-//! They serve this comparison alone. Fixed steps *clamp and bounce*, as in games and small teaching applets:
+//! They serve this comparison alone. Of a request they take sample times, events, of which they keep impacts,
+//! and cancellation. Fixed steps *clamp and bounce*, as in games and small teaching applets:
 //! a step that ends beyond a stop is put onto it and its velocity reversed. Contact is then seen up to a step
 //! late, so that the times of impacts are first order in the step whatever the scheme.
 
@@ -8,12 +9,12 @@ mod dormand_prince;
 mod fixed;
 mod tally;
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 
 pub use dormand_prince::dormand_prince;
 pub use fixed::fixed_step;
 
-use crate::dynamics::{Event, EventKind, Run, Sample, Summary};
+use crate::dynamics::{Event, EventKind, Request, Run, Sample, Summary};
 
 /// A scheme of fixed step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,23 +42,6 @@ impl Scheme {
     }
 }
 
-/// What a run by one of these methods keeps.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Keep<'a> {
-    /// Times in s at which to sample, ascending, within 0..=duration.
-    pub sample_times: &'a [f64],
-    /// Whether to keep the list of impacts.
-    pub impacts: bool,
-    /// Set from elsewhere to end the run early.
-    pub cancel: Option<&'a AtomicBool>,
-}
-
-impl Keep<'_> {
-    fn is_cancelled(&self) -> bool {
-        self.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed))
-    }
-}
-
 /// Statistics of a run by one of these methods or by the program. SI.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Statistics {
@@ -79,6 +63,10 @@ pub struct Statistics {
     /// Time in s at which the run ended early (it left the force curve, a number was not finite, it was
     /// cancelled); `None` if it did not.
     pub ended_at: Option<f64>,
+}
+
+fn is_cancelled(request: &Request) -> bool {
+    request.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed))
 }
 
 /// What a run by one of these methods returns.

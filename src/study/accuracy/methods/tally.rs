@@ -3,8 +3,8 @@
 
 use std::f64::consts::TAU;
 
-use super::{Keep, MethodRun};
-use crate::dynamics::{Event, EventKind, Model, Phase, Sample, Side, StopAt};
+use super::MethodRun;
+use crate::dynamics::{Event, EventKind, Model, Phase, Request, Sample, Side, StopAt};
 use crate::system::clock::ThreadClock;
 
 /// The equation of motion of a model, evaluated directly: library sines, force curve, no series.
@@ -104,7 +104,7 @@ pub(super) struct TimedState {
 /// Collects samples, impacts and sums from one step to the next.
 pub(super) struct Tally<'a> {
     problem: Problem<'a>,
-    keep: &'a Keep<'a>,
+    request: &'a Request<'a>,
     watch: ThreadClock,
     run: MethodRun,
     next: usize,
@@ -113,11 +113,11 @@ pub(super) struct Tally<'a> {
 }
 
 impl<'a> Tally<'a> {
-    pub fn new(problem: Problem<'a>, keep: &'a Keep<'a>) -> Self {
+    pub fn new(problem: Problem<'a>, request: &'a Request<'a>) -> Self {
         let barrier = problem.model.crossing_level();
         Self {
             problem,
-            keep,
+            request,
             watch: ThreadClock::start(),
             run: MethodRun::default(),
             next: 0,
@@ -130,7 +130,7 @@ impl<'a> Tally<'a> {
     /// over it.
     pub fn step(&mut self, a: TimedState, b: TimedState, phase: Phase, squares: f64) {
         let h = b.t - a.t;
-        while let Some(t) = self.keep.sample_times.get(self.next).copied().filter(|t| *t < b.t) {
+        while let Some(t) = self.request.sample_times.get(self.next).copied().filter(|t| *t < b.t) {
             let share = if h > 0.0 { (t - a.t) / h } else { 0.0 };
             self.sample(t, a.x + share * (b.x - a.x), a.v + share * (b.v - a.v), phase);
         }
@@ -157,14 +157,14 @@ impl<'a> Tally<'a> {
     /// Records an impact on the stop of `side`.
     pub fn impact(&mut self, t: f64, side: Side, v_in: f64, v_out: f64) {
         self.run.statistics.impacts += u64::from(v_in.abs() > self.problem.model.least_impact_speed());
-        if self.keep.impacts {
+        if self.request.events {
             self.run.impacts.push(Event { t, kind: EventKind::Impact, side, v_in, v_out });
         }
     }
 
     /// The finished run, which ends in the state `last`.
     pub fn finish(mut self, last: TimedState, phase: Phase, steps: u64, evaluations: u64) -> MethodRun {
-        while let Some(t) = self.keep.sample_times.get(self.next).copied().filter(|t| *t <= last.t) {
+        while let Some(t) = self.request.sample_times.get(self.next).copied().filter(|t| *t <= last.t) {
             self.sample(t, last.x, last.v, phase);
         }
         let model = self.problem.model;

@@ -6,7 +6,7 @@ use super::arrivals::{Lateness, hops, lateness};
 use super::beside::{Beside, times};
 use super::trust::finished;
 use crate::dynamics::{Event, Model, Outcome, Request, Sample, Side};
-use crate::study::accuracy::methods::{Keep, MethodRun, Scheme, Statistics, fixed_step};
+use crate::study::accuracy::methods::{MethodRun, Scheme, Statistics, fixed_step};
 use crate::study::accuracy::precision::{MEASURED_FOR, median};
 
 /// Tolerance of the true run, unless that of the scene is tighter.
@@ -97,17 +97,16 @@ pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) 
     let run = finished(model.run(&request(&even))).ok_or(Unfit::Cancelled)?;
     let path = finished(model.run(&request(&fine))).ok_or(Unfit::Cancelled)?.samples;
 
-    let keep = |sample_times| Keep { sample_times, impacts: true, cancel: Some(cancel) };
-    let mut stepped = fixed_step(model, scheme, step, &keep(&even));
+    let bare = Request { events: false, ..request(&[]) };
+    let mut stepped = fixed_step(model, scheme, step, &request(&even));
     // the same run up to where it is drawn
-    let ghost = fixed_step(&model.with_duration(drawn, 0.0), scheme, step, &keep(&steps)).samples;
+    let ghost = fixed_step(&model.with_duration(drawn, 0.0), scheme, step, &request(&steps)).samples;
     if stepped.statistics.cpu_s <= MEASURED_FOR {
-        let bare = Keep { impacts: false, ..keep(&[]) };
         stepped.statistics.cpu_s = median(|| fixed_step(model, scheme, step, &bare).statistics.cpu_s);
     }
     let (hops, outcome) = (hops(&stepped.impacts, &run.events), run.summary.outcome);
     let mut exact = MethodRun::from(run);
-    exact.statistics.cpu_s = median(|| model.run(&Request { events: false, ..request(&[]) }).summary.cpu_s);
+    exact.statistics.cpu_s = median(|| model.run(&bare).summary.cpu_s);
     if cancel.load(Ordering::Relaxed) {
         return Err(Unfit::Cancelled);
     }
