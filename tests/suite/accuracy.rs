@@ -7,7 +7,9 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use interwell::dynamics::{Model, Phase, Request};
 use interwell::study::Task;
 use interwell::study::accuracy::methods::{MethodRun, Scheme, dormand_prince, fixed_step};
-use interwell::study::accuracy::{Check, HARD_CASES, Report, Selection, Stopped, Variant, accuracy, names};
+use interwell::study::accuracy::{
+    Check, HARD_CASES, Report, Selection, Stopped, Variant, accuracy, description, names,
+};
 
 use crate::support::*;
 
@@ -47,6 +49,20 @@ fn names_are_distinct_and_each_selects_its_own() {
         assert!(Selection::of(&[(*name).to_owned()]).unwrap().parts() >= 1);
     }
     assert!(Selection::of(&["separatrices".to_owned()]).unwrap_err().to_string().contains("separatrix"));
+}
+
+#[test]
+fn each_name_is_described() {
+    for name in names() {
+        let text = description(name);
+        let lines: Vec<&str> = text.lines().collect();
+        assert!(lines[0] == name && lines[1].starts_with("  "), "{text}");
+        let labels: Vec<&str> = lines[2..].iter().filter_map(|line| line.split(':').next()).collect();
+        let is_case = HARD_CASES.iter().any(|case| case.name == name);
+        let expected: &[&str] = if is_case { &["  Answer", "  Digits allowed"] } else { &["  Error"] };
+        assert_eq!(labels, expected, "{name}");
+    }
+    assert_eq!(description("separatrices"), "");
 }
 
 #[test]

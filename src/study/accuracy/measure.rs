@@ -149,64 +149,51 @@ impl Trial {
     }
 
     /// Adds a number's error and the allowed error.
-    pub fn number(mut self, quantity: &'static str, error: f64, allowed: f64) -> Self {
+    pub fn number(&mut self, quantity: &'static str, error: f64, allowed: f64) {
         self.checks.push((quantity, Check::number(error, allowed)));
-        self
     }
 
-    pub fn fact(mut self, quantity: &'static str, holds: bool) -> Self {
+    pub fn fact(&mut self, quantity: &'static str, holds: bool) {
         self.checks.push((quantity, Check::Fact(holds)));
-        self
     }
 
     /// Adds the pair of error and allowed error with the largest ratio; a failed fact if there is no pair.
-    pub fn worst(mut self, quantity: &'static str, pairs: Vec<(f64, f64)>) -> Self {
+    pub fn worst(&mut self, quantity: &'static str, pairs: Vec<(f64, f64)>) {
         let checks = pairs.into_iter().map(|(error, allowed)| Check::number(error, allowed));
         let worst = checks.max_by(|a, b| a.share().total_cmp(&b.share()));
         self.checks.push((quantity, worst.unwrap_or(Check::Fact(false))));
-        self
     }
 
     /// Adds the time of the first event of a kind; the error allowed is relative to `exact` in s.
-    pub fn time(self, quantity: &'static str, kind: EventKind, exact: f64, allowed: f64) -> Self {
-        let error = off(self.first(kind), exact, exact);
-        self.number(quantity, error, allowed)
+    pub fn time(&mut self, quantity: &'static str, kind: EventKind, exact: f64, allowed: f64) {
+        self.number(quantity, off(self.first(kind), exact, exact), allowed);
     }
 
     /// Adds the error of the displacement at the end, relative to `scale` in m.
-    pub fn final_x(self, quantity: &'static str, exact: f64, scale: f64, allowed: f64) -> Self {
-        let error = off(self.run.summary.final_x, exact, scale);
-        self.number(quantity, error, allowed)
+    pub fn final_x(&mut self, quantity: &'static str, exact: f64, scale: f64, allowed: f64) {
+        self.number(quantity, off(self.run.summary.final_x, exact, scale), allowed);
     }
 
     /// Adds the residual of the ledger.
-    pub fn energy_balance(self) -> Self {
+    pub fn energy_balance(&mut self) {
         let residual = self.run.summary.ledger.map_or(f64::NAN, |ledger| ledger.energy_residual);
-        let allowed = self.added();
-        self.number("energy balance", residual, allowed)
+        self.number("energy balance", residual, self.added());
     }
 
     /// Adds the worst of some numbers of the run beside the reference, each relative to its scale.
-    pub fn beside(
-        self,
-        quantity: &'static str,
-        numbers: &[f64],
-        reference: &Reference,
-        scales: &[f64],
-    ) -> Self {
-        let pairs = pairs(numbers, &reference.numbers, &reference.allowed(&self), scales);
-        self.worst(quantity, pairs)
+    pub fn beside(&mut self, quantity: &'static str, numbers: &[f64], reference: &Reference, scales: &[f64]) {
+        self.worst(quantity, pairs(numbers, &reference.numbers, &reference.allowed(self), scales));
     }
 
     /// Adds the worst sample of a linear system, which carries an error on without growth: the steps up to it
     /// add up, and the phase of the drive, `fastest` in Hz, is a product of two doubles. `exact` returns
     /// displacement, velocity, and the relative error of the electrical state, NaN without one.
     pub fn linear(
-        self,
+        &mut self,
         quantity: &'static str,
         fastest: f64,
         exact: impl Fn(&Sample) -> (f64, f64, f64),
-    ) -> Self {
+    ) {
         let (scales, steps) = (self.model.scales(), self.run.summary.steps as f64);
         let pair = |sample: &Sample| {
             let (x, v, electrical) = exact(sample);
@@ -216,8 +203,7 @@ impl Trial {
             let phase = TAU * fastest * sample.t * f64::EPSILON;
             (mechanical.max(electrical), steps * STEP_ERROR * progress + phase)
         };
-        let pairs = self.run.samples.iter().map(pair).collect();
-        self.worst(quantity, pairs)
+        self.worst(quantity, self.run.samples.iter().map(pair).collect());
     }
 }
 

@@ -8,7 +8,6 @@ use crate::dynamics::{Model, STANDARD_GRAVITY};
 use crate::mechanics::{ForceCurve, Mechanism as Built};
 use crate::scene::{
     Damping, Document, Excitation, Fault, Files, Mechanism, RunSettings, Scene, Start, Stops, Transducer,
-    check,
 };
 
 /// Every case runs at the tightest tolerance, so that only rounding is left.
@@ -105,19 +104,14 @@ impl Setup {
 
     /// The scene as run.
     pub fn model(&self) -> Result<Model, Stopped> {
-        let faults = |faults: &[Fault]| {
-            let text = |fault: &Fault| format!("{} = {}: {}", fault.field, fault.value, fault.problem);
-            Stopped::Scene(faults.first().map_or_else(String::new, text))
-        };
-        let checked = check(&self.scene);
-        if !checked.faults.is_empty() {
-            return Err(faults(&checked.faults));
-        }
         let mechanism = match &self.curve {
             Some(curve) => Built::new(curve.clone()),
             None => Built::build(&self.scene.mechanism, &Files::default()).map_err(invalid)?,
         };
-        Model::build(&self.scene, Arc::new(mechanism)).map_err(|found| faults(&found))
+        Model::build(&self.scene, Arc::new(mechanism)).map_err(|faults| {
+            let text = |fault: &Fault| format!("{} = {}: {}", fault.field, fault.value, fault.problem);
+            Stopped::Scene(faults.first().map_or_else(String::new, text))
+        })
     }
 }
 

@@ -39,11 +39,11 @@ pub(super) fn open_and_short(bench: &Bench) -> Trials {
         ("short-circuited coil", of_100_ohm(0.0, 0.0), &damped),
         ("open coil", of_100_ohm(f64::INFINITY, 1e3), &bare),
     ] {
-        let trial = bench.run(name, &nominal().beside(transducer, 0.0), &[])?;
+        let mut trial = bench.run(name, &nominal().beside(transducer, 0.0), &[])?;
         let run = &trial.run;
         let equal = run.events == same.events && run.summary.final_x == same.summary.final_x;
-        let equal = equal && run.events.len() > 10;
-        trials.push(trial.fact("the same bits", equal));
+        trial.fact("the same bits", equal && trial.run.events.len() > 10);
+        trials.push(trial);
     }
     Ok(trials)
 }
@@ -63,7 +63,7 @@ pub(super) fn circuit_at_rest(bench: &Bench) -> Trials {
         let end = release + 0.3;
         setup.scene.run.duration_s = end;
         let at: Vec<f64> = (1..20).map(|i| 0.05 * f64::from(i) * release).chain([end]).collect();
-        let trial = bench.run(name, &setup, &at)?;
+        let mut trial = bench.run(name, &setup, &at)?;
         let samples = &trial.run.samples;
         let voltages = samples.iter().filter(|sample| sample.t < release).map(|sample| {
             let voltage = -2.0 * exp(-(rate * dd(sample.t))).to_f64();
@@ -74,17 +74,13 @@ pub(super) fn circuit_at_rest(bench: &Bench) -> Trials {
         let [x, _, voltage] = exact.state(left, released, dd(end)).map(|value| value.to_f64());
         let last = samples.last().map_or(f64::NAN, |sample| sample.electrical);
         let size = electrical_size(&trial.model, &exact);
-        let summary = &trial.run.summary;
+        let summary = trial.run.summary;
         let after = off(summary.final_x, x, trial.model.scales().length).max(off(last, voltage, size));
-        let once = summary.rests == 1 && summary.releases == 1;
-        let added = trial.added();
-        trials.push(
-            trial
-                .worst("voltage at rest", voltages)
-                .time("time of release", EventKind::Release, release, 5.0 * STEP_ERROR)
-                .number("state 0.3 s later", after, added)
-                .fact("one rest and one release", once),
-        );
+        trial.worst("voltage at rest", voltages);
+        trial.time("time of release", EventKind::Release, release, 5.0 * STEP_ERROR);
+        trial.number("state 0.3 s later", after, trial.added());
+        trial.fact("one rest and one release", summary.rests == 1 && summary.releases == 1);
+        trials.push(trial);
     }
     Ok(trials)
 }
@@ -132,21 +128,22 @@ pub(super) fn circuit_release(bench: &Bench) -> Trials {
             .stops(stops_at(None, Some(1000.0), 0.5))
             .drive(sine(1.0, amplitude, 0.0))
             .beside(layer(1.0, 1e-6, constant / 1e-6), -push);
-        let trial = bench.run(name, &setup, &[])?;
+        let mut trial = bench.run(name, &setup, &[])?;
         let rate = closed_form(&setup, &trial.model, 0.0, 0.0).rates().1;
         let amplitude = trial.model.excitation().tones[0].amplitude;
         let pulls = Pulls { press, push, rate, amplitude };
-        trials.push(match pulls.root(0.4) {
+        match pulls.root(0.4) {
             None => {
                 let stays = trial.first(EventKind::Release).is_nan() && trial.run.summary.final_x == 1.0;
-                trial.fact("stays at rest", stays)
+                trial.fact("stays at rest", stays);
             }
             Some(root) => {
                 let (slope, t) = (pulls.net(root).1.to_f64().abs(), root.to_f64());
                 let allowed = STEP_ERROR * (press + push.abs() + amplitude) / slope / t + f64::EPSILON;
-                trial.time("time of release", EventKind::Release, t, allowed)
+                trial.time("time of release", EventKind::Release, t, allowed);
             }
-        });
+        }
+        trials.push(trial);
     }
     Ok(trials)
 }
@@ -165,7 +162,7 @@ pub(super) fn circuit_at_impacts(bench: &Bench) -> Trials {
     let impacts = times(&bench.run("", &setup, &[])?.run, EventKind::Impact);
     // the current at each impact, and just before it
     let at: Vec<f64> = impacts.iter().flat_map(|t| [t - JUST, *t]).collect();
-    let trial = bench.run("1 s", &setup, &at)?;
+    let mut trial = bench.run("1 s", &setup, &at)?;
     let model = &trial.model;
     let exact = closed_form(&setup, model, STIFFNESS, 0.0);
     let stop = dd(model.stop_positions().1.unwrap_or(f64::NAN));
@@ -204,11 +201,9 @@ pub(super) fn circuit_at_impacts(bench: &Bench) -> Trials {
         let kept = off(pair[1].electrical, pair[0].electrical, size) < 1e-9;
         kept && off(pair[1].v, -RESTITUTION * pair[0].v, pair[0].v.abs()) < 1e-7
     });
-    Ok(vec![
-        trial
-            .worst("impact times", late)
-            .worst("current at impacts", of_currents)
-            .fact("it stays inside between impacts", inside && impacts.len() > 20)
-            .fact("the current is kept and the speed turned", turns),
-    ])
+    trial.worst("impact times", late);
+    trial.worst("current at impacts", of_currents);
+    trial.fact("it stays inside between impacts", inside && impacts.len() > 20);
+    trial.fact("the current is kept and the speed turned", turns);
+    Ok(vec![trial])
 }

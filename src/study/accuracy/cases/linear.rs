@@ -53,13 +53,14 @@ fn sampled(
     setup: &Setup,
     exact: impl Fn(&Model, f64) -> (DoubleDouble, DoubleDouble),
 ) -> Trials {
-    let trial = bench.run(name, setup, &even(setup.scene.run.duration_s, 97))?;
+    let mut trial = bench.run(name, setup, &even(setup.scene.run.duration_s, 97))?;
     let model = trial.model.clone();
     let fastest = model.excitation().fastest().unwrap_or(0.0);
-    Ok(vec![trial.linear("state at 97 samples", fastest, |sample| {
+    trial.linear("state at 97 samples", fastest, |sample| {
         let (x, v) = exact(&model, sample.t);
         (x.to_f64(), v.to_f64(), f64::NAN)
-    })])
+    });
+    Ok(vec![trial])
 }
 
 /// The same under the tones of its model.
@@ -179,15 +180,16 @@ pub(super) fn electrical_size(model: &Model, exact: &Coupled) -> f64 {
 
 /// The oscillator with a circuit beside the exponential of its matrix.
 fn coupled(bench: &Bench, name: &'static str, setup: &Setup) -> Result<Trial, Stopped> {
-    let trial = bench.run(name, setup, &even(setup.scene.run.duration_s, 41))?;
+    let mut trial = bench.run(name, setup, &even(setup.scene.run.duration_s, 41))?;
     let exact = closed_form(setup, &trial.model, STIFFNESS, 0.0);
     let (x, v) = start(&trial.model);
     let (start, size) = ([x, v, dd(trial.model.start_electrical())], electrical_size(&trial.model, &exact));
-    let trial = trial.linear("state at 41 samples", exact.tone.1, |sample| {
+    trial.linear("state at 41 samples", exact.tone.1, |sample| {
         let [x, v, s] = exact.state(start, dd(0.0), dd(sample.t)).map(|value| value.to_f64());
         (x, v, off(sample.electrical, s, size))
     });
-    Ok(trial.energy_balance())
+    trial.energy_balance();
+    Ok(trial)
 }
 
 pub(super) fn stiff_circuit(bench: &Bench) -> Trials {
@@ -212,28 +214,29 @@ pub(super) fn strong_coupling(bench: &Bench) -> Trials {
 pub(super) fn no_inductance(bench: &Bench) -> Trials {
     let (coupling, resistance) = (5.0, 100.0);
     let limit = with_circuit(coil(coupling, resistance, 0.0), 0.5);
-    let none = bench.run("none", &limit, &even(0.5, 41))?;
-    let (model, samples, scales) = (none.model.clone(), none.run.samples.clone(), none.model.scales());
+    let mut none = bench.run("none", &limit, &even(0.5, 41))?;
+    let (model, scales) = (none.model.clone(), none.model.scales());
     let damped = Oscillator::new(MASS, DAMPING + coupling * (coupling / resistance), STIFFNESS);
     let forcings = tones(&model);
-    let none = none
-        .linear("state and current at 41 samples", 7.0, |sample| {
-            let (x, v) = damped.nearest(model.start(), 0.0, sample.t, &forcings);
-            let current = model.output(sample).map_or(f64::NAN, |output| output.current);
-            (x, v, off(current, coupling * v / resistance, coupling * scales.speed / resistance))
-        })
-        .fact("no state of its own", !model.has_electrical_state());
+    none.linear("state and current at 41 samples", 7.0, |sample| {
+        let (x, v) = damped.nearest(model.start(), 0.0, sample.t, &forcings);
+        let current = model.output(sample).map_or(f64::NAN, |output| output.current);
+        (x, v, off(current, coupling * v / resistance, coupling * scales.speed / resistance))
+    });
+    none.fact("no state of its own", !model.has_electrical_state());
     let mut trials = Vec::new();
     let mut apart = Vec::new();
     for (name, time_constant) in [("1 ms", 1e-3), ("0.1 ms", 1e-4), ("10 us", 1e-5)] {
         let setup = with_circuit(coil(coupling, resistance, resistance * time_constant), 0.5);
         let trial = coupled(bench, name, &setup)?;
-        let distances = trial.run.samples.iter().zip(&samples).map(|(a, b)| off(a.x, b.x, scales.length));
+        let distances =
+            trial.run.samples.iter().zip(&none.run.samples).map(|(a, b)| off(a.x, b.x, scales.length));
         apart.push(distances.fold(0.0, f64::max) / time_constant);
         trials.push(trial);
     }
     // (its next term is of the order of the time constant over the time scale)
     let alike = (apart[1] / apart[2] - 1.0).abs() < 1e-4 / scales.time;
-    trials.push(none.fact("distance of the first power", alike && apart[2] > 1.0));
+    none.fact("distance of the first power", alike && apart[2] > 1.0);
+    trials.push(none);
     Ok(trials)
 }

@@ -16,15 +16,18 @@ pub(super) fn chaos(bench: &Bench) -> Trials {
         let setup = preset(&[&duration, "run.settle_s=0"])?;
         let state = |run: &Run| vec![run.summary.final_x, run.summary.final_v];
         let reference = bench.reference(&setup, &[], SMALL_CHANGE, state)?;
-        let trial = bench.run(name, &setup, &[])?;
-        let (found, scales) = (state(&trial.run), trial.model.scales());
-        trials.push(trial.beside("final state", &found, &reference, &[scales.length, scales.speed]));
+        let mut trial = bench.run(name, &setup, &[])?;
+        let scales = trial.model.scales();
+        trial.beside("final state", &state(&trial.run), &reference, &[scales.length, scales.speed]);
+        trials.push(trial);
     }
-    let (trial, batches) = averages(bench, &preset(&[])?)?;
+    let (mut trial, batches) = averages(bench, &preset(&[])?)?;
     let (_, other) = averages(bench, &preset(&["start.x_mm=900"])?)?;
     let (a, b) = (mean(&batches), mean(&other));
     let error = (spread(&batches).powi(2) + spread(&other).powi(2)).sqrt();
-    trials.push(trial.number("mean square velocity", off(a, b, a), 4.0 * error / a).energy_balance());
+    trial.number("mean square velocity", off(a, b, a), 4.0 * error / a);
+    trial.energy_balance();
+    trials.push(trial);
     Ok(trials)
 }
 

@@ -87,8 +87,9 @@ fn hard_impacts(run: &Run) -> Vec<f64> {
 }
 
 /// The times of impacts, as `impacts` takes them from a run, beside those of the reference.
-fn impacts_beside(trial: Trial, reference: &Reference, impacts: impl Fn(&Run) -> Vec<f64>) -> Trial {
+fn impacts_beside(mut trial: Trial, reference: &Reference, impacts: impl Fn(&Run) -> Vec<f64>) -> Trial {
     let found = impacts(&trial.run);
-    let complete = found.len() == reference.numbers.len() && !found.is_empty();
-    trial.beside("impact times", &found, reference, &reference.numbers).fact("all impacts", complete)
+    trial.beside("impact times", &found, reference, &reference.numbers);
+    trial.fact("all impacts", found.len() == reference.numbers.len() && !found.is_empty());
+    trial
 }

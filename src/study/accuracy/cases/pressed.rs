@@ -30,11 +30,10 @@ pub(super) fn chatter_curved(bench: &Bench) -> Trials {
         setup.scene.damping = Damping::Ratio(0.05);
         let rest = |run: &Run| vec![times(run, EventKind::Rest).first().copied().unwrap_or(f64::NAN)];
         let reference = bench.reference(&setup, &[], CHANGE, rest)?;
-        let trial = bench.run(name, &setup, &[])?;
-        let (found, rests) = (rest(&trial.run), trial.run.summary.rests);
-        trials.push(
-            trial.beside("time of rest", &found, &reference, &reference.numbers).fact("one rest", rests == 1),
-        );
+        let mut trial = bench.run(name, &setup, &[])?;
+        trial.beside("time of rest", &rest(&trial.run), &reference, &reference.numbers);
+        trial.fact("one rest", trial.run.summary.rests == 1);
+        trials.push(trial);
     }
     Ok(trials)
 }
@@ -43,17 +42,15 @@ pub(super) fn chatter_incomplete(bench: &Bench) -> Trials {
     let setup = pressed(0.0, -0.02, 0.9, sine(1.0, 1.2, 0.0), 1.0);
     let impacts = |run: &Run| times(run, EventKind::Impact);
     let reference = bench.reference(&setup, &[], CHANGE, impacts)?;
-    let trial = bench.run("e = 0.9", &setup, &[])?;
+    let mut trial = bench.run("e = 0.9", &setup, &[])?;
     let found = impacts(&trial.run);
     let leaves = exactly_pressed(1.2).release().to_f64();
     let is_before = |times: &[f64]| times.iter().any(|t| *t < leaves);
     let rests_before = is_before(&times(&trial.run, EventKind::Rest));
     let in_chatter = is_before(&found) && found.len() == reference.numbers.len() && !rests_before;
-    Ok(vec![
-        trial
-            .beside("impact times", &found, &reference, &reference.numbers)
-            .fact("leaves in mid-chatter", in_chatter),
-    ])
+    trial.beside("impact times", &found, &reference, &reference.numbers);
+    trial.fact("leaves in mid-chatter", in_chatter);
+    Ok(vec![trial])
 }
 
 pub(super) fn chatter_at_release(bench: &Bench) -> Trials {
@@ -81,15 +78,13 @@ pub(super) fn chatter_at_release(bench: &Bench) -> Trials {
     let exact = (dd(1.0) - gap).to_f64();
     let mut trials = Vec::new();
     for (name, v) in [("just rests", low), ("just does not", high)] {
-        let trial = bench.run(name, &setup(v), &[])?;
+        let mut trial = bench.run(name, &setup(v), &[])?;
         let scales = trial.model.scales();
         let rebounds = trial.impacts().count() as f64;
         let allowed = (rebounds + 2.0) * STEP_ERROR * (scales.speed * AFTER / scales.length) + trial.added();
-        trials.push(
-            trial
-                .final_x("displacement 0.3 s later", exact, scales.length, allowed)
-                .fact("the two are neighbours", neighbours),
-        );
+        trial.final_x("displacement 0.3 s later", exact, scales.length, allowed);
+        trial.fact("the two are neighbours", neighbours);
+        trials.push(trial);
     }
     Ok(trials)
 }
@@ -105,16 +100,17 @@ pub(super) fn release_threshold(bench: &Bench) -> Trials {
         [("1e-6 above", 1e-6), ("1e-6 below", -1e-6), ("1e-10 above", 1e-10), ("1e-10 below", -1e-10)]
     {
         let amplitude = threshold.to_f64() * (1.0 + over);
-        let trial = bench.run(name, &Setup::nominal(D_MM, 0.36, sine(3.0, amplitude, 0.0), 0.3), &[])?;
-        trials.push(if over > 0.0 {
+        let mut trial = bench.run(name, &Setup::nominal(D_MM, 0.36, sine(3.0, amplitude, 0.0), 0.3), &[])?;
+        if over > 0.0 {
             let amplitude = dd(trial.model.excitation().tones[0].amplitude);
             let exact = (sine_turns(threshold / amplitude) / dd(3.0)).to_f64();
             let angle = exact * 3.0 * TAU;
-            trial.time("time of release", EventKind::Release, exact, STEP_ERROR * angle.tan() / angle)
+            trial.time("time of release", EventKind::Release, exact, STEP_ERROR * angle.tan() / angle);
         } else {
             let stays = trial.first(EventKind::Release).is_nan() && trial.run.summary.final_x == D_MM / 1e3;
-            trial.fact("stays at rest", stays)
-        });
+            trial.fact("stays at rest", stays);
+        }
+        trials.push(trial);
     }
     Ok(trials)
 }
@@ -123,11 +119,12 @@ pub(super) fn release_zero_slope(bench: &Bench) -> Trials {
     let sum = Excitation::Sum(vec![constant(0.5), sine(1.0, 0.5, 90.0)]);
     let mut trials = Vec::new();
     for (name, drive) in [("sine", sine(1.0, 1.0, 0.0)), ("constant + sine", sum)] {
-        let trial = bench.run(name, &pressed(0.0, 0.0, 0.36, drive, 20.25), &[])?;
+        let mut trial = bench.run(name, &pressed(0.0, 0.0, 0.36, drive, 20.25), &[])?;
         let base = |i: u32| trial.model.base_acceleration(0.25 * f64::from(i));
-        let crest = (0..=4).map(base).fold(0.0, f64::max);
-        let stays = trial.run.summary.final_x == 1.0 && trial.run.summary.total_impacts == 0;
-        trials.push(trial.fact("the crest is the press", crest == 1.0).fact("stays at rest", stays));
+        let (crest, summary) = ((0..=4).map(base).fold(0.0, f64::max), trial.run.summary);
+        trial.fact("the crest is the press", crest == 1.0);
+        trial.fact("stays at rest", summary.final_x == 1.0 && summary.total_impacts == 0);
+        trials.push(trial);
     }
     Ok(trials)
 }
@@ -139,22 +136,19 @@ pub(super) fn bias_at_threshold(bench: &Bench) -> Trials {
         [("at it", accel_g), ("just below", accel_g.next_down()), ("just above", accel_g.next_up())];
     for (name, accel_g) in neighbours {
         let setup = pressed(0.0, 0.0, 0.36, Excitation::Constant { accel_g }, 1.0);
-        let trial = bench.run(name, &setup, &[])?;
-        let net = 1.0 - trial.model.base_acceleration(0.0);
+        let mut trial = bench.run(name, &setup, &[])?;
+        let (net, summary) = (1.0 - trial.model.base_acceleration(0.0), trial.run.summary);
         let gone = if net < 0.0 { 0.5 * net } else { 0.0 };
-        let few = trial.run.summary.total_impacts == 0 && trial.run.summary.steps < 100;
-        trials.push(
-            trial
-                .final_x("displacement", 1.0 + gone, 1.0, 2.0 * f64::EPSILON)
-                .fact("no impact in few steps", few),
-        );
+        trial.final_x("displacement", 1.0 + gone, 1.0, 2.0 * f64::EPSILON);
+        trial.fact("no impact in few steps", summary.total_impacts == 0 && summary.steps < 100);
+        trials.push(trial);
     }
     Ok(trials)
 }
 
 pub(super) fn plastic_sine(bench: &Bench) -> Trials {
     let exactly = exactly_pressed(1.8);
-    let trial = bench.run("10 periods", &pressed(0.0, 0.0, 0.0, sine(1.0, 1.8, 0.0), 10.0), &[])?;
+    let mut trial = bench.run("10 periods", &pressed(0.0, 0.0, 0.0, sine(1.0, 1.8, 0.0), 10.0), &[])?;
     let first = exactly.release();
     let landing = exactly.landing(first).unwrap_or(dd(f64::NAN));
     let speed = exactly.flight((dd(0.0), dd(0.0)), first, landing).1.to_f64().abs();
@@ -174,12 +168,10 @@ pub(super) fn plastic_sine(bench: &Bench) -> Trials {
     // a rest at the start and one after each landing, before the next release
     let rests = times(&trial.run, EventKind::Rest).len();
     let complete = (releases.len(), impacts.len(), rests) == (10, 10, 11);
-    Ok(vec![
-        trial
-            .worst("releases in periods", releases)
-            .worst("landings in periods", impacts)
-            .fact("ten flights each to rest", complete && landing.to_f64() < 1.0 + first.to_f64()),
-    ])
+    trial.worst("releases in periods", releases);
+    trial.worst("landings in periods", impacts);
+    trial.fact("ten flights each to rest", complete && landing.to_f64() < 1.0 + first.to_f64());
+    Ok(vec![trial])
 }
 
 pub(super) fn impact_at_release(bench: &Bench) -> Trials {
@@ -198,16 +190,13 @@ pub(super) fn impact_at_release(bench: &Bench) -> Trials {
         let rate = exact.to_f64();
         let speed = rate.abs() + f64::from(ulps) * f64::EPSILON * rate.abs();
         let toward = if rate < 0.0 { speed } else { -speed };
-        let trial = bench.run(name, &pressed(gap, toward, 0.0, sine(1.0, 1.2, 0.0), end), &[])?;
+        let mut trial = bench.run(name, &pressed(gap, toward, 0.0, sine(1.0, 1.2, 0.0), end), &[])?;
         let (added, length) = (trial.added(), trial.model.scales().length);
         let late = (added + 8.0 * f64::EPSILON) * length / landing / leaves.to_f64();
-        let impacts = trial.impacts().count();
-        trials.push(
-            trial
-                .time("time of impact", EventKind::Impact, leaves.to_f64(), late)
-                .final_x("displacement 0.3 s later", 1.0 - after, 1.0, added)
-                .fact("one impact", impacts == 1),
-        );
+        trial.time("time of impact", EventKind::Impact, leaves.to_f64(), late);
+        trial.final_x("displacement 0.3 s later", 1.0 - after, 1.0, added);
+        trial.fact("one impact", trial.impacts().count() == 1);
+        trials.push(trial);
     }
     Ok(trials)
 }
