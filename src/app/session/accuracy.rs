@@ -11,7 +11,7 @@ use crate::app::task::{Latest, Wake};
 use crate::dynamics::Model;
 use crate::study::accuracy::methods::Scheme;
 use crate::study::accuracy::scene::{
-    Course, StepSize, Tolerances, Trust, Unfit, moment, small_length, step_size, tolerances, trust,
+    Course, StepSize, Tolerances, Trust, Unfit, lasting, moment, small_length, step_size, tolerances, trust,
 };
 
 /// Initial fixed step in s: a frame of a screen, the usual choice of games.
@@ -129,7 +129,7 @@ impl Accuracy {
         };
         let model = Arc::clone(model);
         self.span = Some(span);
-        self.trust.ask(wake, move |cancel| trust(&model.with_duration(span, model.settle()), cancel));
+        self.trust.ask(wake, move |cancel| trust(&lasting(&model, span), cancel));
     }
 
     /// The error of the motion in a few words, and in full.
