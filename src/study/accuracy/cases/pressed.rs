@@ -4,10 +4,10 @@ use std::f64::consts::TAU;
 
 use super::Trials;
 use crate::dynamics::{EventKind, Run};
-use crate::numeric::{DoubleDouble, Scalar};
+use crate::numeric::{DoubleDouble, Scalar, bisect};
 use crate::scene::{Damping, Excitation};
 use crate::study::accuracy::Stopped;
-use crate::study::accuracy::exact::{Pressed, dd, sine_turns};
+use crate::study::accuracy::exact::{dd, sine_turns, turns};
 use crate::study::accuracy::measure::{Bench, CHANGE, STEP_ERROR, off, times};
 use crate::study::accuracy::setup::{Setup, constant, polynomial, sine, stops_at};
 
@@ -18,9 +18,42 @@ fn pressed(gap: f64, v: f64, restitution: f64, drive: Excitation, duration: f64)
         .drive(drive)
 }
 
-/// The same with a sine of 1 Hz and this amplitude in m/s^2, in closed form.
-fn exactly_pressed(amplitude: f64) -> Pressed {
-    Pressed { press: 1.0, amplitude, frequency: 1.0 }
+/// The same with a sine of 1 Hz in closed form, in the gap y from the stop: y'' = -1 + amplitude sin(2 pi t).
+struct Exactly {
+    /// In m/s^2, above 1.
+    amplitude: f64,
+}
+
+impl Exactly {
+    /// The first instant in s at which the press falls through 0: asin(1/amplitude)/(2 pi).
+    fn release(&self) -> DoubleDouble {
+        sine_turns(dd(1.0) / dd(self.amplitude))
+    }
+
+    /// Gap in m and its rate at `t` after gap and rate `start` at `from`, both in s, in free flight.
+    fn flight(
+        &self,
+        start: (f64, DoubleDouble),
+        from: DoubleDouble,
+        t: DoubleDouble,
+    ) -> (DoubleDouble, DoubleDouble) {
+        let w = DoubleDouble::tau();
+        let gain = dd(self.amplitude) / w;
+        let ((s0, c0), (s, c)) = (turns(from), turns(t));
+        let d = t - from;
+        let rate = start.1 - d - gain * (c - c0);
+        let gap = dd(start.0) + (start.1 + gain * c0) * d - d * d * dd(0.5) - gain / w * (s - s0);
+        (gap, rate)
+    }
+
+    /// When a flight from rest on the stop at `from` lands again: the first root of the gap, bracketed on a
+    /// grid of 1/4096 s and bisected to all digits; NaN if it does not land within four periods.
+    fn landing(&self, from: DoubleDouble) -> DoubleDouble {
+        let at = |i: u32| from + dd(f64::from(i) / 4096.0);
+        let is_open = |t: DoubleDouble| self.flight((0.0, dd(0.0)), from, t).0 > dd(0.0);
+        let first = (1..4 * 4096).find(|i| !is_open(at(*i)));
+        first.map_or(dd(f64::NAN), |first| bisect(at(first - 1), at(first), 110, is_open).1)
+    }
 }
 
 pub(super) fn chatter_curved(bench: &Bench) -> Trials {
@@ -44,7 +77,7 @@ pub(super) fn chatter_incomplete(bench: &Bench) -> Trials {
     let reference = bench.reference(&setup, &[], CHANGE, impacts)?;
     let mut trial = bench.run("e = 0.9", &setup, &[])?;
     let found = impacts(&trial.run);
-    let leaves = exactly_pressed(1.2).release().to_f64();
+    let leaves = Exactly { amplitude: 1.2 }.release().to_f64();
     let is_before = |times: &[f64]| times.iter().any(|t| *t < leaves);
     let rests_before = is_before(&times(&trial.run, EventKind::Rest));
     let in_chatter = is_before(&found) && found.len() == reference.numbers.len() && !rests_before;
@@ -56,7 +89,7 @@ pub(super) fn chatter_incomplete(bench: &Bench) -> Trials {
 pub(super) fn chatter_at_release(bench: &Bench) -> Trials {
     /// Time in s after the release at which both are compared.
     const AFTER: f64 = 0.3;
-    let exactly = exactly_pressed(1.2);
+    let exactly = Exactly { amplitude: 1.2 };
     let leaves = exactly.release();
     let end = leaves.to_f64() + AFTER;
     let setup = |v: f64| pressed(0.0, -v, 0.5, sine(1.0, 1.2, 0.0), end);
@@ -74,7 +107,7 @@ pub(super) fn chatter_at_release(bench: &Bench) -> Trials {
         if comes_to_rest(middle)? { low = middle } else { high = middle }
     }
     let neighbours = bracketed && high.to_bits() - low.to_bits() == 1;
-    let (gap, _) = exactly.flight((dd(0.0), dd(0.0)), leaves, dd(end));
+    let (gap, _) = exactly.flight((0.0, dd(0.0)), leaves, dd(end));
     let exact = (dd(1.0) - gap).to_f64();
     let mut trials = Vec::new();
     for (name, v) in [("just rests", low), ("just does not", high)] {
@@ -147,11 +180,11 @@ pub(super) fn bias_at_threshold(bench: &Bench) -> Trials {
 }
 
 pub(super) fn plastic_sine(bench: &Bench) -> Trials {
-    let exactly = exactly_pressed(1.8);
+    let exactly = Exactly { amplitude: 1.8 };
     let mut trial = bench.run("10 periods", &pressed(0.0, 0.0, 0.0, sine(1.0, 1.8, 0.0), 10.0), &[])?;
     let first = exactly.release();
-    let landing = exactly.landing(first).unwrap_or(dd(f64::NAN));
-    let speed = exactly.flight((dd(0.0), dd(0.0)), first, landing).1.to_f64().abs();
+    let landing = exactly.landing(first);
+    let speed = exactly.flight((0.0, dd(0.0)), first, landing).1.to_f64().abs();
     let angle = (1.0_f64 / 1.8).asin();
     let per_flight = trial.run.summary.steps as f64 / 10.0;
     let in_time = |kind: EventKind, first: DoubleDouble, allowed: f64| -> Vec<(f64, f64)> {
@@ -175,15 +208,15 @@ pub(super) fn plastic_sine(bench: &Bench) -> Trials {
 }
 
 pub(super) fn impact_at_release(bench: &Bench) -> Trials {
-    let exactly = exactly_pressed(1.2);
+    let exactly = Exactly { amplitude: 1.2 };
     let leaves = exactly.release();
     let gap = 0.1;
     // the gap at t* is linear in the start speed
-    let missing = exactly.flight((dd(gap), dd(0.0)), dd(0.0), leaves).0;
+    let missing = exactly.flight((gap, dd(0.0)), dd(0.0), leaves).0;
     let exact = -(missing / leaves);
     let end = leaves.to_f64() + 0.3;
-    let after = exactly.flight((dd(0.0), dd(0.0)), leaves, dd(end)).0.to_f64();
-    let landing = exactly.flight((dd(gap), exact), dd(0.0), leaves).1.to_f64().abs();
+    let after = exactly.flight((0.0, dd(0.0)), leaves, dd(end)).0.to_f64();
+    let landing = exactly.flight((gap, exact), dd(0.0), leaves).1.to_f64().abs();
     let mut trials = Vec::new();
     for (name, ulps) in [("just before", 8), ("at it", 0), ("just after", -8)] {
         // faster towards the stop lands sooner
