@@ -134,7 +134,7 @@ impl Trial {
         }
     }
 
-    /// The error that steps add up to where none of them grows.
+    /// The sum of the errors of all steps, as it is where no error grows.
     pub fn added(&self) -> f64 {
         self.run.summary.steps as f64 * STEP_ERROR
     }
@@ -145,7 +145,7 @@ impl Trial {
 
     /// Time in s of the first event of a kind; NaN without one.
     pub fn first(&self, kind: EventKind) -> f64 {
-        times(&self.run, kind).first().copied().unwrap_or(f64::NAN)
+        self.run.events.iter().find(|event| event.kind == kind).map_or(f64::NAN, |event| event.t)
     }
 
     /// Adds a number's error and the allowed error.
@@ -180,19 +180,20 @@ impl Trial {
         self.number("energy balance", residual, self.added());
     }
 
-    /// Adds the worst of some numbers of the run beside the reference, each relative to its scale.
+    /// Compares numbers of the run with the reference, each relative to its scale, and adds the worst.
     pub fn beside(&mut self, quantity: &'static str, numbers: &[f64], reference: &Reference, scales: &[f64]) {
         self.worst(quantity, pairs(numbers, &reference.numbers, &reference.allowed(self), scales));
     }
 
-    /// Adds the worst sample of a linear system, which carries an error on without growth: the steps up to it
-    /// add up, and the phase of the drive, `fastest` in Hz, is a product of two doubles. `exact` returns
-    /// displacement, velocity, and the relative error of the electrical state, NaN without one.
+    /// Adds the sample of a linear system that uses the largest share of the error allowed. The errors of the
+    /// steps up to it add up without growth, and the phase of the drive, whose highest frequency in Hz is
+    /// `fastest`, is a product of two doubles. `exact` returns displacement, velocity, and the relative error of
+    /// the electrical state if there is one.
     pub fn linear(
         &mut self,
         quantity: &'static str,
         fastest: f64,
-        exact: impl Fn(&Sample) -> (f64, f64, f64),
+        exact: impl Fn(&Sample) -> (f64, f64, Option<f64>),
     ) {
         let (scales, steps) = (self.model.scales(), self.run.summary.steps as f64);
         let pair = |sample: &Sample| {
@@ -201,7 +202,8 @@ impl Trial {
             // at least one step
             let progress = (sample.t / self.model.duration()).max(1.0 / steps);
             let phase = TAU * fastest * sample.t * f64::EPSILON;
-            (mechanical.max(electrical), steps * STEP_ERROR * progress + phase)
+            let error = electrical.map_or(mechanical, |electrical| mechanical.max(electrical));
+            (error, steps * STEP_ERROR * progress + phase)
         };
         self.worst(quantity, self.run.samples.iter().map(pair).collect());
     }

@@ -58,7 +58,7 @@ fn sampled(
     let fastest = model.excitation().fastest().unwrap_or(0.0);
     trial.linear("state at 97 samples", fastest, |sample| {
         let (x, v) = exact(&model, sample.t);
-        (x.to_f64(), v.to_f64(), f64::NAN)
+        (x.to_f64(), v.to_f64(), None)
     });
     Ok(vec![trial])
 }
@@ -186,7 +186,7 @@ fn coupled(bench: &Bench, name: &'static str, setup: &Setup) -> Result<Trial, St
     let (start, size) = ([x, v, dd(trial.model.start_electrical())], electrical_size(&trial.model, &exact));
     trial.linear("state at 41 samples", exact.tone.1, |sample| {
         let [x, v, s] = exact.state(start, dd(0.0), dd(sample.t)).map(|value| value.to_f64());
-        (x, v, off(sample.electrical, s, size))
+        (x, v, Some(off(sample.electrical, s, size)))
     });
     trial.energy_balance();
     Ok(trial)
@@ -221,7 +221,8 @@ pub(super) fn no_inductance(bench: &Bench) -> Trials {
     none.linear("state and current at 41 samples", 7.0, |sample| {
         let (x, v) = damped.nearest(model.start(), 0.0, sample.t, &forcings);
         let current = model.output(sample).map_or(f64::NAN, |output| output.current);
-        (x, v, off(current, coupling * v / resistance, coupling * scales.speed / resistance))
+        let error = off(current, coupling * v / resistance, coupling * scales.speed / resistance);
+        (x, v, Some(error))
     });
     none.fact("no state of its own", !model.has_electrical_state());
     let mut trials = Vec::new();

@@ -19,12 +19,12 @@ fn pressed(gap: f64, v: f64, restitution: f64, drive: Excitation, duration: f64)
 }
 
 /// The same with a sine of 1 Hz in closed form, in the gap y from the stop: y'' = -1 + amplitude sin(2 pi t).
-struct Exactly {
+struct ClosedForm {
     /// In m/s^2, above 1.
     amplitude: f64,
 }
 
-impl Exactly {
+impl ClosedForm {
     /// The first instant in s at which the press falls through 0: asin(1/amplitude)/(2 pi).
     fn release(&self) -> DoubleDouble {
         sine_turns(dd(1.0) / dd(self.amplitude))
@@ -77,7 +77,7 @@ pub(super) fn chatter_incomplete(bench: &Bench) -> Trials {
     let reference = bench.reference(&setup, &[], CHANGE, impacts)?;
     let mut trial = bench.run("e = 0.9", &setup, &[])?;
     let found = impacts(&trial.run);
-    let leaves = Exactly { amplitude: 1.2 }.release().to_f64();
+    let leaves = ClosedForm { amplitude: 1.2 }.release().to_f64();
     let is_before = |times: &[f64]| times.iter().any(|t| *t < leaves);
     let rests_before = is_before(&times(&trial.run, EventKind::Rest));
     let in_chatter = is_before(&found) && found.len() == reference.numbers.len() && !rests_before;
@@ -89,8 +89,8 @@ pub(super) fn chatter_incomplete(bench: &Bench) -> Trials {
 pub(super) fn chatter_at_release(bench: &Bench) -> Trials {
     /// Time in s after the release at which both are compared.
     const AFTER: f64 = 0.3;
-    let exactly = Exactly { amplitude: 1.2 };
-    let leaves = exactly.release();
+    let closed_form = ClosedForm { amplitude: 1.2 };
+    let leaves = closed_form.release();
     let end = leaves.to_f64() + AFTER;
     let setup = |v: f64| pressed(0.0, -v, 0.5, sine(1.0, 1.2, 0.0), end);
     // the order of events decides, not their times, which may be equal
@@ -107,7 +107,7 @@ pub(super) fn chatter_at_release(bench: &Bench) -> Trials {
         if comes_to_rest(middle)? { low = middle } else { high = middle }
     }
     let neighbours = bracketed && high.to_bits() - low.to_bits() == 1;
-    let (gap, _) = exactly.flight((0.0, dd(0.0)), leaves, dd(end));
+    let (gap, _) = closed_form.flight((0.0, dd(0.0)), leaves, dd(end));
     let exact = (dd(1.0) - gap).to_f64();
     let mut trials = Vec::new();
     for (name, v) in [("just rests", low), ("just does not", high)] {
@@ -180,11 +180,11 @@ pub(super) fn bias_at_threshold(bench: &Bench) -> Trials {
 }
 
 pub(super) fn plastic_sine(bench: &Bench) -> Trials {
-    let exactly = Exactly { amplitude: 1.8 };
+    let closed_form = ClosedForm { amplitude: 1.8 };
     let mut trial = bench.run("10 periods", &pressed(0.0, 0.0, 0.0, sine(1.0, 1.8, 0.0), 10.0), &[])?;
-    let first = exactly.release();
-    let landing = exactly.landing(first);
-    let speed = exactly.flight((0.0, dd(0.0)), first, landing).1.to_f64().abs();
+    let first = closed_form.release();
+    let landing = closed_form.landing(first);
+    let speed = closed_form.flight((0.0, dd(0.0)), first, landing).1.to_f64().abs();
     let angle = (1.0_f64 / 1.8).asin();
     let per_flight = trial.run.summary.steps as f64 / 10.0;
     let in_time = |kind: EventKind, first: DoubleDouble, allowed: f64| -> Vec<(f64, f64)> {
@@ -208,15 +208,15 @@ pub(super) fn plastic_sine(bench: &Bench) -> Trials {
 }
 
 pub(super) fn impact_at_release(bench: &Bench) -> Trials {
-    let exactly = Exactly { amplitude: 1.2 };
-    let leaves = exactly.release();
+    let closed_form = ClosedForm { amplitude: 1.2 };
+    let leaves = closed_form.release();
     let gap = 0.1;
     // the gap at t* is linear in the start speed
-    let missing = exactly.flight((gap, dd(0.0)), dd(0.0), leaves).0;
+    let missing = closed_form.flight((gap, dd(0.0)), dd(0.0), leaves).0;
     let exact = -(missing / leaves);
     let end = leaves.to_f64() + 0.3;
-    let after = exactly.flight((0.0, dd(0.0)), leaves, dd(end)).0.to_f64();
-    let landing = exactly.flight((gap, exact), dd(0.0), leaves).1.to_f64().abs();
+    let after = closed_form.flight((0.0, dd(0.0)), leaves, dd(end)).0.to_f64();
+    let landing = closed_form.flight((gap, exact), dd(0.0), leaves).1.to_f64().abs();
     let mut trials = Vec::new();
     for (name, ulps) in [("just before", 8), ("at it", 0), ("just after", -8)] {
         // faster towards the stop lands sooner
