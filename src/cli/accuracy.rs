@@ -6,7 +6,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use interwell::output::{Sink, accuracy_figure, aligned};
 use interwell::study::Task;
-use interwell::study::accuracy::{HARD_CASES, PROBLEMS, Report, Selection, Stopped, accuracy};
+use interwell::study::accuracy::{PROBLEMS, Report, Selection, Stopped, accuracy, description, names};
 
 use super::failure::Failure;
 use super::options::{Common, PlotOptions};
@@ -140,20 +140,10 @@ fn verdict(report: &Report) -> Result<(), Failure> {
     }
 }
 
-/// Describes the problems and cases, one paragraph each.
+/// Describes the selected problems and cases, or all of them, one paragraph each.
 fn list(wanted: &[String]) -> String {
-    let shown = |name: &str| wanted.is_empty() || wanted.iter().any(|chosen| chosen == name);
-    let mut text = String::new();
-    for problem in PROBLEMS.iter().filter(|problem| shown(problem.name)) {
-        text += &format!("{}\n  {}\n  Error: {}\n", problem.name, problem.problem, problem.error);
-    }
-    for case in HARD_CASES.iter().filter(|case| shown(case.name)) {
-        text += &format!(
-            "{}\n  {}\n  Answer: {}\n  Digits allowed: {}\n",
-            case.name, case.problem, case.answer, case.conditioning
-        );
-    }
-    text
+    let is_shown = |name: &&str| wanted.is_empty() || wanted.iter().any(|chosen| chosen == name);
+    names().filter(is_shown).map(description).collect()
 }
 
 /// A progress bar, hidden unless standard error is a terminal.

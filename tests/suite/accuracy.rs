@@ -4,10 +4,12 @@ use std::collections::HashSet;
 use std::f64::consts::TAU;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use interwell::dynamics::{Model, Phase};
+use interwell::dynamics::{Model, Phase, Request};
 use interwell::study::Task;
-use interwell::study::accuracy::methods::{Keep, MethodRun, Scheme, dormand_prince, fixed_step};
-use interwell::study::accuracy::{Check, HARD_CASES, Report, Selection, Stopped, Variant, accuracy, names};
+use interwell::study::accuracy::methods::{MethodRun, Scheme, dormand_prince, fixed_step};
+use interwell::study::accuracy::{
+    Check, HARD_CASES, Report, Selection, Stopped, Variant, accuracy, description, names,
+};
 
 use crate::support::*;
 
@@ -47,6 +49,20 @@ fn names_are_distinct_and_each_selects_its_own() {
         assert!(Selection::of(&[(*name).to_owned()]).unwrap().parts() >= 1);
     }
     assert!(Selection::of(&["separatrices".to_owned()]).unwrap_err().to_string().contains("separatrix"));
+}
+
+#[test]
+fn each_name_is_described() {
+    for name in names() {
+        let text = description(name);
+        let lines: Vec<&str> = text.lines().collect();
+        assert!(lines[0] == name && lines[1].starts_with("  "), "{text}");
+        let labels: Vec<&str> = lines[2..].iter().filter_map(|line| line.split(':').next()).collect();
+        let is_case = HARD_CASES.iter().any(|case| case.name == name);
+        let expected: &[&str] = if is_case { &["  Answer", "  Digits allowed"] } else { &["  Error"] };
+        assert_eq!(labels, expected, "{name}");
+    }
+    assert_eq!(description("separatrices"), "");
 }
 
 #[test]
@@ -124,7 +140,7 @@ fn the_schemes_have_their_orders() {
     for (scheme, order) in
         [(Scheme::SemiImplicitEuler, 1.0), (Scheme::VelocityVerlet, 2.0), (Scheme::RungeKutta4, 4.0)]
     {
-        let at = |step: f64| fixed_step(&model, scheme, step, &Keep::default()).statistics;
+        let at = |step: f64| fixed_step(&model, scheme, step, &Request::default()).statistics;
         let (coarse, fine) = (at(0.02), at(0.01));
         assert_eq!((coarse.steps, fine.steps), (500, 1000));
         let error = |x: f64| (x - exact.final_x).abs();
@@ -143,7 +159,7 @@ fn clamp_and_bounce_is_of_first_order_in_the_times_of_impacts_whatever_the_schem
     let hit = (2.0f64 / 9.81).sqrt();
     for scheme in Scheme::ALL {
         for step in [1e-2, 1e-3, 1e-4] {
-            let keep = Keep { impacts: true, ..Keep::default() };
+            let keep = Request { events: true, ..Request::default() };
             let run = fixed_step(&model, scheme, step, &keep);
             let late = run.impacts[0].t - hit;
             // the Euler step falls a little ahead of the ball: half a step of its speed
@@ -160,7 +176,7 @@ fn the_adaptive_method_follows_its_tolerance_and_locates_impacts() {
     let model = smooth();
     let exact = run(&model).summary;
     let error = |tolerance: f64| {
-        let own = dormand_prince(&model, tolerance, &Keep::default()).statistics;
+        let own = dormand_prince(&model, tolerance, &Request::default()).statistics;
         let x = (own.final_x - exact.final_x).abs();
         x.max((own.rms_velocity.unwrap() / exact.rms_velocity.unwrap() - 1.0).abs())
     };
@@ -170,7 +186,7 @@ fn the_adaptive_method_follows_its_tolerance_and_locates_impacts() {
     // P2 to 1e-10: the impacts above 1 cm/s, the crossings and the RMS velocity are those of the program
     let model = preset("nominal-cubic", &["run.tolerance=1e-12"]);
     let (own, exact) =
-        (dormand_prince(&model, 1e-12, &Keep { impacts: true, ..Keep::default() }), run(&model));
+        (dormand_prince(&model, 1e-12, &Request { events: true, ..Request::default() }), run(&model));
     let hard = |impacts: &[interwell::dynamics::Event]| -> Vec<_> {
         impacts.iter().filter(|e| e.v_in.abs() > 1e-2).map(|e| (e.t, e.side)).collect()
     };
@@ -191,7 +207,7 @@ fn samples_lie_on_the_path_and_end_with_it() {
     // rest where it rests.
     let model = preset("paper", &[]);
     let times = every(0.01, 1000);
-    let keep = Keep { sample_times: &times, impacts: true, ..Keep::default() };
+    let keep = Request { sample_times: &times, events: true, ..Request::default() };
     let all: [MethodRun; 2] =
         [fixed_step(&model, Scheme::RungeKutta4, 1e-4, &keep), dormand_prince(&model, 1e-8, &keep)];
     for own in &all {
@@ -210,15 +226,15 @@ fn a_run_that_leaves_the_curve_or_is_told_to_stop_says_so() {
     // 20 m/s outward: the flexures' curve ends a millimetre on
     let model = preset("paper", &["stops=None", "start=At(x_mm: 7, v_m_per_s: 20)"]);
     for own in [
-        fixed_step(&model, Scheme::VelocityVerlet, 1e-5, &Keep::default()),
-        dormand_prince(&model, 1e-8, &Keep::default()),
+        fixed_step(&model, Scheme::VelocityVerlet, 1e-5, &Request::default()),
+        dormand_prince(&model, 1e-8, &Request::default()),
     ] {
         let ended = own.statistics.ended_at.unwrap();
         assert!(ended < 1e-3, "{ended}");
         assert_eq!(own.statistics.rms_velocity, None);
     }
     let cancel = AtomicBool::new(true);
-    let keep = Keep { cancel: Some(&cancel), ..Keep::default() };
+    let keep = Request { cancel: Some(&cancel), ..Request::default() };
     let own = fixed_step(&smooth(), Scheme::RungeKutta4, 1e-6, &keep);
     assert!(own.statistics.ended_at.is_some_and(|t| t < 0.1));
     let own = dormand_prince(&preset("duffing-chaos", &[]), 1e-10, &keep);

@@ -6,7 +6,8 @@ use std::sync::atomic::AtomicBool;
 use interwell::dynamics::Model;
 use interwell::study::accuracy::methods::Scheme;
 use interwell::study::accuracy::scene::{
-    Course, StepSize, TRUSTED_SHARE, Tolerances, Trust, Unfit, scene_table, step_size, tolerances, trust,
+    Course, Lateness, StepSize, TOLERANCES, TRUSTED_SHARE, Tolerances, Trust, Unfit, duration, length_mm,
+    moment, scene_table, small_length, step_name, step_size, tolerances, trust,
 };
 
 use crate::support::*;
@@ -38,8 +39,8 @@ fn fixed_steps_arrive_late_and_count_too_many_impacts() {
     assert_eq!((late.matched, late.of), (60, 60));
     near(late.earliest, 0.55e-3, 0.01e-3);
     near(late.latest, 0.55e-3, 0.01e-3);
-    assert_eq!(fine.impacts.1, 3120);
-    assert!((700..900).contains(&fine.impacts.0), "{:?}", fine.impacts);
+    assert_eq!(fine.stepped.impacts, 3120);
+    assert!((700..900).contains(&fine.exact.impacts), "{}", fine.exact.impacts);
     // whatever the scheme, a step of 10 us is off by as much in time
     for scheme in Scheme::ALL {
         let late = stepped(&model, scheme, 1e-5).late.unwrap();
@@ -66,9 +67,12 @@ fn early_and_late_are_counted_and_more_impacts_are_explained() {
     // shorter steps count more impacts, and nearly all of what is too many are hops
     let model = preset("nominal-cubic", &[]);
     let [coarse, fine] = [1.0 / 240.0, 1.0 / 600.0].map(|step| stepped(&model, Scheme::RungeKutta4, step));
-    assert!(fine.impacts.1 > coarse.impacts.1 && fine.hops > coarse.hops);
+    assert!(fine.stepped.impacts > coarse.stepped.impacts && fine.hops > coarse.hops);
     for own in [&coarse, &fine] {
-        assert!(own.hops <= own.impacts.1 && own.hops + own.impacts.0 > own.impacts.1, "{own:?}");
+        assert!(
+            own.hops <= own.stepped.impacts && own.hops + own.exact.impacts > own.stepped.impacts,
+            "{own:?}"
+        );
         let words = own.sentences().join(" ");
         assert!(
             words.contains(&format!("{} of them are hops of a mass that truly rests", own.hops)),
@@ -85,7 +89,7 @@ fn the_drawn_paths_are_those_of_the_runs() {
     let model = preset("nominal-cubic", &[]);
     let run = stepped(&model, Scheme::RungeKutta4, 1.0 / 600.0);
     assert_eq!((run.span, run.drawn), (10.0, 1.0));
-    assert_eq!((run.ghost.len(), run.steps.1), (601, 6000));
+    assert_eq!((run.ghost.len(), run.stepped.steps), (601, 6000));
     for path in [&run.truth, &run.ghost] {
         assert!(path.is_sorted_by(|a, b| a.0 <= b.0));
         assert_eq!((path[0].0, path[path.len() - 1].0), (0.0, 1.0));
@@ -108,10 +112,15 @@ fn an_error_is_estimated_that_is_known_otherwise() {
         assert!(own.error > 0.0 && own.error < 1e-4 * own.travel, "{name} {own:?}");
         let words = own.short(0.0).unwrap();
         assert!(words.starts_with("Error about ") && words.ends_with(" mm"), "{words}");
+        let (words, span) = (own.long(0.0), model.duration());
+        assert!(words.ends_with(&format!("mm over {span:.0} s from the start.")), "{words}");
     }
     let model = preset("paper", &[]);
     let error = |model: &Model| trusted(model).error;
     let exact = at_tolerances(&preset("paper", &["run.tolerance=1e-14"]));
+    let tolerances = |found: &Tolerances| found.runs.iter().map(|run| run.tolerance).collect::<Vec<_>>();
+    assert_eq!(tolerances(&exact), [1e-3, 1e-6, 1e-9, 1e-12, 1e-14]);
+    assert_eq!(tolerances(&at_tolerances(&model)), TOLERANCES);
     let known = exact.runs.iter().find(|run| run.tolerance == 1e-9).unwrap().error;
     assert!((0.5..2.0).contains(&(error(&model) / known)), "{} {known}", error(&model));
     // at the end of the doubles, too
@@ -142,7 +151,7 @@ fn chaos_is_called_chaos_and_nothing_else_is() {
     let runs = at_tolerances(&preset("first-look", &[])).runs;
     let trust: Vec<f64> = runs.iter().map(|run| run.trusted.unwrap()).collect();
     assert!(trust.is_sorted() && trust[3] < 6.0 * trust[0], "{trust:?}");
-    let rms: Vec<f64> = runs.iter().map(|run| run.rms_velocity.unwrap()).collect();
+    let rms: Vec<f64> = runs.iter().map(|run| run.statistics.rms_velocity.unwrap()).collect();
     assert!(rms.iter().all(|own| (own / rms[3] - 1.0).abs() < 0.1), "{rms:?}");
     // a rhythm is none
     assert_eq!(trusted(&preset("duffing", &[])).course, Course::Kept);
@@ -172,8 +181,8 @@ fn digits_cost_time() {
     let found = at_tolerances(&model);
     let own: Vec<f64> = found.runs.iter().map(|run| run.tolerance).collect();
     assert_eq!(own, [1e-3, 1e-6, 1e-7, 1e-9, 1e-12]);
-    assert!(found.runs.is_sorted_by(|a, b| a.error > b.error && a.steps <= b.steps));
-    assert!(found.runs.iter().all(|run| run.trusted.is_none() && run.cpu_s > 0.0));
+    assert!(found.runs.is_sorted_by(|a, b| a.error > b.error && a.statistics.steps <= b.statistics.steps));
+    assert!(found.runs.iter().all(|run| run.trusted.is_none() && run.statistics.cpu_s > 0.0));
     assert!(found.runs[0].error < TRUSTED_SHARE * found.travel);
     assert_eq!(found.span, 10.0);
     let stepped = stepped(&model, Scheme::VelocityVerlet, 1e-3);
@@ -195,8 +204,38 @@ fn what_does_not_fit_is_said() {
     // the whole of a long run is not gone through in the smallest steps
     let long = preset("duffing-chaos", &[]);
     let run = stepped(&long, Scheme::SemiImplicitEuler, 1e-4);
-    assert!(run.span < 2001.0 && run.span > 1000.0 && run.steps.1 <= 20_000_000, "{}", run.span);
+    assert!(run.span < 2001.0 && run.span > 1000.0 && run.stepped.steps <= 20_000_000, "{}", run.span);
     // steps that are too long for a wall
     let run = stepped(&preset("first-look", &[]), Scheme::RungeKutta4, 1.0 / 60.0);
-    assert!(run.ended_at.is_some() && run.sentences()[0].starts_with("It flew apart"), "{run:?}");
+    assert!(run.stepped.ended_at.is_some() && run.sentences()[0].starts_with("It flew apart"), "{run:?}");
+}
+
+#[test]
+fn numbers_are_short_and_have_their_unit() {
+    assert_eq!(
+        [0.014, 5.5e-4, 3.2, 0.137, 9.96e-3, 4e-6, 0.0].map(duration),
+        ["14 ms", "0.55 ms", "3.2 s", "137 ms", "10 ms", "4.0 µs", "0 µs"]
+    );
+    assert_eq!([2e-12, 3.4e-5, 0.0042].map(length_mm), ["2e-9", "0.034", "4.2"]);
+    assert_eq!(small_length(0.0, 2e-3), "below 1e-15 mm");
+    assert_eq!([0.12, 0.97, 4.21, 171.0].map(moment), ["120 ms", "1.0 s", "4.2 s", "171 s"]);
+    let steps = [1.0 / 60.0, 1.0 / 600.0, 1.0 / 30.0, 1e-3, 0.01, 1e-5].map(step_name);
+    assert_eq!(steps, ["1/60 s", "1/600 s", "1/30 s", "1.0 ms", "10 ms", "10 µs"]);
+}
+
+#[test]
+fn lateness_says_which_way() {
+    let late = Lateness { median: 0.014, earliest: 0.013, latest: 0.017, matched: 60, early: 0, of: 60 };
+    assert_eq!(late.words(), "Impacts arrive 14 ms late (worst 17 ms).");
+    // both ways each is counted: a median would hide the other
+    let mixed = Lateness { earliest: -0.02, matched: 3, early: 1, ..late };
+    assert_eq!(
+        mixed.words(),
+        "Of the first 3 impacts after a flight 2 arrive late, by up to 17 ms, and 1 early, by up to 20 \
+         ms; then it takes another course."
+    );
+    let early = Lateness { median: -0.01, earliest: -0.02, latest: -0.01, early: 60, ..late };
+    assert_eq!(early.words(), "Impacts arrive 10 ms early (worst 20 ms).");
+    let few = Lateness { earliest: -0.003, early: 1, ..late };
+    assert_eq!(few.words(), "Impacts arrive 14 ms late (worst 17 ms), 1 of 60 up to 3.0 ms early.");
 }

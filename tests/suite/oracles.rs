@@ -3,6 +3,7 @@
 mod ball;
 mod consistent;
 mod demanding;
+mod exact;
 mod forced;
 mod free;
 mod late;

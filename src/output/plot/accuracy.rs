@@ -25,7 +25,7 @@ const LEAST: f64 = 1e-17;
 
 /// The picture of a table as [`work_table`](crate::study::accuracy::Report::work_table) gives it.
 pub fn accuracy_figure(table: &Table, version: &str, theme: &Theme) -> Figure {
-    let (problems, methods) = (table.words("problem"), table.words("method"));
+    let (problems, methods) = (table.words("case"), table.words("method"));
     let column = |name: &str| table.numbers(name).unwrap_or_default();
     let (errors, times) = (column("error"), column("cpu_s"));
     let distinct = |all: &[&'static str]| {

@@ -4,13 +4,13 @@
 //! steps of a run, of the error of one step ([`STEP_ERROR`]) times the sensitivity of the answer to it.
 //! The second factor is the problem's conditioning; each case derives it from the closed form or, where
 //! there is none, takes it from the reference: the answer's change under small relative changes of the
-//! data ([`Bench::sensitivity`]).
+//! data ([`Bench::reference`]).
 
-use std::sync::atomic::Ordering;
+use std::f64::consts::TAU;
 
 use super::Stopped;
-use super::scenes::Setup;
-use crate::dynamics::{Model, Outcome, Request, Run};
+use super::setup::Setup;
+use crate::dynamics::{Event, EventKind, Model, Outcome, Request, Run, Sample};
 use crate::scene::{FieldPath, numeric_fields};
 use crate::study::Task;
 
@@ -46,6 +46,11 @@ pub enum Check {
 }
 
 impl Check {
+    /// A number, whose allowed error is at least two spacings of the doubles in which it is given.
+    fn number(error: f64, allowed: f64) -> Self {
+        Self::Error { error, allowed: allowed.max(2.0 * f64::EPSILON) }
+    }
+
     /// Whether the check passes.
     pub fn passes(self) -> bool {
         match self {
@@ -67,6 +72,17 @@ impl Check {
         match self {
             Self::Error { error, .. } => Some(digits(error)),
             Self::Fact(_) => None,
+        }
+    }
+
+    /// The error as a share of the error allowed; a fact comes before all numbers if it fails, after them if
+    /// it holds.
+    fn share(self) -> f64 {
+        match self {
+            Self::Fact(false) => f64::INFINITY,
+            Self::Fact(true) => -1.0,
+            Self::Error { error, .. } if error.is_nan() => f64::INFINITY,
+            Self::Error { error, allowed } => error / allowed,
         }
     }
 }
@@ -92,64 +108,130 @@ pub struct Variant {
 }
 
 impl Variant {
-    /// A variant of `run` without checks.
-    pub(super) fn of(name: &'static str, run: &Run) -> Self {
-        let summary = &run.summary;
-        Self {
-            name,
+    /// The check with the smallest margin: one that fails, else the number nearest to its bound, else a fact.
+    pub fn tightest(&self) -> Option<(&'static str, Check)> {
+        self.checks.iter().copied().max_by(|a, b| a.1.share().total_cmp(&b.1.share()))
+    }
+}
+
+/// A run of a case, and the checks of it so far.
+pub(super) struct Trial {
+    name: &'static str,
+    pub model: Model,
+    pub run: Run,
+    checks: Vec<(&'static str, Check)>,
+}
+
+impl Trial {
+    pub fn into_variant(self) -> Variant {
+        let summary = &self.run.summary;
+        Variant {
+            name: self.name,
             steps: summary.steps,
             evaluations: summary.evaluations,
             cpu_s: summary.cpu_s,
-            checks: Vec::new(),
+            checks: self.checks,
         }
     }
 
-    /// Adds a number's error and the allowed error, at least two spacings of the doubles in which the number
-    /// is given.
-    pub(super) fn number(mut self, quantity: &'static str, error: f64, allowed: f64) -> Self {
-        let allowed = allowed.max(2.0 * f64::EPSILON);
-        self.checks.push((quantity, Check::Error { error, allowed }));
-        self
+    /// The sum of the errors of all steps, as it is where no error grows.
+    pub fn added(&self) -> f64 {
+        self.run.summary.steps as f64 * STEP_ERROR
+    }
+
+    pub fn impacts(&self) -> impl Iterator<Item = &Event> {
+        self.run.events.iter().filter(|event| event.kind == EventKind::Impact)
+    }
+
+    /// Time in s of the first event of a kind; NaN without one.
+    pub fn first(&self, kind: EventKind) -> f64 {
+        self.run.events.iter().find(|event| event.kind == kind).map_or(f64::NAN, |event| event.t)
+    }
+
+    /// Adds a number's error and the allowed error.
+    pub fn number(&mut self, quantity: &'static str, error: f64, allowed: f64) {
+        self.checks.push((quantity, Check::number(error, allowed)));
+    }
+
+    pub fn fact(&mut self, quantity: &'static str, holds: bool) {
+        self.checks.push((quantity, Check::Fact(holds)));
     }
 
     /// Adds the pair of error and allowed error with the largest ratio; a failed fact if there is no pair.
-    pub(super) fn worst(self, quantity: &'static str, pairs: impl IntoIterator<Item = (f64, f64)>) -> Self {
-        let floor = 2.0 * f64::EPSILON;
-        let shares = pairs.into_iter().map(|(error, allowed)| (error, allowed.max(floor)));
-        let share = |pair: &(f64, f64)| if pair.0.is_nan() { f64::INFINITY } else { pair.0 / pair.1 };
-        match shares.max_by(|a, b| share(a).total_cmp(&share(b))) {
-            Some((error, allowed)) => self.number(quantity, error, allowed),
-            None => self.fact(quantity, false),
-        }
+    pub fn worst(&mut self, quantity: &'static str, pairs: Vec<(f64, f64)>) {
+        let checks = pairs.into_iter().map(|(error, allowed)| Check::number(error, allowed));
+        let worst = checks.max_by(|a, b| a.share().total_cmp(&b.share()));
+        self.checks.push((quantity, worst.unwrap_or(Check::Fact(false))));
     }
 
-    pub(super) fn fact(mut self, quantity: &'static str, holds: bool) -> Self {
-        self.checks.push((quantity, Check::Fact(holds)));
-        self
+    /// Adds the time of the first event of a kind; the error allowed is relative to `exact` in s.
+    pub fn time(&mut self, quantity: &'static str, kind: EventKind, exact: f64, allowed: f64) {
+        self.number(quantity, off(self.first(kind), exact, exact), allowed);
     }
 
-    /// The check with the smallest margin: one that fails, else the number nearest to its bound, else a fact.
-    pub fn tightest(&self) -> Option<(&'static str, Check)> {
-        let share = |check: &Check| match *check {
-            Check::Fact(false) => f64::INFINITY,
-            Check::Fact(true) => -1.0,
-            Check::Error { error, .. } if error.is_nan() => f64::INFINITY,
-            Check::Error { error, allowed } => error / allowed,
+    /// Adds the error of the displacement at the end, relative to `scale` in m.
+    pub fn final_x(&mut self, quantity: &'static str, exact: f64, scale: f64, allowed: f64) {
+        self.number(quantity, off(self.run.summary.final_x, exact, scale), allowed);
+    }
+
+    /// Adds the residual of the ledger.
+    pub fn energy_balance(&mut self) {
+        let residual = self.run.summary.ledger.map_or(f64::NAN, |ledger| ledger.energy_residual);
+        self.number("energy balance", residual, self.added());
+    }
+
+    /// Compares numbers of the run with the reference, each relative to its scale, and adds the worst.
+    pub fn beside(&mut self, quantity: &'static str, numbers: &[f64], reference: &Reference, scales: &[f64]) {
+        self.worst(quantity, pairs(numbers, &reference.numbers, &reference.allowed(self), scales));
+    }
+
+    /// Adds the sample of a linear system that uses the largest share of the error allowed. The errors of the
+    /// steps up to it add up without growth, and the phase of the drive, whose highest frequency in Hz is
+    /// `fastest`, is a product of two doubles. `exact` returns displacement, velocity, and the relative error of
+    /// the electrical state if there is one.
+    pub fn linear(
+        &mut self,
+        quantity: &'static str,
+        fastest: f64,
+        exact: impl Fn(&Sample) -> (f64, f64, Option<f64>),
+    ) {
+        let (scales, steps) = (self.model.scales(), self.run.summary.steps as f64);
+        let pair = |sample: &Sample| {
+            let (x, v, electrical) = exact(sample);
+            let mechanical = off(sample.x, x, scales.length).max(off(sample.v, v, scales.speed));
+            // at least one step
+            let progress = (sample.t / self.model.duration()).max(1.0 / steps);
+            let phase = TAU * fastest * sample.t * f64::EPSILON;
+            let error = electrical.map_or(mechanical, |electrical| mechanical.max(electrical));
+            (error, steps * STEP_ERROR * progress + phase)
         };
-        self.checks.iter().copied().max_by(|a, b| share(&a.1).total_cmp(&share(&b.1)))
+        self.worst(quantity, self.run.samples.iter().map(pair).collect());
+    }
+}
+
+/// Numbers of a scene's run in double-double arithmetic, and their sensitivities to its data.
+pub(super) struct Reference {
+    pub numbers: Vec<f64>,
+    pub sensitivities: Vec<f64>,
+}
+
+impl Reference {
+    /// Errors that a run of the scene may have in the numbers: a [`STEP_ERROR`] of all data in every step; a
+    /// change of a datum acts once a time scale, so that shorter steps count for more.
+    pub fn allowed(&self, trial: &Trial) -> Vec<f64> {
+        let model = &trial.model;
+        let per_scale = trial.run.summary.steps as f64 * model.scales().time / model.duration();
+        let error = STEP_ERROR * per_scale.max(1.0);
+        self.sensitivities.iter().map(|sensitivity| sensitivity * error).collect()
     }
 }
 
 /// Runs of the cases, in doubles and in double-doubles.
 pub(super) struct Bench<'a> {
-    task: &'a Task<'a>,
+    pub task: &'a Task<'a>,
 }
 
-impl<'a> Bench<'a> {
-    pub fn new(task: &'a Task<'a>) -> Self {
-        Self { task }
-    }
-
+impl Bench<'_> {
     fn request<'b>(&'b self, times: &'b [f64]) -> Request<'b> {
         Request {
             sample_times: times,
@@ -161,68 +243,55 @@ impl<'a> Bench<'a> {
     }
 
     /// A run with events, ledger and samples at `times`, ascending.
-    pub fn run(&self, model: &Model, times: &[f64]) -> Result<Run, Stopped> {
-        self.unless_cancelled(model.run(&self.request(times)))
+    pub fn run(&self, name: &'static str, setup: &Setup, times: &[f64]) -> Result<Trial, Stopped> {
+        self.run_as(name, setup, &self.request(times))
     }
 
     /// A run that keeps statistics alone.
-    pub fn run_bare(&self, model: &Model) -> Result<Run, Stopped> {
-        self.unless_cancelled(model.run(&Request { events: false, ledger: false, ..self.request(&[]) }))
+    pub fn run_bare(&self, name: &'static str, setup: &Setup) -> Result<Trial, Stopped> {
+        self.run_as(name, setup, &Request { events: false, ledger: false, ..self.request(&[]) })
+    }
+
+    fn run_as(&self, name: &'static str, setup: &Setup, request: &Request) -> Result<Trial, Stopped> {
+        let model = setup.model()?;
+        let run = self.unless_cancelled(model.run(request))?;
+        Ok(Trial { name, model, run, checks: Vec::new() })
     }
 
     /// A run in double-double arithmetic.
-    pub fn reference(&self, model: &Model, times: &[f64]) -> Result<Run, Stopped> {
-        self.unless_cancelled(model.run_reference(&self.request(times), REFERENCE_TOLERANCE))
+    pub fn exact(&self, setup: &Setup, times: &[f64]) -> Result<Run, Stopped> {
+        self.unless_cancelled(setup.model()?.run_reference(&self.request(times), REFERENCE_TOLERANCE))
     }
 
     fn unless_cancelled(&self, run: Run) -> Result<Run, Stopped> {
         let cancelled = matches!(run.summary.outcome, Outcome::Cancelled { .. });
-        if cancelled || self.task.cancel.load(Ordering::Relaxed) { Err(Stopped::Cancelled) } else { Ok(run) }
+        if cancelled || self.task.is_cancelled() { Err(Stopped::Cancelled) } else { Ok(run) }
     }
 
-    /// Sensitivities of numbers of a run to its data: for each number the sum, over the data, of |change of
-    /// the number| per relative change of the datum, by runs in double-double arithmetic with the datum
-    /// changed by [`CHANGE`].
+    /// Numbers of a run, and their sensitivities to its data: for each number the sum, over the data, of
+    /// |change of the number| per relative change of the datum, by runs in double-double arithmetic with the
+    /// datum changed by `change`.
     ///
     /// The data are mass, start velocity, amplitude, damping, restitution, and a transducer's numbers, as far
     /// as the scene has them: a change of the mass is one of every acceleration all along the run, one of the
     /// restitution of every rebound, so that errors made on the way are covered and not only those of the
     /// start. `numbers` must return the same quantities in the same order for every run.
-    pub fn sensitivity(
+    pub fn reference(
         &self,
         setup: &Setup,
         times: &[f64],
-        numbers: impl Fn(&Run) -> Vec<f64>,
-    ) -> Result<Vec<f64>, Stopped> {
-        self.sensitivity_by(CHANGE, setup, times, numbers)
-    }
-
-    /// The same by a relative change of `change`.
-    pub fn sensitivity_by(
-        &self,
         change: f64,
-        setup: &Setup,
-        times: &[f64],
         numbers: impl Fn(&Run) -> Vec<f64>,
-    ) -> Result<Vec<f64>, Stopped> {
-        let base = numbers(&self.reference(&setup.model()?, times)?);
-        let mut sums = vec![0.0; base.len()];
+    ) -> Result<Reference, Stopped> {
+        let base = numbers(&self.exact(setup, times)?);
+        let mut sensitivities = vec![0.0; base.len()];
         for changed in changed(setup, change) {
-            let values = numbers(&self.reference(&changed.model()?, times)?);
-            for (i, sum) in sums.iter_mut().enumerate() {
+            let values = numbers(&self.exact(&changed, times)?);
+            for (i, sum) in sensitivities.iter_mut().enumerate() {
                 *sum += values.get(i).map_or(f64::INFINITY, |value| (value - base[i]).abs() / change);
             }
         }
-        Ok(sums)
-    }
-
-    /// Errors that a run of this scene may have in numbers with these sensitivities: a [`STEP_ERROR`] of all
-    /// data in every step, of which there are `steps` in the run; a change of a datum acts once a time scale,
-    /// so that shorter steps count for more.
-    pub fn allowed(model: &Model, steps: u64, sensitivities: &[f64]) -> Vec<f64> {
-        let per_scale = steps as f64 * model.scales().time / model.duration();
-        let error = STEP_ERROR * per_scale.max(1.0);
-        sensitivities.iter().map(|sensitivity| sensitivity * error).collect()
+        Ok(Reference { numbers: base, sensitivities })
     }
 }
 
@@ -257,7 +326,18 @@ fn changed(setup: &Setup, change: f64) -> Vec<Setup> {
     data.into_iter().filter_map(with).collect()
 }
 
+/// Times in s of the events of one kind.
+pub(super) fn times(run: &Run, kind: EventKind) -> Vec<f64> {
+    run.events.iter().filter(|event| event.kind == kind).map(|event| event.t).collect()
+}
+
 /// |value - exact| relative to `scale`.
 pub(super) fn off(value: f64, exact: f64, scale: f64) -> f64 {
     (value - exact).abs() / scale
+}
+
+/// Errors of values and errors allowed, each relative to its scale, as far as all four go.
+pub(super) fn pairs(values: &[f64], exact: &[f64], allowed: &[f64], scales: &[f64]) -> Vec<(f64, f64)> {
+    let all = values.iter().zip(exact).zip(allowed).zip(scales);
+    all.map(|(((value, exact), allowed), scale)| (off(*value, *exact, *scale), allowed / scale)).collect()
 }

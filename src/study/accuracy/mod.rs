@@ -13,16 +13,25 @@ mod measure;
 pub mod methods;
 mod precision;
 pub mod scene;
-mod scenes;
-mod stopped;
+mod setup;
 mod tables;
 
 pub use cases::{HARD_CASES, HardCase};
 pub use measure::{Check, REFERENCE_TOLERANCE, STEP_ERROR, Variant};
 pub use precision::{OWN, PROBLEMS, Point, Problem, Setting};
-pub use stopped::Stopped;
 
 use super::Task;
+
+/// Why the study has no result.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum Stopped {
+    /// It was told to stop.
+    #[error("told to stop")]
+    Cancelled,
+    /// A scene of the study cannot be run: a fault of the program.
+    #[error("a scene of the study cannot be run: {0}")]
+    Scene(String),
+}
 
 /// A name that cannot be selected.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -34,6 +43,14 @@ pub struct UnknownCase {
 /// Names of all parts of the study: the problems, then the hard cases.
 pub fn names() -> impl Iterator<Item = &'static str> {
     PROBLEMS.iter().map(|problem| problem.name).chain(HARD_CASES.iter().map(|case| case.name))
+}
+
+/// The part of the study called `name` in words: what is run, then what the error of a problem is, or how the
+/// answer of a case is known and why so many digits are allowed. Empty if there is none.
+pub fn description(name: &str) -> String {
+    let from_name = include_str!("list.txt").lines().skip_while(|line| *line != name).enumerate();
+    let entry = from_name.take_while(|(i, line)| *i == 0 || line.starts_with(' '));
+    entry.map(|(_, line)| format!("{line}\n")).collect()
 }
 
 /// Parts of the study to run.

@@ -10,7 +10,7 @@ use crate::study::accuracy::scene::{
 
 use super::super::ViewContext;
 use super::super::labels::haloed;
-use super::waiting::waiting_ui;
+use super::waiting_ui;
 
 /// Smallest height in points of the plot of error over processor time.
 const PICTURE: f32 = 110.0;
@@ -78,8 +78,8 @@ fn table_ui(ui: &mut Ui, style: &Style, known: &Tolerances, tolerance: f64) {
                 name.on_hover_text("The tolerance of this scene: under More, Advanced.");
             }
             ui.label(text(error(run, known))).on_hover_text(error_details(run, known));
-            ui.label(text(duration(run.cpu_s)));
-            ui.label(text(format!("{}", run.steps)));
+            ui.label(text(duration(run.statistics.cpu_s)));
+            ui.label(text(format!("{}", run.statistics.steps)));
             ui.end_row();
         }
     });
@@ -142,8 +142,9 @@ fn picture_ui(
 ) {
     let smallest = MIN_ERROR * known.travel.max(f64::MIN_POSITIVE);
     let point = |time: f64, error: f64| (time.max(1e-9), error.max(smallest));
-    let runs: Vec<(f64, f64)> = known.runs.iter().map(|run| point(run.cpu_s, run.error)).collect();
-    let ghost = stepped.filter(|run| run.ended_at.is_none()).map(|run| point(run.cpu_s.1, run.error));
+    let runs: Vec<(f64, f64)> = known.runs.iter().map(|run| point(run.statistics.cpu_s, run.error)).collect();
+    let ghost = stepped.filter(|run| run.stepped.ended_at.is_none());
+    let ghost = ghost.map(|run| point(run.stepped.cpu_s, run.error));
     let all: Vec<(f64, f64)> = runs.iter().copied().chain(ghost).collect();
     let rect = Rect::from_min_max(area.min + vec2(AXES.0, 24.0), area.max - vec2(22.0, AXES.1));
     let axes = Axes::new(rect, &all);

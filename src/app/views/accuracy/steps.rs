@@ -12,7 +12,7 @@ use crate::study::accuracy::scene::{StepSize, step_name};
 use super::super::ViewContext;
 use super::super::legend::{LEGEND, Symbol, legend};
 use super::super::plot::{marks, plot_place, still_plot};
-use super::waiting::waiting_ui;
+use super::waiting_ui;
 
 /// Ends of the slider in s.
 const RANGE: (f64, f64) = (1e-5, 1.0 / 30.0);
@@ -103,7 +103,7 @@ fn about(known: &StepSize) -> String {
          onto it, and the mass bounces from there (clamp and bounce). The true run locates each impact; it \
          counts those down to a millionth of the scene's speed, and the rest of a chatter in one sum.",
         crate::study::accuracy::scene::duration(known.span),
-        known.steps.1,
+        known.stepped.steps,
         step_name(known.step)
     )
 }

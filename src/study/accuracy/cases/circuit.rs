@@ -1,192 +1,18 @@
-//! Cases of a linear oscillator with a circuit: stiff, strongly coupled, and limits in which it vanishes.
+//! A circuit with stops: limits in which it vanishes, decay at rest, releases that it decides, impacts at
+//! which it must not jump.
 
 use std::f64::consts::TAU;
 
-use super::HardCase;
-use super::curves::{by_reference, hard_impacts};
-use super::drives::{even, tones};
-use crate::dynamics::{Model, Run};
-use crate::numeric::Scalar;
+use super::linear::{closed_form, electrical_size};
+use super::{Trials, hard_impacts, impacts_beside};
+use crate::dynamics::EventKind;
+use crate::numeric::{DoubleDouble, Number, Scalar, bisect};
 use crate::scene::{Mechanism, Transducer};
-use crate::study::accuracy::Stopped;
-use crate::study::accuracy::exact::{Coupled, Oscillator, dd};
-use crate::study::accuracy::measure::{Bench, STEP_ERROR, Variant, off};
-use crate::study::accuracy::scenes::{Setup, coil, layer, polynomial, sine};
+use crate::study::accuracy::exact::{dd, exp, sin_cos};
+use crate::study::accuracy::measure::{Bench, CHANGE, STEP_ERROR, off, pairs, times};
+use crate::study::accuracy::setup::{Setup, coil, layer, polynomial, rigid, sine, stops_at};
 
-/// Conditioning of a linear oscillator with a circuit: only the drive adds energy.
-const LINEAR: &str = "Energy in mass, spring and circuit only falls, so that an error is carried on without \
-                      growth: n steps add n d to each of the three, relative to the size that the motion \
-                      gives it; the phase of the drive at a time t is a product of two doubles: 2 pi f t \
-                      eps.";
-
-const MASS: f64 = 0.02;
-const STIFFNESS: f64 = 50.0;
-const DAMPING: f64 = 0.08;
-
-/// 20 g on a spring of 50 N/m (7.96 Hz), damped, shaken with 1 g at 7 Hz, from 2 mm with -0.1 m/s, with a
-/// circuit whose current or voltage is 0 at the start.
-fn sprung(transducer: Transducer, duration: f64) -> Setup {
-    let mut setup = Setup::new(polynomial(&[0.0, STIFFNESS]), (0.002, -0.1), duration)
-        .damping(DAMPING)
-        .drive(sine(7.0, 9.8, 0.0))
-        .beside(transducer, 0.0);
-    setup.scene.mass_g = MASS * 1e3;
-    setup
-}
-
-/// The closed form of an oscillator with this stiffness, constant force and the circuit of its scene, from
-/// the exact doubles of the scene.
-pub(super) fn closed_form(setup: &Setup, model: &Model, (stiffness, force): (f64, f64)) -> Coupled {
-    let (coupling, storage, loss) = match setup.scene.transducer {
-        Transducer::Electromagnetic { coupling_v_s_per_m, coil_ohm, load_ohm, inductance_mh } => {
-            (coupling_v_s_per_m, dd(inductance_mh) / dd(1e3), dd(coil_ohm) + dd(load_ohm))
-        }
-        Transducer::Piezoelectric { coupling_n_per_v, capacitance_nf, load_kohm } => {
-            (coupling_n_per_v, dd(capacitance_nf) / dd(1e9), dd(1e-3) / dd(load_kohm))
-        }
-        Transducer::None => (0.0, dd(1.0), dd(0.0)),
-    };
-    let tone = model.excitation().tones.first();
-    let tone =
-        tone.map(|tone| (tone.amplitude, tone.frequency, tone.phase + if tone.quarter { 0.25 } else { 0.0 }));
-    let (mass, damping) = (model.mass(), model.damping());
-    let tone = tone.unwrap_or((0.0, 0.0, 0.0));
-    Coupled { mass, damping, stiffness, force, coupling, storage, loss, tone }
-}
-
-/// Size of the electrical state that a motion of the model's scales induces: limited by its coupling and by
-/// its kinetic energy, and no less than at the start.
-pub(super) fn electrical_size(model: &Model, exact: &Coupled) -> f64 {
-    let (coupling, decay) = exact.rates();
-    let time = model.scales().time;
-    let moved = coupling.to_f64().abs() * time / (1.0 + decay.to_f64() * time);
-    (exact.amount().to_f64() * model.scales().speed * moved.min(1.0)).max(model.start_electrical().abs())
-}
-
-/// The largest relative error of the three states at each sample, with the error allowed at its time.
-fn errors(model: &Model, run: &Run, exact: &Coupled) -> Vec<(f64, f64)> {
-    let (scales, size) = (model.scales(), electrical_size(model, exact));
-    let start = [model.start().0, model.start().1, model.start_electrical()].map(dd);
-    let steps = run.summary.steps as f64;
-    let error = |sample: &crate::dynamics::Sample| {
-        let [x, v, s] = exact.state(start, dd(0.0), dd(sample.t)).map(|value| value.to_f64());
-        let mechanical = off(sample.x, x, scales.length).max(off(sample.v, v, scales.speed));
-        let progress = (sample.t / model.duration()).max(1.0 / steps);
-        let phase = TAU * exact.tone.1 * sample.t * f64::EPSILON;
-        (mechanical.max(off(sample.electrical, s, size)), steps * STEP_ERROR * progress + phase)
-    };
-    run.samples.iter().map(error).collect()
-}
-
-/// A variant compared with the closed form of a linear oscillator with a circuit.
-fn against(bench: &Bench, name: &'static str, setup: &Setup) -> Result<(Variant, Run), Stopped> {
-    let model = setup.model()?;
-    let run = bench.run(&model, &even(model.duration(), 41))?;
-    let errors = errors(&model, &run, &closed_form(setup, &model, (STIFFNESS, 0.0)));
-    let ledger = run.summary.ledger.map_or(f64::NAN, |ledger| ledger.energy_residual);
-    let steps = run.summary.steps as f64;
-    let variant = Variant::of(name, &run).worst("state at 41 samples", errors).number(
-        "energy balance",
-        ledger,
-        steps * STEP_ERROR,
-    );
-    Ok((variant, run))
-}
-
-pub(super) const STIFF: HardCase = HardCase {
-    name: "stiff-circuit",
-    problem: "A circuit 1e4 to 1e5 times as fast as an oscillator of 7.96 Hz, shaken at 7 Hz: a coil of 100 \
-              ohm with 0.1 mH (1 us), a piezoelectric layer of 1 nF with 1 kohm (1 us), for 0.2 s.",
-    answer: "The exponential of the matrix of mass, circuit and drive.",
-    conditioning: LINEAR,
-    find: |bench| {
-        let stiff = [
-            ("coil 10 us", coil(5.0, 100.0, 1e-3)),
-            ("coil 1 us", coil(5.0, 100.0, 1e-4)),
-            ("layer 1 us", layer(1e-3, 1e-9, 1e3)),
-        ];
-        let variants = stiff.map(|(name, transducer)| Ok(against(bench, name, &sprung(transducer, 0.2))?.0));
-        variants.into_iter().collect()
-    },
-};
-
-pub(super) const STRONG: HardCase = HardCase {
-    name: "strong-coupling",
-    problem: "A coupling that swings energy between mass and circuit 100 and 1000 times as fast as the \
-              oscillator of 7.96 Hz swings, with little loss in the circuit, for 1 s.",
-    answer: "The exponential of the matrix of mass, circuit and drive.",
-    conditioning: LINEAR,
-    find: |bench| {
-        // K/sqrt(m S) of 5e3 and 5e4 1/s beside 50 1/s
-        let strong = [
-            ("coil 100 times", coil(22.36, 0.1, 1e-3)),
-            ("coil 1000 times", coil(223.6, 0.1, 1e-3)),
-            ("layer 100 times", layer(0.7, 1e-6, 1e6)),
-        ];
-        let variants = strong.map(|(name, transducer)| Ok(against(bench, name, &sprung(transducer, 1.0))?.0));
-        variants.into_iter().collect()
-    },
-};
-
-pub(super) const NO_INDUCTANCE: HardCase = HardCase {
-    name: "no-inductance",
-    problem: "A coil of 5 V s/m and 100 ohm whose inductance falls: time constants of 1 ms to 10 us, and 0, \
-              beside an oscillator of 7.96 Hz shaken at 7 Hz, for 0.5 s.",
-    answer: "The exponential of the matrix of mass, circuit and drive; at 0 a damping of exactly K^2/R in \
-             the closed form without a circuit. The distance to that falls with the first power of the time \
-             constant.",
-    conditioning: LINEAR,
-    find: no_inductance,
-};
-
-fn no_inductance(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
-    let (coupling, resistance) = (5.0, 100.0);
-    let limit = sprung(coil(coupling, resistance, 0.0), 0.5);
-    let model = limit.model()?;
-    let run = bench.run(&model, &even(model.duration(), 41))?;
-    let damped = Oscillator::new(MASS, DAMPING + coupling * (coupling / resistance), STIFFNESS);
-    let (scales, forcings) = (model.scales(), tones(&model));
-    let pairs = run.samples.iter().map(|sample| {
-        let (x, v) = damped.nearest(model.start(), 0.0, sample.t, &forcings);
-        let current = model.output(sample).map_or(f64::NAN, |output| output.current);
-        let exact = coupling * v / resistance;
-        let size = coupling * scales.speed / resistance;
-        let error = off(sample.x, x, scales.length).max(off(sample.v, v, scales.speed));
-        let progress = (sample.t / model.duration()).max(1.0 / run.summary.steps as f64);
-        let phase = TAU * 7.0 * sample.t * f64::EPSILON;
-        let allowed = run.summary.steps as f64 * STEP_ERROR * progress + phase;
-        (error.max(off(current, exact, size)), allowed)
-    });
-    let without = Variant::of("none", &run)
-        .worst("state and current at 41 samples", pairs)
-        .fact("no state of its own", !model.has_electrical_state());
-    let mut variants = Vec::new();
-    let mut apart = Vec::new();
-    for (name, time_constant) in [("1 ms", 1e-3), ("0.1 ms", 1e-4), ("10 us", 1e-5)] {
-        let setup = sprung(coil(coupling, resistance, resistance * time_constant), 0.5);
-        let (variant, inductive) = against(bench, name, &setup)?;
-        let distances = inductive.samples.iter().zip(&run.samples).map(|(a, b)| off(a.x, b.x, scales.length));
-        apart.push(distances.fold(0.0, f64::max) / time_constant);
-        variants.push(variant);
-    }
-    // (its next term is of the order of the time constant over the time scale)
-    let alike = (apart[1] / apart[2] - 1.0).abs() < 1e-4 / scales.time;
-    variants.push(without.fact("distance of the first power", alike && apart[2] > 1.0));
-    Ok(variants)
-}
-
-pub(super) const OPEN_AND_SHORT: HardCase = HardCase {
-    name: "open-and-short",
-    problem: "The nominal cubic well between stops at 4 mm, 1.5 g at 3 Hz, e = 0.36, 1 s, from 4 mm with \
-              -0.1 m/s: an open piezoelectric layer, a layer and a coil in short circuits, an open coil.",
-    answer: "An open layer is a spring of K^2/C: the impacts of that scene without a transducer, by the \
-             program in double-double arithmetic. A short-circuited layer and an open coil change no bit; a \
-             short-circuited coil is a damping, to the bit.",
-    conditioning: "Sensitivity of each impact's time to all data, by the reference.",
-    find: open_and_short,
-};
-
-fn open_and_short(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
+pub(super) fn open_and_short(bench: &Bench) -> Trials {
     let nominal = || Setup::nominal(4.0, 0.36, sine(3.0, 14.7, 0.0), 1.0).start(4e-3, -0.1).damping(0.03);
     let (coupling, capacitance) = (0.01, 5e-6);
     let open = nominal().beside(layer(coupling, capacitance, f64::INFINITY), coupling * 4e-3 / capacitance);
@@ -195,26 +21,189 @@ fn open_and_short(bench: &Bench) -> Result<Vec<Variant>, Stopped> {
         linear_n_per_m: -40.0 + coupling * coupling / capacitance,
         cubic_n_per_m3: 40.0 / 49e-6,
     };
-    let mut variants = vec![by_reference(bench, "open layer", (&open, &spring), hard_impacts)?];
-    let bare = bench.run(&nominal().model()?, &[])?;
+    let mut reference = bench.reference(&open, &[], CHANGE, hard_impacts)?;
+    reference.numbers = hard_impacts(&bench.exact(&spring, &[])?);
+    let open = bench.run("open layer", &open, &[])?;
+    let mut trials = vec![impacts_beside(open, &reference, hard_impacts)];
+    let bare = bench.run("", &nominal(), &[])?.run;
     let coil_damping = 0.5 * (0.5 / 100.0);
-    let damped = bench.run(&nominal().damping(0.03 + coil_damping).model()?, &[])?;
-    let mut shorted = coil(0.5, 0.0, 0.0);
-    if let Transducer::Electromagnetic { coil_ohm, .. } = &mut shorted {
-        *coil_ohm = 100.0;
-    }
-    let mut apart = coil(0.5, f64::INFINITY, 1.0);
-    if let Transducer::Electromagnetic { coil_ohm, .. } = &mut apart {
-        *coil_ohm = 100.0;
-    }
+    let damped = bench.run("", &nominal().damping(0.03 + coil_damping), &[])?.run;
+    let of_100_ohm = |load_ohm: f64, inductance_mh: f64| Transducer::Electromagnetic {
+        coupling_v_s_per_m: 0.5,
+        coil_ohm: 100.0,
+        load_ohm,
+        inductance_mh,
+    };
     for (name, transducer, same) in [
         ("short-circuited layer", layer(coupling, capacitance, 0.0), &bare),
-        ("short-circuited coil", shorted, &damped),
-        ("open coil", apart, &bare),
+        ("short-circuited coil", of_100_ohm(0.0, 0.0), &damped),
+        ("open coil", of_100_ohm(f64::INFINITY, 1e3), &bare),
     ] {
-        let run = bench.run(&nominal().beside(transducer, 0.0).model()?, &[])?;
+        let mut trial = bench.run(name, &nominal().beside(transducer, 0.0), &[])?;
+        let run = &trial.run;
         let equal = run.events == same.events && run.summary.final_x == same.summary.final_x;
-        variants.push(Variant::of(name, &run).fact("the same bits", equal && run.events.len() > 10));
+        trial.fact("the same bits", equal && trial.run.events.len() > 10);
+        trials.push(trial);
     }
-    Ok(variants)
+    Ok(trials)
+}
+
+pub(super) fn circuit_at_rest(bench: &Bench) -> Trials {
+    let mut trials = Vec::new();
+    for (name, constant) in [("1 ms", 1e-3), ("0.1 s", 0.1), ("4 s", 4.0)] {
+        // 1 N/V and 1 uF
+        let mut setup = Setup::new(polynomial(&[1.0]), (1.0, 0.0), 1.0)
+            .stops(stops_at(None, Some(1000.0), 0.5))
+            .beside(layer(1.0, 1e-6, constant / 1e-6), -2.0);
+        let exact = closed_form(&setup, &setup.model()?, 0.0, 1.0);
+        let rate = exact.rates().1;
+        let two = |t: DoubleDouble| exp(rate * t) < dd(2.0);
+        let released = bisect(dd(0.6 * constant), dd(0.8 * constant), 110, two).1;
+        let release = released.to_f64();
+        let end = release + 0.3;
+        setup.scene.run.duration_s = end;
+        let at: Vec<f64> = (1..20).map(|i| 0.05 * f64::from(i) * release).chain([end]).collect();
+        let mut trial = bench.run(name, &setup, &at)?;
+        let samples = &trial.run.samples;
+        let voltages = samples.iter().filter(|sample| sample.t < release).map(|sample| {
+            let voltage = -2.0 * exp(-(rate * dd(sample.t))).to_f64();
+            (off(sample.electrical, voltage, 2.0), STEP_ERROR)
+        });
+        let voltages = voltages.collect();
+        let left = [dd(1.0), dd(0.0), dd(-2.0) * exp(-(rate * released))];
+        let [x, _, voltage] = exact.state(left, released, dd(end)).map(|value| value.to_f64());
+        let last = samples.last().map_or(f64::NAN, |sample| sample.electrical);
+        let size = electrical_size(&trial.model, &exact);
+        let summary = trial.run.summary;
+        let after = off(summary.final_x, x, trial.model.scales().length).max(off(last, voltage, size));
+        trial.worst("voltage at rest", voltages);
+        trial.time("time of release", EventKind::Release, release, 5.0 * STEP_ERROR);
+        trial.number("state 0.3 s later", after, trial.added());
+        trial.fact("one rest and one release", summary.rests == 1 && summary.releases == 1);
+        trials.push(trial);
+    }
+    Ok(trials)
+}
+
+/// A constant press, a push that decays, and a sine that pulls.
+struct Pulls {
+    press: f64,
+    push: f64,
+    rate: DoubleDouble,
+    amplitude: f64,
+}
+
+impl Pulls {
+    /// Net acceleration towards the stop at `t` in s, and its slope.
+    fn net(&self, t: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
+        let push = dd(self.push) * exp(-(self.rate * t));
+        let (sin, cos) = sin_cos(DoubleDouble::tau() * t);
+        let (sin, cos) = (dd(self.amplitude) * sin, dd(self.amplitude) * cos);
+        (dd(self.press) + push - sin, -(self.rate * push) - DoubleDouble::tau() * cos)
+    }
+
+    /// The first root up to `until` in s, bracketed in steps of a 20 000th of it.
+    fn root(&self, until: f64) -> Option<DoubleDouble> {
+        let at = |i: u32| dd(until * f64::from(i) / 2e4);
+        let is_pressed = |t: DoubleDouble| self.net(t).0 >= dd(0.0);
+        let first = (1..=20_000).find(|i| !is_pressed(at(*i)))?;
+        Some(bisect(at(first - 1), at(first), 110, is_pressed).1)
+    }
+}
+
+pub(super) fn circuit_release(bench: &Bench) -> Trials {
+    let (dip, turns) = (0.3, 0.15);
+    let angle = TAU * turns;
+    let reach = TAU * dip * angle.cos();
+    let (press, push) = (angle.sin() + reach, -reach * (turns / dip).exp());
+    let mut trials = Vec::new();
+    for (name, constant, press, push, amplitude) in [
+        ("during the decay", 0.1, 1.0, -0.6, 1.4),
+        ("after the decay", 1e-4, 1.0, 0.9, 1.4),
+        ("a slow decay", 300.0, 1.0, -0.1, 1.4),
+        ("dip 1e-9 deep", dip, press * (1.0 - 1e-9), push, 1.0),
+        ("dip 1e-9 short", dip, press * (1.0 + 1e-9), push, 1.0),
+    ] {
+        let setup = Setup::new(polynomial(&[-press]), (1.0, 0.0), 0.4)
+            .stops(stops_at(None, Some(1000.0), 0.5))
+            .drive(sine(1.0, amplitude, 0.0))
+            .beside(layer(1.0, 1e-6, constant / 1e-6), -push);
+        let mut trial = bench.run(name, &setup, &[])?;
+        let rate = closed_form(&setup, &trial.model, 0.0, 0.0).rates().1;
+        let amplitude = trial.model.excitation().tones[0].amplitude;
+        let pulls = Pulls { press, push, rate, amplitude };
+        match pulls.root(0.4) {
+            None => {
+                let stays = trial.first(EventKind::Release).is_nan() && trial.run.summary.final_x == 1.0;
+                trial.fact("stays at rest", stays);
+            }
+            Some(root) => {
+                let (slope, t) = (pulls.net(root).1.to_f64().abs(), root.to_f64());
+                let allowed = STEP_ERROR * (press + push.abs() + amplitude) / slope / t + f64::EPSILON;
+                trial.time("time of release", EventKind::Release, t, allowed);
+            }
+        }
+        trials.push(trial);
+    }
+    Ok(trials)
+}
+
+pub(super) fn circuit_at_impacts(bench: &Bench) -> Trials {
+    /// A time in s so short that the state hardly changes in it, except at an impact.
+    const JUST: f64 = 1e-12;
+    const RESTITUTION: f64 = 0.8;
+    const STIFFNESS: f64 = 50.0;
+    let mut setup = Setup::new(polynomial(&[0.0, STIFFNESS]), (0.0, 0.4), 1.0)
+        .damping(0.02)
+        .stops(rigid(2.0, RESTITUTION))
+        .drive(sine(11.0, 29.4, 0.0))
+        .beside(coil(5.0, 100.0, 0.5), 0.0);
+    setup.scene.mass_g = 20.0;
+    let impacts = times(&bench.run("", &setup, &[])?.run, EventKind::Impact);
+    // the current at each impact, and just before it
+    let at: Vec<f64> = impacts.iter().flat_map(|t| [t - JUST, *t]).collect();
+    let mut trial = bench.run("1 s", &setup, &at)?;
+    let model = &trial.model;
+    let exact = closed_form(&setup, model, STIFFNESS, 0.0);
+    let stop = dd(model.stop_positions().1.unwrap_or(f64::NAN));
+    let (mut state, mut since) = ([dd(model.start().0), dd(model.start().1), dd(0.0)], dd(0.0));
+    let (mut hits, mut currents, mut inside) = (Vec::new(), Vec::new(), true);
+    for t in &impacts {
+        let mut hit = dd(*t);
+        let side = if exact.state(state, since, hit)[0] > dd(0.0) { stop } else { -stop };
+        for _ in 0..3 {
+            let [x, v, _] = exact.state(state, since, hit);
+            hit -= (x - side) / v;
+        }
+        let between = (1..8).map(|i| since + (hit - since) * dd(f64::from(i) / 8.0));
+        inside &= between.into_iter().all(|t| exact.state(state, since, t)[0].abs() < stop);
+        let [_, v, current] = exact.state(state, since, hit);
+        (state, since) = ([side, -(dd(RESTITUTION) * v), current], hit);
+        hits.push(hit.to_f64());
+        currents.push(current.to_f64());
+    }
+    let reference = bench.reference(&setup, &at, CHANGE, |run| {
+        let currents = run.samples.iter().skip(1).step_by(2).map(|sample| sample.electrical);
+        times(run, EventKind::Impact).into_iter().chain(currents).collect()
+    })?;
+    let allowed = reference.allowed(&trial);
+    let size = electrical_size(model, &exact);
+    let late = pairs(&impacts, &hits, &allowed, &hits);
+    let fastest = exact.coupling * model.scales().speed / exact.storage.to_f64();
+    let samples = || trial.run.samples.chunks(2);
+    let of_currents = samples().zip(&currents).zip(&allowed[impacts.len()..]);
+    let of_currents = of_currents.map(|((pair, exact), allowed)| {
+        let sampled = f64::EPSILON * pair[1].t * fastest;
+        (off(pair[1].electrical, *exact, size), (allowed + sampled) / size)
+    });
+    let of_currents = of_currents.collect();
+    let turns = samples().all(|pair| {
+        let kept = off(pair[1].electrical, pair[0].electrical, size) < 1e-9;
+        kept && off(pair[1].v, -RESTITUTION * pair[0].v, pair[0].v.abs()) < 1e-7
+    });
+    trial.worst("impact times", late);
+    trial.worst("current at impacts", of_currents);
+    trial.fact("it stays inside between impacts", inside && impacts.len() > 20);
+    trial.fact("the current is kept and the speed turned", turns);
+    Ok(vec![trial])
 }

@@ -1,61 +1,95 @@
 //! Hard cases: problems that break integrators of impacts, each with its answer and what its
 //! conditioning allows.
 //!
-//! The texts of a case state the problem, where the answer comes from, and the bound of its error.
-//! Throughout, d is the error that one step may make ([`STEP_ERROR`](super::STEP_ERROR)), relative to the
-//! scene's length L and speed V, and n the number of steps. All run at the tolerance 1e-14; at 1e-9 some
-//! sixty of their checks fail, so the bounds are tight enough to matter.
+//! What a case runs, where its answer comes from and the bound of its error stand in `../list.txt`, as
+//! `accuracy --list` shows them. Throughout, d is the error that one step may make
+//! ([`STEP_ERROR`](super::STEP_ERROR)), relative to the scene's length L and speed V, and n the number of
+//! steps. All run at the tolerance 1e-14; at 1e-9 some sixty of their checks fail, so the bounds are tight
+//! enough to matter.
 
-mod ball;
-mod case;
-mod chatter;
 mod circuit;
-mod circuit_events;
 mod curves;
-mod drives;
+mod free;
+mod linear;
 mod long;
-mod release;
-mod scales;
-mod touch;
-mod well;
+mod pressed;
 
-pub use case::HardCase;
+use super::Stopped;
+use super::measure::{Bench, Reference, Trial, Variant};
+use crate::dynamics::{Event, EventKind, Run};
+use crate::study::Task;
+
+/// A problem whose answer is known.
+#[derive(Debug)]
+pub struct HardCase {
+    /// The word that selects it.
+    pub name: &'static str,
+    trials: fn(&Bench) -> Trials,
+}
+
+/// The runs of a case with their checks.
+type Trials = Result<Vec<Trial>, Stopped>;
+
+impl HardCase {
+    const fn new(name: &'static str, trials: fn(&Bench) -> Trials) -> Self {
+        Self { name, trials }
+    }
+
+    /// Runs the case. Reports no progress within the case; stops soon after cancellation.
+    pub fn find(&self, task: &Task) -> Result<Vec<Variant>, Stopped> {
+        Ok((self.trials)(&Bench { task })?.into_iter().map(Trial::into_variant).collect())
+    }
+}
 
 /// All of them, in the order in which they are shown.
 pub const HARD_CASES: &[HardCase] = &[
-    well::SEPARATRIX,
-    long::ELASTIC_BOX,
-    ball::BOUNCING_BALL,
-    ball::BUDGET,
-    chatter::COMPLETE,
-    chatter::INCOMPLETE,
-    chatter::ENDS_WITH_THE_PRESS,
-    release::THRESHOLD,
-    release::ZERO_SLOPE,
-    release::BIAS,
-    release::PLASTIC,
-    touch::GRAZING,
-    touch::EXCURSION,
-    touch::GAP,
-    touch::COINCIDENT,
-    drives::RIPPLE,
-    drives::RAMP,
-    drives::FAST,
-    drives::SHOCK,
-    drives::NOISE,
-    drives::RECORD,
-    curves::KINK,
-    curves::STOP_ON_A_BREAK,
-    curves::STOP_AT_THE_EQUILIBRIUM,
-    curves::STOP_AT_THE_FORCE_MAXIMUM,
-    curves::BOTH_STOPS_ON_ONE_SIDE,
-    circuit::STIFF,
-    circuit::STRONG,
-    circuit::NO_INDUCTANCE,
-    circuit::OPEN_AND_SHORT,
-    circuit_events::AT_REST,
-    circuit_events::RELEASE,
-    circuit_events::AT_IMPACTS,
-    long::CHAOS,
-    scales::UNITS,
+    HardCase::new("separatrix", free::separatrix),
+    HardCase::new("elastic-box", free::elastic_box),
+    HardCase::new("bouncing-ball", free::bouncing_ball),
+    HardCase::new("elastic-press", free::elastic_press),
+    HardCase::new("chatter-curved", pressed::chatter_curved),
+    HardCase::new("chatter-incomplete", pressed::chatter_incomplete),
+    HardCase::new("chatter-at-release", pressed::chatter_at_release),
+    HardCase::new("release-threshold", pressed::release_threshold),
+    HardCase::new("release-zero-slope", pressed::release_zero_slope),
+    HardCase::new("bias-at-threshold", pressed::bias_at_threshold),
+    HardCase::new("plastic-sine", pressed::plastic_sine),
+    HardCase::new("grazing", free::grazing),
+    HardCase::new("excursion", free::excursion),
+    HardCase::new("narrow-gap", free::narrow_gap),
+    HardCase::new("impact-at-release", pressed::impact_at_release),
+    HardCase::new("ripple", linear::ripple),
+    HardCase::new("long-ramp", linear::long_ramp),
+    HardCase::new("fast-drive", linear::fast_drive),
+    HardCase::new("shock", linear::shock),
+    HardCase::new("noise", linear::noise),
+    HardCase::new("record", linear::record),
+    HardCase::new("kink", curves::kink),
+    HardCase::new("stop-on-break", curves::stop_on_break),
+    HardCase::new("stop-at-equilibrium", curves::stop_at_equilibrium),
+    HardCase::new("stop-at-force-maximum", curves::stop_at_force_maximum),
+    HardCase::new("stops-on-one-side", curves::stops_on_one_side),
+    HardCase::new("stiff-circuit", linear::stiff_circuit),
+    HardCase::new("strong-coupling", linear::strong_coupling),
+    HardCase::new("no-inductance", linear::no_inductance),
+    HardCase::new("open-and-short", circuit::open_and_short),
+    HardCase::new("circuit-at-rest", circuit::circuit_at_rest),
+    HardCase::new("circuit-release", circuit::circuit_release),
+    HardCase::new("circuit-at-impacts", circuit::circuit_at_impacts),
+    HardCase::new("chaos", long::chaos),
+    HardCase::new("units", long::units),
 ];
+
+/// Times of the impacts above 1 cm/s.
+fn hard_impacts(run: &Run) -> Vec<f64> {
+    let hard = |event: &&Event| event.kind == EventKind::Impact && event.v_in.abs() > 1e-2;
+    run.events.iter().filter(hard).map(|event| event.t).collect()
+}
+
+/// The times of impacts, as `impacts` takes them from a run, beside those of the reference.
+fn impacts_beside(mut trial: Trial, reference: &Reference, impacts: impl Fn(&Run) -> Vec<f64>) -> Trial {
+    let found = impacts(&trial.run);
+    trial.beside("impact times", &found, reference, &reference.numbers);
+    trial.fact("all impacts", found.len() == reference.numbers.len() && !found.is_empty());
+    trial
+}

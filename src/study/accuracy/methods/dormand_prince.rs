@@ -6,12 +6,10 @@
 //! a step, and its root on the continuous extension is bisected to rounding: an excursion inside a step is
 //! not seen.
 
-use super::problem::Problem;
-use super::tally::{Tally, TimedState};
-use super::{Keep, MethodRun};
-use crate::dynamics::{Model, Phase, Side};
+use super::tally::{Problem, Tally, TimedState};
+use super::{MethodRun, is_cancelled};
+use crate::dynamics::{Model, Phase, Request, Side};
 use crate::numeric::bisect;
-use crate::system::clock::ThreadClock;
 
 /// A pressed rebound slower than this share of the scene's speed is a rest, as a user of such a solver would
 /// define it, which does not sum chatter.
@@ -136,112 +134,142 @@ impl Step {
 /// rebound slower than 1e-6 of the scene's speed is a rest, its release found by a scan in 200ths of the
 /// forcing period (or of the duration) and bisection. Ends early where the force curve ends, and after
 /// 2e7 attempts.
-pub fn dormand_prince(model: &Model, tolerance: f64, keep: &Keep) -> MethodRun {
-    let watch = ThreadClock::start();
+pub fn dormand_prince(model: &Model, tolerance: f64, request: &Request) -> MethodRun {
     let problem = Problem::new(model);
-    let mut tally = Tally::new(&problem, keep);
-    let scales = model.scales();
-    let end = model.duration();
-    let mut now = TimedState { t: 0.0, x: problem.start.0, v: problem.start.1 };
-    let (mut steps, mut evaluations, mut attempts) = (0, 0, 0_u64);
-    let mut h = 1e-2 * scales.time;
-    let mut phase = Phase::Free;
-    let mut touching: Option<Side> = None;
-    let mut slope: Option<Pair> = None;
-    let sign = |side: Side| if side == Side::Left { -1.0 } else { 1.0 };
-    let stop = |side: Side| problem.stops[usize::from(side == Side::Right)];
-    for side in [Side::Left, Side::Right] {
-        if now.x == stop(side).0 {
-            touching = Some(side);
-        }
-    }
-    while now.t < end {
+    let mut march = March {
+        problem,
+        tolerance,
+        tally: Tally::new(problem, request),
+        now: problem.start,
+        h: 1e-2 * model.scales().time,
+        slope: None,
+        touching: SIDES.into_iter().find(|side| problem.start.x == problem.stop(*side).0),
+        phase: Phase::Free,
+        steps: 0,
+        evaluations: 0,
+    };
+    let mut attempts = 0_u64;
+    while march.now.t < model.duration() {
         attempts += 1;
-        if attempts > MOST_STEPS || (attempts % CANCEL_STRIDE == 0 && keep.is_cancelled()) {
+        let is_stopped = attempts > MOST_STEPS || (attempts % CANCEL_STRIDE == 0 && is_cancelled(request));
+        if is_stopped || !(march.rest() || march.step()) {
             break;
         }
-        // at a stop and nearly at rest: it rests if the net force presses
-        if let Some(side) = touching
-            && now.v * sign(side) > -REST_SPEED * scales.speed
-        {
-            let press = |t: f64| sign(side) * problem.acceleration(t, now.x, 0.0);
-            evaluations += 1;
-            if press(now.t) > 0.0 {
-                now.v = 0.0;
-                let at_rest = if side == Side::Left { Phase::LeftStop } else { Phase::RightStop };
-                let release = release(press, now.t, end, model.forcing_period().unwrap_or(end) / SEARCHES);
-                let next = TimedState { t: release, ..now };
-                tally.step(&problem, now, next, at_rest, 0.0);
-                phase = if release < end { Phase::Free } else { at_rest };
-                now = next;
-                slope = None;
-                h = 1e-2 * scales.time;
-                steps += 1;
-                continue;
-            }
+    }
+    march.tally.finish(march.now, march.phase, march.steps, march.evaluations)
+}
+
+const SIDES: [Side; 2] = [Side::Left, Side::Right];
+
+/// The sign of a displacement towards a stop.
+fn sign(side: Side) -> f64 {
+    if side == Side::Left { -1.0 } else { 1.0 }
+}
+
+/// A run under way.
+struct March<'a> {
+    problem: Problem<'a>,
+    tolerance: f64,
+    tally: Tally<'a>,
+    now: TimedState,
+    /// Length of the next step in s.
+    h: f64,
+    /// (x', v') at `now`, where it is known.
+    slope: Option<Pair>,
+    /// The stop at which the mass is.
+    touching: Option<Side>,
+    phase: Phase,
+    steps: u64,
+    evaluations: u64,
+}
+
+impl March<'_> {
+    /// Rests until the release if the mass is at a stop, nearly at rest, and the net force presses. Returns
+    /// whether it does.
+    fn rest(&mut self) -> bool {
+        let (problem, model, now) = (self.problem, self.problem.model, self.now);
+        let is_slow = |side: &Side| now.v * sign(*side) > -REST_SPEED * model.scales().speed;
+        let Some(side) = self.touching.filter(is_slow) else { return false };
+        let press = |t: f64| sign(side) * problem.acceleration(t, now.x, 0.0);
+        self.evaluations += 1;
+        if !(press(now.t) > 0.0) {
+            return false;
         }
-        let start = *slope.get_or_insert_with(|| {
-            evaluations += 1;
+        let at_rest = if side == Side::Left { Phase::LeftStop } else { Phase::RightStop };
+        let end = model.duration();
+        let release = release(press, now.t, end, model.forcing_period().unwrap_or(end) / SEARCHES);
+        let rested = TimedState { v: 0.0, ..now };
+        self.now = TimedState { t: release, ..rested };
+        self.tally.step(rested, self.now, at_rest, 0.0);
+        self.phase = if release < end { Phase::Free } else { at_rest };
+        self.slope = None;
+        self.h = 1e-2 * model.scales().time;
+        self.steps += 1;
+        true
+    }
+
+    /// Attempts a step, up to its first contact. Returns whether the run goes on.
+    fn step(&mut self) -> bool {
+        let (problem, now, end) = (self.problem, self.now, self.problem.model.duration());
+        let start = self.slope.unwrap_or_else(|| {
+            self.evaluations += 1;
             [now.v, problem.acceleration(now.t, now.x, now.v)]
         });
-        let last = now.t + h >= end;
-        let length = if last { end - now.t } else { h };
-        let step = Step::take(&problem, now.t, [now.x, now.v], start, length, tolerance);
-        evaluations += 6;
+        self.slope = Some(start);
+        let last = now.t + self.h >= end;
+        let length = if last { end - now.t } else { self.h };
+        let step = Step::take(&problem, now.t, [now.x, now.v], start, length, self.tolerance);
+        self.evaluations += 6;
         let factor = if step.error > 0.0 { 0.9 * step.error.powf(-0.2) } else { 5.0 };
         if !(step.error <= 1.0) {
-            h = length * if factor.is_finite() { factor.clamp(0.2, 1.0) } else { 0.2 };
-            if !(now.t + h > now.t) {
-                break;
-            }
-            continue;
+            self.h = length * if factor.is_finite() { factor.clamp(0.2, 1.0) } else { 0.2 };
+            return now.t + self.h > now.t;
         }
-        steps += 1;
-        let contact = [Side::Left, Side::Right]
-            .into_iter()
-            .filter(|side| stop(*side).0.is_finite())
-            .filter_map(|side| {
-                let share = step.contact(stop(side).0, sign(side), touching == Some(side))?;
-                Some((share, side))
-            })
-            .min_by(|a, b| a.0.total_cmp(&b.0));
-        let next = match contact {
-            Some((share, side)) => {
-                let (place, restitution) = stop(side);
-                let v_in = step.at(share)[1];
-                let next = TimedState { t: now.t + share * step.h, x: place, v: -restitution * v_in };
-                tally.step(&problem, now, TimedState { v: v_in, ..next }, Phase::Free, step.squares(share));
-                if v_in * sign(side) > 0.0 {
-                    tally.impact(next.t, side, v_in, next.v);
-                }
-                touching = Some(side);
-                slope = None;
-                // the next step is at most the next flight under a constant press
-                let press = sign(side) * problem.acceleration(next.t, place, next.v);
-                evaluations += 1;
-                if press > 0.0 {
-                    h = h.min((2.0 * next.v.abs() / press).max(1e-9 * scales.time));
-                }
-                next
-            }
+        self.steps += 1;
+        let contact = |side: Side| {
+            let share = step.contact(problem.stop(side).0, sign(side), self.touching == Some(side))?;
+            Some((share, side))
+        };
+        let contacts = SIDES.into_iter().filter(|side| problem.stop(*side).0.is_finite()).filter_map(contact);
+        let next = match contacts.min_by(|a, b| a.0.total_cmp(&b.0)) {
+            Some((share, side)) => self.bounce(&step, share, side),
             None => {
                 let t = if last { end } else { now.t + length };
                 let next = TimedState { t, x: step.end[0], v: step.end[1] };
-                tally.step(&problem, now, next, Phase::Free, step.squares(1.0));
-                touching = None;
-                slope = Some(step.slope);
-                h = length * factor.clamp(0.2, 5.0);
+                self.tally.step(now, next, Phase::Free, step.squares(1.0));
+                self.touching = None;
+                self.slope = Some(step.slope);
+                self.h = length * factor.clamp(0.2, 5.0);
                 next
             }
         };
-        if !problem.is_inside(next.x, next.v) {
-            break;
+        let is_inside = problem.is_inside(next.x, next.v);
+        if is_inside {
+            self.now = next;
         }
-        now = next;
+        is_inside
     }
-    let mut run = tally.finish(&problem, now, phase, (steps, evaluations));
-    run.statistics.cpu_s = watch.seconds();
-    run
+
+    /// The state after the impact at a share of the step.
+    fn bounce(&mut self, step: &Step, share: f64, side: Side) -> TimedState {
+        let (problem, now) = (self.problem, self.now);
+        let (place, restitution) = problem.stop(side);
+        let v_in = step.at(share)[1];
+        let next = TimedState { t: now.t + share * step.h, x: place, v: -restitution * v_in };
+        self.tally.step(now, TimedState { v: v_in, ..next }, Phase::Free, step.squares(share));
+        if v_in * sign(side) > 0.0 {
+            self.tally.impact(next.t, side, v_in, next.v);
+        }
+        self.touching = Some(side);
+        self.slope = None;
+        // the next step is at most the next flight under a constant press
+        let press = sign(side) * problem.acceleration(next.t, place, next.v);
+        self.evaluations += 1;
+        if press > 0.0 {
+            self.h = self.h.min((2.0 * next.v.abs() / press).max(1e-9 * problem.model.scales().time));
+        }
+        next
+    }
 }
 
 /// The time at which the press, positive at `from`, falls to 0, by a scan and bisection; `end` if it

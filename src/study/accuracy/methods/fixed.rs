@@ -1,10 +1,8 @@
 //! Fixed steps with clamp and bounce.
 
-use super::problem::Problem;
-use super::tally::{Tally, TimedState};
-use super::{Keep, MethodRun, Scheme};
-use crate::dynamics::{Model, Phase, Side};
-use crate::system::clock::ThreadClock;
+use super::tally::{Problem, Tally, TimedState};
+use super::{MethodRun, Scheme, is_cancelled};
+use crate::dynamics::{Model, Phase, Request, Side};
 
 /// Steps between checks of the cancel flag.
 const CANCEL_STRIDE: u64 = 1 << 14;
@@ -19,19 +17,18 @@ const MOST_STEPS: f64 = 1e8;
 /// are those of the steps, as the user of such a method sees them; an impact has the time at the end of its
 /// step. A step that is not above 0, or makes more than 1e8 of them, is taken as the shortest allowed. Ends
 /// early where the force curve ends.
-pub fn fixed_step(model: &Model, scheme: Scheme, step: f64, keep: &Keep) -> MethodRun {
-    let watch = ThreadClock::start();
+pub fn fixed_step(model: &Model, scheme: Scheme, step: f64, request: &Request) -> MethodRun {
     let problem = Problem::new(model);
     let wanted = (model.duration() / step).ceil();
     let count = if wanted >= 1.0 { wanted.min(MOST_STEPS) } else { MOST_STEPS } as u64;
     let h = model.duration() / count as f64;
-    let mut tally = Tally::new(&problem, keep);
-    let mut now = TimedState { t: 0.0, x: problem.start.0, v: problem.start.1 };
+    let mut tally = Tally::new(problem, request);
+    let mut now = problem.start;
     let mut last_acceleration = problem.acceleration(0.0, now.x, now.v);
     let mut evaluations = 1;
     let mut taken = 0;
     for i in 1..=count {
-        if i % CANCEL_STRIDE == 0 && keep.is_cancelled() {
+        if i % CANCEL_STRIDE == 0 && is_cancelled(request) {
             break;
         }
         let t = if i == count { model.duration() } else { h * i as f64 };
@@ -74,16 +71,14 @@ pub fn fixed_step(model: &Model, scheme: Scheme, step: f64, keep: &Keep) -> Meth
         if !problem.is_inside(next.x, next.v) {
             break;
         }
-        tally.step(&problem, now, next, Phase::Free, 0.5 * h * (now.v * now.v + next.v * next.v));
+        tally.step(now, next, Phase::Free, 0.5 * h * (now.v * now.v + next.v * next.v));
         if let Some((side, v_in, v_out)) = bounced {
             tally.impact(t, side, v_in, v_out);
         }
         now = next;
         taken = i;
     }
-    let mut run = tally.finish(&problem, now, Phase::Free, (taken, evaluations));
-    run.statistics.cpu_s = watch.seconds();
-    run
+    tally.finish(now, Phase::Free, taken, evaluations)
 }
 
 fn runge_kutta(problem: &Problem, TimedState { t, x, v }: TimedState, h: f64, end: f64) -> TimedState {

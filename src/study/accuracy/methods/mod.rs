@@ -1,20 +1,20 @@
 //! Four common methods, on any scene, for comparison with the program's own.
 //!
-//! They serve this comparison alone. Fixed steps *clamp and bounce*, as in games and small teaching applets:
+//! They serve this comparison alone. Of a request they take sample times, events, of which they keep impacts,
+//! and cancellation. Fixed steps *clamp and bounce*, as in games and small teaching applets:
 //! a step that ends beyond a stop is put onto it and its velocity reversed. Contact is then seen up to a step
 //! late, so that the times of impacts are first order in the step whatever the scheme.
 
 mod dormand_prince;
 mod fixed;
-mod problem;
 mod tally;
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 
 pub use dormand_prince::dormand_prince;
 pub use fixed::fixed_step;
 
-use crate::dynamics::{Event, Sample};
+use crate::dynamics::{Event, EventKind, Request, Run, Sample, Summary};
 
 /// A scheme of fixed step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,48 +42,31 @@ impl Scheme {
     }
 }
 
-/// What a run by one of these methods keeps.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Keep<'a> {
-    /// Times in s at which to sample, ascending, within 0..=duration.
-    pub sample_times: &'a [f64],
-    /// Whether to keep the list of impacts.
-    pub impacts: bool,
-    /// Set from elsewhere to end the run early.
-    pub cancel: Option<&'a AtomicBool>,
-}
-
-impl Keep<'_> {
-    fn is_cancelled(&self) -> bool {
-        self.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed))
-    }
-}
-
-/// Statistics of a run by one of these methods. SI.
+/// Statistics of a run by one of these methods or by the program. SI.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Statistics {
     /// Displacement at the end in m.
     pub final_x: f64,
-    /// Velocity at the end in m/s.
-    pub final_v: f64,
     /// RMS velocity from the begin of the settled window to the end in m/s, by trapezoids over fixed steps
     /// and by Gauss's rule over the continuous extension of adaptive ones; `None` if the run ended before it.
     pub rms_velocity: Option<f64>,
-    /// Largest |x| in that window in m.
-    pub max_abs_x: f64,
     /// Impacts over the whole run.
     pub impacts: u64,
     /// Crossings of the barrier over the whole run, as seen from step to step.
     pub crossings: u64,
     /// Accepted steps.
     pub steps: u64,
-    /// Evaluations of the force.
+    /// Evaluations of the force; of the program Taylor expansions.
     pub evaluations: u64,
     /// CPU time in s.
     pub cpu_s: f64,
     /// Time in s at which the run ended early (it left the force curve, a number was not finite, it was
     /// cancelled); `None` if it did not.
     pub ended_at: Option<f64>,
+}
+
+fn is_cancelled(request: &Request) -> bool {
+    request.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed))
 }
 
 /// What a run by one of these methods returns.
@@ -95,4 +78,31 @@ pub struct MethodRun {
     pub impacts: Vec<Event>,
     /// The numbers of the run.
     pub statistics: Statistics,
+}
+
+impl From<&Summary> for Statistics {
+    /// The numbers of a run of the program.
+    fn from(summary: &Summary) -> Self {
+        Self {
+            final_x: summary.final_x,
+            rms_velocity: summary.rms_velocity,
+            impacts: summary.total_impacts,
+            crossings: summary.total_crossings,
+            steps: summary.steps,
+            evaluations: summary.evaluations,
+            cpu_s: summary.cpu_s,
+            ended_at: summary.outcome.ended_at(),
+        }
+    }
+}
+
+impl From<Run> for MethodRun {
+    /// A run of the program in the same terms.
+    fn from(run: Run) -> Self {
+        Self {
+            statistics: Statistics::from(&run.summary),
+            samples: run.samples,
+            impacts: run.events.into_iter().filter(|event| event.kind == EventKind::Impact).collect(),
+        }
+    }
 }

@@ -64,26 +64,19 @@ pub(super) fn lateness(model: &Model, compared: &[Event], exact: &[Event]) -> Op
 /// How many impacts of a run fall into the times in which the mass of the other one rests on a stop: hops of
 /// a mass that is pressed there. `exact` are all events of that one, in order of time.
 pub(super) fn hops(impacts: &[Event], exact: &[Event]) -> u64 {
-    let turns = || exact.iter().filter(|event| matches!(event.kind, EventKind::Rest | EventKind::Release));
-    // a run whose first such event is a release has rested from the start
-    let mut since = turns().next().filter(|first| first.kind == EventKind::Release).map(|_| 0.0);
-    let mut rests: Vec<(f64, f64)> = Vec::new();
-    for turn in turns() {
-        match (turn.kind, since) {
-            (EventKind::Rest, _) => since = Some(turn.t),
-            (_, Some(begin)) => {
-                rests.push((begin, turn.t));
-                since = None;
-            }
-            _ => {}
-        }
-    }
-    rests.extend(since.map(|begin| (begin, f64::INFINITY)));
-    let within = |impact: &&Event| {
-        let next = rests.partition_point(|rest| rest.0 < impact.t);
-        next > 0 && impact.t < rests[next - 1].1
+    let is_turn = |event: &&Event| matches!(event.kind, EventKind::Rest | EventKind::Release);
+    let turns: Vec<&Event> = exact.iter().filter(is_turn).collect();
+    let is_hop = |impact: &&Event| {
+        let after = turns.partition_point(|turn| turn.t < impact.t);
+        let (before, next) = (turns[..after].last(), turns.get(after));
+        // a run whose first such event is a release has rested from the start
+        let rests = before.map_or_else(
+            || next.is_some_and(|next| next.kind == EventKind::Release),
+            |before| before.kind == EventKind::Rest,
+        );
+        rests && next.is_none_or(|next| impact.t < next.t)
     };
-    impacts.iter().filter(within).count() as u64
+    impacts.iter().filter(is_hop).count() as u64
 }
 
 fn arrivals(impacts: &[Event], slowest: f64) -> Vec<Event> {

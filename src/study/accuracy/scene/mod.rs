@@ -8,17 +8,64 @@
 mod arrivals;
 mod beside;
 mod step_size;
-mod tables;
 mod tolerances;
 mod trust;
 mod words;
 
 pub use arrivals::Lateness;
 pub use step_size::{StepSize, TRUE_TOLERANCE, Unfit, step_size};
-pub use tables::scene_table;
 pub use tolerances::{AtTolerance, TOLERANCES, Tolerances, tolerances};
 pub use trust::{Course, Trust, lasting, trust};
 pub use words::{duration, length_mm, moment, small_length, step_name};
 
+use super::OWN;
+use crate::study::Table;
+
 /// A path is trusted until it is off by this share of the motion's travel: less than is seen in a plot.
 pub const TRUSTED_SHARE: f64 = 0.01;
+
+/// Runs at tolerances and in fixed steps, a row each, in this order. SI; a cell without a value is empty.
+///
+/// `error_m` is the largest error of the displacement, `trusted_s` up to when the path is off by less than a
+/// hundredth of the travel (empty where that is all of the time compared), `compared_s` that time. `late_s`
+/// is the median of how late arrivals at a stop are, `latest_s` the one furthest off, over `arrivals` of them
+/// in a row.
+pub fn scene_table(tolerances: &Tolerances, stepped: &[StepSize]) -> Table {
+    let known = |value: Option<f64>| value.unwrap_or(f64::NAN);
+    let runs = &tolerances.runs;
+    let mut table = Table::new()
+        .each("method", runs, |_| OWN)
+        .each("tolerance", runs, |run| run.tolerance)
+        .each("step_s", runs, |_| f64::NAN)
+        .each("error_m", runs, |run| run.error)
+        .each("trusted_s", runs, |run| known(run.trusted))
+        .each("compared_s", runs, |_| tolerances.span)
+        .each("steps", runs, |run| Some(run.statistics.steps))
+        .each("evaluations", runs, |run| Some(run.statistics.evaluations))
+        .each("cpu_s", runs, |run| run.statistics.cpu_s)
+        .each("rms_velocity_m_per_s", runs, |run| known(run.statistics.rms_velocity))
+        .each("impacts", runs, |run| Some(run.statistics.impacts))
+        .each("late_s", runs, |_| f64::NAN)
+        .each("latest_s", runs, |_| f64::NAN)
+        .each("arrivals", runs, |_| None)
+        .each("outcome", runs, |run| run.outcome.name());
+    let outcome = |run: &StepSize| if run.stepped.ended_at.is_some() { "ended_early" } else { "done" };
+    let in_steps = Table::new()
+        .each("method", stepped, |run| run.scheme.name())
+        .each("tolerance", stepped, |_| f64::NAN)
+        .each("step_s", stepped, |run| run.step)
+        .each("error_m", stepped, |run| run.error)
+        .each("trusted_s", stepped, |run| known(run.trusted))
+        .each("compared_s", stepped, |run| run.span)
+        .each("steps", stepped, |run| Some(run.stepped.steps))
+        .each("evaluations", stepped, |run| Some(run.stepped.evaluations))
+        .each("cpu_s", stepped, |run| run.stepped.cpu_s)
+        .each("rms_velocity_m_per_s", stepped, |run| known(run.stepped.rms_velocity))
+        .each("impacts", stepped, |run| Some(run.stepped.impacts))
+        .each("late_s", stepped, |run| known(run.late.map(|late| late.median)))
+        .each("latest_s", stepped, |run| known(run.late.as_ref().map(Lateness::worst)))
+        .each("arrivals", stepped, |run| run.late.map(|late| late.matched as u64))
+        .each("outcome", stepped, outcome);
+    table.append(&in_steps);
+    table
+}

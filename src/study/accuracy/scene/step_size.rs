@@ -1,12 +1,12 @@
 //! Effect of the size of a fixed step on a scene.
 
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::arrivals::{Lateness, hops, lateness};
 use super::beside::{Beside, times};
 use super::trust::finished;
-use crate::dynamics::{Event, EventKind, Model, Outcome, Request, Sample, Side};
-use crate::study::accuracy::methods::{Keep, Scheme, fixed_step};
+use crate::dynamics::{Event, Model, Outcome, Request, Sample, Side};
+use crate::study::accuracy::methods::{MethodRun, Scheme, Statistics, fixed_step};
 use crate::study::accuracy::precision::{MEASURED_FOR, median};
 
 /// Tolerance of the true run, unless that of the scene is tighter.
@@ -37,8 +37,7 @@ pub enum Unfit {
     Cancelled,
 }
 
-/// A run in fixed steps with clamp and bounce beside the true one, from the scene's start. Pairs are the true
-/// run and the other one.
+/// A run in fixed steps with clamp and bounce beside the true one, from the scene's start.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StepSize {
     /// The scheme.
@@ -55,27 +54,17 @@ pub struct StepSize {
     pub ghost: Vec<(f64, f64)>,
     /// How late the mass arrives at its stops; `None` if it arrives at none, or in one run only.
     pub late: Option<Lateness>,
-    /// Impacts counted.
-    pub impacts: (u64, u64),
     /// Impacts of the run in fixed steps while the true mass rests on a stop.
     pub hops: u64,
-    /// Crossings of the barrier counted.
-    pub crossings: (u64, u64),
-    /// RMS velocity in m/s over the settled window; `None` if a run ended before it.
-    pub rms_velocity: (Option<f64>, Option<f64>),
     /// Largest difference of the displacement in m.
     pub error: f64,
     /// Time in s up to which it follows the true path within a hundredth of the travel; `None` if that is all
     /// of the time.
     pub trusted: Option<f64>,
-    /// Steps.
-    pub steps: (u64, u64),
-    /// Evaluations of the force; of the true run Taylor expansions.
-    pub evaluations: (u64, u64),
-    /// CPU time in s.
-    pub cpu_s: (f64, f64),
-    /// Time in s at which the run in fixed steps ended early; `None` if it did not.
-    pub ended_at: Option<f64>,
+    /// The numbers of the true run.
+    pub exact: Statistics,
+    /// The numbers of the run in fixed steps.
+    pub stepped: Statistics,
     /// How the true run ended.
     pub outcome: Outcome,
 }
@@ -83,7 +72,7 @@ pub struct StepSize {
 impl StepSize {
     /// Relative error of the RMS velocity; above 0 if it is too high.
     pub fn rms_error(&self) -> Option<f64> {
-        let (exact, stepped) = (self.rms_velocity.0?, self.rms_velocity.1?);
+        let (exact, stepped) = (self.exact.rms_velocity?, self.stepped.rms_velocity?);
         (exact > 0.0).then(|| stepped / exact - 1.0)
     }
 }
@@ -105,26 +94,20 @@ pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) 
 
     let request =
         |sample_times| Request { sample_times, events: true, cancel: Some(cancel), ..Request::default() };
-    let exact = finished(model.run(&request(&even))).ok_or(Unfit::Cancelled)?;
+    let run = finished(model.run(&request(&even))).ok_or(Unfit::Cancelled)?;
     let path = finished(model.run(&request(&fine))).ok_or(Unfit::Cancelled)?.samples;
-    let summary = exact.summary;
-    let all = exact.events;
-    let impacts: Vec<Event> = all.iter().copied().filter(|event| event.kind == EventKind::Impact).collect();
 
-    let keep = |sample_times| Keep { sample_times, impacts: true, cancel: Some(cancel) };
-    let stepped = fixed_step(model, scheme, step, &keep(&even));
+    let bare = Request { events: false, ..request(&[]) };
+    let mut stepped = fixed_step(model, scheme, step, &request(&even));
     // the same run up to where it is drawn
-    let start = model.with_duration(drawn, 0.0);
-    let ghost = fixed_step(&start, scheme, step, &keep(&steps)).samples;
-    let statistics = stepped.statistics;
-    let bare = Keep { impacts: false, ..keep(&[]) };
-    let cpu_s = if statistics.cpu_s > MEASURED_FOR {
-        statistics.cpu_s
-    } else {
-        median(|| fixed_step(model, scheme, step, &bare).statistics.cpu_s)
-    };
-    let true_cpu_s = median(|| model.run(&Request { events: false, ..request(&[]) }).summary.cpu_s);
-    if cancel.load(std::sync::atomic::Ordering::Relaxed) {
+    let ghost = fixed_step(&model.with_duration(drawn, 0.0), scheme, step, &request(&steps)).samples;
+    if stepped.statistics.cpu_s <= MEASURED_FOR {
+        stepped.statistics.cpu_s = median(|| fixed_step(model, scheme, step, &bare).statistics.cpu_s);
+    }
+    let (hops, outcome) = (hops(&stepped.impacts, &run.events), run.summary.outcome);
+    let mut exact = MethodRun::from(run);
+    exact.statistics.cpu_s = median(|| model.run(&bare).summary.cpu_s);
+    if cancel.load(Ordering::Relaxed) {
         return Err(Unfit::Cancelled);
     }
     let beside = Beside::new(model, &stepped.samples, &exact.samples);
@@ -133,20 +116,15 @@ pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) 
         step,
         span: model.duration(),
         drawn,
-        truth: with_impacts(model, &path, &impacts),
+        truth: with_impacts(model, &path, &exact.impacts),
         ghost: ghost.iter().map(|sample| (sample.t, sample.x)).collect(),
-        late: lateness(model, &stepped.impacts, &impacts),
-        impacts: (summary.total_impacts, statistics.impacts),
-        hops: hops(&stepped.impacts, &all),
-        crossings: (summary.total_crossings, statistics.crossings),
-        rms_velocity: (summary.rms_velocity, statistics.rms_velocity),
+        late: lateness(model, &stepped.impacts, &exact.impacts),
+        hops,
         error: beside.error(),
         trusted: beside.parted(),
-        steps: (summary.steps, statistics.steps),
-        evaluations: (summary.evaluations, statistics.evaluations),
-        cpu_s: (true_cpu_s, cpu_s),
-        ended_at: statistics.ended_at,
-        outcome: summary.outcome,
+        exact: exact.statistics,
+        stepped: stepped.statistics,
+        outcome,
     })
 }
 

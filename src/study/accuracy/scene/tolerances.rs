@@ -5,6 +5,7 @@ use std::sync::atomic::AtomicBool;
 use super::beside::{Beside, times};
 use super::trust::{better, finished};
 use crate::dynamics::{Model, Outcome, Request};
+use crate::study::accuracy::methods::Statistics;
 use crate::study::accuracy::precision::median;
 
 /// Tolerances at which a scene is run, beside its own.
@@ -19,16 +20,8 @@ pub struct AtTolerance {
     pub error: f64,
     /// Time in s up to which its path can be trusted; `None` if that is all of the time compared.
     pub trusted: Option<f64>,
-    /// Steps.
-    pub steps: u64,
-    /// Taylor expansions.
-    pub evaluations: u64,
-    /// CPU time in s: the median of a few that keep statistics alone.
-    pub cpu_s: f64,
-    /// RMS velocity in m/s over the scene's settled window; `None` if the run ended before it.
-    pub rms_velocity: Option<f64>,
-    /// Impacts.
-    pub impacts: u64,
+    /// Its numbers; the CPU time is the median of a few runs that keep statistics alone.
+    pub statistics: Statistics,
     /// How the run ended.
     pub outcome: Outcome,
 }
@@ -53,49 +46,27 @@ pub fn tolerances(model: &Model, cancel: &AtomicBool) -> Option<Tolerances> {
     let times = times(model);
     let request = Request { sample_times: &times, cancel: Some(cancel), ..Request::default() };
     let bare = Request { sample_times: &[], ..request };
-    let all = tolerances_with(model.tolerance());
+    let mut all = TOLERANCES.to_vec();
+    if !all.contains(&model.tolerance()) {
+        all.push(model.tolerance());
+        all.sort_by(|a, b| b.total_cmp(a));
+    }
     let tightest = all.last().copied().unwrap_or(model.tolerance());
     let (_, exact) = better(model, tightest, &request)?;
     let mut found = Tolerances::default();
     for tolerance in all {
         let trial = model.with_tolerance(tolerance);
         let run = finished(trial.run(&request))?;
-        let summary = run.summary;
+        let cpu_s = median(|| trial.run(&bare).summary.cpu_s);
         let beside = Beside::new(model, &run.samples, &exact.samples);
         (found.span, found.travel) = (beside.span(), beside.travel);
         found.runs.push(AtTolerance {
             tolerance,
             error: beside.error(),
             trusted: beside.parted(),
-            steps: summary.steps,
-            evaluations: summary.evaluations,
-            cpu_s: median(|| trial.run(&bare).summary.cpu_s),
-            rms_velocity: summary.rms_velocity,
-            impacts: summary.total_impacts,
-            outcome: summary.outcome,
+            statistics: Statistics { cpu_s, ..Statistics::from(&run.summary) },
+            outcome: run.summary.outcome,
         });
     }
     Some(found)
-}
-
-/// The tolerances from the loosest to the tightest, the scene's own among them.
-fn tolerances_with(tolerance: f64) -> Vec<f64> {
-    let mut all = TOLERANCES.to_vec();
-    if !all.contains(&tolerance) {
-        all.push(tolerance);
-    }
-    all.sort_by(|a, b| b.total_cmp(a));
-    all
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_scenes_own_tolerance_is_among_them() {
-        assert_eq!(tolerances_with(1e-9), TOLERANCES);
-        assert_eq!(tolerances_with(1e-14), [1e-3, 1e-6, 1e-9, 1e-12, 1e-14]);
-        assert_eq!(tolerances_with(3e-5), [1e-3, 3e-5, 1e-6, 1e-9, 1e-12]);
-    }
 }

@@ -93,7 +93,7 @@ pub fn trust(model: &Model, cancel: &AtomicBool) -> Option<Trust> {
         Some(until) => {
             let (_, best) = self::better(model, finer, &request)?;
             let next = Beside::new(model, &better.samples, &best.samples).parted();
-            parted(model, &beside, &better, (until, next))
+            parted(model, &beside, &better, until, next)
         }
     };
     Some(Trust {
@@ -128,11 +128,10 @@ pub(super) fn finished(run: Run) -> Option<Run> {
     (!matches!(run.summary.outcome, Outcome::Cancelled { .. })).then_some(run)
 }
 
-/// The course of two runs that part at the first of `times` in s; with both tolerances tightened they part at
-/// the second, if at all.
-fn parted(model: &Model, beside: &Beside, better: &Run, times: (f64, Option<f64>)) -> Course {
-    let until = times.0;
-    let Some(next) = times.1.filter(|next| *next < TIMES * until) else { return Course::Coarse { until } };
+/// The course of two runs that part at `until` in s; with both tolerances tightened they part at `next`, if at
+/// all.
+fn parted(model: &Model, beside: &Beside, better: &Run, until: f64, next: Option<f64>) -> Course {
+    let Some(next) = next.filter(|next| *next < TIMES * until) else { return Course::Coarse { until } };
     let summary = &better.summary;
     let settles = summary.period.is_some() || summary.regime == Regime::Rest;
     if !model.is_shaken() || settles || !beside.stays_apart() {

@@ -1,12 +1,13 @@
 //! Builders of the scenes of the cases.
 
+use std::fmt::Display;
 use std::sync::Arc;
 
 use super::Stopped;
 use crate::dynamics::{Model, STANDARD_GRAVITY};
 use crate::mechanics::{ForceCurve, Mechanism as Built};
 use crate::scene::{
-    Damping, Document, Excitation, Files, Mechanism, RunSettings, Scene, Start, Stops, Transducer, check,
+    Damping, Document, Excitation, Fault, Files, Mechanism, RunSettings, Scene, Start, Stops, Transducer,
 };
 
 /// Every case runs at the tightest tolerance, so that only rounding is left.
@@ -55,10 +56,9 @@ impl Setup {
 
     /// A built-in scene at the tightest tolerance, with fields changed, each as `FIELD=VALUE`.
     pub fn preset(name: &str, changes: &[&str]) -> Result<Self, Stopped> {
-        let invalid = |error: &dyn std::fmt::Display| Stopped::Scene(error.to_string());
-        let mut document = Document::load(name).map_err(|error| invalid(&error))?;
+        let mut document = Document::load(name).map_err(invalid)?;
         for change in changes {
-            document.set(change).map_err(|error| invalid(&error))?;
+            document.set(change).map_err(invalid)?;
         }
         document.scene.run.tolerance = TOLERANCE;
         // the integrator is measured, not the recurrence
@@ -104,23 +104,19 @@ impl Setup {
 
     /// The scene as run.
     pub fn model(&self) -> Result<Model, Stopped> {
-        let faults = |faults: &[crate::scene::Fault]| {
-            let first = faults.first();
-            Stopped::Scene(
-                first.map_or_else(String::new, |f| format!("{} = {}: {}", f.field, f.value, f.problem)),
-            )
-        };
-        let checked = check(&self.scene);
-        if !checked.faults.is_empty() {
-            return Err(faults(&checked.faults));
-        }
         let mechanism = match &self.curve {
             Some(curve) => Built::new(curve.clone()),
-            None => Built::build(&self.scene.mechanism, &Files::default())
-                .map_err(|error| Stopped::Scene(error.to_string()))?,
+            None => Built::build(&self.scene.mechanism, &Files::default()).map_err(invalid)?,
         };
-        Model::build(&self.scene, Arc::new(mechanism)).map_err(|found| faults(&found))
+        Model::build(&self.scene, Arc::new(mechanism)).map_err(|faults| {
+            let text = |fault: &Fault| format!("{} = {}: {}", fault.field, fault.value, fault.problem);
+            Stopped::Scene(faults.first().map_or_else(String::new, text))
+        })
     }
+}
+
+fn invalid(error: impl Display) -> Stopped {
+    Stopped::Scene(error.to_string())
 }
 
 pub(super) fn polynomial(coefficients_si: &[f64]) -> Mechanism {
@@ -136,22 +132,10 @@ pub(super) fn rigid(travel_limit_mm: f64, restitution: f64) -> Stops {
     Stops::Rigid { travel_limit_mm, restitution }
 }
 
-pub(super) fn right_stop(right_mm: f64, restitution: f64) -> Stops {
-    Stops::Uneven {
-        left_mm: None,
-        right_mm: Some(right_mm),
-        restitution_left: None,
-        restitution_right: Some(restitution),
-    }
-}
-
-pub(super) fn left_stop(left_mm: f64, restitution: f64) -> Stops {
-    Stops::Uneven {
-        left_mm: Some(left_mm),
-        right_mm: None,
-        restitution_left: Some(restitution),
-        restitution_right: None,
-    }
+/// Stops of one restitution at these distances from x = 0.
+pub(super) fn stops_at(left_mm: Option<f64>, right_mm: Option<f64>, restitution: f64) -> Stops {
+    let of = |limit: Option<f64>| limit.map(|_| restitution);
+    Stops::Uneven { left_mm, right_mm, restitution_left: of(left_mm), restitution_right: of(right_mm) }
 }
 
 /// A coil of this coupling in V s/m, resistance in ohm, load and all, and inductance in H.
