@@ -37,7 +37,7 @@ impl Window {
             return self.messages.notify("Copied: the command line of this figure");
         }
         self.figures.problem = None;
-        self.figures.job.ask(&self.wake, move |cancel| order.save(cancel));
+        self.figures.job.ask((), &self.wake, move |(), cancel, _| order.save(cancel));
     }
 
     /// Receives the result of saving a figure; after an error the dialog stays open.

@@ -66,7 +66,7 @@ impl Window {
         if let Some(fault) = self.session.fault() {
             return self.messages.alert("The run was not written", fault);
         }
-        self.run.ask(&self.wake, move |cancel| {
+        self.run.ask((), &self.wake, move |(), cancel, _| {
             let text = export::run_csv(&scene, &model, cancel)?;
             Some(text.and_then(|text| write_text(&path, &text)))
         });

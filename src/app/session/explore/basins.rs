@@ -4,12 +4,10 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use crate::app::session::Session;
-use crate::app::task::pool;
+use crate::app::task::{Background, pool};
 use crate::mechanics::Mechanism;
 use crate::scene::{Scene, Start};
 use crate::study::{Answer, Basins, EvenRange, NoBasins, Starts, Task};
-
-use super::Explored;
 
 /// Number of starts along each axis.
 pub const STARTS: u64 = 81;
@@ -38,7 +36,7 @@ pub struct Level {
 }
 
 /// The basins, level by level, or why there are none.
-pub type BasinsFound = Explored<BasinsQuestion, Result<Level, String>>;
+pub type BasinsFound = Background<BasinsQuestion, Result<Level, String>>;
 
 impl Session {
     /// Asks for the basins of the present scene over a range of displacements in m and of velocities `v` in
@@ -54,11 +52,9 @@ impl Session {
             ..self.scene().clone()
         };
         let question = BasinsQuestion { scene, x_mm: (low * 1e3, high * 1e3), v };
-        let (mechanism, wake) = (Arc::clone(&self.mechanism), Arc::clone(&self.wake));
-        self.explore.basins.want(&question, still, &wake, move |question, cancel, each| {
-            if let Err(problem) = find(question, mechanism, cancel, &|level| each(Ok(level))) {
-                each(Err(problem));
-            }
+        let mechanism = Arc::clone(&self.mechanism);
+        self.explore.basins.want(question, still, &self.wake, move |question, cancel, each| {
+            find(question, mechanism, cancel, &|level| each(Ok(level))).err().map(Err)
         });
     }
 

@@ -5,27 +5,29 @@
 
 mod axes;
 mod cells;
-mod of_session;
-mod trail;
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::app::task::{Job, Wake, pool};
+use crate::app::task::{Background, pool};
 use crate::app::words::columns::{COLUMNS, ColumnInfo};
-use crate::scene::{Scene, SweepAxis};
-use crate::study::{self, Cell, STANDARD_COLUMNS};
-use crate::system::clock::WallClock;
+use crate::app::words::fields::{self, in_words};
+use crate::scene::{Axis, FieldPath, Scene, Stops, SweepAxis};
+use crate::study::{Cell, STANDARD_COLUMNS, Task};
 
-use super::editor::Editor;
+use super::Session;
 
 pub use crate::numeric::short;
 pub use axes::{ground, label, name_and_unit, over, part};
+use cells::too_many;
 pub use cells::{CutCell, Map};
-pub use trail::Trail;
 
 /// Time in s without a change after which a map is begun in the middle of a gesture.
 const STILL: f64 = 0.25;
+
+/// Largest number of scenes that are remembered.
+const MAX_SCENES: usize = 400;
 
 /// The question that a map answers: a scene, apart from the fields of the axes, and the axes.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,19 +50,15 @@ pub struct Mapping {
     chosen: Option<[SweepAxis; 2]>,
     /// The default axes, as they were when the map was first shown: they do not move with the scene.
     default_axes: Option<[SweepAxis; 2]>,
-    /// The choices of axes before each enlargement of a part of the map, the first one first.
-    before_enlarging: Vec<Option<[SweepAxis; 2]>>,
+    /// The axes of the enlarged parts of the map, each a part of the one before.
+    enlarged: Vec<[SweepAxis; 2]>,
     map: Option<Map>,
     /// The previous map, shown until the new one has a result everywhere.
     previous: Option<Map>,
-    task: Option<Job<(u64, u64, Cell)>>,
-    /// Number of the question that the running cells belong to.
-    generation: u64,
+    /// The cells of the map that have come and are not in it yet.
+    cells: Background<Question, (u64, Cell)>,
     /// Number of changes of the picture.
     version: u64,
-    begun: Option<WallClock>,
-    stopped: bool,
-    wanted: bool,
     /// A question that waits for a pause in the gesture, and the time in s since which it has not changed.
     waiting: Option<(Question, f64)>,
     /// Why there is no map.
@@ -93,7 +91,7 @@ impl Mapping {
 
     /// Whether cells are being run.
     pub fn is_running(&self) -> bool {
-        self.task.is_some()
+        self.cells.is_running()
     }
 
     /// Why there is no map.
@@ -102,14 +100,15 @@ impl Mapping {
     }
 
     pub fn stop(&mut self) {
-        self.pause();
-        self.stopped = true;
+        self.cells.stop();
+        self.take();
     }
 
     /// Continues a stopped map, or begins again if it is complete.
     pub fn go_on(&mut self) {
-        self.stopped = false;
+        self.cells.resume();
         if self.map.as_ref().is_some_and(Map::is_whole) {
+            self.cells.clear();
             self.map = None;
         }
     }
@@ -141,143 +140,260 @@ impl Mapping {
 
     /// Chooses axes; `None` for the default axes.
     pub fn choose(&mut self, axes: Option<[SweepAxis; 2]>) {
-        (self.chosen, self.before_enlarging) = (axes, Vec::new());
+        (self.chosen, self.enlarged) = (axes, Vec::new());
     }
 
     /// Enlarges the part of the map that these axes span.
     pub fn enlarge(&mut self, axes: [SweepAxis; 2]) {
-        self.before_enlarging.push(self.chosen.replace(axes));
+        self.enlarged.push(axes);
     }
 
     /// Whether a part of the map is enlarged.
     pub fn is_enlarged(&self) -> bool {
-        !self.before_enlarging.is_empty()
+        !self.enlarged.is_empty()
     }
 
     /// Goes back to the axes before the last enlargement.
     pub fn show_larger(&mut self) {
-        if let Some(axes) = self.before_enlarging.pop() {
-            self.chosen = axes;
-        }
+        self.enlarged.pop();
     }
 
     /// Goes back to the whole map.
     pub fn show_whole(&mut self) {
-        self.before_enlarging.truncate(1);
-        self.show_larger();
+        self.enlarged.clear();
     }
 
-    fn pause(&mut self) {
-        self.take();
-        self.task = None;
-        if let (Some(begun), Some(map)) = (self.begun.take(), &mut self.map) {
-            map.took += begun.elapsed();
-        }
+    /// The axes of the enlarged part, or those that the user has chosen.
+    fn chosen(&self) -> Option<&[SweepAxis; 2]> {
+        self.enlarged.last().or(self.chosen.as_ref())
     }
 
     /// Receives the cells that have been computed.
     pub fn take(&mut self) {
-        let (Some(task), Some(map)) = (&self.task, &mut self.map) else { return };
-        let known_before = map.known;
-        let generation = self.generation;
-        let running = task.take(|(of, index, cell)| {
-            if of != generation {
-                return;
-            }
-            if let Some(place) = map.cells.get_mut(index as usize).filter(|place| place.is_none()) {
-                *place = Some(cell);
-                map.known += 1;
-            }
-        });
-        let worked = map.took + self.begun.map_or(Duration::ZERO, |begun| begun.elapsed());
-        if map.known > known_before {
-            self.version += 1;
-            if map.is_covered() {
-                map.coarse_after.get_or_insert(worked);
-                self.previous = None;
-                map.draw_lines(worked);
-            }
+        let cells = self.cells.take_parts();
+        let Some(map) = &mut self.map else { return };
+        map.took = self.cells.worked();
+        if cells.is_empty() {
+            return;
         }
-        if !running {
-            map.took = worked;
-            (self.task, self.begun) = (None, None);
-            // a job that ended early, because no threads could be started, is not tried again by itself
-            self.stopped |= !map.is_whole();
+        self.version += 1;
+        map.add(cells);
+        if map.is_covered() {
+            self.previous = None;
         }
     }
 
     /// Pauses the map if no view has asked for it in this frame; to be called once a frame.
     pub fn end_frame(&mut self) {
-        if !std::mem::take(&mut self.wanted) {
-            self.pause();
+        self.cells.end_frame();
+    }
+}
+
+impl Session {
+    /// The axes of the map; `None` if the scene has fewer than two fields for them.
+    pub fn map_axes(&self) -> Option<[SweepAxis; 2]> {
+        let (scene, when_on) = (self.scene(), self.remembered_stops());
+        for axes in self.map.chosen().into_iter().chain(&self.map.default_axes) {
+            let ground = ground(scene, when_on, axes);
+            if axes.iter().all(|axis| FieldPath::new(&axis.field).get(&ground).is_some()) {
+                return Some(axes.clone());
+            }
         }
+        axes::default_axes(scene, when_on, self.well_mm())
     }
 
-    /// Asks for the map of a question, now or after a pause in the gesture. Returns whether it waits.
-    fn ask(&mut self, question: Question, editor: &Editor, in_gesture: bool, time: f64, wake: &Wake) -> bool {
-        self.wanted = true;
-        if self.map.as_ref().is_some_and(|map| map.question == question) {
-            (self.waiting, self.problem) = (None, None);
-            if self.task.is_none() && !self.stopped {
-                self.start(wake);
-            }
+    /// The fields of this scene that a map can have as axes.
+    pub fn map_fields(&self) -> Vec<String> {
+        axes::fields(self.scene(), self.remembered_stops())
+    }
+
+    /// An axis over a field, around its present value.
+    pub fn map_axis(&self, field: &str) -> SweepAxis {
+        axes::axis(field, self.scene(), self.remembered_stops(), self.well_mm())
+    }
+
+    fn well_mm(&self) -> Option<f64> {
+        self.model().mechanism().landscape.right_stable().map(|well| well.x * 1e3)
+    }
+
+    /// Asks for the map of the present scene, in the frame at `time` in s. Returns whether the map waits for
+    /// a pause in the gesture.
+    pub fn want_map(&mut self, time: f64) -> bool {
+        let Some(axes) = self.map_axes() else {
+            self.map.problem = Some("This scene has no two fields to make a map over.".to_owned());
+            return false;
+        };
+        // chosen axes whose fields the scene lacks at present stay chosen
+        if self.map.chosen() != Some(&axes) {
+            self.map.default_axes = Some(axes.clone());
+        }
+        let Some(question) = self.map_question(axes) else { return false };
+        self.map.cells.mark_wanted();
+        if self.map.cells.question() == Some(&question) {
+            (self.map.waiting, self.map.problem) = (None, None);
+            self.run_cells();
             return false;
         }
-        if self.problem.is_some() && self.waiting.as_ref().is_some_and(|waiting| waiting.0 == question) {
+        let waiting = self.map.waiting.take().filter(|(same, _)| *same == question);
+        if self.map.problem.is_some() && waiting.is_some() {
+            self.map.waiting = waiting;
             return false;
         }
         // the results of the running cells would not be used
-        self.pause();
-        if in_gesture {
-            let since = match &self.waiting {
-                Some((same, since)) if *same == question => *since,
-                _ => time,
-            };
-            if time - since < STILL {
-                self.waiting = Some((question, since));
-                return true;
-            }
+        self.map.cells.pause();
+        self.map.take();
+        let since = waiting.map_or(time, |(_, since)| since);
+        if self.editor.in_gesture() && time - since < STILL {
+            self.map.waiting = Some((question, since));
+            return true;
         }
-        self.version += 1;
-        self.stopped = false;
-        match Map::new(&question, editor) {
+        self.map.version += 1;
+        match Map::new(&question, &self.editor, self.model().mechanism()) {
             Ok(map) => {
-                let old = self.map.take().filter(Map::is_covered).or_else(|| self.previous.take());
-                let fields = |question: &Question| question.axes.clone().map(|axis| axis.field);
-                let shows = |old: &Question| old.ledger.is_some() || question.ledger.is_none();
-                let alike = |old: &Map| fields(&old.question) == fields(&question) && shows(&old.question);
-                self.previous = old.filter(alike);
-                self.map = Some(map);
-                (self.waiting, self.problem) = (None, None);
-                self.generation += 1;
-                self.start(wake);
+                let mapping = &mut self.map;
+                let old = mapping.map.take().filter(Map::is_covered).or_else(|| mapping.previous.take());
+                mapping.previous = old.filter(|old| old.stands_in_for(&map));
+                (mapping.map, mapping.problem) = (Some(map), None);
+                self.run_cells();
             }
             Err(problem) => {
-                self.problem = Some(problem);
-                self.waiting = Some((question, time));
+                self.map.problem = Some(problem);
+                self.map.waiting = Some((question, time));
             }
         }
         false
     }
 
-    fn start(&mut self, wake: &Wake) {
-        let Some(map) = self.map.as_ref().filter(|map| !map.is_whole()) else { return };
-        let (sweep, levels) = (Arc::clone(&map.sweep), Arc::clone(&map.levels));
-        let known: Vec<bool> = map.cells.iter().map(Option::is_some).collect();
-        let generation = self.generation;
-        self.begun = Some(WallClock::start());
-        self.task = Job::start(wake, move |cancel, each| {
-            let Some(pool) = pool() else { return };
-            let task = study::Task { tick: &|| (), cancel };
-            let mut begin = 0;
-            for end in levels.ends {
-                let missing = |index: &u64| !known[*index as usize];
-                let cells: Vec<u64> = levels.order[begin..end].iter().copied().filter(missing).collect();
-                begin = end;
-                if !sweep.run_cells(&pool, &task, &cells, &|index, cell| each((generation, index, cell))) {
-                    return;
+    /// The question of the map over these axes; `None` if the first value of one cannot be set.
+    fn map_question(&self, axes: [SweepAxis; 2]) -> Option<Question> {
+        let mut scene = ground(self.scene(), self.remembered_stops(), &axes);
+        if !axes.iter().all(|axis| FieldPath::new(&axis.field).set(&mut scene, axis.from)) {
+            return None;
+        }
+        let same = self.map.map().filter(|map| map.question.scene == scene && map.question.axes == axes);
+        // runs with an energy ledger have all columns of runs without one
+        let quantity = self.map.quantity();
+        let needed = || quantity.field().filter(|field| field.needs_ledger).map(|_| quantity.column);
+        let ledger = same.and_then(|map| map.question.ledger).or_else(needed);
+        Some(Question { scene, axes, ledger })
+    }
+
+    /// Runs the missing cells of the map, unless they are running or were stopped.
+    fn run_cells(&mut self) {
+        let Mapping { map: Some(map), cells, .. } = &mut self.map else { return };
+        if map.is_whole() || cells.question() == Some(&map.question) && !cells.is_paused() {
+            return;
+        }
+        let (sweep, levels) = (Arc::clone(&map.sweep), map.missing());
+        cells.ask(map.question.clone(), &self.wake, move |_, cancel, each| {
+            let (pool, task) = (pool()?, Task { tick: &|| (), cancel });
+            for cells in levels {
+                if !sweep.run_cells(&pool, &task, &cells, &|index, cell| each((index, cell))) {
+                    break;
                 }
             }
+            None
         });
+    }
+
+    /// Position of the scene on the axes of a map; `None` on an axis whose field it lacks, such as the travel
+    /// limit without stops.
+    pub fn place_on_map(&self, question: &Question) -> [Option<f64>; 2] {
+        question.axes.each_ref().map(|axis| FieldPath::new(&axis.field).get(self.scene()))
+    }
+
+    /// Why a map of the scene cannot have these axes: the index of the faulty axis, its faulty part, and a
+    /// sentence. `None` if it can.
+    pub fn map_problem(&self, axes: &[SweepAxis; 2]) -> Option<(usize, &'static str, String)> {
+        let ground = ground(self.scene(), self.remembered_stops(), axes);
+        let mut cells = 1;
+        for (i, axis) in axes.iter().enumerate() {
+            match Axis::from_scene(axis, &ground) {
+                Err((part, problem)) => {
+                    let why = in_words(&problem, &ground);
+                    return Some((
+                        i,
+                        part,
+                        format!("{}, {part}: {why}", fields::name_and_unit(&axis.field).0),
+                    ));
+                }
+                Ok(axis) => cells *= axis.values.len() as u64,
+            }
+        }
+        too_many(cells).map(|problem| (1, "step", problem))
+    }
+
+    /// Moves the scene to a cell of its map, as one gesture; the motion goes on from its present state.
+    pub fn go_to_cell(&mut self, column: usize, row: usize) {
+        self.end_gesture();
+        self.drag_to_cell(column, row);
+        self.end_gesture();
+    }
+
+    /// Moves the scene to a cell of its map, as part of a gesture.
+    pub fn drag_to_cell(&mut self, column: usize, row: usize) {
+        let Some((map, _)) = self.map.shown() else { return };
+        let (Some(x), Some(y)) = (map.edges[0].values.get(column), map.edges[1].values.get(row)) else {
+            return;
+        };
+        let (values, axes, stops) = ([*x, *y], map.question.axes.clone(), map.question.scene.stops);
+        self.edit(|scene| {
+            if scene.stops == Stops::None && axes.iter().any(|axis| axis.field.starts_with("stops.")) {
+                scene.stops = stops;
+            }
+            for (axis, value) in axes.iter().zip(values) {
+                let is_set = FieldPath::new(&axis.field).set(scene, value);
+                debug_assert!(is_set, "an axis of the map belongs to the scene");
+            }
+        });
+    }
+
+    /// Waits at most `timeout` until all cells of the map are known. Returns whether they are.
+    pub fn wait_for_map(&mut self, timeout: Duration) -> bool {
+        self.map.cells.wait(timeout);
+        self.map.take();
+        self.map.map().is_some_and(Map::is_whole)
+    }
+}
+
+/// The scenes of the live motion so far, the oldest first.
+#[derive(Default)]
+pub struct Trail {
+    scenes: VecDeque<Scene>,
+    /// Their positions on `fields`, the two axes that were last asked for.
+    places: Vec<[Option<f64>; 2]>,
+    fields: [String; 2],
+}
+
+impl Trail {
+    pub(super) fn note(&mut self, scene: &Scene) {
+        self.scenes.push_back(Scene { title: String::new(), notes: String::new(), ..scene.clone() });
+        if self.scenes.len() > MAX_SCENES {
+            self.scenes.pop_front();
+        }
+        self.places.clear();
+    }
+
+    /// Forgets all scenes but the present one.
+    pub fn clear(&mut self) {
+        self.scenes.drain(..self.scenes.len().saturating_sub(1));
+        self.places.clear();
+    }
+
+    /// Whether there is no scene but the present one.
+    pub fn is_clear(&self) -> bool {
+        self.scenes.len() < 2
+    }
+
+    /// Positions of the scenes on two fields, without repetitions; `None` on a field that a scene lacks.
+    fn places(&mut self, fields: [&str; 2]) -> &[[Option<f64>; 2]] {
+        if self.places.is_empty() || self.fields != fields {
+            let paths = fields.map(FieldPath::new);
+            let place = |scene: &Scene| paths.each_ref().map(|path| path.get(scene));
+            self.places = self.scenes.iter().map(place).collect();
+            self.places.dedup();
+            self.fields = fields.map(str::to_owned);
+        }
+        &self.places
     }
 }
