@@ -7,7 +7,7 @@ use eframe::egui::{self, ComboBox, Ui};
 use crate::app::session::Session;
 use crate::scene::{Excitation, Stops};
 
-use super::fields::{field_ui, fields_ui};
+use super::controls::{field_ui, fields_ui};
 
 pub fn advanced_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     kind_ui(ui, session);

@@ -1,4 +1,4 @@
-//! Dialog of a figure: its fields and buttons.
+//! Dialog of a figure, and what is done with its answer.
 
 use eframe::egui::{self, Button, ComboBox, Grid, Key, RichText, TextEdit, Ui};
 
@@ -6,10 +6,12 @@ use crate::app::session::Session;
 use crate::app::ui::widgets::{dialog, dialog_width};
 use crate::app::views::{Memory, View};
 
+use super::Window;
 use super::figure::{Figures, panel};
+use super::wanted::Wanted;
 
 /// What the user chooses in the dialog.
-pub(super) enum Action {
+enum Action {
     Save,
     /// Copy the command that makes the figure.
     Copy,
@@ -19,7 +21,7 @@ pub(super) enum Action {
 }
 
 impl Figures {
-    pub(super) fn ui(&mut self, ui: &Ui, view: View, session: &Session, memory: &Memory) -> Option<Action> {
+    fn ui(&mut self, ui: &Ui, view: View, session: &Session, memory: &Memory) -> Option<Action> {
         let answer = dialog(ui.ctx(), "figure").show(ui.ctx(), |ui| {
             ui.set_width(dialog_width(ui, 560.0));
             ui.heading("Save a figure");
@@ -136,5 +138,50 @@ impl Figures {
             }
         });
         action
+    }
+}
+
+impl Window {
+    /// Opens the dialog for a figure of a view, or of the view under the pointer.
+    pub(super) fn open_figure_dialog(&mut self, view: Option<View>) {
+        let view = view.or(self.filled).or(self.memory.hovered).unwrap_or(View::Displacement);
+        self.figures.open(view, &self.session, &self.memory);
+    }
+
+    pub(super) fn figure_ui(&mut self, ui: &Ui) {
+        let Some(view) = self.figures.view else { return };
+        let Some(action) = self.figures.ui(ui, view, &self.session, &self.memory) else { return };
+        match action {
+            Action::Browse => return self.choose(Wanted::Figure),
+            Action::Close => {
+                self.figures.job.clear();
+                self.figures.view = None;
+                return;
+            }
+            Action::Save | Action::Copy => {}
+        }
+        let Some(view) = self.figures.view else { return };
+        let order = match self.figures.order(view, &self.session, &self.memory) {
+            Ok(order) => order,
+            Err(problem) => return self.figures.problem = Some(problem),
+        };
+        if matches!(action, Action::Copy) {
+            ui.ctx().copy_text(order.command_line());
+            return self.messages.notify("Copied: the command line of this figure");
+        }
+        self.figures.problem = None;
+        self.figures.job.ask((), &self.wake, move |(), cancel, _| order.save(cancel));
+    }
+
+    /// Receives the result of saving a figure; after an error the dialog stays open.
+    pub(super) fn take_figure(&mut self) {
+        match self.figures.job.take() {
+            Some(Ok(text)) => {
+                self.figures.view = None;
+                self.messages.notify(text);
+            }
+            Some(Err(problem)) => self.figures.problem = Some(problem),
+            None => {}
+        }
     }
 }

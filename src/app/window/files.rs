@@ -15,10 +15,9 @@ use crate::system::files;
 use super::Window;
 use super::leave::{self, Answer, Next};
 use super::lessons;
-use super::measured_dialog::{ENDINGS, is_measured};
+use super::measured::{ENDINGS, is_measured};
 use super::messages::CANNOT_OPEN;
-use super::path_dialog::{PathAnswer, PathDialog};
-use super::wanted::{Chosen, Wanted};
+use super::wanted::{Chosen, PathAnswer, PathDialog, Wanted};
 
 /// Time in ms below which a dialog that is closed again has not been visible.
 const UNSEEN: u128 = 300;

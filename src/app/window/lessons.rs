@@ -7,8 +7,8 @@ use eframe::egui::{self, Id, Key, LayerId, Modifiers, Order, Rect, StrokeKind, U
 
 use crate::app::panels::controls;
 use crate::app::panels::hint::Hint;
-use crate::app::panels::lecturer::lecturer_ui;
 use crate::app::panels::lesson::{LessonAction, lesson_ui, letter};
+use crate::app::panels::notes::lecturer_ui;
 use crate::app::session::editor::Editor;
 use crate::app::session::lesson::{OpenLesson, Records, Turn, answers_text};
 use crate::app::session::{CannotRun, Session};

@@ -1,15 +1,248 @@
-//! Measured data in the window: opening, display over a view, use as excitation.
+//! Measured data: the dialog for their columns and units, display over a view, use as excitation.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use eframe::egui::Ui;
+use eframe::egui::{self, Button, ComboBox, Grid, RichText, Ui};
 
-use crate::app::session::measured::MeasuredRecord;
+use crate::app::session::measured::{MeasuredRecord, sentence};
+use crate::app::task::{Background, Wake};
+use crate::app::ui::widgets::{dialog, dialog_width};
 use crate::app::views::View;
-use crate::scene::Quantity;
+use crate::scene::{ChosenColumn, MeasuredText, Quantity, Unit};
 
 use super::Window;
-use super::measured_dialog::{MeasuredAnswer, MeasuredDialog};
+
+/// Extensions of the files that are taken for measured data.
+pub(super) const ENDINGS: [&str; 4] = ["csv", "txt", "tsv", "dat"];
+
+/// Rows of the dialog, with the quantities of each: the abscissa, and the measured values.
+const ROWS: [(&str, &[Quantity]); 2] = [
+    ("across", &[Quantity::Time, Quantity::Displacement]),
+    ("values", &[Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration, Quantity::Force]),
+];
+
+/// Width in points of the dialog.
+const WIDTH: f32 = 560.0;
+/// Width in points of the choice of a column.
+const COLUMN: f32 = 190.0;
+/// Width in points of the choice of a unit.
+const UNIT: f32 = 70.0;
+
+/// Whether a file is taken for measured data.
+pub(super) fn is_measured(path: &Path) -> bool {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+    ending.is_some_and(|ending| ENDINGS.contains(&ending.as_str()))
+}
+
+/// A file of measured data whose columns are being chosen.
+pub struct MeasuredDialog {
+    path: PathBuf,
+    name: String,
+    text: Background<(), Result<Arc<MeasuredText>, String>>,
+    chosen: Option<[ChosenColumn; 2]>,
+    /// The record of two columns, each with its unit.
+    record: Background<[(usize, Unit); 2], Result<MeasuredRecord, String>>,
+    /// Why the base cannot be shaken with the record.
+    refused: Option<String>,
+}
+
+enum MeasuredAnswer {
+    /// Draw the record over the computed motion or curve.
+    Overlay(Box<MeasuredRecord>),
+    /// Shake the base with the record of the file.
+    Shake(PathBuf, Box<MeasuredRecord>),
+    Cancelled,
+}
+
+impl MeasuredDialog {
+    /// Begins to read the file.
+    pub fn new(path: &Path, wake: &Wake) -> Self {
+        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+        let mut text = Background::default();
+        let file = path.to_owned();
+        text.ask((), wake, move |(), _, _| {
+            let read = MeasuredText::read(&file).map(Arc::new);
+            Some(read.map_err(|problem| sentence(&format!("the file {problem}"))))
+        });
+        let record = Background::default();
+        Self { path: path.to_owned(), name, text, chosen: None, record, refused: None }
+    }
+
+    /// Says why the base cannot be shaken with the record.
+    pub fn refuse(&mut self, why: String) {
+        self.refused = Some(why);
+    }
+
+    /// Chooses the column and the unit of a row: 0 for the abscissa, 1 for the values.
+    pub fn choose(&mut self, row: usize, chosen: ChosenColumn) {
+        if let Some(present) = self.chosen.as_mut().and_then(|rows| rows.get_mut(row)) {
+            *present = chosen;
+            self.refused = None;
+        }
+    }
+
+    /// The record once it is read, or a sentence that says what prevents that.
+    pub fn known(&self) -> Option<Result<&MeasuredRecord, String>> {
+        let names = match self.text.answer()? {
+            Ok(text) => &text.names,
+            Err(problem) => return Some(Err(problem.clone())),
+        };
+        let open = self.chosen?.into_iter().find(|column| column.1.is_none());
+        if let Some((at, _)) = open {
+            let name = names.get(at).map_or("", String::as_str);
+            return Some(Err(format!("Choose the unit of `{name}`: its name does not end with one.")));
+        }
+        Some(self.record.answer()?.as_ref().map_err(Clone::clone))
+    }
+
+    /// Receives what was read, and has the chosen columns read.
+    pub fn poll(&mut self, wake: &Wake) {
+        self.text.poll();
+        self.record.poll();
+        let Some(Ok(text)) = self.text.answer() else { return };
+        let [across, values] = *self.chosen.get_or_insert_with(|| text.guess());
+        let Some(wanted) = across.1.zip(values.1).map(|pair| [(across.0, pair.0), (values.0, pair.1)]) else {
+            return self.record.clear();
+        };
+        let (text, name) = (Arc::clone(text), self.name.clone());
+        self.record
+            .want(wanted, true, wake, move |wanted, _, _| Some(MeasuredRecord::of(&name, &text, *wanted)));
+    }
+
+    /// Draws the dialog. Returns the answer once there is one.
+    fn ui(&mut self, ui: &Ui, wake: &Wake) -> Option<MeasuredAnswer> {
+        self.poll(wake);
+        let answer = dialog(ui.ctx(), "measured").show(ui.ctx(), |ui| {
+            ui.set_width(dialog_width(ui, WIDTH));
+            ui.heading(format!("Measured data: {}", self.name));
+            ui.add_space(4.0);
+            if let Some(Ok(text)) = self.text.answer().cloned() {
+                self.columns_ui(ui, &text);
+            }
+            self.known_ui(ui);
+            ui.add_space(8.0);
+            self.buttons_ui(ui)
+        });
+        let closed = answer.should_close().then_some(MeasuredAnswer::Cancelled);
+        answer.inner.or(closed)
+    }
+
+    fn columns_ui(&mut self, ui: &mut Ui, text: &MeasuredText) {
+        let Some(chosen) = self.chosen else { return };
+        let guess = text.guess();
+        Grid::new("columns").num_columns(4).spacing([10.0, 6.0]).show(ui, |ui| {
+            for (row, (name, quantities)) in ROWS.into_iter().enumerate() {
+                let (at, unit) = chosen[row];
+                let label = ui.label(name);
+                let mut wanted = chosen[row];
+                let title = |at: usize| text.names.get(at).map_or("", String::as_str);
+                let column = ComboBox::from_id_salt((name, "column"))
+                    .width(COLUMN)
+                    .selected_text(title(at))
+                    .truncate();
+                let shown = column.show_ui(ui, |ui| {
+                    for (at, name) in text.names.iter().enumerate() {
+                        let is_chosen = at == chosen[row].0;
+                        if ui.selectable_label(is_chosen, name).clicked() {
+                            let unit = Unit::of_name(name).filter(|unit| quantities.contains(&unit.quantity));
+                            wanted = (at, unit);
+                        }
+                    }
+                });
+                shown.response.labelled_by(label.id).on_hover_text("The column of the file.");
+                let words = unit.map_or("unit?", Unit::word);
+                let units = ComboBox::from_id_salt((name, "unit")).width(UNIT).selected_text(words);
+                let shown = units.show_ui(ui, |ui| {
+                    for quantity in quantities {
+                        for choice in Unit::all(*quantity) {
+                            let words = format!("{} ({})", choice.word(), quantity_name(row, *quantity));
+                            if ui.selectable_label(unit == Some(choice), words).clicked() {
+                                wanted.1 = Some(choice);
+                            }
+                        }
+                    }
+                });
+                let hover = "The unit of its numbers.";
+                let unit_name = format!("unit of {name}");
+                shown.response.widget_info(|| {
+                    let mut info = egui::WidgetInfo::labeled(egui::Role::ComboBox, true, &unit_name);
+                    info.current_text_value = Some(words.to_owned());
+                    info
+                });
+                shown.response.on_hover_text(hover);
+                let how = match (chosen[row] == guess[row], unit) {
+                    (_, None) => String::new(),
+                    (true, Some(unit)) => format!("{}, by its name", quantity_name(row, unit.quantity)),
+                    (false, Some(unit)) => quantity_name(row, unit.quantity).to_owned(),
+                };
+                ui.label(RichText::new(how).small());
+                ui.end_row();
+                if wanted != chosen[row] {
+                    self.choose(row, wanted);
+                }
+            }
+        });
+    }
+
+    /// The record that was read, or why it cannot be read.
+    fn known_ui(&self, ui: &mut Ui) {
+        ui.add_space(4.0);
+        match self.known() {
+            None => _ = ui.label("Reading the file."),
+            Some(Err(problem)) => _ = ui.label(RichText::new(problem).heading()),
+            Some(Ok(record)) => {
+                ui.label(record.describe());
+            }
+        }
+        if let Some(why) = &self.refused {
+            ui.label(RichText::new(format!("The base is not shaken with it. {why}")).heading());
+        }
+    }
+
+    fn buttons_ui(&mut self, ui: &mut Ui) -> Option<MeasuredAnswer> {
+        let ready = matches!(self.known(), Some(Ok(_)));
+        let record = |dialog: &mut Self| dialog.record.take().and_then(Result::ok).map(Box::new);
+        ui.horizontal(|ui| {
+            let lay = ui.add_enabled(ready, Button::new("Lay it over"));
+            if ready && ui.memory(|memory| memory.focused().is_none()) {
+                lay.request_focus();
+            }
+            let accelerates =
+                matches!(self.known(), Some(Ok(record)) if record.values.quantity == Quantity::Acceleration);
+            let shaken = accelerates
+                && ui
+                    .button("Shake the base with it")
+                    .on_hover_text(
+                        "The excitation of the scene becomes this record, linear between its samples, from \
+                         its time 0 on. A step that can be undone.",
+                    )
+                    .clicked();
+            let cancelled = ui.button("Cancel").clicked();
+            if lay.clicked() {
+                return record(self).map(MeasuredAnswer::Overlay);
+            }
+            if shaken {
+                return self
+                    .record
+                    .answer()
+                    .and_then(|record| record.clone().ok())
+                    .map(|record| MeasuredAnswer::Shake(self.path.clone(), Box::new(record)));
+            }
+            cancelled.then_some(MeasuredAnswer::Cancelled)
+        })
+        .inner
+    }
+}
+
+/// Name of a quantity in a row; a displacement as abscissa is a position.
+fn quantity_name(row: usize, quantity: Quantity) -> &'static str {
+    match (row, quantity) {
+        (0, Quantity::Displacement) => "position",
+        (_, Quantity::Acceleration) => "acceleration of the base",
+        (_, quantity) => quantity.name(),
+    }
+}
 
 impl Window {
     /// Opens the dialog for the columns of a file of measured data.

@@ -4,9 +4,8 @@
 
 use eframe::egui::{self, CentralPanel, Frame, Margin, Panel, RichText, Ui};
 
-use crate::app::panels::glossary::glossary_ui;
 use crate::app::panels::status_line::{self, covered_ui, status_ui};
-use crate::app::panels::{best_stops, controls, notes, transport};
+use crate::app::panels::{controls, notes, transport};
 use crate::app::session::lesson::Records;
 use crate::app::ui::style::{self, PROJECTOR_ZOOM, Style};
 use crate::app::ui::widgets::{Icon, icon_button_ui};
@@ -37,20 +36,16 @@ pub mod layouts;
 pub mod leave;
 mod lessons;
 mod measured;
-mod measured_dialog;
 mod menu;
 mod messages;
-mod path_dialog;
 mod perform;
-mod saving_figure;
-mod size;
 mod state;
 mod wanted;
 mod writing;
 
 pub use command::Command;
 pub use figure::Figures;
-pub use measured_dialog::MeasuredDialog;
+pub use measured::MeasuredDialog;
 pub use state::Window;
 pub use wanted::Wanted;
 
@@ -196,7 +191,7 @@ impl Window {
         self.session.follow_best();
         if self.session.best.is_shown() && !self.covered {
             let panel = Panel::top("best stops").frame(line);
-            panel.show(ui, |ui| best_stops::answer_ui(ui, &mut self.session));
+            panel.show(ui, |ui| controls::best_stops_answer_ui(ui, &mut self.session));
         }
         CentralPanel::no_frame().show(ui, |ui| self.views_ui(ui, style));
         self.pointing_ui(&ctx, &style);
@@ -217,7 +212,7 @@ impl Window {
         self.measured_ui(ui);
         self.take_figure();
         self.figure_ui(ui);
-        self.glossary = self.glossary && glossary_ui(ui);
+        self.glossary = self.glossary && notes::glossary_ui(ui);
         let projector = self.settings.projector;
         self.shortcuts = self.shortcuts.filter(|opened| keys::list_ui(ui, *opened, projector));
         self.messages.ui(ui);

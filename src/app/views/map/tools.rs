@@ -3,7 +3,7 @@
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::{self, Align2, ComboBox, Painter, PopupCloseBehavior, Rect, RichText, Ui, pos2, vec2};
 
-use crate::app::panels::best_stops;
+use crate::app::panels::controls;
 use crate::app::session::map::{Map, Mapping};
 use crate::app::ui::knob::refuse;
 use crate::app::ui::style::Style;
@@ -109,7 +109,7 @@ fn axes_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     }
     ranges_ui(ui, context, &axes);
     trail_ui(ui, context);
-    best_stops::button_ui(ui, context.session, "Best stops");
+    controls::best_stops_ui(ui, context.session, "Best stops");
     if let Some((i, path)) = wanted {
         let mut chosen = axes;
         chosen[i] = context.session.map_axis(&path);
