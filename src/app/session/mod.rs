@@ -107,6 +107,15 @@ impl Session {
         self.follow_accuracy();
     }
 
+    /// Stops what no view has asked for in this frame; to be called once a frame.
+    pub fn end_frame(&mut self) {
+        self.map.end_frame();
+        self.measured.found.end_frame();
+        self.explore.end_frame();
+        self.accuracy.end_frame();
+        self.player.end_frame();
+    }
+
     /// Restarts the motion.
     pub fn restart(&mut self) {
         self.player.restart(&self.model);

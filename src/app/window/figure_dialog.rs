@@ -26,84 +26,18 @@ impl Figures {
             ui.set_width(dialog_width(ui, 560.0));
             ui.heading("Save a figure");
             ui.add_space(4.0);
-            self.fields_ui(ui, view, session, memory)
+            self.contents_ui(ui, view, session, memory)
         });
         let closed = answer.should_close().then_some(Action::Close);
         answer.inner.or(closed)
     }
 
-    fn fields_ui(&mut self, ui: &mut Ui, view: View, session: &Session, memory: &Memory) -> Option<Action> {
+    /// The fields, the remark and the buttons.
+    fn contents_ui(&mut self, ui: &mut Ui, view: View, session: &Session, memory: &Memory) -> Option<Action> {
         let mut action = None;
-        let field = |ui: &mut Ui, name: &str, text: &mut String, width: f32, unit: &str| {
-            let name = ui.label(name);
-            let field = ui.add(TextEdit::singleline(text).desired_width(width)).labelled_by(name.id);
-            ui.label(unit);
-            field
-        };
         let entered = Grid::new("figure").num_columns(2).spacing([12.0, 6.0]).show(ui, |ui| {
-            let name = ui.label("Of");
-            let mut chosen = view;
-            let combo = ComboBox::from_id_salt("figure of").width(180.0).selected_text(view.name());
-            let combo = combo.show_ui(ui, |ui| {
-                for choice in View::ALL {
-                    ui.selectable_value(&mut chosen, choice, choice.name());
-                }
-            });
-            combo.response.labelled_by(name.id);
-            if chosen != view {
-                self.open(chosen, session, memory);
-            }
-            ui.end_row();
-            let name = ui.label("File");
-            let path = ui.horizontal(|ui| {
-                let path = TextEdit::singleline(&mut self.path);
-                let room = ui.available_width() - 84.0;
-                let path = ui.add(path.desired_width(room)).labelled_by(name.id);
-                if ui.button("Browse...").clicked() {
-                    action = Some(Action::Browse);
-                }
-                path
-            });
-            ui.end_row();
-            ui.label("On paper");
-            let (width, font) = ui
-                .horizontal(|ui| {
-                    let width = field(ui, "width", &mut self.width, 44.0, "mm,");
-                    (width, field(ui, "text", &mut self.font, 36.0, "points"))
-                })
-                .inner;
-            ui.end_row();
-            let mut fields = vec![path.inner, width, font];
-            if panel(view).is_some() {
-                ui.label("Panels");
-                ui.horizontal(|ui| {
-                    let names = ["displacement", "velocity", "base acceleration", "phase portrait"];
-                    for (name, panel) in names.into_iter().zip(&mut self.panels) {
-                        ui.checkbox(panel, name);
-                    }
-                });
-                ui.end_row();
-                ui.label("Times");
-                ui.horizontal(|ui| {
-                    let [from, to] = &mut self.times;
-                    fields.push(field(ui, "from", from, 64.0, ""));
-                    fields.push(field(ui, "to", to, 64.0, "s; empty for the whole run"));
-                });
-                ui.end_row();
-            }
-            ui.label("");
-            ui.checkbox(&mut self.titled, "With title and footer");
-            ui.end_row();
-            ui.label("");
-            ui.checkbox(&mut self.data, "Also the numbers that are drawn, as CSV beside it");
-            ui.end_row();
-            if !std::mem::replace(&mut self.had_focus, true) {
-                fields[0].request_focus();
-            }
-            if fields.iter().any(|field| field.changed()) {
-                self.problem = None;
-            }
-            fields.iter().any(|field| field.lost_focus()) && ui.input(|input| input.key_pressed(Key::Enter))
+            self.view_choice_ui(ui, view, session, memory);
+            self.fields_ui(ui, view, &mut action)
         });
         let order = self.order(view, session, memory);
         let (can_save, remark) = self.remark(order.as_ref(), view, session);
@@ -139,6 +73,82 @@ impl Figures {
         });
         action
     }
+
+    fn view_choice_ui(&mut self, ui: &mut Ui, view: View, session: &Session, memory: &Memory) {
+        let name = ui.label("Of");
+        let mut chosen = view;
+        let combo = ComboBox::from_id_salt("figure of").width(180.0).selected_text(view.name());
+        let combo = combo.show_ui(ui, |ui| {
+            for choice in View::ALL {
+                ui.selectable_value(&mut chosen, choice, choice.name());
+            }
+        });
+        combo.response.labelled_by(name.id);
+        if chosen != view {
+            self.open(chosen, session, memory);
+        }
+        ui.end_row();
+    }
+
+    /// File, layout and contents. Returns whether Enter was pressed in a text field.
+    fn fields_ui(&mut self, ui: &mut Ui, view: View, action: &mut Option<Action>) -> bool {
+        let field = |ui: &mut Ui, name: &str, text: &mut String, width: f32, unit: &str| {
+            let name = ui.label(name);
+            let field = ui.add(TextEdit::singleline(text).desired_width(width)).labelled_by(name.id);
+            ui.label(unit);
+            field
+        };
+        let name = ui.label("File");
+        let path = ui.horizontal(|ui| {
+            let path = TextEdit::singleline(&mut self.path);
+            let room = ui.available_width() - 84.0;
+            let path = ui.add(path.desired_width(room)).labelled_by(name.id);
+            if ui.button("Browse...").clicked() {
+                *action = Some(Action::Browse);
+            }
+            path
+        });
+        ui.end_row();
+        ui.label("On paper");
+        let (width, font) = ui
+            .horizontal(|ui| {
+                let width = field(ui, "width", &mut self.width, 44.0, "mm,");
+                (width, field(ui, "text", &mut self.font, 36.0, "points"))
+            })
+            .inner;
+        ui.end_row();
+        let mut fields = vec![path.inner, width, font];
+        if panel(view).is_some() {
+            ui.label("Panels");
+            ui.horizontal(|ui| {
+                let names = ["displacement", "velocity", "base acceleration", "phase portrait"];
+                for (name, panel) in names.into_iter().zip(&mut self.panels) {
+                    ui.checkbox(panel, name);
+                }
+            });
+            ui.end_row();
+            ui.label("Times");
+            ui.horizontal(|ui| {
+                let [from, to] = &mut self.times;
+                fields.push(field(ui, "from", from, 64.0, ""));
+                fields.push(field(ui, "to", to, 64.0, "s; empty for the whole run"));
+            });
+            ui.end_row();
+        }
+        ui.label("");
+        ui.checkbox(&mut self.titled, "With title and footer");
+        ui.end_row();
+        ui.label("");
+        ui.checkbox(&mut self.data, "Also the numbers that are drawn, as CSV beside it");
+        ui.end_row();
+        if !std::mem::replace(&mut self.had_focus, true) {
+            fields[0].request_focus();
+        }
+        if fields.iter().any(|field| field.changed()) {
+            self.problem = None;
+        }
+        fields.iter().any(|field| field.lost_focus()) && ui.input(|input| input.key_pressed(Key::Enter))
+    }
 }
 
 impl Window {
@@ -170,7 +180,9 @@ impl Window {
             return self.messages.notify("Copied: the command line of this figure");
         }
         self.figures.problem = None;
-        self.figures.job.ask((), &self.wake, move |(), cancel, _| order.save(cancel));
+        self.figures.job.ask((), &self.wake, move |(), cancel, _| {
+            order.save(cancel).map_err(|error| error.to_string()).transpose()
+        });
     }
 
     /// Receives the result of saving a figure; after an error the dialog stays open.
