@@ -130,7 +130,9 @@ impl Window {
     /// Menu bar, status line and transport bar. Returns the commands that were chosen.
     fn bars_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) -> Vec<Command> {
         let bar = Panel::top("menu").frame(frame(ui, 8, 2)).exact_size(32.0).show(ui, |ui| {
-            menu::menu_ui(ui, &self.session, &self.tiling, self.settings, &self.recent, &self.lessons)
+            let Self { session, tiling, settings, recent, lessons, .. } = self;
+            let settings = *settings;
+            menu::Menus { session, tiling, settings, recent, lessons, chosen: Vec::new() }.ui(ui)
         });
         let (line, covered) = (frame(ui, 12, 4), self.motion_is_covered());
         let height = status_line::height(ui, &self.session, compact);
