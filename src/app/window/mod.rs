@@ -149,24 +149,6 @@ impl Window {
         bar.inner
     }
 
-    /// The strip of the open lesson, and the controls that it names.
-    fn lesson_panels_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) {
-        // not a panel, whose height would follow its contents one frame late
-        let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
-        let strip = frame(ui, 12, 6).show(ui, |ui| {
-            ui.spacing_mut().item_spacing.y = spacing;
-            ui.set_min_width(ui.available_width());
-            self.lesson_strip_ui(ui, style, compact);
-        });
-        ui.spacing_mut().item_spacing.y = spacing;
-        let edge = ui.visuals().widgets.noninteractive.bg_stroke;
-        ui.painter().hline(strip.response.rect.x_range(), strip.response.rect.bottom(), edge);
-        if self.lesson_has_controls() {
-            let panel = Panel::top("controls of the lesson").frame(frame(ui, 12, 4));
-            panel.show(ui, |ui| self.lesson_controls_ui(ui));
-        }
-    }
-
     /// The controls of the scene: in a compact window a row, else a column with the notes below. Returns the
     /// command that shows all of the notes, if it was chosen.
     fn controls_ui(&mut self, ui: &mut Ui, compact: bool) -> Option<Command> {

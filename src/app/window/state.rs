@@ -177,7 +177,7 @@ impl Window {
     }
 
     /// The text of the notice that is shown.
-    pub fn told(&self) -> Option<&str> {
+    pub fn notice(&self) -> Option<&str> {
         self.messages.notice_text()
     }
 

@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use crate::app::session::Session;
+use crate::app::session::map::ground;
 use crate::app::task::{Background, pool};
 use crate::mechanics::Mechanism;
 use crate::scene::{Scene, Start};
@@ -43,14 +44,7 @@ impl Session {
     /// m/s; to be called in every frame that shows them.
     pub fn want_basins(&mut self, (low, high): (f64, f64), v: (f64, f64)) {
         let still = self.stands_still();
-        let scene = Scene {
-            start: Start::Rest,
-            title: String::new(),
-            notes: String::new(),
-            sweep: Vec::new(),
-            app: None,
-            ..self.scene().clone()
-        };
+        let scene = ground(self.scene(), self.remembered_stops(), &[]);
         let question = BasinsQuestion { scene, x_mm: (low * 1e3, high * 1e3), v };
         let mechanism = Arc::clone(&self.mechanism);
         self.explore.basins.want(question, still, &self.wake, move |question, cancel, each| {

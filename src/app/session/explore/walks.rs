@@ -46,11 +46,8 @@ impl Session {
     /// The axis of the walks: the chosen one if the scene has its field, else one over the amplitude of the
     /// shaking, else over the first field that a map could have. Returns `None` if there is no such field.
     pub fn walk_axis(&self) -> Option<SweepAxis> {
-        let has = |axis: &&SweepAxis| {
-            let ground = ground(self.scene(), self.remembered_stops(), std::slice::from_ref(axis));
-            FieldPath::new(&axis.field).get(&ground).is_some()
-        };
-        if let Some(chosen) = self.explore.walks.chosen.as_ref().filter(has) {
+        let chosen = self.explore.walks.chosen.as_ref();
+        if let Some(chosen) = chosen.filter(|axis| self.has_fields_of(std::slice::from_ref(axis))) {
             return Some(chosen.clone());
         }
         let known = self.map_fields();

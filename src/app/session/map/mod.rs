@@ -192,14 +192,17 @@ impl Mapping {
 impl Session {
     /// The axes of the map; `None` if the scene has fewer than two fields for them.
     pub fn map_axes(&self) -> Option<[SweepAxis; 2]> {
-        let (scene, when_on) = (self.scene(), self.remembered_stops());
-        for axes in self.map.chosen().into_iter().chain(&self.map.default_axes) {
-            let ground = ground(scene, when_on, axes);
-            if axes.iter().all(|axis| FieldPath::new(&axis.field).get(&ground).is_some()) {
-                return Some(axes.clone());
-            }
+        let mut known = self.map.chosen().into_iter().chain(&self.map.default_axes);
+        match known.find(|axes| self.has_fields_of(*axes)) {
+            Some(axes) => Some(axes.clone()),
+            None => axes::default_axes(self.scene(), self.remembered_stops(), self.well_mm()),
         }
-        axes::default_axes(scene, when_on, self.well_mm())
+    }
+
+    /// Whether the scene, with its stops switched on if need be, has the fields of these axes.
+    pub(super) fn has_fields_of(&self, axes: &[SweepAxis]) -> bool {
+        let ground = ground(self.scene(), self.remembered_stops(), axes);
+        axes.iter().all(|axis| FieldPath::new(&axis.field).get(&ground).is_some())
     }
 
     /// The fields of this scene that a map can have as axes.
