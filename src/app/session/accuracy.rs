@@ -14,13 +14,19 @@ use crate::study::accuracy::scene::{
     Course, StepSize, Tolerances, Trust, Unfit, lasting, moment, small_length, step_size, tolerances, trust,
 };
 
-use super::ask::LiveRun;
-
 /// Initial fixed step in s: a frame of a screen, the usual choice of games.
 const FRAME: f64 = 1.0 / 60.0;
 
 /// Time for which the error is computed again, as a multiple of the time that the motion has gone on.
 const SPAN_FACTOR: f64 = 2.0;
+
+/// A run of the motion, from a live time on.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct LiveRun {
+    pub model: Identity<Model>,
+    /// The live time in s at which it begins.
+    pub from: f64,
+}
 
 /// Accuracy of the motion, as far as it is known.
 pub struct Accuracy {

@@ -5,19 +5,11 @@ use std::time::Duration;
 
 use crate::app::task::Identity;
 use crate::app::words::status;
-use crate::dynamics::Model;
 use crate::scene::{Excitation, Scene};
 use crate::study::{self, Task};
 
 use super::Session;
-
-/// A run of the motion, from a live time on.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct LiveRun {
-    pub model: Identity<Model>,
-    /// The live time in s at which it begins.
-    pub from: f64,
-}
+use super::accuracy::LiveRun;
 
 impl Session {
     pub(super) fn ask_settled(&mut self) {

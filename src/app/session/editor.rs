@@ -197,7 +197,7 @@ impl Editor {
         let before = std::mem::replace(&mut document.files, Files::beside(path));
         let mut now = document.scene.clone();
         for scene in self.undo.iter_mut().chain(&mut self.redo) {
-            update_names(scene, &before, (&mut self.document.scene, &mut now));
+            update_names(scene, &before, &mut self.document.scene, &mut now);
         }
         self.saved = document.scene.clone();
         self.named = document.scene.clone();

@@ -4,6 +4,7 @@
 
 pub mod accuracy;
 mod ask;
+mod beside;
 pub mod best;
 mod build;
 mod companions;

@@ -5,19 +5,12 @@ use std::time::Duration;
 
 use crate::app::task::{Background, Identity, Wake};
 use crate::dynamics::{Model, Outcome, Sample, Summary};
-use crate::scene::{Scene, Start, Stops};
+use crate::scene::Scene;
 use crate::study::{self, Watch};
 use crate::system::clock::WallClock;
 
-use super::Session;
-use super::build::{CannotRun, fault_message};
-use super::editor::keep_start_inside;
-
 /// Names of the pinned motions; as many can be pinned at a time.
-const LETTERS: [char; 3] = ['A', 'B', 'C'];
-
-/// Distance in mm of the twin's start from that of the mass.
-const TWIN_OFFSET_MM: f64 = 1e-3;
+pub(super) const LETTERS: [char; 3] = ['A', 'B', 'C'];
 
 /// Computing time that one frame spends to bring a pinned motion up to the present.
 const FRAME_SHARE: Duration = Duration::from_millis(4);
@@ -34,17 +27,17 @@ pub enum PinKind {
 }
 
 pub struct Pin {
-    letter: char,
-    kind: PinKind,
-    scene: Scene,
-    model: Arc<Model>,
-    watch: Watch,
+    pub(super) letter: char,
+    pub(super) kind: PinKind,
+    pub(super) scene: Scene,
+    pub(super) model: Arc<Model>,
+    pub(super) watch: Watch,
     /// Live time in s from which on it is computed separately.
-    since: f64,
+    pub(super) since: f64,
     /// What it settles to, if that was known when it was pinned.
-    known: Option<Summary>,
+    pub(super) known: Option<Summary>,
     /// What it settles to, if it had to be asked.
-    settled: Background<Identity<Model>, Summary>,
+    pub(super) settled: Background<Identity<Model>, Summary>,
 }
 
 impl Pin {
@@ -90,7 +83,7 @@ impl Pin {
         self.known.as_ref().or(self.settled.answer())
     }
 
-    fn ask(&mut self, wake: &Wake) {
+    pub(super) fn ask(&mut self, wake: &Wake) {
         let model = self.watch.from_here().unwrap_or_else(|| (*self.model).clone());
         self.known = None;
         let model = Identity(Arc::new(model));
@@ -102,7 +95,7 @@ impl Pin {
     }
 
     /// Continues to the live time `to` in s, or as far as a frame's share of computing time allows.
-    fn follow(&mut self, to: f64) {
+    pub(super) fn follow(&mut self, to: f64) {
         let begun = WallClock::start();
         let stretch = CHECK_INTERVAL * self.model.characteristic_time();
         while self.is_behind(to) {
@@ -117,7 +110,7 @@ impl Pin {
 
 #[derive(Default)]
 pub struct Pins {
-    all: Vec<Pin>,
+    pub(super) all: Vec<Pin>,
 }
 
 impl Pins {
@@ -145,7 +138,7 @@ impl Pins {
         self.all.retain(|pin| pin.letter != letter);
     }
 
-    fn free_letter(&self) -> Option<char> {
+    pub(super) fn free_letter(&self) -> Option<char> {
         LETTERS.into_iter().find(|letter| self.get(*letter).is_none())
     }
 
@@ -172,90 +165,5 @@ impl Pins {
     /// Stops the computations of what the pins settle to.
     pub(super) fn stop_working(&mut self) {
         self.all.iter_mut().for_each(|pin| pin.settled.pause());
-    }
-}
-
-impl Session {
-    /// Pins a motion beside the present one. Returns the letter of the pin; the error says why there is none.
-    pub fn pin(&mut self, kind: PinKind) -> Result<char, String> {
-        let Some(letter) = self.pins.free_letter() else {
-            return Err(format!("{} motions are pinned already: unpin one first", LETTERS.len()));
-        };
-        self.end_gesture();
-        self.apply();
-        if let Some(fault) = self.fault() {
-            return Err(format!("No motion of this scene can be pinned: {fault}"));
-        }
-        let mut scene = self.scene().clone();
-        match kind {
-            PinKind::Motion => {}
-            PinKind::OtherStops => {
-                let off = scene.stops == Stops::None;
-                scene.stops = if off { self.remembered_stops() } else { Stops::None };
-                keep_start_inside(&mut scene);
-            }
-            PinKind::Twin => scene.start = self.twin_start(),
-        }
-        let model = match kind {
-            PinKind::Motion => Arc::clone(&self.model),
-            PinKind::OtherStops | PinKind::Twin => Arc::new(self.model_of(&scene)?),
-        };
-        if kind == PinKind::Twin {
-            self.restart();
-        }
-        let mut watch = match kind {
-            PinKind::Twin => Watch::new(&model),
-            PinKind::Motion | PinKind::OtherStops => self.player.watch().clone(),
-        };
-        if kind == PinKind::OtherStops {
-            watch.change(&model);
-        }
-        let known = self.settled.answer().copied().filter(|_| kind == PinKind::Motion);
-        let since = watch.time();
-        let mut pin = Pin { letter, kind, scene, model, watch, since, known, settled: Background::default() };
-        if known.is_none() {
-            pin.ask(&self.wake);
-        }
-        self.pins.all.push(pin);
-        Ok(letter)
-    }
-
-    /// Replaces the scene by that of a pin, as one undo step; the motion goes on from its present state.
-    /// Returns whether the scene changed.
-    pub fn take_back(&mut self, letter: char) -> bool {
-        let Some(scene) = self.pins.get(letter).map(|pin| pin.scene().clone()) else { return false };
-        self.edit_once(|edited| *edited = scene)
-    }
-
-    /// Continues the pinned motions to the live time of the motion, in phase with its drive; to be called
-    /// after the motion has been advanced.
-    pub fn follow_pins(&mut self) {
-        let watch = self.player.watch();
-        for pin in &mut self.pins.all {
-            pin.watch.keep_ledgers(watch.keeps_ledgers());
-            pin.follow(watch.time());
-        }
-    }
-
-    /// A start a micrometre beside that of the scene, on a side without a stop in the way.
-    fn twin_start(&self) -> Start {
-        let start = Watch::new(&self.model).now();
-        let (_, right) = self.model.stop_positions();
-        let room = right.is_none_or(|stop| (stop - start.x) * 1e3 > TWIN_OFFSET_MM);
-        let offset = if room { TWIN_OFFSET_MM } else { -TWIN_OFFSET_MM };
-        Start::At { x_mm: start.x * 1e3 + offset, v_m_per_s: start.v, electrical: start.electrical }
-    }
-
-    /// The model of a scene with the mechanism of the open one, or why there is none.
-    fn model_of(&self, scene: &Scene) -> Result<Model, String> {
-        let mut document = self.editor.runnable();
-        // the sweep axes do not matter for a motion
-        document.scene = Scene { sweep: Vec::new(), ..scene.clone() };
-        let built = || -> Result<Model, CannotRun> {
-            document.check()?;
-            let model = Model::build(&document.scene, Arc::clone(&self.mechanism));
-            Ok(model.map_err(|faults| document.error_from(faults))?)
-        };
-        built().map_err(|error| fault_message(&error, scene))
     }
 }

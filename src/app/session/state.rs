@@ -10,8 +10,7 @@ use crate::mechanics::Mechanism;
 use crate::scene::{self, Excitation, Scene, Stops};
 use crate::study::Thresholds;
 
-use super::accuracy::Accuracy;
-use super::ask::LiveRun;
+use super::accuracy::{Accuracy, LiveRun};
 use super::best::BestStops;
 use super::editor::Editor;
 use super::explore::Explore;

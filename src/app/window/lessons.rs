@@ -13,6 +13,7 @@ use crate::app::session::editor::Editor;
 use crate::app::session::lesson::{OpenLesson, Records, Turn, answers_text};
 use crate::app::session::{CannotRun, Session};
 use crate::app::ui::style::Style;
+use crate::app::ui::widgets::panel_frame;
 use crate::app::views::{Cover, Memory, View};
 use crate::app::words::fields::name_and_unit;
 use crate::app::words::lesson::bold_words;
@@ -21,8 +22,8 @@ use crate::scene::{Document, PRESETS, SceneError};
 use crate::study::result_fields;
 use crate::system::files;
 
+use super::Window;
 use super::layouts::{Arrangement, Tiling};
-use super::{Window, frame};
 
 /// Title of the alert about a lesson that cannot be opened.
 pub(super) const CANNOT_OPEN_LESSON: &str = "This lesson cannot be opened";
@@ -285,7 +286,7 @@ impl Window {
         let Some(lesson) = &mut self.lessons.open else { return };
         // not a panel, whose height would follow its contents one frame late
         let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
-        let strip = frame(ui, 12, 6).show(ui, |ui| {
+        let strip = panel_frame(ui, 12, 6).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = spacing;
             ui.set_min_width(ui.available_width());
             lesson_ui(ui, lesson, &self.session, style, compact)
@@ -300,7 +301,7 @@ impl Window {
         else {
             return;
         };
-        Panel::top("controls of the lesson").frame(frame(ui, 12, 4)).show(ui, |ui| {
+        Panel::top("controls of the lesson").frame(panel_frame(ui, 12, 4)).show(ui, |ui| {
             if lesson.is_covering() {
                 ui.disable();
             }

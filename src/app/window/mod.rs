@@ -2,13 +2,13 @@
 //!
 //! [`Window::ui`] needs no graphics and no display: tests call it directly.
 
-use eframe::egui::{self, CentralPanel, Frame, Margin, Panel, RichText, Ui};
+use eframe::egui::{self, CentralPanel, Panel, RichText, Ui};
 
 use crate::app::panels::status_line::{self, covered_ui, status_ui};
 use crate::app::panels::{controls, notes, transport};
 use crate::app::session::lesson::Records;
 use crate::app::ui::style::{self, PROJECTOR_ZOOM, Style};
-use crate::app::ui::widgets::{Icon, icon_button_ui};
+use crate::app::ui::widgets::{Icon, icon_button_ui, panel_frame};
 use crate::app::views::{self, Drawn, ViewContext};
 use crate::app::words::lesson::numbered;
 use crate::scene::lesson::LESSONS;
@@ -35,17 +35,18 @@ mod keys;
 pub mod layouts;
 pub mod leave;
 mod lessons;
-mod measured;
+mod measured_dialog;
 mod menu;
 mod messages;
 mod perform;
+mod size;
 mod state;
 mod wanted;
 mod writing;
 
 pub use command::Command;
 pub use figure::Figures;
-pub use measured::MeasuredDialog;
+pub use measured_dialog::MeasuredDialog;
 pub use state::Window;
 pub use wanted::Wanted;
 
@@ -110,7 +111,7 @@ impl Window {
         }
         self.session.follow_best();
         if self.session.best.is_shown() && !self.covered {
-            let panel = Panel::top("best stops").frame(frame(ui, 12, 4));
+            let panel = Panel::top("best stops").frame(panel_frame(ui, 12, 4));
             panel.show(ui, |ui| controls::best_stops_answer_ui(ui, &mut self.session));
         }
         CentralPanel::no_frame().show(ui, |ui| self.views_ui(ui, style));
@@ -129,12 +130,12 @@ impl Window {
 
     /// Menu bar, status line and transport bar. Returns the commands that were chosen.
     fn bars_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) -> Vec<Command> {
-        let bar = Panel::top("menu").frame(frame(ui, 8, 2)).exact_size(32.0).show(ui, |ui| {
+        let bar = Panel::top("menu").frame(panel_frame(ui, 8, 2)).exact_size(32.0).show(ui, |ui| {
             let Self { session, tiling, settings, recent, lessons, .. } = self;
             let settings = *settings;
             menu::Menus { session, tiling, settings, recent, lessons, chosen: Vec::new() }.ui(ui)
         });
-        let (line, covered) = (frame(ui, 12, 4), self.motion_is_covered());
+        let (line, covered) = (panel_frame(ui, 12, 4), self.motion_is_covered());
         let height = status_line::height(ui, &self.session, compact);
         Panel::top("status").frame(line).exact_size(height).show(ui, |ui| match covered {
             true => covered_ui(ui, !self.covered),
@@ -153,7 +154,7 @@ impl Window {
     /// command that shows all of the notes, if it was chosen.
     fn controls_ui(&mut self, ui: &mut Ui, compact: bool) -> Option<Command> {
         if compact {
-            let line = frame(ui, 12, 4);
+            let line = panel_frame(ui, 12, 4);
             Panel::top("controls row").frame(line).show(ui, |ui| {
                 ui.set_height(ROW);
                 controls::row_ui(ui, &mut self.session, &mut self.more);
@@ -166,7 +167,8 @@ impl Window {
             return None;
         }
         let width = if ui.ctx().content_rect().width() > 1600.0 { 300.0 } else { 250.0 };
-        let column = Panel::left("controls").frame(frame(ui, 12, 10)).resizable(false).exact_size(width);
+        let column =
+            Panel::left("controls").frame(panel_frame(ui, 12, 10)).resizable(false).exact_size(width);
         let column = column.show(ui, |ui| {
             let bottom = ui.max_rect().bottom();
             let contents = egui::ScrollArea::vertical().show(ui, |ui| {
@@ -190,7 +192,7 @@ impl Window {
         if !shows_ways && !(self.hint_row && (has_room || hinted && !self.covered)) {
             return None;
         }
-        let panel = Panel::top("hint").frame(frame(ui, 12, 4)).min_size(HINT_ROW);
+        let panel = Panel::top("hint").frame(panel_frame(ui, 12, 4)).min_size(HINT_ROW);
         let row = panel.show(ui, |ui| {
             if shows_ways {
                 ways_ui(ui, &self.session.ways(), hinted, style);
@@ -262,11 +264,6 @@ impl Window {
             self.filled = None;
         }
     }
-}
-
-/// The frame of a panel, with margins in points.
-fn frame(ui: &Ui, x: i8, y: i8) -> Frame {
-    Frame::new().fill(ui.visuals().panel_fill).inner_margin(Margin::symmetric(x, y))
 }
 
 /// The first lesson that is not done, or the first of all.

@@ -113,7 +113,8 @@ impl PathDialog {
     pub fn ui(&mut self, ui: &Ui) -> Option<PathAnswer> {
         let answer = dialog(ui.ctx(), "path").show(ui.ctx(), |ui| {
             ui.set_width(dialog_width(ui, 520.0));
-            ui.heading(self.wanted.words().0);
+            let (question, ..) = self.wanted.words();
+            ui.heading(question);
             ui.label("This desktop has no file dialog to offer (xdg-desktop-portal or zenity would be one).");
             ui.add_space(4.0);
             let name = ui.label("path of the file");

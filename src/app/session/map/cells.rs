@@ -20,7 +20,7 @@ use super::{Question, over};
 const MAX_CELLS: u64 = 200_000;
 
 /// Why a map of so many cells is not made; `None` if it is.
-pub(super) fn too_many(cells: u64) -> Option<String> {
+pub(in crate::app::session) fn too_many(cells: u64) -> Option<String> {
     let problem = || format!("{cells} cells are more than the window makes ({MAX_CELLS}): take longer steps");
     (cells > MAX_CELLS).then(problem)
 }
@@ -45,7 +45,7 @@ pub struct Map {
     pub release: Vec<(f64, f64)>,
     /// The edge of the first crossing cells, as far as they are known.
     pub crossing: Vec<Vec<(f64, f64)>>,
-    pub(super) sweep: Arc<Sweep>,
+    pub(in crate::app::session) sweep: Arc<Sweep>,
     levels: Levels,
     cells: Vec<Option<Cell>>,
     known: usize,
@@ -59,7 +59,11 @@ pub struct Map {
 
 impl Map {
     /// The map of a question before its first cell, or why there is none. `mechanism` is that of the session.
-    pub(super) fn new(question: &Question, editor: &Editor, mechanism: &Mechanism) -> Result<Self, String> {
+    pub(in crate::app::session) fn new(
+        question: &Question,
+        editor: &Editor,
+        mechanism: &Mechanism,
+    ) -> Result<Self, String> {
         let mut document = editor.document().clone();
         document.scene = question.scene.clone();
         let message = |error: SceneError| in_words(&error.to_string(), &question.scene);
@@ -143,7 +147,7 @@ impl Map {
     }
 
     /// The indices of the cells that are not known, level by level.
-    pub(super) fn missing(&self) -> Vec<Vec<u64>> {
+    pub(in crate::app::session) fn missing(&self) -> Vec<Vec<u64>> {
         let mut begin = 0;
         let level = |end: usize| {
             let cells = &self.levels.order[begin..end];
@@ -166,7 +170,7 @@ impl Map {
 
     /// Whether it may be shown until every part of another map shows a result: if it has the fields and the
     /// columns of that map.
-    pub(super) fn stands_in_for(&self, other: &Self) -> bool {
+    pub(in crate::app::session) fn stands_in_for(&self, other: &Self) -> bool {
         let fields = |map: &Self| map.question.axes.clone().map(|axis| axis.field);
         let has_columns = self.question.ledger.is_some() || other.question.ledger.is_none();
         fields(self) == fields(other) && has_columns

@@ -1,4 +1,4 @@
-//! Measured data: the dialog for their columns and units, display over a view, use as excitation.
+//! Dialog in which the columns and units of measured data are chosen.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -8,10 +8,7 @@ use eframe::egui::{self, Button, ComboBox, Grid, RichText, Ui};
 use crate::app::session::measured::{MeasuredRecord, sentence};
 use crate::app::task::{Background, Wake};
 use crate::app::ui::widgets::{dialog, dialog_width};
-use crate::app::views::View;
 use crate::scene::{ChosenColumn, MeasuredText, Quantity, Unit};
-
-use super::Window;
 
 /// Extensions of the files that are taken for measured data.
 pub(super) const ENDINGS: [&str; 4] = ["csv", "txt", "tsv", "dat"];
@@ -47,7 +44,7 @@ pub struct MeasuredDialog {
     refused: Option<String>,
 }
 
-enum MeasuredAnswer {
+pub(super) enum MeasuredAnswer {
     /// Draw the record over the computed motion or curve.
     Overlay(Box<MeasuredRecord>),
     /// Shake the base with the record of the file.
@@ -111,7 +108,7 @@ impl MeasuredDialog {
     }
 
     /// Draws the dialog. Returns the answer once there is one.
-    fn ui(&mut self, ui: &Ui, wake: &Wake) -> Option<MeasuredAnswer> {
+    pub(super) fn ui(&mut self, ui: &Ui, wake: &Wake) -> Option<MeasuredAnswer> {
         self.poll(wake);
         let answer = dialog(ui.ctx(), "measured").show(ui.ctx(), |ui| {
             ui.set_width(dialog_width(ui, WIDTH));
@@ -241,53 +238,5 @@ fn quantity_name(row: usize, quantity: Quantity) -> &'static str {
         (0, Quantity::Displacement) => "position",
         (_, Quantity::Acceleration) => "acceleration of the base",
         (_, quantity) => quantity.name(),
-    }
-}
-
-impl Window {
-    /// Opens the dialog for the columns of a file of measured data.
-    pub fn open_measured(&mut self, path: &Path) {
-        self.columns = Some(MeasuredDialog::new(path, &self.wake));
-    }
-
-    /// Draws a record over the view of its quantity, with a card beside Before / now.
-    pub fn overlay(&mut self, record: MeasuredRecord) {
-        let view = match record.values.quantity {
-            Quantity::Velocity => View::Velocity,
-            Quantity::Acceleration => View::BaseAcceleration,
-            Quantity::Force => View::ForceCurve,
-            _ => View::Displacement,
-        };
-        self.session.measured.lay(record);
-        self.filled = None;
-        self.tiling.show_beside(View::Measured, View::BeforeNow);
-        // the view is in front if it shares tabs with the card
-        self.tiling.show(view, true);
-    }
-
-    /// Draws the dialog for the columns, and carries out its answer.
-    pub(super) fn measured_ui(&mut self, ui: &Ui) {
-        let Some(answer) = self.columns.as_mut().and_then(|dialog| dialog.ui(ui, &self.wake)) else { return };
-        match answer {
-            MeasuredAnswer::Overlay(record) => self.overlay(*record),
-            MeasuredAnswer::Shake(path, record) => match self.session.shake_with(&path, &record) {
-                Ok(warnings) => {
-                    let done = format!("The base is shaken with {}, from its start", record.name);
-                    match warnings.is_empty() {
-                        true => self.messages.notify(done),
-                        false => self.messages.alert(done, format!("The record {}.", warnings.join("; it "))),
-                    }
-                    self.tiling.show(View::BaseAcceleration, true);
-                }
-                Err(why) => {
-                    if let Some(dialog) = &mut self.columns {
-                        dialog.refuse(why);
-                    }
-                    return;
-                }
-            },
-            MeasuredAnswer::Cancelled => {}
-        }
-        self.columns = None;
     }
 }

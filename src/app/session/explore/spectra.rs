@@ -1,0 +1,47 @@
+//! Spectrum of the settled motion.
+
+use std::sync::Arc;
+
+use crate::app::session::Session;
+use crate::app::task::{Background, Identity};
+use crate::dynamics::Model;
+use crate::study::{Signal, Spectrum, SpectrumOptions, Task, followed_until, spectrum};
+
+/// A model, and the signal of its motion to analyse.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpectrumQuestion {
+    model: Identity<Model>,
+    signal: Signal,
+}
+
+pub struct Spectra {
+    pub signal: Signal,
+    /// The spectrum, or why there is none.
+    pub found: Background<SpectrumQuestion, Result<Spectrum, String>>,
+}
+
+impl Default for Spectra {
+    fn default() -> Self {
+        Self { signal: Signal::Displacement, found: Background::default() }
+    }
+}
+
+impl Session {
+    /// Asks for the spectrum of the present scene; to be called in every frame that shows it.
+    pub fn want_spectrum(&mut self) {
+        let (model, signal) = (Identity(Arc::clone(&self.model)), self.explore.spectra.signal);
+        let (question, still) = (SpectrumQuestion { model, signal }, self.stands_still());
+        self.explore.spectra.found.want(question, still, &self.wake, |question, cancel, _| {
+            let until_settled = longest_wait(&question.model);
+            let options =
+                SpectrumOptions { signal: question.signal, taper: None, rate_hz: None, until_settled };
+            let found = spectrum(&question.model, &options, &Task { tick: &|| (), cancel });
+            Some(found.map_err(|error| error.to_string()))
+        });
+    }
+}
+
+/// How long in s to wait for the motion to repeat; `None` if it cannot settle.
+pub fn longest_wait(model: &Model) -> Option<f64> {
+    model.can_settle().then(|| followed_until(model))
+}
