@@ -24,7 +24,7 @@ pub type Wake = Arc<dyn Fn() + Send + Sync>;
 /// Shortest interval between two wakes of the window while a job runs.
 const WAKE_INTERVAL: Duration = Duration::from_millis(40);
 
-/// A shared value that equals itself alone, whatever it contains, so that a question about it is compared fast.
+/// A shared value that equals itself alone, whatever it contains: a question about it is compared by address.
 #[derive(Debug)]
 pub struct Identity<T>(pub Arc<T>);
 

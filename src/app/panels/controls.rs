@@ -35,9 +35,9 @@ const MORE_HOVER: &str = "Restitution, preload, frequency, damping and mass; spr
                           transducer, where there are such.";
 
 /// Hover text of the button that searches for the best stops.
-const SEARCH_HOVER: &str = "Looks for the distance of the stops with which the scene as it stands, from rest, moves \
-                     fastest, or where there is a transducer gives most power, and how far that is from \
-                     where it is lost (B).";
+const SEARCH_HOVER: &str = "Looks for the distance of the stops with which the scene as it stands, from \
+                            rest, moves fastest, or where there is a transducer gives most power, and how \
+                            far that is from where it is lost (B).";
 
 /// Fields of a transducer at the top of More.
 const LOAD: [&str; 4] = [

@@ -1,5 +1,7 @@
 //! What the session has computed beside its motion: the map, the best stops, pinned motions, and the
-//! differences from measured data. The other files of the session do not use this one.
+//! differences from measured data.
+//!
+//! The types of these are in files that know no session, since the session has them as fields.
 
 use std::path::Path;
 use std::sync::Arc;

@@ -280,8 +280,8 @@ impl Window {
         self.session.keeps_remedy = !lesson.tells_remedy();
     }
 
-    /// The strip of the open lesson, and the controls that it names; they are disabled while a prediction covers
-    /// the motion.
+    /// The strip of the open lesson, and the controls that it names; they are disabled while a prediction
+    /// covers the motion.
     pub(super) fn lesson_panels_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) {
         let Some(lesson) = &mut self.lessons.open else { return };
         // not a panel, whose height would follow its contents one frame late

@@ -149,8 +149,8 @@ impl Window {
             Runs::Whole => "Copied: the command line of this motion, from its start",
             Runs::FromNow => "Copied: the command line of this motion, from its present state on",
             Runs::Another => {
-                "Copied: the command line of the scene from its start. This motion was changed on its way and \
-                 is another"
+                "Copied: the command line of the scene from its start. This motion was changed on its way \
+                 and is another"
             }
         });
     }
