@@ -319,7 +319,8 @@ pub(super) fn field_ui(ui: &mut Ui, session: &mut Session, path: &str, width: f3
         Some(field) => (field.reach(session), field.typed, field.hover),
         None => (around(session, path, value), (f64::MIN, f64::MAX), ""),
     };
-    let turn = Knob { name: &name, unit, reach, typed, hover, width }.ui(ui, value);
+    let id = egui::Id::unique(("field", path));
+    let turn = Knob { id, name: &name, unit, reach, typed, hover, width }.ui(ui, value);
     if let Some(value) = turn.value {
         match turn.how {
             How::Pressed => session.press(path, ui.input(|input| input.time)),
@@ -328,7 +329,7 @@ pub(super) fn field_ui(ui: &mut Ui, session: &mut Session, path: &str, width: f3
         if let Err(why) = session.set_number(path, value) {
             let value = shown(value, decimals(reach.step));
             let space = if unit.is_empty() { "" } else { " " };
-            refuse(ui, &name, format!("{value}{space}{unit} was not taken: {why}"));
+            refuse(ui, id, format!("{value}{space}{unit} was not taken: {why}"));
         }
     }
     let is_start = path.starts_with("start.");

@@ -12,7 +12,7 @@ use crate::app::words::columns::{COLUMNS, ColumnInfo};
 use crate::scene::SweepAxis;
 
 use super::super::ViewContext;
-use super::super::axes::{field_ui, range_row_ui};
+use super::super::axes::{field_ui, range_id, range_row_ui};
 use super::super::memory::MapLook;
 use super::picture::{self, Picture, kinds};
 use super::quantity::Look;
@@ -149,7 +149,7 @@ fn ranges_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axes: &[SweepAxis; 2]) 
             match context.session.map_problem(&wanted) {
                 None => context.session.map.choose(Some(wanted)),
                 Some((i, part, why)) => {
-                    refuse(ui, &format!("{}, {part}", ["across", "up"][i]), why);
+                    refuse(ui, range_id(["across", "up"][i], part), why);
                 }
             }
         }
