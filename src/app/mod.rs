@@ -1,14 +1,14 @@
 //! The window: views of a scene, and the controls that change it.
 //!
 //! No physics is computed here. [`session`] holds the open scene with undo, its live motion and the answers
-//! of background jobs, and works without a window; the other modules draw it. A view is a function of
+//! to background questions, and works without a window; the other modules draw it. A view is a function of
 //! a [`views::ViewContext`].
 //!
 //! Each module uses only those above it in this table, which `tests/suite/layers.rs` checks.
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`task`] | background jobs as values |
+//! | [`task`] | background questions as values |
 //! | [`words`] | names and units of fields, number formats, explanations, the sentence about the motion |
 //! | [`session`] | the open scene with undo and files, the player, the map, the accuracy, without a window |
 //! | [`export`] | files and command lines that leave the window |

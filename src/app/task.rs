@@ -1,10 +1,11 @@
-//! Background jobs, and the newest answer to a question that changes.
+//! Background questions: a question that can be compared, and its answer, which a thread computes in parts.
 //!
-//! Dropping a [`Job`] cancels it. [`Latest`] keeps the newest answer; a question that is replaced before its
-//! answer has come is cancelled.
+//! The newest answer stays until it is replaced. A question that is replaced is cancelled, and parts of its
+//! answer that come later are dropped.
 
+use std::ops::Deref;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, channel};
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
@@ -17,40 +18,61 @@ pub fn pool() -> Option<Pool> {
     Pool::new(processors().saturating_sub(1).max(1)).ok()
 }
 
-/// Calls `take` every 2 ms until it returns false, for at most `timeout`.
-pub fn wait_while(timeout: Duration, mut take: impl FnMut() -> bool) {
-    let clock = WallClock::start();
-    while take() && clock.elapsed() < timeout {
-        sleep(Duration::from_millis(2));
-    }
-}
-
 /// Callback that wakes the window when an answer is ready.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
 /// Shortest interval between two wakes of the window while a job runs.
 const WAKE_INTERVAL: Duration = Duration::from_millis(40);
 
-/// A computation on its own thread whose answer comes in parts, from any thread that it uses.
+/// A shared value that equals itself alone, whatever it contains: a question about it is compared by address.
 #[derive(Debug)]
-pub struct Job<T> {
-    parts: Receiver<T>,
-    cancel: Arc<AtomicBool>,
+pub struct Identity<T>(pub Arc<T>);
+
+impl<T> Clone for Identity<T> {
+    fn clone(&self) -> Self {
+        Self(Arc::clone(&self.0))
+    }
 }
 
-impl<T: Send + 'static> Job<T> {
-    /// Starts `job`, which is given a cancel flag to check and a callback for each part of its answer.
-    /// Returns `None` if the system cannot start a thread.
-    pub fn start(
+impl<T> PartialEq for Identity<T> {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+impl<T> Deref for Identity<T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        &self.0
+    }
+}
+
+/// Callback for a part of an answer; it may be called from any thread.
+pub type Each<'a, P> = &'a (dyn Fn(P) + Sync);
+
+/// A computation on its own thread. Dropping it cancels the computation.
+#[derive(Debug)]
+struct Job<P> {
+    parts: Receiver<P>,
+    cancel: Arc<AtomicBool>,
+    begun: WallClock,
+    /// Whether a part has come.
+    has_parts: bool,
+}
+
+impl<P: Send + 'static> Job<P> {
+    /// Starts `job`. Returns `None` if the system cannot start a thread.
+    fn start(
         wake: &Wake,
-        job: impl FnOnce(&AtomicBool, &(dyn Fn(T) + Sync)) + Send + 'static,
+        job: impl FnOnce(&AtomicBool, Each<P>) -> Option<P> + Send + 'static,
     ) -> Option<Self> {
         let (sender, parts) = channel();
         let cancel = Arc::new(AtomicBool::new(false));
-        let (flag, wake) = (Arc::clone(&cancel), Arc::clone(wake));
-        let last_wake = Mutex::new(WallClock::start());
+        let (flag, wake, begun) = (Arc::clone(&cancel), Arc::clone(wake), WallClock::start());
+        let last_wake = Mutex::new(begun);
         let run = move || {
-            let send = |part: T| {
+            let send = |part: P| {
                 // the receiver is gone once the job is dropped
                 if sender.send(part).is_err() {
                     return;
@@ -62,209 +84,229 @@ impl<T: Send + 'static> Job<T> {
                     wake();
                 }
             };
-            job(&flag, &send);
+            if let Some(last) = job(&flag, &send) {
+                send(last);
+            }
             drop(sender);
             if !flag.load(Ordering::Relaxed) {
                 wake();
             }
         };
-        spawn(run).then_some(Self { parts, cancel })
+        spawn(run).then_some(Self { parts, cancel, begun, has_parts: false })
     }
 
-    /// Waits at most `timeout` for the next part; `Err` if no more will come.
-    fn wait(&self, timeout: Duration) -> Result<Option<T>, ()> {
-        match self.parts.recv_timeout(timeout) {
-            Ok(part) => Ok(Some(part)),
-            Err(RecvTimeoutError::Timeout) => Ok(None),
-            Err(RecvTimeoutError::Disconnected) => Err(()),
-        }
-    }
-
-    /// Passes the parts that have come to `each`. Returns whether more may come.
-    pub fn take(&self, mut each: impl FnMut(T)) -> bool {
+    /// The parts that have come since the last call, and whether no more will come.
+    fn take(&self) -> (Vec<P>, bool) {
+        let mut parts = Vec::new();
         loop {
             match self.parts.try_recv() {
-                Ok(part) => each(part),
-                Err(TryRecvError::Empty) => return true,
-                Err(TryRecvError::Disconnected) => return false,
+                Ok(part) => parts.push(part),
+                Err(reason) => return (parts, reason == TryRecvError::Disconnected),
             }
         }
     }
 }
 
-impl<T> Drop for Job<T> {
+impl<P> Drop for Job<P> {
     fn drop(&mut self) {
         self.cancel.store(true, Ordering::Relaxed);
     }
 }
 
-/// The newest answer to a question that changes.
 #[derive(Debug)]
-pub struct Latest<T> {
-    generation: u64,
-    job: Option<Job<T>>,
-    /// When the current question was asked.
-    since: Option<WallClock>,
-    /// The answer and the generation of its question.
-    answer: Option<(u64, T)>,
+enum Work<P> {
+    /// No job is running; the question is begun when a view asks for it.
+    Paused,
+    Running(Job<P>),
+    /// All parts have come, or the user has stopped the job.
+    Done,
 }
 
-impl<T> Default for Latest<T> {
+/// A question `Q` and the parts `P` of its answer.
+#[derive(Debug)]
+pub struct Background<Q, P> {
+    question: Option<Q>,
+    /// The newest parts: those of the question once the first of them has come, until then the previous ones.
+    parts: Vec<P>,
+    /// Whether the parts answer the question.
+    is_current: bool,
+    work: Work<P>,
+    /// Computing time of the earlier jobs on the question.
+    worked: Duration,
+    /// Whether a view of this frame shows the answer.
+    is_wanted: bool,
+}
+
+impl<Q, P> Default for Background<Q, P> {
     fn default() -> Self {
-        Self { generation: 0, job: None, since: None, answer: None }
+        Self {
+            question: None,
+            parts: Vec::new(),
+            is_current: false,
+            work: Work::Paused,
+            worked: Duration::ZERO,
+            is_wanted: false,
+        }
     }
 }
 
-impl<T: Send + 'static> Latest<T> {
-    /// Asks a new question, and cancels the current one.
-    pub fn ask(&mut self, wake: &Wake, job: impl FnOnce(&AtomicBool) -> Option<T> + Send + 'static) {
-        self.generation += 1;
-        self.job = Job::start(wake, move |cancel, each| {
-            if let Some(answer) = job(cancel) {
-                each(answer);
-            }
-        });
-        self.since = Some(WallClock::start());
+impl<Q: PartialEq, P: Send + 'static> Background<Q, P> {
+    /// Asks a question, and cancels the one before. `job` is given the question, a cancel flag to check and a
+    /// callback for each part; it returns the last part, if there is one.
+    pub fn ask(
+        &mut self,
+        question: Q,
+        wake: &Wake,
+        job: impl FnOnce(&Q, &AtomicBool, Each<P>) -> Option<P> + Send + 'static,
+    ) where
+        Q: Clone + Send + 'static,
+    {
+        if self.question.as_ref() != Some(&question) {
+            (self.is_current, self.worked) = (false, Duration::ZERO);
+        }
+        self.question = Some(question.clone());
+        let job = Job::start(wake, move |cancel, each| job(&question, cancel, each));
+        self.work = job.map_or(Work::Paused, Work::Running);
+    }
+
+    /// Asks a question unless it is answered or being computed; to be called in every frame in which a view
+    /// shows the answer. Nothing is begun unless the scene stands `still`. `job` is as in [`ask`](Self::ask).
+    pub fn want(
+        &mut self,
+        question: Q,
+        still: bool,
+        wake: &Wake,
+        job: impl FnOnce(&Q, &AtomicBool, Each<P>) -> Option<P> + Send + 'static,
+    ) where
+        Q: Clone + Send + 'static,
+    {
+        self.is_wanted = true;
+        if still && (self.is_paused() || self.question.as_ref() != Some(&question)) {
+            self.ask(question, wake, job);
+        }
     }
 
     /// Cancels the question and forgets the answer.
     pub fn clear(&mut self) {
-        self.generation += 1;
-        (self.job, self.answer) = (None, None);
+        *self = Self { is_wanted: self.is_wanted, ..Self::default() };
     }
 
-    /// Cancels the question; an answer that has come is kept.
+    /// Cancels the job until the question is asked again; parts that have come stay.
+    pub fn pause(&mut self) {
+        self.end_job(Work::Paused);
+    }
+
+    /// Cancels the job, as the user wishes: [`want`](Self::want) does not begin the question again.
     pub fn stop(&mut self) {
-        self.job = None;
+        self.end_job(Work::Done);
     }
 
-    /// Stores the answer if it has come. Returns whether the job has ended, with or without an answer.
-    pub fn poll(&mut self) -> bool {
-        let Some(job) = &self.job else { return false };
-        let mut answer = None;
-        let more = job.take(|part| answer = Some(part));
-        if answer.is_none() && more {
-            return false;
-        }
-        self.finish(answer);
-        true
-    }
-
-    /// Removes and returns the answer to the current question, if it has come.
-    pub fn take(&mut self) -> Option<T> {
+    fn end_job(&mut self, work: Work<P>) {
         self.poll();
-        let current = self.generation;
-        self.answer.take_if(|answer| answer.0 == current).map(|answer| answer.1)
-    }
-
-    fn finish(&mut self, answer: Option<T>) {
-        self.job = None;
-        if let Some(answer) = answer {
-            self.answer = Some((self.generation, answer));
+        if self.is_running() {
+            (self.worked, self.work) = (self.worked(), work);
         }
     }
 
-    /// Waits at most `timeout` for the answer to the current question. Returns whether it has come.
+    /// Lets [`want`](Self::want) begin the question again after [`stop`](Self::stop).
+    pub fn resume(&mut self) {
+        if self.is_whole() {
+            self.work = Work::Paused;
+        }
+    }
+
+    /// Receives the parts that have come; to be called once a frame.
+    pub fn poll(&mut self) {
+        let worked = self.worked();
+        let Work::Running(job) = &mut self.work else { return };
+        let (parts, is_over) = job.take();
+        if !job.has_parts && (is_over || !parts.is_empty()) {
+            (job.has_parts, self.is_current) = (true, true);
+            self.parts.clear();
+        }
+        self.parts.extend(parts);
+        if is_over {
+            (self.worked, self.work) = (worked, Work::Done);
+        }
+    }
+
+    /// Waits at most `timeout` until no more parts will come. Returns whether there is an answer.
     pub fn wait(&mut self, timeout: Duration) -> bool {
-        match self.job.as_ref().map(|job| job.wait(timeout)) {
-            Some(Ok(Some(answer))) => self.finish(Some(answer)),
-            Some(Err(())) => self.finish(None),
-            Some(Ok(None)) | None => {}
+        let clock = WallClock::start();
+        self.poll();
+        while self.is_running() && clock.elapsed() < timeout {
+            sleep(Duration::from_millis(2));
+            self.poll();
         }
-        self.current().is_some()
+        self.answer().is_some()
     }
 
-    /// The answer to the current question, once it has come.
-    pub fn current(&self) -> Option<&T> {
-        self.answer.as_ref().filter(|answer| answer.0 == self.generation).map(|answer| &answer.1)
+    /// Notes that a view of this frame shows the answer.
+    pub fn mark_wanted(&mut self) {
+        self.is_wanted = true;
     }
 
-    /// The newest answer, which may belong to an older question.
-    pub fn newest(&self) -> Option<&T> {
-        self.answer.as_ref().map(|answer| &answer.1)
+    /// Pauses the question if no view has asked for it in this frame; to be called once a frame.
+    pub fn end_frame(&mut self) {
+        if !std::mem::take(&mut self.is_wanted) {
+            self.pause();
+        }
+    }
+
+    pub fn question(&self) -> Option<&Q> {
+        self.question.as_ref()
+    }
+
+    /// The newest parts, and whether they answer the question.
+    pub fn parts(&self) -> (&[P], bool) {
+        (&self.parts, self.is_current)
+    }
+
+    /// The last part of the newest answer, which may be that to an earlier question.
+    pub fn newest(&self) -> Option<&P> {
+        self.parts.last()
+    }
+
+    /// The last part of the answer to the question, once one has come.
+    pub fn answer(&self) -> Option<&P> {
+        self.newest().filter(|_| self.is_current)
+    }
+
+    /// Receives the parts that have come, and removes those that answer the question.
+    pub fn take_parts(&mut self) -> Vec<P> {
+        self.poll();
+        if self.is_current { std::mem::take(&mut self.parts) } else { Vec::new() }
+    }
+
+    /// Receives the answer to the question, and removes it.
+    pub fn take(&mut self) -> Option<P> {
+        self.take_parts().pop()
+    }
+
+    pub fn is_paused(&self) -> bool {
+        matches!(self.work, Work::Paused)
+    }
+
+    /// Whether more parts may come.
+    pub fn is_running(&self) -> bool {
+        matches!(self.work, Work::Running(_))
+    }
+
+    /// Whether all parts have come, or the user has stopped the job.
+    pub fn is_whole(&self) -> bool {
+        matches!(self.work, Work::Done)
     }
 
     /// How long the job has been running; `None` if none is.
     pub fn running_for(&self) -> Option<Duration> {
-        self.since.filter(|_| self.is_running()).map(|since| since.elapsed())
-    }
-
-    /// Whether an answer is being computed.
-    pub fn is_running(&self) -> bool {
-        self.job.is_some()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const LONG: Duration = Duration::from_secs(20);
-
-    fn wake() -> Wake {
-        Arc::new(|| ())
-    }
-
-    #[test]
-    fn dropping_a_job_cancels_it() {
-        let (sender, seen) = channel();
-        let job = Job::<()>::start(&wake(), move |cancel, _| {
-            while !cancel.load(Ordering::Relaxed) {
-                sleep(Duration::from_millis(1));
-            }
-            sender.send(()).ok();
-        });
-        drop(job.unwrap());
-        assert!(seen.recv_timeout(LONG).is_ok());
-    }
-
-    #[test]
-    fn an_answer_to_an_older_question_is_not_current() {
-        let mut latest = Latest::default();
-        latest.ask(&wake(), |_| Some(1));
-        assert!(latest.wait(LONG));
-        assert_eq!(latest.current(), Some(&1));
-        let (sender, gate) = channel::<()>();
-        latest.ask(&wake(), move |_| gate.recv().ok().map(|()| 2));
-        assert_eq!((latest.current(), latest.newest()), (None, Some(&1)));
-        sender.send(()).unwrap();
-        assert!(latest.wait(LONG));
-        assert_eq!(latest.current(), Some(&2));
-        latest.ask(&wake(), |_| None::<i32>);
-        assert!(!latest.wait(LONG) && !latest.is_running());
-        assert_eq!(latest.newest(), Some(&2));
-    }
-
-    #[test]
-    fn parts_come_until_the_job_is_dropped() {
-        let (sender, seen) = channel();
-        let job = Job::start(&wake(), move |cancel: &AtomicBool, each: &(dyn Fn(u32) + Sync)| {
-            each(1);
-            each(2);
-            while !cancel.load(Ordering::Relaxed) {
-                sleep(Duration::from_millis(1));
-            }
-            each(3);
-            sender.send(()).ok();
-        })
-        .unwrap();
-        let mut parts = Vec::new();
-        while parts.len() < 2 {
-            assert!(job.take(|part| parts.push(part)));
+        match &self.work {
+            Work::Running(job) => Some(job.begun.elapsed()),
+            Work::Paused | Work::Done => None,
         }
-        assert_eq!(parts, [1, 2]);
-        drop(job);
-        assert!(seen.recv_timeout(LONG).is_ok());
-        let short = Job::start(&wake(), |_: &AtomicBool, each: &(dyn Fn(u32) + Sync)| each(4)).unwrap();
-        let mut last = 0;
-        while short.take(|part| last = part) {}
-        assert_eq!(last, 4);
     }
 
-    #[test]
-    fn a_job_that_panics_leaves_no_answer() {
-        let mut latest: Latest<i32> = Latest::default();
-        latest.ask(&wake(), |_| std::panic::resume_unwind(Box::new("stop")));
-        assert!(!latest.wait(LONG) && !latest.is_running());
+    /// Computing time spent on the question so far.
+    pub fn worked(&self) -> Duration {
+        self.worked + self.running_for().unwrap_or_default()
     }
 }

@@ -142,7 +142,7 @@ fn there_is_room_for_three() {
     assert_eq!(letters(&harness), "ABC");
     press(&mut harness, Key::K);
     assert_eq!(letters(&harness), "ABC");
-    assert!(harness.state().told().is_some_and(|told| told.contains("unpin one first")));
+    assert!(harness.state().notice().is_some_and(|told| told.contains("unpin one first")));
     harness.get_by_label("Unpin A").click();
     harness.run_steps(2);
     assert_eq!(letters(&harness), "BC");

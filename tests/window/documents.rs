@@ -171,7 +171,7 @@ fn home_goes_back_to_what_was_saved() {
     harness.state_mut().session.edit_once(|scene| scene.mass_g = 16.0);
     harness.state_mut().save_to(&ctx, &path);
     harness.run_steps(2);
-    assert_eq!(harness.state().told(), Some("Saved own.ron"));
+    assert_eq!(harness.state().notice(), Some("Saved own.ron"));
     harness.state_mut().session.edit_once(|scene| scene.mass_g = 17.0);
     press(&mut harness, Key::Home);
     assert_eq!(harness.state().session.scene().mass_g, 16.0);
@@ -206,7 +206,7 @@ fn takes_its_files_along(preset: &str) {
     let moved = named(&harness);
     assert_eq!((moved.parent(), std::fs::read_to_string(&moved).unwrap()), (Some(two.as_path()), text));
     let name = moved.file_name().unwrap().to_str().unwrap().to_owned();
-    assert!(harness.state().told().is_some_and(|told| told.contains(&name)), "{name}");
+    assert!(harness.state().notice().is_some_and(|told| told.contains(&name)), "{name}");
     // it opens there, also where the first folder is gone, and so does what undo brings back
     std::fs::remove_dir_all(&one).unwrap();
     harness.state_mut().session.undo();

@@ -35,7 +35,7 @@ fn save(harness: &mut Harness<'static, Window>) {
         assert_eq!(harness.state().figures.problem(), None);
         harness.query_by_label("Save a figure").is_none()
     });
-    assert!(harness.state().told().is_some_and(|text| text.starts_with("Saved ")));
+    assert!(harness.state().notice().is_some_and(|text| text.starts_with("Saved ")));
 }
 
 /// The command line that the open dialog copies.

@@ -70,12 +70,12 @@ fn the_next_release_and_crossing_are_found() {
     harness.state_mut().session.switch_stops(false);
     harness.run_steps(2);
     press(&mut harness, Key::R);
-    assert_eq!(harness.state().told(), Some("No release can come: there are no stops"));
+    assert_eq!(harness.state().notice(), Some("No release can come: there are no stops"));
     // and where none comes
     let mut harness = window("first-look", WIDE);
     press(&mut harness, Key::X);
     arrive(&mut harness);
-    assert!(harness.state().told().is_some_and(|text| text.starts_with("No crossing up to 100.")));
+    assert!(harness.state().notice().is_some_and(|text| text.starts_with("No crossing up to 100.")));
 }
 
 #[test]
@@ -86,7 +86,7 @@ fn the_end_of_the_run_is_reached_or_given_up() {
     arrive(&mut harness);
     assert_eq!(harness.state().session.player.time(), end);
     press(&mut harness, Key::End);
-    assert!(harness.state().told().is_some_and(|text| text.ends_with("which is behind")));
+    assert!(harness.state().notice().is_some_and(|text| text.ends_with("which is behind")));
     // after a change it lasts as long again, and any key gives it up
     harness.state_mut().session.edit_once(|scene| scene.run.duration_s = 1e6);
     harness.run_steps(2);

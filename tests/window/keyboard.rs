@@ -92,7 +92,7 @@ fn the_projector_keeps_the_view_over_the_window_and_is_light() {
     assert!(!listed(&mut harness));
     press(&mut harness, Key::D);
     assert!(harness.state().settings.dark && harness.state().settings.projector);
-    assert!(harness.state().told().is_some_and(|text| text.contains("The projector is light")));
+    assert!(harness.state().notice().is_some_and(|text| text.contains("The projector is light")));
     press(&mut harness, Key::Escape);
     press(&mut harness, Key::Z);
     assert!(harness.query_by_label("all views").is_some());

@@ -259,7 +259,7 @@ fn a_prediction_covers_every_result() {
         }
         for asked in [Command::CopyCommand, Command::SaveAs(Wanted::Run), Command::SaveAs(Wanted::Events)] {
             command(&mut harness, asked);
-            assert_eq!(harness.state().told(), Some("First choose what you expect"));
+            assert_eq!(harness.state().notice(), Some("First choose what you expect"));
             let copied = |own: &OutputCommand| matches!(own, OutputCommand::CopyText(_));
             assert!(!harness.output().platform_output.commands.iter().any(copied));
         }
@@ -347,7 +347,7 @@ fn progress_is_kept_and_answers_are_text() {
     let ctx = again.ctx.clone();
     again.state_mut().carry_out(&ctx, Command::CopyAnswers);
     again.run_steps(1);
-    assert_eq!(again.state().told(), Some("Copied: your answers as text"));
+    assert_eq!(again.state().notice(), Some("Copied: your answers as text"));
     // anew, nothing of it is left
     command(&mut again, Command::LessonAnew);
     assert_eq!(number(&again), 0);

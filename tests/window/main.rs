@@ -3,6 +3,7 @@
 
 mod accuracy;
 mod advanced;
+mod background;
 mod beside;
 mod compare;
 mod cursors;
@@ -28,6 +29,7 @@ mod quiet;
 mod random;
 mod screen;
 mod sentences;
+mod session;
 #[path = "../shared/mod.rs"]
 mod shared;
 mod support;

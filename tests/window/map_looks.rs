@@ -64,7 +64,7 @@ fn a_click_on_the_surface_takes_the_scene_there() {
     let rect = harness.get_by_role_and_label(Role::Image, "map as a surface").rect();
     let [left, top, right, bottom] = [rect.left(), rect.top(), rect.right(), rect.bottom()].map(f64::from);
     let projection = Projection { left, top, right, bottom };
-    let most = map(harness.state()).own_cells().map(rms).fold(0.0, f64::max);
+    let most = map(harness.state()).known_cells().map(rms).fold(0.0, f64::max);
     // 2.5 mm and 1.25 g, whose height is its share of the largest velocity: no face hides it
     let (column, row) = (6, 3);
     let own = rms(map(harness.state()).cell(column, row).unwrap().0);

@@ -272,5 +272,5 @@ fn it_is_opened_by_key_argument_and_path() {
     command(&mut harness, Command::OpenLesson(interwell::scene::lesson::LESSONS[0].name));
     harness.state_mut().take_dropped(&ctx, &path);
     assert!(harness.state().columns.is_none());
-    assert_eq!(harness.state().told(), Some("Leave the lesson first"));
+    assert_eq!(harness.state().notice(), Some("Leave the lesson first"));
 }

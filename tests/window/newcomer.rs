@@ -146,7 +146,7 @@ fn changes_are_discarded_by_name_and_come_back() {
     harness.get_by_label("Discard changes").click();
     harness.run_steps(3);
     assert_eq!(harness.state().session.scene().mass_g, 15.2);
-    assert!(harness.state().told().is_some_and(|text| text.contains("brings them back")));
+    assert!(harness.state().notice().is_some_and(|text| text.contains("brings them back")));
     press_with_ctrl(&mut harness, Key::Z);
     assert_eq!(harness.state().session.scene().mass_g, 20.0);
 }

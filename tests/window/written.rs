@@ -44,7 +44,7 @@ fn the_command_line_says_what_is_shown() {
     harness.state_mut().carry_out(&ctx, Command::CopyCommand);
     harness.step();
     assert_eq!(copied(&harness).unwrap(), "interwell --headless simulate first-look --set mass_g=16");
-    assert!(harness.state().told().is_some_and(|text| text.starts_with("Copied: ")));
+    assert!(harness.state().notice().is_some_and(|text| text.starts_with("Copied: ")));
 }
 
 /// The words of a copied command as its arguments.
@@ -66,7 +66,7 @@ fn a_motion_that_was_changed_on_its_way_is_reproduced() {
         harness.step();
         let line = copied(&harness).unwrap();
         assert!(line.contains("start"), "{line}");
-        assert!(harness.state().told().is_some_and(|text| text.ends_with("present state on")));
+        assert!(harness.state().notice().is_some_and(|text| text.ends_with("present state on")));
         // the frame after the copy has gone on already
         let session = &mut harness.state_mut().session;
         let here = interwell::app::export::command_line(session).unwrap().0;
@@ -98,7 +98,7 @@ fn a_motion_that_no_scene_continues_is_said_to_be_another() {
     harness.state_mut().session.edit_once(|scene| scene.mass_g = 16.0);
     harness.run_steps(5);
     command(&mut harness, Command::CopyCommand);
-    assert!(harness.state().told().is_some_and(|text| text.ends_with("and is another")));
+    assert!(harness.state().notice().is_some_and(|text| text.ends_with("and is another")));
 }
 
 #[test]
@@ -152,7 +152,7 @@ fn the_whole_run_is_written_as_the_command_line_writes_it() {
     let mut harness = opened();
     harness.state_mut().write_run(path.clone());
     harness.state_mut().wait_for_run(LONG);
-    assert_eq!(harness.state().told(), Some("Saved run.csv"));
+    assert_eq!(harness.state().notice(), Some("Saved run.csv"));
     let command = ["--headless", "simulate", "first-look"];
     let output = assert_cmd::Command::cargo_bin("interwell").unwrap().args(command).output().unwrap();
     assert_eq!(std::fs::read_to_string(&path).unwrap(), String::from_utf8(output.stdout).unwrap());

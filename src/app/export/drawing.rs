@@ -1,7 +1,10 @@
 //! Drawing of figures: reads the scene as the command line does, runs the study and plots its table.
 
+use std::convert::Infallible;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+use anyhow::{Error, Result, anyhow, ensure};
 
 use crate::app::session::explore::STARTS;
 use crate::app::session::map::over;
@@ -12,12 +15,12 @@ use crate::output::{
     Caption, Figure, Overlay, Panel, Ranges, SectionPicture, SpectrumQuantity, SweepPicture, Theme, View,
     basins_figure, can_show, curve_figure, run_figure, section_figure, spectrum_figure, sweep_figure,
 };
-use crate::scene::{Document, FieldPath, arguments};
+use crate::scene::{Document, Fault, FieldPath, arguments};
 use crate::study::{
-    Basins, CURVE_PICTURE_POINTS, Carry, CellFaults, EvenRange, Grid, Keep, NoBasins, STANDARD_COLUMNS,
-    Sampling, SectionAt, SectionOptions, Sections, Signal, SpectrumOptions, Starts, SummaryField, Sweep,
-    SweepEnd, SweepOptions, Table, Task, curve, default_positions, sample_times, section,
-    simulate_with_trace, spectrum, stop_positions,
+    Basins, CURVE_PICTURE_POINTS, Carry, EvenRange, Grid, Keep, NoBasins, STANDARD_COLUMNS, Sampling,
+    SectionAt, SectionOptions, Sections, Signal, SpectrumOptions, Starts, SummaryField, Sweep, SweepOptions,
+    Table, Task, curve, default_positions, sample_times, section, simulate_with_trace, spectrum,
+    stop_positions,
 };
 use crate::system::threads::Pool;
 
@@ -31,12 +34,13 @@ const CHANGED: &str = "The file of this scene is no longer what was opened, and 
                        with it: save the scene first (Ctrl+S), or open it anew.";
 
 /// Draws the figure. Returns `None` if cancelled.
-pub(super) fn draw(order: &FigureOrder, cancel: &AtomicBool) -> Option<Result<Figure, String>> {
+pub(super) fn draw(order: &FigureOrder, cancel: &AtomicBool) -> Result<Option<Figure>> {
     let figure = figure(order, cancel);
-    (!cancel.load(Ordering::Relaxed)).then_some(figure)
+    if cancel.load(Ordering::Relaxed) { Ok(None) } else { figure.map(Some) }
 }
 
-fn figure(order: &FigureOrder, cancel: &AtomicBool) -> Result<Figure, String> {
+/// The figure; if cancelled, any error.
+fn figure(order: &FigureOrder, cancel: &AtomicBool) -> Result<Figure> {
     let document = document(order)?;
     let drawing = Drawing {
         caption: Caption::new(&document, env!("CARGO_PKG_VERSION")),
@@ -56,23 +60,30 @@ fn figure(order: &FigureOrder, cancel: &AtomicBool) -> Result<Figure, String> {
 }
 
 /// Reads the document as the command line does; an error if it differs from the scene of the window.
-fn document(order: &FigureOrder) -> Result<Document, String> {
-    let mut document = Document::of_argument(&order.origin).map_err(|error| error.to_string())?;
+fn document(order: &FigureOrder) -> Result<Document> {
+    let mut document = Document::of_argument(&order.origin)?;
     for setting in &order.settings {
-        document.set(setting).map_err(|error| error.to_string())?;
+        document.set(setting)?;
     }
     document.settle_within();
     let mut first = document.clone();
     for axis in order.subject.axes() {
-        if !FieldPath::new(&axis.field).set(&mut first.scene, axis.from) {
-            return Err(CHANGED.to_owned());
-        }
+        ensure!(FieldPath::new(&axis.field).set(&mut first.scene, axis.from), CHANGED);
     }
-    first.check().map_err(|error| error.to_string())?;
+    first.check()?;
     if matches!(order.subject, Subject::Basins(..)) {
         first.scene.start = order.scene.start;
     }
-    if arguments(&first.scene, &order.scene).is_empty() { Ok(document) } else { Err(CHANGED.to_owned()) }
+    ensure!(arguments(&first.scene, &order.scene).is_empty(), CHANGED);
+    Ok(document)
+}
+
+fn threads() -> Result<Pool> {
+    pool().ok_or_else(|| anyhow!(NO_THREADS))
+}
+
+fn cancelled() -> Error {
+    anyhow!("cancelled")
 }
 
 /// What all figures need.
@@ -84,31 +95,26 @@ struct Drawing<'a> {
 }
 
 impl Drawing<'_> {
-    fn mechanism(&self) -> Result<Arc<Mechanism>, String> {
-        let built = Mechanism::build(&self.document.scene.mechanism, &self.document.files);
-        built.map(Arc::new).map_err(|error| error.to_string())
+    fn mechanism(&self) -> Result<Arc<Mechanism>> {
+        Ok(Arc::new(Mechanism::build(&self.document.scene.mechanism, &self.document.files)?))
     }
 
-    fn model(&self) -> Result<Model, String> {
-        let model = Model::build(&self.document.scene, self.mechanism()?);
-        model.map_err(|faults| self.document.error_from(faults).to_string())
+    fn model(&self) -> Result<Model> {
+        Model::build(&self.document.scene, self.mechanism()?).map_err(|faults| self.faulty(faults))
     }
 
-    fn grid(&self, subject: &Subject) -> Result<(Grid, Pool), String> {
+    fn grid(&self, subject: &Subject) -> Result<Grid> {
         let over: Vec<String> = subject.axes().iter().map(over).collect();
-        let axes = self.document.axes(&over).map_err(|error| error.to_string())?;
-        let grid = Grid::new(axes).map_err(|error| error.to_string())?;
-        Ok((grid, pool().ok_or_else(|| NO_THREADS.to_owned())?))
+        Ok(Grid::new(self.document.axes(&over)?)?)
     }
 
-    fn cell_error(&self, cell: CellFaults) -> String {
-        self.document.error_from(cell.faults).to_string()
+    fn faulty(&self, faults: Vec<Fault>) -> Error {
+        self.document.error_from(faults).into()
     }
 
-    fn run(&self, times: Option<(f64, f64)>, panels: &[Panel]) -> Result<Figure, String> {
+    fn run(&self, times: Option<(f64, f64)>, panels: &[Panel]) -> Result<Figure> {
         let (document, model) = (&self.document, self.model()?);
-        let sample_times = sample_times(&document.scene, &model, &Sampling::Default, None);
-        let sample_times = sample_times.map_err(|error| error.to_string())?;
+        let sample_times = sample_times(&document.scene, &model, &Sampling::Default, None)?;
         let keep = Keep { times: sample_times, events: false, until_settled: None };
         let (simulation, trace) = simulate_with_trace(&model, &keep, times, Some(self.task.cancel));
         let ranges = Ranges { x: times, y: None };
@@ -117,16 +123,16 @@ impl Drawing<'_> {
         Ok(run_figure(run, mechanism, panels, ranges, &self.caption, &self.theme))
     }
 
-    fn curve(&self) -> Result<Figure, String> {
+    fn curve(&self) -> Result<Figure> {
         let (scene, mechanism) = (&self.document.scene, self.mechanism()?);
         let positions = default_positions(scene, &mechanism, CURVE_PICTURE_POINTS);
-        let table = curve(&mechanism, positions).map_err(|error| error.to_string())?;
+        let table = curve(&mechanism, positions)?;
         let stops = stop_positions(scene);
         Ok(curve_figure(&table, &mechanism, stops, Ranges::default(), &self.caption, &self.theme))
     }
 
-    fn sweep(&self, subject: &Subject, quantity: &str, surface: bool) -> Result<Figure, String> {
-        let (grid, pool) = self.grid(subject)?;
+    fn sweep(&self, subject: &Subject, quantity: &str, surface: bool) -> Result<Figure> {
+        let (grid, pool) = (self.grid(subject)?, threads()?);
         let scene = &self.document.scene;
         let carry = subject.is_walked().then_some(Carry::Both);
         let names = STANDARD_COLUMNS.into_iter().filter(|name| *name != quantity).chain([quantity]);
@@ -134,11 +140,11 @@ impl Drawing<'_> {
         let options = SweepOptions { columns, until_settled: None, carry };
         let sweep = Sweep::new(scene, &self.document.files, grid).with(options);
         let view = if surface { View::Surface } else { View::Top };
-        can_show(sweep.grid(), (quantity, &view), &sweep.empty_table()).map_err(|error| error.to_string())?;
-        sweep.validate(&pool, &self.task).map_err(|cell| self.cell_error(cell))?;
+        can_show(sweep.grid(), (quantity, &view), &sweep.empty_table())?;
+        sweep.validate(&pool, &self.task).map_err(|cell| self.faulty(cell.faults))?;
         let mut rows = Table::new();
         let end = sweep.run(&pool, &self.task, |table| append(&mut rows, table));
-        end.map_err(|end| end_message(&end))?;
+        end.map_err(|_| cancelled())?;
         let grid = sweep.grid();
         let overlay = match carry {
             Some(_) => Overlay::default(),
@@ -146,25 +152,25 @@ impl Drawing<'_> {
         };
         let (rows, ranges) = (&rows, Ranges::default());
         let plot = SweepPicture { rows, grid, scene, until_settled: None, quantity, overlay, view, ranges };
-        sweep_figure(&plot, &self.caption, &self.theme).map_err(|error| error.to_string())
+        Ok(sweep_figure(&plot, &self.caption, &self.theme)?)
     }
 
-    fn diagram(&self, subject: &Subject) -> Result<Figure, String> {
-        let (grid, pool) = self.grid(subject)?;
+    fn diagram(&self, subject: &Subject) -> Result<Figure> {
+        let (grid, pool) = (self.grid(subject)?, threads()?);
         let options = strobe_options(Some(Carry::Both));
         let sections = Sections::new(&self.document.scene, &self.document.files, grid, options);
-        sections.validate(&pool, &self.task).map_err(|cell| self.cell_error(cell))?;
+        sections.validate(&pool, &self.task).map_err(|cell| self.faulty(cell.faults))?;
         let mut rows = Table::new();
         let end = sections.run(&pool, &self.task, |table| append(&mut rows, table));
-        end.map_err(|end| end_message(&end))?;
+        end.map_err(|_| cancelled())?;
         let over = sections.grid().columns().first().map(String::as_str);
         Ok(self.of_section(&rows, over, (None, None)))
     }
 
-    fn section(&self) -> Result<Figure, String> {
+    fn section(&self) -> Result<Figure> {
         let (model, options) = (self.model()?, strobe_options(None));
         let found = section(&model, &self.document.scene, &options, self.task.cancel);
-        let (rows, _) = found.map_err(|fault| self.document.error_from(vec![fault]).to_string())?;
+        let (rows, _) = found.map_err(|fault| self.faulty(vec![fault]))?;
         Ok(self.of_section(&rows, None, model.stop_positions()))
     }
 
@@ -173,24 +179,23 @@ impl Drawing<'_> {
         section_figure(&plot, &self.caption, &self.theme)
     }
 
-    fn basins(&self, x_mm: (f64, f64), v: (f64, f64)) -> Result<Figure, String> {
+    fn basins(&self, x_mm: (f64, f64), v: (f64, f64)) -> Result<Figure> {
         let even = |(from, to): (f64, f64)| EvenRange { from, to, count: STARTS };
-        let starts = Starts::grid(&even(x_mm), &even(v)).map_err(|error| error.to_string())?;
+        let starts = Starts::grid(&even(x_mm), &even(v))?;
         let basins = Basins::new(&self.document.scene, self.mechanism()?, starts);
         let mut basins = basins.map_err(|problem| match problem {
-            NoBasins::Faults(faults) => self.document.error_from(faults).to_string(),
-            other => other.to_string(),
+            NoBasins::Faults(faults) => self.faulty(faults),
+            other => other.into(),
         })?;
-        let pool = pool().ok_or_else(|| NO_THREADS.to_owned())?;
+        let pool = threads()?;
         while !basins.is_whole() && basins.run_level(&pool, &self.task) {}
-        // `None` if cancelled: `draw` then drops the error
-        let answer = basins.answer(&self.task).ok_or_else(String::new)?;
+        let answer = basins.answer(&self.task).ok_or_else(cancelled)?;
         Ok(basins_figure(&basins, &answer, &self.caption, &self.theme))
     }
 
-    fn spectrum(&self, signal: Signal, until_settled: Option<f64>) -> Result<Figure, String> {
+    fn spectrum(&self, signal: Signal, until_settled: Option<f64>) -> Result<Figure> {
         let options = SpectrumOptions { signal, taper: None, rate_hz: None, until_settled };
-        let found = spectrum(&self.model()?, &options, &self.task).map_err(|problem| problem.to_string())?;
+        let found = spectrum(&self.model()?, &options, &self.task)?;
         let (quantity, ranges) = (SpectrumQuantity::Amplitude, Ranges::default());
         Ok(spectrum_figure(&found, quantity, ranges, &self.caption, &self.theme))
     }
@@ -201,15 +206,7 @@ fn strobe_options(carry: Option<Carry>) -> SectionOptions {
     SectionOptions { at: SectionAt::Phase(0.0), periods: None, until_settled: None, carry }
 }
 
-fn append(rows: &mut Table, more: &Table) -> Result<bool, String> {
+fn append(rows: &mut Table, more: &Table) -> Result<bool, Infallible> {
     rows.append(more);
     Ok(true)
-}
-
-/// Why a sweep ended early; empty if it was cancelled.
-fn end_message(end: &SweepEnd<String>) -> String {
-    match end {
-        SweepEnd::Cancelled => String::new(),
-        SweepEnd::Write(problem) => problem.clone(),
-    }
 }

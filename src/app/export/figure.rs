@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
+use anyhow::{Result, anyhow};
+
 use crate::app::session::Session;
 use crate::app::session::editor::keep_start_inside;
 use crate::app::session::explore::{STARTS, WalkQuantity, longest_wait};
@@ -224,25 +226,21 @@ impl FigureOrder {
 
     /// Draws the figure and writes its files, both or neither. Returns a message with their names, or `None`
     /// if cancelled.
-    pub fn save(&self, cancel: &AtomicBool) -> Option<Result<String, String>> {
+    pub fn save(&self, cancel: &AtomicBool) -> Result<Option<String>> {
         // open the files first: a path that cannot be written to is reported before the work
-        let open = |path: &PathBuf| Sink::open(path).map_err(|error| error.to_string());
-        let sinks = open(&self.path).and_then(|plot| Ok((plot, self.data.as_ref().map(open).transpose()?)));
-        let (plot, data) = match sinks {
-            Ok(sinks) => sinks,
-            Err(problem) => return Some(Err(problem)),
-        };
-        Some(draw(self, cancel)?.and_then(|figure| self.write(figure, plot, data)))
+        let plot = Sink::open(&self.path)?;
+        let data = self.data.as_deref().map(Sink::open).transpose()?;
+        draw(self, cancel)?.map(|figure| self.write(figure, plot, data)).transpose()
     }
 
-    fn write(&self, mut figure: Figure, plot: Sink, data: Option<Sink>) -> Result<String, String> {
+    fn write(&self, mut figure: Figure, plot: Sink, data: Option<Sink>) -> Result<String> {
         if !self.sheet.titled {
             figure = figure.without_title();
         }
         let (command, all) = self.command_with_arguments();
         figure.origin.insert("arguments".into(), picture_arguments(command, all).into());
-        let bytes = self.format.bytes(&figure).map_err(|error| error.to_string())?;
-        let failure = |name: &str, error: std::io::Error| format!("cannot write {name}: {error}");
+        let bytes = self.format.bytes(&figure)?;
+        let failure = |name: &str, error: std::io::Error| anyhow!("cannot write {name}: {error}");
         let mut sinks = vec![plot];
         sinks[0].put_bytes(&bytes).map_err(|error| failure(sinks[0].name(), error))?;
         if let Some(mut data) = data {

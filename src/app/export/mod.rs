@@ -5,6 +5,7 @@ pub mod figure;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use anyhow::Result;
 use eframe::egui::ColorImage;
 
 use crate::app::session::Session;
@@ -26,14 +27,10 @@ pub fn motion_csv(player: &Player) -> String {
 }
 
 /// The run of a scene from start to end, as `simulate` writes it. Returns `None` if cancelled.
-pub fn run_csv(scene: &Scene, model: &Model, cancel: &AtomicBool) -> Option<Result<String, String>> {
-    let times = match sample_times(scene, model, &Sampling::Default, None) {
-        Ok(times) => times,
-        Err(error) => return Some(Err(error.to_string())),
-    };
+pub fn run_csv(scene: &Scene, model: &Model, cancel: &AtomicBool) -> Result<Option<String>> {
+    let times = sample_times(scene, model, &Sampling::Default, None)?;
     let table = simulate(model, &Keep { times, events: false, until_settled: None }, Some(cancel)).samples;
-    let finished = !cancel.load(Ordering::Relaxed);
-    finished.then(|| Ok(csv(&table)))
+    Ok((!cancel.load(Ordering::Relaxed)).then(|| csv(&table)))
 }
 
 /// The remembered events, in the columns of `simulate --events`.

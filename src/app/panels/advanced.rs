@@ -7,7 +7,7 @@ use eframe::egui::{self, ComboBox, Ui};
 use crate::app::session::Session;
 use crate::scene::{Excitation, Stops};
 
-use super::fields::{field_ui, fields_ui};
+use super::controls::{field_ui, fields_ui};
 
 pub fn advanced_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     kind_ui(ui, session);
@@ -18,25 +18,53 @@ pub fn advanced_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     run_ui(ui, session, width);
 }
 
-/// Names of the kinds of shaking that can be chosen.
-const KINDS: [&str; 6] = ["none", "constant", "sine", "amplitude ramp", "chirp", "noise"];
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    None,
+    Constant,
+    Sine,
+    AmplitudeRamp,
+    Chirp,
+    Noise,
+    Recorded,
+    Sum,
+}
 
-fn kind(excitation: &Excitation) -> &'static str {
-    match excitation {
-        Excitation::None => KINDS[0],
-        Excitation::Constant { .. } => KINDS[1],
-        Excitation::Sine { .. } => KINDS[2],
-        Excitation::AmplitudeRamp { .. } => KINDS[3],
-        Excitation::Chirp { .. } => KINDS[4],
-        Excitation::Noise { .. } => KINDS[5],
-        Excitation::Recorded { .. } => "recorded",
-        Excitation::Sum(_) => "sum",
+impl Kind {
+    /// The kinds of shaking that can be chosen.
+    const CHOICES: [Self; 6] =
+        [Self::None, Self::Constant, Self::Sine, Self::AmplitudeRamp, Self::Chirp, Self::Noise];
+
+    fn of(excitation: &Excitation) -> Self {
+        match excitation {
+            Excitation::None => Self::None,
+            Excitation::Constant { .. } => Self::Constant,
+            Excitation::Sine { .. } => Self::Sine,
+            Excitation::AmplitudeRamp { .. } => Self::AmplitudeRamp,
+            Excitation::Chirp { .. } => Self::Chirp,
+            Excitation::Noise { .. } => Self::Noise,
+            Excitation::Recorded { .. } => Self::Recorded,
+            Excitation::Sum(_) => Self::Sum,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Constant => "constant",
+            Self::Sine => "sine",
+            Self::AmplitudeRamp => "amplitude ramp",
+            Self::Chirp => "chirp",
+            Self::Noise => "noise",
+            Self::Recorded => "recorded",
+            Self::Sum => "sum",
+        }
     }
 }
 
 /// Shaking of another kind, with the amplitude and frequency of the present shaking, or with those of
 /// `suiting` if it has none.
-fn of_kind(name: &str, from: &Excitation, suiting: &Excitation) -> Excitation {
+fn of_kind(kind: Kind, from: &Excitation, suiting: &Excitation) -> Excitation {
     let (suiting_f, suiting_g) = match suiting {
         Excitation::Sine { frequency_hz, amplitude_g, .. } => (*frequency_hz, *amplitude_g),
         _ => (3.0, 0.5),
@@ -49,35 +77,37 @@ fn of_kind(name: &str, from: &Excitation, suiting: &Excitation) -> Excitation {
         Excitation::Constant { accel_g } => (suiting_f, *accel_g),
         _ => (suiting_f, suiting_g),
     };
-    match name {
-        "constant" => Excitation::Constant { accel_g: g },
-        "sine" => Excitation::Sine { frequency_hz: f, amplitude_g: g, phase_deg: 0.0 },
-        "amplitude ramp" => Excitation::AmplitudeRamp { frequency_hz: f, from_g: 0.0, to_g: g, over_s: 60.0 },
-        "chirp" => Excitation::Chirp { from_hz: 0.5 * f, to_hz: 2.0 * f, over_s: 60.0, amplitude_g: g },
-        "noise" => {
+    match kind {
+        Kind::Constant => Excitation::Constant { accel_g: g },
+        Kind::Sine => Excitation::Sine { frequency_hz: f, amplitude_g: g, phase_deg: 0.0 },
+        Kind::AmplitudeRamp => {
+            Excitation::AmplitudeRamp { frequency_hz: f, from_g: 0.0, to_g: g, over_s: 60.0 }
+        }
+        Kind::Chirp => Excitation::Chirp { from_hz: 0.5 * f, to_hz: 2.0 * f, over_s: 60.0, amplitude_g: g },
+        Kind::Noise => {
             Excitation::Noise { rms_g: g.abs(), low_hz: 0.5 * f, high_hz: 2.0 * f, seed: 1, lines: 256 }
         }
-        _ => Excitation::None,
+        Kind::None | Kind::Recorded | Kind::Sum => Excitation::None,
     }
 }
 
 fn kind_ui(ui: &mut Ui, session: &mut Session) {
-    let present = kind(&session.scene().excitation);
+    let present = Kind::of(&session.scene().excitation);
     let mut wanted = present;
     let name = ui.label("kind of shaking");
-    let combo = ComboBox::from_id_salt("kind of shaking").selected_text(present).show_ui(ui, |ui| {
-        for kind in KINDS {
-            ui.selectable_value(&mut wanted, kind, kind);
+    let combo = ComboBox::from_id_salt("kind of shaking").selected_text(present.name()).show_ui(ui, |ui| {
+        for kind in Kind::CHOICES {
+            ui.selectable_value(&mut wanted, kind, kind.name());
         }
         for (kind, why) in [
             (
-                "recorded",
+                Kind::Recorded,
                 "Open measured data with an acceleration (File menu), or name a record in the scene file: \
                  excitation: Recorded(path: ..).",
             ),
-            ("sum", "A sum of several is written in the scene file: excitation: Sum([..])."),
+            (Kind::Sum, "A sum of several is written in the scene file: excitation: Sum([..])."),
         ] {
-            ui.add_enabled(false, egui::Button::selectable(kind == present, kind))
+            ui.add_enabled(false, egui::Button::selectable(kind == present, kind.name()))
                 .on_disabled_hover_text(why);
         }
     });
@@ -183,12 +213,12 @@ mod tests {
     fn every_kind_of_every_preset_can_be_run() {
         for preset in crate::scene::PRESETS {
             let scene = Document::load(preset.name).unwrap().scene;
-            for name in KINDS {
+            for kind in Kind::CHOICES {
                 let sine = Excitation::Sine { frequency_hz: 3.0, amplitude_g: 0.5, phase_deg: 0.0 };
-                let excitation = of_kind(name, &scene.excitation, &sine);
-                assert_eq!(kind(&excitation), name);
+                let excitation = of_kind(kind, &scene.excitation, &sine);
+                assert_eq!(Kind::of(&excitation), kind);
                 let changed = Scene { excitation, sweep: Vec::new(), ..scene.clone() };
-                assert!(check(&changed).faults.is_empty(), "{} {name}", preset.name);
+                assert!(check(&changed).faults.is_empty(), "{} {kind:?}", preset.name);
             }
         }
     }

@@ -1,14 +1,16 @@
-//! Controls of the scene: shaking, stops and, under More, fields that are changed less often.
+//! Controls of the scene: shaking, stops with the search for the best ones and, under More, fields that are
+//! changed less often.
 
-use eframe::egui::{self, Color32, Rect, RichText, Ui};
+use eframe::egui::{self, Color32, Label, Rect, RichText, Ui};
 
 use crate::app::session::Session;
+use crate::app::ui::knob::{How, Knob, refuse};
 use crate::app::ui::widgets::hover_beside;
-use crate::app::words::fields::name_and_unit;
-use crate::scene::{Damping, Excitation, Stops};
+use crate::app::words::fields::{Reach, info, name_and_unit};
+use crate::app::words::numbers::{below, decimals, round_up, shown};
+use crate::scene::{Damping, Excitation, FieldPath, Mechanism, Stops, numeric_fields};
 
-use super::fields::{absent_ui, field_ui, fields_ui};
-use super::{advanced, best_stops, geometry};
+use super::advanced;
 
 /// Width in points below which the row of controls has no room for headings.
 const NARROW: f32 = 640.0;
@@ -32,6 +34,11 @@ const WIDEST_SLIDER: f32 = 280.0;
 const MORE_HOVER: &str = "Restitution, preload, frequency, damping and mass; spring, magnets and \
                           transducer, where there are such.";
 
+/// Hover text of the button that searches for the best stops.
+const SEARCH_HOVER: &str = "Looks for the distance of the stops with which the scene as it stands, from \
+                            rest, moves fastest, or where there is a transducer gives most power, and how \
+                            far that is from where it is lost (B).";
+
 /// Fields of a transducer at the top of More.
 const LOAD: [&str; 4] = [
     "transducer.load_ohm",
@@ -49,7 +56,7 @@ pub fn column_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
     ui.add_space(14.0);
     stops_switch_ui(ui, session);
     limit_ui(ui, session, width);
-    best_stops::button_ui(ui, session, "Find the best stops");
+    best_stops_ui(ui, session, "Find the best stops");
     ui.add_space(14.0);
     let name = RichText::new(if *more { "Less" } else { "More" }).strong();
     if ui.selectable_label(*more, name).on_hover_text(MORE_HOVER).clicked() {
@@ -87,7 +94,7 @@ pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
             stops_switch_ui(ui, session);
             limit_ui(ui, session, width);
             if has_search {
-                best_stops::button_ui(ui, session, "Best stops");
+                best_stops_ui(ui, session, "Best stops");
             }
         });
     });
@@ -184,8 +191,8 @@ fn limit_ui(ui: &mut Ui, session: &mut Session, width: f32) {
 fn more_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     fields_ui(ui, session, &LOAD, width);
     restitution_ui(ui, session, width);
-    geometry::preload_ui(ui, session, width);
-    geometry::balancing_ui(ui, session, width);
+    preload_ui(ui, session, width);
+    balancing_ui(ui, session, width);
     if matches!(session.scene().excitation, Excitation::Sine { .. }) {
         field_ui(ui, session, "excitation.frequency_hz", width);
     }
@@ -196,7 +203,7 @@ fn more_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     let heading = RichText::new("Advanced").strong();
     let advanced = egui::CollapsingHeader::new(heading).id_salt("advanced").show_unindented(ui, |ui| {
         fields_ui(ui, session, &CIRCUIT, width);
-        geometry::sizes_ui(ui, session, width);
+        sizes_ui(ui, session, width);
         ui.separator();
         advanced::advanced_ui(ui, session, width);
     });
@@ -220,4 +227,135 @@ fn damping_ui(ui: &mut Ui, session: &mut Session, width: f32) {
         absent_ui(ui, "no damping", "The scene has none.");
     }
     fields_ui(ui, session, &["damping.xi", "damping.c_n_s_per_m"], width)
+}
+
+/// A button labelled `name` that starts the search; there is none in a lesson.
+pub fn best_stops_ui(ui: &mut Ui, session: &mut Session, name: &str) {
+    if session.best.is_off {
+        return;
+    }
+    let button = egui::Button::new(name);
+    let response = ui.add_enabled(!session.best.is_running(), button);
+    if response.on_hover_text(SEARCH_HOVER).on_disabled_hover_text("It is being looked for.").clicked() {
+        session.find_best_stops();
+    }
+}
+
+/// The answer of the search so far, and a button that moves the stops there.
+pub fn best_stops_answer_ui(ui: &mut Ui, session: &mut Session) {
+    ui.horizontal_wrapped(|ui| {
+        ui.label(session.best.words());
+        if session.best.is_running() {
+            ui.add(egui::Spinner::new().size(14.0));
+            if ui.small_button("Stop looking").clicked() {
+                session.best.close();
+            }
+            return;
+        }
+        match session.is_at_best_stops() {
+            true => _ = ui.label(RichText::new("The stops stand there.").weak()),
+            false if session.best.limit_mm().is_some() => {
+                let hover = "Moves the stops there, as one step that can be undone. The motion goes on.";
+                if ui.small_button("Take the stops there").on_hover_text(hover).clicked() {
+                    session.go_to_best_stops();
+                }
+            }
+            false => {}
+        }
+        if ui.small_button("Close").on_hover_text("Forgets the best stops.").clicked() {
+            session.best.close();
+        }
+    });
+}
+
+/// Paths of the mechanism's fields that have a slider, including those of the parts of a sum.
+fn sliders(session: &Session) -> Vec<String> {
+    let has_slider = |path: &String| path.starts_with("mechanism.") && info(path).is_some();
+    numeric_fields(session.scene()).into_iter().filter(has_slider).collect()
+}
+
+fn is_preload(path: &str) -> bool {
+    path.ends_with(".preload_mm")
+}
+
+/// The slider of the preload; for a mechanism without one, its name greyed out with the reason.
+fn preload_ui(ui: &mut Ui, session: &mut Session, width: f32) {
+    match sliders(session).into_iter().find(|path| is_preload(path)) {
+        Some(path) => field_ui(ui, session, &path, width),
+        None if matches!(session.scene().mechanism, Mechanism::Table { .. }) => {
+            absent_ui(ui, "preload", "The force comes from a table, which was made at one preload.")
+        }
+        None => absent_ui(ui, "preload", "The force is given by a formula without a preload."),
+    }
+}
+
+/// Whether a field belongs to springs or magnets, which lower the barrier as stops do.
+fn is_balancing(path: &str) -> bool {
+    [".n_per_m", ".strength_n_mm4", ".gap_mm"].iter().any(|end| path.ends_with(end))
+}
+
+fn balancing_ui(ui: &mut Ui, session: &mut Session, width: f32) {
+    let balancing = sliders(session).into_iter().filter(|path| is_balancing(path));
+    balancing.for_each(|path| field_ui(ui, session, &path, width));
+}
+
+/// The sliders of the mechanism's other fields, the sizes of its flexures.
+fn sizes_ui(ui: &mut Ui, session: &mut Session, width: f32) {
+    let mut sizes = sliders(session);
+    sizes.retain(|path| !is_preload(path) && !is_balancing(path));
+    if sizes.is_empty() {
+        let why = "The mechanism of this scene is a force without flexures behind it.";
+        absent_ui(ui, "sizes of flexures", why);
+    }
+    sizes.iter().for_each(|path| field_ui(ui, session, path, width));
+}
+
+/// The control of a field of the scene, or of the stops that it gets when they are switched on. Draws nothing
+/// if there is no such field. A change of the start restarts the motion.
+pub(super) fn field_ui(ui: &mut Ui, session: &mut Session, path: &str, width: f32) {
+    let Some(value) = session.number(path) else { return };
+    let (name, unit) = name_and_unit(path);
+    let (reach, typed, hover) = match info(path) {
+        Some(field) => (field.reach(session), field.typed, field.hover),
+        None => (around(session, path, value), (f64::MIN, f64::MAX), ""),
+    };
+    let id = egui::Id::unique(("field", path));
+    let turn = Knob { id, name: &name, unit, reach, typed, hover, width }.ui(ui, value);
+    if let Some(value) = turn.value {
+        match turn.how {
+            How::Pressed => session.press(path, ui.input(|input| input.time)),
+            How::Once | How::Dragged => session.end_presses(),
+        }
+        if let Err(why) = session.set_number(path, value) {
+            let value = shown(value, decimals(reach.step));
+            let space = if unit.is_empty() { "" } else { " " };
+            refuse(ui, id, format!("{value}{space}{unit} was not taken: {why}"));
+        }
+    }
+    let is_start = path.starts_with("start.");
+    if turn.ended || turn.value.is_some() && (turn.how == How::Once || is_start && turn.how == How::Pressed) {
+        session.end_gesture();
+        if is_start {
+            session.restart();
+            session.player.set_playing(true);
+        }
+    }
+}
+
+/// Slider range of a field that is not in the table: around the value that the scene was opened with.
+fn around(session: &Session, path: &str, value: f64) -> Reach {
+    let opened = FieldPath::new(path).get(session.editor.saved()).unwrap_or(value);
+    let size = if opened == 0.0 { 1.0 } else { opened.abs() };
+    let high = round_up(2.0 * size);
+    Reach::even(if opened < 0.0 { -high } else { 0.0 }, high, below(high / 200.0))
+}
+
+/// The controls of several fields, one below another.
+pub(super) fn fields_ui(ui: &mut Ui, session: &mut Session, paths: &[&str], width: f32) {
+    paths.iter().for_each(|path| field_ui(ui, session, path, width));
+}
+
+/// The name of a control that does not apply to the scene, greyed out, with the reason.
+pub(super) fn absent_ui(ui: &mut Ui, name: &str, why: &str) {
+    ui.add_enabled(false, Label::new(name)).on_disabled_hover_text(why);
 }

@@ -1,8 +1,18 @@
-//! Notes of the scene below the controls, as far as they fit.
+//! Texts to read: notes of the scene below the controls, the glossary, the lecturer's notes of a lesson.
 
-use eframe::egui::{Color32, FontSelection, RichText, Ui};
+use eframe::egui::{
+    self, CentralPanel, Color32, FontSelection, Key, Modifiers, RichText, ScrollArea, Ui, ViewportBuilder,
+    ViewportClass, ViewportId,
+};
 
+use crate::app::session::lesson::{OpenLesson, Outcome};
+use crate::app::ui::widgets::{close_ui, dialog, dialog_width};
+use crate::app::words::lesson::plain;
+use crate::app::words::meanings::{GLOSSARY, meaning};
 use crate::scene::Scene;
+use crate::scene::lesson::Step;
+
+use super::lesson::{LessonAction, letter};
 
 /// Height in points of the heading.
 const HEADING: f32 = 42.0;
@@ -43,4 +53,86 @@ pub fn notes_ui(ui: &mut Ui, scene: &Scene, is_changed: bool, bottom: f32) -> bo
     let end = count.checked_sub(1).and_then(|last| ends.get(last)).copied().unwrap_or(0);
     ui.label(&notes[..end]);
     ui.button("Read on").on_hover_text(hover).clicked()
+}
+
+/// Shows the glossary. Returns `false` once it is to be closed.
+pub fn glossary_ui(ui: &Ui) -> bool {
+    let answer = dialog(ui.ctx(), "glossary").show(ui.ctx(), |ui| {
+        ui.set_max_width(dialog_width(ui, 640.0));
+        ui.heading("Glossary");
+        ui.add_space(4.0);
+        let room = (ui.ctx().content_rect().height() - 130.0).max(80.0);
+        ScrollArea::vertical().max_height(room).show(ui, |ui| {
+            for word in GLOSSARY {
+                ui.label(RichText::new(word).heading());
+                ui.label(meaning(word).unwrap_or_default());
+                ui.add_space(4.0);
+            }
+        });
+        ui.add_space(8.0);
+        close_ui(ui)
+    });
+    let toggled = ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::F2));
+    !(answer.inner || answer.should_close() || toggled)
+}
+
+/// Shows the lecturer's notes of the open lesson in a separate window. Returns the action that was chosen
+/// there, and whether to close the notes.
+pub fn lecturer_ui(ctx: &egui::Context, lesson: &OpenLesson) -> (Option<LessonAction>, bool) {
+    let builder =
+        ViewportBuilder::default().with_title("Lecturer's notes - interwell").with_inner_size([520.0, 420.0]);
+    let (mut action, mut closed) = (None, false);
+    ctx.show_viewport_immediate(ViewportId::from_hash_of("lecturer"), builder, |ui, class| {
+        let is_separate = class != ViewportClass::EmbeddedWindow;
+        if is_separate {
+            CentralPanel::default_margins().show(ui, |ui| lecturer_notes_ui(ui, lesson));
+        } else {
+            lecturer_notes_ui(ui, lesson);
+            closed |= ui.button("Close").clicked();
+        }
+        closed |= ui.input(|input| input.viewport().close_requested()) && is_separate;
+        ui.input_mut(|input| {
+            for (key, chosen) in [(Key::PageDown, LessonAction::Next), (Key::PageUp, LessonAction::Back)] {
+                if is_separate && input.consume_key(Modifiers::NONE, key) {
+                    action = Some(chosen);
+                }
+            }
+            closed |= is_separate && input.consume_key(Modifiers::COMMAND, Key::L);
+        });
+    });
+    (action, closed)
+}
+
+fn lecturer_notes_ui(ui: &mut Ui, open: &OpenLesson) {
+    let lesson = open.lesson();
+    ScrollArea::vertical().auto_shrink(false).max_height((ui.available_height() - 8.0).max(60.0)).show(
+        ui,
+        |ui| {
+            ui.label(RichText::new(format!("{}, {} min", lesson.title, lesson.minutes)).heading());
+            ui.label(&lesson.goal);
+            let part_ui = |ui: &mut Ui, heading: &str, text: &str| {
+                if !text.trim().is_empty() {
+                    ui.add_space(6.0);
+                    ui.label(RichText::new(heading).heading());
+                    ui.label(plain(text));
+                }
+            };
+            part_ui(ui, "What students think before", &lesson.misconception);
+            part_ui(ui, "What to do", &lesson.lecturer);
+            let heading = format!("Step {} of {}", open.number() + 1, lesson.steps.len());
+            part_ui(ui, &heading, open.step().text());
+            match (open.step(), open.outcome()) {
+                (Step::Predict { .. }, Outcome::Holds(option)) => {
+                    let text = format!("{}: {}", letter(option), open.options()[option].text);
+                    part_ui(ui, "What holds", &text);
+                }
+                (Step::Do { hint, .. }, _) => {
+                    part_ui(ui, "Hint", hint.as_deref().unwrap_or_default());
+                    let solution = open.solution().iter().map(|(field, value)| format!("{field} = {value}"));
+                    part_ui(ui, "A solution", &solution.collect::<Vec<_>>().join("\n"));
+                }
+                _ => {}
+            }
+        },
+    );
 }

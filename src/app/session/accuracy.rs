@@ -7,7 +7,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::app::task::{Latest, Wake};
+use crate::app::task::{Background, Identity, Wake};
 use crate::dynamics::Model;
 use crate::study::accuracy::methods::Scheme;
 use crate::study::accuracy::scene::{
@@ -20,25 +20,42 @@ const FRAME: f64 = 1.0 / 60.0;
 /// Time for which the error is computed again, as a multiple of the time that the motion has gone on.
 const SPAN_FACTOR: f64 = 2.0;
 
+/// A run of the motion, from a live time on.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct LiveRun {
+    pub model: Identity<Model>,
+    /// The live time in s at which it begins.
+    pub from: f64,
+}
+
 /// Accuracy of the motion, as far as it is known.
 pub struct Accuracy {
-    /// The model that moves, and the live time in s at which it began; `None` if its error cannot be known.
-    origin: Option<(Arc<Model>, f64)>,
-    /// The time in s, from there on, for which the error was last requested.
-    span: Option<f64>,
-    trust: Latest<Trust>,
+    /// The run that moves; `None` if its error cannot be known.
+    run: Option<LiveRun>,
+    trust: Background<PathQuestion, Trust>,
     /// The selected method of fixed step.
     pub scheme: Scheme,
     /// Its step in s.
     pub step: f64,
-    /// Whether a view of this frame shows the cost of digits and steps.
-    wanted: bool,
-    tolerances_of: Option<Arc<Model>>,
-    tolerances: Latest<Tolerances>,
-    step_of: Option<(Arc<Model>, Scheme, f64)>,
-    stepped: Latest<Result<StepSize, Unfit>>,
+    tolerances: Background<Identity<Model>, Tolerances>,
+    stepped: Background<StepQuestion, Result<StepSize, Unfit>>,
     /// Whether the user has stopped the computations.
     stopped: bool,
+}
+
+/// A run, and the time in s for which the error of its path is computed.
+#[derive(Debug, Clone, PartialEq)]
+struct PathQuestion {
+    run: LiveRun,
+    duration: f64,
+}
+
+/// A model, and a method of fixed step with its step in s.
+#[derive(Debug, Clone, PartialEq)]
+struct StepQuestion {
+    model: Identity<Model>,
+    scheme: Scheme,
+    step: f64,
 }
 
 /// The error of the path, or the time up to which the path is reliable, in a few words.
@@ -68,26 +85,21 @@ fn long(trust: &Trust, from: f64) -> String {
 impl Default for Accuracy {
     fn default() -> Self {
         Self {
-            origin: None,
-            span: None,
-            trust: Latest::default(),
+            run: None,
+            trust: Background::default(),
             scheme: Scheme::RungeKutta4,
             step: FRAME,
-            wanted: false,
-            tolerances_of: None,
-            tolerances: Latest::default(),
-            step_of: None,
-            stepped: Latest::default(),
+            tolerances: Background::default(),
+            stepped: Background::default(),
             stopped: false,
         }
     }
 }
 
 impl Accuracy {
-    /// Begins with another motion: the model that moves from now on and the live time in s, or `None` where
-    /// its error cannot be known.
-    pub(super) fn begin(&mut self, origin: Option<(Arc<Model>, f64)>) {
-        (self.origin, self.span, self.stopped) = (origin, None, false);
+    /// Begins with another run, or with `None` where its error cannot be known.
+    pub(super) fn begin(&mut self, run: Option<LiveRun>) {
+        (self.run, self.stopped) = (run, false);
         self.trust.clear();
     }
 
@@ -118,67 +130,51 @@ impl Accuracy {
 
     /// Starts to compute the error of the motion if it is not known up to the live time `now` in s.
     pub(super) fn follow(&mut self, now: f64, wake: &Wake) {
-        let Some((model, from)) = &self.origin else { return };
-        let span = match (self.span, self.trust.current()) {
-            (None, _) => model.duration(),
+        let Some(run) = &self.run else { return };
+        let elapsed = now - run.from;
+        let duration = match (self.trust.question(), self.trust.answer()) {
+            (None, _) => run.model.duration(),
             // once the runs have diverged they are not compared again
-            (Some(span), Some(trust)) if trust.course.until().is_none() && now - from > span => {
-                SPAN_FACTOR * (now - from)
+            (Some(question), Some(trust))
+                if trust.course.until().is_none() && elapsed > question.duration =>
+            {
+                SPAN_FACTOR * elapsed
             }
             _ => return,
         };
-        let model = Arc::clone(model);
-        self.span = Some(span);
-        self.trust.ask(wake, move |cancel| trust(&lasting(&model, span), cancel));
+        let question = PathQuestion { run: run.clone(), duration };
+        self.trust.ask(question, wake, |PathQuestion { run, duration }, cancel, _| {
+            trust(&lasting(&run.model, *duration), cancel)
+        });
     }
 
     /// The error of the motion in a few words, and in full.
     pub(super) fn descriptions(&self) -> Option<(String, String)> {
-        let (_, from) = self.origin.as_ref()?;
+        let from = self.run.as_ref()?.from;
         let trust = self.trust.newest()?;
         // for a run that ended early its end is reported instead
-        trust.short(*from)?;
-        Some((short(trust, *from), long(trust, *from)))
+        trust.short(from)?;
+        Some((short(trust, from), long(trust, from)))
     }
 
     /// Asks for the cost of digits and steps in `model`; to be called by a view in every frame. Unless the
     /// scene is `still` the answers for an earlier one stay.
     pub(super) fn want(&mut self, model: &Arc<Model>, still: bool, wake: &Wake) {
-        self.wanted = true;
-        if !still {
-            return;
-        }
-        if !self.tolerances_of.as_ref().is_some_and(|of| Arc::ptr_eq(of, model)) {
-            self.tolerances_of = Some(Arc::clone(model));
-            let model = Arc::clone(model);
-            self.tolerances.ask(wake, move |cancel| tolerances(&model, cancel));
-        }
-        let (scheme, step) = (self.scheme, self.step);
-        let same =
-            |of: &(Arc<Model>, Scheme, f64)| Arc::ptr_eq(&of.0, model) && (of.1, of.2) == (scheme, step);
-        if !self.step_of.as_ref().is_some_and(same) {
-            self.step_of = Some((Arc::clone(model), scheme, step));
-            let model = Arc::clone(model);
-            self.stepped.ask(wake, move |cancel| match step_size(&model, scheme, step, cancel) {
+        let model = Identity(Arc::clone(model));
+        self.tolerances.want(model.clone(), still, wake, |model, cancel, _| tolerances(model, cancel));
+        let question = StepQuestion { model, scheme: self.scheme, step: self.step };
+        self.stepped.want(question, still, wake, |StepQuestion { model, scheme, step }, cancel, _| {
+            match step_size(model, *scheme, *step, cancel) {
                 Err(Unfit::Cancelled) => None,
                 answer => Some(answer),
-            });
-        }
+            }
+        });
     }
 
     /// Stops the computations that no view has asked for in this frame; to be called once a frame.
     pub fn end_frame(&mut self) {
-        if std::mem::take(&mut self.wanted) {
-            return;
-        }
-        if self.tolerances.is_running() {
-            self.tolerances.stop();
-            self.tolerances_of = None;
-        }
-        if self.stepped.is_running() {
-            self.stepped.stop();
-            self.step_of = None;
-        }
+        self.tolerances.end_frame();
+        self.stepped.end_frame();
     }
 
     /// Waits for each computation, at most `timeout`.
@@ -190,22 +186,20 @@ impl Accuracy {
 
     /// The cost of each digit, and whether it is that in `model`.
     pub fn tolerances(&self, model: &Model) -> Option<(&Tolerances, bool)> {
-        let same = self.tolerances_of.as_ref().is_some_and(|of| std::ptr::eq(&**of, model));
-        let known = self.tolerances.newest()?;
-        Some((known, same && self.tolerances.current().is_some()))
+        let same = std::ptr::eq(&**self.tolerances.question()?, model);
+        Some((self.tolerances.newest()?, same && self.tolerances.answer().is_some()))
     }
 
     /// The result of the fixed step, and whether it is that of `model`, the present method and step.
     pub fn stepped(&self, model: &Model) -> Option<(&Result<StepSize, Unfit>, bool)> {
-        let same = self.step_of.as_ref().is_some_and(|(of, scheme, step)| {
-            std::ptr::eq(&**of, model) && (*scheme, *step) == (self.scheme, self.step)
-        });
-        let known = self.stepped.newest()?;
-        Some((known, same && self.stepped.current().is_some()))
+        let question = self.stepped.question()?;
+        let same = std::ptr::eq(&*question.model, model)
+            && (question.scheme, question.step) == (self.scheme, self.step);
+        Some((self.stepped.newest()?, same && self.stepped.answer().is_some()))
     }
 
     /// Whether a computation is running.
     pub fn is_running(&self) -> bool {
-        self.trust.is_running() || self.tolerances.is_running() || self.stepped.is_running()
+        self.working().is_some()
     }
 }

@@ -3,31 +3,43 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use crate::app::task::Identity;
 use crate::app::words::status;
-use crate::scene::Excitation;
-use crate::study;
+use crate::scene::{Excitation, Scene};
+use crate::study::{self, Task};
 
 use super::Session;
+use super::accuracy::LiveRun;
 
 impl Session {
     pub(super) fn ask_settled(&mut self) {
         let (now, from_here) = (self.player.watch().time(), self.player.watch().from_here());
         // a ramp that was changed under way cannot be run again from there, so its error is unknown
         let is_known = now == 0.0 || from_here.is_some();
-        self.settled_from = if from_here.is_some() { now } else { 0.0 };
-        let model = Arc::new(from_here.unwrap_or_else(|| (*self.model).clone()));
-        self.accuracy.begin(is_known.then(|| (Arc::clone(&model), now)));
-        self.settled.ask(&self.wake, move |cancel| study::settled(&model, cancel));
+        let from = if from_here.is_some() { now } else { 0.0 };
+        let model = Identity(Arc::new(from_here.unwrap_or_else(|| (*self.model).clone())));
+        let run = LiveRun { model, from };
+        self.accuracy.begin(is_known.then(|| run.clone()));
+        self.settled.ask(run, &self.wake, |run, cancel, _| study::settled(&run.model, cancel));
     }
 
     pub(super) fn ask_thresholds(&mut self) {
-        if self.thresholds.is_running() || self.thresholds.current().is_some() || !self.can_search() {
+        if !self.can_search() {
             return;
         }
         let (scene, mechanism) = (self.built.clone(), Arc::clone(&self.mechanism));
-        self.thresholds.ask(&self.wake, move |cancel| {
-            study::thresholds(&scene, &mechanism, &study::Task { tick: &|| (), cancel })
+        self.thresholds.want(unshaken(&scene), true, &self.wake, move |_, cancel, _| {
+            study::thresholds(&scene, &mechanism, &Task { tick: &|| (), cancel })
         });
+    }
+
+    /// Drops the answers about what it would take to cross the barrier, after a change of the scene. The
+    /// thresholds stay if only the amplitude was changed.
+    pub(super) fn forget_ways(&mut self) {
+        if self.fault.is_some() || self.thresholds.question() != Some(&unshaken(&self.built)) {
+            self.thresholds.clear();
+        }
+        self.stops_that_cross.clear();
     }
 
     /// What it would take to cross the barrier, in words; the first call starts the search.
@@ -39,20 +51,13 @@ impl Session {
             return "What it would take is searched for where a sine shakes a mass with two wells."
                 .to_owned();
         }
-        if self.stops_that_cross.current().is_none()
-            && !self.stops_that_cross.is_running()
-            && !self.editor.in_gesture()
-        {
-            let (scene, mechanism) = (self.built.clone(), Arc::clone(&self.mechanism));
-            let known =
-                [&scene.stops, &self.remembered_stops].into_iter().find_map(|stops| stops.restitutions()[1]);
-            let restitution = known.unwrap_or(1.0);
-            self.stops_that_cross.ask(&self.wake, move |cancel| {
-                let task = study::Task { tick: &|| (), cancel };
-                study::stops_that_cross(&scene, &mechanism, restitution, &task)
-            });
-        }
-        match (self.settled.current(), self.thresholds.current(), self.stops_that_cross.current()) {
+        let known = [&self.built.stops, &self.remembered_stops];
+        let restitution = known.into_iter().find_map(|stops| stops.restitutions()[1]).unwrap_or(1.0);
+        let (mechanism, still) = (Arc::clone(&self.mechanism), !self.editor.in_gesture());
+        self.stops_that_cross.want(self.built.clone(), still, &self.wake, move |scene, cancel, _| {
+            study::stops_that_cross(scene, &mechanism, restitution, &Task { tick: &|| (), cancel })
+        });
+        match (self.settled.answer(), self.thresholds.answer(), self.stops_that_cross.answer()) {
             (Some(settled), Some(thresholds), Some(stops)) => {
                 status::ways(self.scene(), settled, thresholds, *stops)
             }
@@ -66,7 +71,7 @@ impl Session {
     /// Starts to compute the error of the motion once the scene stands still and its settled motion is known.
     pub(super) fn follow_accuracy(&mut self) {
         self.accuracy.poll();
-        if self.stands_still() && self.settled.current().is_some() {
+        if self.stands_still() && self.settled.answer().is_some() {
             self.accuracy.follow(self.player.watch().time(), &self.wake);
         }
     }
@@ -85,9 +90,9 @@ impl Session {
 
     /// Stops the background computations about the scene; the next change starts them again.
     pub fn stop_working(&mut self) {
-        self.settled.stop();
-        self.thresholds.stop();
-        self.stops_that_cross.stop();
+        self.settled.pause();
+        self.thresholds.pause();
+        self.stops_that_cross.pause();
         self.accuracy.stop();
         self.pins.stop_working();
     }
@@ -115,4 +120,13 @@ impl Session {
             && matches!(self.built.excitation, Excitation::Sine { .. })
             && self.mechanism.landscape.barrier.is_some()
     }
+}
+
+/// A scene with a sine of 0 g: scenes that differ only in the amplitude have the same thresholds.
+fn unshaken(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    if let Excitation::Sine { amplitude_g, .. } = &mut scene.excitation {
+        *amplitude_g = 0.0;
+    }
+    scene
 }

@@ -1,11 +1,14 @@
-//! Construction of the model of a scene, and the reasons why it fails.
+//! Construction of the model of a scene, and the reasons why it fails; stops that suit a scene without stops.
 
 use std::sync::Arc;
 
 use crate::app::words::fields::{in_words, name_and_unit};
 use crate::dynamics::Model;
 use crate::mechanics::{BuildError, FlexureError, Mechanism};
-use crate::scene::{Document, Excitation, Fault, Scene, SceneError};
+use crate::scene::{Document, Fault, Scene, SceneError, Stops};
+
+/// Restitution of the stops if the scene gives no stops to switch on.
+const RESTITUTION: f64 = 0.36;
 
 /// Why a scene cannot be run.
 #[derive(Debug, thiserror::Error)]
@@ -52,14 +55,36 @@ pub(super) fn fault_message(error: &CannotRun, scene: &Scene) -> String {
     }
 }
 
-/// Whether two scenes differ in the amplitude of a sine at most, so that their thresholds are the same.
-pub(super) fn differ_in_amplitude_alone(a: &Scene, b: &Scene) -> bool {
-    let mut changed = a.clone();
-    match (&mut changed.excitation, &b.excitation) {
-        (Excitation::Sine { amplitude_g: other, .. }, Excitation::Sine { amplitude_g, .. }) => {
-            *other = *amplitude_g
-        }
-        _ => return false,
+/// The stops that the scene gets when they are first switched on.
+pub(super) fn first_stops(scene: &Scene, model: &Model) -> Stops {
+    let hinted = || scene.app.as_ref().and_then(|hints| hints.stops_when_on);
+    let suiting = || {
+        let well = model.mechanism().landscape.right_stable().map(|well| well.x.abs() * 1e3);
+        Stops::Rigid { travel_limit_mm: suiting_limit(well), restitution: RESTITUTION }
+    };
+    match scene.stops {
+        Stops::None => hinted().unwrap_or_else(suiting),
+        stops => stops,
     }
-    changed == *b
+}
+
+/// Travel limit in mm that suits a well at this distance: the same share of it as in the prototype.
+pub fn suiting_limit(well_mm: Option<f64>) -> f64 {
+    match well_mm.filter(|mm| *mm > 0.0 && mm.is_finite()) {
+        Some(mm) => format!("{:.1e}", 0.215 * mm).parse().unwrap_or(mm),
+        None => 1.5,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stops_suit_the_distance_of_the_wells() {
+        assert_eq!(
+            (suiting_limit(Some(6.9)), suiting_limit(Some(1000.0)), suiting_limit(None)),
+            (1.5, 220.0, 1.5)
+        );
+    }
 }

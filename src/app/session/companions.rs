@@ -35,7 +35,7 @@ pub fn copy_files(scene: &mut Scene, files: &Files, target: &Path) -> Result<Vec
 
 /// Updates the file names in a scene of the undo history after a save to another folder: a copied file gets
 /// the name of its copy, any other its absolute path. `was` and `now` are the saved scene before and after.
-pub fn update_names(scene: &mut Scene, files: &Files, (was, now): (&mut Scene, &mut Scene)) {
+pub fn update_names(scene: &mut Scene, files: &Files, was: &mut Scene, now: &mut Scene) {
     let renamed: Vec<_> = named_paths(was).into_iter().zip(named_paths(now)).collect();
     for path in named_paths(scene) {
         let place = || files.place(path).and_then(|place| std::path::absolute(place).ok());

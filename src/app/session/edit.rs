@@ -8,10 +8,9 @@ use crate::mechanics::FLEXURE_TOLERANCE;
 use crate::scene::{Excitation, FieldPath, Mechanism, Scene, Stops, check};
 
 use super::Session;
-use super::build::{fault_message, solve};
+use super::build::{fault_message, first_stops, solve};
 use super::editor::Editor;
 use super::player::fitting_speed;
-use super::stops::first_stops;
 
 /// Error of the force of flexures during a gesture: the curve is solved within a frame, and its error is too
 /// small to see. At the end of the gesture the flexures are solved with [`FLEXURE_TOLERANCE`].

@@ -197,7 +197,7 @@ impl Editor {
         let before = std::mem::replace(&mut document.files, Files::beside(path));
         let mut now = document.scene.clone();
         for scene in self.undo.iter_mut().chain(&mut self.redo) {
-            update_names(scene, &before, (&mut self.document.scene, &mut now));
+            update_names(scene, &before, &mut self.document.scene, &mut now);
         }
         self.saved = document.scene.clone();
         self.named = document.scene.clone();
@@ -229,103 +229,5 @@ pub(in crate::app) fn keep_start_inside(scene: &mut Scene) {
         } else if *x_mm < left {
             *x_mm = left;
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scene::Stops;
-
-    fn editor() -> Editor {
-        Editor::open("first-look").unwrap()
-    }
-
-    fn mass(editor: &Editor) -> f64 {
-        editor.scene().mass_g
-    }
-
-    #[test]
-    fn one_gesture_is_one_step() {
-        let mut editor = editor();
-        for step in 1..=20 {
-            assert!(editor.edit(|scene| scene.mass_g = 15.2 + f64::from(step)));
-        }
-        assert!(editor.in_gesture() && editor.is_dirty());
-        editor.end_gesture();
-        assert!(editor.edit_once(|scene| scene.mass_g = 50.0));
-        assert!(editor.undo());
-        assert_eq!(mass(&editor), 35.2);
-        assert!(editor.undo());
-        assert_eq!(mass(&editor), 15.2);
-        assert!(!editor.undo() && !editor.is_dirty());
-        assert!(editor.redo() && editor.redo() && !editor.redo());
-        assert_eq!(mass(&editor), 50.0);
-        // a new edit clears the redo stack
-        editor.undo();
-        editor.edit_once(|scene| scene.mass_g = 1.0);
-        assert!(!editor.can_redo());
-    }
-
-    #[test]
-    fn a_gesture_without_a_net_change_is_no_step() {
-        let mut editor = editor();
-        editor.edit(|scene| scene.mass_g = 16.0);
-        editor.edit(|scene| scene.mass_g = 15.2);
-        editor.end_gesture();
-        assert!(!editor.can_undo());
-        assert!(!editor.edit(|_| ()));
-    }
-
-    #[test]
-    fn back_to_start_can_be_undone() {
-        let mut editor = editor();
-        editor.edit_once(|scene| scene.mass_g = 16.0);
-        assert!(editor.back_to_start());
-        assert_eq!(mass(&editor), 15.2);
-        editor.undo();
-        assert_eq!(mass(&editor), 16.0);
-    }
-
-    #[test]
-    fn a_stop_takes_the_start_along() {
-        let mut editor = editor();
-        editor.edit_once(|scene| scene.start = Start::At { x_mm: 5.0, v_m_per_s: 0.1, electrical: 0.0 });
-        editor.edit_once(|scene| scene.stops = Stops::Rigid { travel_limit_mm: 2.0, restitution: 0.3 });
-        assert_eq!(editor.scene().start, Start::At { x_mm: 2.0, v_m_per_s: 0.1, electrical: 0.0 });
-    }
-
-    #[test]
-    fn saved_and_opened_it_is_the_same() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("scene.ron");
-        let mut editor = editor();
-        editor.edit_once(|scene| scene.mass_g = 16.5);
-        editor.save_to(&path).unwrap();
-        assert!(!editor.is_dirty());
-        let again = Editor::open(path.to_str().unwrap()).unwrap();
-        assert_eq!(again.scene(), editor.scene());
-        assert_eq!(again.path(), Some(path.as_path()));
-        assert!(editor.save_to(&folder.path().join("no/such/folder.ron")).is_err());
-    }
-
-    #[test]
-    fn tables_go_where_the_scene_goes() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("scene.ron");
-        Editor::open("paper-table").unwrap().save_to(&path).unwrap();
-        let again = Editor::open(path.to_str().unwrap()).unwrap();
-        assert!(
-            crate::mechanics::Mechanism::build(&again.scene().mechanism, &again.document().files).is_ok()
-        );
-        assert_eq!(again.origin().as_deref(), path.to_str());
-    }
-
-    #[test]
-    fn as_text_and_back_it_is_the_same() {
-        let editor = editor();
-        let again = Editor::from_text(&editor.text().unwrap()).unwrap();
-        assert_eq!((again.scene(), again.origin()), (editor.scene(), None));
-        assert!(!again.has_comments() && Editor::from_text("no scene").is_err());
     }
 }

@@ -4,6 +4,7 @@
 
 pub mod accuracy;
 mod ask;
+mod beside;
 pub mod best;
 mod build;
 mod companions;
@@ -15,15 +16,13 @@ pub mod map;
 pub mod measured;
 pub mod pins;
 pub mod player;
-mod sentence;
 mod sliders;
 mod state;
-mod stops;
 
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::app::task::{Latest, Wake};
+use crate::app::task::{Background, Wake};
 use crate::dynamics::Model;
 use crate::mechanics::{FLEXURE_TOLERANCE, Mechanism};
 use crate::study;
@@ -31,7 +30,7 @@ use crate::study;
 use accuracy::Accuracy;
 use best::BestStops;
 pub use build::CannotRun;
-use build::{build_error, differ_in_amplitude_alone, fault_message, solve};
+use build::{build_error, fault_message, first_stops, solve};
 use editor::Editor;
 use explore::Explore;
 use map::Mapping;
@@ -39,7 +38,6 @@ use measured::MeasuredData;
 use pins::Pins;
 use player::{Player, fitting_speed};
 pub use state::{Card, OpenedScales, Session};
-use stops::first_stops;
 
 /// Time after which the user is offered to stop a background computation.
 pub const OFFER_TO_STOP: Duration = Duration::from_secs(2);
@@ -66,9 +64,9 @@ impl Session {
             model: Arc::new(model),
             fault: None,
             player,
-            settled: Latest::default(),
-            thresholds: Latest::default(),
-            stops_that_cross: Latest::default(),
+            settled: Background::default(),
+            thresholds: Background::default(),
+            stops_that_cross: Background::default(),
             accuracy: Accuracy::default(),
             map: Mapping::default(),
             explore: Explore::default(),
@@ -84,7 +82,6 @@ impl Session {
             by_hand: false,
             moved_to_stop: false,
             opened,
-            settled_from: 0.0,
             continued: false,
             remembered_stops,
             presses: None,
@@ -109,6 +106,15 @@ impl Session {
         self.measured.poll();
         self.apply();
         self.follow_accuracy();
+    }
+
+    /// Stops what no view has asked for in this frame; to be called once a frame.
+    pub fn end_frame(&mut self) {
+        self.map.end_frame();
+        self.measured.found.end_frame();
+        self.explore.end_frame();
+        self.accuracy.end_frame();
+        self.player.end_frame();
     }
 
     /// Restarts the motion.
@@ -141,26 +147,21 @@ impl Session {
         if *self.editor.scene() == self.built {
             return;
         }
-        let before = std::mem::replace(&mut self.built, self.editor.scene().clone());
+        self.built = self.editor.scene().clone();
         match self.build() {
             Ok(model) => {
                 self.fault = None;
                 self.model = Arc::new(model);
                 self.map.trail.note(&self.built);
                 self.continue_motion();
-                if !differ_in_amplitude_alone(&before, &self.built) {
-                    self.thresholds.clear();
-                }
-                self.stops_that_cross.clear();
             }
             Err(error) => {
-                self.fault = Some(fault_message(&error, self.editor.scene()));
+                self.fault = Some(fault_message(&error, &self.built));
                 self.settled.clear();
                 self.accuracy.begin(None);
-                self.thresholds.clear();
-                self.stops_that_cross.clear();
             }
         }
+        self.forget_ways();
     }
 
     /// Continues the motion from its present state with the new model. A motion that has ended and cannot

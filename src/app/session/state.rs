@@ -2,13 +2,15 @@
 
 use std::sync::Arc;
 
-use crate::app::task::{Latest, Wake};
+use crate::app::task::{Background, Wake};
+use crate::app::words::kind::Kind;
+use crate::app::words::status::{self, Sentence, Told};
 use crate::dynamics::{Model, Outcome, Summary};
 use crate::mechanics::Mechanism;
 use crate::scene::{self, Excitation, Scene, Stops};
 use crate::study::Thresholds;
 
-use super::accuracy::Accuracy;
+use super::accuracy::{Accuracy, LiveRun};
 use super::best::BestStops;
 use super::editor::Editor;
 use super::explore::Explore;
@@ -54,10 +56,11 @@ pub struct Session {
     /// Why the present scene cannot be run.
     pub(super) fault: Option<String>,
     pub player: Player,
-    pub(super) settled: Latest<Summary>,
-    pub(super) thresholds: Latest<Thresholds>,
+    pub(super) settled: Background<LiveRun, Summary>,
+    /// The thresholds of the scene, whatever the amplitude of its shaking.
+    pub(super) thresholds: Background<Scene, Thresholds>,
     /// The travel limit in mm with which the mass would cross the barrier; computed only on request.
-    pub(super) stops_that_cross: Latest<Option<f64>>,
+    pub(super) stops_that_cross: Background<Scene, Option<f64>>,
     pub accuracy: Accuracy,
     pub map: Mapping,
     /// The studies that the views of the layout Explore show.
@@ -84,8 +87,6 @@ pub struct Session {
     pub(super) moved_to_stop: bool,
     /// The scales of the scene as it was opened.
     pub(super) opened: OpenedScales,
-    /// Live time in s at which the run for the settled motion begins.
-    pub(super) settled_from: f64,
     /// Whether the motion was changed after its start, so that it is no run of the scene from its start.
     pub(super) continued: bool,
     /// The stops that the scene gets when they are switched on.
@@ -136,13 +137,13 @@ impl Session {
 
     /// Whether the settled motion crosses the barrier; `None` until it is known.
     pub fn crosses(&self) -> Option<bool> {
-        let summary = self.settled.current()?;
+        let summary = self.settled.answer()?;
         (self.fault.is_none() && summary.outcome == Outcome::Done).then_some(summary.crossings > 0)
     }
 
     /// What the present scene settles to; `None` until it is known.
     pub fn settled_now(&self) -> Option<&Summary> {
-        self.settled.current().filter(|_| self.fault.is_none())
+        self.settled.answer().filter(|_| self.fault.is_none())
     }
 
     /// What the motion settles to, or that of an earlier scene until the new answer has come.
@@ -154,8 +155,8 @@ impl Session {
     pub fn now_card(&self) -> Card {
         Card {
             scene: self.scene().clone(),
-            settled: self.settled.current().copied(),
-            thresholds: self.thresholds.current().copied().filter(|_| !self.keeps_remedy),
+            settled: self.settled.answer().copied(),
+            thresholds: self.thresholds.answer().copied().filter(|_| !self.keeps_remedy),
         }
     }
 
@@ -188,4 +189,46 @@ impl Session {
             _ => None,
         }
     }
+
+    /// What the status line says.
+    pub fn sentence(&self) -> Sentence {
+        if let Some(fault) = &self.fault {
+            return Sentence::fault(fault);
+        }
+        let state = self.player.state();
+        if self.player.is_held() {
+            return status::held(&self.model, &state);
+        }
+        if let Some(outcome) = self.player.ended() {
+            return status::ended(&self.model, outcome);
+        }
+        if !self.model.is_shaken() {
+            return status::unshaken(&self.model, &state);
+        }
+        match self.sentence_facts() {
+            Some(facts) if self.keeps_remedy => Sentence { remedy: String::new(), ..status::driven(&facts) },
+            Some(facts) => status::driven(&facts),
+            None if self.settled.is_running() => Sentence::waiting(),
+            None => stopped(),
+        }
+    }
+
+    /// The facts for the sentence about a driven motion; `None` until it is known what the motion settles to.
+    pub(super) fn sentence_facts(&self) -> Option<Told<'_>> {
+        let (run, summary) = (self.settled.question()?, self.settled.answer()?);
+        Some(Told {
+            scene: self.scene(),
+            model: &self.model,
+            summary,
+            thresholds: self.thresholds.answer(),
+            origin: run.from,
+            now: self.player.watch().time(),
+        })
+    }
+}
+
+/// The sentence after the user has stopped the computation of what the motion settles to.
+fn stopped() -> Sentence {
+    let text = "Stopped before it was known what this settles to: a shorter run length is known sooner.";
+    Sentence { kind: Kind::Other, text: text.to_owned(), remedy: String::new() }
 }

@@ -26,6 +26,8 @@ const REFUSAL_WIDTH: f32 = 300.0;
 /// A slider with its number.
 #[derive(Debug, Clone, Copy)]
 pub struct Knob<'a> {
+    /// Identifies the control, for the reason of a refused input.
+    pub id: egui::Id,
     pub name: &'a str,
     /// The unit after the number; empty for a ratio.
     pub unit: &'a str,
@@ -88,7 +90,7 @@ impl Knob<'_> {
         if changed {
             clear_refusal(ui);
         }
-        refusal_ui(ui, self.name, &response);
+        refusal_ui(ui, self.id, &response);
         Turn { value: changed.then_some(turned), how, ended }
     }
 
@@ -97,7 +99,7 @@ impl Knob<'_> {
         let mut turned = value;
         let (field, _) = self.number_ui(ui, &mut turned, 0, true);
         ui.ctx().accesskit_node_builder(field.id, |node| node.set_label(self.name));
-        refusal_ui(ui, self.name, &field);
+        refusal_ui(ui, self.id, &field);
         let changed = turned != value && !turned.is_nan();
         if changed {
             clear_refusal(ui);
@@ -153,7 +155,7 @@ impl Knob<'_> {
         let entered = entered.into_inner();
         let typed = matches!(entered, Some(Ok(_)));
         match entered {
-            Some(Err(why)) => refuse(ui, self.name, why),
+            Some(Err(why)) => refuse(ui, self.id, why),
             _ if edited != present && free => {
                 let multiple = decimal((edited / self.reach.step).round() * self.reach.step);
                 *value = if typed { edited } else { multiple };
@@ -248,8 +250,8 @@ fn clipped(text: &str) -> String {
 /// An input that was refused.
 #[derive(Debug, Clone)]
 struct Refused {
-    /// The name of the control.
-    of: String,
+    /// The control.
+    id: egui::Id,
     why: String,
     /// Time in s of the input.
     at: f64,
@@ -260,8 +262,8 @@ fn slot() -> egui::Id {
 }
 
 /// Shows at a control why an input was refused, for some seconds or until another one is accepted.
-pub fn refuse(ui: &Ui, of: &str, why: String) {
-    let refused = Refused { of: of.to_owned(), why, at: ui.input(|input| input.time) };
+pub fn refuse(ui: &Ui, id: egui::Id, why: String) {
+    let refused = Refused { id, why, at: ui.input(|input| input.time) };
     ui.data_mut(|data| data.insert_temp(slot(), refused));
 }
 
@@ -270,8 +272,8 @@ fn clear_refusal(ui: &Ui) {
 }
 
 /// Shows why an input was refused: beside its control if that is in a column, else below it.
-fn refusal_ui(ui: &Ui, of: &str, response: &Response) {
-    let Some(refused) = ui.data(|data| data.get_temp::<Refused>(slot())).filter(|last| last.of == of) else {
+fn refusal_ui(ui: &Ui, id: egui::Id, response: &Response) {
+    let Some(refused) = ui.data(|data| data.get_temp::<Refused>(slot())).filter(|last| last.id == id) else {
         return;
     };
     let left = REFUSAL_TIME - (ui.input(|input| input.time) - refused.at);
@@ -288,7 +290,7 @@ fn refusal_ui(ui: &Ui, of: &str, response: &Response) {
         rect.left_bottom() + egui::vec2(0.0, 4.0)
     };
     let style = Style::of(ui.ctx(), false);
-    let area = egui::Area::new(slot().with(of)).order(egui::Order::Tooltip).fixed_pos(at);
+    let area = egui::Area::new(slot().with(id)).order(egui::Order::Tooltip).fixed_pos(at);
     area.constrain(true).interactable(false).show(ui.ctx(), |ui| {
         let frame = egui::Frame::popup(ui.style()).stroke(egui::Stroke::new(1.5, style.impact()));
         frame.show(ui, |ui| {
@@ -304,7 +306,8 @@ mod tests {
 
     fn knob() -> Knob<'static> {
         let reach = Reach::even(0.0, 2.0, 0.01);
-        Knob { name: "amplitude", unit: "g", reach, typed: (-10.0, 10.0), hover: "", width: 100.0 }
+        let (id, typed) = (egui::Id::NULL, (-10.0, 10.0));
+        Knob { id, name: "amplitude", unit: "g", reach, typed, hover: "", width: 100.0 }
     }
 
     #[test]

@@ -12,6 +12,11 @@ pub fn dialog(ctx: &egui::Context, id: &str) -> egui::Modal {
     egui::Modal::new(egui::Id::unique(id)).frame(frame)
 }
 
+/// The frame of a panel, with margins in points.
+pub fn panel_frame(ui: &Ui, x: i8, y: i8) -> egui::Frame {
+    egui::Frame::new().fill(ui.visuals().panel_fill).inner_margin(egui::Margin::symmetric(x, y))
+}
+
 /// Width in points of a dialog: `wanted`, or less in a narrow window.
 pub fn dialog_width(ui: &Ui, wanted: f32) -> f32 {
     (ui.ctx().content_rect().width() - 60.0).clamp(60.0, wanted)

@@ -35,6 +35,11 @@ pub fn field_ui(ui: &mut Ui, axis: &SweepAxis, role: &str, known: &[String]) -> 
     wanted.filter(|path| *path != axis.field)
 }
 
+/// Identifies the input of a part of an axis: `from`, `to` or `step`.
+pub fn range_id(role: &str, part: &str) -> egui::Id {
+    egui::Id::unique(("range", role, part))
+}
+
 /// Inputs for the ends and the step of an axis, as a row of a grid.
 pub fn range_row_ui(ui: &mut Ui, axis: &mut SweepAxis, role: &str) {
     ui.label(field_name(&axis.field));
@@ -43,7 +48,8 @@ pub fn range_row_ui(ui: &mut Ui, axis: &mut SweepAxis, role: &str) {
     for (part, value) in [("from", &mut axis.from), ("to", &mut axis.to), ("step", &mut axis.step)] {
         ui.label(part);
         let name = format!("{role}, {part}");
-        let knob = Knob { name: &name, unit, reach, typed: (-1e30, 1e30), hover: "", width: 0.0 };
+        let (id, typed) = (range_id(role, part), (-1e30, 1e30));
+        let knob = Knob { id, name: &name, unit, reach, typed, hover: "", width: 0.0 };
         if let Some(typed) = knob.alone_ui(ui, *value) {
             *value = typed;
         }

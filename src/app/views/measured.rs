@@ -1,6 +1,6 @@
 //! View of the measured data: shift and scale in time, and differences from the computed motion.
 
-use eframe::egui::{self, Button, Grid, RichText, ScrollArea, Ui};
+use eframe::egui::{self, Button, Grid, Id, RichText, ScrollArea, Ui};
 
 use crate::app::session::Session;
 use crate::app::session::measured::{Differences, MeasuredData, Overlay, sentence};
@@ -94,6 +94,7 @@ fn time_ui(ui: &mut Ui, session: &mut Session, over: &Overlay) {
     let period = model.forcing_period().unwrap_or(model.characteristic_time());
     let (low, high) = (over.centre - PERIODS * period, over.centre + PERIODS * period);
     let knob = Knob {
+        id: Id::unique("shift of the record"),
         name: "shift",
         unit: "s",
         reach: Reach::even(low, high, below(period / 200.0)),
@@ -108,6 +109,7 @@ fn time_ui(ui: &mut Ui, session: &mut Session, over: &Overlay) {
     let hover = "What the times of the record are multiplied by, before they are shifted: 0.999 for a \
                  clock that is fast by a thousandth.";
     let knob = Knob {
+        id: Id::unique("time scale of the record"),
         name: "time scale",
         unit: "",
         reach: Reach::even(0.9, 1.1, 1e-4),
@@ -132,6 +134,7 @@ fn offset_ui(ui: &mut Ui, session: &mut Session, over: &Overlay) {
     let hover = "What is added to the displacement where the sensor has its zero elsewhere: the \
                  difference of the means, once the shift is right.";
     let knob = Knob {
+        id: Id::unique("offset of the record"),
         name: "add",
         unit: "mm",
         reach: Reach::even(-10.0, 10.0, 0.01),

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::app::export::figure::{FigureOrder, Place, Subject, round_times};
 use crate::app::session::Session;
-use crate::app::task::Latest;
+use crate::app::task::Background;
 use crate::app::views::{Memory, View, stretch};
 use crate::output::{Format, Panel, Sheet, SheetText};
 use crate::system::files;
@@ -35,7 +35,7 @@ pub struct Figures {
     pub(super) problem: Option<String>,
     /// Whether the path has had the keyboard focus.
     pub(super) had_focus: bool,
-    pub(super) job: Latest<WriteResult>,
+    pub(super) job: Background<(), WriteResult>,
 }
 
 impl Default for Figures {
@@ -52,7 +52,7 @@ impl Default for Figures {
             panels: [false; 4],
             problem: None,
             had_focus: false,
-            job: Latest::default(),
+            job: Background::default(),
         }
     }
 }

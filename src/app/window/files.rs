@@ -1,4 +1,5 @@
-//! Opening of scenes and choice of files: dialogs, dropped files, the clipboard, questions to the user.
+//! Opening of scenes and measured data, and choice of files: dialogs, dropped files, the clipboard, questions
+//! to the user.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -8,17 +9,19 @@ use eframe::egui::{self, Ui};
 
 use crate::app::session::CannotRun;
 use crate::app::session::editor::Editor;
+use crate::app::session::measured::MeasuredRecord;
 use crate::app::ui::style::STATUS;
+use crate::app::views::View;
+use crate::scene::Quantity;
 use crate::system::clock::WallClock;
 use crate::system::files;
 
 use super::Window;
 use super::leave::{self, Answer, Next};
 use super::lessons;
-use super::measured_dialog::{ENDINGS, is_measured};
+use super::measured_dialog::{ENDINGS, MeasuredAnswer, MeasuredDialog, is_measured};
 use super::messages::CANNOT_OPEN;
-use super::path_dialog::{PathAnswer, PathDialog};
-use super::wanted::{Chosen, Wanted};
+use super::wanted::{Chosen, PathAnswer, PathDialog, Wanted};
 
 /// Time in ms below which a dialog that is closed again has not been visible.
 const UNSEEN: u128 = 300;
@@ -273,7 +276,7 @@ impl Window {
         // the suggested path if the desktop has no dialog
         let start = folder.clone().unwrap_or_else(files::working_folder);
         let start = if wanted.is_read() { start.join("") } else { start.join(format!("{stem}.{ending}")) };
-        self.file_dialog.ask(&self.wake, move |_| {
+        self.file_dialog.ask((), &self.wake, move |(), _, _| {
             let endings = if wanted == Wanted::Measured { &ENDINGS[..] } else { &[ending][..] };
             let mut dialog = rfd::FileDialog::new().add_filter(kind, endings);
             if let Some(folder) = folder.filter(|folder| files::is_folder(folder)) {
@@ -293,5 +296,51 @@ impl Window {
             }
             Some(Chosen::File(wanted, path))
         });
+    }
+
+    /// Opens the dialog for the columns of a file of measured data.
+    pub fn open_measured(&mut self, path: &Path) {
+        self.columns = Some(MeasuredDialog::new(path, &self.wake));
+    }
+
+    /// Draws a record over the view of its quantity, with a card beside Before / now.
+    pub fn overlay(&mut self, record: MeasuredRecord) {
+        let view = match record.values.quantity {
+            Quantity::Velocity => View::Velocity,
+            Quantity::Acceleration => View::BaseAcceleration,
+            Quantity::Force => View::ForceCurve,
+            _ => View::Displacement,
+        };
+        self.session.measured.lay(record);
+        self.filled = None;
+        self.tiling.show_beside(View::Measured, View::BeforeNow);
+        // the view is in front if it shares tabs with the card
+        self.tiling.show(view, true);
+    }
+
+    /// Draws the dialog for the columns, and carries out its answer.
+    pub(super) fn measured_ui(&mut self, ui: &Ui) {
+        let Some(answer) = self.columns.as_mut().and_then(|dialog| dialog.ui(ui, &self.wake)) else { return };
+        match answer {
+            MeasuredAnswer::Overlay(record) => self.overlay(*record),
+            MeasuredAnswer::Shake(path, record) => match self.session.shake_with(&path, &record) {
+                Ok(warnings) => {
+                    let done = format!("The base is shaken with {}, from its start", record.name);
+                    match warnings.is_empty() {
+                        true => self.messages.notify(done),
+                        false => self.messages.alert(done, format!("The record {}.", warnings.join("; it "))),
+                    }
+                    self.tiling.show(View::BaseAcceleration, true);
+                }
+                Err(why) => {
+                    if let Some(dialog) = &mut self.columns {
+                        dialog.refuse(why);
+                    }
+                    return;
+                }
+            },
+            MeasuredAnswer::Cancelled => {}
+        }
+        self.columns = None;
     }
 }

@@ -8,9 +8,8 @@ use crate::app::ui::widgets::{Icon, icon_button_ui};
 use crate::app::views::{Memory, View, ViewContext, view_ui};
 use crate::scene::Layout;
 
-use trees::{compact_tree, tabs_tree, views_of, wide_tree};
+use trees::{compact_lesson_tree, compact_tree, lesson_tree, tabs_tree, views_of, wide_tree};
 
-mod lesson;
 mod trees;
 
 /// Space in points beside a title.
@@ -65,6 +64,12 @@ impl Tiling {
             Room::Compact => compact_tree(&views_of(layout)),
             Room::Wide | Room::Large => wide_tree(layout, room == Room::Large),
         };
+        Self { tree, room }
+    }
+
+    /// The tiles of a lesson with these views.
+    pub fn of_lesson(views: &[View], room: Room) -> Self {
+        let tree = if room == Room::Compact { compact_lesson_tree(views) } else { lesson_tree(views) };
         Self { tree, room }
     }
 

@@ -3,16 +3,17 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use eframe::egui::{self, Id, Key, LayerId, Modifiers, Order, Rect, StrokeKind, Ui};
+use eframe::egui::{self, Id, Key, LayerId, Modifiers, Order, Panel, Rect, StrokeKind, Ui};
 
 use crate::app::panels::controls;
 use crate::app::panels::hint::Hint;
-use crate::app::panels::lecturer::lecturer_ui;
 use crate::app::panels::lesson::{LessonAction, lesson_ui, letter};
+use crate::app::panels::notes::lecturer_ui;
 use crate::app::session::editor::Editor;
 use crate::app::session::lesson::{OpenLesson, Records, Turn, answers_text};
 use crate::app::session::{CannotRun, Session};
 use crate::app::ui::style::Style;
+use crate::app::ui::widgets::panel_frame;
 use crate::app::views::{Cover, Memory, View};
 use crate::app::words::fields::name_and_unit;
 use crate::app::words::lesson::bold_words;
@@ -279,24 +280,33 @@ impl Window {
         self.session.keeps_remedy = !lesson.tells_remedy();
     }
 
-    pub(super) fn lesson_strip_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) {
+    /// The strip of the open lesson, and the controls that it names; they are disabled while a prediction
+    /// covers the motion.
+    pub(super) fn lesson_panels_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) {
         let Some(lesson) = &mut self.lessons.open else { return };
-        if let Some(act) = lesson_ui(ui, lesson, &self.session, style, compact) {
-            self.act_in_lesson(act);
+        // not a panel, whose height would follow its contents one frame late
+        let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
+        let strip = panel_frame(ui, 12, 6).show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = spacing;
+            ui.set_min_width(ui.available_width());
+            lesson_ui(ui, lesson, &self.session, style, compact)
+        });
+        ui.spacing_mut().item_spacing.y = spacing;
+        let edge = ui.visuals().widgets.noninteractive.bg_stroke;
+        ui.painter().hline(strip.response.rect.x_range(), strip.response.rect.bottom(), edge);
+        if let Some(action) = strip.inner {
+            self.act_in_lesson(action);
         }
-    }
-
-    /// The controls that the lesson names; disabled while a prediction covers the motion.
-    pub(super) fn lesson_controls_ui(&mut self, ui: &mut Ui) {
-        let Some(lesson) = &self.lessons.open else { return };
-        if lesson.is_covering() {
-            ui.disable();
-        }
-        self.lessons.controls = controls::named_ui(ui, &mut self.session, &lesson.lesson().controls);
-    }
-
-    pub(super) fn lesson_has_controls(&self) -> bool {
-        self.lessons.open.as_ref().is_some_and(|open| !open.lesson().controls.is_empty())
+        let Some(lesson) = self.lessons.open.as_ref().filter(|open| !open.lesson().controls.is_empty())
+        else {
+            return;
+        };
+        Panel::top("controls of the lesson").frame(panel_frame(ui, 12, 4)).show(ui, |ui| {
+            if lesson.is_covering() {
+                ui.disable();
+            }
+            self.lessons.controls = controls::named_ui(ui, &mut self.session, &lesson.lesson().controls);
+        });
     }
 
     /// Outlines around the controls and views on the screen that are bold words in the text of the step.

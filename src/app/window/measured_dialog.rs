@@ -6,7 +6,7 @@ use std::sync::Arc;
 use eframe::egui::{self, Button, ComboBox, Grid, RichText, Ui};
 
 use crate::app::session::measured::{MeasuredRecord, sentence};
-use crate::app::task::{Latest, Wake};
+use crate::app::task::{Background, Wake};
 use crate::app::ui::widgets::{dialog, dialog_width};
 use crate::scene::{ChosenColumn, MeasuredText, Quantity, Unit};
 
@@ -36,11 +36,10 @@ pub(super) fn is_measured(path: &Path) -> bool {
 pub struct MeasuredDialog {
     path: PathBuf,
     name: String,
-    text: Latest<Result<Arc<MeasuredText>, String>>,
+    text: Background<(), Result<Arc<MeasuredText>, String>>,
     chosen: Option<[ChosenColumn; 2]>,
-    /// The columns that are read.
-    requested: Option<[(usize, Unit); 2]>,
-    record: Latest<Result<MeasuredRecord, String>>,
+    /// The record of two columns, each with its unit.
+    record: Background<[(usize, Unit); 2], Result<MeasuredRecord, String>>,
     /// Why the base cannot be shaken with the record.
     refused: Option<String>,
 }
@@ -57,14 +56,14 @@ impl MeasuredDialog {
     /// Begins to read the file.
     pub fn new(path: &Path, wake: &Wake) -> Self {
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
-        let mut text = Latest::default();
+        let mut text = Background::default();
         let file = path.to_owned();
-        text.ask(wake, move |_| {
+        text.ask((), wake, move |(), _, _| {
             let read = MeasuredText::read(&file).map(Arc::new);
             Some(read.map_err(|problem| sentence(&format!("the file {problem}"))))
         });
-        let record = Latest::default();
-        Self { path: path.to_owned(), name, text, chosen: None, requested: None, record, refused: None }
+        let record = Background::default();
+        Self { path: path.to_owned(), name, text, chosen: None, record, refused: None }
     }
 
     /// Says why the base cannot be shaken with the record.
@@ -82,7 +81,7 @@ impl MeasuredDialog {
 
     /// The record once it is read, or a sentence that says what prevents that.
     pub fn known(&self) -> Option<Result<&MeasuredRecord, String>> {
-        let names = match self.text.current()? {
+        let names = match self.text.answer()? {
             Ok(text) => &text.names,
             Err(problem) => return Some(Err(problem.clone())),
         };
@@ -91,24 +90,21 @@ impl MeasuredDialog {
             let name = names.get(at).map_or("", String::as_str);
             return Some(Err(format!("Choose the unit of `{name}`: its name does not end with one.")));
         }
-        Some(self.record.current()?.as_ref().map_err(Clone::clone))
+        Some(self.record.answer()?.as_ref().map_err(Clone::clone))
     }
 
     /// Receives what was read, and has the chosen columns read.
     pub fn poll(&mut self, wake: &Wake) {
         self.text.poll();
         self.record.poll();
-        let Some(Ok(text)) = self.text.current() else { return };
+        let Some(Ok(text)) = self.text.answer() else { return };
         let [across, values] = *self.chosen.get_or_insert_with(|| text.guess());
         let Some(wanted) = across.1.zip(values.1).map(|pair| [(across.0, pair.0), (values.0, pair.1)]) else {
-            self.requested = None;
             return self.record.clear();
         };
-        if self.requested != Some(wanted) {
-            self.requested = Some(wanted);
-            let (text, name) = (Arc::clone(text), self.name.clone());
-            self.record.ask(wake, move |_| Some(MeasuredRecord::of(&name, &text, wanted)));
-        }
+        let (text, name) = (Arc::clone(text), self.name.clone());
+        self.record
+            .want(wanted, true, wake, move |wanted, _, _| Some(MeasuredRecord::of(&name, &text, *wanted)));
     }
 
     /// Draws the dialog. Returns the answer once there is one.
@@ -118,7 +114,7 @@ impl MeasuredDialog {
             ui.set_width(dialog_width(ui, WIDTH));
             ui.heading(format!("Measured data: {}", self.name));
             ui.add_space(4.0);
-            if let Some(Ok(text)) = self.text.current().cloned() {
+            if let Some(Ok(text)) = self.text.answer().cloned() {
                 self.columns_ui(ui, &text);
             }
             self.known_ui(ui);
@@ -226,7 +222,7 @@ impl MeasuredDialog {
             if shaken {
                 return self
                     .record
-                    .current()
+                    .answer()
                     .and_then(|record| record.clone().ok())
                     .map(|record| MeasuredAnswer::Shake(self.path.clone(), Box::new(record)));
             }

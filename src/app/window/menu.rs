@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use eframe::egui::{self, Button, KeyboardShortcut, Modifiers, Ui};
+use eframe::egui::{self, Button, KeyboardShortcut, Modifiers, Response, Ui};
 
 use crate::app::session::Session;
 use crate::app::session::lesson::OpenLesson;
@@ -21,203 +21,190 @@ use super::layouts::{Room, Tiling};
 use super::lessons::Lessons;
 use super::wanted::Wanted;
 
-/// Draws the bar. Returns the commands that were chosen.
-pub fn menu_ui(
-    ui: &mut Ui,
-    session: &Session,
-    tiling: &Tiling,
-    settings: Settings,
-    recent: &[String],
-    lessons: &Lessons,
-) -> Vec<Command> {
-    let mut commands = Vec::new();
-    egui::MenuBar::new().ui(ui, |ui| {
-        let state = MenuState { session, tiling, settings, recent, lessons };
-        for (name, parts) in &MENUS {
-            ui.menu_button(*name, |ui| match *name {
-                "View" | "Lessons" => scroll_ui(ui, |ui| parts_ui(ui, &mut commands, parts, &state)),
-                _ => parts_ui(ui, &mut commands, parts, &state),
-            });
-        }
-        ui.add_space(16.0);
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let hover = "The scene as it was opened or last saved, its views, and time 0 (Home). Undo brings \
-                         the changes back.";
-            if ui.button(DISCARD).on_hover_text(hover).clicked() {
-                commands.push(Command::BackToStart);
+/// What the menus show besides the commands, and the commands that were chosen in this frame.
+pub(super) struct Menus<'a> {
+    pub session: &'a Session,
+    pub tiling: &'a Tiling,
+    pub settings: Settings,
+    pub recent: &'a [String],
+    pub lessons: &'a Lessons,
+    pub chosen: Vec<Command>,
+}
+
+impl Menus<'_> {
+    /// Draws the bar. Returns the commands that were chosen.
+    pub fn ui(mut self, ui: &mut Ui) -> Vec<Command> {
+        egui::MenuBar::new().ui(ui, |ui| {
+            for (name, parts) in &MENUS {
+                ui.menu_button(*name, |ui| match *name {
+                    "View" | "Lessons" => scroll_ui(ui, |ui| self.parts_ui(ui, parts)),
+                    _ => self.parts_ui(ui, parts),
+                });
             }
-            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                let dirty = if session.editor.is_dirty() { " *" } else { "" };
-                let (text, hover) = match &lessons.open {
-                    Some(open) => (format!("Lesson: {}", open.lesson().title), "What this lesson is about"),
-                    None => (format!("{}{dirty}", session.scene().title), "What this scene is about"),
-                };
-                let title = egui::RichText::new(text).strong();
-                let title = ui.add(Button::new(title).frame_when_inactive(false).truncate());
-                if title.on_hover_text(hover).clicked() {
-                    commands.push(Command::Notes);
+            ui.add_space(16.0);
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                let hover = "The scene as it was opened or last saved, its views, and time 0 (Home). Undo \
+                             brings the changes back.";
+                if ui.button(DISCARD).on_hover_text(hover).clicked() {
+                    self.chosen.push(Command::BackToStart);
                 }
+                ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| self.title_ui(ui));
             });
         });
-    });
-    commands
-}
+        self.chosen
+    }
 
-/// What the menus show besides the commands.
-struct MenuState<'a> {
-    session: &'a Session,
-    tiling: &'a Tiling,
-    settings: Settings,
-    recent: &'a [String],
-    lessons: &'a Lessons,
-}
-
-fn parts_ui(ui: &mut Ui, commands: &mut Vec<Command>, parts: &[Part], state: &MenuState<'_>) {
-    for part in parts {
-        match part {
-            Part::Item("", ..) | Part::Row(..) => {}
-            Part::Item(name, key, command, _) => {
-                let enabled = is_enabled(command, state);
-                item_ui(ui, commands, name, *key, enabled, command);
-            }
-            Part::Menu(name, parts) => drop(ui.menu_button(*name, |ui| parts_ui(ui, commands, parts, state))),
-            Part::Line => drop(ui.separator()),
-            Part::Presets => presets_ui(ui, commands),
-            Part::Recent => recent_ui(ui, commands, state.recent),
-            Part::Settings => settings_ui(ui, commands, state.settings),
-            Part::Views => views_ui(ui, commands, state.tiling),
-            Part::Speeds => speeds_ui(ui, commands),
-            Part::Lessons => lessons_ui(ui, commands, state.lessons),
+    /// The title of the lesson or scene, as a button that shows what it is about.
+    fn title_ui(&mut self, ui: &mut Ui) {
+        let dirty = if self.session.editor.is_dirty() { " *" } else { "" };
+        let (text, hover) = match &self.lessons.open {
+            Some(open) => (format!("Lesson: {}", open.lesson().title), "What this lesson is about"),
+            None => (format!("{}{dirty}", self.session.scene().title), "What this scene is about"),
+        };
+        let title = egui::RichText::new(text).strong();
+        let title = ui.add(Button::new(title).frame_when_inactive(false).truncate());
+        if title.on_hover_text(hover).clicked() {
+            self.chosen.push(Command::Notes);
         }
     }
-}
 
-/// Whether a command can be chosen in a menu.
-fn is_enabled(command: &Command, state: &MenuState<'_>) -> bool {
-    let MenuState { session, tiling, lessons, .. } = state;
-    let model = session.model();
-    if lessons.open.as_ref().is_some_and(OpenLesson::is_covering) && command.reveals_motion() {
-        return false;
-    }
-    match command {
-        Command::Save => session.editor.is_dirty() || session.editor.path().is_none(),
-        Command::OpenMeasured => lessons.open.is_none(),
-        Command::RemoveMeasured => session.measured.over.is_some(),
-        Command::SaveAs(Wanted::Map) => session.map.map().is_some_and(Map::is_whole),
-        Command::CopyMapCommand => session.map.map().is_some(),
-        Command::Undo => session.editor.can_undo(),
-        Command::Redo => session.editor.can_redo(),
-        Command::KeepOwn => tiling.room() != Room::Compact && lessons.open.is_none(),
-        Command::Arrange(_) | Command::ArrangeOwn => lessons.open.is_none(),
-        Command::LeaveLesson | Command::LessonAnew | Command::LecturerNotes => lessons.open.is_some(),
-        Command::NextRelease => model.stop_positions() != (None, None),
-        Command::NextCrossing => model.mechanism().landscape.barrier.is_some(),
-        Command::Notes if lessons.open.is_some() => true,
-        Command::Notes => !session.scene().notes.trim().is_empty(),
-        _ => true,
-    }
-}
-
-fn item_ui(
-    ui: &mut Ui,
-    commands: &mut Vec<Command>,
-    name: &str,
-    key: Option<KeyboardShortcut>,
-    enabled: bool,
-    command: &Command,
-) {
-    let mut button = Button::new(name);
-    if let Some(key) = key {
-        button = button.shortcut_text(ui.ctx().format_shortcut(&key));
-    }
-    if ui.add_enabled(enabled, button).clicked() {
-        commands.push(command.clone());
-        ui.close();
-    }
-}
-
-fn presets_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
-    ui.menu_button("Open built-in scene", |ui| {
-        scroll_ui(ui, |ui| {
-            for (preset, title) in PRESETS.iter().zip(TITLES.iter()) {
-                let hover = format!("{}: {}", preset.name, preset.summary);
-                if ui.button(title).on_hover_text(hover).clicked() {
-                    commands.push(Command::OpenPreset(preset.name));
-                    ui.close();
+    fn parts_ui(&mut self, ui: &mut Ui, parts: &[Part]) {
+        for part in parts {
+            match part {
+                Part::Item("", ..) | Part::Row(..) => {}
+                Part::Item(name, key, command, _) => {
+                    let mut button = Button::new(*name);
+                    if let Some(key) = key {
+                        button = button.shortcut_text(ui.ctx().format_shortcut(key));
+                    }
+                    let response = ui.add_enabled(self.is_enabled(command), button);
+                    self.choose(ui, &response, || command.clone());
                 }
+                Part::Menu(name, parts) => drop(ui.menu_button(*name, |ui| self.parts_ui(ui, parts))),
+                Part::Line => drop(ui.separator()),
+                Part::Presets => self.presets_ui(ui),
+                Part::Recent => self.recent_ui(ui),
+                Part::Settings => self.settings_ui(ui),
+                Part::Views => self.views_ui(ui),
+                Part::Speeds => self.speeds_ui(ui),
+                Part::Lessons => self.lessons_ui(ui),
             }
-        });
-    });
-}
-
-fn recent_ui(ui: &mut Ui, commands: &mut Vec<Command>, recent: &[String]) {
-    ui.add_enabled_ui(!recent.is_empty(), |ui| {
-        ui.menu_button("Open recent", |ui| {
-            for path in recent {
-                let name = path.rsplit(['/', '\\']).next().unwrap_or(path);
-                if ui.button(name).on_hover_text(path).clicked() {
-                    commands.push(Command::OpenRecent(path.clone()));
-                    ui.close();
-                }
-            }
-        });
-    });
-}
-
-fn settings_ui(ui: &mut Ui, commands: &mut Vec<Command>, mut settings: Settings) {
-    for (setting, name, hover) in [
-        (Setting::Projector, "Projector", "Light, larger, thicker lines (P)"),
-        (Setting::Dark, "Dark", "Light letters on a dark ground (D)"),
-        (Setting::ReduceMotion, "Reduce motion", "No rings at impacts"),
-    ] {
-        let is_enabled = setting != Setting::Dark || !settings.projector;
-        let checkbox = egui::Checkbox::new(settings.of(setting), name);
-        if ui.add_enabled(is_enabled, checkbox).on_hover_text(hover).clicked() {
-            commands.push(Command::Toggle(setting));
         }
     }
-}
 
-fn views_ui(ui: &mut Ui, commands: &mut Vec<Command>, tiling: &Tiling) {
-    ui.menu_button("Views", |ui| {
-        scroll_ui(ui, |ui| {
-            for view in View::ALL {
-                let mut shown = tiling.shows(view);
-                if ui.checkbox(&mut shown, view.name()).on_hover_text(view.about()).clicked() {
-                    commands.push(Command::Show(view, shown));
-                }
-            }
-        });
-    });
-}
-
-fn speeds_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
-    for (i, ((_, name), key)) in SPEEDS.into_iter().zip(SPEED_KEYS).enumerate() {
-        let text = match name {
-            "real time" => name.to_owned(),
-            _ if name.ends_with("times") => format!("{name} real time"),
-            _ => format!("{name} of real time"),
-        };
-        let key = KeyboardShortcut::new(Modifiers::NONE, key);
-        item_ui(ui, commands, &text, Some(key), true, &Command::Speed(i));
-    }
-}
-
-/// The built-in lessons in order; those that are done have a mark, and the open one is selected.
-fn lessons_ui(ui: &mut Ui, commands: &mut Vec<Command>, lessons: &Lessons) {
-    let open = lessons.open.as_ref().map(OpenLesson::key);
-    for (lesson, about) in LESSONS.iter().zip(ABOUT_LESSONS.iter()) {
-        let is_open = open.as_deref() == Some(lesson.name);
-        let done = match (is_open, &lessons.open) {
-            (true, Some(open)) => open.progress().done,
-            _ => lessons.records.get(lesson.name).is_some_and(|record| record.done),
-        };
-        let mark = if done { "done" } else { "" };
-        let name = format!("{}  {} ({} min)", numbered(lesson.name), about.title, about.minutes);
-        let button = Button::selectable(is_open, name).right_text(mark);
-        if ui.add(button).on_hover_text(&about.goal).clicked() {
-            commands.push(Command::OpenLesson(lesson.name));
+    /// Notes the command of an item if it was clicked, and closes the menu.
+    fn choose(&mut self, ui: &Ui, item: &Response, command: impl FnOnce() -> Command) {
+        if item.clicked() {
+            self.chosen.push(command());
             ui.close();
+        }
+    }
+
+    /// Whether a command can be chosen in a menu.
+    fn is_enabled(&self, command: &Command) -> bool {
+        let Self { session, tiling, lessons, .. } = self;
+        let model = session.model();
+        if lessons.open.as_ref().is_some_and(OpenLesson::is_covering) && command.reveals_motion() {
+            return false;
+        }
+        match command {
+            Command::Save => session.editor.is_dirty() || session.editor.path().is_none(),
+            Command::OpenMeasured => lessons.open.is_none(),
+            Command::RemoveMeasured => session.measured.over.is_some(),
+            Command::SaveAs(Wanted::Map) => session.map.map().is_some_and(Map::is_whole),
+            Command::CopyMapCommand => session.map.map().is_some(),
+            Command::Undo => session.editor.can_undo(),
+            Command::Redo => session.editor.can_redo(),
+            Command::KeepOwn => tiling.room() != Room::Compact && lessons.open.is_none(),
+            Command::Arrange(_) | Command::ArrangeOwn => lessons.open.is_none(),
+            Command::LeaveLesson | Command::LessonAnew | Command::LecturerNotes => lessons.open.is_some(),
+            Command::NextRelease => model.stop_positions() != (None, None),
+            Command::NextCrossing => model.mechanism().landscape.barrier.is_some(),
+            Command::Notes if lessons.open.is_some() => true,
+            Command::Notes => !session.scene().notes.trim().is_empty(),
+            _ => true,
+        }
+    }
+
+    fn presets_ui(&mut self, ui: &mut Ui) {
+        ui.menu_button("Open built-in scene", |ui| {
+            scroll_ui(ui, |ui| {
+                for (preset, title) in PRESETS.iter().zip(TITLES.iter()) {
+                    let hover = format!("{}: {}", preset.name, preset.summary);
+                    let item = ui.button(title).on_hover_text(hover);
+                    self.choose(ui, &item, || Command::OpenPreset(preset.name));
+                }
+            });
+        });
+    }
+
+    fn recent_ui(&mut self, ui: &mut Ui) {
+        let recent = self.recent;
+        ui.add_enabled_ui(!recent.is_empty(), |ui| {
+            ui.menu_button("Open recent", |ui| {
+                for path in recent {
+                    let name = path.rsplit(['/', '\\']).next().unwrap_or(path);
+                    let item = ui.button(name).on_hover_text(path);
+                    self.choose(ui, &item, || Command::OpenRecent(path.clone()));
+                }
+            });
+        });
+    }
+
+    fn settings_ui(&mut self, ui: &mut Ui) {
+        for (setting, name, hover) in [
+            (Setting::Projector, "Projector", "Light, larger, thicker lines (P)"),
+            (Setting::Dark, "Dark", "Light letters on a dark ground (D)"),
+            (Setting::ReduceMotion, "Reduce motion", "No rings at impacts"),
+        ] {
+            let is_enabled = setting != Setting::Dark || !self.settings.projector;
+            let checkbox = egui::Checkbox::new(self.settings.of(setting), name);
+            if ui.add_enabled(is_enabled, checkbox).on_hover_text(hover).clicked() {
+                self.chosen.push(Command::Toggle(setting));
+            }
+        }
+    }
+
+    fn views_ui(&mut self, ui: &mut Ui) {
+        ui.menu_button("Views", |ui| {
+            scroll_ui(ui, |ui| {
+                for view in View::ALL {
+                    let mut shown = self.tiling.shows(view);
+                    if ui.checkbox(&mut shown, view.name()).on_hover_text(view.about()).clicked() {
+                        self.chosen.push(Command::Show(view, shown));
+                    }
+                }
+            });
+        });
+    }
+
+    fn speeds_ui(&mut self, ui: &mut Ui) {
+        for (i, ((speed, name), key)) in SPEEDS.into_iter().zip(SPEED_KEYS).enumerate() {
+            let key = ui.ctx().format_shortcut(&KeyboardShortcut::new(Modifiers::NONE, key));
+            let text = match speed {
+                1.0 => name.to_owned(),
+                _ if speed > 1.0 => format!("{name} real time"),
+                _ => format!("{name} of real time"),
+            };
+            let item = ui.add(Button::new(text).shortcut_text(key));
+            self.choose(ui, &item, || Command::Speed(i));
+        }
+    }
+
+    /// The built-in lessons in order; those that are done have a mark, and the open one is selected.
+    fn lessons_ui(&mut self, ui: &mut Ui) {
+        let open = self.lessons.open.as_ref().map(OpenLesson::key);
+        for (lesson, about) in LESSONS.iter().zip(ABOUT_LESSONS.iter()) {
+            let is_open = open.as_deref() == Some(lesson.name);
+            let done = match (is_open, &self.lessons.open) {
+                (true, Some(open)) => open.progress().done,
+                _ => self.lessons.records.get(lesson.name).is_some_and(|record| record.done),
+            };
+            let mark = if done { "done" } else { "" };
+            let name = format!("{}  {} ({} min)", numbered(lesson.name), about.title, about.minutes);
+            let button = Button::selectable(is_open, name).right_text(mark);
+            let item = ui.add(button).on_hover_text(&about.goal);
+            self.choose(ui, &item, || Command::OpenLesson(lesson.name));
         }
     }
 }

@@ -2,14 +2,13 @@
 //!
 //! [`Window::ui`] needs no graphics and no display: tests call it directly.
 
-use eframe::egui::{self, CentralPanel, Frame, Margin, Panel, RichText, Ui};
+use eframe::egui::{self, CentralPanel, Panel, RichText, Ui};
 
-use crate::app::panels::glossary::glossary_ui;
 use crate::app::panels::status_line::{self, covered_ui, status_ui};
-use crate::app::panels::{best_stops, controls, notes, transport};
+use crate::app::panels::{controls, notes, transport};
 use crate::app::session::lesson::Records;
 use crate::app::ui::style::{self, PROJECTOR_ZOOM, Style};
-use crate::app::ui::widgets::{Icon, icon_button_ui};
+use crate::app::ui::widgets::{Icon, icon_button_ui, panel_frame};
 use crate::app::views::{self, Drawn, ViewContext};
 use crate::app::words::lesson::numbered;
 use crate::scene::lesson::LESSONS;
@@ -36,13 +35,10 @@ mod keys;
 pub mod layouts;
 pub mod leave;
 mod lessons;
-mod measured;
 mod measured_dialog;
 mod menu;
 mod messages;
-mod path_dialog;
 mod perform;
-mod saving_figure;
 mod size;
 mod state;
 mod wanted;
@@ -105,45 +101,60 @@ impl Window {
         if room != self.tiling.room() {
             self.arrange(room);
         }
-        let fill = ui.visuals().panel_fill;
-        let frame = |x: i8, y: i8| Frame::new().fill(fill).inner_margin(Margin::symmetric(x, y));
-        let (bar, line) = (frame(8, 2), frame(12, 4));
-        let mut commands = Vec::new();
-        Panel::top("menu").frame(bar).exact_size(32.0).show(ui, |ui| {
-            commands =
-                menu::menu_ui(ui, &self.session, &self.tiling, self.settings, &self.recent, &self.lessons);
+        let mut commands = self.bars_ui(ui, &style, compact);
+        self.follow_lesson(&ctx);
+        if self.lessons.open.is_some() {
+            self.lesson_panels_ui(ui, &style, compact);
+        } else {
+            commands.extend(self.controls_ui(ui, compact));
+            commands.extend(self.hint_row_ui(ui, &style));
+        }
+        self.session.follow_best();
+        if self.session.best.is_shown() && !self.covered {
+            let panel = Panel::top("best stops").frame(panel_frame(ui, 12, 4));
+            panel.show(ui, |ui| controls::best_stops_answer_ui(ui, &mut self.session));
+        }
+        CentralPanel::no_frame().show(ui, |ui| self.views_ui(ui, style));
+        self.pointing_ui(&ctx, &style);
+        self.memory.grab = false;
+        commands.extend(self.memory.pin.take().map(Command::Pin));
+        commands.extend(self.memory.figure.take().map(|view| Command::Figure(Some(view))));
+        commands.extend(std::mem::take(&mut self.memory.open_measured).then_some(Command::OpenMeasured));
+        self.session.end_frame();
+        for command in commands {
+            self.carry_out(&ctx, command);
+        }
+        self.dialogs_ui(ui, &ctx);
+        focus_ui(&ctx, &style);
+    }
+
+    /// Menu bar, status line and transport bar. Returns the commands that were chosen.
+    fn bars_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) -> Vec<Command> {
+        let bar = Panel::top("menu").frame(panel_frame(ui, 8, 2)).exact_size(32.0).show(ui, |ui| {
+            let Self { session, tiling, settings, recent, lessons, .. } = self;
+            let settings = *settings;
+            menu::Menus { session, tiling, settings, recent, lessons, chosen: Vec::new() }.ui(ui)
         });
+        let (line, covered) = (panel_frame(ui, 12, 4), self.motion_is_covered());
         let height = status_line::height(ui, &self.session, compact);
-        Panel::top("status").frame(line).exact_size(height).show(ui, |ui| {
-            if self.motion_is_covered() {
-                covered_ui(ui, !self.covered);
-            } else {
-                status_ui(ui, &mut self.session, &mut self.announcer, &style, compact);
-            }
+        Panel::top("status").frame(line).exact_size(height).show(ui, |ui| match covered {
+            true => covered_ui(ui, !self.covered),
+            false => status_ui(ui, &mut self.session, &mut self.announcer, style, compact),
         });
         Panel::bottom("transport").frame(line).exact_size(if compact { 46.0 } else { 60.0 }).show(ui, |ui| {
             if self.lesson_covers() {
                 ui.disable();
             }
-            let covered = self.motion_is_covered();
-            transport::transport_ui(ui, &mut self.session, &style, covered);
+            transport::transport_ui(ui, &mut self.session, style, covered);
         });
-        self.follow_lesson(&ctx);
-        if self.lessons.open.is_some() {
-            // not a panel, whose height would follow its contents one frame late
-            let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
-            let strip = frame(12, 6).show(ui, |ui| {
-                ui.spacing_mut().item_spacing.y = spacing;
-                ui.set_min_width(ui.available_width());
-                self.lesson_strip_ui(ui, &style, compact);
-            });
-            ui.spacing_mut().item_spacing.y = spacing;
-            let edge = ui.visuals().widgets.noninteractive.bg_stroke;
-            ui.painter().hline(strip.response.rect.x_range(), strip.response.rect.bottom(), edge);
-            if self.lesson_has_controls() {
-                Panel::top("controls of the lesson").frame(line).show(ui, |ui| self.lesson_controls_ui(ui));
-            }
-        } else if compact {
+        bar.inner
+    }
+
+    /// The controls of the scene: in a compact window a row, else a column with the notes below. Returns the
+    /// command that shows all of the notes, if it was chosen.
+    fn controls_ui(&mut self, ui: &mut Ui, compact: bool) -> Option<Command> {
+        if compact {
+            let line = panel_frame(ui, 12, 4);
             Panel::top("controls row").frame(line).show(ui, |ui| {
                 ui.set_height(ROW);
                 controls::row_ui(ui, &mut self.session, &mut self.more);
@@ -153,75 +164,62 @@ impl Window {
                     controls::more_column_ui(ui, &mut self.session);
                 });
             }
-        } else {
-            let width = if ctx.content_rect().width() > 1600.0 { 300.0 } else { 250.0 };
-            let column = frame(12, 10);
-            Panel::left("controls").frame(column).resizable(false).exact_size(width).show(ui, |ui| {
-                let bottom = ui.max_rect().bottom();
-                egui::ScrollArea::vertical().show(ui, |ui| {
-                    controls::column_ui(ui, &mut self.session, &mut self.more);
-                    if !self.covered
-                        && notes::notes_ui(ui, self.session.scene(), self.session.editor.is_dirty(), bottom)
-                    {
-                        commands.push(Command::Notes);
-                    }
-                });
-            });
+            return None;
         }
-        let in_lesson = self.lessons.open.is_some();
-        let hinted = !in_lesson && self.hint.is_shown(&self.session);
+        let width = if ui.ctx().content_rect().width() > 1600.0 { 300.0 } else { 250.0 };
+        let column =
+            Panel::left("controls").frame(panel_frame(ui, 12, 10)).resizable(false).exact_size(width);
+        let column = column.show(ui, |ui| {
+            let bottom = ui.max_rect().bottom();
+            let contents = egui::ScrollArea::vertical().show(ui, |ui| {
+                controls::column_ui(ui, &mut self.session, &mut self.more);
+                let (scene, is_changed) = (self.session.scene(), self.session.editor.is_dirty());
+                !self.covered && notes::notes_ui(ui, scene, is_changed, bottom)
+            });
+            contents.inner
+        });
+        column.inner.then_some(Command::Notes)
+    }
+
+    /// The row with the hint of the first minute, or with what it would take to cross. Returns the command
+    /// that was chosen.
+    fn hint_row_ui(&mut self, ui: &mut Ui, style: &Style) -> Option<Command> {
+        let hinted = self.hint.is_shown(&self.session);
         self.hint_row |= hinted;
         let shows_ways = self.ways && !self.covered;
-        let has_room = ctx.content_rect().height() > LOW;
-        if in_lesson {
-            // the strip of the lesson is there
-        } else if shows_ways || (self.hint_row && (has_room || hinted && !self.covered)) {
-            // the line stays when the hint is done, so that the views below do not jump
-            let panel = Panel::top("hint").frame(line).min_size(HINT_ROW);
-            panel.show(ui, |ui| match hinted && !self.covered {
-                _ if shows_ways => ways_ui(ui, &self.session.ways(), hinted, &style),
-                true => {
-                    if let Some(next) = next_lesson(&self.lessons.records)
-                        && self.hint.ui(ui, &self.session, &numbered(next))
-                    {
-                        commands.push(Command::OpenLesson(next));
-                    }
-                }
-                false => {
-                    let text = "H says what it would take to cross, F1 lists all keys.";
-                    ui.label(RichText::new(text).color(style.faint()));
-                }
-            });
+        let has_room = ui.ctx().content_rect().height() > LOW;
+        // the line stays when the hint is done, so that the views below do not jump
+        if !shows_ways && !(self.hint_row && (has_room || hinted && !self.covered)) {
+            return None;
         }
-        self.session.follow_best();
-        if self.session.best.is_shown() && !self.covered {
-            let panel = Panel::top("best stops").frame(line);
-            panel.show(ui, |ui| best_stops::answer_ui(ui, &mut self.session));
-        }
-        CentralPanel::no_frame().show(ui, |ui| self.views_ui(ui, style));
-        self.pointing_ui(&ctx, &style);
-        self.memory.grab = false;
-        commands.extend(self.memory.pin.take().map(Command::Pin));
-        commands.extend(self.memory.figure.take().map(|view| Command::Figure(Some(view))));
-        commands.extend(std::mem::take(&mut self.memory.open_measured).then_some(Command::OpenMeasured));
-        self.session.map.end_frame();
-        self.session.measured.found.end_frame();
-        self.session.explore.end_frame();
-        self.session.accuracy.end_frame();
-        self.session.player.end_frame();
-        for command in commands {
-            self.carry_out(&ctx, command);
-        }
-        self.lecturer_ui(&ctx);
-        self.questions_ui(ui, &ctx);
+        let panel = Panel::top("hint").frame(panel_frame(ui, 12, 4)).min_size(HINT_ROW);
+        let row = panel.show(ui, |ui| {
+            if shows_ways {
+                ways_ui(ui, &self.session.ways(), hinted, style);
+                return None;
+            }
+            if hinted && !self.covered {
+                let next = next_lesson(&self.lessons.records)?;
+                let clicked = self.hint.ui(ui, &self.session, &numbered(next));
+                return clicked.then_some(Command::OpenLesson(next));
+            }
+            let text = "H says what it would take to cross, F1 lists all keys.";
+            ui.label(RichText::new(text).color(style.faint()));
+            None
+        });
+        row.inner
+    }
+
+    fn dialogs_ui(&mut self, ui: &mut Ui, ctx: &egui::Context) {
+        self.lecturer_ui(ctx);
+        self.questions_ui(ui, ctx);
         self.measured_ui(ui);
         self.take_figure();
         self.figure_ui(ui);
-        self.glossary = self.glossary && glossary_ui(ui);
+        self.glossary = self.glossary && notes::glossary_ui(ui);
         let projector = self.settings.projector;
         self.shortcuts = self.shortcuts.filter(|opened| keys::list_ui(ui, *opened, projector));
         self.messages.ui(ui);
-        focus_ui(&ctx, &style);
     }
 
     fn views_ui(&mut self, ui: &mut Ui, style: Style) {

@@ -64,47 +64,12 @@ impl Window {
             Command::Figure(view) => self.open_figure_dialog(view),
             Command::CopyScene => self.copy_scene(ctx),
             Command::PasteScene => ctx.send_viewport_cmd(egui::ViewportCommand::RequestPaste),
-            Command::CopyCommand => match export::command_line(&self.session) {
-                Some((line, runs)) => {
-                    ctx.copy_text(line);
-                    self.messages.notify(match runs {
-                        Runs::Whole => "Copied: the command line of this motion, from its start",
-                        Runs::FromNow => "Copied: the command line of this motion, from its present state on",
-                        Runs::Another => {
-                            "Copied: the command line of the scene from its start. This motion was changed \
-                             on its way and is another"
-                        }
-                    });
-                }
-                None => self.alert_unnamed(),
-            },
-            Command::CopyMapCommand => match export::map_command_line(&self.session) {
-                Some(line) => {
-                    ctx.copy_text(line);
-                    self.messages.notify("Copied: the command line of the map");
-                }
-                None if self.session.map.map().is_some() => self.alert_unnamed(),
-                None => {}
-            },
+            Command::CopyCommand => self.copy_command(ctx),
+            Command::CopyMapCommand => self.copy_map_command(ctx),
             Command::Quit => self.leave_for(ctx, Next::Quit),
             Command::Undo => _ = self.session.undo(),
             Command::Redo => _ = self.session.redo(),
-            Command::BackToStart => {
-                let changed = self.session.editor.is_dirty();
-                self.session.back_to_start();
-                self.filled = None;
-                self.memory = Memory::default();
-                self.hint = hint::Hint::for_scene(&self.session);
-                self.ways = false;
-                if let Some(speed) = self.lesson().and_then(|open| open.lesson().speed) {
-                    self.session.player.speed = speed;
-                }
-                if changed {
-                    let undo = ctx.format_shortcut(&UNDO);
-                    self.messages.notify(format!("Your changes are discarded; {undo} brings them back"));
-                }
-                self.arrange(self.tiling.room());
-            }
+            Command::BackToStart => self.back_to_start(ctx),
             Command::PlayPause => self.session.play_or_pause(),
             Command::Step => self.session.player.step(),
             Command::PreviousEvent => self.session.player.seek_event(false, EVENT_AHEAD),
@@ -120,19 +85,13 @@ impl Window {
                     self.session.player.speed = speed.0;
                 }
             }
-            Command::Arrange(layout) => {
-                self.arrangement = Arrangement::Layout(layout);
-                self.filled = None;
-                self.arrange(self.tiling.room());
-            }
+            Command::Arrange(layout) => self.show_arrangement(Arrangement::Layout(layout)),
             Command::ArrangeOwn => {
                 // the custom arrangement begins as a copy of the present tiles
                 if self.custom.is_none() {
                     self.custom = self.tiling.tree_to_save().cloned();
                 }
-                self.arrangement = Arrangement::Custom;
-                self.filled = None;
-                self.arrange(self.tiling.room());
+                self.show_arrangement(Arrangement::Custom);
             }
             Command::KeepOwn => {
                 self.custom = self.tiling.tree_to_save().cloned().or(self.custom.take());
@@ -140,21 +99,8 @@ impl Window {
             }
             Command::Show(view, shown) => self.tiling.show(view, shown),
             Command::NextTab => self.tiling.next_tab(self.memory.hovered),
-            Command::Cursors => {
-                self.memory.switch_cursors(&self.session);
-                let over_time = |view: &View| view.is_over_time() && self.tiling.place_of(*view).is_some();
-                if self.memory.cursors.on && self.filled.is_none() && !View::ALL.iter().any(over_time) {
-                    self.tiling.show(View::Displacement, true);
-                }
-            }
-            Command::HoldAxes => {
-                let view = self.active_view();
-                if view.has_axes() {
-                    let held = self.memory.hold_axes(view);
-                    let what = if held { "held: L again lets go of them" } else { "by themselves again" };
-                    self.messages.notify(format!("{}: its axes are {what}", view.name()));
-                }
-            }
+            Command::Cursors => self.switch_cursors(),
+            Command::HoldAxes => self.hold_axes(),
             Command::FreeAxes => self.memory.free_axes(self.active_view()),
             Command::Zoom { upwards, closer } => {
                 self.memory.zoom_by_key(self.active_view(), upwards, closer);
@@ -196,6 +142,71 @@ impl Window {
         }
     }
 
+    fn copy_command(&mut self, ctx: &egui::Context) {
+        let Some((line, runs)) = export::command_line(&self.session) else { return self.alert_unnamed() };
+        ctx.copy_text(line);
+        self.messages.notify(match runs {
+            Runs::Whole => "Copied: the command line of this motion, from its start",
+            Runs::FromNow => "Copied: the command line of this motion, from its present state on",
+            Runs::Another => {
+                "Copied: the command line of the scene from its start. This motion was changed on its way \
+                 and is another"
+            }
+        });
+    }
+
+    fn copy_map_command(&mut self, ctx: &egui::Context) {
+        match export::map_command_line(&self.session) {
+            Some(line) => {
+                ctx.copy_text(line);
+                self.messages.notify("Copied: the command line of the map");
+            }
+            None if self.session.map.map().is_some() => self.alert_unnamed(),
+            None => {}
+        }
+    }
+
+    /// Goes back to the scene as it was opened or last saved, with its views.
+    fn back_to_start(&mut self, ctx: &egui::Context) {
+        let changed = self.session.editor.is_dirty();
+        self.session.back_to_start();
+        self.filled = None;
+        self.memory = Memory::default();
+        self.hint = hint::Hint::for_scene(&self.session);
+        self.ways = false;
+        if let Some(speed) = self.lesson().and_then(|open| open.lesson().speed) {
+            self.session.player.speed = speed;
+        }
+        if changed {
+            let undo = ctx.format_shortcut(&UNDO);
+            self.messages.notify(format!("Your changes are discarded; {undo} brings them back"));
+        }
+        self.arrange(self.tiling.room());
+    }
+
+    fn show_arrangement(&mut self, arrangement: Arrangement) {
+        (self.arrangement, self.filled) = (arrangement, None);
+        self.arrange(self.tiling.room());
+    }
+
+    /// Shows or hides the cursors over time, with a view over time if none is shown.
+    fn switch_cursors(&mut self) {
+        self.memory.switch_cursors(&self.session);
+        let over_time = |view: &View| view.is_over_time() && self.tiling.place_of(*view).is_some();
+        if self.memory.cursors.on && self.filled.is_none() && !View::ALL.iter().any(over_time) {
+            self.tiling.show(View::Displacement, true);
+        }
+    }
+
+    fn hold_axes(&mut self) {
+        let view = self.active_view();
+        if view.has_axes() {
+            let held = self.memory.hold_axes(view);
+            let what = if held { "held: L again lets go of them" } else { "by themselves again" };
+            self.messages.notify(format!("{}: its axes are {what}", view.name()));
+        }
+    }
+
     /// The view that keys act on: the one that fills the window, or the one under the pointer or with the
     /// keyboard focus.
     fn active_view(&self) -> View {
@@ -222,13 +233,17 @@ impl Window {
     /// Goes to the next event of a kind, as far ahead as the run length or, if that is more, `TIMES_AHEAD`.
     fn go_to_first(&mut self, kind: EventKind) {
         let model = self.session.model();
-        let (name, is_possible) = match kind {
-            EventKind::Crossing => ("crossing", model.mechanism().landscape.barrier.is_some()),
-            _ => ("release", model.stop_positions() != (None, None)),
+        let impossible = match kind {
+            EventKind::Crossing if model.mechanism().landscape.barrier.is_none() => {
+                Some("No crossing can come: there is no barrier")
+            }
+            EventKind::Release if model.stop_positions() == (None, None) => {
+                Some("No release can come: there are no stops")
+            }
+            _ => None,
         };
-        if !is_possible {
-            let why = if name == "crossing" { "there is no barrier" } else { "there are no stops" };
-            return self.messages.notify(format!("No {name} can come: {why}"));
+        if let Some(why) = impossible {
+            return self.messages.notify(why);
         }
         let ahead = model.duration().max(TIMES_AHEAD * model.characteristic_time());
         let until = self.session.player.watch().time() + ahead;

@@ -9,7 +9,7 @@ use egui_tiles::Tree;
 use crate::app::panels::hint;
 use crate::app::session::editor::Editor;
 use crate::app::session::{CannotRun, Session};
-use crate::app::task::{Latest, Wake};
+use crate::app::task::{Background, Wake};
 use crate::app::ui::settings::Settings;
 use crate::app::views::{Memory, View};
 use crate::app::words::announce::Announcer;
@@ -24,9 +24,8 @@ use super::lessons::CANNOT_OPEN_LESSON;
 use super::lessons::{self, Lessons};
 use super::measured_dialog::{MeasuredDialog, is_measured};
 use super::messages::{CANNOT_OPEN, Messages, WriteResult};
-use super::path_dialog::PathDialog;
 use super::size::WindowSize;
-use super::wanted::Chosen;
+use super::wanted::{Chosen, PathDialog};
 
 /// Number of recently opened files that are remembered.
 const MOST_RECENT: usize = 8;
@@ -62,10 +61,10 @@ pub struct Window {
     /// Results of the files that other threads write.
     pub(super) written: (Sender<WriteResult>, Receiver<WriteResult>),
     /// A whole run that is computed and written in the background.
-    pub(super) run: Latest<WriteResult>,
+    pub(super) run: Background<(), WriteResult>,
     pub(super) window_size: WindowSize,
     pub(super) shown_title: String,
-    pub(super) file_dialog: Latest<Chosen>,
+    pub(super) file_dialog: Background<(), Chosen>,
     /// Whether file dialogs are opened.
     pub(super) opens_dialogs: bool,
     /// The dialog in which a path is typed, if the desktop has no file dialog.
@@ -140,10 +139,10 @@ impl Window {
             ways: false,
             announcer: Announcer::default(),
             written: channel(),
-            run: Latest::default(),
+            run: Background::default(),
             window_size: WindowSize::default(),
             shown_title: String::new(),
-            file_dialog: Latest::default(),
+            file_dialog: Background::default(),
             opens_dialogs: true,
             path_dialog: None,
             figures: Figures::default(),
@@ -178,7 +177,7 @@ impl Window {
     }
 
     /// The text of the notice that is shown.
-    pub fn told(&self) -> Option<&str> {
+    pub fn notice(&self) -> Option<&str> {
         self.messages.notice_text()
     }
 

@@ -4,12 +4,11 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use crate::app::session::Session;
-use crate::app::task::pool;
+use crate::app::session::map::ground;
+use crate::app::task::{Background, pool};
 use crate::mechanics::Mechanism;
 use crate::scene::{Scene, Start};
 use crate::study::{Answer, Basins, EvenRange, NoBasins, Starts, Task};
-
-use super::Explored;
 
 /// Number of starts along each axis.
 pub const STARTS: u64 = 81;
@@ -38,27 +37,18 @@ pub struct Level {
 }
 
 /// The basins, level by level, or why there are none.
-pub type BasinsFound = Explored<BasinsQuestion, Result<Level, String>>;
+pub type BasinsFound = Background<BasinsQuestion, Result<Level, String>>;
 
 impl Session {
     /// Asks for the basins of the present scene over a range of displacements in m and of velocities `v` in
     /// m/s; to be called in every frame that shows them.
     pub fn want_basins(&mut self, (low, high): (f64, f64), v: (f64, f64)) {
         let still = self.stands_still();
-        let scene = Scene {
-            start: Start::Rest,
-            title: String::new(),
-            notes: String::new(),
-            sweep: Vec::new(),
-            app: None,
-            ..self.scene().clone()
-        };
+        let scene = ground(self.scene(), self.remembered_stops(), &[]);
         let question = BasinsQuestion { scene, x_mm: (low * 1e3, high * 1e3), v };
-        let (mechanism, wake) = (Arc::clone(&self.mechanism), Arc::clone(&self.wake));
-        self.explore.basins.want(&question, still, &wake, move |question, cancel, each| {
-            if let Err(problem) = find(question, mechanism, cancel, &|level| each(Ok(level))) {
-                each(Err(problem));
-            }
+        let mechanism = Arc::clone(&self.mechanism);
+        self.explore.basins.want(question, still, &self.wake, move |question, cancel, each| {
+            find(question, mechanism, cancel, &|level| each(Ok(level))).err().map(Err)
         });
     }
 

@@ -2,12 +2,10 @@
 //! the study begins once nobody is changing the scene, and stops when no view asks for it.
 
 mod basins;
-mod explored;
 mod spectra;
 mod walks;
 
 pub use basins::{BasinsFound, BasinsQuestion, Level, STARTS};
-pub use explored::Explored;
 pub use spectra::{Spectra, longest_wait};
 pub use walks::{WalkQuantity, WalkQuestion, Walks};
 

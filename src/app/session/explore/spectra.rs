@@ -3,49 +3,40 @@
 use std::sync::Arc;
 
 use crate::app::session::Session;
+use crate::app::task::{Background, Identity};
 use crate::dynamics::Model;
 use crate::study::{Signal, Spectrum, SpectrumOptions, Task, followed_until, spectrum};
 
-use super::Explored;
-
 /// A model, and the signal of its motion to analyse.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct SpectrumQuestion {
-    model: Arc<Model>,
+    model: Identity<Model>,
     signal: Signal,
-}
-
-impl PartialEq for SpectrumQuestion {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.model, &other.model) && self.signal == other.signal
-    }
 }
 
 pub struct Spectra {
     pub signal: Signal,
     /// The spectrum, or why there is none.
-    pub found: Explored<SpectrumQuestion, Result<Spectrum, String>>,
+    pub found: Background<SpectrumQuestion, Result<Spectrum, String>>,
 }
 
 impl Default for Spectra {
     fn default() -> Self {
-        Self { signal: Signal::Displacement, found: Explored::default() }
+        Self { signal: Signal::Displacement, found: Background::default() }
     }
 }
 
 impl Session {
     /// Asks for the spectrum of the present scene; to be called in every frame that shows it.
     pub fn want_spectrum(&mut self) {
-        let still = self.stands_still();
-        let question =
-            SpectrumQuestion { model: Arc::clone(&self.model), signal: self.explore.spectra.signal };
-        let wake = Arc::clone(&self.wake);
-        self.explore.spectra.found.want(&question, still, &wake, |question, cancel, each| {
+        let (model, signal) = (Identity(Arc::clone(&self.model)), self.explore.spectra.signal);
+        let (question, still) = (SpectrumQuestion { model, signal }, self.stands_still());
+        self.explore.spectra.found.want(question, still, &self.wake, |question, cancel, _| {
             let until_settled = longest_wait(&question.model);
             let options =
                 SpectrumOptions { signal: question.signal, taper: None, rate_hz: None, until_settled };
             let found = spectrum(&question.model, &options, &Task { tick: &|| (), cancel });
-            each(found.map_err(|error| error.to_string()));
+            Some(found.map_err(|error| error.to_string()))
         });
     }
 }

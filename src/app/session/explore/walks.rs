@@ -4,12 +4,9 @@ use std::sync::Arc;
 
 use crate::app::session::Session;
 use crate::app::session::map::ground;
-use crate::app::task::pool;
-use crate::mechanics::Mechanism;
-use crate::scene::{Axis, FieldPath, Files, Scene, SweepAxis};
+use crate::app::task::{Background, pool};
+use crate::scene::{Axis, FieldPath, Scene, SweepAxis};
 use crate::study::{Family, Task, Visit, up_and_down};
-
-use super::Explored;
 
 /// Stride of the coarse walks, which come first.
 const COARSE: usize = 5;
@@ -40,7 +37,7 @@ pub struct Walks {
     pub chosen: Option<SweepAxis>,
     pub quantity: WalkQuantity,
     /// The runs as they come, each with the stride of its walk; the coarse walks come first.
-    pub found: Explored<WalkQuestion, (usize, Visit)>,
+    pub found: Background<WalkQuestion, (usize, Visit)>,
     /// Why there are no walks.
     pub problem: Option<String>,
 }
@@ -49,11 +46,8 @@ impl Session {
     /// The axis of the walks: the chosen one if the scene has its field, else one over the amplitude of the
     /// shaking, else over the first field that a map could have. Returns `None` if there is no such field.
     pub fn walk_axis(&self) -> Option<SweepAxis> {
-        let has = |axis: &&SweepAxis| {
-            let ground = ground(self.scene(), self.remembered_stops(), std::slice::from_ref(axis));
-            FieldPath::new(&axis.field).get(&ground).is_some()
-        };
-        if let Some(chosen) = self.explore.walks.chosen.as_ref().filter(has) {
+        let chosen = self.explore.walks.chosen.as_ref();
+        if let Some(chosen) = chosen.filter(|axis| self.has_fields_of(std::slice::from_ref(axis))) {
             return Some(chosen.clone());
         }
         let known = self.map_fields();
@@ -64,35 +58,40 @@ impl Session {
     /// Asks for the walks of the present scene; to be called in every frame that shows them.
     pub fn want_walks(&mut self) {
         let still = self.stands_still();
-        let Some(axis) = self.walk_axis() else {
-            self.explore.walks.problem = Some("This scene has no field to walk over.".to_owned());
-            return;
+        let (ground, values, question) = match self.walk_question() {
+            Ok(walk) => walk,
+            Err(problem) => return self.explore.walks.problem = Some(problem),
         };
-        let mut scene = ground(self.scene(), self.remembered_stops(), std::slice::from_ref(&axis));
-        let values = match Axis::from_scene(&axis, &scene) {
-            Ok(axis) => axis.values,
-            Err((part, problem)) => {
-                self.explore.walks.problem = Some(format!("{part}: {problem}"));
-                return;
-            }
-        };
-        if !self.model().repeats() {
-            let problem = "Each run goes on from the state of the one before at the drive's phase 0: that \
-                           needs shaking that repeats, such as a sine.";
-            self.explore.walks.problem = Some(problem.to_owned());
-            return;
-        }
         self.explore.walks.problem = None;
-        let present = scene.clone();
-        if !FieldPath::new(&axis.field).set(&mut scene, axis.from) {
-            return;
-        }
-        let question = WalkQuestion { scene, axis };
         let (mechanism, files) = (Arc::clone(&self.mechanism), self.editor.document().files.clone());
-        let wake = Arc::clone(&self.wake);
-        self.explore.walks.found.want(&question, still, &wake, move |question, cancel, each| {
-            walk(question, (&present, mechanism, &files), &values, &Task { tick: &|| (), cancel }, each);
+        self.explore.walks.found.want(question, still, &self.wake, move |question, cancel, each| {
+            let (pool, task) = (pool()?, Task { tick: &|| (), cancel });
+            let family = Family::new(&ground, &files, &mechanism, &question.axis.field);
+            for stride in [COARSE, 1] {
+                let values: Vec<f64> = values.iter().step_by(stride).copied().collect();
+                if !up_and_down(&family, &values, &pool, &task, &|visit| each((stride, visit))) {
+                    break;
+                }
+            }
+            None
         });
+    }
+
+    /// The scene from rest, the values of its field, and the question; or why there are no walks.
+    fn walk_question(&self) -> Result<(Scene, Vec<f64>, WalkQuestion), String> {
+        let axis = self.walk_axis().ok_or("This scene has no field to walk over.")?;
+        let ground = ground(self.scene(), self.remembered_stops(), std::slice::from_ref(&axis));
+        let values = Axis::from_scene(&axis, &ground).map(|axis| axis.values);
+        let values = values.map_err(|(part, problem)| format!("{part}: {problem}"))?;
+        if !self.model().repeats() {
+            return Err("Each run goes on from the state of the one before at the drive's phase 0: that \
+                        needs shaking that repeats, such as a sine."
+                .to_owned());
+        }
+        let mut scene = ground.clone();
+        let is_set = FieldPath::new(&axis.field).set(&mut scene, axis.from);
+        debug_assert!(is_set, "the axis is over a field of the scene");
+        Ok((ground, values, WalkQuestion { scene, axis }))
     }
 
     /// Sets the field of the walks to a value, as part of a gesture.
@@ -101,23 +100,5 @@ impl Session {
         let value = ((value / axis.step).round() * axis.step).clamp(axis.from, axis.to);
         // a value that is refused is reported where the scene is checked
         let _ = self.set_number(&axis.field, crate::app::words::numbers::decimal(value));
-    }
-}
-
-/// The coarse walks, then those over all values.
-fn walk(
-    question: &WalkQuestion,
-    (scene, mechanism, files): (&Scene, Arc<Mechanism>, &Files),
-    values: &[f64],
-    task: &Task,
-    each: &(dyn Fn((usize, Visit)) + Sync),
-) {
-    let Some(pool) = pool() else { return };
-    let family = Family::new(scene, files, &mechanism, &question.axis.field);
-    for stride in [COARSE, 1] {
-        let values: Vec<f64> = values.iter().step_by(stride).copied().collect();
-        if !up_and_down(&family, &values, &pool, task, &|visit| each((stride, visit))) {
-            return;
-        }
     }
 }

@@ -5,21 +5,19 @@
 //! A task is judged by a full run of the scene once the scene has stood still.
 
 mod progress;
-mod verdict;
 
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use crate::app::task::{Latest, Wake};
+use crate::app::task::{Background, Wake};
 use crate::scene::lesson::{Choice, LESSONS, Lesson, LessonDocument, Step};
 use crate::scene::{Document, Scene, Source, arguments};
-use crate::study::{Lack, Subject, goal_lack, options_that_hold};
+use crate::study::{Lack, Subject, Task, Unjudged, goal_lack, options_that_hold};
 
 use super::Session;
 
 pub use progress::{Answer, Progress, Records, answers_text};
-pub use verdict::{Outcome, TaskState};
-use verdict::{Verdict, judge, single_option};
 
 /// Time in s for which a scene has to stay unchanged before it can complete a task.
 const STILL: f64 = 0.5;
@@ -39,16 +37,43 @@ pub enum Turn {
     Leave,
 }
 
+#[derive(Debug, Clone, PartialEq)]
+pub enum TaskState {
+    /// The user is changing the scene, or has just changed it.
+    Moving,
+    Judging,
+    /// The present scene does not do the task; the first thing that it lacks.
+    NotYet(Lack),
+    Met,
+    /// Why the scene cannot be judged.
+    Unjudged(String),
+}
+
+/// Which option of a prediction holds.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Outcome {
+    /// The verdict is still being computed.
+    Unknown,
+    /// This one.
+    Holds(usize),
+    /// No option or several, which is a fault of the lesson.
+    Unclear,
+    /// Why the scene cannot be judged.
+    Unjudged(String),
+}
+
 pub struct OpenLesson {
     document: Arc<LessonDocument>,
     progress: Progress,
     /// Time of the window in s at which the step began.
     begun: Option<f64>,
     hinted: bool,
-    options: Latest<Verdict<Vec<bool>>>,
-    goal: Latest<Verdict<Option<Lack>>>,
-    /// The scene that is judged, and the time in s since which it has stood still.
-    judged: Option<(Scene, f64)>,
+    /// Which option of the prediction in the step of this number holds.
+    options: Background<usize, Outcome>,
+    /// What a run of the scene says about the task.
+    goal: Background<Scene, TaskState>,
+    /// The time in s since which the scene of the goal has stood still.
+    still_since: f64,
     wake: Wake,
 }
 
@@ -61,9 +86,9 @@ impl OpenLesson {
             progress,
             begun: None,
             hinted: false,
-            options: Latest::default(),
-            goal: Latest::default(),
-            judged: None,
+            options: Background::default(),
+            goal: Background::default(),
+            still_since: 0.0,
             wake,
         };
         let scene = match opened.enter(opened.progress.step) {
@@ -224,7 +249,7 @@ impl OpenLesson {
 
     fn enter(&mut self, number: usize) -> Turn {
         self.progress.step = number;
-        (self.begun, self.hinted, self.judged) = (None, false, None);
+        (self.begun, self.hinted) = (None, false);
         self.options.clear();
         self.goal.clear();
         let document = Arc::clone(&self.document);
@@ -232,11 +257,11 @@ impl OpenLesson {
         match self.step() {
             Step::Predict { .. } => {
                 let lesson = Arc::clone(&document);
-                self.options.ask(&self.wake, move |cancel| {
-                    let verdict = |step: &Step, subject: Subject<'_>, before: &Subject<'_>| {
-                        options_that_hold(step, &subject, before)
-                    };
-                    judge(&lesson, number, lesson.end(number), cancel, verdict)
+                self.options.ask(number, &self.wake, move |number, cancel, _| {
+                    judge(&lesson, *number, lesson.end(*number), cancel, |step, subject, before| {
+                        options_that_hold(step, &subject, before).map(|options| single_option(&options))
+                    })
+                    .map(|outcome| outcome.unwrap_or_else(Outcome::Unjudged))
                 });
                 match self.answer().shown {
                     true => Turn::Show(Box::new(end.clone()), true),
@@ -298,30 +323,28 @@ impl OpenLesson {
             return None;
         }
         if session.editor.in_gesture() || session.fault().is_some() {
-            self.judged = None;
             self.goal.clear();
             return None;
         }
         let scene = session.scene();
-        let since = self.judged.as_ref().filter(|judged| judged.0 == *scene).map(|judged| judged.1);
-        let Some(since) = since else {
-            self.judged = Some((scene.clone(), now));
+        if self.goal.question() != Some(scene) {
+            self.still_since = now;
             let (document, number) = (Arc::clone(&self.document), self.progress.step);
             let (edited, mechanism) = (session.editor.runnable(), Arc::clone(session.model().mechanism()));
             let built = session.mechanism_of == edited.scene.mechanism;
-            self.goal.ask(&self.wake, move |cancel| {
-                let verdict = |step: &Step, subject: Subject<'_>, before: &Subject<'_>| match built {
-                    true => goal_lack(step, &subject.with_mechanism(mechanism), before),
-                    false => goal_lack(step, &subject, before),
-                };
-                judge(&document, number, &edited, cancel, verdict)
+            self.goal.ask(scene.clone(), &self.wake, move |_, cancel, _| {
+                judge(&document, number, &edited, cancel, |step, subject, before| {
+                    let subject = if built { subject.with_mechanism(mechanism) } else { subject };
+                    Ok(goal_lack(step, &subject, before)?.map_or(TaskState::Met, TaskState::NotYet))
+                })
+                .map(|state| state.unwrap_or_else(TaskState::Unjudged))
             });
             return Some(STILL);
-        };
-        let still_for = now - since;
-        if self.goal.current() != Some(&Ok(None)) {
+        }
+        if self.goal.answer() != Some(&TaskState::Met) {
             return None;
         }
+        let still_for = now - self.still_since;
         if still_for < STILL {
             return Some(STILL - still_for);
         }
@@ -338,17 +361,17 @@ impl OpenLesson {
         if let Some(fault) = session.fault() {
             return TaskState::Unjudged(fault.to_owned());
         }
-        match (&self.judged, self.goal.current()) {
+        match (self.goal.question(), self.goal.answer()) {
             (None, _) => TaskState::Moving,
-            (_, None) | (_, Some(Ok(None))) => TaskState::Judging,
-            (_, Some(Ok(Some(lack)))) => TaskState::NotYet(lack.clone()),
-            (_, Some(Err(why))) => TaskState::Unjudged(why.clone()),
+            // a scene that does the task has to stand still for a while
+            (_, None | Some(TaskState::Met)) => TaskState::Judging,
+            (_, Some(state)) => state.clone(),
         }
     }
 
     /// Which option of the prediction holds.
     pub fn outcome(&self) -> Outcome {
-        single_option(self.options.current())
+        self.options.answer().cloned().unwrap_or(Outcome::Unknown)
     }
 
     /// The hint of a task, while it is shown: on request, or because the task has taken long.
@@ -380,5 +403,33 @@ impl OpenLesson {
     pub fn wait(&mut self, timeout: Duration) {
         self.options.wait(timeout);
         self.goal.wait(timeout);
+    }
+}
+
+/// The outcome of a prediction, from whether each of its options holds.
+fn single_option(options: &[bool]) -> Outcome {
+    let mut right = options.iter().enumerate().filter(|(_, holds)| **holds).map(|(number, _)| number);
+    match (right.next(), right.next()) {
+        (Some(option), None) => Outcome::Holds(option),
+        _ => Outcome::Unclear,
+    }
+}
+
+/// The `verdict` on a scene in a step of a lesson, or why there is none; `None` if cancelled.
+fn judge<T>(
+    document: &LessonDocument,
+    number: usize,
+    judged: &Document,
+    cancel: &AtomicBool,
+    verdict: impl FnOnce(&Step, Subject<'_>, &Subject<'_>) -> Result<T, Unjudged>,
+) -> Option<Result<T, String>> {
+    let (lesson, begin) = (&document.lesson, document.begin(number));
+    let task = Task { tick: &|| (), cancel };
+    let before = Subject::new(&begin.scene, &begin.files, lesson, &task);
+    let subject = Subject::new(&judged.scene, &judged.files, lesson, &task);
+    match verdict(&lesson.steps[number], subject, &before) {
+        Ok(verdict) => Some(Ok(verdict)),
+        Err(Unjudged::Cancelled) => None,
+        Err(error) => Some(Err(error.to_string())),
     }
 }

@@ -5,12 +5,13 @@ use std::time::Duration;
 
 use crate::app::session::editor::Editor;
 use crate::app::words::fields::in_words;
+use crate::mechanics::Mechanism;
 use crate::numeric::short;
 use crate::output::{header, rows};
-use crate::scene::SceneError;
+use crate::scene::{Scene, SceneError};
 use crate::study::{
     Cell, Edges, Grid, Levels, STRIDES, SummaryField, Sweep, SweepOptions, Table, first_crossing,
-    first_crossing_edge,
+    first_crossing_edge, release_line,
 };
 
 use super::{Question, over};
@@ -19,7 +20,7 @@ use super::{Question, over};
 const MAX_CELLS: u64 = 200_000;
 
 /// Why a map of so many cells is not made; `None` if it is.
-pub(super) fn too_many(cells: u64) -> Option<String> {
+pub(in crate::app::session) fn too_many(cells: u64) -> Option<String> {
     let problem = || format!("{cells} cells are more than the window makes ({MAX_CELLS}): take longer steps");
     (cells > MAX_CELLS).then(problem)
 }
@@ -44,10 +45,10 @@ pub struct Map {
     pub release: Vec<(f64, f64)>,
     /// The edge of the first crossing cells, as far as they are known.
     pub crossing: Vec<Vec<(f64, f64)>>,
-    pub(super) sweep: Arc<Sweep>,
-    pub(super) levels: Arc<Levels>,
-    pub(super) cells: Vec<Option<Cell>>,
-    pub(super) known: usize,
+    pub(in crate::app::session) sweep: Arc<Sweep>,
+    levels: Levels,
+    cells: Vec<Option<Cell>>,
+    known: usize,
     /// Computing time after which its lines were last drawn.
     lines_after: Option<Duration>,
     /// Computing time so far.
@@ -57,8 +58,12 @@ pub struct Map {
 }
 
 impl Map {
-    /// The map of a question before its first cell, or why there is none.
-    pub(super) fn new(question: &Question, editor: &Editor) -> Result<Self, String> {
+    /// The map of a question before its first cell, or why there is none. `mechanism` is that of the session.
+    pub(in crate::app::session) fn new(
+        question: &Question,
+        editor: &Editor,
+        mechanism: &Mechanism,
+    ) -> Result<Self, String> {
         let mut document = editor.document().clone();
         document.scene = question.scene.clone();
         let message = |error: SceneError| in_words(&error.to_string(), &question.scene);
@@ -72,14 +77,14 @@ impl Map {
         let [across, up] = grid.axes() else { return Err("a map has two axes".to_owned()) };
         let edges = [across, up].map(|axis| Edges::new(&axis.values));
         let cells = vec![None; grid.cells() as usize];
-        let levels = Arc::new(Levels::of(&grid));
+        let (levels, release) = (Levels::of(&grid), release(&question.scene, mechanism, &grid));
         let columns = question.ledger.and_then(SummaryField::find).into_iter().collect();
         let options = SweepOptions { columns, ..SweepOptions::default() };
         let sweep = Arc::new(Sweep::new(&document.scene, &document.files, grid).with(options));
         Ok(Self {
             question: question.clone(),
             edges,
-            release: Vec::new(),
+            release,
             crossing: Vec::new(),
             sweep,
             levels,
@@ -137,8 +142,38 @@ impl Map {
     }
 
     /// The cells that have been run.
-    pub fn own_cells(&self) -> impl Iterator<Item = &Cell> {
+    pub fn known_cells(&self) -> impl Iterator<Item = &Cell> {
         self.cells.iter().flatten()
+    }
+
+    /// The indices of the cells that are not known, level by level.
+    pub(in crate::app::session) fn missing(&self) -> Vec<Vec<u64>> {
+        let mut begin = 0;
+        let level = |end: usize| {
+            let cells = &self.levels.order[begin..end];
+            begin = end;
+            cells.iter().copied().filter(|index| self.cells[*index as usize].is_none()).collect()
+        };
+        self.levels.ends.into_iter().map(level).collect()
+    }
+
+    /// Adds cells that have been computed, and updates what is drawn over them.
+    pub(super) fn add(&mut self, cells: Vec<(u64, Cell)>) {
+        for (index, cell) in cells {
+            self.known += usize::from(self.cells[index as usize].replace(cell).is_none());
+        }
+        if self.is_covered() {
+            self.coarse_after.get_or_insert(self.took);
+            self.draw_lines();
+        }
+    }
+
+    /// Whether it may be shown until every part of another map shows a result: if it has the fields and the
+    /// columns of that map.
+    pub(in crate::app::session) fn stands_in_for(&self, other: &Self) -> bool {
+        let fields = |map: &Self| map.question.axes.clone().map(|axis| axis.field);
+        let has_columns = self.question.ledger.is_some() || other.question.ledger.is_none();
+        fields(self) == fields(other) && has_columns
     }
 
     /// Length of the settled window in s.
@@ -189,14 +224,13 @@ impl Map {
         header(&table) + &rows(&table, 0..usize::MAX)
     }
 
-    /// Updates the line of first crossings, on a large map not for every part; `worked` is the computing time
-    /// so far.
-    pub(super) fn draw_lines(&mut self, worked: Duration) {
+    /// Updates the line of first crossings, on a large map not for every part.
+    fn draw_lines(&mut self) {
         let every = Duration::from_micros(10 * self.len() as u64);
-        if !self.is_whole() && self.lines_after.is_some_and(|last| worked < last + every) {
+        if !self.is_whole() && self.lines_after.is_some_and(|last| self.took < last + every) {
             return;
         }
-        self.lines_after = Some(worked);
+        self.lines_after = Some(self.took);
         let table = self.table();
         let columns = self.grid().columns();
         let names = (columns[0].as_str(), columns[1].as_str());
@@ -204,4 +238,14 @@ impl Map {
             .map(|line| first_crossing_edge(&line, names, &self.edges[0], &self.edges[1]))
             .unwrap_or_default();
     }
+}
+
+/// The least amplitude that releases the mass from a stop: `x` and `y` of its points. Empty if the mechanism
+/// changes over the map.
+fn release(scene: &Scene, mechanism: &Mechanism, grid: &Grid) -> Vec<(f64, f64)> {
+    let line = || release_line(scene, mechanism, grid);
+    let Some(line) = (!grid.changes_mechanism()).then(line).flatten() else { return Vec::new() };
+    let columns = grid.columns();
+    let (x, y) = (line.numbers(&columns[0]), line.numbers(&columns[1]));
+    x.into_iter().flatten().copied().zip(y.into_iter().flatten().copied()).collect()
 }

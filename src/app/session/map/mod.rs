@@ -3,29 +3,22 @@
 //! It is the sweep of the command line, run in the background and shown while its cells come. The view that
 //! shows it asks for it in every frame; a map that no view asks for pauses until a view asks for it again.
 
-mod axes;
-mod cells;
-mod of_session;
-mod trail;
+pub(super) mod axes;
+pub(super) mod cells;
 
-use std::sync::Arc;
-use std::time::Duration;
+use std::collections::VecDeque;
 
-use crate::app::task::{Job, Wake, pool};
+use crate::app::task::Background;
 use crate::app::words::columns::{COLUMNS, ColumnInfo};
-use crate::scene::{Scene, SweepAxis};
-use crate::study::{self, Cell, STANDARD_COLUMNS};
-use crate::system::clock::WallClock;
-
-use super::editor::Editor;
+use crate::scene::{FieldPath, Scene, SweepAxis};
+use crate::study::{Cell, STANDARD_COLUMNS};
 
 pub use crate::numeric::short;
 pub use axes::{ground, label, name_and_unit, over, part};
 pub use cells::{CutCell, Map};
-pub use trail::Trail;
 
-/// Time in s without a change after which a map is begun in the middle of a gesture.
-const STILL: f64 = 0.25;
+/// Largest number of scenes that are remembered.
+const MAX_SCENES: usize = 400;
 
 /// The question that a map answers: a scene, apart from the fields of the axes, and the axes.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,26 +38,22 @@ pub struct Mapping {
     /// The earlier positions of the scene.
     pub trail: Trail,
     /// The axes that the user has chosen; `None` for the default axes.
-    chosen: Option<[SweepAxis; 2]>,
+    pub(super) chosen: Option<[SweepAxis; 2]>,
     /// The default axes, as they were when the map was first shown: they do not move with the scene.
-    default_axes: Option<[SweepAxis; 2]>,
-    /// The choices of axes before each enlargement of a part of the map, the first one first.
-    before_enlarging: Vec<Option<[SweepAxis; 2]>>,
-    map: Option<Map>,
+    pub(super) default_axes: Option<[SweepAxis; 2]>,
+    /// The axes of the enlarged parts of the map, each a part of the one before.
+    enlarged: Vec<[SweepAxis; 2]>,
+    pub(super) map: Option<Map>,
     /// The previous map, shown until the new one has a result everywhere.
-    previous: Option<Map>,
-    task: Option<Job<(u64, u64, Cell)>>,
-    /// Number of the question that the running cells belong to.
-    generation: u64,
+    pub(super) previous: Option<Map>,
+    /// The cells of the map that have come and are not in it yet.
+    pub(super) cells: Background<Question, (u64, Cell)>,
     /// Number of changes of the picture.
-    version: u64,
-    begun: Option<WallClock>,
-    stopped: bool,
-    wanted: bool,
+    pub(super) version: u64,
     /// A question that waits for a pause in the gesture, and the time in s since which it has not changed.
-    waiting: Option<(Question, f64)>,
+    pub(super) waiting: Option<(Question, f64)>,
     /// Why there is no map.
-    problem: Option<String>,
+    pub(super) problem: Option<String>,
 }
 
 impl Mapping {
@@ -93,7 +82,7 @@ impl Mapping {
 
     /// Whether cells are being run.
     pub fn is_running(&self) -> bool {
-        self.task.is_some()
+        self.cells.is_running()
     }
 
     /// Why there is no map.
@@ -102,14 +91,15 @@ impl Mapping {
     }
 
     pub fn stop(&mut self) {
-        self.pause();
-        self.stopped = true;
+        self.cells.stop();
+        self.take();
     }
 
     /// Continues a stopped map, or begins again if it is complete.
     pub fn go_on(&mut self) {
-        self.stopped = false;
+        self.cells.resume();
         if self.map.as_ref().is_some_and(Map::is_whole) {
+            self.cells.clear();
             self.map = None;
         }
     }
@@ -141,143 +131,93 @@ impl Mapping {
 
     /// Chooses axes; `None` for the default axes.
     pub fn choose(&mut self, axes: Option<[SweepAxis; 2]>) {
-        (self.chosen, self.before_enlarging) = (axes, Vec::new());
+        (self.chosen, self.enlarged) = (axes, Vec::new());
     }
 
     /// Enlarges the part of the map that these axes span.
     pub fn enlarge(&mut self, axes: [SweepAxis; 2]) {
-        self.before_enlarging.push(self.chosen.replace(axes));
+        self.enlarged.push(axes);
     }
 
     /// Whether a part of the map is enlarged.
     pub fn is_enlarged(&self) -> bool {
-        !self.before_enlarging.is_empty()
+        !self.enlarged.is_empty()
     }
 
     /// Goes back to the axes before the last enlargement.
     pub fn show_larger(&mut self) {
-        if let Some(axes) = self.before_enlarging.pop() {
-            self.chosen = axes;
-        }
+        self.enlarged.pop();
     }
 
     /// Goes back to the whole map.
     pub fn show_whole(&mut self) {
-        self.before_enlarging.truncate(1);
-        self.show_larger();
+        self.enlarged.clear();
     }
 
-    fn pause(&mut self) {
-        self.take();
-        self.task = None;
-        if let (Some(begun), Some(map)) = (self.begun.take(), &mut self.map) {
-            map.took += begun.elapsed();
-        }
+    /// The axes of the enlarged part, or those that the user has chosen.
+    pub(super) fn chosen(&self) -> Option<&[SweepAxis; 2]> {
+        self.enlarged.last().or(self.chosen.as_ref())
     }
 
     /// Receives the cells that have been computed.
     pub fn take(&mut self) {
-        let (Some(task), Some(map)) = (&self.task, &mut self.map) else { return };
-        let known_before = map.known;
-        let generation = self.generation;
-        let running = task.take(|(of, index, cell)| {
-            if of != generation {
-                return;
-            }
-            if let Some(place) = map.cells.get_mut(index as usize).filter(|place| place.is_none()) {
-                *place = Some(cell);
-                map.known += 1;
-            }
-        });
-        let worked = map.took + self.begun.map_or(Duration::ZERO, |begun| begun.elapsed());
-        if map.known > known_before {
-            self.version += 1;
-            if map.is_covered() {
-                map.coarse_after.get_or_insert(worked);
-                self.previous = None;
-                map.draw_lines(worked);
-            }
+        let cells = self.cells.take_parts();
+        let Some(map) = &mut self.map else { return };
+        map.took = self.cells.worked();
+        if cells.is_empty() {
+            return;
         }
-        if !running {
-            map.took = worked;
-            (self.task, self.begun) = (None, None);
-            // a job that ended early, because no threads could be started, is not tried again by itself
-            self.stopped |= !map.is_whole();
+        self.version += 1;
+        map.add(cells);
+        if map.is_covered() {
+            self.previous = None;
         }
     }
 
     /// Pauses the map if no view has asked for it in this frame; to be called once a frame.
     pub fn end_frame(&mut self) {
-        if !std::mem::take(&mut self.wanted) {
-            self.pause();
+        self.cells.end_frame();
+    }
+}
+
+/// The scenes of the live motion so far, the oldest first.
+#[derive(Default)]
+pub struct Trail {
+    scenes: VecDeque<Scene>,
+    /// Their positions on `fields`, the two axes that were last asked for.
+    places: Vec<[Option<f64>; 2]>,
+    fields: [String; 2],
+}
+
+impl Trail {
+    pub(super) fn note(&mut self, scene: &Scene) {
+        self.scenes.push_back(Scene { title: String::new(), notes: String::new(), ..scene.clone() });
+        if self.scenes.len() > MAX_SCENES {
+            self.scenes.pop_front();
         }
+        self.places.clear();
     }
 
-    /// Asks for the map of a question, now or after a pause in the gesture. Returns whether it waits.
-    fn ask(&mut self, question: Question, editor: &Editor, in_gesture: bool, time: f64, wake: &Wake) -> bool {
-        self.wanted = true;
-        if self.map.as_ref().is_some_and(|map| map.question == question) {
-            (self.waiting, self.problem) = (None, None);
-            if self.task.is_none() && !self.stopped {
-                self.start(wake);
-            }
-            return false;
-        }
-        if self.problem.is_some() && self.waiting.as_ref().is_some_and(|waiting| waiting.0 == question) {
-            return false;
-        }
-        // the results of the running cells would not be used
-        self.pause();
-        if in_gesture {
-            let since = match &self.waiting {
-                Some((same, since)) if *same == question => *since,
-                _ => time,
-            };
-            if time - since < STILL {
-                self.waiting = Some((question, since));
-                return true;
-            }
-        }
-        self.version += 1;
-        self.stopped = false;
-        match Map::new(&question, editor) {
-            Ok(map) => {
-                let old = self.map.take().filter(Map::is_covered).or_else(|| self.previous.take());
-                let fields = |question: &Question| question.axes.clone().map(|axis| axis.field);
-                let shows = |old: &Question| old.ledger.is_some() || question.ledger.is_none();
-                let alike = |old: &Map| fields(&old.question) == fields(&question) && shows(&old.question);
-                self.previous = old.filter(alike);
-                self.map = Some(map);
-                (self.waiting, self.problem) = (None, None);
-                self.generation += 1;
-                self.start(wake);
-            }
-            Err(problem) => {
-                self.problem = Some(problem);
-                self.waiting = Some((question, time));
-            }
-        }
-        false
+    /// Forgets all scenes but the present one.
+    pub fn clear(&mut self) {
+        self.scenes.drain(..self.scenes.len().saturating_sub(1));
+        self.places.clear();
     }
 
-    fn start(&mut self, wake: &Wake) {
-        let Some(map) = self.map.as_ref().filter(|map| !map.is_whole()) else { return };
-        let (sweep, levels) = (Arc::clone(&map.sweep), Arc::clone(&map.levels));
-        let known: Vec<bool> = map.cells.iter().map(Option::is_some).collect();
-        let generation = self.generation;
-        self.begun = Some(WallClock::start());
-        self.task = Job::start(wake, move |cancel, each| {
-            let Some(pool) = pool() else { return };
-            let task = study::Task { tick: &|| (), cancel };
-            let mut begin = 0;
-            for end in levels.ends {
-                let missing = |index: &u64| !known[*index as usize];
-                let cells: Vec<u64> = levels.order[begin..end].iter().copied().filter(missing).collect();
-                begin = end;
-                if !sweep.run_cells(&pool, &task, &cells, &|index, cell| each((generation, index, cell))) {
-                    return;
-                }
-            }
-        });
+    /// Whether there is no scene but the present one.
+    pub fn is_clear(&self) -> bool {
+        self.scenes.len() < 2
+    }
+
+    /// Positions of the scenes on two fields, without repetitions; `None` on a field that a scene lacks.
+    fn places(&mut self, fields: [&str; 2]) -> &[[Option<f64>; 2]] {
+        if self.places.is_empty() || self.fields != fields {
+            let paths = fields.map(FieldPath::new);
+            let place = |scene: &Scene| paths.each_ref().map(|path| path.get(scene));
+            self.places = self.scenes.iter().map(place).collect();
+            self.places.dedup();
+            self.fields = fields.map(str::to_owned);
+        }
+        &self.places
     }
 }

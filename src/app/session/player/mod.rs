@@ -230,14 +230,3 @@ impl Player {
         self.watch.ended()
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_speed_suits_the_characteristic_time() {
-        // 3 Hz, 0.2 Hz, 40 Hz, 1 kHz
-        assert_eq!([0.333, 5.2, 0.025, 1e-3, 1e9].map(fitting_speed), [0.1, 1.0, 0.01, 1e-3, 1.0]);
-    }
-}

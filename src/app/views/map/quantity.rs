@@ -69,7 +69,7 @@ impl ColourScale {
         let (field, words) = (info.field(), info.words());
         let values = || {
             let read = |cell: &Cell| number(field?, words, cell.summary()?);
-            map.own_cells().filter_map(read)
+            map.known_cells().filter_map(read)
         };
         let (factor, unit) = info.unit(values());
         let (low, high) = values().fold((0.0_f64, 0.0_f64), |(low, high), value| {

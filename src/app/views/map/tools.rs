@@ -3,7 +3,7 @@
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::{self, Align2, ComboBox, Painter, PopupCloseBehavior, Rect, RichText, Ui, pos2, vec2};
 
-use crate::app::panels::best_stops;
+use crate::app::panels::controls;
 use crate::app::session::map::{Map, Mapping};
 use crate::app::ui::knob::refuse;
 use crate::app::ui::style::Style;
@@ -12,7 +12,7 @@ use crate::app::words::columns::{COLUMNS, ColumnInfo};
 use crate::scene::SweepAxis;
 
 use super::super::ViewContext;
-use super::super::axes::{field_ui, range_row_ui};
+use super::super::axes::{field_ui, range_id, range_row_ui};
 use super::super::memory::MapLook;
 use super::picture::{self, Picture, kinds};
 use super::quantity::Look;
@@ -109,7 +109,7 @@ fn axes_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     }
     ranges_ui(ui, context, &axes);
     trail_ui(ui, context);
-    best_stops::button_ui(ui, context.session, "Best stops");
+    controls::best_stops_ui(ui, context.session, "Best stops");
     if let Some((i, path)) = wanted {
         let mut chosen = axes;
         chosen[i] = context.session.map_axis(&path);
@@ -149,7 +149,7 @@ fn ranges_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axes: &[SweepAxis; 2]) 
             match context.session.map_problem(&wanted) {
                 None => context.session.map.choose(Some(wanted)),
                 Some((i, part, why)) => {
-                    refuse(ui, &format!("{}, {part}", ["across", "up"][i]), why);
+                    refuse(ui, range_id(["across", "up"][i], part), why);
                 }
             }
         }

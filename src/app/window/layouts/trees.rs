@@ -1,4 +1,4 @@
-//! Tiles of each layout.
+//! Tiles of each layout, and of a lesson: only its views.
 
 use eframe::egui;
 use egui_tiles::{Container, Linear, LinearDir, TileId, Tiles, Tree};
@@ -7,20 +7,79 @@ use crate::app::views::View;
 use crate::scene::Layout;
 
 /// Share of the width that the left column has in the layout Look: 590 of 1030 points.
-pub(super) const LEFT_SHARE: f32 = 590.0 / 1030.0;
+const LEFT_SHARE: f32 = 590.0 / 1030.0;
 /// Share of the height that the displacement has in the right column: 340 of 584 points.
 const DISPLACEMENT_SHARE: f32 = 340.0 / 584.0;
-
 /// Share of the width that the map has in the layout Map.
-pub(super) const MAP_SHARE: f32 = 640.0 / 1030.0;
-
+const MAP_SHARE: f32 = 640.0 / 1030.0;
 /// Share of the height that the mechanism has above the well.
-pub(super) const MECHANISM_SHARE: f32 = 0.4;
-
+const MECHANISM_SHARE: f32 = 0.4;
 /// Share of the width that the first column has in the layout Study.
 const STUDY_COLUMN: f32 = 0.34;
-/// Share of the width that the first of two groups has in a compact window.
-const COMPACT_SHARE: f32 = 0.5;
+/// Share of the width that views with legends have in a lesson in a compact window.
+const MUCH: f32 = 0.62;
+const HALF: f32 = 0.5;
+
+/// A part of a tree of tiles.
+enum Part {
+    Pane(View),
+    /// Views that share a place.
+    Tabs(Vec<View>),
+    /// Equal parts, one below another.
+    Rows(Vec<Part>),
+    /// Equal parts, side by side.
+    Columns(Vec<Part>),
+    /// Two parts, and the share of the first one.
+    Pair(LinearDir, f32, Box<[Part; 2]>),
+}
+
+use Part::{Columns, Pane, Rows, Tabs};
+
+impl Part {
+    fn insert(self, tiles: &mut Tiles<View>) -> TileId {
+        match self {
+            Pane(view) => tiles.insert_pane(view),
+            Tabs(views) => {
+                let panes = views.into_iter().map(|view| tiles.insert_pane(view)).collect();
+                tiles.insert_tab_tile(panes)
+            }
+            Rows(parts) => {
+                let rows = parts.into_iter().map(|part| part.insert(tiles)).collect();
+                tiles.insert_vertical_tile(rows)
+            }
+            Columns(parts) => {
+                let columns = parts.into_iter().map(|part| part.insert(tiles)).collect();
+                tiles.insert_horizontal_tile(columns)
+            }
+            Self::Pair(direction, share, parts) => {
+                let children = parts.map(|part| part.insert(tiles));
+                tiles.insert_container(Container::Linear(Linear::new_binary(direction, children, share)))
+            }
+        }
+    }
+}
+
+fn above(first: Part, second: Part, share: f32) -> Part {
+    Part::Pair(LinearDir::Vertical, share, Box::new([first, second]))
+}
+
+fn beside(first: Part, second: Part, share: f32) -> Part {
+    Part::Pair(LinearDir::Horizontal, share, Box::new([first, second]))
+}
+
+/// Two parts side by side with the given share of the first one, or any other number of equal parts.
+fn columns(parts: Vec<Part>, share: f32) -> Part {
+    match <[Part; 2]>::try_from(parts) {
+        Ok([first, second]) => beside(first, second, share),
+        Err(parts) => Columns(parts),
+    }
+}
+
+fn tree(id: &str, root: Part) -> Tree<View> {
+    let mut tiles = Tiles::default();
+    let root = root.insert(&mut tiles);
+    Tree::new(egui::Id::unique(id), root, tiles)
+}
 
 pub(super) fn views_of(layout: Layout) -> Vec<View> {
     let look = [View::Well, View::Mechanism, View::Displacement, View::BeforeNow];
@@ -43,107 +102,97 @@ pub(super) fn views_of(layout: Layout) -> Vec<View> {
 }
 
 pub(super) fn wide_tree(layout: Layout, large: bool) -> Tree<View> {
+    let mechanism_and_well = || above(Pane(View::Mechanism), Pane(View::Well), MECHANISM_SHARE);
+    let (displacement, card) = (Pane(View::Displacement), Pane(View::BeforeNow));
     match layout {
-        Layout::Look => look_tree(large),
-        Layout::Map => map_tree(),
-        Layout::Explore => explore_tree(),
-        Layout::Study => study_tree(large),
+        Layout::Look => {
+            let right = match large {
+                true => Rows(vec![displacement, Pane(View::PhasePortrait), card]),
+                false => above(displacement, card, DISPLACEMENT_SHARE),
+            };
+            tree("wide", beside(mechanism_and_well(), right, LEFT_SHARE))
+        }
+        // the map, with the well and the card beside it
+        Layout::Map => {
+            let right = above(Pane(View::Well), card, DISPLACEMENT_SHARE);
+            tree("map", beside(Pane(View::Map), right, MAP_SHARE))
+        }
+        // the views of studies, with the motion beside them
+        Layout::Explore => {
+            let studies = Tabs(vec![View::UpAndDown, View::Basins, View::Spectrum]);
+            let motion = Tabs(vec![View::PhasePortrait, View::Displacement]);
+            tree("explore", beside(studies, above(Pane(View::Well), motion, 0.45), MAP_SHARE))
+        }
+        // views along the displacement in two columns, the others in a third
+        Layout::Study => {
+            let middle = Rows(vec![Pane(View::PhasePortrait), Pane(View::ForceCurve)]);
+            let right = match large {
+                true => Rows(vec![displacement, Pane(View::Energy), card]),
+                false => Rows(vec![displacement, Tabs(vec![View::Energy, View::BeforeNow])]),
+            };
+            tree("wide", beside(mechanism_and_well(), beside(middle, right, HALF), STUDY_COLUMN))
+        }
     }
-}
-
-fn look_tree(large: bool) -> Tree<View> {
-    let mut tiles = Tiles::default();
-    let mut pane = |view| tiles.insert_pane(view);
-    let (mechanism, well) = (pane(View::Mechanism), pane(View::Well));
-    let (displacement, card) = (pane(View::Displacement), pane(View::BeforeNow));
-    let phase = large.then(|| pane(View::PhasePortrait));
-    let left = pair(&mut tiles, LinearDir::Vertical, mechanism, well, MECHANISM_SHARE);
-    let right = match phase {
-        Some(phase) => tiles.insert_vertical_tile(vec![displacement, phase, card]),
-        None => pair(&mut tiles, LinearDir::Vertical, displacement, card, DISPLACEMENT_SHARE),
-    };
-    let root = pair(&mut tiles, LinearDir::Horizontal, left, right, LEFT_SHARE);
-    Tree::new(egui::Id::unique("wide"), root, tiles)
-}
-
-/// Views along the displacement in two columns, the others in a third.
-fn study_tree(large: bool) -> Tree<View> {
-    let mut tiles = Tiles::default();
-    let mut pane = |view| tiles.insert_pane(view);
-    let (mechanism, well) = (pane(View::Mechanism), pane(View::Well));
-    let (phase, force) = (pane(View::PhasePortrait), pane(View::ForceCurve));
-    let (displacement, energy, card) = (pane(View::Displacement), pane(View::Energy), pane(View::BeforeNow));
-    let left = pair(&mut tiles, LinearDir::Vertical, mechanism, well, MECHANISM_SHARE);
-    let middle = tiles.insert_vertical_tile(vec![phase, force]);
-    let right = if large {
-        tiles.insert_vertical_tile(vec![displacement, energy, card])
-    } else {
-        let tabs = tiles.insert_tab_tile(vec![energy, card]);
-        tiles.insert_vertical_tile(vec![displacement, tabs])
-    };
-    let others = pair(&mut tiles, LinearDir::Horizontal, middle, right, 0.5);
-    let root = pair(&mut tiles, LinearDir::Horizontal, left, others, STUDY_COLUMN);
-    Tree::new(egui::Id::unique("wide"), root, tiles)
 }
 
 /// Two groups of tabs: the views along the displacement except the mechanism, and the mechanism with the
 /// other views.
 pub(super) fn compact_tree(views: &[View]) -> Tree<View> {
-    let mut tiles = Tiles::default();
     let is_first = |view: &&View| view.is_along_x() && **view != View::Mechanism;
     let (along, others): (Vec<View>, Vec<View>) = views.iter().partition(is_first);
-    let mut groups: Vec<TileId> = Vec::new();
-    for group in [along, others] {
-        let panes: Vec<TileId> = group.into_iter().map(|view| tiles.insert_pane(view)).collect();
-        if !panes.is_empty() {
-            groups.push(tiles.insert_tab_tile(panes));
-        }
-    }
-    let root = match groups[..] {
-        [left, right] => pair(&mut tiles, LinearDir::Horizontal, left, right, COMPACT_SHARE),
-        _ => tiles.insert_horizontal_tile(groups),
-    };
-    Tree::new(egui::Id::unique("compact"), root, tiles)
+    let groups = [along, others].into_iter().filter(|group| !group.is_empty());
+    tree("compact", columns(groups.map(Tabs).collect(), HALF))
 }
 
 /// One view at a time over the whole width.
 pub(super) fn tabs_tree(views: &[View]) -> Tree<View> {
-    let mut tiles = Tiles::default();
-    let panes = views.iter().map(|view| tiles.insert_pane(*view)).collect();
-    let root = tiles.insert_tab_tile(panes);
-    Tree::new(egui::Id::unique("compact map"), root, tiles)
+    tree("compact map", Tabs(views.to_vec()))
 }
 
-/// The map, with the well and the card beside it.
-fn map_tree() -> Tree<View> {
-    let mut tiles = Tiles::default();
-    let mut pane = |view| tiles.insert_pane(view);
-    let (map, well, card) = (pane(View::Map), pane(View::Well), pane(View::BeforeNow));
-    let right = pair(&mut tiles, LinearDir::Vertical, well, card, DISPLACEMENT_SHARE);
-    let root = pair(&mut tiles, LinearDir::Horizontal, map, right, MAP_SHARE);
-    Tree::new(egui::Id::unique("map"), root, tiles)
+/// Whether a view has legends that need room.
+fn is_wide(view: View) -> bool {
+    matches!(view, View::Map | View::UpAndDown | View::Basins | View::Spectrum)
 }
 
-/// The views of studies, with the motion beside them.
-fn explore_tree() -> Tree<View> {
-    let mut tiles = Tiles::default();
-    let mut pane = |view| tiles.insert_pane(view);
-    let studies = [View::UpAndDown, View::Basins, View::Spectrum].map(&mut pane);
-    let (well, phase, displacement) = (pane(View::Well), pane(View::PhasePortrait), pane(View::Displacement));
-    let studies = tiles.insert_tab_tile(studies.to_vec());
-    let tabs = tiles.insert_tab_tile(vec![phase, displacement]);
-    let right = pair(&mut tiles, LinearDir::Vertical, well, tabs, 0.45);
-    let root = pair(&mut tiles, LinearDir::Horizontal, studies, right, MAP_SHARE);
-    Tree::new(egui::Id::unique("explore"), root, tiles)
+/// The tiles of a lesson with these views. The left column has the views along the displacement, with the
+/// mechanism on top; if there are views with legends, such as a map, it has only these.
+pub(super) fn lesson_tree(views: &[View]) -> Tree<View> {
+    let has_wide = views.iter().any(|view| is_wide(*view));
+    let is_left = |view: &&View| if has_wide { is_wide(**view) } else { view.is_along_x() };
+    let (mut left, mut right): (Vec<View>, Vec<View>) = views.iter().partition(is_left);
+    left.sort_by_key(|view| *view != View::Mechanism);
+    if left.is_empty() {
+        std::mem::swap(&mut left, &mut right);
+    }
+    // two views are side by side, except that the mechanism is above a view with the same axis
+    if right.is_empty() && left.len() == 2 && left[0] != View::Mechanism {
+        right = left.split_off(1);
+    }
+    let share = if left.iter().any(|view| is_wide(*view)) { MAP_SHARE } else { LEFT_SHARE };
+    let sides = [left, right].into_iter().filter(|views| !views.is_empty());
+    tree("lesson", columns(sides.map(|views| column(&views)).collect(), share))
 }
 
-pub(super) fn pair(
-    tiles: &mut Tiles<View>,
-    direction: LinearDir,
-    first: TileId,
-    second: TileId,
-    share: f32,
-) -> TileId {
-    let linear = Linear::new_binary(direction, [first, second], share);
-    tiles.insert_container(Container::Linear(linear))
+/// Views one below another. The mechanism, if it is the first of two, gets less than half of the height.
+fn column(views: &[View]) -> Part {
+    match views {
+        [View::Mechanism, second] => above(Pane(View::Mechanism), Pane(*second), MECHANISM_SHARE),
+        [one] => Pane(*one),
+        _ => Rows(views.iter().copied().map(Pane).collect()),
+    }
+}
+
+/// The tiles of a lesson in a compact window: its views side by side; the third and later ones share tabs if
+/// there are more than three. Beside views with legends all others share tabs.
+pub(super) fn compact_lesson_tree(views: &[View]) -> Tree<View> {
+    let (wide, others): (Vec<View>, Vec<View>) = views.iter().partition(|view| is_wide(**view));
+    let root = match views {
+        _ if !wide.is_empty() && !others.is_empty() => beside(Tabs(wide), Tabs(others), MUCH),
+        [one] => Pane(*one),
+        [left, middle, rest @ ..] if rest.len() > 1 => {
+            Columns(vec![Pane(*left), Pane(*middle), Tabs(rest.to_vec())])
+        }
+        _ => columns(views.iter().copied().map(Pane).collect(), HALF),
+    };
+    tree("compact lesson", root)
 }

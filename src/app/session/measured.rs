@@ -1,16 +1,13 @@
 //! Measured data over computed results: the record, its placement, and the differences between the two.
 
-mod of_session;
-
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
-use crate::app::task::Latest;
+use crate::app::task::{Background, Identity};
 use crate::dynamics::Model;
 use crate::numeric::{extent, short};
 use crate::scene::{Channel, Measured, MeasuredText, Quantity, Scene, Timing, Unit};
-use crate::study::{Comparison, ForceComparison};
-
-use super::explore::Explored;
+use crate::study::{Comparison, ForceComparison, MeasuredMotion, NoComparison, compare, compare_force};
 
 /// A measured record with its two chosen columns.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,7 +72,7 @@ impl MeasuredRecord {
 /// A record over computed results, and how it is shifted and stretched in time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Overlay {
-    pub record: Arc<MeasuredRecord>,
+    pub record: Identity<MeasuredRecord>,
     /// Offset in m that is added to displacements or positions.
     pub offset: f64,
     /// Factor of the times.
@@ -99,19 +96,37 @@ impl Overlay {
 }
 
 /// A record, and the scene and model that it is compared with.
-#[derive(Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct MeasuredQuestion {
-    model: Arc<Model>,
-    scene: Arc<Scene>,
-    over: Overlay,
+    pub(super) model: Identity<Model>,
+    pub(super) scene: Scene,
+    pub(super) over: Overlay,
 }
 
-impl PartialEq for MeasuredQuestion {
-    fn eq(&self, other: &Self) -> bool {
-        let placement = |over: &Overlay| (over.shift, over.time_scale, over.offset);
-        Arc::ptr_eq(&self.model, &other.model)
-            && Arc::ptr_eq(&self.over.record, &other.over.record)
-            && placement(&self.over) == placement(&other.over)
+impl MeasuredQuestion {
+    /// The differences with a given shift, or with the best one; `None` if cancelled.
+    pub(super) fn differences(
+        &self,
+        shift: Option<f64>,
+        cancel: &AtomicBool,
+    ) -> Option<Result<Differences, String>> {
+        let Self { model, scene, over } = self;
+        let (across, channel) = (&over.record.across.values, &over.record.values);
+        if channel.quantity == Quantity::Force {
+            let positions: Vec<f64> = across.iter().map(|x| x + over.offset).collect();
+            let found = compare_force(model.mechanism(), &positions, &channel.values);
+            return Some(match found {
+                Ok(found) => Ok(Differences::Force(Box::new(found))),
+                Err(problem) => Err(sentence(&problem.to_string())),
+            });
+        }
+        let (offset, time_scale) = (over.added(), over.time_scale);
+        let motion = MeasuredMotion { times: across, channel, offset, time_scale, shift };
+        match compare(scene, model, &motion, cancel) {
+            Ok(found) => Some(Ok(Differences::Motion(Box::new(found)))),
+            Err(NoComparison::Cancelled) => None,
+            Err(problem) => Some(Err(sentence(&problem.to_string()))),
+        }
     }
 }
 
@@ -127,9 +142,9 @@ pub struct MeasuredData {
     /// The record that is shown over the computed results.
     pub over: Option<Overlay>,
     /// The differences, or why they are not known.
-    pub found: Explored<MeasuredQuestion, Result<Differences, String>>,
+    pub found: Background<MeasuredQuestion, Result<Differences, String>>,
     /// The shift in s that fits best, or why there is none.
-    fit: Latest<Result<f64, String>>,
+    pub(super) fit: Background<MeasuredQuestion, Result<f64, String>>,
     /// Why no shift was found.
     pub no_fit: Option<String>,
 }
@@ -137,7 +152,7 @@ pub struct MeasuredData {
 impl MeasuredData {
     /// Shows a record over the computed results, in place of the previous one.
     pub fn lay(&mut self, record: MeasuredRecord) {
-        let record = Arc::new(record);
+        let record = Identity(Arc::new(record));
         let over = Overlay { record, offset: 0.0, time_scale: 1.0, shift: 0.0, centre: 0.0 };
         *self = Self { over: Some(over), ..Self::default() };
     }
@@ -167,6 +182,7 @@ impl MeasuredData {
     }
 }
 
+/// A clause as a sentence.
 pub fn sentence(clause: &str) -> String {
     let mut letters = clause.chars();
     let first = letters.next().map(|letter| letter.to_uppercase().to_string()).unwrap_or_default();

@@ -1,18 +1,16 @@
 //! Pinned motions: each continues with its own scene, at the same live time and drive phase as the session's.
 
-mod of_session;
-
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::app::task::{Latest, Wake};
+use crate::app::task::{Background, Identity, Wake};
 use crate::dynamics::{Model, Outcome, Sample, Summary};
 use crate::scene::Scene;
 use crate::study::{self, Watch};
 use crate::system::clock::WallClock;
 
 /// Names of the pinned motions; as many can be pinned at a time.
-const LETTERS: [char; 3] = ['A', 'B', 'C'];
+pub(super) const LETTERS: [char; 3] = ['A', 'B', 'C'];
 
 /// Computing time that one frame spends to bring a pinned motion up to the present.
 const FRAME_SHARE: Duration = Duration::from_millis(4);
@@ -29,17 +27,17 @@ pub enum PinKind {
 }
 
 pub struct Pin {
-    letter: char,
-    kind: PinKind,
-    scene: Scene,
-    model: Arc<Model>,
-    watch: Watch,
+    pub(super) letter: char,
+    pub(super) kind: PinKind,
+    pub(super) scene: Scene,
+    pub(super) model: Arc<Model>,
+    pub(super) watch: Watch,
     /// Live time in s from which on it is computed separately.
-    since: f64,
+    pub(super) since: f64,
     /// What it settles to, if that was known when it was pinned.
-    known: Option<Summary>,
+    pub(super) known: Option<Summary>,
     /// What it settles to, if it had to be asked.
-    settled: Latest<Summary>,
+    pub(super) settled: Background<Identity<Model>, Summary>,
 }
 
 impl Pin {
@@ -82,13 +80,14 @@ impl Pin {
 
     /// What it settles to; `None` until it is known.
     pub fn settled(&self) -> Option<&Summary> {
-        self.known.as_ref().or(self.settled.current())
+        self.known.as_ref().or(self.settled.answer())
     }
 
-    fn ask(&mut self, wake: &Wake) {
+    pub(super) fn ask(&mut self, wake: &Wake) {
         let model = self.watch.from_here().unwrap_or_else(|| (*self.model).clone());
         self.known = None;
-        self.settled.ask(wake, move |cancel| study::settled(&model, cancel));
+        let model = Identity(Arc::new(model));
+        self.settled.ask(model, wake, |model, cancel, _| study::settled(model, cancel));
     }
 
     fn is_behind(&self, t: f64) -> bool {
@@ -96,7 +95,7 @@ impl Pin {
     }
 
     /// Continues to the live time `to` in s, or as far as a frame's share of computing time allows.
-    fn follow(&mut self, to: f64) {
+    pub(super) fn follow(&mut self, to: f64) {
         let begun = WallClock::start();
         let stretch = CHECK_INTERVAL * self.model.characteristic_time();
         while self.is_behind(to) {
@@ -111,7 +110,7 @@ impl Pin {
 
 #[derive(Default)]
 pub struct Pins {
-    all: Vec<Pin>,
+    pub(super) all: Vec<Pin>,
 }
 
 impl Pins {
@@ -139,7 +138,7 @@ impl Pins {
         self.all.retain(|pin| pin.letter != letter);
     }
 
-    fn free_letter(&self) -> Option<char> {
+    pub(super) fn free_letter(&self) -> Option<char> {
         LETTERS.into_iter().find(|letter| self.get(*letter).is_none())
     }
 
@@ -165,6 +164,6 @@ impl Pins {
 
     /// Stops the computations of what the pins settle to.
     pub(super) fn stop_working(&mut self) {
-        self.all.iter_mut().for_each(|pin| pin.settled.stop());
+        self.all.iter_mut().for_each(|pin| pin.settled.pause());
     }
 }

@@ -1,11 +1,9 @@
 //! Background search for the best stops of the open scene, with a coarse scan first.
 
-mod of_session;
-
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::app::task::{Job, Wake, pool};
+use crate::app::task::{Background, Wake, pool};
 use crate::app::words::best_stops::{Found, sentence};
 use crate::scene::{Files, Scene};
 use crate::study::{
@@ -16,7 +14,7 @@ use crate::study::{
 pub const LIMIT: &str = "stops.travel_limit_mm";
 
 /// A part of the answer of a search.
-enum Part {
+pub(super) enum Part {
     /// The optimum of the coarse scan.
     Preview(Optimum),
     /// The answer, or why there is none.
@@ -25,24 +23,22 @@ enum Part {
 
 /// A search: the scene, from rest with its least travel limit, and the range of travel limits.
 #[derive(Debug, Clone, PartialEq)]
-struct Search {
-    scene: Scene,
-    range: DesignRange,
-    column: &'static str,
+pub(super) struct Search {
+    pub scene: Scene,
+    pub range: DesignRange,
+    pub column: &'static str,
     /// Length of a run in s under a drive that does not repeat.
-    duration_s: Option<f64>,
+    pub duration_s: Option<f64>,
 }
 
 /// The search for the best stops, and its result. Both are dropped when the scene changes.
 #[derive(Default)]
 pub struct BestStops {
-    search: Option<Search>,
-    job: Option<Job<Part>>,
+    pub(super) search: Background<Search, Part>,
+    /// Number of runs that the search has made.
     runs: Arc<AtomicU64>,
-    preview: Option<Optimum>,
-    answer: Option<Result<BestDesign, NoBest>>,
     /// Why there can be no search.
-    refusal: Option<&'static str>,
+    pub(super) refusal: Option<&'static str>,
     /// Whether the search is not offered, as its result may be the answer of a lesson.
     pub is_off: bool,
 }
@@ -50,12 +46,12 @@ pub struct BestStops {
 impl BestStops {
     /// Whether there is anything to say.
     pub fn is_shown(&self) -> bool {
-        self.search.is_some() || self.refusal.is_some()
+        self.search.question().is_some() || self.refusal.is_some()
     }
 
     /// Whether the search is running.
     pub fn is_running(&self) -> bool {
-        self.job.is_some()
+        self.search.is_running()
     }
 
     /// Ends the search and forgets its result.
@@ -65,10 +61,10 @@ impl BestStops {
 
     /// The best travel limit in mm so far, at first that of the coarse scan; `None` if no limit stands out.
     pub fn limit_mm(&self) -> Option<f64> {
-        match &self.answer {
-            Some(Ok(design)) => (!design.flat).then(|| design.optimum.at[0]),
-            Some(Err(_)) => None,
-            None => self.preview.as_ref().filter(|best| best.value != 0.0).map(|best| best.at[0]),
+        match self.search.answer()? {
+            Part::Whole(Ok(design)) => (!design.flat).then(|| design.optimum.at[0]),
+            Part::Whole(Err(_)) => None,
+            Part::Preview(best) => (best.value != 0.0).then(|| best.at[0]),
         }
     }
 
@@ -77,41 +73,24 @@ impl BestStops {
         if let Some(why) = self.refusal {
             return why.to_owned();
         }
-        let Some(search) = &self.search else { return String::new() };
-        let found = match (&self.answer, &self.preview) {
-            (Some(answer), _) => Found::Whole(answer),
-            (None, preview) if self.job.is_some() => {
-                Found::Searching(self.runs.load(Ordering::Relaxed), preview.as_ref())
-            }
-            (None, _) => Found::Nothing,
+        let Some(search) = self.search.question() else { return String::new() };
+        let runs = self.runs.load(Ordering::Relaxed);
+        let found = match self.search.answer() {
+            Some(Part::Whole(answer)) => Found::Whole(answer),
+            _ if !self.is_running() => Found::Nothing,
+            Some(Part::Preview(optimum)) => Found::Searching(runs, Some(optimum)),
+            None => Found::Searching(runs, None),
         };
         sentence(&found, search.column, &search.range, search.duration_s)
     }
 
-    pub(super) fn poll(&mut self) {
-        let Some(job) = &self.job else { return };
-        let (mut preview, mut answer) = (None, None);
-        let more = job.take(|part| match part {
-            Part::Preview(optimum) => preview = Some(optimum),
-            Part::Whole(result) => answer = Some(result),
-        });
-        self.preview = preview.or(self.preview.take());
-        self.answer = answer.or(self.answer.take());
-        if !more {
-            self.job = None;
-        }
-    }
-
-    fn start(&mut self, search: Search, files: Files, wake: &Wake) {
-        self.close();
-        let (runs, Search { scene, range, column, .. }) = (Arc::clone(&self.runs), search.clone());
-        self.job = Job::start(wake, move |cancel, each| {
-            let Some(maximise) = SummaryField::find(column) else { return };
-            let Some(pool) = pool() else { return };
-            let environment = Environment { name: String::new(), weight: 1.0, scene, files };
+    pub(super) fn start(&mut self, search: Search, files: Files, wake: &Wake) {
+        let runs = Arc::clone(&self.runs);
+        self.search.ask(search, wake, move |Search { scene, range, column, .. }, cancel, each| {
+            let environment = Environment { name: String::new(), weight: 1.0, scene: scene.clone(), files };
             let question = BestQuestion {
-                over: vec![range],
-                maximise,
+                over: vec![range.clone()],
+                maximise: SummaryField::find(column)?,
                 subject_to: Vec::new(),
                 environments: vec![environment],
                 vary: Vec::new(),
@@ -122,11 +101,10 @@ impl BestStops {
                 runs.fetch_add(1, Ordering::Relaxed);
             };
             let task = Task { tick: &tick, cancel };
-            let found = best(&question, &pool, &task, &mut |optimum| each(Part::Preview(optimum.clone())));
-            if !matches!(found, Err(NoBest::Cancelled)) {
-                each(Part::Whole(found));
+            match best(&question, &pool()?, &task, &mut |optimum| each(Part::Preview(optimum.clone()))) {
+                Err(NoBest::Cancelled) => None,
+                found => Some(Part::Whole(found)),
             }
         });
-        self.search = Some(search);
     }
 }
