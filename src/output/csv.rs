@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::ops::Range;
 
-use super::number::push_number;
+use crate::numeric::push_number;
 use crate::study::{Table, Values};
 
 /// The header row of `table`.

@@ -1,8 +1,8 @@
 //! Assignment of arguments to fields: numbers, texts, and choices in RON.
 
 use super::clip::clip;
+use super::field_table::FieldInfo;
 use super::fields::{Field, Slot};
-use super::ranges::Spec;
 use super::scanner::overflows;
 use super::text::{self, ParseError, TOO_LARGE};
 
@@ -47,7 +47,7 @@ fn parse_number(text: &str) -> Option<f64> {
 }
 
 /// Returns `read` unless the text `value` is a decimal that overflows to infinity.
-fn unless_overflow<T>(read: T, value: &str, spec: &Spec) -> Result<T, String> {
+fn unless_overflow<T>(read: T, value: &str, spec: &FieldInfo) -> Result<T, String> {
     match overflows(value) {
         true => Err(format!("`{}` {TOO_LARGE}; {}", clip(value), spec.remedy)),
         false => Ok(read),
@@ -55,7 +55,7 @@ fn unless_overflow<T>(read: T, value: &str, spec: &Spec) -> Result<T, String> {
 }
 
 /// The sentence for a text that is not a number; `what` says what is wrong.
-fn no_number(value: &str, what: &str, spec: &Spec) -> String {
+fn no_number(value: &str, what: &str, spec: &FieldInfo) -> String {
     let digits = value.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
     let unit = digits && value.ends_with(|c: char| c.is_alphabetic() || c == '%');
     let unit = if unit { ": its unit stands in the name of the field" } else { "" };

@@ -4,9 +4,9 @@
 //! number takes about ten string comparisons and no allocation, which matters for a sweep of a million cells.
 
 use super::data::Scene;
-use super::ranges::number_text;
 pub(super) use super::walk::{Field, Slot};
-use super::walk::{Segment, Visitor, walk};
+use super::walk::{Fields, Segment, Visitor};
+use crate::numeric::number_text;
 
 /// Calls `each` for every field with its path, in the order in which a scene is written.
 pub(super) fn for_each(scene: &mut Scene, each: impl FnMut(&str, Field<'_>)) {
@@ -32,7 +32,7 @@ pub(super) fn for_each(scene: &mut Scene, each: impl FnMut(&str, Field<'_>)) {
             self.path.truncate(self.lengths.pop().unwrap_or(0));
         }
     }
-    walk(scene, &mut Each { path: String::new(), lengths: Vec::new(), each });
+    scene.visit_fields(&mut Each { path: String::new(), lengths: Vec::new(), each });
 }
 
 /// Whether every number of a scene is within its range; no path is written for that.
@@ -48,7 +48,7 @@ pub(super) fn in_range(scene: &mut Scene) -> bool {
         fn leave(&mut self) {}
     }
     let mut all = InRange(true);
-    walk(scene, &mut all);
+    scene.visit_fields(&mut all);
     all.0
 }
 
@@ -147,7 +147,7 @@ impl FieldPath {
             }
         }
         let mut seek = Seek { steps: &self.steps, depth: 0, found: Some(found), result: None };
-        walk(scene, &mut seek);
+        scene.visit_fields(&mut seek);
         seek.result
     }
 }

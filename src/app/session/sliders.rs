@@ -1,13 +1,13 @@
 //! Ranges of the sliders, derived from the scales of the scene.
 
-use crate::app::words::fields::{FieldInfo, Reach, Scale};
+use crate::app::words::fields::Reach;
 use crate::app::words::numbers::{below, decimal, round_up};
 use crate::dynamics::STANDARD_GRAVITY;
-use crate::scene::{FieldPath, Mechanism, Stops};
+use crate::scene::{Control, FieldPath, Mechanism, Scale, Stops};
 
 use super::Session;
 
-impl FieldInfo {
+impl Control {
     /// The range of the slider in a scene: that for the prototype if it suits the scales of the scene, else
     /// one that is derived from them.
     pub fn reach(&self, session: &Session) -> Reach {
@@ -80,7 +80,8 @@ mod tests {
 
     use super::*;
     use crate::app::session::editor::Editor;
-    use crate::app::words::fields::{FIELDS, info};
+    use crate::app::words::fields::info;
+    use crate::scene::FIELDS;
 
     fn session(preset: &str) -> Session {
         Session::new(Editor::open(preset).unwrap(), Arc::new(|| ())).unwrap()
@@ -99,7 +100,7 @@ mod tests {
         // every number is at a position that its slider can reach
         for preset in crate::scene::PRESETS {
             let session = session(preset.name);
-            for field in FIELDS {
+            for field in FIELDS.iter().filter_map(|field| field.control.as_ref()) {
                 let (reach, value) = (field.reach(&session), FieldPath::new(field.path).get(session.scene()));
                 assert!(reach.low < reach.high && reach.step > 0.0, "{}: {reach:?}", field.path);
                 let Some(value) = value else { continue };

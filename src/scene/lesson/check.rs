@@ -3,12 +3,12 @@
 use super::condition::Condition;
 use super::stage::Stage;
 use super::{LESSON_FORMAT, Lesson, MAX_OPTION_LENGTH, MAX_STEP_LENGTH, Step};
+use crate::numeric::number_text;
 use crate::scene::axis::Axis;
 use crate::scene::check::check;
 use crate::scene::data::{Excitation, Scene};
 use crate::scene::error::Fault;
 use crate::scene::fields::{all_fields, numeric_fields};
-use crate::scene::ranges::number_text;
 
 /// A field of a summary that a lesson may name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -81,10 +81,7 @@ impl LessonDocument {
         let mut lesson = match check_not_empty(text).and_then(|()| parse(text)) {
             Ok(lesson) => lesson,
             Err(parse_error) => {
-                let rest = |text: &str| {
-                    let checked = Self::from_text(name, text, folder, results);
-                    checked.err().map(|error| error.to_string()).unwrap_or_default()
-                };
+                let rest = |text: &str| Self::from_text(name, text, folder, results).err();
                 return Err(structure_error(name, text, parse_error, |text| parse(text).err(), rest).into());
             }
         };
