@@ -78,7 +78,7 @@ pub use exponents::{
     drive_fault, exponents, exponents_row,
 };
 pub use family::Family;
-pub use fields::{Read, SUMMARY_FIELDS, SummaryField};
+pub use fields::{InJson, RMS_VELOCITY, Read, SUMMARY_FIELDS, SummaryField};
 pub use flexures::{StatesError, flexures_at, full_curve, shapes, states, stress_warning};
 pub use grid::{Grid, GridError, MAX_CELLS};
 pub use identify::{

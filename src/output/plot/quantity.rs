@@ -2,20 +2,16 @@
 
 use super::axis::PlotAxis;
 use super::style::{self, Ink, Theme};
-use crate::study::{Grid, Table, Values};
+use crate::study::{Grid, RMS_VELOCITY, SummaryField, Table, Values};
 
 /// The column that is shown where none is named.
-pub const RMS: &str = "rms_velocity_m_per_s";
+pub const RMS: &str = RMS_VELOCITY.name;
 
-/// The columns of words, with all words that they can have, in the order of their colours.
-const WORDS: [(&str, &[&str]); 5] = [
-    ("regime", &["rest", "intrawell", "irregular", "interwell"]),
-    ("side", &["left", "right", "both"]),
-    ("settled", &["true", "false"]),
-    ("steady", &["true", "false"]),
-    (
-        "outcome",
-        &[
+/// The words that the column called `name` can have, in the order of their colours; none where it has numbers.
+pub fn words_of(name: &str) -> Option<&'static [&'static str]> {
+    let words: &[&str] = match name {
+        "regime" => &["rest", "intrawell", "irregular", "interwell"],
+        "outcome" => &[
             "done",
             "inaccurate",
             "left_table",
@@ -25,12 +21,9 @@ const WORDS: [(&str, &[&str]); 5] = [
             "cancelled",
             "not_converged",
         ],
-    ),
-];
-
-/// The words that the column called `name` can have; none where it has numbers.
-pub fn words_of(name: &str) -> Option<&'static [&'static str]> {
-    WORDS.iter().find(|column| column.0 == name).map(|column| column.1)
+        _ => SummaryField::find(name)?.words,
+    };
+    Some(words).filter(|words| !words.is_empty())
 }
 
 /// A column to show.

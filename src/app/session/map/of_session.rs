@@ -62,7 +62,7 @@ impl Session {
         let same =
             self.map.map.as_ref().filter(|map| map.question.scene == scene && map.question.axes == axes);
         // runs with an energy ledger have all columns of runs without one
-        let needed = || quantity.field().filter(|field| field.needs_ledger).map(|_| quantity.column);
+        let needed = || quantity.needs_ledger.then_some(quantity.name);
         let ledger = same.and_then(|map| map.question.ledger).or_else(needed);
         let waits = self.map.ask(Question { scene, axes, ledger }, &self.editor, in_gesture, time, &wake);
         let mechanism = Arc::clone(self.model().mechanism());

@@ -60,7 +60,7 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let quantity = context.session.map.quantity();
     let id = ui.scope_id().with("picture");
     let old = ui.data(|data| data.get_temp::<Option<Drawings>>(id)).flatten();
-    let key = (context.session.map.version(), quantity.column, style, current);
+    let key = (context.session.map.version(), quantity.name, style, current);
     let (old, mut surface) = old.map_or((None, None), |old| (Some(old.picture), old.surface));
     let mut picture = Picture::of(ui, old, map, quantity, key);
     surface = surface.filter(|_| !picture.is_new());
