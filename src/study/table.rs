@@ -72,19 +72,25 @@ pub struct Column {
     pub values: Values,
 }
 
+/// The name of a column or field as a person writes it, without its unit: `travel limit` and `mm`. The unit is
+/// read off the end of the name; it is empty for a pure number, a count or a word.
+pub fn label_and_unit(name: &str) -> (String, &'static str) {
+    let (ending, unit) = unit_ending(name).unwrap_or_default();
+    let words = name.strip_suffix(ending).unwrap_or(name).replace(['_', '.'], " ");
+    // The one name that is a letter.
+    let words = if words == "xi" { "damping ratio".to_owned() } else { words };
+    (words, unit)
+}
+
 impl Column {
-    /// The unit as a person writes it, read off the end of the name; empty for a pure number, a
-    /// count or a word. The rule that every name carries its unit is what makes this possible.
+    /// The unit as a person writes it; see [`label_and_unit`].
     pub fn unit(&self) -> &'static str {
-        unit_ending(&self.name).map_or("", |(_, unit)| unit)
+        label_and_unit(&self.name).1
     }
 
     /// The name as a person writes it, with the unit: `travel limit, mm`.
     pub fn label(&self) -> String {
-        let (ending, unit) = unit_ending(&self.name).unwrap_or_default();
-        let words = self.name.strip_suffix(ending).unwrap_or(&self.name).replace(['_', '.'], " ");
-        // The one name that is a letter.
-        let words = if words == "xi" { "damping ratio".to_owned() } else { words };
+        let (words, unit) = label_and_unit(&self.name);
         if unit.is_empty() { words } else { format!("{words}, {unit}") }
     }
 }
@@ -194,8 +200,7 @@ mod tests {
             ("restitution", ""),
             ("crossings", ""),
         ] {
-            let column = Column { name: name.into(), values: Values::Words(Vec::new()) };
-            assert_eq!(column.unit(), unit, "{name}");
+            assert_eq!(label_and_unit(name).1, unit, "{name}");
         }
     }
 }

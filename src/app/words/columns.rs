@@ -1,8 +1,9 @@
 //! The columns of a summary on the screen: their groups, titles, units and words.
 
+use crate::app::words::capital;
 use crate::app::words::numbers::power_unit;
 use crate::output::{RMS, speed_unit, words_of};
-use crate::study::{Column, Read, SummaryField, Values};
+use crate::study::{Read, SummaryField, label_and_unit};
 
 /// The columns that are offered, in groups.
 #[rustfmt::skip]
@@ -34,8 +35,7 @@ pub const COLUMNS: [(&str, &[&str]); 7] = [
 impl SummaryField {
     /// Its label with an initial capital, for a heading.
     pub fn title(&self) -> String {
-        let mut letters = self.label.chars();
-        letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+        capital(self.label)
     }
 
     /// The words that can be its values, in order; `None` for a numeric column.
@@ -45,8 +45,7 @@ impl SummaryField {
 
     /// The factor from the unit in files to the unit that suits `values`, and the name of that unit.
     pub fn unit(&self, values: impl Iterator<Item = f64>) -> (f64, &'static str) {
-        let column = Column { name: self.name.to_owned(), values: Values::Words(Vec::new()) };
-        match column.unit() {
+        match label_and_unit(self.name).1 {
             "m" => (1e3, "mm"),
             "m/s" => speed_unit(values),
             "J" => (1e3, "mJ"),

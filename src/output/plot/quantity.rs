@@ -2,7 +2,7 @@
 
 use super::axis::PlotAxis;
 use super::style::{self, Ink, Theme};
-use crate::study::{Grid, RMS_VELOCITY, SummaryField, Table, Values};
+use crate::study::{Grid, RMS_VELOCITY, SummaryField, Table, Values, label_and_unit};
 
 /// The column that is shown where none is named.
 pub const RMS: &str = RMS_VELOCITY.name;
@@ -69,18 +69,18 @@ impl Quantity {
             None => Vec::new(),
         };
         let greatest = values.iter().filter(|v| v.is_finite()).fold(0.0_f64, |a, b| a.max(b.abs()));
-        let label = column.map_or_else(|| name.to_owned(), |column| column.label());
-        let words = label.split_once(", ").map_or(label.as_str(), |parts| parts.0);
+        let (words, unit) =
+            column.map_or_else(|| (name.to_owned(), ""), |column| label_and_unit(&column.name));
         let words = match name {
             RMS => "RMS velocity",
             "max_abs_x_m" => "largest |x|",
-            _ => words,
+            _ => words.as_str(),
         };
         // Small lengths and speeds are short numbers in thousandths.
-        let (scale, label) = match column.map(|column| column.unit()) {
-            Some(unit @ ("m" | "m/s")) if greatest < 2.0 => (1e3, format!("{words}, m{unit}")),
-            Some(unit) if !unit.is_empty() => (1.0, format!("{words}, {unit}")),
-            _ => (1.0, words.to_owned()),
+        let (scale, label) = match unit {
+            "m" | "m/s" if greatest < 2.0 => (1e3, format!("{words}, m{unit}")),
+            "" => (1.0, words.to_owned()),
+            _ => (1.0, format!("{words}, {unit}")),
         };
         let values = values.into_iter().map(|value| value * scale).collect();
         Self { values, label, words: words_of(name), regimes: name == "regime", velocity: name == RMS }

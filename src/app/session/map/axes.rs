@@ -2,7 +2,7 @@
 
 use crate::app::words::numbers::{below, decimal, round_up};
 use crate::scene::{FieldPath, Scene, Start, Stops, SweepAxis, field_info, numeric_fields};
-use crate::study::{Column, Values};
+use crate::study::label_and_unit;
 
 /// Ends and step of the travel limit in mm on the prototype's map, for scenes of its size.
 const LIMITS_MM: (f64, f64, f64) = (0.5, 7.0, 0.125);
@@ -122,22 +122,10 @@ pub fn part(axis: &SweepAxis, from: f64, to: f64) -> SweepAxis {
     }
 }
 
-/// The label of a field and its unit, if it has one, such as `travel limit` and `mm`. `column` is the name of
-/// the field in a table.
-pub fn name_and_unit(column: &str) -> (String, Option<String>) {
-    let label = Column { name: column.to_owned(), values: Values::Words(Vec::new()) }.label();
-    match label.split_once(", ") {
-        Some((name, unit)) => (name.to_owned(), Some(unit.to_owned())),
-        None => (label, None),
-    }
-}
-
-/// The label of an axis, such as `travel limit (mm)`.
+/// The label of an axis, such as `travel limit (mm)`. `column` is the name of the field in a table.
 pub fn label(column: &str) -> String {
-    match name_and_unit(column) {
-        (name, Some(unit)) => format!("{name} ({unit})"),
-        (name, None) => name,
-    }
+    let (name, unit) = label_and_unit(column);
+    if unit.is_empty() { name } else { format!("{name} ({unit})") }
 }
 
 pub fn over(axis: &SweepAxis) -> String {

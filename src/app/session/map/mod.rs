@@ -19,7 +19,7 @@ use crate::system::clock::WallClock;
 use super::editor::Editor;
 
 pub use crate::numeric::short;
-pub use axes::{ground, label, name_and_unit, over, part};
+pub use axes::{ground, label, over, part};
 pub use cells::{CutCell, Map};
 pub use trail::Trail;
 

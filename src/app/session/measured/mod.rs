@@ -5,6 +5,7 @@ mod of_session;
 use std::sync::Arc;
 
 use crate::app::task::Latest;
+use crate::app::words::capital;
 use crate::dynamics::Model;
 use crate::numeric::{extent, short};
 use crate::scene::{Channel, Measured, MeasuredText, Quantity, Scene, Timing, Unit};
@@ -168,7 +169,5 @@ impl MeasuredData {
 }
 
 pub fn sentence(clause: &str) -> String {
-    let mut letters = clause.chars();
-    let first = letters.next().map(|letter| letter.to_uppercase().to_string()).unwrap_or_default();
-    format!("{first}{}{}", letters.as_str(), if clause.ends_with('.') { "" } else { "." })
+    format!("{}{}", capital(clause), if clause.ends_with('.') { "" } else { "." })
 }

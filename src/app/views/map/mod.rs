@@ -14,12 +14,13 @@ use std::sync::Arc;
 
 use eframe::egui::{self, Align2, Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
 
-use crate::app::session::map::{Map, name_and_unit, short};
+use crate::app::session::map::{Map, short};
 use crate::app::ui::style::Style;
 use crate::app::words::kind::Kind;
 use crate::app::words::status::speed;
 use crate::dynamics::{Regime, Summary};
 use crate::output::{PlotAxis, RMS, sweep_about};
+use crate::study::label_and_unit;
 
 use super::{ViewContext, too_small_ui};
 
@@ -247,11 +248,8 @@ fn reading(map: &Map, scale: &ColourScale, column: usize, row: usize) -> String 
 
 /// Name, value and unit of a column: `travel limit 1.5 mm`.
 fn named(column: &str, value: f64) -> String {
-    let number = short(value);
-    match name_and_unit(column) {
-        (name, Some(unit)) => format!("{name} {number} {unit}"),
-        (name, None) => format!("{name} {number}"),
-    }
+    let (name, unit) = label_and_unit(column);
+    format!("{name} {} {unit}", short(value)).trim_end().to_owned()
 }
 
 /// Marks the scene by a ring, or by an arrow at the edge that it lies beyond. Returns the place.
