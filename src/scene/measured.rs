@@ -302,7 +302,7 @@ impl Ask {
         Ok((at, unit))
     }
 
-    /// The only column with a unit of the first quantity that has one; a given unit replaces that of its name.
+    /// The only column with a unit of the first quantity that has one. A given unit replaces that of its name.
     fn choose_by_unit(&self, sheet: &Sheet, given: Option<Unit>) -> Result<(usize, Unit), MeasuredError> {
         let names = self.options.as_ref().map(|options| options.names);
         for quantity in &self.quantities {

@@ -72,7 +72,7 @@ pub struct Column {
     pub values: Values,
 }
 
-/// The name of a column or field as a person writes it, without its unit: `travel limit` and `mm`. The unit is
+/// The name of a column or field as a person writes it, and its unit: `travel limit` and `mm`. The unit is
 /// read off the end of the name; it is empty for a pure number, a count or a word.
 pub fn label_and_unit(name: &str) -> (String, &'static str) {
     let (ending, unit) = unit_ending(name).unwrap_or_default();

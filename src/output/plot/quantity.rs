@@ -7,7 +7,7 @@ use crate::study::{Grid, RMS_VELOCITY, SummaryField, Table, Values, label_and_un
 /// The column that is shown where none is named.
 pub const RMS: &str = RMS_VELOCITY.name;
 
-/// The words that the column called `name` can have, in the order of their colours; none where it has numbers.
+/// The words that the column called `name` can have, in the order of their colours; `None` for numbers.
 pub fn words_of(name: &str) -> Option<&'static [&'static str]> {
     let words: &[&str] = match name {
         "regime" => &["rest", "intrawell", "irregular", "interwell"],
@@ -33,6 +33,8 @@ pub(super) struct Quantity {
     pub values: Vec<f64>,
     /// What stands at its axis.
     pub label: String,
+    /// The unit at the end of the label; empty where it has none.
+    pub unit: String,
     /// The words that the values are places of, where it has words.
     pub words: Option<&'static [&'static str]>,
     /// Whether these are the regimes.
@@ -77,13 +79,13 @@ impl Quantity {
             _ => words.as_str(),
         };
         // Small lengths and speeds are short numbers in thousandths.
-        let (scale, label) = match unit {
-            "m" | "m/s" if greatest < 2.0 => (1e3, format!("{words}, m{unit}")),
-            "" => (1.0, words.to_owned()),
-            _ => (1.0, format!("{words}, {unit}")),
+        let (scale, unit) = match unit {
+            "m" | "m/s" if greatest < 2.0 => (1e3, format!("m{unit}")),
+            _ => (1.0, unit.to_owned()),
         };
+        let label = if unit.is_empty() { words.to_owned() } else { format!("{words}, {unit}") };
         let values = values.into_iter().map(|value| value * scale).collect();
-        Self { values, label, words: words_of(name), regimes: name == "regime", velocity: name == RMS }
+        Self { values, label, unit, words: words_of(name), regimes: name == "regime", velocity: name == RMS }
     }
 
     /// The colour of a value that is the place of a word.

@@ -203,7 +203,7 @@ fn lines(figure: &mut Figure, picture: &SweepPicture, x: &str, series: Option<&s
     };
 
     let mut entries: Vec<(Sample, String)> = Vec::new();
-    for (i, words) in series.iter().flat_map(|name| of_each(rows, name, &each)).enumerate() {
+    for (i, words) in series.iter().flat_map(|name| of_each(name, &each)).enumerate() {
         entries.push((Sample::Line(ink(i), style::GUIDE, None), words));
     }
     for (name, shape) in REGIMES {

@@ -9,7 +9,7 @@ use super::style::{Ink, Theme};
 use crate::mechanics::Mechanism;
 use crate::numeric::short;
 use crate::scene::Scene;
-use crate::study::{Column, DIRECTION, Grid, Table, first_crossing, release_line};
+use crate::study::{Column, DIRECTION, Grid, Table, first_crossing, label_and_unit, release_line};
 
 pub(super) const LEFT: f64 = 160.0;
 pub(super) const TOP: f64 = 185.0;
@@ -115,9 +115,8 @@ pub(super) fn label(rows: &Table, name: &str) -> String {
 }
 
 /// The values of the field `name`, for each of which there is a line, as a legend names them.
-pub(super) fn of_each(rows: &Table, name: &str, each: &[f64]) -> Vec<String> {
-    let label = label(rows, name);
-    let (words, unit) = label.split_once(", ").unwrap_or((&label, ""));
+pub(super) fn of_each(name: &str, each: &[f64]) -> Vec<String> {
+    let (words, unit) = label_and_unit(name);
     let named = |(i, value): (usize, &f64)| {
         let value = short(*value);
         let words = if i == 0 { format!("{words} {value}") } else { value };

@@ -117,7 +117,7 @@ fn lines(
     };
 
     let mut entries: Vec<(Sample, String)> = Vec::new();
-    for (i, words) in series.iter().flat_map(|name| of_each(rows, name, &each)).enumerate() {
+    for (i, words) in series.iter().flat_map(|name| of_each(name, &each)).enumerate() {
         entries.push((Sample::Line(ink(i), style::GUIDE, None), words));
     }
     let gap = gaps.contains(&true);

@@ -151,7 +151,8 @@ pub(super) fn walked_maps(figure: &mut Figure, picture: &SweepPicture, (x, y): (
     let values = difference.iter().filter_map(Cell::value).map(f64::abs);
     let largest = values.fold(0.0, f64::max);
     let reach = if largest > 0.0 { largest } else { 1.0 };
-    let signed = PlotAxis::between(-reach, reach, 6, &format!("down \u{2212} up, {}", unit(&quantity.label)));
+    let unit = if quantity.unit.is_empty() { &quantity.label } else { &quantity.unit };
+    let signed = PlotAxis::between(-reach, reach, 6, &format!("down \u{2212} up, {unit}"));
     let tint = |value: f64| {
         let share = (value / reach).clamp(-1.0, 1.0);
         let ink = if share < 0.0 { theme.regimes[1] } else { theme.regimes[3] };
@@ -215,9 +216,4 @@ impl Cell {
     fn value(&self) -> Option<f64> {
         if let Self::Value(value) = self { Some(*value) } else { None }
     }
-}
-
-/// The unit at the end of a label; the label where it has none.
-fn unit(label: &str) -> &str {
-    label.rsplit_once(", ").map_or(label, |(_, unit)| unit)
 }
