@@ -2,8 +2,8 @@
 
 use std::collections::HashSet;
 
-use super::clip::clip;
 use super::data::{Scene, SweepAxis};
+use super::error::clip;
 use super::field_table::FieldInfo;
 use super::fields::{Field, FieldPath, numeric_fields};
 use super::steps::EvenSteps;

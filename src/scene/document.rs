@@ -2,13 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use super::assign::replace;
 use super::axis::{Axis, MAX_AXES, MAX_AXIS_VALUES, repeated, unknown};
 use super::check::{check, corners};
-use super::clip::clip;
 use super::data::Scene;
-use super::error::{ArgumentError, Fault, Origin, PlacedFault, SceneError};
-use super::fields::{FieldPath, all_fields};
+use super::error::{ArgumentError, Fault, Origin, PlacedFault, SceneError, clip};
+use super::fields::{FieldPath, all_fields, replace};
 use super::files::{Files, ReadError, read_from, read_text};
 use super::locate::Places;
 use super::manifest::{self, SweepRequest};

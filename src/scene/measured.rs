@@ -5,8 +5,8 @@
 
 use std::path::Path;
 
-use super::clip::clip;
 use super::columns::{ColumnsError, Separators, Sheet};
+use super::error::clip;
 use super::files::{ReadError, read_text};
 use super::unit::{Quantity, Unit};
 
@@ -302,7 +302,7 @@ impl Ask {
         Ok((at, unit))
     }
 
-    /// The only column with a unit of the first quantity that has one. A given unit replaces that of its name.
+    /// The only column with a unit of the first quantity that has one; `given` replaces that unit.
     fn choose_by_unit(&self, sheet: &Sheet, given: Option<Unit>) -> Result<(usize, Unit), MeasuredError> {
         let names = self.options.as_ref().map(|options| options.names);
         for quantity in &self.quantities {

@@ -17,10 +17,8 @@
 //! ```
 
 mod arguments;
-mod assign;
 mod axis;
 mod check;
-mod clip;
 mod columns;
 mod data;
 mod document;
