@@ -1,7 +1,7 @@
 //! Choice of the sentence about the motion of the open scene.
 
 use crate::app::words::kind::Kind;
-use crate::app::words::status::{self, Sentence, Told};
+use crate::app::words::status::{self, DrivenMotion, Sentence};
 
 use super::Session;
 
@@ -30,9 +30,9 @@ impl Session {
     }
 
     /// The facts for the sentence about a driven motion; `None` until it is known what the motion settles to.
-    pub(super) fn sentence_facts(&self) -> Option<Told<'_>> {
+    pub(super) fn sentence_facts(&self) -> Option<DrivenMotion<'_>> {
         let settled = self.settled.current()?;
-        Some(Told {
+        Some(DrivenMotion {
             scene: self.scene(),
             model: &self.model,
             summary: settled,

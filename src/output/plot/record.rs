@@ -142,7 +142,7 @@ pub fn identified_figure(
             RecordPicture { across: "time, s", up, unit, columns, scales, record, rises: true, over, lower }
         }
     };
-    picture.draw(&told(&found.summary), ranges, caption, theme)
+    picture.draw(&summary_words(&found.summary), ranges, caption, theme)
 }
 
 /// The picture of a measured force over the computed curve, of which `curve` is the table.
@@ -182,7 +182,7 @@ pub fn measured_force_figure(
 
 /// The first number with its interval and the second one; of a force curve the wells, the barrier and the
 /// hysteresis.
-fn told(summary: &[Identity]) -> String {
+fn summary_words(summary: &[Identity]) -> String {
     let of = |name: &str| summary.iter().find(|number| number.name == name).map(|number| number.value);
     let known = |name: &str, unit: f64| of(name).map(|value| short(value * unit));
     let mut parts = Vec::new();

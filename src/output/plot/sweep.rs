@@ -60,10 +60,10 @@ pub enum NoPicture {
     #[error("--surface shows at most {MAX_SURFACE_CELLS} cells, not {0}: take longer steps, or leave it out")]
     SurfaceCells(u64),
     /// No column that can be shown.
-    #[error("--quantity {asked}: no such column to show; there are: {known}")]
+    #[error("--quantity {name}: no such column to show; there are: {known}")]
     Quantity {
-        /// The column asked for.
-        asked: String,
+        /// The column as given.
+        name: String,
         /// Those that there are.
         known: String,
     },
@@ -78,7 +78,7 @@ pub fn can_show(grid: &Grid, (quantity, view): (&str, &View), table: &Table) -> 
         let more: Vec<&str> = more.collect();
         known.extend(more);
         let known = known.join(", ");
-        return Err(NoPicture::Quantity { asked: quantity.to_owned(), known });
+        return Err(NoPicture::Quantity { name: quantity.to_owned(), known });
     }
     if *view != View::Top {
         let lengths = || grid.axes().iter().map(|axis| axis.values.len());

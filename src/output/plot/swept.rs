@@ -84,8 +84,8 @@ pub struct SweepPicture<'a> {
     pub ranges: Ranges,
 }
 
-/// The cells with the quantity and their words, those alone whose fields lie in the ranges `asked` for.
-pub(super) fn drawn(picture: &SweepPicture, asked: &[(&str, Option<(f64, f64)>)]) -> Drawn {
+/// The cells with the quantity and their words, only those whose fields lie in `ranges`.
+pub(super) fn drawn(picture: &SweepPicture, ranges: &[(&str, Option<(f64, f64)>)]) -> Drawn {
     let SweepPicture { rows, grid, quantity, .. } = picture;
     let fields = grid.columns();
     let value = rows.column(quantity).and_then(as_numbers);
@@ -99,7 +99,7 @@ pub(super) fn drawn(picture: &SweepPicture, asked: &[(&str, Option<(f64, f64)>)]
             let number = rows.numbers(name).map_or(f64::NAN, |column| column[row]);
             range.is_none_or(|(low, high)| (low..=high).contains(&number))
         };
-        if asked.iter().all(within) {
+        if ranges.iter().all(within) {
             let places = columns.iter().map(|column| column[row]);
             let numbers: Vec<f64> = places.chain(value.as_ref().map(|values| values[row])).collect();
             let said: Vec<&str> =

@@ -94,16 +94,16 @@ fn between(figure: &mut Figure, a: (Point, Point), b: (Point, Point), ink: Ink, 
     if !ends.iter().all(|(x, y)| x.is_finite() && y.is_finite()) {
         return;
     }
-    let held = |(x, y): Point| (x.clamp(within.left, within.right), y.clamp(within.top, within.bottom));
+    let clamped = |(x, y): Point| (x.clamp(within.left, within.right), y.clamp(within.top, within.bottom));
     let (before, after) = (a.0.1 - a.1.1, b.0.1 - b.1.1);
     if before * after < 0.0 {
         let share = before / (before - after);
         let mix = |p: f64, q: f64| p + share * (q - p);
-        let meet = held((mix(a.0.0, b.0.0), mix(a.0.1, b.0.1)));
-        figure.polygon(vec![held(a.0), meet, held(a.1)], ink);
-        figure.polygon(vec![held(b.0), meet, held(b.1)], ink);
+        let meet = clamped((mix(a.0.0, b.0.0), mix(a.0.1, b.0.1)));
+        figure.polygon(vec![clamped(a.0), meet, clamped(a.1)], ink);
+        figure.polygon(vec![clamped(b.0), meet, clamped(b.1)], ink);
     } else {
-        figure.polygon(vec![held(a.0), held(b.0), held(b.1), held(a.1)], ink);
+        figure.polygon(vec![clamped(a.0), clamped(b.0), clamped(b.1), clamped(a.1)], ink);
     }
 }
 

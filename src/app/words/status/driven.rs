@@ -4,8 +4,8 @@ use crate::dynamics::{First, Firsts, Model, Outcome, Place, Regime, STANDARD_GRA
 use crate::scene::{Excitation, Scene, Stops};
 use crate::study::Thresholds;
 
+use super::super::numbers::{between, grams, limit_mm, mm_beside, seconds, speed, times};
 use super::super::wells::wells_between;
-use super::numbers::{between, grams, limit_mm, mm_beside, seconds, speed, times};
 use super::remedy::{amplitude, remedy};
 use super::{Kind, Sentence, ended};
 
@@ -17,7 +17,7 @@ const AT_ONCE: f64 = 5.0;
 
 /// The facts for the sentence about a driven motion.
 #[derive(Debug, Clone, Copy)]
-pub struct Told<'a> {
+pub struct DrivenMotion<'a> {
     pub scene: &'a Scene,
     /// The model that moves.
     pub model: &'a Model,
@@ -31,7 +31,7 @@ pub struct Told<'a> {
     pub now: f64,
 }
 
-impl Told<'_> {
+impl DrivenMotion<'_> {
     /// Live time in s from which on the described motion has been on the screen.
     pub fn seen_from(&self) -> f64 {
         let summary = self.summary;
@@ -80,8 +80,8 @@ impl Told<'_> {
 }
 
 /// The sentence about a driven motion, by what it settles to.
-pub fn driven(facts: &Told) -> Sentence {
-    let Told { scene, model, summary, .. } = *facts;
+pub fn driven(facts: &DrivenMotion) -> Sentence {
+    let DrivenMotion { scene, model, summary, .. } = *facts;
     if summary.outcome != Outcome::Done {
         return ended(model, summary.outcome);
     }
@@ -169,8 +169,8 @@ pub fn driven(facts: &Told) -> Sentence {
 }
 
 /// The sentence about a motion that crosses and repeats.
-fn interwell(facts: &Told, crosses: &str, rms: &str, range: &str) -> String {
-    let Told { model, summary, .. } = *facts;
+fn interwell(facts: &DrivenMotion, crosses: &str, rms: &str, range: &str) -> String {
+    let DrivenMotion { model, summary, .. } = *facts;
     let rate = summary.crossings as f64 / summary.periods.max(1) as f64;
     let how = match summary.period {
         Some(n) if n > 1 && summary.crossing_periods >= summary.periods => {
@@ -203,7 +203,7 @@ fn interwell(facts: &Told, crosses: &str, rms: &str, range: &str) -> String {
 }
 
 /// The sentence about a motion under a drive without a period: what it does in the settled window.
-fn unrepeated(facts: &Told, rms: &str, range: &str, well: &str) -> Sentence {
+fn unrepeated(facts: &DrivenMotion, rms: &str, range: &str, well: &str) -> Sentence {
     let summary = facts.summary;
     let (from, to) = (facts.origin + summary.window.0, facts.origin + summary.window.1);
     let (seen, when) = (facts.is_seen(), format!("from {} to {}", seconds(from), seconds(to)));
@@ -222,8 +222,8 @@ fn unrepeated(facts: &Told, rms: &str, range: &str, well: &str) -> Sentence {
 }
 
 /// The sentence about an amplitude ramp: when the mass is released, first crosses, crosses in every period.
-fn ramped(facts: &Told, firsts: &Firsts) -> Sentence {
-    let Told { model, summary, origin, now, .. } = *facts;
+fn ramped(facts: &DrivenMotion, firsts: &Firsts) -> Sentence {
+    let DrivenMotion { model, summary, origin, now, .. } = *facts;
     let end = origin + summary.window.1;
     let place = |first: &First, at: &str| {
         let amplitude = first.amplitude.map(|accel| accel / STANDARD_GRAVITY);
@@ -267,7 +267,7 @@ fn ramped(facts: &Told, firsts: &Firsts) -> Sentence {
 }
 
 /// The sentence that the motion never touches the stops; empty if it does or there are none.
-fn untouched(facts: &Told) -> String {
+fn untouched(facts: &DrivenMotion) -> String {
     let summary = facts.summary;
     let touched = summary.impacts > 0 || summary.rested_share.is_none_or(|share| share > 0.0);
     let rests = summary.regime == Regime::Rest;

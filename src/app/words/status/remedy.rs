@@ -5,7 +5,7 @@ use crate::scene::{Excitation, Scene, Stops};
 use crate::study::Thresholds;
 
 use super::super::capital;
-use super::numbers::{grams, grams_apart, grams_up};
+use super::super::numbers::{grams, grams_apart, grams_up};
 
 /// Amplitude in g of a drive that is one sine.
 pub(super) fn amplitude(scene: &Scene) -> Option<f64> {
