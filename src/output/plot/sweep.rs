@@ -1,6 +1,5 @@
 //! Picture of a sweep: lines over one field, drawn here; over two a [`map`](super::map).
 
-use super::axis::PlotAxis;
 use super::cut::{self, map_with_cuts};
 use super::figure::{Area, Figure};
 use super::frame::Frame;
@@ -10,8 +9,8 @@ use super::quantity::{Quantity, quantities, words_of};
 use super::style::{self, Theme};
 use super::surface::{MAX_SURFACE_CELLS, SURFACE, surface};
 use super::swept::{
-    LEAST, LEFT, MARKER_ROOM, SweepPicture, View, below_legend, drawn, label, mark_regimes, missing_words,
-    of_each,
+    LEAST, LEFT, MARKER_ROOM, SweepPicture, View, below_legend, drawn, mark_regimes, missing_words, of_each,
+    swept_axis,
 };
 use super::walk::{STACKED, walked_both, walked_lines, walked_maps};
 use crate::numeric::short;
@@ -225,8 +224,7 @@ fn lines(figure: &mut Figure, picture: &SweepPicture, x: &str, series: Option<&s
         entries.iter().map(|(sample, words)| (*sample, words.as_str())).collect();
     let top = below_legend(figure, theme, &entries);
 
-    let x_label = label(rows, x);
-    let across = PlotAxis::around(values.iter().copied(), 0.02, 8, &x_label).or_given(ranges.x, 8, &x_label);
+    let across = swept_axis(rows, x, ranges.x);
     // Most quantities are never negative; the little room below 0 is for the markers.
     let up = quantity.axis(0.05, 6).or_given(ranges.y, 6, &quantity.label);
     let frame = Frame::whole(figure, (LEFT, top), across, up);

@@ -1,6 +1,6 @@
 //! Rows of a sweep as its pictures need them: what a picture is drawn from, places, words, marks.
 
-use super::axis::Ranges;
+use super::axis::{PlotAxis, Ranges};
 use super::drawn::{Drawn, as_numbers};
 use super::figure::{Figure, Point};
 use super::frame::Frame;
@@ -112,6 +112,12 @@ pub(super) fn drawn(picture: &SweepPicture, ranges: &[(&str, Option<(f64, f64)>)
 
 pub(super) fn label(rows: &Table, name: &str) -> String {
     rows.column(name).map_or_else(|| name.to_owned(), Column::label)
+}
+
+/// The axis to the right over the swept field `x`.
+pub(super) fn swept_axis(rows: &Table, x: &str, range: Option<(f64, f64)>) -> PlotAxis {
+    let (label, values) = (label(rows, x), rows.numbers(x).unwrap_or_default());
+    PlotAxis::around(values.iter().copied(), 0.02, 8, &label).or_given(range, 8, &label)
 }
 
 /// The values of the field `name`, for each of which there is a line, as a legend names them.

@@ -8,7 +8,9 @@ use super::map::{Cell, Mosaic, colour_bar, meanings};
 use super::mark::{REGIMES, Sample, legend, regime};
 use super::quantity::Quantity;
 use super::style::{self, Ink, Theme, viridis};
-use super::swept::{LEFT, MARKER_ROOM, SweepPicture, TOP, below_legend, drawn, label, mark_regimes};
+use super::swept::{
+    LEFT, MARKER_ROOM, SweepPicture, TOP, below_legend, drawn, label, mark_regimes, swept_axis,
+};
 use crate::study::{DIRECTION, Direction, Table};
 
 /// Whether the rows are those of a walk both ways.
@@ -61,8 +63,7 @@ pub(super) fn walked_lines(figure: &mut Figure, picture: &SweepPicture, x: &str,
         }
     }
     let top = below_legend(figure, theme, &entries);
-    let x_label = label(rows, x);
-    let across = PlotAxis::around(values.iter().copied(), 0.02, 8, &x_label).or_given(ranges.x, 8, &x_label);
+    let across = swept_axis(rows, x, ranges.x);
     let frame = Frame::whole(figure, (LEFT, top), across, up);
     let point = |row: &usize| (values[*row], quantity.values[*row]);
     let place = |row: &usize| frame.place(point(row));
