@@ -39,25 +39,19 @@ pub struct PositionOptions {
 impl PositionOptions {
     /// The request to the record for the positions.
     pub fn positions(&self) -> Ask {
-        Ask {
-            quantities: vec![Quantity::Displacement],
-            column: self.position.clone(),
-            unit: self.position_unit.clone(),
-            options: ("--position", "--position-unit"),
-        }
+        let names = ["--position", "--position-unit"];
+        Ask::by_options(&[Quantity::Displacement], &self.position, &self.position_unit, names)
     }
 }
 
 impl ColumnOptions {
     /// The request to the record for the times.
     pub fn times(&self) -> Ask {
-        let (column, unit) = (self.time.clone(), self.time_unit.clone());
-        Ask { quantities: vec![Quantity::Time], column, unit, options: ("--time", "--time-unit") }
+        Ask::by_options(&[Quantity::Time], &self.time, &self.time_unit, ["--time", "--time-unit"])
     }
 
     /// The request to the record for values of the first of these quantities that it has.
     pub fn values(&self, quantities: &[Quantity]) -> Ask {
-        let (column, unit) = (self.column.clone(), self.unit.clone());
-        Ask { quantities: quantities.to_vec(), column, unit, options: ("--column", "--unit") }
+        Ask::by_options(quantities, &self.column, &self.unit, ["--column", "--unit"])
     }
 }

@@ -96,9 +96,7 @@ impl Arguments {
 
     /// The request to the record for the base's acceleration.
     fn base(&self) -> Ask {
-        let (column, unit) = (self.base.clone(), self.base_unit.clone());
-        let options = ("--base", "--base-unit");
-        Ask { quantities: vec![Quantity::Acceleration], column, unit, options }
+        Ask::by_options(&[Quantity::Acceleration], &self.base, &self.base_unit, ["--base", "--base-unit"])
     }
 }
 

@@ -56,8 +56,8 @@ impl MeasuredForceOptions {
         };
         let offset = offset(self.offset_mm.as_deref())?;
         let name = path.display();
-        let (column, unit) = (self.column.clone(), self.unit.clone());
-        let force = Ask { quantities: vec![Quantity::Force], column, unit, options: ("--column", "--unit") };
+        let names = ["--column", "--unit"];
+        let force = Ask::by_options(&[Quantity::Force], &self.column, &self.unit, names);
         let about =
             |problem: &dyn std::fmt::Display| Failure::argument(format!("--measured {name}: {problem}"));
         let record =

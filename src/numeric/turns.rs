@@ -1,4 +1,4 @@
-//! Turning points of a sequence of values.
+//! Turning points and extent of a sequence of values.
 
 /// A turning point: a maximum or minimum from which the values retreat by more than the noise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,4 +32,10 @@ pub fn turns(values: &[f64], back: f64) -> Vec<Turn> {
         }
     }
     turns
+}
+
+/// The smallest and the largest value, ignoring NaN; `(inf, -inf)` if there are none.
+pub fn extent(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
+    let none = (f64::INFINITY, f64::NEG_INFINITY);
+    values.into_iter().fold(none, |(low, high), value| (low.min(value), high.max(value)))
 }

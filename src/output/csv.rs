@@ -2,12 +2,11 @@
 //!
 //! Words come from fixed lists and field paths, and names have no comma or quote, so no cell is ever quoted.
 
-use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::ops::Range;
 
-use super::number::push_number;
-use crate::study::{Table, Values};
+use crate::numeric::push_number;
+use crate::study::{Cell, Direction, SUMMARY_FIELDS, Table, Values};
 
 /// The header row of `table`.
 pub fn header(table: &Table) -> String {
@@ -46,7 +45,6 @@ pub fn csv_table(text: &str, empty: &Table) -> Result<Table, String> {
     let names = reader.headers().map_err(|error| error.to_string())?.clone();
     let rows: Vec<csv::StringRecord> =
         reader.records().collect::<Result<_, _>>().map_err(|error| error.to_string())?;
-    let mut words = BTreeSet::new();
     let mut table = Table::new();
     for column in empty.columns() {
         let name = &column.name;
@@ -70,21 +68,25 @@ pub fn csv_table(text: &str, empty: &Table) -> Result<Table, String> {
                     .collect::<Result<_, _>>()?,
             ),
             Values::Names(_) => Values::Names(cells.map(str::to_owned).collect()),
-            Values::Words(_) => Values::Words(cells.map(|cell| interned(cell, &mut words)).collect()),
+            Values::Words(_) => {
+                let unknown = |cell: &str| format!("`{cell}` in the column {name} is no word of a sweep");
+                Values::Words(
+                    cells
+                        .map(|cell| known_word(cell).ok_or_else(|| unknown(cell)))
+                        .collect::<Result<_, _>>()?,
+                )
+            }
         };
         table = table.with(name, values);
     }
     Ok(table)
 }
 
-/// Interns a word for the life of the program; few different words occur.
-fn interned(word: &str, known: &mut BTreeSet<&'static str>) -> &'static str {
-    if let Some(word) = known.get(word) {
-        return word;
-    }
-    let word: &'static str = Box::leak(word.into());
-    known.insert(word);
-    word
+/// The word of a sweep that is equal to `word`; an empty one is a missing value.
+fn known_word(word: &str) -> Option<&'static str> {
+    let of_runs = SUMMARY_FIELDS.iter().flat_map(|field| field.words).copied();
+    let others = [Direction::Up.name(), Direction::Down.name(), Cell::Unsolved.outcome(), ""];
+    of_runs.chain(others).find(|known| *known == word)
 }
 
 #[cfg(test)]

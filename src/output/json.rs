@@ -4,10 +4,10 @@
 use serde_json::{Map, Value, json};
 
 use super::manifest::{Provenance, scene_value, seed};
-use crate::dynamics::{Ledger, Outcome, Summary};
+use crate::dynamics::{Outcome, Summary};
 use crate::mechanics::{Landscape, Mechanism};
 use crate::scene::{Scene, Timing};
-use crate::study::{Identified, Read, SUMMARY_FIELDS, SummaryField, small_amplitude_frequency};
+use crate::study::{Identified, InJson, Read, SUMMARY_FIELDS, SummaryField, small_amplitude_frequency};
 
 /// The summary of a run of `scene`, as text. Compliant stops add the keys of peak force and pressure. A run
 /// that ended early adds `ended_at_s` and, if a budget ran out, `ended_after`, the number of impacts or
@@ -24,7 +24,7 @@ pub fn summary(summary: &Summary, scene: &Scene, origin: &Provenance) -> String 
         add("ended_after", json!(count));
     }
     add("cpu_s", json!(summary.cpu_s));
-    add("ledger", summary.ledger.as_ref().map_or(Value::Null, ledger));
+    add("ledger", summary.ledger.map_or(Value::Null, |balance| ledger(summary, balance.residual_j)));
     add("scene", scene_value(scene));
     add("version", json!(origin.version));
     add("arguments", json!(origin.arguments));
@@ -33,39 +33,24 @@ pub fn summary(summary: &Summary, scene: &Scene, origin: &Provenance) -> String 
     pretty(&object)
 }
 
-/// A field with its value. Returns `None` for a quantity that the run does not have: contact with a compliant
-/// stop, transducer, early end, first events under a changing drive. The terms of the ledger are left out,
-/// because they have an object of their own.
+/// A field with its value; `None` if the summary has no such field.
 fn entry(field: &SummaryField, summary: &Summary) -> Option<(String, Value)> {
+    let InJson::Summary(is_present) = field.in_json else { return None };
     let value = match field.read {
         Read::Number(of) => json!(of(summary)),
         Read::Count(of) => json!(of(summary)),
-        Read::Word(of) => Some(of(summary)).filter(|word| !word.is_empty()).into(),
+        Read::Word(_) => json!(field.word(summary)),
         Read::Flag(of) => json!(of(summary)),
     };
-    let has = match field.name {
-        "peak_contact_force_n" | "peak_contact_pressure_pa" => summary.peak_contact_force.is_some(),
-        "mean_load_power_w" | "mean_coil_power_w" | "voltage_rms_v" => summary.harvest.is_some(),
-        "ended_at_s" => !value.is_null(),
-        "work_j" | "damping_j" | "impact_j" | "harvested_j" | "coil_j" | "stored_j" => false,
-        name if name.starts_with("first_") || name.starts_with("crosses_always") => summary.firsts.is_some(),
-        _ => true,
-    };
-    has.then(|| (field.name.to_owned(), value))
+    is_present(summary).then(|| (field.name.to_owned(), value))
 }
 
-fn ledger(ledger: &Ledger) -> Value {
-    let terms = [
-        ("work_j", Some(ledger.work_j)),
-        ("damping_j", Some(ledger.damping_j)),
-        ("impact_j", Some(ledger.impact_j)),
-        ("harvested_j", ledger.harvested_j),
-        ("coil_j", ledger.coil_j),
-        ("stored_j", Some(ledger.stored_j)),
-        ("residual_j", Some(ledger.residual_j)),
-    ];
-    let terms = terms.into_iter().filter_map(|(name, joules)| Some((name.to_owned(), json!(joules?))));
-    without_negative_zeros(terms.collect())
+fn ledger(summary: &Summary, residual_j: f64) -> Value {
+    let terms = SUMMARY_FIELDS.iter().filter_map(|field| match (field.in_json, field.read) {
+        (InJson::Ledger, Read::Number(of)) => Some((field.name.to_owned(), json!(of(summary)?))),
+        _ => None,
+    });
+    without_negative_zeros(terms.chain([("residual_j".to_owned(), json!(residual_j))]).collect())
 }
 
 /// The landscape of a mechanism that carries `mass` in kg, as text.

@@ -6,7 +6,6 @@
 mod csv;
 mod json;
 mod manifest;
-mod number;
 mod plan;
 mod plot;
 mod text;
@@ -14,7 +13,6 @@ mod text;
 pub use csv::{csv_table, header, rows};
 pub use json::{identified, landscape, summary};
 pub use manifest::{Made, Provenance, basins_manifest, exponents_manifest, manifest, merged_manifest};
-pub use number::push_number;
 pub use plan::{plan, plan_checksum, plan_differences};
 pub use plot::{
     AXIS_EDGES, Argument, BACK_EDGES, BLACK, BoxPlace, Caption, ComparisonPicture, Cut, ExponentPicture,
@@ -28,4 +26,5 @@ pub use plot::{
 };
 pub use text::aligned;
 
+pub use crate::numeric::push_number;
 pub use crate::system::{OpenError, Sink, is_regular, same_target, write_file};

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::number::push_number;
+use crate::numeric::push_number;
 use crate::scene::{Axis, Document, PROGRAM};
 use crate::study::Sweep;
 use crate::system::checksum::checksum;

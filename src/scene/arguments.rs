@@ -10,54 +10,41 @@ use super::text;
 /// if both scenes have the same fields, otherwise whole parts. Title, notes, sweep and hints for the
 /// window are ignored.
 pub fn arguments(from: &Scene, to: &Scene) -> Vec<String> {
-    let mut all = Vec::new();
-    let mut part = |name: &str, equal: bool, whole: String| {
-        if equal {
-            return;
-        }
-        match numbers(from, to, name) {
-            Some(numbers) => all.extend(numbers),
-            None => all.push(format!("{name}={whole}")),
-        }
-    };
-    part("mass_g", from.mass_g == to.mass_g, String::new());
-    part("mechanism", from.mechanism == to.mechanism, ron(&to.mechanism));
-    part("damping", from.damping == to.damping, ron(&to.damping));
-    part("stops", from.stops == to.stops, ron(&to.stops));
-    part("excitation", from.excitation == to.excitation, ron(&to.excitation));
-    part("transducer", from.transducer == to.transducer, ron(&to.transducer));
-    part("start", from.start == to.start, ron(&to.start));
-    part("run", from.run == to.run, ron(&to.run));
-    all
+    [
+        changes(from, to, "mass_g", |scene| &scene.mass_g),
+        changes(from, to, "mechanism", |scene| &scene.mechanism),
+        changes(from, to, "damping", |scene| &scene.damping),
+        changes(from, to, "stops", |scene| &scene.stops),
+        changes(from, to, "excitation", |scene| &scene.excitation),
+        changes(from, to, "transducer", |scene| &scene.transducer),
+        changes(from, to, "start", |scene| &scene.start),
+        changes(from, to, "run", |scene| &scene.run),
+    ]
+    .concat()
 }
 
-/// The numbers inside one part that differ; `None` if the part differs in anything else.
-fn numbers(from: &Scene, to: &Scene, part: &str) -> Option<Vec<String>> {
-    let inside = |path: &String| path.strip_prefix(part).is_some_and(|r| r.is_empty() || r.starts_with('.'));
+/// The arguments for one part of a scene: its numbers that differ, or the whole part if anything else in it
+/// differs.
+fn changes<T: PartialEq + Serialize>(
+    from: &Scene,
+    to: &Scene,
+    name: &str,
+    part: fn(&Scene) -> &T,
+) -> Vec<String> {
+    let is_inside =
+        |path: &String| path.strip_prefix(name).is_some_and(|r| r.is_empty() || r.starts_with('.'));
     let mut changed = from.clone();
-    let mut found = Vec::new();
-    for path in numeric_fields(to).into_iter().filter(inside) {
+    let mut numbers = Vec::new();
+    for path in numeric_fields(to).into_iter().filter(is_inside) {
         let field = FieldPath::new(&path);
         let (old, new) = (field.get(from), field.get(to));
         if let Some(new) = new.filter(|_| old != new) {
-            if !field.set(&mut changed, new) {
-                return None;
-            }
-            found.push(format!("{path}={new}"));
+            // a field that `from` does not have leaves the parts different
+            let _ = field.set(&mut changed, new);
+            numbers.push(format!("{path}={new}"));
         }
     }
-    let same = match part {
-        "mass_g" => true,
-        "mechanism" => changed.mechanism == to.mechanism,
-        "damping" => changed.damping == to.damping,
-        "stops" => changed.stops == to.stops,
-        "excitation" => changed.excitation == to.excitation,
-        "transducer" => changed.transducer == to.transducer,
-        "start" => changed.start == to.start,
-        "run" => changed.run == to.run,
-        _ => false,
-    };
-    same.then_some(found)
+    if part(&changed) == part(to) { numbers } else { vec![format!("{name}={}", ron(part(to)))] }
 }
 
 /// A value as RON on one line.

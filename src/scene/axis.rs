@@ -2,12 +2,12 @@
 
 use std::collections::HashSet;
 
-use super::clip::clip;
 use super::data::{Scene, SweepAxis};
+use super::error::clip;
+use super::field_table::FieldInfo;
 use super::fields::{Field, FieldPath, numeric_fields};
-use super::ranges::{Spec, number_text};
 use super::steps::EvenSteps;
-use crate::numeric::Decimal;
+use crate::numeric::{Decimal, number_text};
 
 /// Largest number of values of one axis, which limits the list of values to 80 MB. The number of cells of a
 /// map is limited more tightly.
@@ -126,7 +126,7 @@ impl Axis {
         }
     }
 
-    fn within(self, spec: &Spec) -> Result<Self, String> {
+    fn within(self, spec: &FieldInfo) -> Result<Self, String> {
         match self.values.iter().find(|value| !spec.range.contains(**value)) {
             None => Ok(self),
             Some(value) => Err(format!(
@@ -141,7 +141,7 @@ impl Axis {
 }
 
 /// The specification of a numeric field, or a sentence that lists the numeric fields of the scene.
-fn numeric(scene: &Scene, field: &str) -> Result<&'static Spec, String> {
+fn numeric(scene: &Scene, field: &str) -> Result<&'static FieldInfo, String> {
     let found = FieldPath::new(field).follow(&mut scene.clone(), |found| match found {
         Field::Number(spec, _) => Some(spec),
         _ => None,

@@ -7,12 +7,13 @@
 use super::axis::{Axis, MAX_AXES, repeated};
 use super::data::*;
 use super::error::Fault;
+use super::field_table::{MAX_COEFFICIENTS, row};
 use super::fields::{Field, FieldPath, for_each, in_range};
 use super::mechanism::Mechanism;
-use super::ranges::{HIGH_HZ, LOW_HZ, MAX_COEFFICIENTS, number_text};
 use super::shape;
 use super::stops::Stops;
 use super::transducer::Transducer;
+use crate::numeric::number_text;
 
 /// Largest number of sines of an excitation, including the lines of noises: four noises with the largest
 /// number of lines. Each sine adds to the cost of every step of a run.
@@ -261,7 +262,9 @@ fn relations(scene: &Scene, checked: &mut Checked) {
 fn bands(excitation: &Excitation, path: &str, checked: &mut Checked) {
     match excitation {
         Excitation::Noise { low_hz, high_hz, .. }
-            if low_hz >= high_hz && LOW_HZ.range.contains(*low_hz) && HIGH_HZ.range.contains(*high_hz) =>
+            if low_hz >= high_hz
+                && row("excitation.low_hz").range.contains(*low_hz)
+                && row("excitation.high_hz").range.contains(*high_hz) =>
         {
             checked.fault(
                 format!("{path}.high_hz"),

@@ -4,7 +4,7 @@
 //! columns in any order, possibly among others. Lines that begin with `#` are comments. Nothing is repaired
 //! silently: an invalid value is rejected with its line.
 
-use super::clip::clip;
+use super::error::clip;
 
 /// Largest number of rows that are read.
 pub const MOST_ROWS: usize = 1_000_000;

@@ -2,20 +2,18 @@
 
 use std::path::{Path, PathBuf};
 
-use super::assign::replace;
 use super::axis::{Axis, MAX_AXES, MAX_AXIS_VALUES, repeated, unknown};
 use super::check::{check, corners};
-use super::clip::clip;
 use super::data::Scene;
-use super::error::{ArgumentError, Fault, Origin, PlacedFault, SceneError};
-use super::fields::{FieldPath, all_fields};
+use super::error::{ArgumentError, Fault, Origin, PlacedFault, SceneError, clip};
+use super::fields::{FieldPath, all_fields, replace};
 use super::files::{Files, ReadError, read_from, read_text};
 use super::locate::Places;
 use super::manifest::{self, SweepRequest};
 use super::presets::{self, PRESETS};
-use super::ranges::number_text;
 use super::record;
 use super::text::{self, MAX_SCENE_BYTES};
+use crate::numeric::number_text;
 use crate::system::files;
 
 /// Largest number of faults that an error lists; further ones are counted. A list may contain a million NaN.
@@ -54,10 +52,20 @@ pub struct Document {
     pub files: Files,
     /// Options of its sweep, if it came from a manifest.
     pub swept: Option<SweepRequest>,
-    /// Fields that arguments changed, each with its argument; the last one counts.
-    assigned: Vec<(String, String)>,
+    /// Changes by arguments; of several of one field the last one counts.
+    assigned: Vec<Assignment>,
     /// Faults of the records that the excitation names.
     unread: Vec<Fault>,
+}
+
+/// Change of a field by an argument.
+#[derive(Debug, Clone)]
+struct Assignment {
+    field: String,
+    /// The argument as messages show it, such as `--tolerance 1e-6`.
+    argument: String,
+    /// `FIELD=VALUE`, if the argument is that of `--set`.
+    change: Option<String>,
 }
 
 impl Document {
@@ -120,13 +128,15 @@ impl Document {
     /// be left out.
     pub fn set(&mut self, argument: &str) -> Result<(), ArgumentError> {
         let shown = format!("--set {argument}");
-        match argument.split_once('=') {
-            Some((field, value)) => self.assign(field.trim(), value.trim(), &shown),
-            None => {
-                let problem = "write FIELD=VALUE, such as stops.travel_limit_mm=1.5".to_owned();
-                Err(ArgumentError { argument: clip(&shown), problem })
-            }
+        let Some((field, value)) = argument.split_once('=') else {
+            let problem = "write FIELD=VALUE, such as stops.travel_limit_mm=1.5".to_owned();
+            return Err(ArgumentError { argument: clip(&shown), problem });
+        };
+        self.assign(field.trim(), value.trim(), &shown)?;
+        if let Some(assigned) = self.assigned.last_mut() {
+            assigned.change = Some(assigned.argument["--set ".len()..].to_owned());
         }
+        Ok(())
     }
 
     /// Assigns a value to a field; errors about it name `argument`, such as `--tolerance 1e-6`. The scene is
@@ -136,10 +146,12 @@ impl Document {
         if value.len() > MAX_SCENE_BYTES {
             return error("the value is longer than a scene may be".to_owned());
         }
+        let is_excitation = field.starts_with("excitation");
         match FieldPath::new(field).follow(&mut self.scene, |found| replace(found, value)) {
             Some(Ok(())) => {
-                self.assigned.push((field.to_owned(), clip(argument)));
-                if field.starts_with("excitation") {
+                let (field, argument) = (field.to_owned(), clip(argument));
+                self.assigned.push(Assignment { field, argument, change: None });
+                if is_excitation {
                     self.unread = record::attach(&mut self.scene.excitation, "excitation", &self.files);
                 }
                 Ok(())
@@ -156,9 +168,10 @@ impl Document {
 
     /// The changes by `--set` arguments, as `FIELD=VALUE`; only the last one of each field.
     pub fn changes(&self) -> impl Iterator<Item = &str> {
-        let later = |i: usize, field: &str| self.assigned[i + 1..].iter().any(|(other, _)| other == field);
-        let last = self.assigned.iter().enumerate().filter(move |(i, (field, _))| !later(*i, field));
-        last.filter_map(|(_, (_, argument))| argument.strip_prefix("--set "))
+        let is_last =
+            |i: usize| self.assigned[i + 1..].iter().all(|later| later.field != self.assigned[i].field);
+        let last = self.assigned.iter().enumerate().filter(move |(i, _)| is_last(*i));
+        last.filter_map(|(_, assigned)| assigned.change.as_deref())
     }
 
     /// Removes a settle time in the scene's text that exceeds a duration set by an argument, so that it
@@ -166,9 +179,9 @@ impl Document {
     pub fn settle_within(&mut self) -> Option<String> {
         let run = &mut self.scene.run;
         let (settle, duration) = (run.settle_s?, run.duration_s);
-        let given = |field: &str| self.assigned.iter().find(|(assigned, _)| assigned == field);
-        let (_, argument) =
-            given("run.duration_s").filter(|_| given("run.settle_s").or(given("run")).is_none())?;
+        let given = |field: &str| self.assigned.iter().find(|assigned| assigned.field == field);
+        let duration_given = given("run.duration_s");
+        let argument = &duration_given.filter(|_| given("run.settle_s").or(given("run")).is_none())?.argument;
         if !(settle > duration && duration > 0.0) {
             return None;
         }
@@ -290,9 +303,9 @@ impl Document {
         let written = self.assigned.iter().rev();
         written
             .clone()
-            .find(|(assigned, _)| covers(assigned, field))
-            .or_else(|| written.clone().find(|(assigned, _)| covers(field, assigned)))
-            .map(|(_, argument)| argument.as_str())
+            .find(|assigned| covers(&assigned.field, field))
+            .or_else(|| written.clone().find(|assigned| covers(field, &assigned.field)))
+            .map(|assigned| assigned.argument.as_str())
     }
 }
 
@@ -310,21 +323,20 @@ fn read_scene(spec: &str, largest: usize) -> Result<String, SceneError> {
 /// The error for a text that is not a scene.
 fn scene_error(name: &str, text: &str, parse_error: text::ParseError, files: Files) -> SceneError {
     let rest = |text: &str| {
-        let checked = Document::from_text(name, text, files.clone()).and_then(|document| document.check());
-        checked.err().map(|error| error.to_string()).unwrap_or_default()
+        Document::from_text(name, text, files.clone()).and_then(|document| document.check()).err()
     };
     structure_error(name, text, parse_error, |text| text::parse(text).err(), rest)
 }
 
 /// The error for a text that does not parse. Unknown field names are removed one by one and the text
-/// is parsed again, so that the error also has further unknown names and the message of `rest` about
-/// the remaining text.
-pub(super) fn structure_error(
+/// is parsed again, so that the error also has further unknown names and the error of `rest` about the
+/// remaining text.
+pub(super) fn structure_error<E: ToString>(
     name: &str,
     text: &str,
     mut parse_error: text::ParseError,
     parse: impl Fn(&str) -> Option<text::ParseError>,
-    rest: impl Fn(&str) -> String,
+    rest: impl Fn(&str) -> Option<E>,
 ) -> SceneError {
     /// Largest number of unknown names that are removed.
     const MAX_UNKNOWN: usize = 20;
@@ -332,6 +344,7 @@ pub(super) fn structure_error(
         let text::ParseError { place, problem, .. } = parse_error;
         format!("{name}:{}:{}: {problem}", place.line, place.column)
     };
+    let lines = |error: &E| error.to_string().lines().map(str::to_owned).collect::<Vec<_>>();
     let (place, problem) = (parse_error.place, parse_error.problem.clone());
     let (mut more, mut text) = (Vec::new(), text.strip_prefix('\u{feff}').unwrap_or(text).to_owned());
     while let Some(without) = parse_error.without_unknown(&text).filter(|_| more.len() < MAX_UNKNOWN) {
@@ -344,7 +357,7 @@ pub(super) fn structure_error(
                 parse_error = next;
             }
             None => {
-                more.extend(rest(&text).lines().map(str::to_owned));
+                more.extend(rest(&text).iter().flat_map(lines));
                 break;
             }
         }

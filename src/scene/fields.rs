@@ -1,12 +1,16 @@
-//! Access to a scene's fields by path.
+//! Access to a scene's fields by path, and assignment of arguments to them.
 //!
 //! Paths are compared during the [traversal](super::walk), which skips branches that do not match. Setting a
 //! number takes about ten string comparisons and no allocation, which matters for a sweep of a million cells.
 
 use super::data::Scene;
-use super::ranges::number_text;
+use super::error::clip;
+use super::field_table::FieldInfo;
+use super::scanner::overflows;
+use super::text::{self, ParseError, TOO_LARGE};
 pub(super) use super::walk::{Field, Slot};
-use super::walk::{Segment, Visitor, walk};
+use super::walk::{Fields, Segment, Visitor};
+use crate::numeric::number_text;
 
 /// Calls `each` for every field with its path, in the order in which a scene is written.
 pub(super) fn for_each(scene: &mut Scene, each: impl FnMut(&str, Field<'_>)) {
@@ -32,7 +36,7 @@ pub(super) fn for_each(scene: &mut Scene, each: impl FnMut(&str, Field<'_>)) {
             self.path.truncate(self.lengths.pop().unwrap_or(0));
         }
     }
-    walk(scene, &mut Each { path: String::new(), lengths: Vec::new(), each });
+    scene.visit_fields(&mut Each { path: String::new(), lengths: Vec::new(), each });
 }
 
 /// Whether every number of a scene is within its range; no path is written for that.
@@ -48,7 +52,7 @@ pub(super) fn in_range(scene: &mut Scene) -> bool {
         fn leave(&mut self) {}
     }
     let mut all = InRange(true);
-    walk(scene, &mut all);
+    scene.visit_fields(&mut all);
     all.0
 }
 
@@ -147,7 +151,7 @@ impl FieldPath {
             }
         }
         let mut seek = Seek { steps: &self.steps, depth: 0, found: Some(found), result: None };
-        walk(scene, &mut seek);
+        scene.visit_fields(&mut seek);
         seek.result
     }
 }
@@ -175,4 +179,60 @@ pub fn all_fields(scene: &Scene) -> Vec<String> {
     let mut paths = Vec::new();
     for_each(&mut scene.clone(), |path, _| paths.push(path.to_owned()));
     paths
+}
+
+/// Assigns the text `value` to a field; the error is a sentence.
+pub(super) fn replace(found: Field<'_>, value: &str) -> Result<(), String> {
+    let message = |parse_error: ParseError| format!("`{}`: {}", clip(value), parse_error.problem);
+    let written =
+        |value: &str| text::options().from_str(value).map_err(|e| message(text::parse_error(value, &e)));
+    match found {
+        Field::Number(spec, Slot::Required(number)) => {
+            let read = parse_number(value).ok_or_else(|| no_number(value, "is not a number", spec))?;
+            *number = unless_overflow(read, value, spec)?;
+            Ok(())
+        }
+        Field::Number(spec, Slot::Optional(number)) => {
+            let none = || text::options().from_str(value).ok();
+            let read = parse_number(value).map(Some).or_else(none);
+            let read = read.ok_or_else(|| no_number(value, "is neither a number nor None", spec))?;
+            *number = unless_overflow(read, value, spec)?;
+            Ok(())
+        }
+        Field::Number(spec, Slot::Whole(number)) => {
+            let whole = value.trim().parse().ok();
+            *number = whole.ok_or_else(|| no_number(value, "is not a whole number from 0 up", spec))?;
+            Ok(())
+        }
+        Field::Text(text) => {
+            let quoted = ["\"", "r\"", "r#"].iter().any(|first| value.starts_with(first));
+            *text = if quoted { written(value)? } else { value.to_owned() };
+            Ok(())
+        }
+        Field::Value(whole) => {
+            text::overflow(value).map_or(Ok(()), |overflow| Err(message(overflow)))?;
+            whole.assign(value).map_err(|error| message(text::parse_error(value, &error)))
+        }
+    }
+}
+
+/// Parses a number in the notation of RON or Rust: `4`, `.5`, `1e-9`, `-inf`.
+fn parse_number(text: &str) -> Option<f64> {
+    text.parse().ok().or_else(|| text::options().from_str(text).ok())
+}
+
+/// Returns `read` unless the text `value` is a decimal that overflows to infinity.
+fn unless_overflow<T>(read: T, value: &str, spec: &FieldInfo) -> Result<T, String> {
+    match overflows(value) {
+        true => Err(format!("`{}` {TOO_LARGE}; {}", clip(value), spec.remedy)),
+        false => Ok(read),
+    }
+}
+
+/// The sentence for a text that is not a number; `what` says what is wrong.
+fn no_number(value: &str, what: &str, spec: &FieldInfo) -> String {
+    let digits = value.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
+    let unit = digits && value.ends_with(|c: char| c.is_alphabetic() || c == '%');
+    let unit = if unit { ": its unit stands in the name of the field" } else { "" };
+    format!("`{}` {what}{unit}; {}", clip(value), spec.remedy)
 }

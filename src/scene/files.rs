@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::clip::clip;
+use super::error::clip;
 use super::presets;
 use crate::system::files;
 

@@ -5,9 +5,9 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use super::clip::clip;
 use super::document::Document;
 use super::error::SceneError;
+use super::error::clip;
 use super::files::{Files, MAX_TABLE_BYTES, read_text};
 
 /// Value of the key `program` in manifests of this program.

@@ -5,8 +5,8 @@
 
 use std::path::Path;
 
-use super::clip::clip;
 use super::columns::{ColumnsError, Separators, Sheet};
+use super::error::clip;
 use super::files::{ReadError, read_text};
 use super::unit::{Quantity, Unit};
 
@@ -20,12 +20,19 @@ pub const MAX_MEASURED_BYTES: usize = 1 << 30;
 pub struct Ask {
     /// Accepted quantities. Without a column name, the first quantity of which a column has a unit is chosen.
     pub quantities: Vec<Quantity>,
+    /// What options say of the column; without options the header alone decides.
+    pub options: Option<AskOptions>,
+}
+
+/// Options that may name a column and its unit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AskOptions {
     /// Name of the column; if `None`, the column is chosen by its unit.
     pub column: Option<String>,
     /// Unit of the column; if `None`, the unit at the end of its name.
     pub unit: Option<String>,
-    /// The options that give name and unit, for messages; empty if only the header can.
-    pub options: (&'static str, &'static str),
+    /// The options that give name and unit, for messages.
+    pub names: [&'static str; 2],
 }
 
 /// Values of one column.
@@ -235,9 +242,20 @@ impl<const N: usize> Measured<N> {
 }
 
 impl Ask {
+    /// A request by the options `names` for column and unit.
+    pub fn by_options(
+        quantities: &[Quantity],
+        column: &Option<String>,
+        unit: &Option<String>,
+        names: [&'static str; 2],
+    ) -> Self {
+        let options = AskOptions { column: column.clone(), unit: unit.clone(), names };
+        Self { quantities: quantities.to_vec(), options: Some(options) }
+    }
+
     /// The requested name, or an example of one, for messages.
     fn wanted(&self) -> String {
-        self.column.clone().unwrap_or_else(|| {
+        self.options.as_ref().and_then(|options| options.column.clone()).unwrap_or_else(|| {
             let name = match self.quantities[0] {
                 Quantity::Time => "t",
                 Quantity::Displacement => "x",
@@ -259,27 +277,34 @@ impl Ask {
 
     /// The column's index and unit.
     fn choose(&self, sheet: &Sheet) -> Result<(usize, Unit), MeasuredError> {
+        let Some(AskOptions { column, unit, names: [_, unit_option] }) = &self.options else {
+            return self.choose_by_unit(sheet, None);
+        };
         let of_word = |word: &str| {
             let found = self.quantities.iter().find_map(|quantity| Unit::of_word(word, *quantity));
             found.ok_or_else(|| MeasuredError::UnknownUnit {
-                option: self.options.1,
+                option: *unit_option,
                 unit: clip(word),
                 quantity: self.quantity_names(),
                 units: self.known_units(),
             })
         };
-        let given = self.unit.as_deref().map(of_word).transpose()?;
-        if let Some(name) = &self.column {
-            let at = sheet.column(name)?;
-            let in_name = Unit::of_name(name).filter(|unit| self.quantities.contains(&unit.quantity));
-            let unit = given.or(in_name).ok_or_else(|| MeasuredError::UnitNeeded {
-                column: clip(name),
-                quantity: self.quantity_names(),
-                option: self.options.1,
-                units: self.known_units(),
-            })?;
-            return Ok((at, unit));
-        }
+        let given = unit.as_deref().map(of_word).transpose()?;
+        let Some(name) = column else { return self.choose_by_unit(sheet, given) };
+        let at = sheet.column(name)?;
+        let in_name = Unit::of_name(name).filter(|unit| self.quantities.contains(&unit.quantity));
+        let unit = given.or(in_name).ok_or_else(|| MeasuredError::UnitNeeded {
+            column: clip(name),
+            quantity: self.quantity_names(),
+            option: *unit_option,
+            units: self.known_units(),
+        })?;
+        Ok((at, unit))
+    }
+
+    /// The only column with a unit of the first quantity that has one; `given` replaces that unit.
+    fn choose_by_unit(&self, sheet: &Sheet, given: Option<Unit>) -> Result<(usize, Unit), MeasuredError> {
+        let names = self.options.as_ref().map(|options| options.names);
         for quantity in &self.quantities {
             let with_unit = |(at, name): (usize, &String)| {
                 let unit = Unit::of_name(name).filter(|unit| unit.quantity == *quantity)?;
@@ -290,14 +315,14 @@ impl Ask {
                 [] => {}
                 [(at, unit)] => return Ok((at, given.unwrap_or(unit))),
                 _ => {
-                    let names: Vec<&str> = found.iter().map(|(at, _)| sheet.names[*at].as_str()).collect();
+                    let found: Vec<&str> = found.iter().map(|(at, _)| sheet.names[*at].as_str()).collect();
                     return Err(MeasuredError::SeveralColumns {
                         line: sheet.line(0),
                         quantity: quantity.name(),
-                        found: clip(&names.join(", ")),
-                        remedy: match self.options.0 {
-                            "" => "leave the unit to one of them".to_owned(),
-                            option => format!("name one by {option}"),
+                        found: clip(&found.join(", ")),
+                        remedy: match names {
+                            None => "leave the unit to one of them".to_owned(),
+                            Some([option, _]) => format!("name one by {option}"),
                         },
                     });
                 }
@@ -308,9 +333,9 @@ impl Ask {
             quantity: self.quantities[0],
             example: self.wanted(),
             found: clip(&sheet.names.join(", ")),
-            remedy: match self.options {
-                ("", _) => "Put the unit at the end of the column's name".to_owned(),
-                (option, unit) => format!("Name the column by {option} and its unit by {unit}"),
+            remedy: match names {
+                None => "Put the unit at the end of the column's name".to_owned(),
+                Some([option, unit]) => format!("Name the column by {option} and its unit by {unit}"),
             },
         })
     }

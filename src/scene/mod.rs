@@ -17,14 +17,13 @@
 //! ```
 
 mod arguments;
-mod assign;
 mod axis;
 mod check;
-mod clip;
 mod columns;
 mod data;
 mod document;
 mod error;
+mod field_table;
 mod fields;
 mod files;
 pub mod lesson;
@@ -33,7 +32,6 @@ mod manifest;
 mod measured;
 mod mechanism;
 mod presets;
-mod ranges;
 mod record;
 mod scanner;
 mod shape;
@@ -53,22 +51,24 @@ pub use columns::{Columns, ColumnsError, MOST_ROWS, read_columns};
 pub use data::*;
 pub use document::{Document, Source, is_scene_file, named_paths};
 pub use error::{ArgumentError, Fault, Origin, PlacedFault, SceneError};
+pub use field_table::{
+    Control, FIELDS, FieldInfo, MAX_COEFFICIENTS, Range, Scale, TOLERANCES, field_info, without_indices,
+};
 pub use fields::{FieldPath, all_fields, is_whole, numeric_fields};
 pub use files::{FileError, Files, MAX_TABLE_BYTES};
 pub use locate::{Place, Places};
 pub use manifest::{PROGRAM, SweepRequest, is_manifest};
 pub use measured::{
-    Ask, Channel, ChosenColumn, MAX_MEASURED_BYTES, MAX_MEASURED_ROWS, Measured, MeasuredError, MeasuredText,
-    read_measured,
+    Ask, AskOptions, Channel, ChosenColumn, MAX_MEASURED_BYTES, MAX_MEASURED_ROWS, Measured, MeasuredError,
+    MeasuredText, read_measured,
 };
 pub use mechanism::{FlexureGroup, Mechanism};
 pub use presets::{EmbeddedTable, PRESETS, Preset, TABLES, export};
-pub(crate) use ranges::number_text;
-pub use ranges::{MAX_COEFFICIENTS, TOLERANCES};
 pub use record::{Record, RecordError, read_record};
 pub use scanner::has_comments;
 pub use stops::Stops;
 pub use text::{MAX_SCENE_BYTES, write};
 pub use timing::Timing;
 pub use transducer::Transducer;
+pub(crate) use unit::unit_ending;
 pub use unit::{Quantity, STANDARD_GRAVITY, Unit};

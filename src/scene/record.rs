@@ -139,8 +139,8 @@ impl Record {
     }
 
     fn by_units(text: &str) -> Result<Self, RecordError> {
-        let ask = |quantity| Ask { quantities: vec![quantity], column: None, unit: None, options: ("", "") };
-        let requests = [ask(Quantity::Time), ask(Quantity::Acceleration)];
+        let requests = [Quantity::Time, Quantity::Acceleration]
+            .map(|quantity| Ask { quantities: vec![quantity], options: None });
         let [times, accelerations] = Measured::parse(text, &requests)?.channels.map(|channel| channel.values);
         if times.len() > MOST_ROWS {
             return Err(ColumnsError::TooMany(MOST_ROWS).into());

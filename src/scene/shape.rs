@@ -5,7 +5,7 @@
 
 use super::check::{Checked, has_fault};
 use super::mechanism::{FlexureGroup, Mechanism};
-use super::ranges::number_text;
+use crate::numeric::number_text;
 
 /// Smallest length of the shorter flexure relative to the preload. At slightly larger preloads the loops of a
 /// flexure touch each other.

@@ -7,8 +7,8 @@ use ron::error::{Error as Ron, SpannedError};
 use ron::extensions::Extensions;
 use serde::de::DeserializeOwned;
 
-use super::clip::clip;
 use super::data::*;
+use super::error::clip;
 use super::locate::{Place, Places};
 use super::mechanism::Mechanism;
 use super::scanner::Scanner;

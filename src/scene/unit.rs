@@ -140,6 +140,43 @@ impl Unit {
     }
 }
 
+/// Endings of names with their units, the longest first: `_m_per_s2` also ends like a name in seconds.
+const ENDINGS: [(&str, &str); 28] = [
+    ("_m_per_s2", "m/s\u{b2}"),
+    ("_m_per_s", "m/s"),
+    ("_n_per_m3", "N/m\u{b3}"),
+    ("_n_per_m", "N/m"),
+    ("_n_per_m1_5", "N/m^1.5"),
+    ("_n_s_per_m", "N s/m"),
+    ("_v_s_per_m", "V s/m"),
+    ("_s_per_m", "s/m"),
+    ("_n_per_v", "N/V"),
+    ("_n_mm4", "N mm\u{2074}"),
+    ("_per_s", "1/s"),
+    ("_kohm", "kohm"),
+    ("_ohm", "ohm"),
+    ("_mh", "mH"),
+    ("_nf", "nF"),
+    ("_gpa", "GPa"),
+    ("_pa", "Pa"),
+    ("_deg", "\u{b0}"),
+    ("_mm", "mm"),
+    ("_mj", "mJ"),
+    ("_hz", "Hz"),
+    ("_g", "g"),
+    ("_j", "J"),
+    ("_m", "m"),
+    ("_n", "N"),
+    ("_v", "V"),
+    ("_w", "W"),
+    ("_s", "s"),
+];
+
+/// The ending of the name of a field or column that says its unit, and the unit as a person writes it.
+pub(crate) fn unit_ending(name: &str) -> Option<(&'static str, &'static str)> {
+    ENDINGS.into_iter().find(|(ending, _)| name.ends_with(ending))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

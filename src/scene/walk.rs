@@ -10,8 +10,8 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::data::*;
+use super::field_table::{FieldInfo, row};
 use super::mechanism::{FlexureGroup, Mechanism};
-use super::ranges::{self, Spec};
 use super::stops::Stops;
 use super::text;
 use super::transducer::Transducer;
@@ -81,7 +81,7 @@ impl<T: DeserializeOwned + Serialize> Assign for T {
 
 /// A field found by the traversal.
 pub(super) enum Field<'a> {
-    Number(&'static Spec, Slot<'a>),
+    Number(&'static FieldInfo, Slot<'a>),
     Text(&'a mut String),
     Value(&'a mut dyn Assign),
 }
@@ -94,167 +94,149 @@ pub(super) trait Visitor {
     fn leave(&mut self);
 }
 
-fn number(v: &mut impl Visitor, spec: &'static Spec, value: &mut f64) {
-    v.field(Segment::Name(spec.name), false, Field::Number(spec, Slot::Required(value)));
+/// A scene or a part of it whose fields can be visited.
+pub(super) trait Fields {
+    /// Visits every field, in the order in which a scene is written.
+    fn visit_fields<V: Visitor>(&mut self, v: &mut V);
 }
 
-fn optional(v: &mut impl Visitor, spec: &'static Spec, value: &mut Option<f64>) {
-    v.field(Segment::Name(spec.name), false, Field::Number(spec, Slot::Optional(value)));
+fn leaf(v: &mut impl Visitor, segment: Segment, value: &mut dyn Assign) {
+    v.field(segment, false, Field::Value(value));
 }
 
-fn whole(v: &mut impl Visitor, spec: &'static Spec, value: &mut u64) {
-    v.field(Segment::Name(spec.name), false, Field::Number(spec, Slot::Whole(value)));
+fn text(v: &mut impl Visitor, segment: Segment, value: &mut String) {
+    v.field(segment, false, Field::Text(value));
 }
 
-fn numbers(v: &mut impl Visitor, spec: &'static Spec, list: &mut Vec<f64>) {
-    within(v, Segment::Name(spec.name), list, |list, v| {
-        for (i, value) in list.iter_mut().enumerate() {
-            v.field(Segment::Index(i), false, Field::Number(spec, Slot::Required(value)));
-        }
-    });
-}
-
-fn leaf(v: &mut impl Visitor, name: &'static str, value: &mut dyn Assign) {
-    v.field(Segment::Name(name), false, Field::Value(value));
-}
-
-fn within<V: Visitor, T: Assign>(
-    v: &mut V,
-    segment: Segment,
-    value: &mut T,
-    inside: impl FnOnce(&mut T, &mut V),
-) {
+/// Visits a value and then the fields inside it.
+fn part<V: Visitor>(v: &mut V, segment: Segment, value: &mut (impl Fields + Assign)) {
     if v.field(segment, true, Field::Value(value)) {
-        inside(value, v);
+        value.visit_fields(v);
         v.leave();
     }
 }
 
-/// Visits every field of a scene, in the order in which a scene is written.
-pub(super) fn walk(scene: &mut Scene, v: &mut impl Visitor) {
-    v.field(Segment::Name("title"), false, Field::Text(&mut scene.title));
-    v.field(Segment::Name("notes"), false, Field::Text(&mut scene.notes));
-    number(v, &ranges::MASS, &mut scene.mass_g);
-    within(v, Segment::Name("mechanism"), &mut scene.mechanism, walk_mechanism);
-    within(v, Segment::Name("damping"), &mut scene.damping, |damping, v| match damping {
-        Damping::None => {}
-        Damping::Ratio(xi) => number(v, &ranges::XI, xi),
-        Damping::Coefficient { c_n_s_per_m } => number(v, &ranges::C, c_n_s_per_m),
-    });
-    within(v, Segment::Name("stops"), &mut scene.stops, walk_stops);
-    within(v, Segment::Name("transducer"), &mut scene.transducer, walk_transducer);
-    within(v, Segment::Name("excitation"), &mut scene.excitation, walk_excitation);
-    within(v, Segment::Name("start"), &mut scene.start, |start, v| match start {
-        Start::Rest => {}
-        Start::At { x_mm, v_m_per_s, electrical } => {
-            number(v, &ranges::X, x_mm);
-            number(v, &ranges::V, v_m_per_s);
-            number(v, &ranges::ELECTRICAL, electrical);
-        }
-    });
-    within(v, Segment::Name("run"), &mut scene.run, |run, v| {
-        number(v, &ranges::DURATION, &mut run.duration_s);
-        optional(v, &ranges::SETTLE, &mut run.settle_s);
-        number(v, &ranges::TOLERANCE, &mut run.tolerance);
-        leaf(v, "recurrence", &mut run.recurrence);
-    });
-    within(v, Segment::Name("sweep"), &mut scene.sweep, |sweep, v| {
-        for (i, axis) in sweep.iter_mut().enumerate() {
-            within(v, Segment::Index(i), axis, |axis, v| {
-                v.field(Segment::Name("field"), false, Field::Text(&mut axis.field));
-                if axis.values.is_empty() {
-                    number(v, &ranges::FROM, &mut axis.from);
-                    number(v, &ranges::TO, &mut axis.to);
-                    number(v, &ranges::STEP, &mut axis.step);
-                } else {
-                    numbers(v, &ranges::VALUES, &mut axis.values);
-                }
-            });
-        }
-    });
-    within(v, Segment::Name("app"), &mut scene.app, |app, v| {
-        let Some(app) = app else { return };
-        leaf(v, "layout", &mut app.layout);
-        optional(v, &ranges::SPEED, &mut app.speed);
-        within(v, Segment::Name("stops_when_on"), &mut app.stops_when_on, |stops, v| {
-            if let Some(stops) = stops {
-                walk_stops(stops, v);
-            }
-        });
-    });
+/// Visits the fields inside a value whose own name is not part of their path.
+fn inside<V: Visitor>(v: &mut V, _: Segment, value: &mut impl Fields) {
+    value.visit_fields(v);
 }
 
-fn walk_mechanism<V: Visitor>(mechanism: &mut Mechanism, v: &mut V) {
-    match mechanism {
-        Mechanism::Flexures {
-            preload_mm,
-            thickness_mm,
-            young_gpa,
-            parallel,
-            buckling,
-            poisson,
-            plane_strain,
-            initial_bow_mm,
-            yield_gpa,
-        } => {
-            number(v, &ranges::PRELOAD, preload_mm);
-            number(v, &ranges::THICKNESS, thickness_mm);
-            number(v, &ranges::YOUNG, young_gpa);
-            within(v, Segment::Name("parallel"), parallel, walk_group);
-            within(v, Segment::Name("buckling"), buckling, walk_group);
-            number(v, &ranges::POISSON, poisson);
-            leaf(v, "plane_strain", plane_strain);
-            number(v, &ranges::BOW, initial_bow_mm);
-            number(v, &ranges::YIELD, yield_gpa);
-        }
-        Mechanism::Cubic { linear_n_per_m, cubic_n_per_m3 } => {
-            number(v, &ranges::LINEAR, linear_n_per_m);
-            number(v, &ranges::CUBIC, cubic_n_per_m3);
-        }
-        Mechanism::DoubleWell { equilibrium_mm, barrier_mj } => {
-            number(v, &ranges::EQUILIBRIUM, equilibrium_mm);
-            number(v, &ranges::BARRIER, barrier_mj);
-        }
-        Mechanism::Polynomial { coefficients_si } => {
-            numbers(v, &ranges::COEFFICIENTS, coefficients_si);
-        }
-        Mechanism::Table { path, tolerance } => {
-            v.field(Segment::Name("path"), false, Field::Text(path));
-            number(v, &ranges::TABLE_TOLERANCE, tolerance);
-        }
-        Mechanism::Linear { n_per_m } => number(v, &ranges::STIFFNESS, n_per_m),
-        Mechanism::Magnet { strength_n_mm4, gap_mm } => {
-            number(v, &ranges::STRENGTH, strength_n_mm4);
-            number(v, &ranges::GAP, gap_mm);
-        }
-        Mechanism::Sum(parts) => {
-            for (i, part) in parts.iter_mut().enumerate() {
-                within(v, Segment::Index(i), part, walk_mechanism);
+/// Visits nothing: the field is no part of the text of a scene.
+fn hidden<T>(_: &mut impl Visitor, _: Segment, _: &mut T) {}
+
+/// A number, an optional number or a list of numbers.
+trait Number {
+    fn visit(&mut self, segment: Segment, info: &'static FieldInfo, v: &mut impl Visitor);
+}
+
+impl Number for f64 {
+    fn visit(&mut self, segment: Segment, info: &'static FieldInfo, v: &mut impl Visitor) {
+        v.field(segment, false, Field::Number(info, Slot::Required(self)));
+    }
+}
+
+impl Number for Option<f64> {
+    fn visit(&mut self, segment: Segment, info: &'static FieldInfo, v: &mut impl Visitor) {
+        v.field(segment, false, Field::Number(info, Slot::Optional(self)));
+    }
+}
+
+impl Number for u64 {
+    fn visit(&mut self, segment: Segment, info: &'static FieldInfo, v: &mut impl Visitor) {
+        v.field(segment, false, Field::Number(info, Slot::Whole(self)));
+    }
+}
+
+impl Number for Vec<f64> {
+    fn visit(&mut self, segment: Segment, info: &'static FieldInfo, v: &mut impl Visitor) {
+        if v.field(segment, true, Field::Value(self)) {
+            for (i, value) in self.iter_mut().enumerate() {
+                value.visit(Segment::Index(i), info, v);
             }
+            v.leave();
         }
     }
 }
 
-fn walk_group<V: Visitor>(group: &mut FlexureGroup, v: &mut V) {
-    whole(v, &ranges::COUNT, &mut group.count);
-    number(v, &ranges::FLEXURE_LENGTH, &mut group.length_mm);
-    number(v, &ranges::WIDTH, &mut group.width_mm);
+/// Visits one field: by the function after `as`, or as a number, which needs a row in the table of fields
+/// under the path `$root` and its name.
+macro_rules! visit {
+    ($v:ident, $root:literal, $field:ident as $kind:ident) => {
+        $kind($v, Segment::Name(stringify!($field)), $field)
+    };
+    ($v:ident, $root:literal, $field:ident) => {
+        $field.visit(Segment::Name(stringify!($field)), const { row(concat!($root, stringify!($field))) }, $v)
+    };
 }
 
-fn walk_stops(stops: &mut Stops, v: &mut impl Visitor) {
-    match stops {
-        Stops::None => {}
-        Stops::Rigid { travel_limit_mm, restitution } => {
-            number(v, &ranges::TRAVEL_LIMIT, travel_limit_mm);
-            number(v, &ranges::RESTITUTION, restitution);
+/// Lists the fields of each struct and of each variant in their order, those without names in brackets.
+macro_rules! fields {
+    ($($type:ident in $root:literal {
+        $($shape:path { $($field:ident $(as $kind:ident)?),* $(,)? })*
+        $(; $tuple:path [ $value:ident $(as $value_kind:ident)? ])*
+    })*) => {
+        $(impl Fields for $type {
+            fn visit_fields<V: Visitor>(&mut self, v: &mut V) {
+                match self {
+                    $($shape { $($field),* } => { $(visit!(v, $root, $field $(as $kind)?);)* })*
+                    $($tuple($value) => visit!(v, $root, $value $(as $value_kind)?),)*
+                }
+            }
+        })*
+    };
+}
+
+fields! {
+    Scene in "" {
+        Self {
+            title as text,
+            notes as text,
+            mass_g,
+            mechanism as part,
+            damping as part,
+            stops as part,
+            transducer as part,
+            excitation as part,
+            start as part,
+            run as part,
+            sweep as part,
+            app as part,
         }
-        Stops::Uneven { left_mm, right_mm, restitution_left, restitution_right } => {
-            optional(v, &ranges::LEFT, left_mm);
-            optional(v, &ranges::RIGHT, right_mm);
-            optional(v, &ranges::RESTITUTION_LEFT, restitution_left);
-            optional(v, &ranges::RESTITUTION_RIGHT, restitution_right);
+    }
+    Mechanism in "mechanism." {
+        Self::Flexures {
+            preload_mm,
+            thickness_mm,
+            young_gpa,
+            parallel as part,
+            buckling as part,
+            poisson,
+            plane_strain as leaf,
+            initial_bow_mm,
+            yield_gpa,
         }
-        Stops::Hertz {
+        Self::Cubic { linear_n_per_m, cubic_n_per_m3 }
+        Self::DoubleWell { equilibrium_mm, barrier_mj }
+        Self::Polynomial { coefficients_si }
+        Self::Table { path as text, tolerance }
+        Self::Linear { n_per_m }
+        Self::Magnet { strength_n_mm4, gap_mm }
+        ; Self::Sum [parts as inside]
+    }
+    // the buckling flexures have the same ranges
+    FlexureGroup in "mechanism.parallel." {
+        Self { count, length_mm, width_mm }
+    }
+    Damping in "damping." {
+        Self::None {}
+        Self::Coefficient { c_n_s_per_m }
+        ; Self::Ratio [xi]
+    }
+    Stops in "stops." {
+        Self::None {}
+        Self::Rigid { travel_limit_mm, restitution }
+        Self::Uneven { left_mm, right_mm, restitution_left, restitution_right }
+        Self::Hertz {
             travel_limit_mm,
             stiffness_n_per_m1_5,
             loss_s_per_m,
@@ -262,70 +244,61 @@ fn walk_stops(stops: &mut Stops, v: &mut impl Visitor) {
             young_gpa,
             poisson,
             yield_gpa,
-        } => {
-            number(v, &ranges::TRAVEL_LIMIT, travel_limit_mm);
-            optional(v, &ranges::CONTACT_STIFFNESS, stiffness_n_per_m1_5);
-            number(v, &ranges::LOSS, loss_s_per_m);
-            optional(v, &ranges::RADIUS, radius_mm);
-            optional(v, &ranges::CONTACT_YOUNG, young_gpa);
-            optional(v, &ranges::POISSON, poisson);
-            optional(v, &ranges::CONTACT_YIELD, yield_gpa);
+        }
+    }
+    Transducer in "transducer." {
+        Self::None {}
+        Self::Electromagnetic { coupling_v_s_per_m, coil_ohm, load_ohm, inductance_mh }
+        Self::Piezoelectric { coupling_n_per_v, capacitance_nf, load_kohm }
+    }
+    Excitation in "excitation." {
+        Self::None {}
+        Self::Constant { accel_g }
+        Self::Sine { frequency_hz, amplitude_g, phase_deg }
+        Self::AmplitudeRamp { frequency_hz, from_g, to_g, over_s }
+        Self::Chirp { from_hz, to_hz, over_s, amplitude_g }
+        Self::Noise { rms_g, low_hz, high_hz, seed, lines }
+        Self::Recorded { path as text, record as hidden }
+        ; Self::Sum [terms as inside]
+    }
+    Start in "start." {
+        Self::Rest {}
+        Self::At { x_mm, v_m_per_s, electrical }
+    }
+    RunSettings in "run." {
+        Self { duration_s, settle_s, tolerance, recurrence as leaf }
+    }
+    AppHints in "app." {
+        Self { layout as leaf, speed, stops_when_on as part }
+    }
+}
+
+impl Fields for SweepAxis {
+    fn visit_fields<V: Visitor>(&mut self, v: &mut V) {
+        let Self { field, from, to, step, values } = self;
+        visit!(v, "sweep.", field as text);
+        if values.is_empty() {
+            visit!(v, "sweep.", from);
+            visit!(v, "sweep.", to);
+            visit!(v, "sweep.", step);
+        } else {
+            visit!(v, "sweep.", values);
         }
     }
 }
 
-fn walk_transducer(transducer: &mut Transducer, v: &mut impl Visitor) {
-    match transducer {
-        Transducer::None => {}
-        Transducer::Electromagnetic { coupling_v_s_per_m, coil_ohm, load_ohm, inductance_mh } => {
-            number(v, &ranges::COUPLING_V, coupling_v_s_per_m);
-            number(v, &ranges::COIL, coil_ohm);
-            number(v, &ranges::LOAD_OHM, load_ohm);
-            number(v, &ranges::INDUCTANCE, inductance_mh);
-        }
-        Transducer::Piezoelectric { coupling_n_per_v, capacitance_nf, load_kohm } => {
-            number(v, &ranges::COUPLING_N, coupling_n_per_v);
-            number(v, &ranges::CAPACITANCE, capacitance_nf);
-            number(v, &ranges::LOAD_KOHM, load_kohm);
+impl<T: Fields + Assign> Fields for Vec<T> {
+    fn visit_fields<V: Visitor>(&mut self, v: &mut V) {
+        for (i, value) in self.iter_mut().enumerate() {
+            part(v, Segment::Index(i), value);
         }
     }
 }
 
-fn walk_excitation<V: Visitor>(excitation: &mut Excitation, v: &mut V) {
-    match excitation {
-        Excitation::None => {}
-        Excitation::Constant { accel_g } => number(v, &ranges::ACCEL, accel_g),
-        Excitation::Sine { frequency_hz, amplitude_g, phase_deg } => {
-            number(v, &ranges::FREQUENCY, frequency_hz);
-            number(v, &ranges::AMPLITUDE, amplitude_g);
-            number(v, &ranges::PHASE, phase_deg);
-        }
-        Excitation::AmplitudeRamp { frequency_hz, from_g, to_g, over_s } => {
-            number(v, &ranges::FREQUENCY, frequency_hz);
-            number(v, &ranges::FROM_G, from_g);
-            number(v, &ranges::TO_G, to_g);
-            number(v, &ranges::OVER, over_s);
-        }
-        Excitation::Chirp { from_hz, to_hz, over_s, amplitude_g } => {
-            number(v, &ranges::FROM_HZ, from_hz);
-            number(v, &ranges::TO_HZ, to_hz);
-            number(v, &ranges::OVER, over_s);
-            number(v, &ranges::AMPLITUDE, amplitude_g);
-        }
-        Excitation::Noise { rms_g, low_hz, high_hz, seed, lines } => {
-            number(v, &ranges::RMS, rms_g);
-            number(v, &ranges::LOW_HZ, low_hz);
-            number(v, &ranges::HIGH_HZ, high_hz);
-            whole(v, &ranges::SEED, seed);
-            whole(v, &ranges::LINES, lines);
-        }
-        Excitation::Recorded { path, .. } => {
-            v.field(Segment::Name("path"), false, Field::Text(path));
-        }
-        Excitation::Sum(terms) => {
-            for (i, term) in terms.iter_mut().enumerate() {
-                within(v, Segment::Index(i), term, walk_excitation);
-            }
+impl<T: Fields> Fields for Option<T> {
+    fn visit_fields<V: Visitor>(&mut self, v: &mut V) {
+        if let Some(value) = self {
+            value.visit_fields(v);
         }
     }
 }

@@ -1,7 +1,10 @@
-//! Fields of a summary by name: the keys of `simulate`'s JSON and the columns of a sweep.
+//! Table of the fields of a summary: the keys of `simulate`'s JSON, the columns of a sweep, the quantities of
+//! maps.
+
+use Read::{Count, Flag, Number, Word};
 
 use super::table::Values;
-use crate::dynamics::{First, Firsts, STANDARD_GRAVITY, Summary};
+use crate::dynamics::{First, Firsts, Outcome, Place, Regime, STANDARD_GRAVITY, Summary};
 
 /// What a field of a summary is, and how it is read. A number, count or flag of `None` and an empty word are
 /// missing values.
@@ -17,6 +20,15 @@ pub enum Read {
     Flag(fn(&Summary) -> Option<bool>),
 }
 
+/// Where the JSON of a run has a field.
+#[derive(Debug, Clone, Copy)]
+pub enum InJson {
+    /// Among the values of the summary, if the run has such a quantity.
+    Summary(fn(&Summary) -> bool),
+    /// In the object of the energy ledger.
+    Ledger,
+}
+
 /// A named value of a summary.
 #[derive(Debug, Clone, Copy)]
 pub struct SummaryField {
@@ -24,72 +36,174 @@ pub struct SummaryField {
     pub name: &'static str,
     /// How it is read.
     pub read: Read,
+    /// Its name on the screen.
+    pub label: &'static str,
+    /// Its explanation on the screen.
+    pub about: &'static str,
+    /// The words that it can be; empty for a number.
+    pub words: &'static [&'static str],
     /// Whether it needs the energy ledger.
     pub needs_ledger: bool,
+    /// Where JSON has it.
+    pub in_json: InJson,
 }
 
-const fn plain(name: &'static str, read: Read) -> SummaryField {
-    SummaryField { name, read, needs_ledger: false }
+const fn field(name: &'static str, read: Read, label: &'static str, about: &'static str) -> SummaryField {
+    let in_json = InJson::Summary(|_| true);
+    SummaryField { name, read, label, about, words: &[], needs_ledger: false, in_json }
 }
 
-const fn of_ledger(name: &'static str, read: Read) -> SummaryField {
-    SummaryField { name, read, needs_ledger: true }
+impl SummaryField {
+    const fn words(mut self, words: &'static [&'static str]) -> Self {
+        self.words = words;
+        self
+    }
+
+    const fn only_if(mut self, present: fn(&Summary) -> bool) -> Self {
+        self.in_json = InJson::Summary(present);
+        self
+    }
+
+    const fn of_ledger(mut self) -> Self {
+        self.needs_ledger = true;
+        self
+    }
+
+    const fn term_of_ledger(mut self) -> Self {
+        self.in_json = InJson::Ledger;
+        self.of_ledger()
+    }
 }
+
+/// The root mean square of the velocity, which maps show where nothing else is chosen.
+pub const RMS_VELOCITY: SummaryField = field(
+    "rms_velocity_m_per_s",
+    Number(|s| s.rms_velocity),
+    "RMS velocity",
+    "Root of the mean square of the velocity over the settled window.",
+);
+
+const FLAGS: [&str; 2] = ["true", "false"];
+const SIDES: &[&str] = &[Place::Left.name(), Place::Right.name(), Place::Both.name()];
+const REGIMES: &[&str] = &[
+    Regime::Rest.name(),
+    Regime::Intrawell.name(),
+    Regime::Interwell.name(),
+    Regime::Irregular.name(),
+    Regime::Crossing.name(),
+];
 
 /// All of them, in the order in which a summary has them. Counts of the settled window are missing where the
 /// run ended before it: 0 would say that nothing happened in it.
+#[rustfmt::skip]
 pub const SUMMARY_FIELDS: &[SummaryField] = &[
-    plain("final_x_m", Read::Number(|s| Some(s.final_x))),
-    plain("final_v_m_per_s", Read::Number(|s| Some(s.final_v))),
-    plain("rms_velocity_m_per_s", Read::Number(|s| s.rms_velocity)),
-    plain("regime", Read::Word(|s| if s.rms_velocity.is_some() { s.regime.name() } else { "" })),
-    plain("crossings", Read::Count(|s| in_window(s, s.crossings))),
-    plain("impacts", Read::Count(|s| in_window(s, s.impacts))),
-    plain("releases", Read::Count(|s| in_window(s, s.releases))),
-    plain("impact_speed_max_m_per_s", Read::Number(|s| s.impact_speed_max)),
-    plain("max_abs_x_m", Read::Number(|s| s.max_abs_x)),
-    plain("min_x_m", Read::Number(|s| s.range.map(|range| range.0))),
-    plain("max_x_m", Read::Number(|s| s.range.map(|range| range.1))),
-    plain("travel_m", Read::Number(Summary::travel)),
-    of_ledger("mean_x_m", Read::Number(|s| s.mean_x)),
-    plain("side", Read::Word(|s| s.side.map_or("", |side| side.name()))),
-    of_ledger("impact_share", Read::Number(|s| s.impact_share)),
-    plain("rested_share", Read::Number(|s| s.rested_share)),
-    plain("settled", Read::Flag(|s| s.settled)),
-    plain("steady", Read::Flag(|s| s.steady)),
-    plain("settles_at_s", Read::Number(|s| s.settles_at)),
-    plain("window_from_s", Read::Number(|s| Some(s.window.0))),
-    plain("window_to_s", Read::Number(|s| Some(s.window.1))),
-    plain("periods", Read::Count(|s| in_window(s, s.periods))),
-    plain("crossing_periods", Read::Count(|s| in_window(s, s.crossing_periods))),
-    plain("release_periods", Read::Count(|s| in_window(s, s.release_periods))),
-    plain("first_release_s", Read::Number(|s| time(s, |firsts| firsts.release))),
-    plain("first_release_g", Read::Number(|s| amplitude(s, |firsts| firsts.release))),
-    plain("first_crossing_s", Read::Number(|s| time(s, |firsts| firsts.crossing))),
-    plain("first_crossing_g", Read::Number(|s| amplitude(s, |firsts| firsts.crossing))),
-    plain("crosses_always_from_s", Read::Number(|s| time(s, |firsts| firsts.crossing_in_every_period))),
-    plain("crosses_always_from_g", Read::Number(|s| amplitude(s, |firsts| firsts.crossing_in_every_period))),
-    plain("total_crossings", Read::Count(|s| Some(s.total_crossings))),
-    plain("total_impacts", Read::Count(|s| Some(s.total_impacts))),
-    plain("chatter_sums", Read::Count(|s| Some(s.chatter_sums))),
-    plain("rests", Read::Count(|s| Some(s.rests))),
-    plain("period", Read::Count(|s| s.period.map(u64::from))),
-    plain("peak_contact_force_n", Read::Number(|s| s.peak_contact_force)),
-    plain("peak_contact_pressure_pa", Read::Number(|s| s.peak_contact_pressure)),
-    plain("mean_load_power_w", Read::Number(|s| s.harvest.and_then(|harvest| harvest.mean_load_power))),
-    plain("mean_coil_power_w", Read::Number(|s| s.harvest.and_then(|harvest| harvest.mean_coil_power))),
-    plain("voltage_rms_v", Read::Number(|s| s.harvest.and_then(|harvest| harvest.voltage_rms))),
-    plain("outcome", Read::Word(|s| s.outcome.name())),
-    plain("ended_at_s", Read::Number(|s| s.outcome.ended_at())),
-    plain("steps", Read::Count(|s| Some(s.steps))),
-    plain("evaluations", Read::Count(|s| Some(s.evaluations))),
-    of_ledger("work_j", Read::Number(|s| s.ledger.map(|ledger| ledger.work_j))),
-    of_ledger("damping_j", Read::Number(|s| s.ledger.map(|ledger| ledger.damping_j))),
-    of_ledger("impact_j", Read::Number(|s| s.ledger.map(|ledger| ledger.impact_j))),
-    of_ledger("harvested_j", Read::Number(|s| s.ledger.and_then(|ledger| ledger.harvested_j))),
-    of_ledger("coil_j", Read::Number(|s| s.ledger.and_then(|ledger| ledger.coil_j))),
-    of_ledger("stored_j", Read::Number(|s| s.ledger.map(|ledger| ledger.stored_j))),
-    of_ledger("energy_residual", Read::Number(|s| s.ledger.map(|ledger| ledger.energy_residual))),
+    field("final_x_m", Number(|s| Some(s.final_x)), "displacement at the end", "Where the run ended."),
+    field("final_v_m_per_s", Number(|s| Some(s.final_v)),
+        "velocity at the end", "How fast the mass was where the run ended."),
+    RMS_VELOCITY,
+    field("regime", Word(|s| if s.rms_velocity.is_some() { s.regime.name() } else { "" }),
+        "regime", "What kind of motion it is.").words(REGIMES),
+    field("crossings", Count(|s| in_window(s, s.crossings)),
+        "crossings", "How often the mass crossed the barrier in the settled window."),
+    field("impacts", Count(|s| in_window(s, s.impacts)),
+        "impacts", "How often it struck a stop in the settled window."),
+    field("releases", Count(|s| in_window(s, s.releases)),
+        "releases", "How often it left a stop on which it rested, in the settled window."),
+    field("impact_speed_max_m_per_s", Number(|s| s.impact_speed_max),
+        "fastest impact", "The largest speed of an impact in the settled window."),
+    field("max_abs_x_m", Number(|s| s.max_abs_x),
+        "reach", "The largest distance from the middle in the settled window."),
+    field("min_x_m", Number(|s| s.range.map(|range| range.0)),
+        "leftmost place", "The least displacement in the settled window."),
+    field("max_x_m", Number(|s| s.range.map(|range| range.1)),
+        "rightmost place", "The largest displacement in the settled window."),
+    field("travel_m", Number(Summary::travel),
+        "travel", "From the leftmost place to the rightmost one of the settled window."),
+    field("mean_x_m", Number(|s| s.mean_x),
+        "mean displacement", "The mean over the settled window.").of_ledger(),
+    field("side", Word(|s| s.side.map_or("", |side| side.name())),
+        "side", "On which side of the barrier the mass stays.").words(SIDES),
+    field("impact_share", Number(|s| s.impact_share),
+        "share of the work lost in impacts", "In the settled window.").of_ledger(),
+    field("rested_share", Number(|s| s.rested_share),
+        "share of time at rest", "The share of the settled window that the mass rests on a stop."),
+    field("settled", Flag(|s| s.settled),
+        "settled", "Whether the motion repeats, or the mass rests.").words(&FLAGS),
+    field("steady", Flag(|s| s.steady),
+        "averages steady",
+        "Whether the averages over both halves of the settled window agree, though the motion may be \
+         irregular.").words(&FLAGS),
+    field("settles_at_s", Number(|s| s.settles_at), "settles at", "The time since when the motion repeats."),
+    field("window_from_s", Number(|s| Some(s.window.0)),
+        "window from", "The beginning of the settled window."),
+    field("window_to_s", Number(|s| Some(s.window.1)), "window to", "Its end."),
+    field("periods", Count(|s| in_window(s, s.periods)),
+        "periods judged", "Forcing periods in the settled window."),
+    field("crossing_periods", Count(|s| in_window(s, s.crossing_periods)),
+        "periods with a crossing", "Forcing periods in which the mass crossed."),
+    field("release_periods", Count(|s| in_window(s, s.release_periods)),
+        "periods with a release", "Forcing periods in which it left a stop."),
+    field("first_release_s", Number(|s| time(s, |firsts| firsts.release)),
+        "first release, time", "When the mass first left its stop, under shaking that changes.")
+        .only_if(|s| s.firsts.is_some()),
+    field("first_release_g", Number(|s| amplitude(s, |firsts| firsts.release)),
+        "first release, shaking", "The amplitude of a ramp at that time.").only_if(|s| s.firsts.is_some()),
+    field("first_crossing_s", Number(|s| time(s, |firsts| firsts.crossing)),
+        "first crossing, time", "When it first crossed the barrier, under shaking that changes.")
+        .only_if(|s| s.firsts.is_some()),
+    field("first_crossing_g", Number(|s| amplitude(s, |firsts| firsts.crossing)),
+        "first crossing, shaking", "The amplitude of a ramp at that time.").only_if(|s| s.firsts.is_some()),
+    field("crosses_always_from_s", Number(|s| time(s, |firsts| firsts.crossing_in_every_period)),
+        "crosses always from, time", "The time from which on it crossed in every forcing period.")
+        .only_if(|s| s.firsts.is_some()),
+    field("crosses_always_from_g", Number(|s| amplitude(s, |firsts| firsts.crossing_in_every_period)),
+        "crosses always from, shaking", "The amplitude of a ramp at that time.")
+        .only_if(|s| s.firsts.is_some()),
+    field("total_crossings", Count(|s| Some(s.total_crossings)),
+        "crossings in all", "From the start of the run on."),
+    field("total_impacts", Count(|s| Some(s.total_impacts)),
+        "impacts in all", "From the start of the run on."),
+    field("chatter_sums", Count(|s| Some(s.chatter_sums)),
+        "summed chatters", "Endings of a chatter that were summed in closed form."),
+    field("rests", Count(|s| Some(s.rests)),
+        "arrivals at rest", "How often the mass came to rest on a stop, from the start on."),
+    field("period", Count(|s| s.period.map(u64::from)),
+        "period", "Forcing periods after which the motion repeats, up to 12."),
+    field("peak_contact_force_n", Number(|s| s.peak_contact_force),
+        "largest contact force", "Of a compliant stop on the mass.")
+        .only_if(|s| s.peak_contact_force.is_some()),
+    field("peak_contact_pressure_pa", Number(|s| s.peak_contact_pressure),
+        "largest contact pressure", "In the middle of the contact.")
+        .only_if(|s| s.peak_contact_force.is_some()),
+    field("mean_load_power_w", Number(|s| s.harvest.and_then(|harvest| harvest.mean_load_power)),
+        "mean power into the load", "Of the transducer, over the settled window.")
+        .only_if(|s| s.harvest.is_some()),
+    field("mean_coil_power_w", Number(|s| s.harvest.and_then(|harvest| harvest.mean_coil_power)),
+        "mean power lost in the coil", "Of the transducer, as above.").only_if(|s| s.harvest.is_some()),
+    field("voltage_rms_v", Number(|s| s.harvest.and_then(|harvest| harvest.voltage_rms)),
+        "RMS voltage", "Over the load of the transducer, in the settled window.")
+        .only_if(|s| s.harvest.is_some()),
+    field("outcome", Word(|s| s.outcome.name()), "outcome", "How the run ended.").words(Outcome::NAMES),
+    field("ended_at_s", Number(|s| s.outcome.ended_at()),
+        "ended early at", "When a run ended that did not last to its end.")
+        .only_if(|s| s.outcome.ended_at().is_some()),
+    field("steps", Count(|s| Some(s.steps)), "steps", "Steps of the integration."),
+    field("evaluations", Count(|s| Some(s.evaluations)),
+        "evaluations", "Taylor expansions of the equation of motion."),
+    field("work_j", Number(|s| s.ledger.map(|ledger| ledger.work_j)),
+        "work of the base", "What the base did on the mass in the whole run.").term_of_ledger(),
+    field("damping_j", Number(|s| s.ledger.map(|ledger| ledger.damping_j)),
+        "lost to damping", "In the whole run.").term_of_ledger(),
+    field("impact_j", Number(|s| s.ledger.map(|ledger| ledger.impact_j)),
+        "lost in impacts", "In the whole run.").term_of_ledger(),
+    field("harvested_j", Number(|s| s.ledger.and_then(|ledger| ledger.harvested_j)),
+        "into the load", "Of the transducer, in the whole run.").term_of_ledger(),
+    field("coil_j", Number(|s| s.ledger.and_then(|ledger| ledger.coil_j)),
+        "lost in the coil", "Of the transducer, in the whole run.").term_of_ledger(),
+    field("stored_j", Number(|s| s.ledger.map(|ledger| ledger.stored_j)),
+        "stored", "Energy at the end less that at the start.").term_of_ledger(),
+    field("energy_residual", Number(|s| s.ledger.map(|ledger| ledger.energy_residual)),
+        "energy residual", "What of the energy is not accounted for, as a share.").of_ledger(),
 ];
 
 fn in_window(summary: &Summary, count: u64) -> Option<u64> {
@@ -110,19 +224,31 @@ impl SummaryField {
         SUMMARY_FIELDS.iter().find(|field| field.name == name)
     }
 
+    /// Its number or count; not finite after a run that diverged, which is missing.
+    pub fn number(&self, summary: &Summary) -> Option<f64> {
+        match self.read {
+            Number(of) => of(summary).filter(|number| number.is_finite()),
+            Count(of) => of(summary).map(|count| count as f64),
+            Word(_) | Flag(_) => None,
+        }
+    }
+
+    /// Its word, one of `words`.
+    pub fn word(&self, summary: &Summary) -> Option<&'static str> {
+        match self.read {
+            Word(of) => Some(of(summary)).filter(|word| !word.is_empty()),
+            Flag(of) => of(summary).map(|flag| FLAGS[usize::from(!flag)]),
+            Number(_) | Count(_) => None,
+        }
+    }
+
     /// Its column over these summaries, of which some may be missing.
     pub fn column<'a>(&self, summaries: impl Iterator<Item = Option<&'a Summary>>) -> Values {
         match self.read {
-            Read::Number(of) => {
-                // (not finite after a run that diverged)
-                let number = |summary: &Summary| of(summary).filter(|number| number.is_finite());
-                Values::Numbers(summaries.map(|s| s.and_then(number).unwrap_or(f64::NAN)).collect())
-            }
-            Read::Count(of) => Values::Counts(summaries.map(|s| s.and_then(of)).collect()),
-            Read::Word(of) => Values::Words(summaries.map(|s| s.map_or("", of)).collect()),
-            Read::Flag(of) => {
-                let word = |flag: bool| if flag { "true" } else { "false" };
-                Values::Words(summaries.map(|s| s.and_then(of).map_or("", word)).collect())
+            Number(_) => summaries.map(|s| s.and_then(|s| self.number(s)).unwrap_or(f64::NAN)).collect(),
+            Count(of) => summaries.map(|s| s.and_then(of)).collect(),
+            Word(_) | Flag(_) => {
+                summaries.map(|s| s.and_then(|s| self.word(s)).unwrap_or_default()).collect()
             }
         }
     }

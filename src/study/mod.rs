@@ -78,7 +78,7 @@ pub use exponents::{
     drive_fault, exponents, exponents_row,
 };
 pub use family::Family;
-pub use fields::{Read, SUMMARY_FIELDS, SummaryField};
+pub use fields::{InJson, RMS_VELOCITY, Read, SUMMARY_FIELDS, SummaryField};
 pub use flexures::{StatesError, flexures_at, full_curve, shapes, states, stress_warning};
 pub use grid::{Grid, GridError, MAX_CELLS};
 pub use identify::{
@@ -103,7 +103,7 @@ pub use simulate::{Keep, Sampling, Simulation, events_table, sample_times, sampl
 pub use slice::{Shard, Slice};
 pub use spectrum::{NoSpectrum, Signal, Spectrum, SpectrumOptions, spectrum};
 pub use sweep::{DIRECTION, STANDARD as STANDARD_COLUMNS, Sweep, SweepOptions};
-pub use table::{Column, Table, Values};
+pub use table::{Column, Table, Values, label_and_unit};
 pub use thresholds::{Found, Scan, threshold, threshold_table};
 pub use times::{MAX_SAMPLES, SamplingStep, TimesError, even_times, listed_times};
 pub use trace::{Trace, simulate_with_trace};

@@ -2,6 +2,8 @@
 //!
 //! Every study answers in this form and every writer and plot reads it, so that each is written once.
 
+use crate::scene::unit_ending;
+
 /// Values of one column, all of one type.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Values {
@@ -70,52 +72,25 @@ pub struct Column {
     pub values: Values,
 }
 
-/// Endings of names with their units, the longest first: `_m_per_s2` also ends like a name in seconds.
-const UNITS: [(&str, &str); 28] = [
-    ("_m_per_s2", "m/s\u{b2}"),
-    ("_m_per_s", "m/s"),
-    ("_n_per_m3", "N/m\u{b3}"),
-    ("_n_per_m", "N/m"),
-    ("_n_per_m1_5", "N/m^1.5"),
-    ("_n_s_per_m", "N s/m"),
-    ("_v_s_per_m", "V s/m"),
-    ("_s_per_m", "s/m"),
-    ("_n_per_v", "N/V"),
-    ("_n_mm4", "N mm\u{2074}"),
-    ("_per_s", "1/s"),
-    ("_kohm", "kohm"),
-    ("_ohm", "ohm"),
-    ("_mh", "mH"),
-    ("_nf", "nF"),
-    ("_gpa", "GPa"),
-    ("_pa", "Pa"),
-    ("_deg", "\u{b0}"),
-    ("_mm", "mm"),
-    ("_mj", "mJ"),
-    ("_hz", "Hz"),
-    ("_g", "g"),
-    ("_j", "J"),
-    ("_m", "m"),
-    ("_n", "N"),
-    ("_v", "V"),
-    ("_w", "W"),
-    ("_s", "s"),
-];
+/// The name of a column or field as a person writes it, and its unit: `travel limit` and `mm`. The unit is
+/// read off the end of the name; it is empty for a pure number, a count or a word.
+pub fn label_and_unit(name: &str) -> (String, &'static str) {
+    let (ending, unit) = unit_ending(name).unwrap_or_default();
+    let words = name.strip_suffix(ending).unwrap_or(name).replace(['_', '.'], " ");
+    // The one name that is a letter.
+    let words = if words == "xi" { "damping ratio".to_owned() } else { words };
+    (words, unit)
+}
 
 impl Column {
-    /// The unit as a person writes it, read off the end of the name; empty for a pure number, a
-    /// count or a word. The rule that every name carries its unit is what makes this possible.
+    /// The unit as a person writes it; see [`label_and_unit`].
     pub fn unit(&self) -> &'static str {
-        UNITS.iter().find(|(ending, _)| self.name.ends_with(ending)).map_or("", |(_, unit)| unit)
+        label_and_unit(&self.name).1
     }
 
     /// The name as a person writes it, with the unit: `travel limit, mm`.
     pub fn label(&self) -> String {
-        let unit = self.unit();
-        let ending = UNITS.iter().find(|(ending, _)| self.name.ends_with(ending)).map_or("", |(e, _)| e);
-        let words = self.name.strip_suffix(ending).unwrap_or(&self.name).replace(['_', '.'], " ");
-        // The one name that is a letter.
-        let words = if words == "xi" { "damping ratio".to_owned() } else { words };
+        let (words, unit) = label_and_unit(&self.name);
         if unit.is_empty() { words } else { format!("{words}, {unit}") }
     }
 }
@@ -225,8 +200,7 @@ mod tests {
             ("restitution", ""),
             ("crossings", ""),
         ] {
-            let column = Column { name: name.into(), values: Values::Words(Vec::new()) };
-            assert_eq!(column.unit(), unit, "{name}");
+            assert_eq!(label_and_unit(name).1, unit, "{name}");
         }
     }
 }

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use interwell::dynamics::{EventKind, Outcome, Phase, Regime};
-use interwell::scene::{Document, Files};
+use interwell::scene::{Document, FIELDS, Files};
 use interwell::study::{Cell, SUMMARY_FIELDS};
 
 use crate::cli::{headless, stdout};
@@ -28,54 +28,79 @@ fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
     page.split(fence.as_str()).skip(1).map(|rest| rest.split_once("```").unwrap().0).collect()
 }
 
-#[test]
-fn every_field_of_a_scene_is_documented_with_its_range() {
-    // a field is declared as `name: Type,`, its range in the comment above
-    let (mut fields, mut range) = (0, None);
+/// Each declared field of a scene, `name: Type,` in the source, with the comment above it.
+fn declared_fields() -> Vec<(String, String)> {
     let sources = [
         include_str!("../../src/scene/data.rs"),
         include_str!("../../src/scene/mechanism.rs"),
         include_str!("../../src/scene/stops.rs"),
         include_str!("../../src/scene/transducer.rs"),
     ];
+    let (mut fields, mut comment) = (Vec::new(), String::new());
+    for line in sources.iter().flat_map(|text| text.lines()).map(str::trim) {
+        if let Some(text) = line.strip_prefix("///") {
+            comment.push_str(text);
+            continue;
+        }
+        if line.starts_with('#') {
+            continue;
+        }
+        let declared = line.strip_prefix("pub ").unwrap_or(line).split_once(": ");
+        let is_name =
+            |name: &str| name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
+        match declared {
+            _ if line == "Ratio(f64)," => fields.push(("xi".to_owned(), comment.clone())),
+            Some((name, kind))
+                if kind.ends_with(',')
+                    && !line.contains(['(', ')', '=', '{', '}'])
+                    && is_name(name)
+                    && name != "record" =>
+            {
+                fields.push((name.to_owned(), comment.clone()));
+            }
+            _ => {}
+        }
+        comment.clear();
+    }
+    fields
+}
+
+#[test]
+fn every_field_of_a_scene_is_documented_with_its_range() {
+    let declared = declared_fields();
     let dictionaries = ["scene.dict", "arguments.dict"].map(|name| {
         fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/dictionaries").join(name))
             .unwrap()
     });
-    for line in
-        sources.iter().flat_map(|text| text.split("#[cfg(test)]").next()).flat_map(str::lines).map(str::trim)
-    {
-        if let Some(comment) = line.strip_prefix("/// ") {
-            let words: Vec<&str> = comment.split(' ').collect();
-            let number = |word: &str| word.trim_end_matches([',', '.', ';']).parse::<f64>().is_ok();
-            if let Some(ends) = words.windows(3).find(|w| number(w[0]) && w[1] == "to" && number(w[2])) {
-                range = Some(ends.join(" ").trim_end_matches([',', '.', ';']).to_owned());
-            }
-            continue;
-        }
-        let declared = line.strip_prefix("pub ").unwrap_or(line).split_once(": ");
-        if let Some((name, kind)) = declared
-            && kind.ends_with(',')
-            && !line.contains(['(', ')', '=', '{', '}'])
-            && name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
-            && name != "record"
-        {
-            fields += 1;
-            let known =
-                |text: &String| [": ", "="].iter().any(|end| text.contains(&format!("\"{name}{end}")));
-            assert!(dictionaries.iter().all(known), "fuzz/dictionaries do not hold `{name}`");
-            let rows: Vec<&str> =
-                SCENE.lines().filter(|row| row.starts_with("| `") && says(row, name)).collect();
-            assert!(!rows.is_empty(), "docs/scene.md has no row for `{name}`");
-            if let Some(range) = range.take() {
-                assert!(rows.iter().any(|row| row.contains(&range)), "docs/scene.md: `{name}` is {range}");
-            }
-        }
-        if !line.starts_with('#') {
-            range = None;
-        }
+    let rows = |name: &str| -> Vec<&str> {
+        SCENE.lines().filter(|row| row.starts_with("| `") && says(row, name)).collect()
+    };
+    for (name, _) in declared.iter().filter(|(name, _)| name != "xi") {
+        let known = |text: &String| [": ", "="].iter().any(|end| text.contains(&format!("\"{name}{end}")));
+        assert!(dictionaries.iter().all(known), "fuzz/dictionaries do not hold `{name}`");
+        assert!(!rows(name).is_empty(), "docs/scene.md has no row for `{name}`");
     }
-    assert!(fields > 60, "{fields} fields found");
+    assert!(declared.len() > 60, "{} fields found", declared.len());
+    for field in FIELDS {
+        let name = field.path.rsplit('.').next().unwrap();
+        let range = field.range.to_string();
+        let commented = declared.iter().any(|(other, comment)| other == name && comment.contains(&range));
+        assert!(commented, "src/scene does not say that `{name}` is {range}");
+        let range = range.trim_start_matches("whole, ");
+        let in_text = SCENE.lines().any(|line| says(line, field.path) && line.contains(range));
+        let in_rows = rows(name).iter().any(|row| row.contains(range));
+        assert!(in_rows || in_text, "docs/scene.md: `{}` is {range}", field.path);
+    }
+    // a comment that states a range states that of the table
+    let is_number = |word: &str| word.trim_end_matches([',', '.', ';']).parse::<f64>().is_ok();
+    for (name, comment) in &declared {
+        let words: Vec<&str> = comment.split(' ').collect();
+        let states_range = words.windows(3).any(|w| is_number(w[0]) && w[1] == "to" && is_number(w[2]));
+        let ends_with_name = |path: &str| path.rsplit('.').next() == Some(name.as_str());
+        let known = FIELDS.iter().filter(|field| ends_with_name(field.path));
+        let stated = known.filter(|field| comment.contains(&field.range.to_string())).count();
+        assert!(!states_range || stated > 0, "{name}: `{comment}` states another range");
+    }
 }
 
 #[test]

@@ -1,55 +1,24 @@
-//! Order of the layers: each uses only those before it, and the physics builds without a window.
-
-mod inside;
+//! Order of the layers, and of the folders inside two of them: each uses only those before it. The physics
+//! builds without a window.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// A folder may name those before it, nothing after it. `cli` and `app` stand side by side.
-const ORDER: [&str; 9] =
-    ["system", "numeric", "scene", "mechanics", "dynamics", "study", "output", "cli", "app"];
-
-fn allowed(layer: &str, used: &str) -> bool {
-    let place = |name: &str| ORDER.iter().position(|own| *own == name);
-    match (place(layer), place(used)) {
-        _ if layer == used => true,
-        _ if ["cli", "app"].contains(&layer) && ["cli", "app"].contains(&used) => false,
-        (Some(layer), Some(used)) => used < layer,
-        _ => false,
-    }
-}
-
-/// The layers that a source text names by `crate::` or, in the binary, by `interwell::`, with lines.
-/// Comments do not count: documentation may point anywhere.
-fn uses(text: &str) -> Vec<(usize, String)> {
-    let mut found = Vec::new();
-    for (i, line) in text.lines().enumerate() {
-        let code = line.split("//").next().unwrap_or_default();
-        for root in ["crate::", "interwell::"] {
-            for (at, _) in code.match_indices(root) {
-                let before = code[..at].chars().next_back();
-                if before.is_some_and(|c| c.is_alphanumeric() || c == '_' || c == '$') {
-                    continue;
-                }
-                let rest = &code[at + root.len()..];
-                let names = rest.strip_prefix('{').map_or_else(
-                    || vec![rest],
-                    |group| group.split('}').next().unwrap_or_default().split(',').collect(),
-                );
-                for name in names {
-                    let word: String = name
-                        .trim_start()
-                        .chars()
-                        .take_while(|c| c.is_ascii_alphanumeric() || *c == '_')
-                        .collect();
-                    found.push((i + 1, word));
-                }
-            }
-        }
-    }
-    found
-}
+/// For a folder of `src` its folders and files, the lowest first: each may name those before it. The binary
+/// may name all.
+const ORDERS: [(&[&str], &[&str]); 3] = [
+    // `cli` and `app` stand side by side
+    (&[], &["system", "numeric", "scene", "mechanics", "dynamics", "study", "output", "cli", "app"]),
+    (&["app"], &["task", "words", "session", "export", "ui", "panels", "views", "window"]),
+    (
+        &["dynamics"],
+        &[
+            "clock", "result", "model", "equation", "series", "drive", "state", "step", "record", "motion",
+            "contact", "run", "map", "lanes", "live",
+        ],
+    ),
+];
 
 /// Adds the source files of a folder and of those in it.
 pub fn sources(folder: &Path, into: &mut Vec<PathBuf>) {
@@ -63,55 +32,115 @@ pub fn sources(folder: &Path, into: &mut Vec<PathBuf>) {
     }
 }
 
-#[test]
-fn each_layer_uses_only_what_stands_to_its_left() {
-    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let mut checked = 0;
-    let mut wrong = Vec::new();
-    for layer in ORDER {
-        let mut files = Vec::new();
-        let single = src.join(format!("{layer}.rs"));
-        if single.is_file() {
-            files.push(single);
-        }
-        if src.join(layer).is_dir() {
-            sources(&src.join(layer), &mut files);
-        }
-        for file in files {
-            checked += 1;
-            let text = fs::read_to_string(&file).unwrap();
-            for (line, used) in uses(&text) {
-                if ORDER.contains(&used.as_str()) && !allowed(layer, &used) {
-                    wrong.push(format!("{}:{line}: {layer} uses {used}", file.display()));
+/// Reads a path at the start of the text, with a group at its end where there is one; what follows it.
+fn read_path<'a>(text: &'a str, before: &[String], found: &mut Vec<Vec<String>>) -> &'a str {
+    let mut path = before.to_vec();
+    let mut rest = text;
+    let is_letter = |c: char| c.is_alphabetic() || c == '_';
+    loop {
+        let end = rest.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(rest.len());
+        path.push(rest[..end].to_string());
+        rest = &rest[end..];
+        match rest.strip_prefix("::") {
+            Some(more) if more.starts_with(is_letter) => rest = more,
+            Some(group) if group.starts_with('{') => {
+                let mut inside = &group[1..];
+                loop {
+                    inside = inside.trim_start_matches(|c: char| c.is_whitespace() || c == ',');
+                    if !inside.starts_with(is_letter) {
+                        return inside.strip_prefix('}').unwrap_or(inside);
+                    }
+                    inside = read_path(inside, &path, found);
                 }
             }
+            _ => break,
         }
     }
-    assert!(checked > 20, "only {checked} files found in {}", src.display());
+    found.push(path);
+    rest
+}
+
+/// The paths from the root of the crate that the code of a module names by `crate`, `super` or, in the
+/// binary, `interwell`. Comments do not count: documentation may point anywhere.
+fn uses(module: &[String], text: &str) -> Vec<Vec<String>> {
+    let code: Vec<&str> = text.lines().map(|line| line.split("//").next().unwrap_or_default()).collect();
+    let code = code.join("\n");
+    let (mut found, mut rest) = (Vec::new(), code.as_str());
+    while let Some(start) = rest.find(|c: char| c.is_alphabetic() || c == '_') {
+        rest = read_path(&rest[start..], &[], &mut found);
+    }
+    let from_root = |path: Vec<String>| {
+        let steps_out = path.iter().take_while(|part| *part == "super").count();
+        match path[0].as_str() {
+            "crate" | "interwell" => Some(path[1..].to_vec()),
+            "super" => Some([&module[..module.len().checked_sub(steps_out)?], &path[steps_out..]].concat()),
+            _ => None,
+        }
+    };
+    found.into_iter().filter_map(from_root).collect()
+}
+
+/// What a module uses that it may not: the folders in a folder of `src` with this order. Another folder is
+/// named in full, not by what its parent hands on.
+fn wrong_uses(module: &[String], text: &str, root: &[&str], order: &[&str]) -> Vec<String> {
+    let inside = |path: &[String]| path.get(root.len()).cloned().filter(|_| path.starts_with(&owned(root)));
+    let place = |name: &str| order.iter().position(|other| *other == name);
+    let Some(folder) = inside(module) else { return Vec::new() };
+    let Some(this_place) = place(&folder) else {
+        return vec![format!("{folder} has no place in the order")];
+    };
+    let side_by_side = |used: &str| folder != used && ["cli", "app"].contains(&used) && folder == "app";
+    let paths = uses(module, text).into_iter().filter(|path| path.len() > root.len());
+    let used = paths.filter_map(|path| Some((inside(&path)?, path.join("::"))));
+    let is_wrong = |used: &str| place(used).map_or(!root.is_empty(), |place| place > this_place);
+    used.filter(|(used, _)| is_wrong(used) || side_by_side(used))
+        .map(|(_, path)| format!("{} uses {path}", module.join("/")))
+        .collect()
+}
+
+fn owned(parts: &[&str]) -> Vec<String> {
+    parts.iter().map(ToString::to_string).collect()
+}
+
+#[test]
+fn each_folder_uses_only_those_before_it() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files = Vec::new();
+    sources(&src, &mut files);
+    assert!(files.len() > 100, "only {} files found in {}", files.len(), src.display());
+    let mut wrong = Vec::new();
+    for file in files.iter().filter(|file| !["lib.rs", "main.rs"].iter().any(|root| **file == src.join(root)))
+    {
+        let path = file.strip_prefix(&src).unwrap().with_extension("");
+        let mut module: Vec<String> = path.iter().map(|part| part.to_string_lossy().into_owned()).collect();
+        module.pop_if(|last| last == "mod");
+        let text = fs::read_to_string(file).unwrap();
+        wrong.extend(ORDERS.iter().flat_map(|(root, order)| wrong_uses(&module, &text, root, order)));
+    }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 #[test]
-fn every_folder_is_a_known_layer() {
-    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    for entry in fs::read_dir(src).unwrap() {
-        let path = entry.unwrap().path();
-        let name = path.file_stem().unwrap().to_string_lossy().into_owned();
-        assert!(
-            ORDER.contains(&name.as_str()) || ["lib", "main"].contains(&name.as_str()),
-            "{} is in no layer: give it a place in the order",
-            path.display()
-        );
-    }
-}
-
-#[test]
 fn the_reader_of_uses_sees_them() {
-    let text = "use crate::{scene::Scene, output};\n// crate::app\nlet x = crate::numeric::f(); $crate::cli";
-    let found = uses(text);
-    let names: Vec<&str> = found.iter().map(|(_, name)| name.as_str()).collect();
-    assert_eq!(names, ["scene", "output", "numeric"]);
-    assert!(allowed("study", "dynamics") && !allowed("dynamics", "study") && !allowed("cli", "app"));
+    let text =
+        "use crate::{scene::Scene, output};\n// crate::app\nlet x = crate::numeric::f(); super::super::g";
+    let names: Vec<String> =
+        uses(&owned(&["study", "a", "b"]), text).into_iter().map(|path| path.join("::")).collect();
+    assert_eq!(names, ["scene::Scene", "output", "numeric::f", "study::g"]);
+    let wrong = |module: &[&str], text: &str| {
+        let module = owned(module);
+        ORDERS.iter().map(|(root, order)| wrong_uses(&module, text, root, order).len()).sum::<usize>()
+    };
+    assert_eq!(wrong(&["study", "a"], "crate::dynamics::Model"), 0);
+    assert_eq!(wrong(&["dynamics", "step"], "crate::study::Table"), 1);
+    assert_eq!(
+        (wrong(&["cli", "a"], "crate::app::run"), wrong(&["app", "ui", "a"], "crate::cli::run")),
+        (1, 1)
+    );
+    assert_eq!(wrong(&["app", "ui", "a"], "super::super::views::f"), 1);
+    assert_eq!(wrong(&["dynamics", "step", "a"], "super::super::Model; crate::dynamics::run::f"), 2);
+    assert_eq!(wrong(&["dynamics", "run"], "use super::{step::{A, b::C}, state}; self::f()"), 0);
+    assert_eq!(wrong(&["other"], ""), 1);
 }
 
 #[test]
@@ -139,48 +168,6 @@ fn without_the_window_nothing_of_it_is_built() {
             ["egui", "eframe", "winit", "wgpu", "glow"].iter().any(|crate_| name.starts_with(crate_));
         assert!(!window, "`{line}` is built without the window");
     }
-}
-
-/// The folders and files of `src/app`, the lowest first: each may name those before it.
-const WINDOW_ORDER: [&str; 8] = ["task", "words", "session", "export", "ui", "panels", "views", "window"];
-
-/// The folders of `src/app` that a file uses, by `crate::app::`, with lines. A `super` that leads out of the
-/// folder is an empty name: another folder is named in full.
-fn folders_used(path: &Path, text: &str) -> Vec<(usize, String)> {
-    let depth = path.components().count() - usize::from(path.ends_with("mod.rs"));
-    let leaving = "super::".repeat(depth);
-    let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
-    let outward = code.lines().zip(1..).filter(|(line, _)| line.contains(&leaving));
-    let mut found: Vec<_> = outward.map(|(_, number)| (number, String::new())).collect();
-    for (line, number) in text.lines().zip(1..) {
-        for (at, root) in line.split("//").next().unwrap_or_default().match_indices("crate::app::") {
-            let name = line[at + root.len()..].split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
-            found.push((number, name.into_iter().next().unwrap_or_default().to_owned()));
-        }
-    }
-    found
-}
-
-#[test]
-fn folders_of_the_window_use_only_those_below_them() {
-    let window = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/app");
-    let place = |name: &str| WINDOW_ORDER.iter().position(|own| *own == name);
-    let mut files = Vec::new();
-    sources(&window, &mut files);
-    let mut wrong = Vec::new();
-    for file in files.iter().filter(|file| **file != window.join("mod.rs")) {
-        let path = file.strip_prefix(&window).unwrap();
-        let folder = path.components().next().unwrap().as_os_str().to_string_lossy().into_owned();
-        let folder = folder.trim_end_matches(".rs");
-        let own = place(folder).unwrap_or_else(|| panic!("{folder} has no place in the order"));
-        for (line, used) in folders_used(path, &fs::read_to_string(file).unwrap()) {
-            if place(&used).is_none_or(|used| used > own) {
-                wrong.push(format!("{}:{line}: {folder} uses `{used}`", path.display()));
-            }
-        }
-    }
-    assert!(files.len() > 50, "only {} files found in {}", files.len(), window.display());
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 /// What a line names of the machine: its threads, clocks or files.

@@ -8,9 +8,9 @@ use egui_kittest::{Harness, kittest::Queryable as _};
 use interwell::app::session::explore::WalkQuantity;
 use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
-use interwell::app::words::columns::COLUMNS;
 use interwell::scene::Layout;
 use interwell::study::Signal;
+use interwell::study::SummaryField;
 
 use crate::shared::axis;
 use crate::support::{PROJECTED, WIDE, command, press, press_with_ctrl, sliced, wait_until, window};
@@ -149,7 +149,7 @@ fn of_every_view_of_a_survey_the_copied_command_makes_the_same_bytes() {
     command(&mut harness, Command::Arrange(Layout::Map));
     harness.get_by_label("Surface").click();
     harness.run_steps(3);
-    let column = COLUMNS.iter().flat_map(|own| own.1).find(|own| own.column == "impact_share").unwrap();
+    let column = SummaryField::find("impact_share").unwrap();
     harness.state_mut().session.map.show(column);
     let line = same_bytes(&mut harness, View::Map, "svg");
     assert!(line.contains("--quantity impact_share --surface"), "{line}");

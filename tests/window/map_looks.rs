@@ -6,10 +6,10 @@ use egui_kittest::{Harness, kittest::Queryable as _};
 use interwell::app::export::map_command_line;
 use interwell::app::session::map::Map;
 use interwell::app::window::{Command, Window};
-use interwell::app::words::columns::{COLUMNS, column_info};
+use interwell::app::words::columns::COLUMNS;
 use interwell::output::Projection;
 use interwell::scene::{Layout, Stops, SweepAxis};
-use interwell::study::{Cell, STANDARD_COLUMNS, line_meets};
+use interwell::study::{Cell, STANDARD_COLUMNS, SummaryField, line_meets};
 
 use crate::shared::axis;
 use crate::support::{
@@ -73,7 +73,7 @@ fn a_click_on_the_surface_takes_the_scene_there() {
     click(&mut harness, pos2(x as f32, y as f32 + 1.0));
     assert_eq!((stops_mm(&harness), amplitude_g(&harness)), (2.5, 1.25));
     // words have no height
-    harness.state_mut().session.map.show(column_info("regime").unwrap());
+    harness.state_mut().session.map.show(SummaryField::find("regime").unwrap());
     harness.run_steps(3);
     harness.get_by_role_and_label(Role::Image, "map");
     assert!(is_painted(&harness, "words have no height"));
@@ -145,20 +145,20 @@ fn every_column_is_a_quantity_with_its_unit() {
     harness.get_by_role_and_label(Role::ComboBox, "map of RMS velocity").click();
     harness.run_steps(4);
     click_on(&mut harness, "Reach");
-    assert_eq!(harness.state().session.map.quantity().column, "max_abs_x_m");
+    assert_eq!(harness.state().session.map.quantity().name, "max_abs_x_m");
     assert!(is_painted(&harness, "reach (mm)"));
-    for own in COLUMNS.iter().flat_map(|group| group.1) {
+    for own in COLUMNS.iter().flat_map(|group| group.1).map(|name| SummaryField::find(name).unwrap()) {
         harness.state_mut().session.map.show(own);
         harness.run_steps(2);
-        assert!(harness.state_mut().session.wait_for_map(LONG), "{}", own.column);
+        assert!(harness.state_mut().session.wait_for_map(LONG), "{}", own.name);
         harness.run_steps(3);
         let label = format!("map of {}", own.title());
         harness.get_by_role_and_label(Role::ComboBox, &label);
         assert!(
-            own.words().is_some()
-                || painted(&harness).iter().any(|text| text.0.contains(own.name) || own.column == "period"),
+            own.shown_words().is_some()
+                || painted(&harness).iter().any(|text| text.0.contains(own.label) || own.name == "period"),
             "{}",
-            own.column
+            own.name
         );
     }
     // what no run has is said
@@ -166,7 +166,7 @@ fn every_column_is_a_quantity_with_its_unit() {
         ("peak_contact_force_n", "no compliant stop is touched"),
         ("first_release_g", "no release, or the shaking does not change"),
     ] {
-        harness.state_mut().session.map.show(column_info(column).unwrap());
+        harness.state_mut().session.map.show(SummaryField::find(column).unwrap());
         harness.run_steps(3);
         assert!(is_painted(&harness, words), "{column}");
     }
@@ -185,7 +185,7 @@ fn more_columns_are_those_of_the_command_line() {
         ("impact_share", Some("mean_x_m,impact_share")),
         ("rms_velocity_m_per_s", Some("mean_x_m")),
     ] {
-        session.map.show(column_info(column).unwrap());
+        session.map.show(SummaryField::find(column).unwrap());
         session.want_map(0.0);
         assert!(session.wait_for_map(LONG));
         let command = map_command_line(&session).unwrap();
@@ -265,7 +265,7 @@ fn each_shape(harness: &Harness<'static, Window>, each: &mut dyn FnMut(&Shape)) 
 fn the_cost_of_a_frame_does_not_grow_with_the_map() {
     let count = |steps: (f64, f64), look: &[&str], column: &str| {
         let mut harness = open(WIDE, steps);
-        harness.state_mut().session.map.show(column_info(column).unwrap());
+        harness.state_mut().session.map.show(SummaryField::find(column).unwrap());
         look.iter().for_each(|label| click_on(&mut harness, label));
         let place = harness.get_by_label("Recompute").rect();
         harness.hover_at(place.left_top() - vec2(400.0, 80.0));

@@ -7,8 +7,8 @@ use interwell::app::session::Session;
 use interwell::app::session::explore::WalkQuantity;
 use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
-use interwell::app::words::columns::column_info;
 use interwell::scene::{Excitation, FieldPath, Layout, Stops, Transducer};
+use interwell::study::SummaryField;
 
 use crate::shared::axis;
 use crate::support::{
@@ -213,7 +213,7 @@ fn the_map_and_the_walks_go_over_the_load() {
     session
         .map
         .choose(Some([axis(LOAD, (20.0, 80.0, 20.0)), axis("excitation.amplitude_g", (0.9, 1.0, 0.1))]));
-    session.map.show(column_info("mean_load_power_w").unwrap());
+    session.map.show(SummaryField::find("mean_load_power_w").unwrap());
     session.want_map(0.0);
     assert!(session.wait_for_map(LONG));
     let map = session.map.map().unwrap();

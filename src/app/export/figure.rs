@@ -86,7 +86,7 @@ impl Subject {
 
     pub fn map(session: &Session, surface: bool) -> Result<Self, String> {
         let no_axes = || "This scene has no two fields to make a map over.".to_owned();
-        let quantity = session.map.quantity().column;
+        let quantity = session.map.quantity().name;
         let surface = surface && words_of(quantity).is_none();
         Ok(Self::Sweep(session.map_axes().ok_or_else(no_axes)?.to_vec(), quantity, surface))
     }

@@ -117,7 +117,7 @@ impl Session {
         let same = self.map.map().filter(|map| map.question.scene == scene && map.question.axes == axes);
         // runs with an energy ledger have all columns of runs without one
         let quantity = self.map.quantity();
-        let needed = || quantity.field().filter(|field| field.needs_ledger).map(|_| quantity.column);
+        let needed = || quantity.needs_ledger.then_some(quantity.name);
         let ledger = same.and_then(|map| map.question.ledger).or_else(needed);
         Some(Question { scene, axes, ledger })
     }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use crate::app::task::{Background, Identity};
+use crate::app::words::capital;
 use crate::dynamics::Model;
 use crate::numeric::{extent, short};
 use crate::scene::{Channel, Measured, MeasuredText, Quantity, Scene, Timing, Unit};
@@ -184,7 +185,5 @@ impl MeasuredData {
 
 /// A clause as a sentence.
 pub fn sentence(clause: &str) -> String {
-    let mut letters = clause.chars();
-    let first = letters.next().map(|letter| letter.to_uppercase().to_string()).unwrap_or_default();
-    format!("{first}{}{}", letters.as_str(), if clause.ends_with('.') { "" } else { "." })
+    format!("{}{}", capital(clause), if clause.ends_with('.') { "" } else { "." })
 }

@@ -1,13 +1,13 @@
 //! Ranges of the sliders, derived from the scales of the scene.
 
-use crate::app::words::fields::{FieldInfo, Reach, Scale};
+use crate::app::words::fields::Reach;
 use crate::app::words::numbers::{below, decimal, round_up};
 use crate::dynamics::STANDARD_GRAVITY;
-use crate::scene::{FieldPath, Mechanism, Stops};
+use crate::scene::{Control, FieldPath, Mechanism, Scale, Stops};
 
 use super::Session;
 
-impl FieldInfo {
+impl Control {
     /// The range of the slider in a scene: that for the prototype if it suits the scales of the scene, else
     /// one that is derived from them.
     pub fn reach(&self, session: &Session) -> Reach {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::app::task::{Background, Wake};
 use crate::app::words::kind::Kind;
-use crate::app::words::status::{self, Sentence, Told};
+use crate::app::words::status::{self, DrivenMotion, Sentence};
 use crate::dynamics::{Model, Outcome, Summary};
 use crate::mechanics::Mechanism;
 use crate::scene::{self, Excitation, Scene, Stops};
@@ -214,9 +214,9 @@ impl Session {
     }
 
     /// The facts for the sentence about a driven motion; `None` until it is known what the motion settles to.
-    pub(super) fn sentence_facts(&self) -> Option<Told<'_>> {
+    pub(super) fn sentence_facts(&self) -> Option<DrivenMotion<'_>> {
         let (run, summary) = (self.settled.question()?, self.settled.answer()?);
-        Some(Told {
+        Some(DrivenMotion {
             scene: self.scene(),
             model: &self.model,
             summary,

@@ -2,10 +2,10 @@
 
 use eframe::egui::{self, ComboBox, Ui};
 
-use crate::app::session::map::name_and_unit;
 use crate::app::ui::knob::Knob;
 use crate::app::words::fields::Reach;
 use crate::scene::{SweepAxis, column_names};
+use crate::study::label_and_unit;
 
 /// The name of a field without its unit: that of its control, or else of its column.
 pub fn field_name(path: &str) -> String {
@@ -14,7 +14,7 @@ pub fn field_name(path: &str) -> String {
         return name.trim_end_matches(" ±").to_owned();
     }
     let column = column_names(&[path]).pop().unwrap_or_default();
-    name_and_unit(&column).0
+    label_and_unit(&column).0
 }
 
 /// Offers the `known` fields for the axis named by its `role`. Returns the new field if it changed.

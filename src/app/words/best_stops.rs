@@ -1,10 +1,9 @@
 //! Sentences about the best stops of a scene.
 
-use crate::app::words::columns::column_info;
 use crate::app::words::numbers::{power, three};
 use crate::app::words::status::speed;
 use crate::numeric::short;
-use crate::study::{Basins, BestDesign, DesignRange, NoBest, Optimum};
+use crate::study::{Basins, BestDesign, DesignRange, NoBest, Optimum, SummaryField};
 
 /// State of a search for the best stops.
 #[derive(Debug, Clone, Copy)]
@@ -24,7 +23,7 @@ fn value_of(column: &str, value: f64) -> String {
 /// The answer of a search with runs from rest. Each run lasts `duration_s` seconds or, if that is `None`,
 /// until its motion repeats.
 pub fn sentence(found: &Found<'_>, column: &str, range: &DesignRange, duration_s: Option<f64>) -> String {
-    let name = column_info(column).map_or(column, |info| info.name);
+    let name = SummaryField::find(column).map_or(column, |field| field.label);
     let mm = |value: f64| format!("{} mm", short(value));
     let design = match found {
         Found::Searching(runs, None) => return format!("Looking for the best stops: {runs} runs."),

@@ -4,7 +4,7 @@ use super::fields::name_and_unit;
 use super::numbers::three;
 use crate::scene::Start;
 use crate::scene::lesson::{Condition, Lesson};
-use crate::study::{Column, Lack, Value, Values};
+use crate::study::{Lack, Value, label_and_unit};
 
 /// The short title of a lesson: "Lesson" with its number, if its name begins with one.
 pub fn numbered(name: &str) -> String {
@@ -78,10 +78,8 @@ fn name_and_unit_of(field: &str) -> Option<(String, &'static str)> {
         "mean" => ("mean of ", ""),
         _ => return None,
     };
-    let column = Column { name: name.to_owned(), values: Values::Counts(Vec::new()) };
-    let label = column.label();
-    let words = label.split(", ").next().unwrap_or_default().replace("rms", "RMS");
-    Some((format!("{before}{words}{after}"), column.unit()))
+    let (words, unit) = label_and_unit(name);
+    Some((format!("{before}{}{after}", words.replace("rms", "RMS")), unit))
 }
 
 /// A part of a text, and whether it is bold.

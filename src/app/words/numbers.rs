@@ -1,4 +1,4 @@
-//! Formats of numbers in fields and on axes, and round numbers for ranges and steps.
+//! Formats of numbers in fields, on axes and in sentences, and round numbers for ranges and steps.
 
 use crate::numeric::{self, round};
 
@@ -73,6 +73,119 @@ pub fn decimals_for(largest: f64) -> usize {
     if largest > 0.0 && largest.is_finite() { numeric::decimals(largest, 3) } else { 2 }
 }
 
+/// A number with `digits` significant digits, without an exponent unless it is very small or large.
+fn significant(value: f64, digits: i32) -> String {
+    let size = value.abs();
+    if !(size > 0.0) || !size.is_finite() {
+        return format!("{}", value + 0.0);
+    }
+    let place = digits - 1 - size.log10().floor() as i32;
+    let rounded: f64 = format!("{value:.0$e}", digits as usize - 1).parse().unwrap_or(value);
+    if !(1e-6..1e7).contains(&size) {
+        return format!("{rounded:e}");
+    }
+    // rounding may have reached the next power of ten
+    let place = if rounded.abs().log10().floor() > size.log10().floor() { place - 1 } else { place };
+    format!("{rounded:.*}", place.max(0) as usize)
+}
+
+/// An amplitude or a threshold in g: three significant digits.
+pub fn grams(g: f64) -> String {
+    significant(g, 3)
+}
+
+/// A threshold in g, rounded up to three significant digits, so that the amplitude in the text is enough.
+pub fn grams_up(g: f64) -> String {
+    let unit = 10_f64.powf(g.log10().floor() - 2.0);
+    grams(((g / unit - 1e-6).ceil() * unit).max(g))
+}
+
+/// A difference of two thresholds in g: two significant digits.
+pub fn grams_apart(g: f64) -> String {
+    significant(g, 2)
+}
+
+/// A force in N: two significant digits.
+pub fn newtons(n: f64) -> String {
+    format!("{} N", significant(n, 2))
+}
+
+/// Speed in mm/s: whole, below 10 with one decimal.
+pub fn speed(m_per_s: f64) -> String {
+    let mm = m_per_s * 1e3;
+    if mm > 0.0 && mm < 0.05 {
+        return "below 0.1".to_owned();
+    }
+    if mm < 9.95 { format!("{mm:.1}") } else { format!("{mm:.0}") }
+}
+
+/// Length in mm: one decimal, two below 1 mm.
+pub fn mm(m: f64) -> String {
+    // the sum with 0.0 turns -0.0 into 0.0
+    let tenths = (m * 1e4).round() / 10.0 + 0.0;
+    if tenths == 0.0 || m.abs() >= 0.95e-3 { format!("{tenths:.1}") } else { format!("{:.2}", m * 1e3) }
+}
+
+/// A travel limit in mm: two decimals, as on a slider, or one if the second is 0.
+pub fn limit_mm(mm: f64) -> String {
+    let text = format!("{mm:.2}");
+    match text.strip_suffix('0') {
+        Some(short) => short.to_owned(),
+        None => text,
+    }
+}
+
+/// Energy in mJ: two decimals, or three significant digits below that.
+pub fn energy(j: f64) -> String {
+    let mj = j.max(0.0) * 1e3;
+    if mj == 0.0 || mj >= 0.1 { format!("{mj:.2} mJ") } else { format!("{} mJ", significant(mj, 3)) }
+}
+
+/// A displacement in m near the left and right stops in m, as text in mm: as `mm` formats it, or with more
+/// decimals if rounding would move it to the other side of a stop.
+pub fn mm_beside(m: f64, stops: (Option<f64>, Option<f64>)) -> String {
+    let (left, right) = stops;
+    let limits = [left.map(f64::abs), right.map(f64::abs)];
+    let is_beyond = |m: f64, stop: &f64| m.abs() > stop * (1.0 + 1e-6);
+    let keeps_side = |text: &str| {
+        let written = text.parse::<f64>().unwrap_or(m * 1e3) * 1e-3;
+        limits.iter().flatten().all(|stop| is_beyond(written, stop) == is_beyond(m, stop))
+    };
+    let longer = (2..=6).map(|decimals| format!("{:.decimals$}", m * 1e3 + 0.0));
+    std::iter::once(mm(m)).chain(longer).find(|text| keeps_side(text)).unwrap_or_else(|| mm(m))
+}
+
+/// A range in m near stops in m as text, `between 5.6 and 7.3 mm`; its decimals distinguish the ends.
+pub fn between(low: f64, high: f64, stops: (Option<f64>, Option<f64>)) -> String {
+    let text = |m: f64, decimals: usize| format!("{:.decimals$}", m * 1e3 + 0.0);
+    let apart = |decimals: &usize| text(low, *decimals) != text(high, *decimals);
+    match (1..=6).find(apart) {
+        Some(1) => format!("between {} and {} mm", mm_beside(low, stops), mm_beside(high, stops)),
+        Some(decimals) => format!("between {} and {} mm", text(low, decimals), text(high, decimals)),
+        None => format!("at {} mm", mm_beside(high, stops)),
+    }
+}
+
+/// A time in s: one decimal, or none from ten on.
+pub fn seconds(s: f64) -> String {
+    if s >= 9.95 || s == 0.0 { format!("{s:.0} s") } else { format!("{s:.1} s") }
+}
+
+/// A number of events per forcing period in words.
+pub fn times(count: f64) -> String {
+    if count < 0.1 {
+        return "less than once in ten periods".to_owned();
+    }
+    let rare = (1.0 / count).round();
+    match count {
+        c if rare > 1.0 && (1.0 / c - rare).abs() < 0.05 * rare => format!("once in {rare:.0} periods"),
+        c if (c - 1.0).abs() < 0.05 => "once a period".to_owned(),
+        c if (c - 2.0).abs() < 0.05 => "twice a period".to_owned(),
+        c if (c - c.round()).abs() < 0.05 => format!("{c:.0} times a period"),
+        c => format!("{c:.1} times a period"),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -95,5 +208,54 @@ mod tests {
         let powers = [0.0, 1.234, 0.012_34, 5e-6, -2e-9].map(power);
         assert_eq!(powers, ["0 mW", "1.23 W", "12.3 mW", "5.00 µW", "-2.00 nW"]);
         assert_eq!([0.0384, 1.25, 1000.0].map(three), ["0.0384", "1.25", "1000"]);
+    }
+
+    #[test]
+    fn digits_are_significant() {
+        for (value, text) in [
+            (0.71885, "0.719"),
+            (0.0377, "0.0377"),
+            (1.16, "1.16"),
+            (0.9996, "1.00"),
+            (123.4, "123"),
+            (2.5e-9, "2.5e-9"),
+            (0.0, "0"),
+            (-0.5, "-0.500"),
+        ] {
+            assert_eq!(grams(value), text);
+        }
+        assert_eq!(
+            (grams_up(0.6881), grams_up(1.15), grams_up(0.9991)),
+            ("0.689".into(), "1.15".into(), "1.00".into())
+        );
+        assert_eq!((grams_apart(0.2604), newtons(0.196_8)), ("0.26".into(), "0.20 N".into()));
+    }
+
+    #[test]
+    fn the_ends_of_a_range_differ() {
+        let open = (None, None);
+        assert_eq!(between(5.61e-3, 7.29e-3, open), "between 5.6 and 7.3 mm");
+        assert_eq!(between(6.0012e-3, 6.0037e-3, open), "between 6.001 and 6.004 mm");
+        assert_eq!(between(-1.000_01, -1.0, open), "between -1000.01 and -1000.00 mm");
+        assert_eq!(between(2e-3, 2e-3, open), "at 2.0 mm");
+    }
+
+    #[test]
+    fn a_length_stays_on_its_side_of_a_stop() {
+        let stops = |mm: f64| (Some(-mm * 1e-3), Some(mm * 1e-3));
+        assert_eq!(
+            (mm_beside(2.25e-3, stops(2.25)), mm_beside(6.875e-3, stops(6.875))),
+            ("2.25".into(), "6.875".into())
+        );
+        assert_eq!(
+            (mm_beside(-2.25e-3, stops(2.25)), mm_beside(1.5e-3, stops(1.5))),
+            ("-2.25".into(), "1.5".into())
+        );
+        // beyond a compliant stop
+        assert_eq!(
+            (mm_beside(1.52e-3, stops(1.5)), mm_beside(7.9e-3, (None, None))),
+            ("1.52".into(), "7.9".into())
+        );
+        assert_eq!(between(-2.25e-3, 1.11e-3, stops(2.25)), "between -2.25 and 1.1 mm");
     }
 }

@@ -2,8 +2,7 @@
 
 use crate::dynamics::model::{Model, StopAt};
 use crate::mechanics::Hertz;
-use crate::numeric::short;
-use crate::scene::number_text;
+use crate::numeric::{number_text, short};
 
 impl Model {
     /// The model in words: a line for each part that is modelled, then the parts left out. The force curve

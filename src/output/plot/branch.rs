@@ -7,7 +7,7 @@ use super::figure::{Figure, Point};
 use super::frame::Frame;
 use super::mark::{Caption, Marker, Sample, marker};
 use super::style::{self, Theme};
-use super::swept::{LEAST, LEFT, below_legend, label};
+use super::swept::{LEAST, LEFT, below_legend, swept_axis};
 use crate::numeric::short;
 use crate::study::{Branch, BranchEvent};
 
@@ -43,10 +43,8 @@ pub fn branch_figure(
         entries.push((Sample::Marker(shape, theme.soft), event.name()));
     }
     let top = below_legend(&mut figure, theme, &entries);
-    let x_label = label(&table, &table.columns()[0].name);
     let y_label = "displacement at the strobe, mm";
-    let across =
-        PlotAxis::around(branch.values.iter().copied(), 0.02, 8, &x_label).or_given(ranges.x, 8, &x_label);
+    let across = swept_axis(&table, &table.columns()[0].name, ranges.x);
     let up = PlotAxis::around(millimetres, 0.08, 6, y_label).or_given(ranges.y, 6, y_label);
     let frame = Frame::whole(&figure, (LEFT, top), across, up);
     frame.grid(&mut figure, theme);

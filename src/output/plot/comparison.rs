@@ -59,8 +59,19 @@ struct Entry {
     words: String,
 }
 
+/// What is marked beside the bars of a panel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Mark {
+    None,
+    /// The threshold of release.
+    Release,
+    /// The regime of the motion.
+    Regime,
+}
+
 struct Panel {
     title: &'static str,
+    mark: Mark,
     unit: String,
     best: Best,
     entries: Vec<Entry>,
@@ -171,7 +182,7 @@ fn panels(picture: &ComparisonPicture<'_>) -> Vec<Panel> {
             Entry { from: 0.0, to, words }
         };
         let entries = rated.iter().map(entry).collect();
-        Panel { title, unit: unit.to_owned(), best, entries, is_band: false }
+        Panel { title, mark: Mark::None, unit: unit.to_owned(), best, entries, is_band: false }
     };
     let speed = |scene: &Rated| scene.summary.rms_velocity;
     // without impacts the impact speed is 0
@@ -186,8 +197,8 @@ fn panels(picture: &ComparisonPicture<'_>) -> Vec<Panel> {
     };
     let sensitivity = |scene: &Rated| scene.sensitivity.as_ref().map(|change| change.0);
     let all = [
-        panel("crosses from", "g", Best::Least, 1.0, &Rated::crossing_g),
-        panel("RMS velocity", speed_name, Best::Most, per_speed, &speed),
+        Panel { mark: Mark::Release, ..panel("crosses from", "g", Best::Least, 1.0, &Rated::crossing_g) },
+        Panel { mark: Mark::Regime, ..panel("RMS velocity", speed_name, Best::Most, per_speed, &speed) },
         panel("power", watt, Best::Most, per_watt, &power),
         panel("reach", "mm", Best::Least, 1e3, &|scene| scene.summary.max_abs_x),
         panel("fastest impact", impact_name, Best::Least, per_impact, &impact),
@@ -209,7 +220,14 @@ fn bands(rated: &[Rated], frequency_hz: f64) -> Panel {
         Entry { from, to, words: format!("{at_most}{}\u{2013}{at_least}{}", three(from), three(to)) }
     };
     let entries = rated.iter().map(entry).collect();
-    Panel { title: "crosses at", unit: "Hz".to_owned(), best: Best::Most, entries, is_band: true }
+    Panel {
+        title: "crosses at",
+        mark: Mark::None,
+        unit: "Hz".to_owned(),
+        best: Best::Most,
+        entries,
+        is_band: true,
+    }
 }
 
 /// The axis of the frequencies that were searched for crossings.
@@ -255,13 +273,13 @@ fn draw(
         let ink = if best == Some(scene) { theme.stable } else { theme.soft.over(theme.paper, 0.35) };
         bar(figure, &frame, (panel, entry), (y - half, y + half), ink);
         words(figure, &frame, (panel, entry), (y, 0.95 * step), best == Some(scene), theme);
-        if panel.title == "crosses from"
+        if panel.mark == Mark::Release
             && let Some(release) = rated[scene].release_g
         {
             let at = (frame.across(release), y);
             marker(figure, Marker::Triangle, at, style::MARKER, theme.unstable, theme.ink);
         }
-        if panel.title == "RMS velocity" && entry.to.is_finite() {
+        if panel.mark == Mark::Regime && entry.to.is_finite() {
             let name = rated[scene].summary.regime.name();
             let (shape, ink) = regime(name, theme);
             let x = (area.left + 18.0).max(frame.across(entry.to));
@@ -321,7 +339,7 @@ fn words(
         false if entry.to.is_finite() => frame.across(entry.to),
         _ => left,
     };
-    let behind = end + if panel.title == "RMS velocity" { 24.0 } else { 8.0 };
+    let behind = end + if panel.mark == Mark::Regime { 24.0 } else { 8.0 };
     let is_behind = behind + width <= right - 4.0;
     let x = if is_behind { behind } else { (left + 8.0).min(right - width) };
     // the colour of the best bar is light in both themes

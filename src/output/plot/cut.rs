@@ -9,7 +9,7 @@ use super::quantity::Quantity;
 use super::style::{self, Theme};
 use super::swept::{Cut, LEFT, MARKER_ROOM, SweepPicture, below_legend, label, mark_regimes};
 use crate::numeric::short;
-use crate::study::line_meets;
+use crate::study::{label_and_unit, line_meets};
 
 /// Share of a wide canvas at which the map ends, its colour bar beside it, and where the cuts begin.
 const MAP: f64 = 0.46;
@@ -108,8 +108,7 @@ impl Panel {
             all.dedup();
             all
         };
-        let column = label(rows, &cut.column);
-        let (name, unit) = column.split_once(", ").unwrap_or((&column, ""));
+        let (name, unit) = label_and_unit(&cut.column);
         Self {
             upright,
             value: cut.value,

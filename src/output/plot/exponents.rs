@@ -7,7 +7,7 @@ use super::frame::Frame;
 use super::mark::{Caption, Sample};
 use super::style::{self, Ink, Theme};
 use super::sweep::{MAX_PICTURE_CELLS, NoPicture};
-use super::swept::{LEAST, LEFT, below_legend, label};
+use super::swept::{LEAST, LEFT, below_legend, swept_axis};
 use crate::numeric::short;
 use crate::scene::{Excitation, Scene};
 use crate::study::{Grid, Table};
@@ -53,8 +53,7 @@ pub fn exponents_figure(
         Line { name: "second exponent", of: "exponent_2", ink: theme.regimes[1], dash: Some(style::DASH) },
     ];
     let both = numbers("exponent_1_per_s").iter().chain(numbers("exponent_2_per_s"));
-    let x_label = label(rows, x);
-    let across = PlotAxis::around(places.iter().copied(), 0.02, 8, &x_label).or_given(ranges.x, 8, &x_label);
+    let across = swept_axis(rows, x, ranges.x);
     let y_label = "Lyapunov exponent, 1/s";
     let up = PlotAxis::around(both.copied().chain([0.0]), 0.06, 6, y_label).or_given(ranges.y, 6, y_label);
 

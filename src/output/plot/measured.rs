@@ -5,9 +5,8 @@ use super::drawn::Drawn;
 use super::figure::{Area, Figure, Point};
 use super::frame::Frame;
 use super::mark::{Caption, Marker, Sample, dot, legend};
-use super::run::speed_unit;
+use super::record::{axis_of, rms_difference};
 use super::style::{self, Theme};
-use crate::dynamics::STANDARD_GRAVITY;
 use crate::numeric::short;
 use crate::scene::{Quantity, Timing};
 use crate::study::{Comparison, Trace};
@@ -35,15 +34,11 @@ pub fn measured_figure(
     let least = LEAST[usize::from(inset.is_some())];
     let mut figure = Figure::new(theme, caption, least);
     let column = |name: &str| trace.path.numbers(name).unwrap_or_default();
-    let (name, (scale, label)) = match quantity {
-        Quantity::Velocity => {
-            let (scale, unit) = speed_unit(found.measured.iter().copied());
-            ("v_m_per_s", (scale, format!("velocity, {unit}")))
-        }
-        Quantity::Acceleration => {
-            ("base_accel_m_per_s2", (1.0 / STANDARD_GRAVITY, "base acceleration, g".to_owned()))
-        }
-        _ => ("x_m", (1e3, "displacement, mm".to_owned())),
+    let (scale, words, unit) = axis_of(quantity, &found.measured);
+    let (name, label) = match quantity {
+        Quantity::Velocity => ("v_m_per_s", format!("{words}, {unit}")),
+        Quantity::Acceleration => ("base_accel_m_per_s2", format!("base {words}, {unit}")),
+        _ => ("x_m", format!("{words}, {unit}")),
     };
     let scaled = |times: &[f64], values: &[f64]| -> Vec<Point> {
         times
@@ -135,12 +130,7 @@ pub fn measured_figure(
         points.iter().for_each(|(t, value)| drawn.put(series, &[*t, value / scale], &[]));
     }
     figure.data = drawn.table();
-    let (rms, percent) = found.rms;
-    let unit = label.rsplit(", ").next().unwrap_or_default();
-    let mut words = format!("RMS difference {} {unit}", short(rms * scale));
-    if percent.is_finite() {
-        words += &format!(", {} % of the RMS measured", short(percent));
-    }
+    let mut words = rms_difference(found.rms, scale, unit);
     if found.shift != 0.0 {
         words += &format!("; record shifted by {} s", short(found.shift)).replace('-', "\u{2212}");
     }

@@ -2,20 +2,16 @@
 
 use super::axis::PlotAxis;
 use super::style::{self, Ink, Theme};
-use crate::study::{Grid, Table, Values};
+use crate::study::{Grid, RMS_VELOCITY, SummaryField, Table, Values, label_and_unit};
 
 /// The column that is shown where none is named.
-pub const RMS: &str = "rms_velocity_m_per_s";
+pub const RMS: &str = RMS_VELOCITY.name;
 
-/// The columns of words, with all words that they can have, in the order of their colours.
-const WORDS: [(&str, &[&str]); 5] = [
-    ("regime", &["rest", "intrawell", "irregular", "interwell"]),
-    ("side", &["left", "right", "both"]),
-    ("settled", &["true", "false"]),
-    ("steady", &["true", "false"]),
-    (
-        "outcome",
-        &[
+/// The words that the column called `name` can have, in the order of their colours; `None` for numbers.
+pub fn words_of(name: &str) -> Option<&'static [&'static str]> {
+    let words: &[&str] = match name {
+        "regime" => &["rest", "intrawell", "irregular", "interwell"],
+        "outcome" => &[
             "done",
             "inaccurate",
             "left_table",
@@ -25,12 +21,9 @@ const WORDS: [(&str, &[&str]); 5] = [
             "cancelled",
             "not_converged",
         ],
-    ),
-];
-
-/// The words that the column called `name` can have; none where it has numbers.
-pub fn words_of(name: &str) -> Option<&'static [&'static str]> {
-    WORDS.iter().find(|column| column.0 == name).map(|column| column.1)
+        _ => SummaryField::find(name)?.words,
+    };
+    Some(words).filter(|words| !words.is_empty())
 }
 
 /// A column to show.
@@ -40,6 +33,8 @@ pub(super) struct Quantity {
     pub values: Vec<f64>,
     /// What stands at its axis.
     pub label: String,
+    /// The unit at the end of the label; empty where it has none.
+    pub unit: String,
     /// The words that the values are places of, where it has words.
     pub words: Option<&'static [&'static str]>,
     /// Whether these are the regimes.
@@ -76,21 +71,21 @@ impl Quantity {
             None => Vec::new(),
         };
         let greatest = values.iter().filter(|v| v.is_finite()).fold(0.0_f64, |a, b| a.max(b.abs()));
-        let label = column.map_or_else(|| name.to_owned(), |column| column.label());
-        let words = label.split_once(", ").map_or(label.as_str(), |parts| parts.0);
+        let (words, unit) =
+            column.map_or_else(|| (name.to_owned(), ""), |column| label_and_unit(&column.name));
         let words = match name {
             RMS => "RMS velocity",
             "max_abs_x_m" => "largest |x|",
-            _ => words,
+            _ => words.as_str(),
         };
         // Small lengths and speeds are short numbers in thousandths.
-        let (scale, label) = match column.map(|column| column.unit()) {
-            Some(unit @ ("m" | "m/s")) if greatest < 2.0 => (1e3, format!("{words}, m{unit}")),
-            Some(unit) if !unit.is_empty() => (1.0, format!("{words}, {unit}")),
-            _ => (1.0, words.to_owned()),
+        let (scale, unit) = match unit {
+            "m" | "m/s" if greatest < 2.0 => (1e3, format!("m{unit}")),
+            _ => (1.0, unit.to_owned()),
         };
+        let label = if unit.is_empty() { words.to_owned() } else { format!("{words}, {unit}") };
         let values = values.into_iter().map(|value| value * scale).collect();
-        Self { values, label, words: words_of(name), regimes: name == "regime", velocity: name == RMS }
+        Self { values, label, unit, words: words_of(name), regimes: name == "regime", velocity: name == RMS }
     }
 
     /// The colour of a value that is the place of a word.

@@ -53,7 +53,9 @@ enum Lower {
 /// A picture in the units of its axes.
 struct RecordPicture {
     across: &'static str,
-    up: String,
+    up: &'static str,
+    /// The unit upwards.
+    unit: &'static str,
     /// Names of both in the table of what is drawn, and what 1 in SI is on the axes.
     columns: [String; 2],
     scales: [f64; 2],
@@ -75,7 +77,7 @@ pub fn identified_figure(
     caption: &Caption,
     theme: &Theme,
 ) -> Figure {
-    let (scale, up) = unit(quantity, values);
+    let (scale, up, unit) = axis_of(quantity, values);
     let column = |table: &'_ Table, name: &str| table.numbers(name).unwrap_or_default().to_vec();
     let fitted = |x: &str, y: &str, k: f64| -> Vec<Point> {
         let (x, y) = (column(&found.fitted, x), column(&found.fitted, y));
@@ -94,6 +96,7 @@ pub fn identified_figure(
         "force" => RecordPicture {
             across: "position, mm",
             up,
+            unit,
             columns: names,
             scales: [k, scale],
             record,
@@ -112,7 +115,7 @@ pub fn identified_figure(
             let rows = intervals(middle, "damping_ratio");
             let lower = Lower::Intervals("damping ratio", "damping_ratio", rows, first);
             let (columns, scales) = (names, [k, scale]);
-            RecordPicture { across: "time, s", up, columns, scales, record, rises: true, over, lower }
+            RecordPicture { across: "time, s", up, unit, columns, scales, record, rises: true, over, lower }
         }
         _ => {
             let marks = |name, series, x, y, mark, ink| Series {
@@ -136,10 +139,10 @@ pub fn identified_figure(
             let rows = intervals(column(&found.rows, "t_s"), "restitution");
             let lower = Lower::Intervals("restitution", "restitution", rows, first);
             let (columns, scales) = (names, [k, scale]);
-            RecordPicture { across: "time, s", up, columns, scales, record, rises: true, over, lower }
+            RecordPicture { across: "time, s", up, unit, columns, scales, record, rises: true, over, lower }
         }
     };
-    picture.draw(&told(&found.summary), ranges, caption, theme)
+    picture.draw(&summary_words(&found.summary), ranges, caption, theme)
 }
 
 /// The picture of a measured force over the computed curve, of which `curve` is the table.
@@ -150,7 +153,7 @@ pub fn measured_force_figure(
     caption: &Caption,
     theme: &Theme,
 ) -> Figure {
-    let (scale, up) = unit(Quantity::Force, &found.measured);
+    let (scale, up, unit) = axis_of(Quantity::Force, &found.measured);
     let mm = |values: &[f64]| -> Vec<Point> {
         found.positions.iter().zip(values).map(|(x, value)| (x * 1e3, value * scale)).collect()
     };
@@ -162,6 +165,7 @@ pub fn measured_force_figure(
     let picture = RecordPicture {
         across: "displacement, mm",
         up,
+        unit,
         columns: ["x_m".to_owned(), column_of(Quantity::Force)],
         scales: [1e3, scale],
         record: mm(&found.measured),
@@ -169,12 +173,8 @@ pub fn measured_force_figure(
         over: vec![computed],
         lower: Lower::Rest("difference", "difference", mm(&apart)),
     };
-    let ((rms, percent), (at, largest)) = (found.rms, found.largest);
-    let unit = picture.up.rsplit(", ").next().unwrap_or_default();
-    let mut words = format!("RMS difference {} {unit}", short(rms * scale));
-    if percent.is_finite() {
-        words += &format!(", {} % of the RMS measured", short(percent));
-    }
+    let (at, largest) = found.largest;
+    let mut words = rms_difference(found.rms, scale, unit);
     let (most, at) = (short((largest * scale).abs()), short(at * 1e3).replace('-', "\u{2212}"));
     words += &format!("; at most {most} {unit}, at {at} mm");
     picture.draw(&words, ranges, caption, theme)
@@ -182,7 +182,7 @@ pub fn measured_force_figure(
 
 /// The first number with its interval and the second one; of a force curve the wells, the barrier and the
 /// hysteresis.
-fn told(summary: &[Identity]) -> String {
+fn summary_words(summary: &[Identity]) -> String {
     let of = |name: &str| summary.iter().find(|number| number.name == name).map(|number| number.value);
     let known = |name: &str, unit: f64| of(name).map(|value| short(value * unit));
     let mut parts = Vec::new();
@@ -218,19 +218,25 @@ fn pairs(table: &Table, scale: f64) -> Vec<Point> {
     x.iter().zip(force).map(|(x, force)| (x * 1e3, force * scale)).collect()
 }
 
-/// The factor from SI to the unit of an axis, and what the axis is called.
-fn unit(quantity: Quantity, values: &[f64]) -> (f64, String) {
-    let most = values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+/// The factor from SI to the unit of an axis, what the axis is called, and that unit.
+pub(super) fn axis_of(quantity: Quantity, values: &[f64]) -> (f64, &'static str, &'static str) {
+    let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
     match quantity {
         Quantity::Velocity => {
             let (scale, unit) = speed_unit(values.iter().copied());
-            (scale, format!("velocity, {unit}"))
+            (scale, "velocity", unit)
         }
-        Quantity::Acceleration => (1.0 / STANDARD_GRAVITY, "acceleration, g".to_owned()),
-        Quantity::Force if most < 0.1 => (1e3, "force, mN".to_owned()),
-        Quantity::Force => (1.0, "force, N".to_owned()),
-        _ => (1e3, "displacement, mm".to_owned()),
+        Quantity::Acceleration => (1.0 / STANDARD_GRAVITY, "acceleration", "g"),
+        Quantity::Force if largest < 0.1 => (1e3, "force", "mN"),
+        Quantity::Force => (1.0, "force", "N"),
+        _ => (1e3, "displacement", "mm"),
     }
+}
+
+/// The root mean square of a difference in words, with its share in percent where it is known.
+pub(super) fn rms_difference((rms, percent): (f64, f64), scale: f64, unit: &str) -> String {
+    let words = format!("RMS difference {} {unit}", short(rms * scale));
+    if percent.is_finite() { format!("{words}, {} % of the RMS measured", short(percent)) } else { words }
 }
 
 impl RecordPicture {
@@ -260,8 +266,7 @@ impl RecordPicture {
         let more = (legend(&mut figure, theme, &entries, ends, 142.0) - 161.0).max(0.0);
         let (label, lower) = match &self.lower {
             Lower::Rest(label, _, points) => {
-                let unit = self.up.rsplit(", ").next().unwrap_or_default();
-                (format!("{label}, {unit}"), points.iter().map(|point| point.1).chain([0.0]).collect())
+                (format!("{label}, {}", self.unit), points.iter().map(|point| point.1).chain([0.0]).collect())
             }
             Lower::Intervals(label, _, rows, all) => {
                 let ends = all.iter().flat_map(|number| [number.interval.0, number.interval.1]);
@@ -276,7 +281,8 @@ impl RecordPicture {
         let across = PlotAxis::around(places, 0.0, 8, self.across).or_given(ranges.x, 8, self.across);
         let drawn = self.over.iter().flat_map(|series| &series.points).filter(inside);
         let heights = shown().chain(drawn).map(|point| point.1);
-        let up = PlotAxis::around(heights, 0.08, 6, &self.up).or_given(ranges.y, 6, &self.up);
+        let up = format!("{}, {}", self.up, self.unit);
+        let up = PlotAxis::around(heights, 0.08, 6, &up).or_given(ranges.y, 6, &up);
         let below = PlotAxis::around(lower, 0.12, 4, &label);
         let [first, second] = stretched(FRAMES, 175.0 + more, figure.bottom() - 8.0);
         let height = |edges: (f64, f64)| edges.1 - edges.0;

@@ -1,6 +1,5 @@
 //! Picture of a sweep: lines over one field, drawn here; over two a [`map`](super::map).
 
-use super::axis::PlotAxis;
 use super::cut::{self, map_with_cuts};
 use super::figure::{Area, Figure};
 use super::frame::Frame;
@@ -10,8 +9,8 @@ use super::quantity::{Quantity, quantities, words_of};
 use super::style::{self, Theme};
 use super::surface::{MAX_SURFACE_CELLS, SURFACE, surface};
 use super::swept::{
-    LEAST, LEFT, MARKER_ROOM, SweepPicture, View, below_legend, drawn, label, mark_regimes, missing_words,
-    of_each,
+    LEAST, LEFT, MARKER_ROOM, SweepPicture, View, below_legend, drawn, mark_regimes, missing_words, of_each,
+    swept_axis,
 };
 use super::walk::{STACKED, walked_both, walked_lines, walked_maps};
 use crate::numeric::short;
@@ -60,10 +59,10 @@ pub enum NoPicture {
     #[error("--surface shows at most {MAX_SURFACE_CELLS} cells, not {0}: take longer steps, or leave it out")]
     SurfaceCells(u64),
     /// No column that can be shown.
-    #[error("--quantity {asked}: no such column to show; there are: {known}")]
+    #[error("--quantity {name}: no such column to show; there are: {known}")]
     Quantity {
-        /// The column asked for.
-        asked: String,
+        /// The column as given.
+        name: String,
         /// Those that there are.
         known: String,
     },
@@ -78,7 +77,7 @@ pub fn can_show(grid: &Grid, (quantity, view): (&str, &View), table: &Table) -> 
         let more: Vec<&str> = more.collect();
         known.extend(more);
         let known = known.join(", ");
-        return Err(NoPicture::Quantity { asked: quantity.to_owned(), known });
+        return Err(NoPicture::Quantity { name: quantity.to_owned(), known });
     }
     if *view != View::Top {
         let lengths = || grid.axes().iter().map(|axis| axis.values.len());
@@ -203,7 +202,7 @@ fn lines(figure: &mut Figure, picture: &SweepPicture, x: &str, series: Option<&s
     };
 
     let mut entries: Vec<(Sample, String)> = Vec::new();
-    for (i, words) in series.iter().flat_map(|name| of_each(rows, name, &each)).enumerate() {
+    for (i, words) in series.iter().flat_map(|name| of_each(name, &each)).enumerate() {
         entries.push((Sample::Line(ink(i), style::GUIDE, None), words));
     }
     for (name, shape) in REGIMES {
@@ -225,8 +224,7 @@ fn lines(figure: &mut Figure, picture: &SweepPicture, x: &str, series: Option<&s
         entries.iter().map(|(sample, words)| (*sample, words.as_str())).collect();
     let top = below_legend(figure, theme, &entries);
 
-    let x_label = label(rows, x);
-    let across = PlotAxis::around(values.iter().copied(), 0.02, 8, &x_label).or_given(ranges.x, 8, &x_label);
+    let across = swept_axis(rows, x, ranges.x);
     // Most quantities are never negative; the little room below 0 is for the markers.
     let up = quantity.axis(0.05, 6).or_given(ranges.y, 6, &quantity.label);
     let frame = Frame::whole(figure, (LEFT, top), across, up);

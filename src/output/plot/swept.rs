@@ -1,6 +1,6 @@
 //! Rows of a sweep as its pictures need them: what a picture is drawn from, places, words, marks.
 
-use super::axis::Ranges;
+use super::axis::{PlotAxis, Ranges};
 use super::drawn::{Drawn, as_numbers};
 use super::figure::{Figure, Point};
 use super::frame::Frame;
@@ -9,7 +9,7 @@ use super::style::{Ink, Theme};
 use crate::mechanics::Mechanism;
 use crate::numeric::short;
 use crate::scene::Scene;
-use crate::study::{Column, DIRECTION, Grid, Table, first_crossing, release_line};
+use crate::study::{Column, DIRECTION, Grid, Table, first_crossing, label_and_unit, release_line};
 
 pub(super) const LEFT: f64 = 160.0;
 pub(super) const TOP: f64 = 185.0;
@@ -84,8 +84,8 @@ pub struct SweepPicture<'a> {
     pub ranges: Ranges,
 }
 
-/// The cells with the quantity and their words, those alone whose fields lie in the ranges `asked` for.
-pub(super) fn drawn(picture: &SweepPicture, asked: &[(&str, Option<(f64, f64)>)]) -> Drawn {
+/// The cells with the quantity and their words, only those whose fields lie in `ranges`.
+pub(super) fn drawn(picture: &SweepPicture, ranges: &[(&str, Option<(f64, f64)>)]) -> Drawn {
     let SweepPicture { rows, grid, quantity, .. } = picture;
     let fields = grid.columns();
     let value = rows.column(quantity).and_then(as_numbers);
@@ -99,7 +99,7 @@ pub(super) fn drawn(picture: &SweepPicture, asked: &[(&str, Option<(f64, f64)>)]
             let number = rows.numbers(name).map_or(f64::NAN, |column| column[row]);
             range.is_none_or(|(low, high)| (low..=high).contains(&number))
         };
-        if asked.iter().all(within) {
+        if ranges.iter().all(within) {
             let places = columns.iter().map(|column| column[row]);
             let numbers: Vec<f64> = places.chain(value.as_ref().map(|values| values[row])).collect();
             let said: Vec<&str> =
@@ -114,10 +114,15 @@ pub(super) fn label(rows: &Table, name: &str) -> String {
     rows.column(name).map_or_else(|| name.to_owned(), Column::label)
 }
 
+/// The axis to the right over the swept field `x`.
+pub(super) fn swept_axis(rows: &Table, x: &str, range: Option<(f64, f64)>) -> PlotAxis {
+    let (label, values) = (label(rows, x), rows.numbers(x).unwrap_or_default());
+    PlotAxis::around(values.iter().copied(), 0.02, 8, &label).or_given(range, 8, &label)
+}
+
 /// The values of the field `name`, for each of which there is a line, as a legend names them.
-pub(super) fn of_each(rows: &Table, name: &str, each: &[f64]) -> Vec<String> {
-    let label = label(rows, name);
-    let (words, unit) = label.split_once(", ").unwrap_or((&label, ""));
+pub(super) fn of_each(name: &str, each: &[f64]) -> Vec<String> {
+    let (words, unit) = label_and_unit(name);
     let named = |(i, value): (usize, &f64)| {
         let value = short(*value);
         let words = if i == 0 { format!("{words} {value}") } else { value };

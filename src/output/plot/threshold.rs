@@ -8,7 +8,7 @@ use super::map::map;
 use super::mark::{Caption, Marker, Sample, marker};
 use super::style::{self, Theme};
 use super::sweep::{NoPicture, distinct, few_lines};
-use super::swept::{LEAST, LEFT, Overlay, SweepPicture, View, below_legend, label, of_each};
+use super::swept::{LEAST, LEFT, Overlay, SweepPicture, View, below_legend, of_each, swept_axis};
 use crate::scene::{Scene, column_names};
 use crate::study::{Column, Grid, Onset, Table, Values};
 
@@ -117,7 +117,7 @@ fn lines(
     };
 
     let mut entries: Vec<(Sample, String)> = Vec::new();
-    for (i, words) in series.iter().flat_map(|name| of_each(rows, name, &each)).enumerate() {
+    for (i, words) in series.iter().flat_map(|name| of_each(name, &each)).enumerate() {
         entries.push((Sample::Line(ink(i), style::GUIDE, None), words));
     }
     let gap = gaps.contains(&true);
@@ -139,8 +139,7 @@ fn lines(
         entries.iter().map(|(sample, words)| (*sample, words.as_str())).collect();
     let top = below_legend(figure, theme, &entries);
 
-    let x_label = label(rows, x);
-    let across = PlotAxis::around(places.iter().copied(), 0.02, 8, &x_label).or_given(ranges.x, 8, &x_label);
+    let across = swept_axis(rows, x, ranges.x);
     let from_zero = values.iter().copied().chain(bars.iter().flat_map(|(_, bar)| *bar)).chain([0.0]);
     let upward = PlotAxis::around(from_zero, 0.05, 6, up).or_given(ranges.y, 6, up);
     let frame = Frame::whole(figure, (LEFT, top), across, upward);

@@ -8,7 +8,9 @@ use super::map::{Cell, Mosaic, colour_bar, meanings};
 use super::mark::{REGIMES, Sample, legend, regime};
 use super::quantity::Quantity;
 use super::style::{self, Ink, Theme, viridis};
-use super::swept::{LEFT, MARKER_ROOM, SweepPicture, TOP, below_legend, drawn, label, mark_regimes};
+use super::swept::{
+    LEFT, MARKER_ROOM, SweepPicture, TOP, below_legend, drawn, label, mark_regimes, swept_axis,
+};
 use crate::study::{DIRECTION, Direction, Table};
 
 /// Whether the rows are those of a walk both ways.
@@ -61,8 +63,7 @@ pub(super) fn walked_lines(figure: &mut Figure, picture: &SweepPicture, x: &str,
         }
     }
     let top = below_legend(figure, theme, &entries);
-    let x_label = label(rows, x);
-    let across = PlotAxis::around(values.iter().copied(), 0.02, 8, &x_label).or_given(ranges.x, 8, &x_label);
+    let across = swept_axis(rows, x, ranges.x);
     let frame = Frame::whole(figure, (LEFT, top), across, up);
     let point = |row: &usize| (values[*row], quantity.values[*row]);
     let place = |row: &usize| frame.place(point(row));
@@ -94,16 +95,16 @@ fn between(figure: &mut Figure, a: (Point, Point), b: (Point, Point), ink: Ink, 
     if !ends.iter().all(|(x, y)| x.is_finite() && y.is_finite()) {
         return;
     }
-    let held = |(x, y): Point| (x.clamp(within.left, within.right), y.clamp(within.top, within.bottom));
+    let clamped = |(x, y): Point| (x.clamp(within.left, within.right), y.clamp(within.top, within.bottom));
     let (before, after) = (a.0.1 - a.1.1, b.0.1 - b.1.1);
     if before * after < 0.0 {
         let share = before / (before - after);
         let mix = |p: f64, q: f64| p + share * (q - p);
-        let meet = held((mix(a.0.0, b.0.0), mix(a.0.1, b.0.1)));
-        figure.polygon(vec![held(a.0), meet, held(a.1)], ink);
-        figure.polygon(vec![held(b.0), meet, held(b.1)], ink);
+        let meet = clamped((mix(a.0.0, b.0.0), mix(a.0.1, b.0.1)));
+        figure.polygon(vec![clamped(a.0), meet, clamped(a.1)], ink);
+        figure.polygon(vec![clamped(b.0), meet, clamped(b.1)], ink);
     } else {
-        figure.polygon(vec![held(a.0), held(b.0), held(b.1), held(a.1)], ink);
+        figure.polygon(vec![clamped(a.0), clamped(b.0), clamped(b.1), clamped(a.1)], ink);
     }
 }
 
@@ -151,7 +152,8 @@ pub(super) fn walked_maps(figure: &mut Figure, picture: &SweepPicture, (x, y): (
     let values = difference.iter().filter_map(Cell::value).map(f64::abs);
     let largest = values.fold(0.0, f64::max);
     let reach = if largest > 0.0 { largest } else { 1.0 };
-    let signed = PlotAxis::between(-reach, reach, 6, &format!("down \u{2212} up, {}", unit(&quantity.label)));
+    let unit = if quantity.unit.is_empty() { &quantity.label } else { &quantity.unit };
+    let signed = PlotAxis::between(-reach, reach, 6, &format!("down \u{2212} up, {unit}"));
     let tint = |value: f64| {
         let share = (value / reach).clamp(-1.0, 1.0);
         let ink = if share < 0.0 { theme.regimes[1] } else { theme.regimes[3] };
@@ -215,9 +217,4 @@ impl Cell {
     fn value(&self) -> Option<f64> {
         if let Self::Value(value) = self { Some(*value) } else { None }
     }
-}
-
-/// The unit at the end of a label; the label where it has none.
-fn unit(label: &str) -> &str {
-    label.rsplit_once(", ").map_or(label, |(_, unit)| unit)
 }

@@ -3,12 +3,13 @@
 use super::condition::Condition;
 use super::stage::Stage;
 use super::{LESSON_FORMAT, Lesson, MAX_OPTION_LENGTH, MAX_STEP_LENGTH, Step};
+use crate::numeric::number_text;
 use crate::scene::axis::Axis;
 use crate::scene::check::check;
 use crate::scene::data::{Excitation, Scene};
 use crate::scene::error::Fault;
+use crate::scene::field_table::row;
 use crate::scene::fields::{all_fields, numeric_fields};
-use crate::scene::ranges::number_text;
 
 /// A field of a summary that a lesson may name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,11 +32,17 @@ const MAX_MINUTES: u32 = 90;
 /// The fields of a whole walk.
 pub(super) const OF_WALK: [&str; 3] = ["walk.up_crosses_from", "walk.down_crosses_to", "walk.gap"];
 
-/// A field that a condition may name, with its possible words: `None` for a number, an empty list
-/// for any text.
+/// A field that a condition may name.
 struct Known {
     name: String,
-    words: Option<&'static [&'static str]>,
+    kind: Kind,
+}
+
+/// What the value of a field is.
+enum Kind {
+    Number,
+    Text,
+    OneOf(&'static [&'static str]),
 }
 
 /// All faults of a lesson except those of its scenes.
@@ -50,9 +57,10 @@ pub(super) fn faults(lesson: &Lesson, stages: &[Stage], results: &[ResultField])
         found.add("minutes", lesson.minutes.to_string(), format!("must be 1 to {MAX_MINUTES}"));
     }
     if let Some(speed) = lesson.speed
-        && !(1e-15..=1000.0).contains(&speed)
+        && let range = row("app.speed").range
+        && !range.contains(speed)
     {
-        found.add("speed", number_text(speed), "must be 1e-15 to 1000; 0.1 is a tenth of real time");
+        found.add("speed", number_text(speed), format!("must be {range}; 0.1 is a tenth of real time"));
     }
     if lesson.views.is_empty() {
         found.add("views", "", "must name a view, such as Well");
@@ -79,14 +87,14 @@ pub(super) fn faults(lesson: &Lesson, stages: &[Stage], results: &[ResultField])
                 for (number, option) in options.iter().enumerate() {
                     let at = |part: &str| format!("steps.{index}.options.{number}.{part}");
                     found.length(&at("text"), &option.text, MAX_OPTION_LENGTH);
-                    condition(&option.holds, &at("holds"), (&known, &stage.end.scene, false), &mut found);
+                    condition(&option.holds, &at("holds"), &known, &stage.end.scene, false, &mut found);
                 }
             }
             Step::Do { goal, hint, .. } => {
                 if let Some(hint) = hint {
                     found.length(&at(".hint"), hint, MAX_STEP_LENGTH);
                 }
-                condition(goal, &at(".goal"), (&known, &stage.end.scene, false), &mut found);
+                condition(goal, &at(".goal"), &known, &stage.end.scene, false, &mut found);
             }
         }
     }
@@ -124,13 +132,16 @@ fn known(lesson: &Lesson, scenes: &[&Scene], results: &[ResultField]) -> Vec<Kno
     let numbers = union(scenes, numeric_fields);
     let mut known: Vec<Known> = union(scenes, all_fields)
         .into_iter()
-        .map(|path| Known { words: (!numbers.contains(&path)).then_some(&[]), name: format!("scene.{path}") })
+        .map(|path| Known {
+            kind: if numbers.contains(&path) { Kind::Number } else { Kind::Text },
+            name: format!("scene.{path}"),
+        })
         .collect();
     let mut add = |prefix: &str, numbers_only: bool| {
         let wanted = results.iter().filter(|field| !numbers_only || field.words.is_empty());
         known.extend(wanted.map(|field| Known {
             name: format!("{prefix}.{}", field.name),
-            words: (!field.words.is_empty()).then_some(field.words),
+            kind: if field.words.is_empty() { Kind::Number } else { Kind::OneOf(field.words) },
         }));
     };
     add("result", false);
@@ -142,16 +153,15 @@ fn known(lesson: &Lesson, scenes: &[&Scene], results: &[ResultField]) -> Vec<Kno
     if lesson.walk.is_some() {
         add("up", false);
         add("down", false);
-        known.extend(OF_WALK.map(|name| Known { name: name.to_owned(), words: None }));
+        known.extend(OF_WALK.map(|name| Known { name: name.to_owned(), kind: Kind::Number }));
     }
     known
 }
 
-/// Checks a condition. The flag in `context` tells whether it is inside a condition over several starts.
-fn condition(checked: &Condition, at: &str, context: (&[Known], &Scene, bool), found: &mut Found) {
-    let (known, scene, inside) = context;
+/// Checks a condition. `inside` tells whether it is inside a condition over several starts.
+fn condition(checked: &Condition, at: &str, known: &[Known], scene: &Scene, inside: bool, found: &mut Found) {
     let inner = inside || !checked.starts().is_empty();
-    checked.parts().iter().for_each(|part| condition(part, at, (known, scene, inner), found));
+    checked.parts().iter().for_each(|part| condition(part, at, known, scene, inner, found));
     match checked {
         Condition::All(parts) | Condition::Any(parts) if parts.is_empty() => {
             found.add(at, "", "All and Any need a condition");
@@ -175,7 +185,7 @@ fn condition(checked: &Condition, at: &str, context: (&[Known], &Scene, bool), f
         _ => {}
     }
     let Some(field) = checked.field() else { return };
-    let Some(Known { words, .. }) = known.iter().find(|known| known.name == field) else {
+    let Some(Known { kind, .. }) = known.iter().find(|known| known.name == field) else {
         let needs = match field.split('.').next() {
             Some("mean" | "error") => "; it needs `seeds`",
             Some("up" | "down" | "walk") => "; it needs `walk`",
@@ -188,14 +198,14 @@ fn condition(checked: &Condition, at: &str, context: (&[Known], &Scene, bool), f
     let mut bounds = Vec::new();
     checked.clone().for_each_bound(&mut |_, bound| bounds.push(*bound));
     let of_parts = !checked.parts().is_empty();
-    match (checked, words) {
-        (Condition::Is(_, text), None) if text.trim().parse::<f64>().is_err() => {
+    match (checked, kind) {
+        (Condition::Is(_, text), Kind::Number) if text.trim().parse::<f64>().is_err() => {
             found.add(at, format!("{field} is {text}"), "the field is a number");
         }
-        (Condition::Is(_, text), Some(words)) if !words.is_empty() && !words.contains(&text.as_str()) => {
+        (Condition::Is(_, text), Kind::OneOf(words)) if !words.contains(&text.as_str()) => {
             found.add(at, format!("{field} is {text}"), format!("it is one of {}", words.join(", ")));
         }
-        (_, Some(_)) if !bounds.is_empty() && !of_parts => {
+        (_, Kind::Text | Kind::OneOf(_)) if !bounds.is_empty() && !of_parts => {
             found.add(at, field, "is no number; compare it by Is, Present or Absent");
         }
         _ => {}

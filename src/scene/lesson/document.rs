@@ -6,10 +6,9 @@ use super::check::{ResultField, faults};
 use super::library::{BuiltInLesson, names};
 use super::stage::{Stage, stages};
 use super::{Lesson, Step};
-use crate::scene::clip::clip;
 use crate::scene::data::joined;
 use crate::scene::document::{Document, Source, structure_error};
-use crate::scene::error::{Fault, Origin, PlacedFault, SceneError};
+use crate::scene::error::{Fault, Origin, PlacedFault, SceneError, clip};
 use crate::scene::files::{ReadError, read_text};
 use crate::scene::locate::{Place, Places};
 use crate::scene::text::{MAX_SCENE_BYTES, ParseError, read};
@@ -81,10 +80,7 @@ impl LessonDocument {
         let mut lesson = match check_not_empty(text).and_then(|()| parse(text)) {
             Ok(lesson) => lesson,
             Err(parse_error) => {
-                let rest = |text: &str| {
-                    let checked = Self::from_text(name, text, folder, results);
-                    checked.err().map(|error| error.to_string()).unwrap_or_default()
-                };
+                let rest = |text: &str| Self::from_text(name, text, folder, results).err();
                 return Err(structure_error(name, text, parse_error, |text| parse(text).err(), rest).into());
             }
         };

@@ -7,7 +7,6 @@ use crate::dynamics::{Model, Outcome, Request, Run, Summary};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, FieldPath, Scene, check, is_whole};
 use crate::study::Task;
-use crate::study::fields::{Read, SummaryField};
 use crate::study::settled::followed;
 use crate::study::shared_runs::shared_runs;
 use crate::system::threads::Pool;
@@ -155,7 +154,7 @@ impl<'a> Evaluator<'a> {
         for constraint in &self.question.subject_to {
             let mut furthest: Option<(f64, f64)> = None;
             for summary in &summaries {
-                let Some(result) = number(constraint.of, summary) else { return Judged::Missing };
+                let Some(result) = constraint.of.number(summary) else { return Judged::Missing };
                 let over =
                     if constraint.at_most { result - constraint.limit } else { constraint.limit - result };
                 if furthest.is_none_or(|(largest, _)| over > largest) {
@@ -168,7 +167,7 @@ impl<'a> Evaluator<'a> {
             results.push(result);
         }
         let of_each: Option<Vec<f64>> =
-            summaries.iter().map(|summary| number(self.question.maximise, summary)).collect();
+            summaries.iter().map(|summary| self.question.maximise.number(summary)).collect();
         let Some(of_each) = of_each else { return Judged::Missing };
         if broken > 0.0 {
             return Judged::Broken(broken, results);
@@ -177,13 +176,4 @@ impl<'a> Evaluator<'a> {
         let sum: f64 = of_each.iter().zip(weights.clone()).map(|(value, weight)| value * weight).sum();
         Judged::Value(sum / weights.sum::<f64>(), of_each)
     }
-}
-
-fn number(field: &SummaryField, summary: &Summary) -> Option<f64> {
-    match field.read {
-        Read::Number(of) => of(summary),
-        Read::Count(of) => of(summary).map(|count| count as f64),
-        Read::Word(_) | Read::Flag(_) => None,
-    }
-    .filter(|value| value.is_finite())
 }

@@ -13,7 +13,7 @@ pub use force::{FORCE_POINTS, force};
 pub use restitution::{restitution, restitution_of_times};
 pub(super) use turns::{Turn, noise, reach, turns};
 
-use super::table::{Column, Table, Values};
+use super::table::{Table, label_and_unit};
 use crate::numeric::short;
 
 /// A number with its interval.
@@ -34,9 +34,7 @@ impl Identity {
 
     /// The number in words.
     pub fn describe(&self) -> String {
-        let column = Column { name: self.name.to_owned(), values: Values::Words(Vec::new()) };
-        let (unit, label) = (column.unit(), column.label());
-        let name = label.strip_suffix(unit).map_or(label.as_str(), |name| name.trim_end_matches(", "));
+        let (name, unit) = label_and_unit(self.name);
         let [value, low, high] = [self.value, self.interval.0, self.interval.1].map(short);
         let text = format!("{name} {value} {unit}");
         match self.interval.0.is_nan() {

@@ -4,8 +4,7 @@ use interwell::scene::{Ask, Measured, MeasuredError, Quantity};
 
 fn ask(quantities: &[Quantity], column: Option<&str>, unit: Option<&str>) -> Ask {
     let own = |text: Option<&str>| text.map(str::to_owned);
-    let options = ("--column", "--unit");
-    Ask { quantities: quantities.to_vec(), column: own(column), unit: own(unit), options }
+    Ask::by_options(quantities, &own(column), &own(unit), ["--column", "--unit"])
 }
 
 fn asks() -> [Ask; 2] {

@@ -1,53 +1,8 @@
 //! Choice of the two axes of a map, and of their ranges.
 
 use crate::app::words::numbers::{below, decimal, round_up};
-use crate::scene::{FieldPath, Scene, Start, Stops, SweepAxis, numeric_fields};
-use crate::study::{Column, Values};
-
-/// The fields that are offered as axes, by the ends of their paths and in this order.
-const FIELDS: [&str; 41] = [
-    "travel_limit_mm",
-    "amplitude_g",
-    "frequency_hz",
-    "restitution",
-    "damping.xi",
-    "preload_mm",
-    "mass_g",
-    "left_mm",
-    "right_mm",
-    "restitution_left",
-    "restitution_right",
-    "c_n_s_per_m",
-    "rms_g",
-    "thickness_mm",
-    "equilibrium_mm",
-    "barrier_mj",
-    "linear_n_per_m",
-    "cubic_n_per_m3",
-    "parallel.length_mm",
-    "parallel.width_mm",
-    "buckling.length_mm",
-    "buckling.width_mm",
-    "young_gpa",
-    "stiffness_n_per_m1_5",
-    "loss_s_per_m",
-    "radius_mm",
-    "accel_g",
-    "to_g",
-    "over_s",
-    "to_hz",
-    "load_ohm",
-    "load_kohm",
-    "coupling_v_s_per_m",
-    "coupling_n_per_v",
-    "coil_ohm",
-    "inductance_mh",
-    "capacitance_nf",
-    "n_per_m",
-    "strength_n_mm4",
-    "gap_mm",
-    "seed",
-];
+use crate::scene::{FieldPath, Scene, Start, Stops, SweepAxis, field_info, numeric_fields};
+use crate::study::label_and_unit;
 
 /// Ends and step of the travel limit in mm on the prototype's map, for scenes of its size.
 const LIMITS_MM: (f64, f64, f64) = (0.5, 7.0, 0.125);
@@ -80,16 +35,13 @@ pub fn fields(scene: &Scene, when_on: Stops) -> Vec<String> {
     if scene.stops == Stops::None {
         scene.stops = when_on;
     }
-    let known: Vec<String> = numeric_fields(&scene)
+    let mut known: Vec<(u8, String)> = numeric_fields(&scene)
         .into_iter()
-        .filter(|path| !path.starts_with("app.") && FieldPath::new(path).get(&scene).is_some())
+        .filter(|path| FieldPath::new(path).get(&scene).is_some())
+        .filter_map(|path| Some((field_info(&path)?.axis?, path)))
         .collect();
-    let of = |name: &&str| {
-        let (dotted, name) = (format!(".{name}"), (*name).to_owned());
-        let fits = |path: &&String| **path == name || path.ends_with(&dotted);
-        known.iter().filter(fits).cloned().collect::<Vec<_>>()
-    };
-    FIELDS.iter().flat_map(of).collect()
+    known.sort_by_key(|(place, _)| *place);
+    known.into_iter().map(|(_, path)| path).collect()
 }
 
 /// The axes of a scene's map: its two sweep axes if both have even steps, else travel limit and amplitude,
@@ -170,22 +122,10 @@ pub fn part(axis: &SweepAxis, from: f64, to: f64) -> SweepAxis {
     }
 }
 
-/// The label of a field and its unit, if it has one, such as `travel limit` and `mm`. `column` is the name of
-/// the field in a table.
-pub fn name_and_unit(column: &str) -> (String, Option<String>) {
-    let label = Column { name: column.to_owned(), values: Values::Words(Vec::new()) }.label();
-    match label.split_once(", ") {
-        Some((name, unit)) => (name.to_owned(), Some(unit.to_owned())),
-        None => (label, None),
-    }
-}
-
-/// The label of an axis, such as `travel limit (mm)`.
+/// The label of an axis, such as `travel limit (mm)`. `column` is the name of the field in a table.
 pub fn label(column: &str) -> String {
-    match name_and_unit(column) {
-        (name, Some(unit)) => format!("{name} ({unit})"),
-        (name, None) => name,
-    }
+    let (name, unit) = label_and_unit(column);
+    if unit.is_empty() { name } else { format!("{name} ({unit})") }
 }
 
 pub fn over(axis: &SweepAxis) -> String {

@@ -9,12 +9,11 @@ pub(super) mod cells;
 use std::collections::VecDeque;
 
 use crate::app::task::Background;
-use crate::app::words::columns::{COLUMNS, ColumnInfo};
 use crate::scene::{FieldPath, Scene, SweepAxis};
-use crate::study::{Cell, STANDARD_COLUMNS};
+use crate::study::{Cell, RMS_VELOCITY, STANDARD_COLUMNS, SummaryField};
 
 pub use crate::numeric::short;
-pub use axes::{ground, label, name_and_unit, over, part};
+pub use axes::{ground, label, over, part};
 pub use cells::{CutCell, Map};
 
 /// Largest number of scenes that are remembered.
@@ -34,7 +33,7 @@ pub struct Question {
 #[derive(Default)]
 pub struct Mapping {
     /// The quantity that the map shows; `None` for the RMS velocity.
-    quantity: Option<&'static ColumnInfo>,
+    quantity: Option<&'static SummaryField>,
     /// The earlier positions of the scene.
     pub trail: Trail,
     /// The axes that the user has chosen; `None` for the default axes.
@@ -104,18 +103,18 @@ impl Mapping {
         }
     }
 
-    pub fn quantity(&self) -> &'static ColumnInfo {
-        self.quantity.unwrap_or(&COLUMNS[0].1[0])
+    pub fn quantity(&self) -> &'static SummaryField {
+        self.quantity.unwrap_or(&RMS_VELOCITY)
     }
 
-    pub fn show(&mut self, quantity: &'static ColumnInfo) {
+    pub fn show(&mut self, quantity: &'static SummaryField) {
         self.quantity = Some(quantity);
     }
 
     /// The columns of the map's table; `None` if they are the standard ones.
     pub fn columns(&self) -> Option<Vec<&'static str>> {
         let ledger = self.map.as_ref().and_then(|map| map.question.ledger);
-        let wanted = ledger.into_iter().chain([self.quantity().column]);
+        let wanted = ledger.into_iter().chain([self.quantity().name]);
         let mut extra: Vec<&str> = wanted.filter(|name| !STANDARD_COLUMNS.contains(name)).collect();
         extra.dedup();
         (!extra.is_empty()).then(|| STANDARD_COLUMNS.into_iter().chain(extra).collect())

@@ -2,11 +2,11 @@
 
 use eframe::egui::{Align2, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, pos2, vec2};
 
-use crate::app::session::map::{CutCell, Map, name_and_unit, short};
+use crate::app::session::map::{CutCell, Map, short};
 use crate::app::ui::style::Style;
 use crate::app::ui::widgets::kind_shapes;
 use crate::app::words::kind::Kind;
-use crate::study::line_meets;
+use crate::study::{label_and_unit, line_meets};
 
 use super::coordinates::Coordinates;
 use super::quantity::ColourScale;
@@ -125,8 +125,8 @@ impl Strip<'_> {
             }
         }
         painter.rect_stroke(self.rect, 0.0, Stroke::new(1.0, style.ink()), StrokeKind::Outside);
-        let (name, unit) = name_and_unit(&self.map.grid().columns()[usize::from(!self.upright)]);
-        let heading = format!("at {name} {} {}", short(self.at.1), unit.unwrap_or_default());
+        let (name, unit) = label_and_unit(&self.map.grid().columns()[usize::from(!self.upright)]);
+        let heading = format!("at {name} {} {}", short(self.at.1), unit);
         let at = self.rect.left_top() - vec2(0.0, 2.0);
         painter.text(at, Align2::LEFT_BOTTOM, heading.trim_end(), style.small(), style.ink());
     }

@@ -14,12 +14,13 @@ use std::sync::Arc;
 
 use eframe::egui::{self, Align2, Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
 
-use crate::app::session::map::{Map, name_and_unit, short};
+use crate::app::session::map::{Map, short};
 use crate::app::ui::style::Style;
 use crate::app::words::kind::Kind;
 use crate::app::words::status::speed;
 use crate::dynamics::{Regime, Summary};
 use crate::output::{PlotAxis, RMS, sweep_about};
+use crate::study::label_and_unit;
 
 use super::{ViewContext, too_small_ui};
 
@@ -60,7 +61,7 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let quantity = context.session.map.quantity();
     let id = ui.scope_id().with("picture");
     let old = ui.data(|data| data.get_temp::<Option<Drawings>>(id)).flatten();
-    let key = (context.session.map.version(), quantity.column, style, current);
+    let key = (context.session.map.version(), quantity.name, style, current);
     let (old, mut surface) = old.map_or((None, None), |old| (Some(old.picture), old.surface));
     let mut picture = Picture::of(ui, old, map, quantity, key);
     surface = surface.filter(|_| !picture.is_new());
@@ -247,11 +248,8 @@ fn reading(map: &Map, scale: &ColourScale, column: usize, row: usize) -> String 
 
 /// Name, value and unit of a column: `travel limit 1.5 mm`.
 fn named(column: &str, value: f64) -> String {
-    let number = short(value);
-    match name_and_unit(column) {
-        (name, Some(unit)) => format!("{name} {number} {unit}"),
-        (name, None) => format!("{name} {number}"),
-    }
+    let (name, unit) = label_and_unit(column);
+    format!("{name} {} {unit}", short(value)).trim_end().to_owned()
 }
 
 /// Marks the scene by a ring, or by an arrow at the edge that it lies beyond. Returns the place.

@@ -11,9 +11,9 @@ use eframe::egui::{
 use crate::app::session::map::Map;
 use crate::app::ui::style::Style;
 use crate::app::ui::widgets::kind_shapes;
-use crate::app::words::columns::ColumnInfo;
 use crate::app::words::kind::Kind;
 use crate::dynamics::Summary;
+use crate::study::SummaryField;
 
 use super::coordinates::{Coordinates, upright};
 use super::quantity::{ColourScale, Look};
@@ -66,7 +66,7 @@ pub fn baked(pixels_per_point: f32, shapes: Vec<Shape>) -> Arc<Mesh> {
 
 impl Picture {
     /// The picture of a map, made anew where the map or the way it is shown has changed.
-    pub fn of(ui: &Ui, old: Option<Self>, map: &Map, quantity: &'static ColumnInfo, key: Key) -> Self {
+    pub fn of(ui: &Ui, old: Option<Self>, map: &Map, quantity: &'static SummaryField, key: Key) -> Self {
         if let Some(old) = old.as_ref().filter(|old| old.key == key && old.size == map.size()) {
             return Self { is_new: false, ..old.clone() };
         }

@@ -1,12 +1,12 @@
 //! Colour scale of a column of the map.
 
 use crate::app::session::map::Map;
-use crate::app::words::columns::{ColumnInfo, said};
+use crate::app::words::columns::said;
 use crate::app::words::kind::Kind;
 use crate::app::words::numbers::three;
 use crate::dynamics::{Regime, Summary};
 use crate::output::PlotAxis;
-use crate::study::{Cell, Read, SummaryField};
+use crate::study::{Cell, SummaryField};
 
 /// Largest number of forcing periods after which a motion is found to repeat.
 const PERIODS: usize = 12;
@@ -43,8 +43,7 @@ enum Steps {
 /// The colours of one map of one quantity.
 #[derive(Debug, Clone)]
 pub struct ColourScale {
-    info: &'static ColumnInfo,
-    field: Option<&'static SummaryField>,
+    info: &'static SummaryField,
     factor: f64,
     unit: &'static str,
     /// The bar beside the map. `None` for words.
@@ -53,36 +52,30 @@ pub struct ColourScale {
 }
 
 /// The number in a summary; of a word, its index.
-fn number(field: &SummaryField, words: Option<&[&str]>, summary: &Summary) -> Option<f64> {
-    let place = |word: &str| words?.iter().position(|known| *known == word).map(|place| place as f64);
-    match field.read {
-        Read::Number(of) => of(summary).filter(|value| value.is_finite()),
-        Read::Count(of) => of(summary).map(|count| count as f64),
-        Read::Word(of) => place(of(summary)),
-        Read::Flag(of) => of(summary).and_then(|flag| place(if flag { "true" } else { "false" })),
-    }
+fn number(info: &SummaryField, summary: &Summary) -> Option<f64> {
+    let place = || {
+        let word = info.word(summary)?;
+        info.shown_words()?.iter().position(|known| *known == word).map(|place| place as f64)
+    };
+    info.number(summary).or_else(place)
 }
 
 impl ColourScale {
     /// A scale from 0, or from the smallest value if it is negative, to the largest value of the map so far.
-    pub fn of(info: &'static ColumnInfo, map: &Map) -> Self {
-        let (field, words) = (info.field(), info.words());
-        let values = || {
-            let read = |cell: &Cell| number(field?, words, cell.summary()?);
-            map.known_cells().filter_map(read)
-        };
+    pub fn of(info: &'static SummaryField, map: &Map) -> Self {
+        let values = || map.known_cells().filter_map(|cell| number(info, cell.summary()?));
         let (factor, unit) = info.unit(values());
         let (low, high) = values().fold((0.0_f64, 0.0_f64), |(low, high), value| {
             (low.min(value * factor), high.max(value * factor))
         });
-        let label = match (info.column, unit) {
+        let label = match (info.name, unit) {
             ("period", _) => "repeats after forcing periods".to_owned(),
-            ("crossings" | "impacts" | "releases", _) => format!("{} in {} s", info.name, map.window_s()),
-            (_, "") => info.name.to_owned(),
-            _ => format!("{} ({unit})", info.name),
+            ("crossings" | "impacts" | "releases", _) => format!("{} in {} s", info.label, map.window_s()),
+            (_, "") => info.label.to_owned(),
+            _ => format!("{} ({unit})", info.label),
         };
-        let (bar, steps) = match info.column {
-            _ if words.is_some() => (None, Steps::Even),
+        let (bar, steps) = match info.name {
+            _ if info.shown_words().is_some() => (None, Steps::Even),
             "period" => {
                 let ticks = (1..=PERIODS).map(|n| (n as f64, n.to_string())).collect();
                 let bar = PlotAxis { low: 0.5, high: PERIODS as f64 + 0.5, ticks, label };
@@ -91,25 +84,25 @@ impl ColourScale {
             _ if info.is_count() => (Some(counts(high, &label)), Steps::Ratios),
             _ => (Some(PlotAxis::between(low, high, 5, &label)), Steps::Even),
         };
-        Self { info, field, factor, unit, bar, steps }
+        Self { info, factor, unit, bar, steps }
     }
 
     /// The number of a cell in the unit of the scale; of a word, its index. `None` if it has none.
     pub fn value(&self, cell: &Cell) -> Option<f64> {
-        Some(number(self.field?, self.info.words(), cell.summary()?)? * self.factor)
+        Some(number(self.info, cell.summary()?)? * self.factor)
     }
 
     /// What a cell shows, and whether its motion is at rest.
     pub fn look(&self, cell: &Cell) -> (Look, bool) {
         let rests = is_at_rest(cell);
         // the zeros of a mass at rest are shown as rest, not as small values
-        let of_motion = |value: f64| value == 0.0 || ["regime", "period"].contains(&self.info.column);
+        let of_motion = |value: f64| value == 0.0 || ["regime", "period"].contains(&self.info.name);
         let look = match (self.value(cell), &self.bar) {
             (None, _) if cell.settled().is_none() => Look::Missing,
             (Some(value), _) if rests && of_motion(value) => Look::Rest,
-            (None, _) if rests && ["regime", "period"].contains(&self.info.column) => Look::Rest,
+            (None, _) if rests && ["regime", "period"].contains(&self.info.name) => Look::Rest,
             (Some(value), Some(bar)) => Look::Share(self.share(value, bar) as f32),
-            _ if self.info.column == "regime" => {
+            _ if self.info.name == "regime" => {
                 cell.settled().map_or(Look::None, |settled| Look::Kind(Kind::from(settled.regime)))
             }
             (Some(place), None) => Look::Word(place as u8),
@@ -129,7 +122,7 @@ impl ColourScale {
     /// Height of a cell on the scale, 0 to 1; words lie in the middle of equal parts.
     pub fn height(&self, cell: &Cell) -> Option<f64> {
         let value = self.value(cell)?;
-        match (&self.bar, self.info.words()) {
+        match (&self.bar, self.info.shown_words()) {
             (Some(bar), _) => Some(self.share(value, bar)),
             (None, Some(words)) => Some((value + 0.5) / words.len() as f64),
             (None, None) => None,
@@ -142,32 +135,32 @@ impl ColourScale {
     }
 
     pub fn column(&self) -> &'static str {
-        self.info.column
+        self.info.name
     }
 
     pub fn is_of_words(&self) -> bool {
-        self.info.words().is_some()
+        self.info.shown_words().is_some()
     }
 
     /// Text of the word with an index.
     pub fn word(&self, place: u8) -> String {
-        let word = self.info.words().and_then(|words| words.get(usize::from(place)));
-        said(self.info.column, word.copied().unwrap_or_default())
+        let word = self.info.shown_words().and_then(|words| words.get(usize::from(place)));
+        said(self.info.name, word.copied().unwrap_or_default())
     }
 
     /// Text on the value of a cell: `fastest impact 12.3 mm/s`.
     pub fn reading(&self, cell: &Cell) -> Option<String> {
         let value = self.value(cell)?;
-        Some(match self.info.words() {
+        Some(match self.info.shown_words() {
             Some(_) => self.word(value as u8),
-            None if self.info.is_count() => format!("{} {value:.0}", self.info.name),
-            None => format!("{} {} {}", self.info.name, three(value), self.unit).trim_end().to_owned(),
+            None if self.info.is_count() => format!("{} {value:.0}", self.info.label),
+            None => format!("{} {} {}", self.info.label, three(value), self.unit).trim_end().to_owned(),
         })
     }
 
     /// Why a cell whose run lasted to its end has no value.
     pub fn without_value(&self) -> &'static str {
-        match self.info.column {
+        match self.info.name {
             "period" | "settles_at_s" => "does not repeat",
             "first_release_s" | "first_release_g" => "no release, or the shaking does not change",
             "first_crossing_s" | "first_crossing_g" => "no crossing, or the shaking does not change",
@@ -200,7 +193,6 @@ mod tests {
     use super::*;
     use crate::app::session::Session;
     use crate::app::session::editor::Editor;
-    use crate::app::words::columns::column_info;
     use crate::scene::SweepAxis;
 
     #[test]
@@ -216,7 +208,7 @@ mod tests {
         session.want_map(0.0);
         assert!(session.wait_for_map(Duration::from_secs(3600)));
         let map = session.map.map().unwrap();
-        let scale = |column: &str| ColourScale::of(column_info(column).unwrap(), map);
+        let scale = |column: &str| ColourScale::of(SummaryField::find(column).unwrap(), map);
         let look =
             |column: &str, place: (usize, usize)| scale(column).look(map.cell(place.0, place.1).unwrap().0);
         let (rest, moves, crosses) = ((0, 0), (1, 2), (0, 2));

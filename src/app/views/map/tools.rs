@@ -8,8 +8,9 @@ use crate::app::session::map::{Map, Mapping};
 use crate::app::ui::knob::refuse;
 use crate::app::ui::style::Style;
 use crate::app::ui::widgets::kind_shapes;
-use crate::app::words::columns::{COLUMNS, ColumnInfo};
+use crate::app::words::columns::COLUMNS;
 use crate::scene::SweepAxis;
+use crate::study::SummaryField;
 
 use super::super::ViewContext;
 use super::super::axes::{field_ui, range_id, range_row_ui};
@@ -63,13 +64,10 @@ fn quantity_ui(ui: &mut Ui, mapping: &mut Mapping) {
         ui.set_min_width(230.0);
         for (group, columns) in &COLUMNS {
             ui.label(RichText::new(*group).small());
-            for column in *columns {
-                let entry = ui.selectable_label(column == chosen, column.title());
-                let cost = if column.field().is_some_and(|field| field.needs_ledger) {
-                    " The runs are made anew for it, one by one."
-                } else {
-                    ""
-                };
+            for column in columns.iter().filter_map(|name| SummaryField::find(name)) {
+                let entry = ui.selectable_label(column.name == chosen.name, column.title());
+                let cost =
+                    if column.needs_ledger { " The runs are made anew for it, one by one." } else { "" };
                 if entry.on_hover_text(format!("{}{cost}", column.about)).clicked() {
                     mapping.show(column);
                 }
@@ -82,10 +80,10 @@ fn quantity_ui(ui: &mut Ui, mapping: &mut Mapping) {
 }
 
 /// Choice between the map from above and the surface, and of cuts.
-fn look_ui(ui: &mut Ui, look: &mut MapLook, quantity: &ColumnInfo) {
+fn look_ui(ui: &mut Ui, look: &mut MapLook, quantity: &SummaryField) {
     ui.selectable_value(&mut look.surface, false, "From above")
         .on_hover_text("Each run is a cell, and its colour the quantity.");
-    let surface = if quantity.words().is_some() {
+    let surface = if quantity.shown_words().is_some() {
         "Words have no height: they are seen from above."
     } else {
         "The same as a surface: height and colour are the quantity."

@@ -4,8 +4,8 @@ use crate::dynamics::{First, Firsts, Model, Outcome, Place, Regime, STANDARD_GRA
 use crate::scene::{Excitation, Scene, Stops};
 use crate::study::Thresholds;
 
+use super::super::numbers::{between, grams, limit_mm, mm_beside, seconds, speed, times};
 use super::super::wells::wells_between;
-use super::numbers::{between, grams, limit_mm, mm_beside, seconds, speed, times};
 use super::remedy::{amplitude, remedy};
 use super::{Kind, Sentence, ended};
 
@@ -17,7 +17,7 @@ const AT_ONCE: f64 = 5.0;
 
 /// The facts for the sentence about a driven motion.
 #[derive(Debug, Clone, Copy)]
-pub struct Told<'a> {
+pub struct DrivenMotion<'a> {
     pub scene: &'a Scene,
     /// The model that moves.
     pub model: &'a Model,
@@ -31,7 +31,7 @@ pub struct Told<'a> {
     pub now: f64,
 }
 
-impl Told<'_> {
+impl DrivenMotion<'_> {
     /// Live time in s from which on the described motion has been on the screen.
     pub fn seen_from(&self) -> f64 {
         let summary = self.summary;
@@ -48,6 +48,11 @@ impl Told<'_> {
 
     fn is_seen(&self) -> bool {
         self.now >= self.seen_from()
+    }
+
+    /// The words of the present tense if the motion has been on the screen, otherwise those of the future.
+    fn tense(&self, present: &'static str, future: &'static str) -> &'static str {
+        if self.is_seen() { present } else { future }
     }
 
     /// From when on the motion is settled, in words; empty if it already is or settles at once.
@@ -74,53 +79,15 @@ impl Told<'_> {
     }
 }
 
-/// Words of the sentence in one tense.
-struct Words {
-    stays: &'static str,
-    settles: &'static str,
-    leaves: &'static str,
-    falls: &'static str,
-    crosses: &'static str,
-    swings: &'static str,
-    hits: &'static str,
-    moves: &'static str,
-    frees: &'static str,
-}
-
-const PRESENT: Words = Words {
-    stays: "stays",
-    settles: "stays",
-    leaves: "leaves",
-    falls: "falls",
-    crosses: "crosses",
-    swings: "swings",
-    hits: "hits",
-    moves: "moves",
-    frees: "never frees it",
-};
-const FUTURE: Words = Words {
-    stays: "will stay",
-    // the mass may come from the other well
-    settles: "will settle",
-    leaves: "will leave",
-    falls: "fall",
-    crosses: "will cross",
-    swings: "will swing",
-    hits: "hit",
-    moves: "will move",
-    frees: "will never free it",
-};
-
 /// The sentence about a driven motion, by what it settles to.
-pub fn driven(facts: &Told) -> Sentence {
-    let Told { scene, model, summary, .. } = *facts;
+pub fn driven(facts: &DrivenMotion) -> Sentence {
+    let DrivenMotion { scene, model, summary, .. } = *facts;
     if summary.outcome != Outcome::Done {
         return ended(model, summary.outcome);
     }
     if let (Excitation::AmplitudeRamp { .. }, Some(firsts)) = (&scene.excitation, &summary.firsts) {
         return ramped(facts, firsts);
     }
-    let words = if facts.is_seen() { &PRESENT } else { &FUTURE };
     let (Some(rms), Some(reach), Some((low, high))) =
         (summary.rms_velocity, summary.max_abs_x, summary.range)
     else {
@@ -136,29 +103,29 @@ pub fn driven(facts: &Told) -> Sentence {
         _ => "right-hand",
     };
     let well = wells_between(&model.mechanism().landscape, low, high);
-    let settles = if summary.is_transient() { words.swings } else { words.settles };
+    let stays = facts.tense("stays", "will stay");
+    let swings = facts.tense("swings", "will swing");
+    let crosses = facts.tense("crosses", "will cross");
+    // the mass may come from the other well
+    let settles = if summary.is_transient() { swings } else { facts.tense("stays", "will settle") };
     let never = if summary.is_transient() { "without" } else { "never" };
     let periods = summary.periods as f64;
     let per_period = |count: u64| count as f64 / periods.max(1.0);
     let from = facts.settling_time();
-    let (kind, text) = match summary.regime {
+    let text = match summary.regime {
         Regime::OneWell if model.mechanism().landscape.right_stable().is_none() => {
-            (Kind::Other, format!("No barrier: {} {range}; {rms}.", words.moves))
+            format!("No barrier: {} {range}; {rms}.", facts.tense("moves", "will move"))
         }
         Regime::OneWell => {
             let symmetric = (low + high).abs() < 0.02 * reach;
             let swing = if symmetric { format!("±{} mm", mm_beside(reach, stops)) } else { range };
-            let text = format!("No barrier: one well, so nothing to cross; {} {swing}, {rms}.", words.swings);
-            (Kind::Other, text)
+            format!("No barrier: one well, so nothing to cross; {swings} {swing}, {rms}.")
         }
-        Regime::Rest if scene.stops == Stops::None => {
-            (Kind::Resting, format!("Resting{from}: {} where it is.", words.stays))
-        }
+        Regime::Rest if scene.stops == Stops::None => format!("Resting{from}: {stays} where it is."),
         Regime::Rest => {
             let push = amplitude(scene).map_or_else(|| "this".to_owned(), |g| format!("{} g", grams(g)));
-            let text =
-                format!("Resting{from}: {} pressed on the {side} stop; {push} {}.", words.stays, words.frees);
-            (Kind::Resting, text)
+            let frees = facts.tense("never frees it", "will never free it");
+            format!("Resting{from}: {stays} pressed on the {side} stop; {push} {frees}.")
         }
         Regime::Crossing | Regime::Intrawell if !model.repeats() => {
             return unrepeated(facts, &rms, &range, &well);
@@ -168,40 +135,31 @@ pub fn driven(facts: &Told) -> Sentence {
                 all if all >= summary.periods => "every period".to_owned(),
                 some => format!("in {some} of {periods:.0} periods"),
             };
-            let text = format!(
-                "Hopping{from}: {} the {side} stop {every} and {} back, {never} crossing; {rms}, {:.0} \
-                 impacts a period.",
-                words.leaves,
-                words.falls,
+            let (leaves, falls) = (facts.tense("leaves", "will leave"), facts.tense("falls", "fall"));
+            format!(
+                "Hopping{from}: {leaves} the {side} stop {every} and {falls} back, {never} crossing; {rms}, \
+                 {:.0} impacts a period.",
                 per_period(summary.impacts)
-            );
-            (Kind::Intrawell, text)
+            )
         }
         Regime::Intrawell if summary.impacts > 0 => {
-            let impacts = times(per_period(summary.impacts));
-            let text = format!(
-                "Intrawell{from}: {settles} in the {well} and {} its stop {impacts}; {rms}.",
-                words.hits
-            );
-            (Kind::Intrawell, text)
+            let (hits, impacts) = (facts.tense("hits", "hit"), times(per_period(summary.impacts)));
+            format!("Intrawell{from}: {settles} in the {well} and {hits} its stop {impacts}; {rms}.")
         }
-        Regime::Intrawell => {
-            (Kind::Intrawell, format!("Intrawell{from}: {settles} in the {well}, {range}; {rms}."))
-        }
+        Regime::Intrawell => format!("Intrawell{from}: {settles} in the {well}, {range}; {rms}."),
         Regime::Irregular if summary.crossing_periods >= summary.periods => {
-            let text = format!("Irregular: {} in every period, never twice alike; {rms}.", words.crosses);
-            (Kind::Irregular, text)
+            format!("Irregular: {crosses} in every period, never twice alike; {rms}.")
         }
-        Regime::Irregular => {
-            let text = format!(
-                "Irregular: {} in {} of {periods:.0} periods, without a rhythm; {rms}, reach about {} mm.",
-                words.crosses,
-                summary.crossing_periods,
-                mm_beside(reach, stops)
-            );
-            (Kind::Irregular, text)
-        }
-        Regime::Interwell | Regime::Crossing => (Kind::Interwell, interwell(facts, words, &rms, &range)),
+        Regime::Irregular => format!(
+            "Irregular: {crosses} in {} of {periods:.0} periods, without a rhythm; {rms}, reach about {} mm.",
+            summary.crossing_periods,
+            mm_beside(reach, stops)
+        ),
+        Regime::Interwell | Regime::Crossing => interwell(facts, crosses, &rms, &range),
+    };
+    let kind = match summary.regime {
+        Regime::Crossing => Kind::Interwell,
+        regime => Kind::from(regime),
     };
     let mut sentence = Sentence::new(kind, format!("{text}{}{}", facts.unsettled(), untouched(facts)));
     if let Some(found) = facts.thresholds {
@@ -211,10 +169,9 @@ pub fn driven(facts: &Told) -> Sentence {
 }
 
 /// The sentence about a motion that crosses and repeats.
-fn interwell(facts: &Told, words: &Words, rms: &str, range: &str) -> String {
-    let Told { model, summary, .. } = *facts;
+fn interwell(facts: &DrivenMotion, crosses: &str, rms: &str, range: &str) -> String {
+    let DrivenMotion { model, summary, .. } = *facts;
     let rate = summary.crossings as f64 / summary.periods.max(1) as f64;
-    let crosses = words.crosses;
     let how = match summary.period {
         Some(n) if n > 1 && summary.crossing_periods >= summary.periods => {
             format!("{crosses} every period and repeats after {n} periods")
@@ -246,7 +203,7 @@ fn interwell(facts: &Told, words: &Words, rms: &str, range: &str) -> String {
 }
 
 /// The sentence about a motion under a drive without a period: what it does in the settled window.
-fn unrepeated(facts: &Told, rms: &str, range: &str, well: &str) -> Sentence {
+fn unrepeated(facts: &DrivenMotion, rms: &str, range: &str, well: &str) -> Sentence {
     let summary = facts.summary;
     let (from, to) = (facts.origin + summary.window.0, facts.origin + summary.window.1);
     let (seen, when) = (facts.is_seen(), format!("from {} to {}", seconds(from), seconds(to)));
@@ -265,8 +222,8 @@ fn unrepeated(facts: &Told, rms: &str, range: &str, well: &str) -> Sentence {
 }
 
 /// The sentence about an amplitude ramp: when the mass is released, first crosses, crosses in every period.
-fn ramped(facts: &Told, firsts: &Firsts) -> Sentence {
-    let Told { model, summary, origin, now, .. } = *facts;
+fn ramped(facts: &DrivenMotion, firsts: &Firsts) -> Sentence {
+    let DrivenMotion { model, summary, origin, now, .. } = *facts;
     let end = origin + summary.window.1;
     let place = |first: &First, at: &str| {
         let amplitude = first.amplitude.map(|accel| accel / STANDARD_GRAVITY);
@@ -310,7 +267,7 @@ fn ramped(facts: &Told, firsts: &Firsts) -> Sentence {
 }
 
 /// The sentence that the motion never touches the stops; empty if it does or there are none.
-fn untouched(facts: &Told) -> String {
+fn untouched(facts: &DrivenMotion) -> String {
     let summary = facts.summary;
     let touched = summary.impacts > 0 || summary.rested_share.is_none_or(|share| share > 0.0);
     let rests = summary.regime == Regime::Rest;

@@ -5,17 +5,16 @@
 //! not known is said to be unknown.
 
 mod driven;
-mod numbers;
 mod remedy;
 
 use crate::dynamics::{Model, Outcome, Phase, Sample};
 use crate::study::{Standing, ended_remedy, standing};
 
 pub use super::kind::Kind;
+use super::numbers::{energy, mm, newtons};
+pub use super::numbers::{grams, mm_beside, seconds, speed};
 use super::wells::well_name;
-pub use driven::{Told, driven};
-use numbers::{energy, mm, newtons};
-pub use numbers::{grams, mm_beside, seconds, speed};
+pub use driven::{DrivenMotion, driven};
 pub use remedy::ways;
 
 /// What the status line says.

@@ -4,7 +4,8 @@ use crate::dynamics::{Regime, Summary};
 use crate::scene::{Excitation, Scene, Stops};
 use crate::study::Thresholds;
 
-use super::numbers::{grams, grams_apart, grams_up};
+use super::super::capital;
+use super::super::numbers::{grams, grams_apart, grams_up};
 
 /// Amplitude in g of a drive that is one sine.
 pub(super) fn amplitude(scene: &Scene) -> Option<f64> {
@@ -62,12 +63,6 @@ pub(super) fn remedy(scene: &Scene, summary: &Summary, found: &Thresholds) -> St
         },
     };
     capital(&text)
-}
-
-/// The text with an initial capital.
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// What it would take to cross, or to cross every period: more shaking or stops, where they were searched

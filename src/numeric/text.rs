@@ -1,0 +1,102 @@
+//! Numbers as text: the shortest form that parses back, and few digits for sentences.
+
+use std::fmt::Write;
+
+use super::round::decade;
+
+/// Appends `value` in its shortest form: plain (`0.58`) or with an exponent (`1e-9`), whichever has fewer
+/// characters, and plain if they are equal. It parses back to the same double. Zero of either sign is `0`,
+/// infinities are `inf` and `-inf`, and NaN appends nothing.
+pub fn push_number(text: &mut String, value: f64) {
+    if value.is_nan() {
+        return;
+    }
+    let value = value + 0.0; // makes -0 a plain 0
+    let (begin, size) = (text.len(), value.abs());
+    if size != 0.0 && size < 1e-3 {
+        let _ = write!(text, "{value:e}");
+        return;
+    }
+    let _ = write!(text, "{value}");
+    // the exponent can be shorter in `1e-3` to `9e-3`, and from `1e3` on
+    let length = text.len() - begin;
+    if size >= 1e3 && size.is_finite() || size < 1e-2 && (5..=6).contains(&length) {
+        let scientific = format!("{value:e}");
+        if scientific.len() < length {
+            text.truncate(begin);
+            text.push_str(&scientific);
+        }
+    }
+}
+
+/// A number in plain digits from 1e-4 to 1e6, otherwise with an exponent. It parses back to the same double.
+pub fn number_text(value: f64) -> String {
+    let size = value.abs();
+    if size == 0.0 || !size.is_finite() || (1e-4..1e6).contains(&size) {
+        format!("{value}")
+    } else {
+        format!("{value:e}")
+    }
+}
+
+/// `value` rounded to four significant digits, for sentences.
+pub fn short(value: f64) -> String {
+    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
+    if rounded == 0.0 || (1e-3..1e6).contains(&rounded.abs()) {
+        // Adding 0 makes -0 a plain 0.
+        format!("{}", rounded + 0.0)
+    } else {
+        format!("{rounded:e}")
+    }
+}
+
+/// The number of decimals that shows a number of this size with `digits` significant digits; at most 12.
+pub fn decimals(value: f64, digits: i32) -> usize {
+    (digits - 1 - decade(value.abs())).clamp(0, 12) as usize
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        let written = [7.18234e-3, -0.0, 1.0 / 3.0, 4123.4, 8.2e5, 1.2e-9, 8.2e7].map(short);
+        assert_eq!(written, ["0.007182", "0", "0.3333", "4123", "820000", "1.2e-9", "8.2e7"]);
+    }
+
+    fn shortest(value: f64) -> String {
+        let mut text = String::new();
+        push_number(&mut text, value);
+        text
+    }
+
+    #[test]
+    fn the_shorter_of_two_forms_that_parse_back() {
+        let mut values = vec![0.0, 1.0, -1.0, 0.58, 0.1 * 3.0, 100.0, 1e3, 12345.678, 1e-2, 1e-3, 1e21];
+        values.extend([5e-324, f64::MAX, f64::MIN_POSITIVE, 1e22, 123456789012345680.0, -1.5e-9, 9.80665]);
+        values.extend([1e-4, -1e-4, 1.5e-4, 9.99e-4, -1e-3, 9e-3, -9e-3, 9.1e-3, 0.01, 999.0, 1e5, -1e3]);
+        let mut bits = 0x9e37_79b9_7f4a_7c15_u64;
+        for _ in 0..20_000 {
+            bits ^= bits << 13;
+            bits ^= bits >> 7;
+            bits ^= bits << 17;
+            values.push(f64::from_bits(bits));
+            values.push((bits >> 40) as f64 / 1024.0);
+            values.push((bits >> 48) as f64 * 1e-3);
+        }
+        for value in values.into_iter().filter(|v| v.is_finite()) {
+            let (plain, scientific) = (format!("{value}"), format!("{value:e}"));
+            let right = if scientific.len() < plain.len() { scientific } else { plain };
+            let written = shortest(value);
+            assert_eq!(written, right);
+            assert_eq!(written.parse::<f64>().unwrap().to_bits(), value.to_bits());
+        }
+    }
+
+    #[test]
+    fn zero_has_no_sign_and_a_missing_number_no_text() {
+        assert_eq!([-0.0, 0.0, f64::NAN, f64::INFINITY].map(shortest), ["0", "0", "", "inf"]);
+        assert_eq!(shortest(f64::NEG_INFINITY).parse(), Ok(f64::NEG_INFINITY));
+    }
+}
