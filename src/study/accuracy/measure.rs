@@ -122,6 +122,9 @@ pub(super) struct Trial {
     checks: Vec<(&'static str, Check)>,
 }
 
+/// The runs of a case with their checks.
+pub(super) type Trials = Result<Vec<Trial>, Stopped>;
+
 impl Trial {
     pub fn into_variant(self) -> Variant {
         let summary = &self.run.summary;
@@ -180,6 +183,13 @@ impl Trial {
         self.number("energy balance", residual, self.added());
     }
 
+    /// Compares times of impacts, as `impacts` takes them from a run, with the reference, and their number.
+    pub fn impacts_beside(&mut self, reference: &Reference, impacts: impl Fn(&Run) -> Vec<f64>) {
+        let found = impacts(&self.run);
+        self.beside("impact times", &found, reference, &reference.numbers);
+        self.fact("all impacts", found.len() == reference.numbers.len() && !found.is_empty());
+    }
+
     /// Compares numbers of the run with the reference, each relative to its scale, and adds the worst.
     pub fn beside(&mut self, quantity: &'static str, numbers: &[f64], reference: &Reference, scales: &[f64]) {
         self.worst(quantity, pairs(numbers, &reference.numbers, &reference.allowed(self), scales));
@@ -187,8 +197,8 @@ impl Trial {
 
     /// Adds the sample of a linear system that uses the largest share of the error allowed. The errors of the
     /// steps up to it add up without growth, and the phase of the drive, whose highest frequency in Hz is
-    /// `fastest`, is a product of two doubles. `exact` returns displacement, velocity, and the relative error of
-    /// the electrical state if there is one.
+    /// `fastest`, is a product of two doubles. `exact` returns displacement, velocity, and the relative error
+    /// of the electrical state if there is one.
     pub fn linear(
         &mut self,
         quantity: &'static str,
@@ -329,6 +339,12 @@ fn changed(setup: &Setup, change: f64) -> Vec<Setup> {
 /// Times in s of the events of one kind.
 pub(super) fn times(run: &Run, kind: EventKind) -> Vec<f64> {
     run.events.iter().filter(|event| event.kind == kind).map(|event| event.t).collect()
+}
+
+/// Times in s of the impacts above 1 cm/s.
+pub(super) fn hard_impacts(run: &Run) -> Vec<f64> {
+    let hard = |event: &&Event| event.kind == EventKind::Impact && event.v_in.abs() > 1e-2;
+    run.events.iter().filter(hard).map(|event| event.t).collect()
 }
 
 /// |value - exact| relative to `scale`.

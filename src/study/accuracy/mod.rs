@@ -19,19 +19,9 @@ mod tables;
 pub use cases::{HARD_CASES, HardCase};
 pub use measure::{Check, REFERENCE_TOLERANCE, STEP_ERROR, Variant};
 pub use precision::{OWN, PROBLEMS, Point, Problem, Setting};
+pub use setup::Stopped;
 
 use super::Task;
-
-/// Why the study has no result.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum Stopped {
-    /// It was told to stop.
-    #[error("told to stop")]
-    Cancelled,
-    /// A scene of the study cannot be run: a fault of the program.
-    #[error("a scene of the study cannot be run: {0}")]
-    Scene(String),
-}
 
 /// A name that cannot be selected.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

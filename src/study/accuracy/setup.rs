@@ -3,7 +3,6 @@
 use std::fmt::Display;
 use std::sync::Arc;
 
-use super::Stopped;
 use crate::dynamics::{Model, STANDARD_GRAVITY};
 use crate::mechanics::{ForceCurve, Mechanism as Built};
 use crate::scene::{
@@ -12,6 +11,17 @@ use crate::scene::{
 
 /// Every case runs at the tightest tolerance, so that only rounding is left.
 pub(super) const TOLERANCE: f64 = 1e-14;
+
+/// Why the study has no result.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum Stopped {
+    /// It was told to stop.
+    #[error("told to stop")]
+    Cancelled,
+    /// A scene of the study cannot be run: a fault of the program.
+    #[error("a scene of the study cannot be run: {0}")]
+    Scene(String),
+}
 
 /// A scene under construction, and the force curve that replaces that of its mechanism.
 #[derive(Debug, Clone)]

@@ -10,7 +10,7 @@ use crate::study::accuracy::scene::{
 
 use super::super::ViewContext;
 use super::super::labels::haloed;
-use super::waiting_ui;
+use super::waiting::waiting_ui;
 
 /// Smallest height in points of the plot of error over processor time.
 const PICTURE: f32 = 110.0;

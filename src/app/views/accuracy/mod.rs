@@ -4,6 +4,7 @@
 
 mod digits;
 mod steps;
+mod waiting;
 
 use eframe::egui::{Rect, RichText, Ui, UiBuilder, pos2, vec2};
 
@@ -51,14 +52,4 @@ pub fn accuracy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         });
     });
     part(ui, area.with_min_y(area.top() + 30.0), context.memory.accuracy_page, context);
-}
-
-/// Shows a message while a result is computed for the first time.
-fn waiting_ui(ui: &mut Ui, context: &ViewContext<'_>) {
-    let text = match context.session.fault() {
-        Some(_) => "This scene cannot run.",
-        None if context.session.accuracy.is_stopped() => "Stopped: the next change begins it again.",
-        None => "Working it out.",
-    };
-    ui.label(RichText::new(text).color(context.style.faint()));
 }

@@ -12,7 +12,7 @@ use crate::study::accuracy::scene::{StepSize, step_name};
 use super::super::ViewContext;
 use super::super::legend::{LEGEND, Symbol, legend};
 use super::super::plot::{marks, plot_place, still_plot};
-use super::waiting_ui;
+use super::waiting::waiting_ui;
 
 /// Ends of the slider in s.
 const RANGE: (f64, f64) = (1e-5, 1.0 / 30.0);

@@ -4,12 +4,11 @@
 use std::f64::consts::TAU;
 
 use super::linear::{closed_form, electrical_size};
-use super::{Trials, hard_impacts, impacts_beside};
 use crate::dynamics::EventKind;
 use crate::numeric::{DoubleDouble, Number, Scalar, bisect};
 use crate::scene::{Mechanism, Transducer};
 use crate::study::accuracy::exact::{dd, exp, sin_cos};
-use crate::study::accuracy::measure::{Bench, CHANGE, STEP_ERROR, off, pairs, times};
+use crate::study::accuracy::measure::{Bench, CHANGE, STEP_ERROR, Trials, hard_impacts, off, pairs, times};
 use crate::study::accuracy::setup::{Setup, coil, layer, polynomial, rigid, sine, stops_at};
 
 pub(super) fn open_and_short(bench: &Bench) -> Trials {
@@ -23,8 +22,9 @@ pub(super) fn open_and_short(bench: &Bench) -> Trials {
     };
     let mut reference = bench.reference(&open, &[], CHANGE, hard_impacts)?;
     reference.numbers = hard_impacts(&bench.exact(&spring, &[])?);
-    let open = bench.run("open layer", &open, &[])?;
-    let mut trials = vec![impacts_beside(open, &reference, hard_impacts)];
+    let mut open = bench.run("open layer", &open, &[])?;
+    open.impacts_beside(&reference, hard_impacts);
+    let mut trials = vec![open];
     let bare = bench.run("", &nominal(), &[])?.run;
     let coil_damping = 0.5 * (0.5 / 100.0);
     let damped = bench.run("", &nominal().damping(0.03 + coil_damping), &[])?.run;

@@ -2,11 +2,10 @@
 
 use std::f64::consts::PI;
 
-use super::{Trials, hard_impacts, impacts_beside};
 use crate::dynamics::{EventKind, Outcome};
 use crate::study::accuracy::Stopped;
 use crate::study::accuracy::exact::Corner;
-use crate::study::accuracy::measure::{Bench, CHANGE, STEP_ERROR, Trial, off, times};
+use crate::study::accuracy::measure::{Bench, CHANGE, STEP_ERROR, Trial, Trials, hard_impacts, off, times};
 use crate::study::accuracy::setup::{Setup, polynomial, rigid, sine, stops_at, unit_well};
 
 pub(super) fn kink(bench: &Bench) -> Trials {
@@ -112,7 +111,9 @@ pub(super) fn stop_at_equilibrium(bench: &Bench) -> Trials {
 pub(super) fn stop_at_force_maximum(bench: &Bench) -> Trials {
     let setup = Setup::nominal(7.0 / 3.0_f64.sqrt(), 0.36, sine(3.0, 1.6 * 9.80665, 0.0), 2.0);
     let reference = bench.reference(&setup, &[], CHANGE, hard_impacts)?;
-    Ok(vec![impacts_beside(bench.run("2 s", &setup, &[])?, &reference, hard_impacts)])
+    let mut trial = bench.run("2 s", &setup, &[])?;
+    trial.impacts_beside(&reference, hard_impacts);
+    Ok(vec![trial])
 }
 
 pub(super) fn stops_on_one_side(bench: &Bench) -> Trials {
@@ -120,7 +121,8 @@ pub(super) fn stops_on_one_side(bench: &Bench) -> Trials {
         .stops(stops_at(Some(300.0), Some(500.0), 0.8))
         .damping(0.1);
     let reference = bench.reference(&setup, &[], CHANGE, hard_impacts)?;
-    let mut trial = impacts_beside(bench.run("e = 0.8", &setup, &[])?, &reference, hard_impacts);
+    let mut trial = bench.run("e = 0.8", &setup, &[])?;
+    trial.impacts_beside(&reference, hard_impacts);
     let summary = trial.run.summary;
     let at_rest = summary.final_x == 0.5 && summary.rests == 1 && summary.total_crossings == 0;
     trial.fact("rests on the right stop", at_rest);

@@ -1,13 +1,13 @@
-//! Motions that are known in closed form from one contact to the next: balls, boxes, a well, a stop at a crest.
+//! Motions that are known in closed form from one contact to the next: a well, boxes, balls, a stop at a
+//! crest.
 
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
-use super::Trials;
 use crate::dynamics::{EventKind, Outcome, Side};
 use crate::numeric::{DoubleDouble, Scalar};
 use crate::study::accuracy::Stopped;
 use crate::study::accuracy::exact::{UnitWell, dd, first_hit, impact_time, rest_time, sine_turns};
-use crate::study::accuracy::measure::{Bench, STEP_ERROR, Trial, off, times};
+use crate::study::accuracy::measure::{Bench, STEP_ERROR, Trial, Trials, off, times};
 use crate::study::accuracy::setup::{Setup, polynomial, rigid, stops_at, unit_well};
 
 pub(super) fn separatrix(bench: &Bench) -> Trials {

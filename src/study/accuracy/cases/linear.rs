@@ -4,13 +4,12 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use super::Trials;
 use crate::dynamics::{Model, STANDARD_GRAVITY, TonePart};
 use crate::numeric::{DoubleDouble, Scalar};
 use crate::scene::{Excitation, Record, Transducer};
 use crate::study::accuracy::Stopped;
 use crate::study::accuracy::exact::{Coupled, Forcing, Oscillator, dd};
-use crate::study::accuracy::measure::{Bench, Trial, off};
+use crate::study::accuracy::measure::{Bench, Trial, Trials, off};
 use crate::study::accuracy::setup::{Setup, coil, layer, polynomial, sine};
 
 const MASS: f64 = 0.02;

@@ -1,10 +1,9 @@
 //! Chaos, and one problem in several systems of units.
 
-use super::{Trials, impacts_beside};
 use crate::dynamics::{Event, EventKind, Run};
 use crate::scene::{Excitation, Mechanism, Start};
 use crate::study::accuracy::Stopped;
-use crate::study::accuracy::measure::{Bench, CHANGE, SMALL_CHANGE, Trial, off};
+use crate::study::accuracy::measure::{Bench, CHANGE, SMALL_CHANGE, Trial, Trials, off};
 use crate::study::accuracy::setup::{Setup, rigid};
 
 pub(super) fn chaos(bench: &Bench) -> Trials {
@@ -112,8 +111,9 @@ pub(super) fn units(bench: &Bench) -> Trials {
         ("all", Units { mass: 1e9, length: 1e-9, time: 1e-5 }),
     ];
     let in_units = |(name, units): (&'static str, Units)| {
-        let trial = bench.run(name, &units.setup(), &[])?;
-        Ok(impacts_beside(trial, &reference, |run| units.hard_impacts(run)))
+        let mut trial = bench.run(name, &units.setup(), &[])?;
+        trial.impacts_beside(&reference, |run| units.hard_impacts(run));
+        Ok(trial)
     };
     systems.into_iter().map(in_units).collect()
 }

@@ -15,8 +15,7 @@ mod long;
 mod pressed;
 
 use super::Stopped;
-use super::measure::{Bench, Reference, Trial, Variant};
-use crate::dynamics::{Event, EventKind, Run};
+use super::measure::{Bench, Trial, Trials, Variant};
 use crate::study::Task;
 
 /// A problem whose answer is known.
@@ -26,9 +25,6 @@ pub struct HardCase {
     pub name: &'static str,
     trials: fn(&Bench) -> Trials,
 }
-
-/// The runs of a case with their checks.
-type Trials = Result<Vec<Trial>, Stopped>;
 
 impl HardCase {
     const fn new(name: &'static str, trials: fn(&Bench) -> Trials) -> Self {
@@ -79,17 +75,3 @@ pub const HARD_CASES: &[HardCase] = &[
     HardCase::new("chaos", long::chaos),
     HardCase::new("units", long::units),
 ];
-
-/// Times of the impacts above 1 cm/s.
-fn hard_impacts(run: &Run) -> Vec<f64> {
-    let hard = |event: &&Event| event.kind == EventKind::Impact && event.v_in.abs() > 1e-2;
-    run.events.iter().filter(hard).map(|event| event.t).collect()
-}
-
-/// The times of impacts, as `impacts` takes them from a run, beside those of the reference.
-fn impacts_beside(mut trial: Trial, reference: &Reference, impacts: impl Fn(&Run) -> Vec<f64>) -> Trial {
-    let found = impacts(&trial.run);
-    trial.beside("impact times", &found, reference, &reference.numbers);
-    trial.fact("all impacts", found.len() == reference.numbers.len() && !found.is_empty());
-    trial
-}

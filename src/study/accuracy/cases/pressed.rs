@@ -2,13 +2,12 @@
 
 use std::f64::consts::TAU;
 
-use super::Trials;
 use crate::dynamics::{EventKind, Run};
 use crate::numeric::{DoubleDouble, Scalar, bisect};
 use crate::scene::{Damping, Excitation};
 use crate::study::accuracy::Stopped;
 use crate::study::accuracy::exact::{dd, sine_turns, turns};
-use crate::study::accuracy::measure::{Bench, CHANGE, STEP_ERROR, off, times};
+use crate::study::accuracy::measure::{Bench, CHANGE, STEP_ERROR, Trials, off, times};
 use crate::study::accuracy::setup::{Setup, constant, polynomial, sine, stops_at};
 
 /// 1 kg that 1 N presses to a right stop at 1 m, from a gap in m with a velocity in m/s.

@@ -1,7 +1,9 @@
 //! Distance between two runs of the same scene.
 
-use super::TRUSTED_SHARE;
 use crate::dynamics::{Model, Sample};
+
+/// A path is trusted until it is off by this share of the motion's travel: less than is seen in a plot.
+pub const TRUSTED_SHARE: f64 = 0.01;
 
 /// Samples in a period of the drive or in one of small oscillations, whichever is shorter.
 const PER_PERIOD: f64 = 40.0;

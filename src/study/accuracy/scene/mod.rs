@@ -13,6 +13,7 @@ mod trust;
 mod words;
 
 pub use arrivals::Lateness;
+pub use beside::TRUSTED_SHARE;
 pub use step_size::{StepSize, TRUE_TOLERANCE, Unfit, step_size};
 pub use tolerances::{AtTolerance, TOLERANCES, Tolerances, tolerances};
 pub use trust::{Course, Trust, lasting, trust};
@@ -20,9 +21,6 @@ pub use words::{duration, length_mm, moment, small_length, step_name};
 
 use super::OWN;
 use crate::study::Table;
-
-/// A path is trusted until it is off by this share of the motion's travel: less than is seen in a plot.
-pub const TRUSTED_SHARE: f64 = 0.01;
 
 /// Runs at tolerances and in fixed steps, a row each, in this order. SI; a cell without a value is empty.
 ///

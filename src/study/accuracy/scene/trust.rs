@@ -128,8 +128,8 @@ pub(super) fn finished(run: Run) -> Option<Run> {
     (!matches!(run.summary.outcome, Outcome::Cancelled { .. })).then_some(run)
 }
 
-/// The course of two runs that part at `until` in s; with both tolerances tightened they part at `next`, if at
-/// all.
+/// The course of two runs that part at `until` in s; with both tolerances tightened they part at `next`, if
+/// at all.
 fn parted(model: &Model, beside: &Beside, better: &Run, until: f64, next: Option<f64>) -> Course {
     let Some(next) = next.filter(|next| *next < TIMES * until) else { return Course::Coarse { until } };
     let summary = &better.summary;
