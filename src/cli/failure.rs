@@ -7,7 +7,7 @@ use interwell::output::{NoPicture, OpenError};
 use interwell::scene::lesson::LessonError;
 use interwell::scene::{ArgumentError, SceneError};
 use interwell::study::accuracy::UnknownCase;
-use interwell::study::{CellFaults, GridError, OutsideCurve, TimesError};
+use interwell::study::{CellFaults, GridError, OutsideCurve, SweepEnd, TimesError};
 
 /// An error of a command, by its exit status.
 #[derive(Debug)]
@@ -76,6 +76,15 @@ impl From<OpenError> for Failure {
         match error {
             OpenError::MissingFolder { .. } | OpenError::IsFolder(_) => Self::Wrong(error.into()),
             OpenError::Refused { .. } => Self::Failed(error.into()),
+        }
+    }
+}
+
+impl From<SweepEnd<Self>> for Failure {
+    fn from(end: SweepEnd<Self>) -> Self {
+        match end {
+            SweepEnd::Cancelled => Self::interrupted(),
+            SweepEnd::Write(failure) => failure,
         }
     }
 }

@@ -12,10 +12,9 @@ use interwell::study::{Branch, BranchEnd, Family, NoOrbit, Table, Task, branch, 
 
 use super::failure::Failure;
 use super::options::{ChartOptions, Common, whole};
+use super::outputs::Output;
 use super::picture::{Picture, caption, ranges};
-use super::support::{
-    finish, inputs, mechanism, number, open, read, refuse_electrical_state, warn, write_table,
-};
+use super::support::{mechanism, number, outputs, read, refuse_electrical_state, warn};
 use super::{interrupt, say};
 
 const EXAMPLES: &str = "\
@@ -84,9 +83,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     }
     refuse_electrical_state(&document, &[], "orbit")?;
     let cancel = interrupt::listen();
-    let [plot, data] = Picture::outputs(picture);
-    let outputs = [Some(("--out", common.out())), plot, data];
-    let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
+    let mut outputs = outputs(&options.scene, &document, common)?.with_picture(picture)?;
     let phase = phase_deg / 360.0;
     let failed = |error: NoOrbit, at: &str| match error {
         NoOrbit::Cancelled => Failure::interrupted(),
@@ -106,7 +103,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             let found = found.map_err(|error| failed(error, &format!("at {field} = {from}: ")))?;
             if let Some(picture) = picture {
                 let figure = branch_figure(&found, phase_deg, axes, &caption(&document), &picture.theme);
-                picture.write(&mut sinks[1..3], figure)?;
+                picture.write(&mut outputs, figure)?;
             }
             if !common.quiet {
                 remarks(&found, (from, to)).iter().for_each(|line| say(line));
@@ -114,8 +111,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             found.table()
         }
     };
-    write_table(&mut sinks[0], &table)?;
-    finish(sinks)
+    outputs.table(Output::DATA, &table)?;
+    outputs.finish()
 }
 
 /// A counter of motions on a terminal; their final number is not known.

@@ -88,6 +88,12 @@ impl Progress {
     }
 }
 
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.finish_and_clear();
+    }
+}
+
 impl Lines {
     fn inc(&self, parts: u64) {
         let done = self.done.fetch_add(parts, Ordering::Relaxed) + parts;

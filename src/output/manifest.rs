@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 use super::json::pretty;
 use super::plan::plan_checksum;
 use crate::scene::{Document, PROGRAM, Scene};
-use crate::study::{Answer, Basins, ExponentTally, Grid, Shard, Tally};
+use crate::study::{Answer, Basins, Grid, Shard, Tally};
 
 /// Origin of a result, besides its scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -102,14 +102,14 @@ fn add(sum: &mut Value, other: &Value) {
 pub fn exponents_manifest(
     document: &Document,
     grid: &Grid,
-    tally: &ExponentTally,
+    tally: &Tally,
     origin: &Provenance,
     data: &str,
 ) -> String {
     let more = json!({
         "cells": tally.cells,
         "resting": tally.resting,
-        "without_exponents": tally.missing,
+        "without_exponents": tally.without_exponents,
     });
     swept(("exponents", document), grid, more, origin, data)
 }

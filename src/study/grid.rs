@@ -1,5 +1,6 @@
 //! Cells of a sweep: the product of its axes, the first one slowest.
 
+use super::table::Table;
 use crate::scene::{Axis, Scene, column_names};
 
 /// The largest number of cells of one sweep: at a thousandth of a second each, a day of one core.
@@ -39,6 +40,11 @@ impl Grid {
         Ok(Self { columns: column_names(&fields), axes, cells })
     }
 
+    /// The grid without axes, whose one cell is the scene as it is.
+    pub fn of_one() -> Self {
+        Self { axes: Vec::new(), columns: Vec::new(), cells: 1 }
+    }
+
     /// The axes, slowest first.
     pub fn axes(&self) -> &[Axis] {
         &self.axes
@@ -67,6 +73,14 @@ impl Grid {
     /// The values of cell `index`, in the order of the axes.
     pub fn values(&self, index: u64) -> impl Iterator<Item = f64> {
         self.axes.iter().zip(self.places(index)).map(|(axis, place)| axis.values[place])
+    }
+
+    /// The columns of the swept fields, a row for each of these cells.
+    pub(super) fn table<I: Iterator<Item = u64>>(&self, cells: impl Fn() -> I) -> Table {
+        let value = |place: usize| move |index: u64| self.values(index).nth(place).unwrap_or(f64::NAN);
+        let columns = self.columns.iter().enumerate();
+        columns
+            .fold(Table::new(), |table, (place, name)| table.with(name, cells().map(value(place)).collect()))
     }
 
     /// Puts the values of cell `index` into a scene that has the fields; allocates nothing.

@@ -152,7 +152,7 @@ impl Drawing<'_> {
     fn diagram(&self, subject: &Subject) -> Result<Figure, String> {
         let (grid, pool) = self.grid(subject)?;
         let options = strobe_options(Some(Carry::Both));
-        let sections = Sections::new(&self.document.scene, &self.document.files, grid, options);
+        let sections = Sections::new(&self.document.scene, &self.document.files, grid).with(options);
         sections.validate(&pool, &self.task).map_err(|cell| self.cell_error(cell))?;
         let mut rows = Table::new();
         let end = sections.run(&pool, &self.task, |table| append(&mut rows, table));

@@ -49,7 +49,7 @@ impl Session {
             let restitution = known.unwrap_or(1.0);
             self.stops_that_cross.ask(&self.wake, move |cancel| {
                 let task = study::Task { tick: &|| (), cancel };
-                study::stops_that_cross(&scene, &mechanism, restitution, &task)
+                study::stops_that_cross(&scene, &mechanism, restitution, &task).ok()
             });
         }
         match (self.settled.current(), self.thresholds.current(), self.stops_that_cross.current()) {

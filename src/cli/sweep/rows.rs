@@ -3,14 +3,15 @@
 use std::io::{BufReader, Read};
 use std::path::Path;
 
-use interwell::output::{Sink, plan_differences};
-use interwell::study::{Shard, Tally};
+use interwell::output::plan_differences;
+use interwell::study::{Shard, SweepEnd, Tally};
 use interwell::system::checksum::Checksum;
 use interwell::system::clock::WallClock;
 use interwell::system::{Opened, Part, PartError, files};
 use serde_json::{Value, json};
 
 use super::super::failure::Failure;
+use super::super::outputs::{Output, Outputs};
 use super::super::support::manifest_path;
 
 /// Rows after which a block ends; a walk that is longer stays in one block.
@@ -21,7 +22,7 @@ const MAX_BLOCK_S: f64 = 5.0;
 /// The destination of the rows.
 pub enum Rows {
     /// To a pipe, a device or standard output.
-    Stream(Sink),
+    Stream,
     /// To a file that is written in blocks.
     Blocks(Blocks),
     /// To no output: they are compared with those of a file.
@@ -30,15 +31,23 @@ pub enum Rows {
 
 impl Rows {
     /// Writes or compares rows with their tally. Returns whether more rows are needed.
-    pub fn put(&mut self, text: String, tally: &Tally) -> Result<bool, Failure> {
+    pub fn put(&mut self, outputs: &mut Outputs, text: String, tally: &Tally) -> Result<bool, Failure> {
         match self {
-            Self::Stream(sink) => {
-                let put = sink.put(&text).and_then(|()| sink.flush());
-                put.map_err(|error| Failure::writing(sink.name(), error))?;
-                Ok(!sink.is_closed())
-            }
+            Self::Stream => outputs.stream(Output::DATA, &text),
             Self::Blocks(blocks) => blocks.put(text, tally).map(|()| true),
             Self::Compared(compared) => compared.put(&text).map(|()| true),
+        }
+    }
+
+    /// The failure to report after the rows have ended early; blocks that are whole are kept.
+    pub fn ended(self, end: SweepEnd<Failure>) -> Failure {
+        match (end, self) {
+            (SweepEnd::Cancelled, Self::Blocks(blocks)) => blocks.interrupted(),
+            (SweepEnd::Write(failure), Self::Blocks(blocks)) => {
+                blocks.leave();
+                failure
+            }
+            (end, _) => end.into(),
         }
     }
 }

@@ -19,6 +19,6 @@ mod settle;
 mod tangent;
 
 pub use average::average_exponents;
-pub use cells::{ExponentCells, ExponentTally, drive_fault, exponents_row};
+pub use cells::{ExponentCells, drive_fault, exponents_row};
 pub use result::{Estimate, ExponentOptions, Exponents, NoExponents};
 pub use settle::exponents;
