@@ -14,7 +14,7 @@ use super::options::{Common, PlotOptions};
 use super::outputs::{Output, Outputs};
 use super::picture::{Picture, caption};
 use super::progress::{bar, duration};
-use super::support::{Watch, file_name, load, manifest_path, mechanism, outputs, pool, warn};
+use super::support::{Watch, file_name, load_held, mechanism, outputs, pool, warn};
 use super::{interrupt, say};
 
 const EXAMPLES: &str = "\
@@ -62,11 +62,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if picture.is_some() {
         can_show_starts(&starts)?;
     }
-    let (mut document, warnings) = load(&options.scene, common, None)?;
-    let beside = manifest_path(common.out());
-    if beside.is_some() {
-        document.hold_files();
-    }
+    let (document, warnings, beside) = load_held(&options.scene, common, None)?;
     let mechanism = mechanism(&document)?;
     warn(&document, common, &warnings, Some(&mechanism));
     let count = starts.count() as u64;
@@ -98,7 +94,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if beside.is_some() {
         let (origin, data) = (watch.origin(pool.count()), file_name(common.out()));
         let text = basins_manifest(&document, &basins, &answer, &origin, &data);
-        outputs.text(Output::MANIFEST, &text)?;
+        outputs.write(Output::MANIFEST, &text)?;
     }
     outputs.finish()?;
     if !common.quiet {
@@ -153,7 +149,7 @@ fn write_rows(outputs: &mut Outputs, basins: &Basins, answer: &Answer, pool: &Po
         };
         let Ok(texts) = pool.map(begins.len(), || (), text);
         for text in texts {
-            outputs.text(Output::DATA, &text)?;
+            outputs.write(Output::DATA, &text)?;
         }
     }
     Ok(())

@@ -29,7 +29,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let mut wrong = Vec::new();
     for spec in scenes {
         match report(spec, common) {
-            Ok(text) => outputs.text(Output::DATA, &text)?,
+            Ok(text) => outputs.write(Output::DATA, &text)?,
             Err(error) => wrong.push(error),
         }
     }

@@ -19,7 +19,7 @@ use super::failure::Failure;
 use super::measured_force::MeasuredForceOptions;
 use super::options::{ChartOptions, Common, whole};
 use super::outputs::{Output, Outputs};
-use super::picture::{Picture, caption, ranges};
+use super::picture::{Picture, caption};
 use super::support::{inputs, load_with_mechanism, number, numbers, range};
 use super::{interrupt, say};
 
@@ -86,8 +86,7 @@ const SHAPES: u32 = 21;
 
 /// Writes the curve as CSV and, if requested, the landscape as JSON and the shapes of the flexures as CSV.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::new(&options.chart.plot, common)?;
-    let axes = ranges(&options.chart, "--plot-x")?;
+    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     let contact_picture =
         Picture::of(Output::CONTACT_PLOT, options.contact_plot.as_deref(), &options.chart.plot, common)?;
     // with two pictures, --plot-data holds the numbers of --plot
@@ -144,7 +143,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         table
     };
     outputs.table(Output::DATA, &table)?;
-    outputs.text(Output::LANDSCAPE, &landscape(&mechanism, document.scene.mass_g / 1e3))?;
+    outputs.write(Output::LANDSCAPE, &landscape(&mechanism, document.scene.mass_g / 1e3))?;
     if let Some(picture) = picture {
         // The picture shows the whole curve, even if few positions were requested.
         let about = caption(&document);
@@ -152,12 +151,18 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             Some(found) => {
                 let ends = |fold: fn(f64, f64) -> f64| found.positions.iter().copied().fold(f64::NAN, fold);
                 let over = even_positions((ends(f64::min), ends(f64::max)), CURVE_PICTURE_POINTS);
-                measured_force_figure(found, &curve(&mechanism, over)?, axes, &about, &picture.theme)
+                measured_force_figure(
+                    found,
+                    &curve(&mechanism, over)?,
+                    picture.ranges,
+                    &about,
+                    &picture.theme,
+                )
             }
             None => {
                 let table = curve(&mechanism, even(CURVE_PICTURE_POINTS))?;
                 let stops = stop_positions(&document.scene);
-                curve_figure(&table, &mechanism, stops, axes, &about, &picture.theme)
+                curve_figure(&table, &mechanism, stops, picture.ranges, &about, &picture.theme)
             }
         };
         picture.write(&mut outputs, figure)?;

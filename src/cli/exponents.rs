@@ -10,13 +10,13 @@ use interwell::study::{
 };
 
 use super::failure::Failure;
-use super::grid_job::{GridJob, GridScene};
+use super::grid_job::GridJob;
 use super::options::{ChartOptions, Common, whole};
 use super::outputs::Output;
-use super::picture::{Picture, caption, ranges};
+use super::picture::{Picture, caption};
 use super::progress::bar;
 use super::support::{
-    file_name, load_model, located, outputs, pool, refuse_electrical_state, until_settled, warn,
+    file_name, load_held, load_model, located, outputs, pool, refuse_electrical_state, until_settled, warn,
 };
 use super::{interrupt, say};
 
@@ -58,7 +58,7 @@ pub struct Arguments {
 
 /// Computes the exponents and writes the table.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::new(&options.chart.plot, common)?;
+    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     if !options.over.is_empty() {
         return over(options, common, picture);
     }
@@ -117,9 +117,8 @@ fn about(found: &Exponents, forced: bool) -> String {
 
 /// Computes the exponents of every cell of a grid, one row for each.
 fn over(options: &Arguments, common: &Common, picture: Option<Picture>) -> Result<(), Failure> {
-    let axes = ranges(&options.chart, "--plot-x")?;
-    let GridScene { document, warnings, grid, manifest } =
-        GridScene::load(&options.scene, &options.over, common)?;
+    let (document, warnings, manifest_out) = load_held(&options.scene, common, Some(&options.over))?;
+    let grid = Grid::new(document.axes(&options.over)?)?;
     refuse_electrical_state(&document, grid.axes(), "exponents")?;
     if picture.is_some() {
         can_show_exponents(&grid)?;
@@ -133,20 +132,20 @@ fn over(options: &Arguments, common: &Common, picture: Option<Picture>) -> Resul
     warn(&document, common, &warnings, cells.first_mechanism().ok().as_deref());
     let outputs = outputs(&options.scene, &document, common)?
         .with_picture(picture)?
-        .with(Output::MANIFEST, manifest.as_deref())?;
+        .with(Output::MANIFEST, manifest_out.as_deref())?;
     let grid = cells.grid();
     let progress = bar(grid.cells(), "cells", common.quiet, common.out());
     let mut job = GridJob::new(&document, outputs, pool, progress, picture);
     let columns: Vec<String> = cells.empty_table().columns().iter().map(|c| c.name.clone()).collect();
     let (tally, _) = job.stream(&cells, &columns)?;
     if let Some((picture, rows)) = job.drawn() {
-        let shown = ExponentPicture { rows: &rows, grid, scene: &document.scene, ranges: axes };
+        let shown = ExponentPicture { rows: &rows, grid, scene: &document.scene, ranges: picture.ranges };
         picture.write(&mut job.outputs, exponents_figure(&shown, &caption(&document), &picture.theme)?)?;
     }
-    if manifest.is_some() {
+    if manifest_out.is_some() {
         let (origin, data) = (job.origin(), file_name(common.out()));
         let text = exponents_manifest(&document, grid, &tally, &origin, &data);
-        job.outputs.text(Output::MANIFEST, &text)?;
+        job.outputs.write(Output::MANIFEST, &text)?;
     }
     let wall_s = job.finish()?;
     if !common.quiet && tally.cells == grid.cells() {

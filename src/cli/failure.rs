@@ -7,7 +7,7 @@ use interwell::output::{NoPicture, OpenError};
 use interwell::scene::lesson::LessonError;
 use interwell::scene::{ArgumentError, SceneError};
 use interwell::study::accuracy::UnknownCase;
-use interwell::study::{CellFaults, GridError, OutsideCurve, SweepEnd, TimesError};
+use interwell::study::{GridError, OutsideCurve, SweepEnd, TimesError};
 
 /// An error of a command, by its exit status.
 #[derive(Debug)]
@@ -87,12 +87,4 @@ impl From<SweepEnd<Self>> for Failure {
             SweepEnd::Write(failure) => failure,
         }
     }
-}
-
-/// The failure for a sweep's first wrong cell; `error` has its faults, with their places.
-pub fn wrong_cell(cell: &CellFaults, error: SceneError) -> Failure {
-    if cell.cell.is_empty() {
-        return error.into();
-    }
-    Failure::Wrong(anyhow::anyhow!("in the cell {}:\n{error}", cell.cell))
 }

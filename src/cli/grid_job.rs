@@ -1,43 +1,16 @@
 //! Run of a study over a grid by a command: its progress, its rows and its picture.
 
-use std::path::PathBuf;
-
 use interwell::output::{Provenance, header, rows};
 use interwell::scene::Document;
-use interwell::study::{Grid, GridStudy, Question, Shard, Slice, SweepEnd, Table, Tally, Task};
+use interwell::study::{GridStudy, Question, Shard, Slice, SweepEnd, Table, Tally, Task};
 use interwell::system::threads::Pool;
 
 use super::failure::Failure;
 use super::interrupt;
-use super::options::Common;
 use super::outputs::{Output, Outputs};
 use super::picture::Picture;
 use super::progress::Progress;
-use super::support::{Watch, load, located, manifest_path};
-
-/// A scene, and the grid over it that a command asks for.
-pub struct GridScene {
-    pub document: Document,
-    /// What the check of the first cell warns of.
-    pub warnings: Vec<String>,
-    pub grid: Grid,
-    /// The path of the manifest, if the rows go to a regular file.
-    pub manifest: Option<PathBuf>,
-}
-
-impl GridScene {
-    /// Loads the scene called `spec` with the grid of `--over`. If there is a manifest, the scene holds its
-    /// files.
-    pub fn load(spec: &str, over: &[String], common: &Common) -> Result<Self, Failure> {
-        let (mut document, warnings) = load(spec, common, Some(over))?;
-        let manifest = manifest_path(common.out());
-        if manifest.is_some() {
-            document.hold_files();
-        }
-        let grid = Grid::new(document.axes(over)?)?;
-        Ok(Self { document, warnings, grid, manifest })
-    }
-}
+use super::support::{Watch, located};
 
 /// A study of a grid that runs, with the outputs of its command open.
 pub struct GridJob<'a> {
@@ -107,7 +80,7 @@ impl<'a> GridJob<'a> {
         study: &GridStudy<Q>,
         columns: &[String],
     ) -> Result<(Tally, usize), Failure> {
-        self.outputs.text(Output::DATA, &header(&study.empty_table().only(columns)))?;
+        self.outputs.write(Output::DATA, &header(&study.empty_table().only(columns)))?;
         let mut count = 0;
         let tally = self.run(study, &study.slice(Shard::WHOLE), 0, |outputs, table, _| {
             count += table.rows();

@@ -13,7 +13,7 @@ use super::columns::{ColumnOptions, PositionOptions};
 use super::failure::Failure;
 use super::options::{ChartOptions, Common};
 use super::outputs::{Output, Outputs};
-use super::picture::{Picture, ranges};
+use super::picture::Picture;
 use super::say;
 use super::support::Watch;
 
@@ -107,8 +107,7 @@ impl Arguments {
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     fits(options)?;
     let watch = Watch::start();
-    let picture = Picture::new(&options.chart.plot, common)?;
-    let axes = ranges(&options.chart, "--plot-x")?;
+    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     let mut outputs = Outputs::new(&[options.file().to_path_buf()])
         .with(Output::DATA, Some(common.out()))?
         .with(Output::SUMMARY, options.summary.as_deref())?
@@ -117,12 +116,13 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let found = found.map_err(|problem| about(options.file(), problem))?;
     outputs.table(Output::DATA, &found.rows)?;
     let summary = identified(options.of(), &found, timing.as_ref(), &watch.origin(1));
-    outputs.text(Output::SUMMARY, &summary)?;
+    outputs.write(Output::SUMMARY, &summary)?;
     if let Some(picture) = picture {
         let name = options.file().file_name().unwrap_or_default().to_string_lossy();
         let caption = Caption::of_record(&name, options.of(), env!("CARGO_PKG_VERSION"));
         let (what, record) = ((options.of(), &found), (&across[..], &values.values[..]));
-        let figure = identified_figure(what, record, values.quantity, axes, &caption, &picture.theme);
+        let figure =
+            identified_figure(what, record, values.quantity, picture.ranges, &caption, &picture.theme);
         picture.write(&mut outputs, figure)?;
     }
     outputs.finish()?;

@@ -54,7 +54,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         Some(spec) => (full_text(&load(spec)?), None),
         None => (list()?, None),
     };
-    outputs.text(Output::DATA, &text)?;
+    outputs.write(Output::DATA, &text)?;
     outputs.finish()?;
     wrong.map_or(Ok(()), Err)
 }

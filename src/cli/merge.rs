@@ -53,7 +53,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let mut whole = Checksum::default();
     let mut put = |text: &[u8]| {
         whole.add(text);
-        outputs.bytes(Output::DATA, text)
+        outputs.write(Output::DATA, text)
     };
     let headers: Vec<Vec<u8>> = parts.iter_mut().map(|part| part.lines(1)).collect::<Result<_, _>>()?;
     put(&headers[0])?;
@@ -70,7 +70,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let manifests: Vec<Value> = parts.into_iter().map(|part| part.manifest).collect();
     let origin = watch.origin(1);
     let text = merged_manifest(&manifests, &file_name(common.out()), &sum, &origin.arguments);
-    outputs.text(Output::MANIFEST, &text)?;
+    outputs.write(Output::MANIFEST, &text)?;
     outputs.finish()?;
     if !common.quiet {
         say(&format!("{rows} rows of {} shards in {:.2} s", manifests.len(), watch.wall_s()));

@@ -13,7 +13,7 @@ use interwell::study::{Branch, BranchEnd, Family, NoOrbit, Table, Task, branch, 
 use super::failure::Failure;
 use super::options::{ChartOptions, Common, whole};
 use super::outputs::Output;
-use super::picture::{Picture, caption, ranges};
+use super::picture::{Picture, caption};
 use super::support::{mechanism, number, outputs, read, refuse_electrical_state, warn};
 use super::{interrupt, say};
 
@@ -52,8 +52,7 @@ pub struct Arguments {
 
 /// Finds the motion, or follows its branch, and writes the table.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::new(&options.chart.plot, common)?;
-    let axes = ranges(&options.chart, "--plot-x")?;
+    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     if picture.is_some() && options.branch.is_none() {
         return Err(Failure::argument("--plot shows a branch; add --branch FIELD=A:B, or leave it out"));
     }
@@ -102,7 +101,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             bar.finish_and_clear();
             let found = found.map_err(|error| failed(error, &format!("at {field} = {from}: ")))?;
             if let Some(picture) = picture {
-                let figure = branch_figure(&found, phase_deg, axes, &caption(&document), &picture.theme);
+                let figure =
+                    branch_figure(&found, phase_deg, picture.ranges, &caption(&document), &picture.theme);
                 picture.write(&mut outputs, figure)?;
             }
             if !common.quiet {

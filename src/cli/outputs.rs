@@ -91,14 +91,18 @@ impl Outputs {
         self.sinks.retain(|(open, _)| *open != output);
     }
 
+    fn sink(&mut self, output: Output) -> Option<&mut Sink> {
+        self.sinks.iter_mut().find(|(open, _)| *open == output).map(|(_, sink)| sink)
+    }
+
     /// Whether an output is open.
-    pub fn has(&self, output: Output) -> bool {
-        self.sinks.iter().any(|(open, _)| *open == output)
+    pub fn has(&mut self, output: Output) -> bool {
+        self.sink(output).is_some()
     }
 
     /// Whether an output is standard output.
-    pub fn is_stdout(&self, output: Output) -> bool {
-        self.sinks.iter().any(|(open, sink)| *open == output && sink.is_stdout())
+    pub fn is_stdout(&mut self, output: Output) -> bool {
+        self.sink(output).is_some_and(|sink| sink.is_stdout())
     }
 
     /// Writes header and rows of a table.
@@ -106,33 +110,26 @@ impl Outputs {
         if !self.has(output) {
             return Ok(());
         }
-        self.text(output, &header(table))?;
+        self.write(output, header(table))?;
         for begin in (0..table.rows()).step_by(ROWS) {
             if interrupt::came() {
                 return Err(Failure::interrupted());
             }
-            self.text(output, &rows(table, begin..begin + ROWS))?;
+            self.write(output, rows(table, begin..begin + ROWS))?;
         }
         Ok(())
     }
 
-    /// Writes text.
-    pub fn text(&mut self, output: Output, text: &str) -> Result<(), Failure> {
-        self.bytes(output, text.as_bytes())
-    }
-
-    /// Writes bytes.
-    pub fn bytes(&mut self, output: Output, bytes: &[u8]) -> Result<(), Failure> {
-        let Some((_, sink)) = self.sinks.iter_mut().find(|(open, _)| *open == output) else { return Ok(()) };
-        sink.put_bytes(bytes).map_err(|error| Failure::writing(sink.name(), error))
+    /// Writes text or bytes.
+    pub fn write(&mut self, output: Output, text: impl AsRef<[u8]>) -> Result<(), Failure> {
+        let Some(sink) = self.sink(output) else { return Ok(()) };
+        sink.put_bytes(text.as_ref()).map_err(|error| Failure::writing(sink.name(), error))
     }
 
     /// Writes text and flushes it. Returns whether more is wanted: not if the reader of a pipe has gone.
     pub fn stream(&mut self, output: Output, text: &str) -> Result<bool, Failure> {
-        self.text(output, text)?;
-        let Some((_, sink)) = self.sinks.iter_mut().find(|(open, _)| *open == output) else {
-            return Ok(false);
-        };
+        self.write(output, text)?;
+        let Some(sink) = self.sink(output) else { return Ok(false) };
         sink.flush().map_err(|error| Failure::writing(sink.name(), error))?;
         Ok(!sink.is_closed())
     }
@@ -154,6 +151,6 @@ impl Outputs {
 /// Writes a text that is the whole of an output.
 pub fn write_alone(output: Output, path: &Path, text: &str) -> Result<(), Failure> {
     let mut outputs = Outputs::new(&[]).with(output, Some(path))?;
-    outputs.text(output, text)?;
+    outputs.write(output, text)?;
     outputs.finish()
 }

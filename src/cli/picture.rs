@@ -25,6 +25,8 @@ pub struct Picture<'a> {
     pub data: Option<&'a Path>,
     /// Sheet of paper, and light or dark colours.
     pub theme: Theme,
+    /// The ranges of its axes.
+    pub ranges: Ranges,
     format: Format,
     size: Option<(u32, u32)>,
     titled: bool,
@@ -36,6 +38,21 @@ impl<'a> Picture<'a> {
     pub fn new(options: &'a PlotOptions, common: &Common) -> Result<Option<Self>, Failure> {
         let picture = Self::of(Output::PLOT, options.plot.as_deref(), options, common)?;
         Ok(picture.map(|picture| picture.with_data(options)))
+    }
+
+    /// The same, with the ranges of its axes; errors name the horizontal one `across`.
+    pub fn of_chart(
+        options: &'a ChartOptions,
+        across: &'static str,
+        common: &Common,
+    ) -> Result<Option<Self>, Failure> {
+        let picture = Self::new(&options.plot, common)?;
+        let of = |option, text: &Option<String>| {
+            let form = "A:B with A below B, such as 0:2";
+            text.as_deref().map(|text| range(option, text, form)).transpose()
+        };
+        let ranges = Ranges { x: of(across, &options.plot_x)?, y: of("--plot-y", &options.plot_y)? };
+        Ok(picture.map(|picture| Self { ranges, ..picture }))
     }
 
     /// The same, with the path of `--plot-data`.
@@ -63,6 +80,7 @@ impl<'a> Picture<'a> {
             path,
             data: None,
             theme: Theme::of(options.dark, sheet(options, format)?),
+            ranges: Ranges::default(),
             format,
             size: options.plot_size.as_deref().map(size).transpose()?,
             titled: !options.no_title,
@@ -82,7 +100,7 @@ impl<'a> Picture<'a> {
             outputs.table(Output::PLOT_DATA, &figure.data)?;
         }
         let bytes = self.format.bytes(&figure).map_err(|error| Failure::Failed(error.into()))?;
-        outputs.bytes(self.output, &bytes)
+        outputs.write(self.output, &bytes)
     }
 }
 
@@ -131,14 +149,6 @@ fn sheet(options: &PlotOptions, format: Format) -> Result<Option<Sheet>, Failure
 /// The caption of a picture of this scene.
 pub fn caption(document: &Document) -> Caption {
     Caption::new(document, env!("CARGO_PKG_VERSION"))
-}
-
-/// The ranges of the axes that `options` ask for; errors name the horizontal one `across`.
-pub fn ranges(options: &ChartOptions, across: &'static str) -> Result<Ranges, Failure> {
-    let form = "A:B with A below B, such as 0:2";
-    let of =
-        |option, text: &Option<String>| text.as_deref().map(|text| range(option, text, form)).transpose();
-    Ok(Ranges { x: of(across, &options.plot_x)?, y: of("--plot-y", &options.plot_y)? })
 }
 
 /// A size `WxH` in pixels.

@@ -32,7 +32,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             PRESETS.iter().map(|preset| format!("{:width$}  {}\n", preset.name, preset.summary)).collect()
         }
     };
-    outputs.text(Output::DATA, &text)?;
+    outputs.write(Output::DATA, &text)?;
     outputs.finish()
 }
 

@@ -5,17 +5,17 @@ use interwell::dynamics::Summary;
 use interwell::output::{SectionPicture, manifest, section_figure};
 use interwell::scene::Document;
 use interwell::study::{
-    Carry, DIRECTION, MAX_SECTION, SectionAt, SectionOptions, Sections, Shard, Tally, Task, section,
+    Carry, DIRECTION, Grid, MAX_SECTION, SectionAt, SectionOptions, Sections, Shard, Tally, Task, section,
 };
 
 use super::failure::Failure;
-use super::grid_job::{GridJob, GridScene};
+use super::grid_job::GridJob;
 use super::options::{ChartOptions, Common, whole};
 use super::outputs::Output;
-use super::picture::{Picture, caption, ranges};
+use super::picture::{Picture, caption};
 use super::progress::bar;
 use super::support::{
-    file_name, load_model, number, outputs, pool, refuse_electrical_state, until_settled, warn,
+    file_name, load_held, load_model, number, outputs, pool, refuse_electrical_state, until_settled, warn,
 };
 use super::{interrupt, say};
 
@@ -96,8 +96,7 @@ fn section_at(options: &Arguments) -> Result<SectionAt, Failure> {
 
 /// The section of one run.
 fn one(options: &Arguments, common: &Common, mut settings: SectionOptions) -> Result<(), Failure> {
-    let picture = Picture::new(&options.chart.plot, common)?;
-    let axes = ranges(&options.chart, "--plot-x")?;
+    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     let (document, model) = load_model(&options.scene, common)?;
     settings.until_settled =
         until_settled(options.until_settled.as_deref(), &document, &settings.run_of(&model))?;
@@ -111,8 +110,13 @@ fn one(options: &Arguments, common: &Common, mut settings: SectionOptions) -> Re
     outputs.table(Output::DATA, &table.only(&names))?;
     if let Some(picture) = picture {
         let stops = model.stop_positions();
-        let shown =
-            SectionPicture { rows: &table, over: None, phase_deg: phase(&settings), stops, ranges: axes };
+        let shown = SectionPicture {
+            rows: &table,
+            over: None,
+            phase_deg: phase(&settings),
+            stops,
+            ranges: picture.ranges,
+        };
         picture.write(&mut outputs, section_figure(&shown, &caption(&document), &picture.theme))?;
     }
     outputs.finish()?;
@@ -134,10 +138,9 @@ fn phase(settings: &SectionOptions) -> Option<f64> {
 
 /// The sections of all cells, written as they are computed.
 fn diagram(options: &Arguments, common: &Common, settings: SectionOptions) -> Result<(), Failure> {
-    let picture = Picture::new(&options.chart.plot, common)?;
-    let axes = ranges(&options.chart, "--plot-x")?;
-    let GridScene { document, warnings, grid, manifest: manifest_out } =
-        GridScene::load(&options.scene, &options.over, common)?;
+    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
+    let (document, warnings, manifest_out) = load_held(&options.scene, common, Some(&options.over))?;
+    let grid = Grid::new(document.axes(&options.over)?)?;
     if settings.carry.is_some() {
         refuse_electrical_state(&document, grid.axes(), "--carry")?;
     }
@@ -168,13 +171,14 @@ fn diagram(options: &Arguments, common: &Common, settings: SectionOptions) -> Re
     if let Some((picture, rows)) = job.drawn() {
         let over = sections.grid().columns().first().map(String::as_str);
         let phase_deg = phase(&settings);
-        let shown = SectionPicture { rows: &rows, over, phase_deg, stops: (None, None), ranges: axes };
+        let shown =
+            SectionPicture { rows: &rows, over, phase_deg, stops: (None, None), ranges: picture.ranges };
         picture.write(&mut job.outputs, section_figure(&shown, &caption(&document), &picture.theme))?;
     }
     if manifest_out.is_some() {
         let (origin, data) = (job.origin(), file_name(common.out()));
         let text = manifest(("section", &document), sections.grid(), &tally, None, &origin, &data);
-        job.outputs.text(Output::MANIFEST, &text)?;
+        job.outputs.write(Output::MANIFEST, &text)?;
     }
     let wall_s = job.finish()?;
     if !common.quiet && tally.cells == sections.rows() {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use interwell::dynamics::{Model, Outcome};
 use interwell::numeric::{extent, short};
-use interwell::output::{Panel, measured_figure, push_number, run_figure, summary};
+use interwell::output::{Panel, Ranges, measured_figure, push_number, run_figure, summary};
 use interwell::study::{
     Keep, Sampling, ended_remedy, sample_times, simulate, simulate_with_trace, yield_warning,
 };
@@ -14,7 +14,7 @@ use super::failure::Failure;
 use super::measured::MeasuredOptions;
 use super::options::{ChartOptions, Common};
 use super::outputs::{Output, Outputs};
-use super::picture::{Picture, caption, ranges};
+use super::picture::{Picture, caption};
 use super::support::{Watch, inputs, load_model, number, numbers, until_settled};
 use super::{interrupt, say};
 
@@ -65,8 +65,8 @@ pub struct Arguments {
 
 /// Runs the scene and writes samples, events and summary.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::new(&options.chart.plot, common)?;
-    let axes = ranges(&options.chart, "--plot-time")?;
+    let picture = Picture::of_chart(&options.chart, "--plot-time", common)?;
+    let axes = picture.map_or(Ranges::default(), |picture| picture.ranges);
     let sampling = match (&options.at, &options.dt) {
         (Some(text), _) => Sampling::At(numbers("--at", text, ',')?),
         (None, Some(text)) => {
@@ -118,7 +118,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     outputs.table(Output::DATA, &simulation.samples)?;
     outputs.table(Output::EVENTS, &simulation.events)?;
     let about = summary(&simulation.summary, &document.scene, &watch.origin(1));
-    outputs.text(Output::SUMMARY, &about)?;
+    outputs.write(Output::SUMMARY, &about)?;
     if let Some((picture, trace)) = picture.zip(trace) {
         let (about, mechanism) = (caption(&document), &model.mechanism());
         let figure = match record.as_ref().zip(compared.as_ref()) {

@@ -8,7 +8,7 @@ use interwell::study::{NoSpectrum, Signal, SpectrumOptions, Task, spectrum};
 use super::failure::Failure;
 use super::options::{ChartOptions, Common};
 use super::outputs::Output;
-use super::picture::{Picture, caption, ranges};
+use super::picture::{Picture, caption};
 use super::support::{load_model, number, outputs, until_settled};
 use super::{interrupt, say};
 
@@ -59,9 +59,8 @@ pub struct Arguments {
 
 /// Runs the scene and writes the spectrum of its settled motion.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::new(&options.chart.plot, common)?;
-    let axes = ranges(&options.chart, "--plot-x")?;
-    if let Some((low, high)) = axes.y.filter(|(low, _)| !(*low > 0.0)) {
+    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
+    if let Some((low, high)) = picture.and_then(|picture| picture.ranges.y).filter(|(low, _)| !(*low > 0.0)) {
         return Err(Failure::argument(format!(
             "--plot-y {low}:{high}: the axis is logarithmic; give two numbers above 0, such as 1e-9:1e-2"
         )));
@@ -100,7 +99,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         };
         picture.write(
             &mut outputs,
-            spectrum_figure(&found, quantity, axes, &caption(&document), &picture.theme),
+            spectrum_figure(&found, quantity, picture.ranges, &caption(&document), &picture.theme),
         )?;
     }
     outputs.finish()?;

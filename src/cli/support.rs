@@ -12,7 +12,7 @@ use interwell::study::{CellFaults, ELECTRICAL_STATE};
 use interwell::system::clock::{ProcessClock, WallClock};
 use interwell::system::threads::{Pool, processors};
 
-use super::failure::{Failure, wrong_cell};
+use super::failure::Failure;
 use super::options::Common;
 use super::outputs::{Output, Outputs};
 use super::say;
@@ -76,7 +76,22 @@ pub fn load(
     Ok((document, moved.into_iter().chain(warnings).collect()))
 }
 
-/// The same without the check.
+/// The same for a command that writes a manifest beside its rows if they go to a regular file: the scene then
+/// holds its files. Returns also the path of the manifest.
+pub fn load_held(
+    spec: &str,
+    common: &Common,
+    over: Option<&[String]>,
+) -> Result<(Document, Vec<String>, Option<PathBuf>), SceneError> {
+    let (mut document, warnings) = load(spec, common, over)?;
+    let manifest = manifest_path(common.out());
+    if manifest.is_some() {
+        document.hold_files();
+    }
+    Ok((document, warnings, manifest))
+}
+
+/// The scene without the check.
 pub fn read(spec: &str, common: &Common) -> Result<Document, SceneError> {
     let mut document = Document::of_argument(spec)?;
     for argument in &common.set {
@@ -261,8 +276,11 @@ pub fn pool(common: &Common) -> Result<Pool, Failure> {
 
 /// The failure for a wrong cell, with the places of its faults.
 pub fn located(document: &Document, cell: CellFaults) -> Failure {
-    let error = document.error_from(cell.faults.clone());
-    wrong_cell(&cell, error)
+    let error = document.error_from(cell.faults);
+    match cell.cell.as_str() {
+        "" => error.into(),
+        name => Failure::Wrong(anyhow::anyhow!("in the cell {name}:\n{error}")),
+    }
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use interwell::study::{CellFaults, Grid, NoThresholds, Onset, Scan, Table, Task,
 use super::failure::Failure;
 use super::options::{ChartOptions, Common};
 use super::outputs::Output;
-use super::picture::{Picture, caption, ranges};
+use super::picture::{Picture, caption};
 use super::progress::bar;
 use super::support::{drive_alone, load, located, mechanism, number, outputs, pool, until_settled, warn};
 use super::{interrupt, say};
@@ -75,8 +75,7 @@ const MAX_NAMED: usize = 8;
 
 /// Searches and writes the table.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::new(&options.chart.plot, common)?;
-    let axes = ranges(&options.chart, "--plot-x")?;
+    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     // without --over the sweep in the scene is ignored
     let over = Some(options.over.as_slice()).filter(|over| !over.is_empty());
     let (document, warnings) = load(&options.scene, common, over)?;
@@ -119,7 +118,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     }
     if let Some(picture) = picture {
         let (rows, grid, scene, field) = (&table, &grid, &document.scene, &*scan.field);
-        let shown = ThresholdPicture { rows, grid, scene, field, onset, ranges: axes };
+        let shown = ThresholdPicture { rows, grid, scene, field, onset, ranges: picture.ranges };
         picture.write(&mut outputs, threshold_figure(&shown, &caption(&document), &picture.theme)?)?;
     }
     outputs.finish()

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::amplitudes::{Above, crossing};
 use super::bisection::multiple;
 use super::family::Family;
-use super::fields::{Read, SummaryField};
+use super::fields::SummaryField;
 use super::onset::Onset;
 use super::push::frees_at;
 use super::settled::{followed, settled_within};
@@ -256,14 +256,6 @@ fn decimal(value: f64) -> f64 {
 pub fn comparison_table(rated: &[Rated]) -> Table {
     let number =
         |of: fn(&Rated) -> Option<f64>| rated.iter().map(|row| of(row).unwrap_or(f64::NAN)).collect();
-    let summary = |name: &str| -> Values {
-        let read = SummaryField::find(name).map(|field| field.read);
-        let of = |row: &Rated| match read {
-            Some(Read::Number(of)) => of(&row.summary).unwrap_or(f64::NAN),
-            _ => f64::NAN,
-        };
-        rated.iter().map(of).collect()
-    };
     let names = |of: fn(&Rated) -> String| Values::Names(rated.iter().map(of).collect());
     let mut table = Table::new()
         .with("scene", names(|row| row.name.clone()))
@@ -276,8 +268,9 @@ pub fn comparison_table(rated: &[Rated]) -> Table {
             Some(_) => "false",
             None => "",
         });
-    for name in ["rms_velocity_m_per_s", "mean_load_power_w", "max_abs_x_m", "impact_speed_max_m_per_s"] {
-        table = table.with(name, summary(name));
+    let summary = ["rms_velocity_m_per_s", "mean_load_power_w", "max_abs_x_m", "impact_speed_max_m_per_s"];
+    for field in summary.into_iter().filter_map(SummaryField::find) {
+        table = table.with(field.name, field.column(rated.iter().map(|row| Some(&row.summary))));
     }
     table
         .with("crosses_from_hz", number(|row| row.crosses_hz.map(|band| band.0)))

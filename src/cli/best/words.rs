@@ -2,7 +2,7 @@
 
 use interwell::numeric::short;
 use interwell::scene::column_names;
-use interwell::study::{BestDesign, BestQuestion, SAMPLES};
+use interwell::study::{BestDesign, BestQuestion, Column, SAMPLES, Values};
 
 /// The result in sentences.
 pub fn words(design: &BestDesign, question: &BestQuestion) -> Vec<String> {
@@ -81,41 +81,13 @@ pub fn quantity(value: f64, name: &str) -> String {
     with_unit(&short(value), name)
 }
 
+/// A number with the unit of a field or column, in letters that any terminal has.
 fn with_unit(number: &str, name: &str) -> String {
     let name = format!("_{}", name.rsplit('.').next().unwrap_or_default());
-    let unit = UNITS.iter().find(|(ending, _)| name.ends_with(ending));
-    unit.map_or_else(|| number.to_owned(), |(_, unit)| format!("{number} {unit}"))
+    let column = Column { name, values: Values::Numbers(Vec::new()) };
+    let unit = column.unit().replace('\u{b3}', "^3").replace('\u{2074}', "^4").replace('\u{b0}', "degrees");
+    if unit.is_empty() { number.to_owned() } else { format!("{number} {unit}") }
 }
-
-/// Units by the endings of names; where two endings match a name, the longer one comes first.
-const UNITS: [(&str, &str); 26] = [
-    ("_v_s_per_m", "V s/m"),
-    ("_n_s_per_m", "N s/m"),
-    ("_n_per_m1_5", "N/m^1.5"),
-    ("_n_per_m3", "N/m^3"),
-    ("_m_per_s", "m/s"),
-    ("_n_per_m", "N/m"),
-    ("_s_per_m", "s/m"),
-    ("_n_per_v", "N/V"),
-    ("_n_mm4", "N mm^4"),
-    ("_kohm", "kohm"),
-    ("_ohm", "ohm"),
-    ("_deg", "degrees"),
-    ("_gpa", "GPa"),
-    ("_pa", "Pa"),
-    ("_hz", "Hz"),
-    ("_mh", "mH"),
-    ("_mj", "mJ"),
-    ("_mm", "mm"),
-    ("_nf", "nF"),
-    ("_g", "g"),
-    ("_j", "J"),
-    ("_m", "m"),
-    ("_n", "N"),
-    ("_s", "s"),
-    ("_v", "V"),
-    ("_w", "W"),
-];
 
 #[cfg(test)]
 mod tests {

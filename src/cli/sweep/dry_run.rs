@@ -12,7 +12,7 @@ use super::super::failure::Failure;
 use super::super::progress::duration;
 use super::super::shard::{command, value};
 use super::super::support::located;
-use super::Prepared;
+use super::prepared::Prepared;
 
 /// Cells of the first sample for each thread.
 const CELLS_PER_THREAD: u64 = 64;

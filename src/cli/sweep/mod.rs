@@ -1,34 +1,25 @@
 //! `sweep`: a grid of runs, one row for each cell, with progress on standard error.
 
 mod dry_run;
+mod prepared;
 mod rows;
-mod settings;
-
-use std::path::PathBuf;
-use std::sync::Arc;
 
 use clap::Args;
-use interwell::mechanics::Mechanism;
-use interwell::output::{
-    Made, Overlay, Ranges, SweepPicture, View, can_show, csv_table, header, manifest, plan, rows,
-    sweep_figure,
-};
+use interwell::output::{Made, Overlay, SweepPicture, csv_table, header, manifest, rows, sweep_figure};
 use interwell::scene::Document;
-use interwell::study::{Grid, Slice, SummaryField, Sweep, SweepEnd, SweepOptions, Table, Tally, Task};
-use serde_json::{Value, json};
+use interwell::study::{Sweep, SweepEnd, Table, Tally};
+use serde_json::Value;
 
 use super::failure::Failure;
 use super::grid_job::GridJob;
 use super::options::{ChartOptions, Common};
 use super::outputs::{Output, Outputs};
-use super::picture::{Picture, caption, ranges};
+use super::picture::caption;
 use super::progress::bar;
-use super::support::{
-    file_name, inputs, load, manifest_path, pool, refuse_electrical_state, until_settled, warn,
-};
-use super::{interrupt, say, shard};
+use super::say;
+use super::support::{file_name, inputs, manifest_path, pool};
+use prepared::Prepared;
 use rows::{Blocks, Compared, RowFile, Rows};
-use settings::{Settings, first_mechanism, has_manifest, view};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -97,25 +88,6 @@ pub struct Arguments {
     pub chart: ChartOptions,
 }
 
-/// A sweep whose arguments are checked.
-struct Prepared<'a> {
-    options: &'a Arguments,
-    document: Document,
-    settings: Settings,
-    /// Where the rows go.
-    out: PathBuf,
-    sweep: Sweep,
-    slice: Slice,
-    /// The mechanism of the first cell, if it is solved.
-    mechanism: Option<Arc<Mechanism>>,
-    /// The columns that were chosen, and all that are written.
-    chosen: Vec<String>,
-    columns: Vec<String>,
-    picture: Option<Picture<'a>>,
-    view: View,
-    ranges: Ranges,
-}
-
 /// Runs the grid and writes one row for each cell.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let prepared = Prepared::new(options, common)?;
@@ -123,7 +95,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if options.dry_run {
         return dry_run::print(&prepared, &pool);
     }
-    let Prepared { document, settings, out, sweep, slice, picture, .. } = &prepared;
+    let Prepared { document, out, sweep, slice, picture, .. } = &prepared;
     let manifest_out = manifest_path(out).filter(|_| !options.check);
     let mut outputs = Outputs::new(&inputs(&options.scene, document))
         .with(Output::DATA, Some(&**out).filter(|_| !options.check))?
@@ -163,17 +135,17 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         Rows::Compared(mut file) => {
             file.end()?;
             if !common.quiet {
-                say(&format!("{}: all {} rows are the same", settings.data.display(), all.cells));
+                say(&format!("{}: all {} rows are the same", prepared.data.display(), all.cells));
             }
             None
         }
         Rows::Blocks(mut blocks) => {
             let sha256 = blocks.close()?;
-            let made = Made { plan: &plan, shard: settings.shard, sha256: &sha256 };
+            let made = Made { plan: &plan, shard: slice.shard(), sha256: &sha256 };
             let (grid, origin, data) = (sweep.grid(), job.origin(), file_name(out));
             let text = manifest(("sweep", document), grid, &all, Some(made), &origin, &data);
             job.outputs = job.outputs.with(Output::MANIFEST, manifest_out.as_deref())?;
-            job.outputs.text(Output::MANIFEST, &text)?;
+            job.outputs.write(Output::MANIFEST, &text)?;
             Some(blocks)
         }
     };
@@ -189,60 +161,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     Ok(())
 }
 
-impl<'a> Prepared<'a> {
-    /// Loads the scene, checks the arguments and prints the warnings.
-    fn new(options: &'a Arguments, common: &Common) -> Result<Self, Failure> {
-        has_manifest(options)?;
-        let picture = Picture::new(&options.chart.plot, common)?;
-        let ranges = ranges(&options.chart, "--plot-x")?;
-        let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
-        // Rows, plan and manifest then refer to the same bytes, even if the files change during the sweep.
-        document.hold_files();
-        let settings = Settings::new(options, &document)?;
-        let out = shard::placed(common.out(), options.shard.as_deref(), settings.shard)?;
-        let sweep = Sweep::new(&document.scene, &document.files, Grid::new(document.axes(&options.over)?)?);
-        let mechanism = first_mechanism(&document, &sweep)?;
-        if settings.carry.is_some() {
-            refuse_electrical_state(&document, sweep.grid().axes(), "--carry")?;
-        }
-        let (chosen, columns) = settings.columns(sweep.grid())?;
-        // a fault of the first cell is reported when the cells are checked, with its place
-        let first = sweep.first_model(&Task { tick: &|| (), cancel: interrupt::listen() });
-        let until = settings.until_settled.as_deref();
-        let until = first.map(|model| until_settled(until, &document, &model)).transpose()?.flatten();
-        // the quantity of the picture is computed even if its column is not written
-        let shown = picture.map(|_| &options.quantity).filter(|name| !columns.contains(name));
-        let fields = columns.iter().chain(shown).filter_map(|name| SummaryField::find(name)).collect();
-        let sweep = sweep.with(SweepOptions { columns: fields, until_settled: until, carry: settings.carry });
-        let slice = sweep.slice(settings.shard);
-        warn(&document, common, &warnings, mechanism.as_deref());
-        let view = view(options, sweep.grid())?;
-        if picture.is_some() {
-            can_show(sweep.grid(), (&options.quantity, &view), &sweep.empty_table())?;
-        }
-        Ok(Self {
-            options,
-            document,
-            settings,
-            out,
-            sweep,
-            slice,
-            mechanism,
-            chosen,
-            columns,
-            picture,
-            view,
-            ranges,
-        })
-    }
-
-    /// All that decides the bytes of the rows.
-    fn plan(&self) -> Value {
-        let mut plan = plan(&self.document, &self.sweep, &self.chosen, env!("CARGO_PKG_VERSION"));
-        (plan["rows"], plan["unit"]) = (json!(self.sweep.rows()), json!(self.slice.unit()));
-        plan
-    }
-
+impl Prepared<'_> {
     /// Opens the rows, `in_blocks` if they go to a regular file. Returns the tally of those that an earlier
     /// process left; `None` if there are all of them.
     fn open_rows(
@@ -251,34 +170,18 @@ impl<'a> Prepared<'a> {
         in_blocks: bool,
         plan: &Value,
     ) -> Result<Option<(Rows, Tally)>, Failure> {
-        let (table, columns) = (self.sweep.empty_table(), &self.columns);
-        let header = header(&table.only(columns));
+        let header = header(&self.sweep.empty_table().only(&self.columns));
         if self.options.check {
-            let mut file = Compared::new(&self.settings.data)?;
+            let mut file = Compared::new(&self.data)?;
             file.put(&header)?;
             return Ok(Some((Rows::Compared(file), Tally::default())));
         }
         if !in_blocks {
-            outputs.text(Output::DATA, &header)?;
+            outputs.write(Output::DATA, &header)?;
             return Ok(Some((Rows::Stream, Tally::default())));
         }
         outputs.leave(Output::DATA);
-        let mut drawn = [&*self.options.quantity]
-            .into_iter()
-            .chain(table.columns().iter().map(|column| &*column.name))
-            .filter(|_| self.picture.is_some());
-        let lacking = drawn.find(|name| !columns.iter().any(|column| column == name)).map(str::to_owned);
-        let file = RowFile {
-            out: &self.out,
-            plan,
-            shard: self.settings.shard,
-            rows: self.slice.rows(),
-            unit: self.slice.unit(),
-            header: &header,
-            resume: self.options.resume,
-            force: self.options.force,
-            lacking,
-        };
+        let file = RowFile { sweep: self, plan, header: &header };
         Ok(file.open()?.map(|(blocks, tally)| (Rows::Blocks(blocks), tally)))
     }
 
@@ -301,7 +204,7 @@ impl<'a> Prepared<'a> {
         let Some((picture, rows)) = job.drawn() else { return Ok(()) };
         let (grid, scene) = (self.sweep.grid(), &self.document.scene);
         // The overlay holds for runs from rest only.
-        let overlay = match self.settings.carry {
+        let overlay = match self.sweep.options().carry {
             Some(_) => Overlay::default(),
             None => Overlay::of(scene, self.mechanism.as_deref(), grid, &rows),
         };
@@ -313,7 +216,7 @@ impl<'a> Prepared<'a> {
             quantity: &self.options.quantity,
             overlay,
             view: self.view.clone(),
-            ranges: self.ranges,
+            ranges: picture.ranges,
         };
         let figure = sweep_figure(&shown, &caption(&self.document), &picture.theme)?;
         picture.write(&mut job.outputs, figure)

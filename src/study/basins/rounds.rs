@@ -6,9 +6,10 @@ use super::orbit::{Found, find};
 use super::region::absorbing;
 use super::starts::Starts;
 use super::stroboscopic::Stroboscope;
-use super::verdict::{Verdict, verdict};
-use crate::dynamics::{Arrival, Capture, Outcome, Pursued, Pursuit, Region, ReleaseIdentity, Side, Summary};
-use crate::study::Task;
+use crate::dynamics::{
+    Arrival, Capture, Outcome, Place, Pursued, Pursuit, Regime, Region, ReleaseIdentity, Side, Summary,
+};
+use crate::study::{Cancelled, Task};
 use crate::system::threads::Pool;
 
 /// Starts of the first round of a map: while little is known, rounds are short.
@@ -26,6 +27,41 @@ const MOST_DOUBTS: usize = 4;
 const SAME_PROPOSAL: f64 = 1e-3;
 /// A state closer than this share of the scales to an unstable orbit lies on it.
 const ON_ORBIT: f64 = 1e-6;
+
+/// Classification of a motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Verdict {
+    /// A settled motion: all with the same regime, side and period (if any) are one attractor.
+    Settled {
+        /// See [`Regime`].
+        regime: Regime,
+        /// Where it is.
+        side: Option<Place>,
+        /// Its period, where no ellipse could be found around it.
+        period: Option<u32>,
+    },
+    /// It ended early.
+    Lost,
+    /// Its attractor is not known.
+    Undecided,
+}
+
+/// The verdict by the summary of a pursuit, whose window is its last hundred forcing periods, and whether it
+/// ended on an orbit that is unstable. A verdict without a period is confirmed by the exponent of one motion
+/// of its kind.
+///
+/// An exponent tells irregular motion from a motion that is slow to settle, but not from a long transient:
+/// the transients of a double well are themselves irregular, and end by chance. So a motion is called
+/// irregular only after a thousand periods in which it found no other.
+pub(super) fn verdict(summary: &Summary, on_unstable: bool) -> Verdict {
+    match summary.outcome {
+        Outcome::Done if on_unstable || summary.steady != Some(true) => Verdict::Undecided,
+        Outcome::Done => {
+            Verdict::Settled { regime: summary.regime, side: summary.side, period: summary.period }
+        }
+        _ => Verdict::Lost,
+    }
+}
 
 /// What is known of a start. Indices are those of the lists of [`Rounds`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -216,12 +252,12 @@ impl Rounds {
         }
     }
 
-    /// Looks for an orbit near a state that proposed one. `None` if cancelled.
-    fn propose(&mut self, scope: &Stroboscope, period: u32, state: (f64, f64)) -> Option<()> {
+    /// Looks for an orbit near a state that proposed one.
+    fn propose(&mut self, scope: &Stroboscope, period: u32, state: (f64, f64)) -> Result<(), Cancelled> {
         let known = self.captures.iter().any(|capture| capture.holds(state));
         let tried = self.rejected.iter().any(|rejected| is_near(scope, *rejected, state, SAME_PROPOSAL));
         if known || tried {
-            return Some(());
+            return Ok(());
         }
         match find(scope, period, state)? {
             Found::Stable(captures)
@@ -240,28 +276,27 @@ impl Rounds {
             }
             Found::Nothing => self.rejected.push(state),
         }
-        Some(())
+        Ok(())
     }
 
-    /// Looks for a region around the irregular motion to which an item goes and which passes `state`. `None`
-    /// if cancelled.
-    fn surround(&mut self, scope: &Stroboscope, item: Item, state: (f64, f64)) -> Option<()> {
+    /// Looks for a region around the irregular motion to which an item goes and which passes `state`.
+    fn surround(&mut self, scope: &Stroboscope, item: Item, state: (f64, f64)) -> Result<(), Cancelled> {
         let fate = item.after.map_or(self.fates[item.row], |after| self.releases[after.0 as usize].next);
-        let Fate::Kind(kind, _) = fate else { return Some(()) };
+        let Fate::Kind(kind, _) = fate else { return Ok(()) };
         let irregular = match &self.kinds[kind as usize] {
             Kind::Judged(Verdict::Settled { period, .. }, _) => period.is_none(),
             _ => false,
         };
         let searches = self.searches.iter().filter(|searched| **searched == kind).count();
         if !irregular || searches >= MOST_SEARCHES || self.is_surrounded(state) {
-            return Some(());
+            return Ok(());
         }
         self.searches.push(kind);
         if let Some(region) = absorbing(scope, state, &self.captures)? {
             self.regions.push(region);
             self.region_of.push(kind);
         }
-        Some(())
+        Ok(())
     }
 
     /// Whether a state lies in a region.
@@ -275,15 +310,14 @@ fn is_near(scope: &Stroboscope, a: (f64, f64), b: (f64, f64), share: f64) -> boo
     (a.0 - b.0).abs() <= share * length && (a.1 - b.1).abs() <= share * speed
 }
 
-/// Follows items with what is known now, then adds the results to it; returns what to follow next. `None`
-/// if cancelled.
+/// Follows items with what is known now, then adds the results to it; returns what to follow next.
 fn round(
     rounds: &mut Rounds,
     scope: &Stroboscope,
     starts: &Starts,
     items: Vec<Item>,
     task: &Task,
-) -> Option<Vec<Item>> {
+) -> Result<Vec<Item>, Cancelled> {
     let (known, regions) = (rounds.captures.clone(), rounds.regions.clone());
     let most_work = scope.effort.of_one(rounds.remaining);
     let pursuit = |item: &Item| item.pursuit(starts, (&known, &regions), most_work);
@@ -316,7 +350,7 @@ fn round(
     next.extend(
         unsettled.into_iter().filter(|(_, state)| rounds.is_surrounded(*state)).map(|(item, _)| item),
     );
-    (!task.is_cancelled()).then_some(next)
+    task.go_on().map(|()| next)
 }
 
 impl Basins {
@@ -341,7 +375,7 @@ impl Basins {
                 }
             }
             while !items.is_empty() {
-                let Some(next) = round(rounds, &scope, starts, items, task) else { return false };
+                let Ok(next) = round(rounds, &scope, starts, items, task) else { return false };
                 items = next;
             }
             rounds.remaining -= last - begin;

@@ -2,8 +2,8 @@
 
 use std::sync::atomic::AtomicBool;
 
+use super::exponents;
 use super::result::{ExponentOptions, Exponents};
-use super::settle::exponents;
 use crate::dynamics::{Model, Request, Run};
 use crate::scene::{Fault, Scene};
 use crate::study::cell::{Cell, Tally};
