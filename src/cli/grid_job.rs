@@ -21,7 +21,7 @@ pub struct GridJob<'a> {
     progress: Progress,
     picture: Option<Picture<'a>>,
     /// The rows so far, if they are drawn.
-    shown: Table,
+    pub shown: Table,
 }
 
 impl<'a> GridJob<'a> {
@@ -34,11 +34,6 @@ impl<'a> GridJob<'a> {
         picture: Option<Picture<'a>>,
     ) -> Self {
         Self { outputs, document, pool, watch: Watch::start(), progress, picture, shown: Table::new() }
-    }
-
-    /// Adds rows of an earlier process to those that are drawn.
-    pub fn show(&mut self, rows: &Table) {
-        self.shown.append(rows);
     }
 
     /// Checks the cells of a slice from its row `from` on; an error names the first wrong one.

@@ -14,7 +14,7 @@ use super::failure::Failure;
 use super::options::{ChartOptions, Common, whole};
 use super::outputs::Output;
 use super::picture::{Picture, caption};
-use super::support::{mechanism, number, outputs, read, refuse_electrical_state, warn};
+use super::support::{check, mechanism, number, outputs, read, refuse_electrical_state, warn};
 use super::{interrupt, say};
 
 const EXAMPLES: &str = "\
@@ -67,8 +67,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             &format!("--branch {}", options.branch.as_deref().unwrap_or_default()),
         )?;
     }
-    let moved = document.settle_within();
-    let warnings: Vec<String> = moved.into_iter().chain(document.check()?).collect();
+    let warnings = check(&mut document, None)?;
     let mechanism = mechanism(&document)?;
     warn(&document, common, &warnings, Some(&mechanism));
     let model = Model::build(&document.scene, Arc::clone(&mechanism))

@@ -1,9 +1,7 @@
 //! `section`: the state once a forcing period or at every impact; over a field the bifurcation diagram.
 
 use clap::Args;
-use interwell::dynamics::Summary;
 use interwell::output::{SectionPicture, manifest, section_figure};
-use interwell::scene::Document;
 use interwell::study::{
     Carry, DIRECTION, Grid, MAX_SECTION, SectionAt, SectionOptions, Sections, Shard, Tally, Task, section,
 };
@@ -120,16 +118,11 @@ fn one(options: &Arguments, common: &Common, mut settings: SectionOptions) -> Re
         picture.write(&mut outputs, section_figure(&shown, &caption(&document), &picture.theme))?;
     }
     outputs.finish()?;
-    report_early_end(&document, &summary);
-    Ok(())
-}
-
-/// Reports an early end of a run.
-fn report_early_end(document: &Document, summary: &Summary) {
     if let Some(at) = summary.outcome.ended_at() {
         let name = summary.outcome.name();
         say(&format!("{}: the run ended early at t = {at} s ({name}): the rows end there", document.name));
     }
+    Ok(())
 }
 
 fn phase(settings: &SectionOptions) -> Option<f64> {

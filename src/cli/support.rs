@@ -62,18 +62,18 @@ pub fn load(
     over: Option<&[String]>,
 ) -> Result<(Document, Vec<String>), SceneError> {
     let mut document = read(spec, common)?;
+    let warnings = check(&mut document, over)?;
+    Ok((document, warnings))
+}
+
+/// Checks a document that was read; returns its warnings.
+pub fn check(document: &mut Document, over: Option<&[String]>) -> Result<Vec<String>, SceneError> {
     let moved = document.settle_within();
-    let warnings = match over {
-        None => document.check()?,
-        Some(over) => {
-            let mut first_cell = document.clone();
-            for axis in document.axes(over)? {
-                axis.apply(&mut first_cell.scene, 0);
-            }
-            first_cell.check()?
-        }
-    };
-    Ok((document, moved.into_iter().chain(warnings).collect()))
+    let mut first_cell = document.clone();
+    for axis in over.map_or(Ok(Vec::new()), |over| document.axes(over))? {
+        axis.apply(&mut first_cell.scene, 0);
+    }
+    Ok(moved.into_iter().chain(first_cell.check()?).collect())
 }
 
 /// The same for a command that writes a manifest beside its rows if they go to a regular file: the scene then

@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::json::pretty;
 use super::plan::plan_checksum;
-use crate::scene::{Document, PROGRAM, Scene};
+use crate::scene::{Document, Excitation, PROGRAM, Scene};
 use crate::study::{Answer, Basins, Grid, Shard, Tally};
 
 /// Origin of a result, besides its scene.
@@ -243,27 +243,17 @@ fn name_infinity(value: &mut Value) {
 
 /// The seed of the scene's random numbers: null if it has none, a list if it has several.
 pub fn seed(scene: &Scene) -> Value {
-    let mut found = Vec::new();
-    collect(&serde_json::to_value(&scene.excitation).unwrap_or(Value::Null), &mut found);
-    match found.len() {
-        0 => Value::Null,
-        1 => found.swap_remove(0),
-        _ => Value::Array(found),
+    match seeds(&scene.excitation)[..] {
+        [] => Value::Null,
+        [seed] => json!(seed),
+        ref seeds => json!(seeds),
     }
 }
 
-fn collect(value: &Value, found: &mut Vec<Value>) {
-    match value {
-        Value::Object(map) => {
-            for (key, value) in map {
-                if key == "seed" {
-                    found.push(value.clone());
-                } else {
-                    collect(value, found);
-                }
-            }
-        }
-        Value::Array(values) => values.iter().for_each(|value| collect(value, found)),
-        _ => {}
+fn seeds(excitation: &Excitation) -> Vec<u64> {
+    match excitation {
+        Excitation::Noise { seed, .. } => vec![*seed],
+        Excitation::Sum(terms) => terms.iter().flat_map(seeds).collect(),
+        _ => Vec::new(),
     }
 }

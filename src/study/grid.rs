@@ -62,12 +62,7 @@ impl Grid {
 
     /// Where cell `index` stands on each axis.
     fn places(&self, index: u64) -> impl Iterator<Item = usize> {
-        let mut below = self.cells;
-        self.axes.iter().map(move |axis| {
-            let length = axis.values.len() as u64;
-            below /= length;
-            (index / below % length) as usize
-        })
+        places(self.axes.iter().map(|axis| axis.values.len()), index)
     }
 
     /// The values of cell `index`, in the order of the axes.
@@ -110,6 +105,18 @@ impl Grid {
         let parts: Vec<String> = parts.map(|(column, value)| format!("{column} = {value}")).collect();
         parts.join(", ")
     }
+}
+
+/// Where cell `index` of a grid with axes of these lengths stands on each, the slowest first.
+pub(super) fn places<L>(lengths: L, index: u64) -> impl Iterator<Item = usize>
+where
+    L: Iterator<Item = usize> + Clone,
+{
+    let mut below: u64 = lengths.clone().map(|length| length as u64).product();
+    lengths.map(move |length| {
+        below /= length as u64;
+        (index / below % length as u64) as usize
+    })
 }
 
 /// The product of the axes' lengths.

@@ -36,9 +36,6 @@ pub trait Question: Default + Sync {
     /// What is known of a cell.
     type Answer: Send;
 
-    /// Cells that may be begun, for each thread, before the first of them has left.
-    const AHEAD: u64 = 4096;
-
     /// What a run keeps, and when it ends; `None` if the answer takes no run of the model as it is.
     fn request(&self) -> Option<Request<'_>>;
 
@@ -67,11 +64,14 @@ pub trait Question: Default + Sync {
         None
     }
 
-    /// The most cells that are kept in memory.
-    fn most_cells(&self) -> u64 {
-        u64::MAX
+    /// Cells that `threads` may have begun before the first of them has left.
+    fn ahead(&self, threads: u64) -> u64 {
+        AHEAD * threads
     }
 }
+
+/// Cells that a thread may have begun, where they are small.
+pub(super) const AHEAD: u64 = 4096;
 
 /// The mechanism of a cell, or why it has none.
 pub(super) type Built = Result<Arc<Mechanism>, BuildError>;
@@ -200,13 +200,13 @@ impl<Q: Question> GridStudy<Q> {
     pub fn memory(&self, threads: usize) -> u64 {
         let kept = self.cells.mechanisms.len() as u64;
         let mechanisms = if self.grid().changes_mechanism() { kept } else { 1 };
-        let ahead = self.question.carry().map_or(Q::AHEAD, |_| self.walks_ahead() * self.unit());
+        let ahead = self.question.carry().map_or(AHEAD, |_| self.walks_ahead() * self.unit());
         ahead * threads as u64 * size_of::<Row<Q::Answer>>() as u64 + mechanisms * LARGEST_MECHANISM
     }
 
     /// Walks that may be begun, for each thread, before the first of them has left.
     fn walks_ahead(&self) -> u64 {
-        (Q::AHEAD / self.unit()).max(WALKS)
+        (AHEAD / self.unit()).max(WALKS)
     }
 
     /// The table without rows.
@@ -295,7 +295,7 @@ impl<Q: Question> GridStudy<Q> {
         let (unit, threads) = (self.unit(), pool.count() as u64);
         let ahead = match self.question.carry() {
             Some(_) => self.walks_ahead() * threads,
-            None => self.question.most_cells().clamp(threads, Q::AHEAD * threads),
+            None => self.question.ahead(threads),
         };
         let walk = |number: usize| self.walk(slice.row(from + number as u64 * unit));
         let work = |take: &dyn Fn(UnderWay) -> Option<usize>, done: &dyn Fn(usize, Row<Q::Answer>)| {
@@ -366,25 +366,19 @@ impl<Q: Question> GridStudy<Q> {
             }
             let kept = ready.borrow_mut().pop();
             let (number, begun) = kept.or_else(|| take(under_way).map(|number| (number, walk(number))))?;
-            let model = match self.cells.model(begun.cell(), &mut scene, task) {
-                Some(Ok(model)) => begun.carried(self.question.model(model)),
+            let answer = match (self.cells.model(begun.cell(), &mut scene, task), request) {
+                (Some(Ok(model)), Some(request)) => {
+                    let model = begun.carried(self.question.model(model));
+                    let carry = begun.direction.is_some();
+                    walking.borrow_mut().insert(number, begun);
+                    return Some((number, model, Request { carry, cancel: Some(task.cancel), ..request }));
+                }
+                (Some(Ok(model)), None) => self.question.answer(&model, None, task.cancel),
                 // cannot happen once the grid has been validated
-                Some(Err(_)) => {
-                    answered(number, begun, Q::without_model(Cell::NotRun));
-                    continue;
-                }
-                None => {
-                    answered(number, begun, Q::without_model(Cell::Unsolved));
-                    continue;
-                }
+                (Some(Err(_)), _) => Q::without_model(Cell::NotRun),
+                (None, _) => Q::without_model(Cell::Unsolved),
             };
-            let Some(request) = request else {
-                answered(number, begun, self.question.answer(&model, None, task.cancel));
-                continue;
-            };
-            let request = Request { carry: begun.direction.is_some(), cancel: Some(task.cancel), ..request };
-            walking.borrow_mut().insert(number, begun);
-            return Some((number, model, request));
+            answered(number, begun, answer);
         };
         let mut ended = |number: usize, model: &Model, run: Run| {
             let Some(mut walk): Option<Walk> = walking.borrow_mut().remove(&number) else { return };

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 
 use super::cell::{Cell, Tally};
 use super::grid::Grid;
-use super::grid_study::{GridStudy, Question, Row, fields};
+use super::grid_study::{AHEAD, GridStudy, Question, Row, fields};
 use super::table::Table;
 use super::walk::{Carry, without_a_period};
 use crate::dynamics::{EventKind, Model, Request, Run, SectionPoint, Side, Summary};
@@ -180,9 +180,9 @@ impl Question for SectionOptions {
         self.carry
     }
 
-    fn most_cells(&self) -> u64 {
+    fn ahead(&self, threads: u64) -> u64 {
         let each = self.periods.map_or(1 << 12, |(_, keep)| keep.max(1));
-        (KEPT / each).max(1)
+        (KEPT / each).clamp(threads, AHEAD * threads)
     }
 }
 

@@ -5,9 +5,9 @@ mod prepared;
 mod rows;
 
 use clap::Args;
-use interwell::output::{Made, Overlay, SweepPicture, csv_table, header, manifest, rows, sweep_figure};
+use interwell::output::{Made, Overlay, SweepPicture, header, manifest, rows, sweep_figure};
 use interwell::scene::Document;
-use interwell::study::{Sweep, SweepEnd, Table, Tally};
+use interwell::study::{SweepEnd, Table, Tally};
 use serde_json::Value;
 
 use super::failure::Failure;
@@ -110,14 +110,14 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     };
     let from = all.cells;
     let earlier = match &rows_out {
-        Rows::Blocks(blocks) if picture.is_some() && from > 0 => Some(earlier_rows(blocks, sweep)?),
-        _ => None,
+        Rows::Blocks(blocks) if picture.is_some() && from > 0 => blocks.table(&sweep.empty_table())?,
+        _ => Table::new(),
     };
 
     let progress = bar(slice.rows(), "cells", common.quiet, out);
     progress.begin_at(from);
     let mut job = GridJob::new(document, outputs, pool, progress, *picture);
-    earlier.iter().for_each(|rows| job.show(rows));
+    job.shown = earlier;
     let valid = job.validate(sweep, slice, from).map_err(SweepEnd::Write);
     let result = valid.and_then(|()| {
         job.run(sweep, slice, from, |outputs, table, tally| {
@@ -221,12 +221,6 @@ impl Prepared<'_> {
         let figure = sweep_figure(&shown, &caption(&self.document), &picture.theme)?;
         picture.write(&mut job.outputs, figure)
     }
-}
-
-/// Reads the rows that an earlier process left.
-fn earlier_rows(blocks: &Blocks, sweep: &Sweep) -> Result<Table, Failure> {
-    let read = csv_table(&blocks.text()?, &sweep.empty_table());
-    read.map_err(|problem| Failure::Failed(anyhow::anyhow!("the rows that are there: {problem}")))
 }
 
 /// Prints a summary of the `rows` that were computed now.

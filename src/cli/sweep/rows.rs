@@ -3,8 +3,8 @@
 use std::io::{BufReader, Read};
 use std::path::Path;
 
-use interwell::output::plan_differences;
-use interwell::study::{SweepEnd, Tally};
+use interwell::output::{csv_table, plan_differences};
+use interwell::study::{SweepEnd, Table, Tally};
 use interwell::system::checksum::Checksum;
 use interwell::system::clock::WallClock;
 use interwell::system::{Opened, Part, PartError, files};
@@ -45,7 +45,7 @@ impl Rows {
         match (end, self) {
             (SweepEnd::Cancelled, Self::Blocks(blocks)) => blocks.interrupted(),
             (SweepEnd::Write(failure), Self::Blocks(blocks)) => {
-                blocks.leave();
+                blocks.part.discard();
                 failure
             }
             (end, _) => end.into(),
@@ -212,18 +212,13 @@ impl Blocks {
         self.part.end_block(block.cells, serde_json::to_string(&block)?)
     }
 
-    /// Number of rows on the disk.
-    pub fn kept(&self) -> u64 {
-        self.part.kept()
-    }
-
     /// The failure for rows that cannot be written.
     fn failed(&self, error: &std::io::Error) -> Failure {
         Failure::Failed(anyhow::anyhow!(
             "cannot write {}: {error}; {} of {} rows are kept there: once there is room, the same command \
              with --resume goes on",
             self.part.path().display(),
-            self.kept(),
+            self.part.kept(),
             self.rows
         ))
     }
@@ -234,7 +229,7 @@ impl Blocks {
             let _ = self.end_block();
         }
         let closed = self.part.close();
-        let kept = self.kept();
+        let kept = self.part.kept();
         let part = self.part.path().display().to_string();
         let failure = match closed {
             Err(error) => self.failed(&error),
@@ -246,11 +241,6 @@ impl Blocks {
         };
         self.part.discard();
         failure
-    }
-
-    /// Leaves the unfinished file as it is, or removes it if it has no rows.
-    pub fn leave(self) {
-        self.part.discard();
     }
 
     /// Waits until all rows are on the disk. Returns the checksum of the file.
@@ -265,12 +255,14 @@ impl Blocks {
         self.part.finish().map_err(|error| Failure::writing(&name, error))
     }
 
-    /// The text of the rows that were written.
-    pub fn text(&self) -> Result<String, Failure> {
+    /// The rows that were written, with the columns of `empty`.
+    pub fn table(&self, empty: &Table) -> Result<Table, Failure> {
         let path = self.part.path();
-        let bytes =
+        let text =
             files::bytes(path).and_then(|bytes| String::from_utf8(bytes).map_err(std::io::Error::other));
-        bytes.map_err(|error| Failure::Failed(anyhow::anyhow!("cannot read {}: {error}", path.display())))
+        let failed = |error| Failure::Failed(anyhow::anyhow!("cannot read {}: {error}", path.display()));
+        csv_table(&text.map_err(failed)?, empty)
+            .map_err(|problem| Failure::Failed(anyhow::anyhow!("the rows that are there: {problem}")))
     }
 }
 

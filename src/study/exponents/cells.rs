@@ -21,8 +21,6 @@ type Found = Option<Exponents>;
 impl Question for ExponentOptions {
     type Answer = Found;
 
-    const AHEAD: u64 = 32;
-
     fn request(&self) -> Option<Request<'_>> {
         None
     }
@@ -48,6 +46,10 @@ impl Question for ExponentOptions {
     fn table(&self, grid: &Grid, rows: &[Row<Found>]) -> Table {
         let found: Vec<Found> = rows.iter().map(|row| row.answer).collect();
         with_columns(fields(grid, rows, |_| 1, false), &found)
+    }
+
+    fn ahead(&self, threads: u64) -> u64 {
+        32 * threads
     }
 }
 
