@@ -7,6 +7,7 @@ use super::amplitudes::{Above, crossing};
 use super::bisection::multiple;
 use super::family::Family;
 use super::fields::SummaryField;
+use super::grid::{is_of_mechanism, name_of};
 use super::onset::Onset;
 use super::push::frees_at;
 use super::settled::{followed, settled_within};
@@ -97,9 +98,7 @@ fn parts(scenes: &[Alternative]) -> Vec<Part> {
 
 /// The sizes of a scene's mechanism that are not 0.
 fn sizes(scene: &Scene) -> Vec<String> {
-    let is_size = |path: &String| {
-        path.starts_with("mechanism.") && SIZES.contains(&path.rsplit('.').next().unwrap_or_default())
-    };
+    let is_size = |path: &String| is_of_mechanism(path) && SIZES.contains(&name_of(path));
     numeric_fields(scene).into_iter().filter(is_size).collect()
 }
 

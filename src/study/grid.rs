@@ -27,9 +27,14 @@ pub struct Grid {
     cells: u64,
 }
 
-/// Whether another value on this axis means another mechanism.
-fn changes_mechanism(axis: &&Axis) -> bool {
-    axis.field.starts_with("mechanism.")
+/// Whether a field is one of the mechanism.
+pub(super) fn is_of_mechanism(field: &str) -> bool {
+    field.split('.').next() == Some("mechanism")
+}
+
+/// The name of a field, the last part of its path.
+pub(super) fn name_of(field: &str) -> &str {
+    field.rsplit('.').next().unwrap_or(field)
 }
 
 impl Grid {
@@ -85,17 +90,19 @@ impl Grid {
 
     /// Whether the cells have different mechanisms.
     pub fn changes_mechanism(&self) -> bool {
-        self.axes.iter().any(|axis| changes_mechanism(&axis))
+        self.axes.iter().any(|axis| is_of_mechanism(&axis.field))
     }
 
     /// The number of different mechanisms among the cells.
     pub fn mechanisms(&self) -> u64 {
-        self.axes.iter().filter(changes_mechanism).map(|axis| axis.values.len() as u64).product()
+        let axes = self.axes.iter().filter(|axis| is_of_mechanism(&axis.field));
+        axes.map(|axis| axis.values.len() as u64).product()
     }
 
     /// Which of the [`mechanisms`](Self::mechanisms) cell `index` has.
     pub fn mechanism(&self, index: u64) -> u64 {
-        let places = self.axes.iter().zip(self.places(index)).filter(|(axis, _)| changes_mechanism(axis));
+        let places =
+            self.axes.iter().zip(self.places(index)).filter(|(axis, _)| is_of_mechanism(&axis.field));
         places.fold(0, |number, (axis, place)| number * axis.values.len() as u64 + place as u64)
     }
 

@@ -146,3 +146,17 @@ pub enum Arrival {
     /// were fewer.
     Unsettled(Box<Summary>),
 }
+
+impl Arrival {
+    /// The number of the first stroboscopic state after it; `None` if the motion is unsettled.
+    pub fn periods(&self) -> Option<u64> {
+        match self {
+            Self::Captured { periods, .. }
+            | Self::Entered { periods, .. }
+            | Self::Released { periods, .. }
+            | Self::Rests { periods, .. }
+            | Self::Repeats { periods, .. } => Some(*periods),
+            Self::Unsettled(_) => None,
+        }
+    }
+}

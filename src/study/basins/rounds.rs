@@ -80,7 +80,7 @@ pub(super) enum Fate {
 }
 
 /// A kind of motion that a start goes to, other than by a release.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub(super) enum Kind {
     /// A stable orbit, by its number.
     Orbit(u32),
@@ -88,6 +88,17 @@ pub(super) enum Kind {
     Rest(Side),
     /// What [`verdict`] says, and the summary of the first one.
     Judged(Verdict, Box<Summary>),
+}
+
+impl Kind {
+    fn is_same(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Orbit(number), Self::Orbit(other)) => number == other,
+            (Self::Rest(side), Self::Rest(other)) => side == other,
+            (Self::Judged(verdict, _), Self::Judged(other, _)) => verdict == other,
+            _ => false,
+        }
+    }
 }
 
 /// A release, and what follows it.
@@ -143,12 +154,17 @@ impl Rounds {
         }
     }
 
-    fn kind(&mut self, same: impl Fn(&Kind) -> bool, new: impl FnOnce() -> Kind) -> u32 {
-        let place = self.kinds.iter().position(same);
-        place.unwrap_or_else(|| {
-            self.kinds.push(new());
-            self.kinds.len() - 1
-        }) as u32
+    /// The place of a kind that is known.
+    fn known_kind(&self, kind: &Kind) -> Option<u32> {
+        self.kinds.iter().position(|known| known.is_same(kind)).map(|place| place as u32)
+    }
+
+    /// The place of a kind.
+    fn kind(&mut self, kind: Kind) -> u32 {
+        self.known_kind(&kind).unwrap_or_else(|| {
+            self.kinds.push(kind);
+            self.kinds.len() as u32 - 1
+        })
     }
 
     /// The place of a release, and whether it is new.
@@ -167,22 +183,13 @@ impl Rounds {
 
     /// Records the result of an item; returns what to follow next for it.
     fn note(&mut self, item: Item, pursued: Pursued, scope: &Stroboscope) -> Option<Item> {
-        let crossings = pursued.crossings;
+        let way = item.way(pursued.arrival.periods().unwrap_or(PATIENCE), pursued.crossings);
         let fate = match pursued.arrival {
-            Arrival::Captured { which, periods } => {
-                let orbit = Kind::Orbit(self.orbit_of[which]);
-                Fate::Kind(self.kind(|kind| *kind == orbit, || orbit.clone()), item.way(periods, crossings))
-            }
-            Arrival::Entered { which, periods } => {
-                Fate::Kind(self.region_of[which], item.way(periods, crossings))
-            }
-            Arrival::Rests { side, periods } => {
-                let rest = Kind::Rest(side);
-                Fate::Kind(self.kind(|kind| *kind == rest, || rest.clone()), item.way(periods, crossings))
-            }
-            Arrival::Released { identity, periods } => {
+            Arrival::Captured { which, .. } => Fate::Kind(self.kind(Kind::Orbit(self.orbit_of[which])), way),
+            Arrival::Entered { which, .. } => Fate::Kind(self.region_of[which], way),
+            Arrival::Rests { side, .. } => Fate::Kind(self.kind(Kind::Rest(side)), way),
+            Arrival::Released { identity, .. } => {
                 let (place, new) = self.release(identity);
-                let way = item.way(periods, crossings);
                 self.put(item, Fate::Release(place, way));
                 let after = Some((place, item.after.map_or(way, |(_, before)| before.and(way))));
                 return new.then_some(Item { releases: item.releases + 1, after, repeats_from: 0, ..item });
@@ -193,9 +200,7 @@ impl Rounds {
             Arrival::Unsettled(summary) => match self.verdict(&summary, scope) {
                 Verdict::Lost => Fate::Lost { spent: matches!(summary.outcome, Outcome::StepBudget { .. }) },
                 Verdict::Undecided => Fate::Undecided,
-                settled @ Verdict::Settled { .. } => {
-                    self.judged(settled, summary, scope, item.way(PATIENCE, crossings))
-                }
+                settled @ Verdict::Settled { .. } => self.judged(settled, summary, scope, way),
             },
         };
         self.put(item, fate);
@@ -204,24 +209,20 @@ impl Rounds {
 
     /// The fate of an item that was followed once more; `None` if it is not among the known ones.
     pub fn known_fate(&self, item: &Item, pursued: &Pursued, scope: &Stroboscope) -> Option<Fate> {
-        let kind = |same: &dyn Fn(&Kind) -> bool| self.kinds.iter().position(same).map(|place| place as u32);
-        let (found, periods) = match &pursued.arrival {
-            Arrival::Captured { which, periods } => {
-                (kind(&|kind| *kind == Kind::Orbit(self.orbit_of[*which])), *periods)
-            }
-            Arrival::Entered { which, periods } => (Some(self.region_of[*which]), *periods),
-            Arrival::Rests { side, periods } => (kind(&|kind| *kind == Kind::Rest(*side)), *periods),
+        let way = item.way(pursued.arrival.periods().unwrap_or(PATIENCE), pursued.crossings);
+        let kind = match &pursued.arrival {
+            Arrival::Captured { which, .. } => self.known_kind(&Kind::Orbit(self.orbit_of[*which])),
+            Arrival::Entered { which, .. } => Some(self.region_of[*which]),
+            Arrival::Rests { side, .. } => self.known_kind(&Kind::Rest(*side)),
             Arrival::Unsettled(summary) => {
-                let verdict = self.verdict(summary, scope);
-                (kind(&|kind| matches!(kind, Kind::Judged(known, _) if *known == verdict)), PATIENCE)
+                self.known_kind(&Kind::Judged(self.verdict(summary, scope), summary.clone()))
             }
-            Arrival::Released { identity, periods } => {
-                let place = self.known_release(*identity)?;
-                return Some(Fate::Release(place, item.way(*periods, pursued.crossings)));
+            Arrival::Released { identity, .. } => {
+                return self.known_release(*identity).map(|place| Fate::Release(place, way));
             }
-            Arrival::Repeats { .. } => return None,
+            Arrival::Repeats { .. } => None,
         };
-        Some(Fate::Kind(found?, item.way(periods, pursued.crossings)))
+        kind.map(|kind| Fate::Kind(kind, way))
     }
 
     /// The verdict on a motion that has reached no known attractor.
@@ -233,16 +234,17 @@ impl Rounds {
     /// The kind of a motion that was judged. The first one without a period, or one of the next few, must be
     /// irregular by its exponent, since it may only be slow to settle.
     fn judged(&mut self, verdict: Verdict, summary: Box<Summary>, scope: &Stroboscope, way: Way) -> Fate {
-        let same = |kind: &Kind| matches!(kind, Kind::Judged(other, _) if *other == verdict);
         let repeats = matches!(verdict, Verdict::Settled { period: Some(_), .. });
-        if !repeats && !self.kinds.iter().any(same) {
+        let state = (summary.final_x, summary.final_v);
+        let kind = Kind::Judged(verdict, summary);
+        if !repeats && self.known_kind(&kind).is_none() {
             let doubts = self.doubted.iter().filter(|other| **other == verdict).count();
-            if doubts >= MOST_DOUBTS || !scope.is_irregular((summary.final_x, summary.final_v)) {
+            if doubts >= MOST_DOUBTS || !scope.is_irregular(state) {
                 self.doubted.push(verdict);
                 return Fate::Undecided;
             }
         }
-        Fate::Kind(self.kind(same, || Kind::Judged(verdict, summary)), way)
+        Fate::Kind(self.kind(kind), way)
     }
 
     fn put(&mut self, item: Item, fate: Fate) {
