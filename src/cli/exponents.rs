@@ -5,7 +5,7 @@ use interwell::dynamics::Model;
 use interwell::output::{ExponentPicture, can_show_exponents, exponents_figure, exponents_manifest};
 use interwell::scene::Document;
 use interwell::study::{
-    ExponentCells, ExponentOptions, Exponents, Grid, NoExponents, Tally, Task, drive_fault, exponents,
+    ExponentCells, ExponentOptions, Exponents, Grid, NoExponents, Table, Tally, Task, drive_fault, exponents,
     exponents_row,
 };
 
@@ -14,7 +14,6 @@ use super::grid_job::GridJob;
 use super::options::{ChartOptions, Common, whole};
 use super::outputs::Output;
 use super::picture::{Picture, caption};
-use super::progress::bar;
 use super::support::{
     file_name, load_held, load_model, located, outputs, pool, refuse_electrical_state, until_settled, warn,
 };
@@ -130,24 +129,18 @@ fn over(options: &Arguments, common: &Common, picture: Option<Picture>) -> Resul
     let settings = settings(options, &document, cells.first_model(&task).as_ref())?;
     let cells = cells.with(settings);
     warn(&document, common, &warnings, cells.first_mechanism().ok().as_deref());
-    let outputs = outputs(&options.scene, &document, common)?
-        .with_picture(picture)?
-        .with(Output::MANIFEST, manifest_out.as_deref())?;
+    let outputs = outputs(&options.scene, &document, common)?;
     let grid = cells.grid();
-    let progress = bar(grid.cells(), "cells", common.quiet, common.out());
-    let mut job = GridJob::new(&document, outputs, pool, progress, picture);
+    let mut job = GridJob::open(&document, common, outputs, common.out(), picture, manifest_out, pool)?;
     let columns: Vec<String> = cells.empty_table().columns().iter().map(|c| c.name.clone()).collect();
-    let (tally, _) = job.stream(&cells, &columns)?;
-    if let Some((picture, rows)) = job.drawn() {
-        let shown = ExponentPicture { rows: &rows, grid, scene: &document.scene, ranges: picture.ranges };
-        picture.write(&mut job.outputs, exponents_figure(&shown, &caption(&document), &picture.theme)?)?;
-    }
-    if manifest_out.is_some() {
-        let (origin, data) = (job.origin(), file_name(common.out()));
-        let text = exponents_manifest(&document, grid, &tally, &origin, &data);
-        job.outputs.write(Output::MANIFEST, &text)?;
-    }
-    let wall_s = job.finish()?;
+    let (tally, _) = job.stream(&cells, "cells", &columns)?;
+    let figure = |rows: &Table, picture: &Picture| {
+        let shown = ExponentPicture { rows, grid, scene: &document.scene, ranges: picture.ranges };
+        Ok(exponents_figure(&shown, &caption(&document), &picture.theme)?)
+    };
+    let wall_s = job.finish(figure, |origin| {
+        Ok(exponents_manifest(&document, grid, &tally, origin, &file_name(common.out())))
+    })?;
     if !common.quiet && tally.cells == grid.cells() {
         say(&summary(&tally, wall_s));
     }

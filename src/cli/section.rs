@@ -3,7 +3,7 @@
 use clap::Args;
 use interwell::output::{SectionPicture, manifest, section_figure};
 use interwell::study::{
-    Carry, DIRECTION, Grid, MAX_SECTION, SectionAt, SectionOptions, Sections, Shard, Tally, Task, section,
+    Carry, DIRECTION, Grid, MAX_SECTION, SectionAt, SectionOptions, Sections, Table, Tally, Task, section,
 };
 
 use super::failure::Failure;
@@ -11,7 +11,6 @@ use super::grid_job::GridJob;
 use super::options::{ChartOptions, Common, whole};
 use super::outputs::Output;
 use super::picture::{Picture, caption};
-use super::progress::bar;
 use super::support::{
     file_name, load_held, load_model, number, outputs, pool, refuse_electrical_state, until_settled, warn,
 };
@@ -151,29 +150,22 @@ fn diagram(options: &Arguments, common: &Common, settings: SectionOptions) -> Re
     let sections = sections.with(SectionOptions { until_settled, ..settings });
     warn(&document, common, &warnings, first.as_ref().map(|model| &**model.mechanism()));
     let pool = pool(common)?;
-    let outputs = outputs(&options.scene, &document, common)?
-        .with_picture(picture)?
-        .with(Output::MANIFEST, manifest_out.as_deref())?;
-    let progress = bar(sections.rows(), "runs", common.quiet, common.out());
-    let mut job = GridJob::new(&document, outputs, pool, progress, picture);
-    job.validate(&sections, &sections.slice(Shard::WHOLE), 0)?;
+    let outputs = outputs(&options.scene, &document, common)?;
+    let mut job = GridJob::open(&document, common, outputs, common.out(), picture, manifest_out, pool)?;
     let mut names = sections.grid().columns().to_vec();
     names.extend(settings.carry.map(|_| DIRECTION.to_owned()));
     names.extend(settings.columns().iter().map(|name| (*name).to_owned()));
-    let (tally, count) = job.stream(&sections, &names)?;
-    if let Some((picture, rows)) = job.drawn() {
+    let (tally, count) = job.stream(&sections, "runs", &names)?;
+    let figure = |rows: &Table, picture: &Picture| {
         let over = sections.grid().columns().first().map(String::as_str);
-        let phase_deg = phase(&settings);
-        let shown =
-            SectionPicture { rows: &rows, over, phase_deg, stops: (None, None), ranges: picture.ranges };
-        picture.write(&mut job.outputs, section_figure(&shown, &caption(&document), &picture.theme))?;
-    }
-    if manifest_out.is_some() {
-        let (origin, data) = (job.origin(), file_name(common.out()));
-        let text = manifest(("section", &document), sections.grid(), &tally, None, &origin, &data);
-        job.outputs.write(Output::MANIFEST, &text)?;
-    }
-    let wall_s = job.finish()?;
+        let (phase_deg, ranges) = (phase(&settings), picture.ranges);
+        let shown = SectionPicture { rows, over, phase_deg, stops: (None, None), ranges };
+        Ok(section_figure(&shown, &caption(&document), &picture.theme))
+    };
+    let wall_s = job.finish(figure, |origin| {
+        let data = file_name(common.out());
+        Ok(manifest(("section", &document), sections.grid(), &tally, None, origin, &data))
+    })?;
     if !common.quiet && tally.cells == sections.rows() {
         say(&format!("{count} rows of {} in {wall_s:.2} s", runs(&tally)));
     }

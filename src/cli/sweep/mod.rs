@@ -5,21 +5,20 @@ mod prepared;
 mod rows;
 
 use clap::Args;
-use interwell::output::{Made, Overlay, SweepPicture, header, manifest, rows, sweep_figure};
+use interwell::output::{Figure, Made, Overlay, SweepPicture, header, manifest, rows, sweep_figure};
 use interwell::scene::Document;
-use interwell::study::{SweepEnd, Table, Tally};
+use interwell::study::{SweepOptions, Table, Tally};
 use serde_json::Value;
 
 use super::failure::Failure;
 use super::grid_job::GridJob;
 use super::options::{ChartOptions, Common};
 use super::outputs::{Output, Outputs};
-use super::picture::caption;
-use super::progress::bar;
+use super::picture::{Picture, caption};
 use super::say;
 use super::support::{file_name, inputs, manifest_path, pool};
 use prepared::Prepared;
-use rows::{Blocks, Compared, RowFile, Rows};
+use rows::{Compared, RowFile, Rows};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -97,61 +96,39 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     }
     let Prepared { document, out, sweep, slice, picture, .. } = &prepared;
     let manifest_out = manifest_path(out).filter(|_| !options.check);
-    let mut outputs = Outputs::new(&inputs(&options.scene, document))
-        .with(Output::DATA, Some(&**out).filter(|_| !options.check))?
-        .with_picture(*picture)?
-        .with(Output::MANIFEST, manifest_out.as_deref())?;
-    // The manifest is opened again when it is written: a killed process would leave its unfinished file.
-    outputs.leave(Output::MANIFEST);
+    let in_blocks = manifest_out.is_some();
+    let outputs = Outputs::new(&inputs(&options.scene, document))
+        .with(Output::DATA, Some(&**out).filter(|_| !options.check))?;
+    let mut job = GridJob::open(document, common, outputs, out, *picture, manifest_out, pool)?;
     let plan = prepared.plan();
-    let Some((mut rows_out, mut all)) = prepared.open_rows(&mut outputs, manifest_out.is_some(), &plan)?
-    else {
-        return prepared.has_all_rows(common.quiet);
-    };
+    let opened = prepared.open_rows(&mut job.outputs, in_blocks, &plan)?;
+    let Some((mut rows_out, mut all)) = opened else { return prepared.has_all_rows(common.quiet) };
     let from = all.cells;
-    let earlier = match &rows_out {
-        Rows::Blocks(blocks) if picture.is_some() && from > 0 => blocks.table(&sweep.empty_table())?,
-        _ => Table::new(),
-    };
-
-    let progress = bar(slice.rows(), "cells", common.quiet, out);
-    progress.begin_at(from);
-    let mut job = GridJob::new(document, outputs, pool, progress, *picture);
-    job.shown = earlier;
-    let valid = job.validate(sweep, slice, from).map_err(SweepEnd::Write);
-    let result = valid.and_then(|()| {
-        job.run(sweep, slice, from, |outputs, table, tally| {
-            rows_out.put(outputs, rows(&table.only(&prepared.columns), 0..usize::MAX), tally)
-        })
+    if let (Rows::Blocks(blocks), Some(_), 1..) = (&rows_out, picture, from) {
+        job.shown = blocks.table(&sweep.empty_table())?;
+    }
+    let result = job.run(sweep, slice, from, "cells", |outputs, table, tally| {
+        rows_out.put(outputs, rows(&table.only(&prepared.columns), 0..usize::MAX), tally)
     });
     let tally = match result {
         Ok(tally) => tally,
         Err(end) => return Err(rows_out.ended(end)),
     };
-    prepared.draw(&mut job)?;
     all.add(&tally);
-    let blocks = match rows_out {
-        Rows::Stream => None,
-        Rows::Compared(mut file) => {
-            file.end()?;
-            if !common.quiet {
-                say(&format!("{}: all {} rows are the same", prepared.data.display(), all.cells));
-            }
-            None
+    if let Rows::Compared(file) = &mut rows_out {
+        file.end()?;
+        if !common.quiet {
+            say(&format!("{}: all {} rows are the same", prepared.data.display(), all.cells));
         }
-        Rows::Blocks(mut blocks) => {
-            let sha256 = blocks.close()?;
-            let made = Made { plan: &plan, shard: slice.shard(), sha256: &sha256 };
-            let (grid, origin, data) = (sweep.grid(), job.origin(), file_name(out));
-            let text = manifest(("sweep", document), grid, &all, Some(made), &origin, &data);
-            job.outputs = job.outputs.with(Output::MANIFEST, manifest_out.as_deref())?;
-            job.outputs.write(Output::MANIFEST, &text)?;
-            Some(blocks)
-        }
-    };
-    let wall_s = job.finish()?;
+    }
+    let figure = |rows: &Table, picture: &Picture| prepared.figure(rows, picture);
+    let wall_s = job.finish(figure, |origin| {
+        let sha256 = rows_out.close()?;
+        let made = Made { plan: &plan, shard: slice.shard(), sha256: &sha256 };
+        Ok(manifest(("sweep", document), sweep.grid(), &all, Some(made), origin, &file_name(out)))
+    })?;
     // The rows get their name last: until then --resume can continue them.
-    blocks.map_or(Ok(()), Blocks::finish)?;
+    rows_out.finish()?;
     report(common.quiet, document, &tally, slice.rows() - from, wall_s);
     let early = all.ended_early + all.not_converged;
     if options.strict && early > 0 {
@@ -199,27 +176,17 @@ impl Prepared<'_> {
         Ok(())
     }
 
-    /// Draws the picture.
-    fn draw(&self, job: &mut GridJob) -> Result<(), Failure> {
-        let Some((picture, rows)) = job.drawn() else { return Ok(()) };
+    fn figure(&self, rows: &Table, picture: &Picture) -> Result<Figure, Failure> {
         let (grid, scene) = (self.sweep.grid(), &self.document.scene);
+        let &SweepOptions { until_settled, carry, .. } = self.sweep.options();
         // The overlay holds for runs from rest only.
-        let overlay = match self.sweep.options().carry {
+        let overlay = match carry {
             Some(_) => Overlay::default(),
-            None => Overlay::of(scene, self.mechanism.as_deref(), grid, &rows),
+            None => Overlay::of(scene, self.mechanism.as_deref(), grid, rows),
         };
-        let shown = SweepPicture {
-            rows: &rows,
-            grid,
-            scene,
-            until_settled: self.sweep.options().until_settled,
-            quantity: &self.options.quantity,
-            overlay,
-            view: self.view.clone(),
-            ranges: picture.ranges,
-        };
-        let figure = sweep_figure(&shown, &caption(&self.document), &picture.theme)?;
-        picture.write(&mut job.outputs, figure)
+        let (quantity, view, ranges) = (&*self.options.quantity, self.view.clone(), picture.ranges);
+        let shown = SweepPicture { rows, grid, scene, until_settled, quantity, overlay, view, ranges };
+        Ok(sweep_figure(&shown, &caption(&self.document), &picture.theme)?)
     }
 }
 

@@ -51,6 +51,18 @@ impl Rows {
             (end, _) => end.into(),
         }
     }
+
+    /// Waits until all blocks are on the disk. Returns the checksum of their file.
+    pub fn close(&mut self) -> Result<String, Failure> {
+        if let Self::Blocks(blocks) = self { blocks.close() } else { Ok(String::new()) }
+    }
+
+    /// Gives the file of the blocks its name.
+    pub fn finish(self) -> Result<(), Failure> {
+        let Self::Blocks(Blocks { part, .. }) = self else { return Ok(()) };
+        let name = part.path().display().to_string();
+        part.finish().map_err(|error| Failure::writing(&name, error))
+    }
 }
 
 /// An unfinished file, and its unfinished block.
@@ -243,16 +255,9 @@ impl Blocks {
         failure
     }
 
-    /// Waits until all rows are on the disk. Returns the checksum of the file.
-    pub fn close(&mut self) -> Result<String, Failure> {
+    fn close(&mut self) -> Result<String, Failure> {
         let ended = if self.block.cells > 0 { self.end_block() } else { Ok(()) };
         ended.and_then(|()| self.part.close()).map_err(|error| self.failed(&error))
-    }
-
-    /// Gives the file its name.
-    pub fn finish(self) -> Result<(), Failure> {
-        let name = self.part.path().display().to_string();
-        self.part.finish().map_err(|error| Failure::writing(&name, error))
     }
 
     /// The rows that were written, with the columns of `empty`.
