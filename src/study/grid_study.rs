@@ -184,15 +184,14 @@ impl<Q: Question> GridStudy<Q> {
 
     /// The walk that begins with a row.
     fn walk(&self, row: u64) -> Walk {
-        let (number, length) = (row / self.unit(), self.unit());
-        let direction = |carry: Carry| carry.directions()[(number % self.ways()) as usize];
-        Walk::new(number / self.ways() * length, length, self.question.carry().map(direction))
+        let number = (row / self.unit() % self.ways()) as usize;
+        let direction = self.question.carry().map(|carry| carry.directions()[number]);
+        Walk::new(self.cell(row), self.unit(), direction)
     }
 
     /// The cell of a row, where walks in both directions have their cells in the order of the grid.
     pub fn cell(&self, row: u64) -> u64 {
-        let step = row % self.unit();
-        (row - step) / self.unit() / self.ways() * self.unit() + step
+        row / self.unit() / self.ways() * self.unit() + row % self.unit()
     }
 
     /// Approximate upper bound of the bytes that a run of it keeps, however many cells there are. Walks are
@@ -368,7 +367,7 @@ impl<Q: Question> GridStudy<Q> {
             let (number, begun) = kept.or_else(|| take(under_way).map(|number| (number, walk(number))))?;
             let answer = match (self.cells.model(begun.cell(), &mut scene, task), request) {
                 (Some(Ok(model)), Some(request)) => {
-                    let model = begun.carried(self.question.model(model));
+                    let model = begun.carried.on(self.question.model(model));
                     let carry = begun.direction.is_some();
                     walking.borrow_mut().insert(number, begun);
                     return Some((number, model, Request { carry, cancel: Some(task.cancel), ..request }));
@@ -382,7 +381,7 @@ impl<Q: Question> GridStudy<Q> {
         };
         let mut ended = |number: usize, model: &Model, run: Run| {
             let Some(mut walk): Option<Walk> = walking.borrow_mut().remove(&number) else { return };
-            walk.pass(model, &run);
+            walk.carried.keep(model, &run);
             answered(number, walk, self.question.answer(model, Some(run), task.cancel));
         };
         Model::run_from(&mut next, &mut ended);

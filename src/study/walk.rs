@@ -69,13 +69,33 @@ pub(super) struct Walk {
     pub direction: Option<Direction>,
     /// Number of cells it has gone through.
     pub done: u64,
-    /// The model of the last cell that was run, and the state from which the next one goes on.
-    last: Option<(Model, (f64, f64))>,
+    pub carried: Carried,
+}
+
+/// The model of the last run of a walk, and the state from which the next one goes on.
+#[derive(Default)]
+pub(super) struct Carried(Option<(Model, (f64, f64))>);
+
+impl Carried {
+    /// The next model, which goes on from the run before.
+    pub fn on(&self, model: Model) -> Model {
+        match &self.0 {
+            Some((before, state)) => model.carried_on(before, *state),
+            None => model,
+        }
+    }
+
+    /// Keeps the state from which the next run goes on.
+    pub fn keep(&mut self, model: &Model, run: &Run) {
+        if let Some(state) = run.carried.filter(|(x, v)| x.is_finite() && v.is_finite()) {
+            self.0 = Some((model.clone(), state));
+        }
+    }
 }
 
 impl Walk {
     pub fn new(begin: u64, length: u64, direction: Option<Direction>) -> Self {
-        Self { begin, length, direction, done: 0, last: None }
+        Self { begin, length, direction, done: 0, carried: Carried::default() }
     }
 
     /// The next cell.
@@ -83,21 +103,6 @@ impl Walk {
         match self.direction {
             Some(Direction::Down) => self.begin + self.length - 1 - self.done,
             Some(Direction::Up) | None => self.begin + self.done,
-        }
-    }
-
-    /// The model of the next cell, which goes on from the cell before.
-    pub fn carried(&self, model: Model) -> Model {
-        match &self.last {
-            Some((before, state)) => model.carried_on(before, *state),
-            None => model,
-        }
-    }
-
-    /// Keeps the state from which the next cell goes on.
-    pub fn pass(&mut self, model: &Model, run: &Run) {
-        if let Some(state) = run.carried.filter(|(x, v)| x.is_finite() && v.is_finite()) {
-            self.last = Some((model.clone(), state));
         }
     }
 }
