@@ -59,6 +59,7 @@ impl<'a> GridJob<'a> {
         unit: &str,
         mut write: impl FnMut(&mut Outputs, &Table, &Tally) -> Result<bool, Failure>,
     ) -> Result<Tally, SweepEnd<Failure>> {
+        self.watch = Watch::start();
         let progress = bar(slice.rows(), unit, self.common.quiet, self.out);
         progress.begin_at(from);
         let task = Task { tick: &|| progress.inc(1), cancel: interrupt::listen() };
@@ -90,7 +91,7 @@ impl<'a> GridJob<'a> {
     }
 
     /// Draws the rows, writes the manifest and gives the outputs their names. Returns the wall-clock time
-    /// since the beginning in s.
+    /// since the rows began in s.
     pub fn finish(
         mut self,
         figure: impl FnOnce(&Table, &Picture) -> Result<Figure, Failure>,

@@ -3,13 +3,12 @@
 
 use std::sync::Arc;
 
-use super::amplitudes::{Above, crossing};
+use super::amplitudes::{Above, crossing, frees_at};
 use super::bisection::multiple;
 use super::family::Family;
 use super::fields::SummaryField;
 use super::grid::{is_of_mechanism, name_of};
 use super::onset::Onset;
-use super::push::frees_at;
 use super::settled::{followed, settled_within};
 use super::shared_runs::shared_runs;
 use super::table::{Table, Values};

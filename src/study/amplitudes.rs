@@ -5,15 +5,17 @@ use std::sync::Arc;
 use super::bisection::multiple;
 use super::family::Family;
 use super::onset::{Onset, Verdict};
-use super::push::{AMPLITUDE, frees_at, holding_push};
 use super::settled::followed;
 use super::thresholds::{Answers, Found, Search};
 use super::{Cancelled, Task};
-use crate::dynamics::{Model, Request};
-use crate::mechanics::Mechanism;
+use crate::dynamics::{Model, Request, STANDARD_GRAVITY};
+use crate::mechanics::{Landscape, Mechanism};
 use crate::numeric::round::{ONE_TWO_FIVE, decade, round_down};
 use crate::scene::{Excitation, Files, Scene, Start, Stops};
 use crate::system::threads::Pool;
+
+/// The field of the amplitude of a sine.
+pub(super) const AMPLITUDE: &str = "excitation.amplitude_g";
 
 /// The unit of the third significant digit of a value.
 fn third_digit(value: f64) -> f64 {
@@ -112,6 +114,35 @@ pub(super) fn crossing(
         found = Found { high, windows, without_gap, ..found };
     }
     Ok(Some((found, searched_to)))
+}
+
+/// The amplitude in g whose push equals the largest force against which the mechanism must be moved from
+/// where the mass rests to the barrier.
+fn holding_push(scene: &Scene, mechanism: &Mechanism) -> Option<f64> {
+    let Landscape { barrier, extrema, .. } = &mechanism.landscape;
+    let barrier = barrier.as_ref()?;
+    let rests = match right_stop(scene) {
+        Some(stop) => stop.min(barrier.right_well),
+        None => barrier.right_well,
+    };
+    let between = |x: f64| x >= barrier.x && x <= rests;
+    let inside = extrema.iter().filter(|extremum| between(extremum.x)).map(|extremum| extremum.force.abs());
+    let force = inside.fold(mechanism.curve.force(rests).abs(), f64::max);
+    Some(force / (scene.mass_g / 1e3) / STANDARD_GRAVITY).filter(|push| *push > 0.0 && push.is_finite())
+}
+
+fn right_stop(scene: &Scene) -> Option<f64> {
+    scene.stops.limits_mm()[1].map(|mm| mm / 1e3)
+}
+
+/// The amplitude in g at which the base's push reaches the force that presses the mass on the stop that it
+/// rests on.
+pub(super) fn frees_at(scene: &Scene, mechanism: &Mechanism) -> Option<f64> {
+    let Excitation::Sine { .. } = scene.excitation else { return None };
+    let right = right_stop(scene)?;
+    let well = mechanism.landscape.right_stable()?.x;
+    let press = -mechanism.curve.force(right);
+    (right < well && press > 0.0).then(|| press / (scene.mass_g / 1e3) / STANDARD_GRAVITY)
 }
 
 /// Least number of steps of the search for stops from the well to the middle; it makes up to two and a half

@@ -1,5 +1,6 @@
 //! Lines of a map at which motions begin to cross.
 
+use super::amplitudes::AMPLITUDE;
 use super::grid::{Grid, name_of};
 use super::table::{Table, Values};
 use crate::dynamics::{Regime, STANDARD_GRAVITY};
@@ -9,8 +10,6 @@ use crate::scene::{Axis, Excitation, Scene, Start};
 
 /// The travel limit, over which the release is known in closed form.
 const LIMIT: &str = "stops.travel_limit_mm";
-/// The amplitude of that release.
-const AMPLITUDE: &str = "excitation.amplitude_g";
 
 /// Points of the line of releases.
 const POINTS: usize = 400;

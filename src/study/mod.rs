@@ -33,7 +33,6 @@ mod measured;
 mod models;
 mod onset;
 mod orbit;
-mod push;
 mod section;
 mod settled;
 mod shared_runs;

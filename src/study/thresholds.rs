@@ -8,19 +8,19 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
+use super::amplitudes::{AMPLITUDE, frees_at};
 use super::bisection::{Trial, between, next_between};
 use super::cell::CellFaults;
 use super::family::{Family, NoModel};
 use super::grid::Grid;
 use super::grid_study::Cells;
 use super::onset::{Onset, Verdict};
-use super::push::{AMPLITUDE, frees_at};
 use super::settled::followed;
 use super::shared_runs::runs_from;
 use super::table::Table;
 use super::walk::excitation_fault;
 use super::{Cancelled, Task};
-use crate::dynamics::{Model, Request, Run};
+use crate::dynamics::Run;
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, Files, Scene, Start};
 use crate::system::threads::{Pool, Queue, UnderWay};
@@ -215,6 +215,14 @@ impl Answers {
         Self { scan: vec![(value, Some(verdict))], ..Self::default() }
     }
 
+    /// A value by its number: those of the scan first, then those of the bisection.
+    fn number(&mut self, number: usize) -> &mut Answer {
+        match number.checked_sub(self.scan.len()) {
+            Some(place) => &mut self.between[place],
+            None => &mut self.scan[number],
+        }
+    }
+
     /// The place in the scan of the first value that does it.
     pub fn first_that_does(&self) -> Option<usize> {
         self.scan.iter().position(|(_, verdict)| verdict.is_some_and(|verdict| verdict.does))
@@ -292,7 +300,7 @@ pub(super) struct Search<'a> {
     pub ahead: usize,
 }
 
-impl<'a> Search<'a> {
+impl Search<'_> {
     /// Runs further values of a scan, and beside them values of the bisection at its first change, which take
     /// little more time in the same lanes. Then completes the bisection. Ticks for each value of the scan.
     pub fn scan(&self, answers: &mut Answers, values: &[f64], resolution: f64) -> Result<(), Cancelled> {
@@ -315,19 +323,16 @@ impl<'a> Search<'a> {
             answers.between.push((next, None));
             Some(count + answers.between.len() - 1)
         };
-        let answer = |number: usize, verdict: Verdict| match number.checked_sub(count) {
-            Some(place) => lock().between[place].1 = Some(verdict),
-            None => {
-                lock().scan[number].1 = Some(verdict);
+        let answer = |number: usize, verdict: Verdict| {
+            lock().number(number).1 = Some(verdict);
+            if number < count {
                 (self.task.tick)();
             }
         };
         let model = |number: usize| {
-            let value = match number.checked_sub(count) {
-                Some(place) => lock().between[place].0,
-                None => lock().scan[number].0,
-            };
-            self.model(value).ok_or_else(|| answer(number, Verdict::NO_MODEL))
+            let value = lock().number(number).0;
+            let model = self.family.model(value).map_err(|_| answer(number, Verdict::NO_MODEL))?;
+            Ok(followed(model, self.until_settled))
         };
         let ended = |number: usize, run: &Run| answer(number, self.onset.verdict(&run.summary));
         loop {
@@ -336,10 +341,5 @@ impl<'a> Search<'a> {
                 return Ok(());
             }
         }
-    }
-
-    /// The model of a value, if it is valid, and the request of its run.
-    fn model(&self, value: f64) -> Option<(Model, Request<'a>)> {
-        self.family.model(value).ok().map(|model| followed(model, self.until_settled))
     }
 }
