@@ -164,7 +164,7 @@ fn diagram(options: &Arguments, common: &Common, settings: SectionOptions) -> Re
     };
     let wall_s = job.finish(figure, |origin| {
         let data = file_name(common.out());
-        Ok(manifest(("section", &document), sections.grid(), &tally, None, origin, &data))
+        Ok(manifest("section", &document, sections.grid(), &tally, None, origin, &data))
     })?;
     if !common.quiet && tally.cells == sections.rows() {
         say(&format!("{count} rows of {} in {wall_s:.2} s", runs(&tally)));

@@ -113,7 +113,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     })?;
     outputs.table(Output::DATA, &table)?;
     if !common.quiet {
-        let remarks = [missing(&table, (&scan, onset), &grid), undecided(&table)];
+        let remarks = [missing(&table, &scan, onset, &grid), undecided(&table)];
         remarks.iter().flatten().for_each(|words| say(&format!("{}: {words}", document.name)));
     }
     if let Some(picture) = picture {
@@ -147,7 +147,7 @@ fn undecided(table: &Table) -> Option<String> {
 }
 
 /// Explains an empty `value`, if a row has one.
-fn missing(table: &Table, (scan, onset): (&Scan, Onset), grid: &Grid) -> Option<String> {
+fn missing(table: &Table, scan: &Scan, onset: Onset, grid: &Grid) -> Option<String> {
     let values = table.numbers("value")?;
     let count = values.iter().filter(|value| value.is_nan()).count();
     let rows = of_rows(count, values.len(), ["has no value", "have no value"])?;

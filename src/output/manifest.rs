@@ -41,7 +41,8 @@ pub struct Made<'a> {
 /// `document` must hold its files. `data` is the name of the file with the rows; `made` describes that file
 /// if it may be a shard.
 pub fn manifest(
-    (command, document): (&str, &Document),
+    command: &str,
+    document: &Document,
     grid: &Grid,
     tally: &Tally,
     made: Option<Made>,
@@ -60,7 +61,7 @@ pub fn manifest(
         more["plan_sha256"] = json!(plan_checksum(plan));
         more["plan"] = plan.clone();
     }
-    swept((command, document), grid, more, origin, data)
+    swept(command, document, grid, more, origin, data)
 }
 
 /// The manifest of a whole sweep, from the manifests of its shards. `data` is the name of the merged file,
@@ -111,12 +112,13 @@ pub fn exponents_manifest(
         "resting": tally.resting,
         "without_exponents": tally.without_exponents,
     });
-    swept(("exponents", document), grid, more, origin, data)
+    swept("exponents", document, grid, more, origin, data)
 }
 
 /// The manifest of rows over a grid, with `more` entries of the command.
 fn swept(
-    (command, document): (&str, &Document),
+    command: &str,
+    document: &Document,
     grid: &Grid,
     more: Value,
     origin: &Provenance,
@@ -136,7 +138,7 @@ fn swept(
     if let (Value::Object(all), Value::Object(more)) = (&mut all, more) {
         all.extend(more);
     }
-    written((document, scene), command, all, origin, data)
+    written(document, scene, command, all, origin, data)
 }
 
 /// The manifest of a map of basins as text. It is that of a sweep with the starts in place of the grid.
@@ -159,12 +161,13 @@ pub fn basins_manifest(
         "length_scale_m": length,
         "speed_scale_m_per_s": speed,
     });
-    written((document, &document.scene), "basins", more, origin, data)
+    written(document, &document.scene, "basins", more, origin, data)
 }
 
 /// A manifest with `more` entries of the command; `scene` is the scene that ran.
 fn written(
-    (document, scene): (&Document, &Scene),
+    document: &Document,
+    scene: &Scene,
     command: &str,
     more: Value,
     origin: &Provenance,

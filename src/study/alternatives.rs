@@ -178,8 +178,8 @@ impl Rating<'_> {
         mechanism: &Arc<Mechanism>,
         above: Above,
     ) -> Result<Option<Found>, Cancelled> {
-        let how = (Some(self.pool), self.until_settled);
-        Ok(crossing(trial, mechanism, how, above, self.task)?.map(|(found, _)| found))
+        let found = crossing(trial, mechanism, Some(self.pool), self.until_settled, above, self.task)?;
+        Ok(found.map(|(found, _)| found))
     }
 
     /// The crossing threshold with the share `by` added to one size.

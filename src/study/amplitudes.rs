@@ -55,7 +55,7 @@ const GAP_STEP: f64 = 0.01;
 /// Searches the amplitudes of a sine. `None` if the drive is no sine, there is no barrier, or the search
 /// was cancelled.
 pub fn thresholds(scene: &Scene, mechanism: &Arc<Mechanism>, task: &Task) -> Option<Thresholds> {
-    let found = crossing(scene, mechanism, (None, None), Above::Searched, task);
+    let found = crossing(scene, mechanism, None, None, Above::Searched, task);
     let (crossing, searched_to) = found.ok().flatten()?;
     Some(Thresholds { frees_at: frees_at(scene, mechanism), crossing, searched_to })
 }
@@ -73,7 +73,8 @@ pub(super) enum Above {
 pub(super) fn crossing(
     scene: &Scene,
     mechanism: &Arc<Mechanism>,
-    (pool, until_settled): (Option<&Pool>, Option<f64>),
+    pool: Option<&Pool>,
+    until_settled: Option<f64>,
     above: Above,
     task: &Task,
 ) -> Result<Option<(Found, f64)>, Cancelled> {

@@ -313,7 +313,7 @@ impl<Q: Question> GridStudy<Q> {
             })
         };
         let rows = slice.rows() - from;
-        pool.in_order(((rows / unit) as usize, unit as usize, ahead as usize), work, leave);
+        pool.in_order((rows / unit) as usize, unit as usize, ahead as usize, work, leave);
         let cancelled = task.is_cancelled() && tally.cells < rows;
         end.or(cancelled.then_some(SweepEnd::Cancelled)).map_or(Ok(tally), Err)
     }

@@ -125,7 +125,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let wall_s = job.finish(figure, |origin| {
         let sha256 = rows_out.close()?;
         let made = Made { plan: &plan, shard: slice.shard(), sha256: &sha256 };
-        Ok(manifest(("sweep", document), sweep.grid(), &all, Some(made), origin, &file_name(out)))
+        Ok(manifest("sweep", document, sweep.grid(), &all, Some(made), origin, &file_name(out)))
     })?;
     // The rows get their name last: until then --resume can continue them.
     rows_out.finish()?;

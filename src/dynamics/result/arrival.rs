@@ -89,6 +89,11 @@ pub struct Pursuit<'a> {
     pub most_work: u64,
 }
 
+impl Pursuit<'_> {
+    /// The number of a state from which no repetition ends a pursuit.
+    pub const NEVER: u64 = u64::MAX;
+}
+
 /// Result of a pursuit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pursued {

@@ -64,7 +64,7 @@ impl Stroboscope<'_> {
                 start: self.state(starts[*place].0),
                 known: &[],
                 regions: &[],
-                repeats_from: u64::MAX,
+                repeats_from: Pursuit::NEVER,
                 most_periods: starts[*place].1.into(),
                 releases: 0,
                 most_work: u64::MAX,

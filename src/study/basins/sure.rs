@@ -123,7 +123,7 @@ impl Basins {
     ) -> Result<Vec<Option<Fate>>, Cancelled> {
         let known = (&self.rounds.captures[..], &self.rounds.regions[..]);
         let most_work = scope.effort.of_one(items.len());
-        let endless = |item: &Item| Item { repeats_from: u64::MAX, ..*item };
+        let endless = |item: &Item| Item { repeats_from: Pursuit::NEVER, ..*item };
         let pursuits: Vec<Pursuit> =
             items.iter().map(|item| endless(item).pursuit(&self.starts, known, most_work)).collect();
         let all = scope.pursue(&pursuits, &|_| tick())?;
