@@ -81,14 +81,13 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
 /// Opens all shards of one sweep and orders them. An error names the files that do not belong together, or
 /// the missing shards with the commands that compute them.
 fn all(paths: &[PathBuf]) -> Result<Vec<Part>, Failure> {
-    let (mut parts, mut unfinished): (Vec<Part>, Vec<&Path>) = (Vec::new(), Vec::new());
+    let (mut parts, mut unfinished): (Vec<Part>, Vec<String>) = (Vec::new(), Vec::new());
     for path in paths {
         match Part::open(path)? {
             Some(part) => parts.push(part),
-            None => unfinished.push(path.as_path()),
+            None => unfinished.push(why_not(path)),
         }
     }
-    let unfinished: Vec<String> = unfinished.into_iter().map(why_not).collect();
     let Some(first) = parts.first() else {
         if paths.is_empty() {
             let example = "such as merge map-*-of-5.csv --out map.csv";
@@ -118,11 +117,9 @@ fn all(paths: &[PathBuf]) -> Result<Vec<Part>, Failure> {
     }
     let count = parts[0].shard.count();
     let has = |number: u64| parts.iter().any(|part| part.shard.number() == number);
-    let missing: Vec<String> = (1..=count)
-        .filter(|number| !has(*number))
-        .map(|number| Ok(parts[0].command_of(Shard::new(number, count)?)))
-        .collect::<Result<_, String>>()
-        .map_err(Failure::argument)?;
+    let missing = (1..=count).filter(|number| !has(*number));
+    let missing = missing.filter_map(|number| Shard::new(number, count).ok());
+    let missing: Vec<String> = missing.map(|shard| parts[0].command_of(shard)).collect();
     if missing.is_empty() {
         return Ok(parts);
     }

@@ -81,16 +81,11 @@ impl Progress {
             self.bar.inc_length(1);
         }
     }
-
-    /// Removes the bar.
-    pub fn finish_and_clear(&self) {
-        self.bar.finish_and_clear();
-    }
 }
 
 impl Drop for Progress {
     fn drop(&mut self) {
-        self.finish_and_clear();
+        self.bar.finish_and_clear();
     }
 }
 
