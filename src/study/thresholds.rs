@@ -71,12 +71,13 @@ pub fn threshold(
     (scan, onset): (&Scan, Onset),
     task: &Task,
 ) -> Option<Found> {
-    threshold_on((None, 1), scene, mechanism, files, (scan, onset), task).ok()
+    threshold_on(None, 1, scene, mechanism, files, (scan, onset), task).ok()
 }
 
 /// The same on a pool, with `ahead` values of a bisection asked at a time.
 fn threshold_on(
-    (pool, ahead): (Option<&Pool>, usize),
+    pool: Option<&Pool>,
+    ahead: usize,
     scene: &Scene,
     mechanism: &Arc<Mechanism>,
     files: &Files,
@@ -130,7 +131,7 @@ pub fn threshold_table(
         task.go_on()?;
         let built = cells.mechanism(index as u64, scene, task.cancel).ok_or(Cancelled)?;
         let faults = match built {
-            Ok(mechanism) => faults(&from_rest(scene), &mechanism, files, (scan, onset)),
+            Ok(mechanism) => faults(&from_rest(scene), &mechanism, files, scan, onset),
             Err(BuildError::Unsolved(_)) => None,
             Err(BuildError::Wrong(fault)) => Some(vec![fault]),
         };
@@ -150,7 +151,7 @@ pub fn threshold_table(
             scan.values.iter().for_each(|_| (task.tick)());
             return Ok(Found { undecided: true, ..Found::default() });
         };
-        threshold_on((Some(pool), ahead), scene, &mechanism, files, (scan, onset), task)
+        threshold_on(Some(pool), ahead, scene, &mechanism, files, (scan, onset), task)
     };
     let found = pool.map(count, begin, cell).map_err(cancelled)?;
     Ok(grid
@@ -172,7 +173,8 @@ fn faults(
     trial: &Scene,
     mechanism: &Arc<Mechanism>,
     files: &Files,
-    (scan, onset): (&Scan, Onset),
+    scan: &Scan,
+    onset: Onset,
 ) -> Option<Vec<Fault>> {
     let family = Family::new(trial, files, mechanism, &scan.field);
     let mut first = None;
