@@ -161,7 +161,8 @@ fn sections(name: &str, changes: &[&str], pool: &Pool) -> Table {
         until_settled: None,
         carry: None,
     };
-    let sections = Sections::new(&document.scene, &document.files, Grid::new(axes).unwrap(), options);
+    let grid = Grid::new(axes).unwrap();
+    let sections = Sections::new(&document.scene, &document.files, grid).with(options);
     let never = AtomicBool::new(false);
     let task = Task { tick: &|| (), cancel: &never };
     let mut all = Table::new();
@@ -243,7 +244,8 @@ fn threshold_of(pool: &Pool) {
     let asked = (&scan, Onset::Interwell);
     let never = AtomicBool::new(false);
     let task = Task { tick: &|| (), cancel: &never };
-    threshold_table((&document.scene, &document.files), None, asked, pool, &task).unwrap().unwrap();
+    let grid = Grid::of_one();
+    threshold_table((&document.scene, &document.files), &grid, asked, pool, &task).unwrap();
 }
 
 fn lessons(pool: &Pool) {

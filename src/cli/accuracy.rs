@@ -2,16 +2,19 @@
 
 use std::io::IsTerminal;
 
+use std::path::Path;
+
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use interwell::output::{Sink, accuracy_figure, aligned};
+use interwell::output::{accuracy_figure, aligned};
 use interwell::study::Task;
 use interwell::study::accuracy::{PROBLEMS, Report, Selection, Stopped, accuracy, description, names};
 
 use super::failure::Failure;
 use super::options::{Common, PlotOptions};
+use super::outputs::{Output, Outputs, write_alone};
 use super::picture::Picture;
-use super::support::{Watch, finish, open, write_table, write_text};
+use super::support::Watch;
 use super::{interrupt, say, scene_accuracy};
 
 #[derive(Debug, Args)]
@@ -57,9 +60,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::new(&options.plot, common)?;
     let selection = if options.case.is_empty() { Selection::all() } else { Selection::of(&options.case)? };
     if options.list {
-        let mut sinks = open(&[], [Some(("--list", std::path::Path::new("-")))])?;
-        write_text(&mut sinks[0], &list(&options.case))?;
-        return finish(sinks);
+        return write_alone(Output::DATA, Path::new("-"), &list(&options.case));
     }
     if picture.is_some() && !selection.has_problems() {
         let names: Vec<&str> = PROBLEMS.iter().map(|problem| problem.name).collect();
@@ -68,9 +69,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             names.join(" or ")
         )));
     }
-    let out = common.out.as_deref().map(|path| ("--out", path));
-    let [plot, data] = Picture::outputs(picture);
-    let mut sinks = open(&[], [out, plot, data])?;
+    let mut outputs = Outputs::new(&[]).with(Output::DATA, common.out.as_deref())?.with_picture(picture)?;
 
     let bar = bar(selection.parts(), common.quiet);
     let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
@@ -84,16 +83,15 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if interrupt::came() {
         return Err(Failure::interrupted());
     }
-    let [csv, pictures @ ..] = &mut sinks;
-    if csv.is_some() {
-        write_table(csv, &report.table())?;
+    if outputs.has(Output::DATA) {
+        outputs.table(Output::DATA, &report.table())?;
     }
     if let Some(picture) = picture {
         let figure = accuracy_figure(&report.work_table(), env!("CARGO_PKG_VERSION"), &picture.theme);
-        picture.write(pictures, figure)?;
+        picture.write(&mut outputs, figure)?;
     }
-    let to_stdout = csv.as_ref().is_some_and(Sink::is_stdout);
-    finish(sinks)?;
+    let to_stdout = outputs.is_stdout(Output::DATA);
+    outputs.finish()?;
     show(&shown(&report), to_stdout, common.quiet)?;
     if !common.quiet {
         say(&format!("{:.1} s", watch.wall_s()));
@@ -104,9 +102,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
 /// Writes a text to standard output, or to standard error if standard output has the data.
 pub(super) fn show(text: &str, data_on_stdout: bool, quiet: bool) -> Result<(), Failure> {
     if !data_on_stdout {
-        let mut sinks = open(&[], [Some(("the table", std::path::Path::new("-")))])?;
-        write_text(&mut sinks[0], text)?;
-        finish(sinks)?;
+        write_alone(Output::DATA, Path::new("-"), text)?;
     } else if !quiet {
         say(text.trim_end());
     }

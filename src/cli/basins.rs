@@ -11,10 +11,10 @@ use interwell::system::threads::Pool;
 
 use super::failure::Failure;
 use super::options::{Common, PlotOptions};
+use super::outputs::{Output, Outputs};
 use super::picture::{Picture, caption};
-use super::progress::duration;
-use super::support::{MANIFEST, Watch, finish, inputs, load, mechanism, open, warn, write_table, write_text};
-use super::sweep::{bar, manifest_path, pool};
+use super::progress::{bar, duration};
+use super::support::{Watch, file_name, load_held, mechanism, outputs, pool, warn};
 use super::{interrupt, say};
 
 const EXAMPLES: &str = "\
@@ -62,11 +62,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if picture.is_some() {
         can_show_starts(&starts)?;
     }
-    let (mut document, warnings) = load(&options.scene, common, None)?;
-    let beside = manifest_path(common.out());
-    if beside.is_some() {
-        document.hold_files();
-    }
+    let (document, warnings, beside) = load_held(&options.scene, common, None)?;
     let mechanism = mechanism(&document)?;
     warn(&document, common, &warnings, Some(&mechanism));
     let count = starts.count() as u64;
@@ -79,30 +75,28 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         _ => Failure::argument(format!("{}: {problem}", document.name)),
     })?;
     let pool = pool(common)?;
-    let attractors = options.attractors.as_deref().map(|path| ("--attractors", path));
-    let beside = beside.as_deref().map(|path| (MANIFEST, path));
-    let [plot, data] = Picture::outputs(picture);
-    let outputs = [Some(("--out", common.out())), plot, data, attractors, beside];
-    let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
+    let mut outputs = outputs(&options.scene, &document, common)?
+        .with_picture(picture)?
+        .with(Output::ATTRACTORS, options.attractors.as_deref())?
+        .with(Output::MANIFEST, beside.as_deref())?;
 
     let watch = Watch::start();
     if !common.quiet {
         forecast(&basins).iter().for_each(|line| say(line));
     }
     let answer = answer(&mut basins, &pool, common).ok_or_else(Failure::interrupted)?;
-    write_rows(&mut sinks[0], &basins, &answer, &pool)?;
-    write_table(&mut sinks[3], &answer.attractors_table())?;
+    write_rows(&mut outputs, &basins, &answer, &pool)?;
+    outputs.table(Output::ATTRACTORS, &answer.attractors_table())?;
     if let Some(picture) = picture {
-        picture
-            .write(&mut sinks[1..3], basins_figure(&basins, &answer, &caption(&document), &picture.theme))?;
+        let figure = basins_figure(&basins, &answer, &caption(&document), &picture.theme);
+        picture.write(&mut outputs, figure)?;
     }
-    if sinks[4].is_some() {
-        let name = common.out().file_name();
-        let data = name.map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-        let text = basins_manifest(&document, &basins, &answer, &watch.origin(pool.count()), &data);
-        write_text(&mut sinks[4], &text)?;
+    if beside.is_some() {
+        let (origin, data) = (watch.origin(pool.count()), file_name(common.out()));
+        let text = basins_manifest(&document, &basins, &answer, &origin, &data);
+        outputs.write(Output::MANIFEST, &text)?;
     }
-    finish(sinks)?;
+    outputs.finish()?;
     if !common.quiet {
         say(&outcome(&answer, count, watch.wall_s()));
     }
@@ -116,12 +110,10 @@ fn answer(basins: &mut Basins, pool: &Pool, common: &Common) -> Option<Answer> {
     let bar = shown(basins.starts().count(), "starts");
     let task = Task { tick: &|| bar.inc(1), cancel };
     while !basins.is_whole() && basins.run_level(pool, &task) {}
-    let answer = basins.answer(&task).filter(|_| basins.is_whole());
-    bar.finish_and_clear();
-    let mut answer = answer?;
+    let mut answer = basins.answer(&task).filter(|_| basins.is_whole())?;
+    drop(bar);
     let bar = shown(basins.rows_to_check(&answer).len(), "starts once more");
     let whole = basins.check(&mut answer, pool, &Task { tick: &|| bar.inc(1), cancel });
-    bar.finish_and_clear();
     whole.then_some(answer)
 }
 
@@ -145,13 +137,8 @@ fn forecast(basins: &Basins) -> Option<String> {
 /// Rows that a thread formats at a time.
 const ROWS: usize = 1 << 14;
 
-fn write_rows(
-    sink: &mut Option<interwell::output::Sink>,
-    basins: &Basins,
-    answer: &Answer,
-    pool: &Pool,
-) -> Result<(), Failure> {
-    write_table(sink, &answer.table(basins, 0, 0))?;
+fn write_rows(outputs: &mut Outputs, basins: &Basins, answer: &Answer, pool: &Pool) -> Result<(), Failure> {
+    outputs.table(Output::DATA, &answer.table(basins, 0, 0))?;
     let begins: Vec<usize> = (0..answer.rows.len()).step_by(ROWS).collect();
     for begins in begins.chunks(pool.count()) {
         if interrupt::came() {
@@ -162,7 +149,7 @@ fn write_rows(
         };
         let Ok(texts) = pool.map(begins.len(), || (), text);
         for text in texts {
-            write_text(sink, &text)?;
+            outputs.write(Output::DATA, &text)?;
         }
     }
     Ok(())

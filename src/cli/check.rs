@@ -8,9 +8,10 @@ use interwell::study::inspect;
 
 use super::failure::Failure;
 use super::options::Common;
+use super::outputs::{Output, Outputs};
 use super::say;
 use super::shard::line;
-use super::support::{finish, load, mechanism, open, write_text};
+use super::support::{load, mechanism};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -24,15 +25,15 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let paper = ["paper".to_owned()];
     let scenes = if options.scenes.is_empty() { &paper[..] } else { &options.scenes[..] };
     let names: Vec<PathBuf> = scenes.iter().map(PathBuf::from).collect();
-    let mut sinks = open(&names, [Some(("--out", common.out()))])?;
+    let mut outputs = Outputs::new(&names).with(Output::DATA, Some(common.out()))?;
     let mut wrong = Vec::new();
     for spec in scenes {
         match report(spec, common) {
-            Ok(text) => write_text(&mut sinks[0], &text)?,
+            Ok(text) => outputs.write(Output::DATA, &text)?,
             Err(error) => wrong.push(error),
         }
     }
-    finish(sinks)?;
+    outputs.finish()?;
     match wrong.pop() {
         None => Ok(()),
         // The last error is returned, and its caller prints it.

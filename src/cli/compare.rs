@@ -10,12 +10,11 @@ use interwell::study::{Alternative, Rated, Task, alternatives, comparison_parts,
 use super::failure::Failure;
 use super::interrupt;
 use super::options::{Common, PlotOptions};
+use super::outputs::{Output, Outputs};
 use super::picture::{Picture, caption};
+use super::progress::bar;
 use super::say;
-use super::support::{
-    finish, inputs, load, mechanism, model_from_rest, open, read, until_settled, warn, write_table,
-};
-use super::sweep::{bar, pool};
+use super::support::{inputs, load, mechanism, model_from_rest, pool, read, until_settled, warn};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -88,14 +87,13 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         grouped(replaced).iter().for_each(|line| say(line));
     }
     let pool = pool(common)?;
-    let [plot, data] = Picture::outputs(picture);
-    let mut sinks = open(&files, [Some(("--out", common.out())), plot, data])?;
+    let mut outputs = Outputs::new(&files).with(Output::DATA, Some(common.out()))?.with_picture(picture)?;
     let bar = bar(comparison_parts(&all), "parts", common.quiet, common.out());
     let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
     let rated = alternatives(&all, until, &pool, &task);
-    bar.finish_and_clear();
+    drop(bar);
     let rated = rated.ok_or_else(Failure::interrupted)?;
-    write_table(&mut sinks[0], &comparison_table(&rated))?;
+    outputs.table(Output::DATA, &comparison_table(&rated))?;
     if !common.quiet {
         let remarks = all.iter().zip(&rated).flat_map(|(scene, rated)| {
             let remarks = remarks(scene, rated, amplitude_g).into_iter();
@@ -109,9 +107,9 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         let (shaking, at) = (short(amplitude_g), short(frequency_hz));
         caption.title = format!("{count} scenes under a sine of {shaking} g at {at} Hz");
         let shown = ComparisonPicture { rated: &rated, frequency_hz };
-        picture.write(&mut sinks[1..3], comparison_figure(&shown, &caption, &picture.theme))?;
+        picture.write(&mut outputs, comparison_figure(&shown, &caption, &picture.theme))?;
     }
-    finish(sinks)
+    outputs.finish()
 }
 
 /// Duration of a run, beginning of its settled window, and tolerance.

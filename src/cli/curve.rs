@@ -18,10 +18,9 @@ use interwell::study::{
 use super::failure::Failure;
 use super::measured_force::MeasuredForceOptions;
 use super::options::{ChartOptions, Common, whole};
-use super::picture::{Picture, caption, ranges};
-use super::support::{
-    finish, inputs, load_with_mechanism, number, numbers, open, range, write_table, write_text,
-};
+use super::outputs::{Output, Outputs};
+use super::picture::{Picture, caption};
+use super::support::{inputs, load_with_mechanism, number, numbers, range};
 use super::{interrupt, say};
 
 #[derive(Debug, Args)]
@@ -87,10 +86,9 @@ const SHAPES: u32 = 21;
 
 /// Writes the curve as CSV and, if requested, the landscape as JSON and the shapes of the flexures as CSV.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::new(&options.chart.plot, common)?;
-    let axes = ranges(&options.chart, "--plot-x")?;
+    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     let contact_picture =
-        Picture::of("--contact-plot", options.contact_plot.as_deref(), &options.chart.plot, common)?;
+        Picture::of(Output::CONTACT_PLOT, options.contact_plot.as_deref(), &options.chart.plot, common)?;
     // with two pictures, --plot-data holds the numbers of --plot
     let contact_picture = contact_picture
         .map(|contact| if picture.is_none() { contact.with_data(&options.chart.plot) } else { contact });
@@ -114,25 +112,25 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             flexures_at(&mechanism, &[]).map_err(|error| unknown(&document.name, option, error))?;
         }
     }
-    let contact_path = options.contact.as_deref().map(|path| ("--contact", path));
-    let contacts = match contact_path.or(Picture::outputs(contact_picture)[0]) {
-        Some((option, _)) => Some(contact_table(&document, &mechanism, option, rigid)?),
-        None => None,
+    let contact_output = match options.contact {
+        Some(_) => Some(Output::CONTACT),
+        None => contact_picture.map(|picture| picture.output),
     };
-    let landscape_path = options.landscape.as_deref().map(|path| ("--landscape", path));
-    let shapes_path = options.shapes.as_deref().map(|path| ("--shapes", path));
-    let [plot, data] = Picture::outputs(picture);
-    let [contact_plot, contact_data] = Picture::outputs(contact_picture);
-    let comparison = options.measured.comparison.as_deref().map(|path| ("--comparison", path));
+    let contact_table = |output: Output| contact_table(&document, &mechanism, output.option(), rigid);
+    let contacts = contact_output.map(contact_table).transpose()?;
     let mut read = inputs(&options.scene, &document);
     read.extend(options.measured.measured.clone());
-    let out = Some(("--out", common.out()));
-    let paths =
-        [out, landscape_path, shapes_path, contact_path, plot, data, contact_plot, contact_data, comparison];
-    let mut sinks = open(&read, paths)?;
+    let mut outputs = Outputs::new(&read)
+        .with(Output::DATA, Some(common.out()))?
+        .with(Output::LANDSCAPE, options.landscape.as_deref())?
+        .with(Output::SHAPES, options.shapes.as_deref())?
+        .with(Output::CONTACT, options.contact.as_deref())?
+        .with_picture(picture)?
+        .with_picture(contact_picture)?
+        .with(Output::COMPARISON, options.measured.comparison.as_deref())?;
     let measured = options.measured.compare(&mechanism, common.quiet)?;
     if let Some(found) = &measured {
-        write_table(&mut sinks[8], &found.table)?;
+        outputs.table(Output::COMPARISON, &found.table)?;
     }
     let table = if options.full {
         let rows = solved(&mechanism, &positions(CURVE_POINTS), &document.name, "--full")?;
@@ -144,8 +142,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     } else {
         table
     };
-    write_table(&mut sinks[0], &table)?;
-    write_text(&mut sinks[1], &landscape(&mechanism, document.scene.mass_g / 1e3))?;
+    outputs.table(Output::DATA, &table)?;
+    outputs.write(Output::LANDSCAPE, &landscape(&mechanism, document.scene.mass_g / 1e3))?;
     if let Some(picture) = picture {
         // The picture shows the whole curve, even if few positions were requested.
         let about = caption(&document);
@@ -153,28 +151,34 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             Some(found) => {
                 let ends = |fold: fn(f64, f64) -> f64| found.positions.iter().copied().fold(f64::NAN, fold);
                 let over = even_positions((ends(f64::min), ends(f64::max)), CURVE_PICTURE_POINTS);
-                measured_force_figure(found, &curve(&mechanism, over)?, axes, &about, &picture.theme)
+                measured_force_figure(
+                    found,
+                    &curve(&mechanism, over)?,
+                    picture.ranges,
+                    &about,
+                    &picture.theme,
+                )
             }
             None => {
                 let table = curve(&mechanism, even(CURVE_PICTURE_POINTS))?;
                 let stops = stop_positions(&document.scene);
-                curve_figure(&table, &mechanism, stops, axes, &about, &picture.theme)
+                curve_figure(&table, &mechanism, stops, picture.ranges, &about, &picture.theme)
             }
         };
-        picture.write(&mut sinks[4..6], figure)?;
+        picture.write(&mut outputs, figure)?;
     }
-    if shapes_path.is_some() {
+    if outputs.has(Output::SHAPES) {
         let drawn = solved(&mechanism, &positions(SHAPES), &document.name, "--shapes")?;
-        write_table(&mut sinks[2], &shapes(&drawn))?;
+        outputs.table(Output::SHAPES, &shapes(&drawn))?;
     }
     if let Some((table, model)) = &contacts {
-        write_table(&mut sinks[3], table)?;
+        outputs.table(Output::CONTACT, table)?;
         if let Some((picture, stop)) = contact_picture.zip(model.compliant()) {
             let figure = contact_figure(table, &stop, model.mass(), &caption(&document), &picture.theme);
-            picture.write(&mut sinks[6..8], figure)?;
+            picture.write(&mut outputs, figure)?;
         }
     }
-    finish(sinks)
+    outputs.finish()
 }
 
 /// The table of one impact on the scene's compliant stop over impact speed, and the model.

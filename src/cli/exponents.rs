@@ -2,21 +2,21 @@
 
 use clap::Args;
 use interwell::dynamics::Model;
-use interwell::output::{ExponentPicture, can_show_exponents, exponents_figure, exponents_manifest, header};
+use interwell::output::{ExponentPicture, can_show_exponents, exponents_figure, exponents_manifest};
 use interwell::scene::Document;
 use interwell::study::{
-    ExponentCells, ExponentOptions, ExponentTally, Exponents, Grid, NoExponents, SweepEnd, Table, Task,
-    drive_fault, exponents, exponents_row,
+    ExponentCells, ExponentOptions, Exponents, Grid, NoExponents, Table, Tally, Task, drive_fault, exponents,
+    exponents_row,
 };
 
 use super::failure::Failure;
+use super::grid_job::GridJob;
 use super::options::{ChartOptions, Common, whole};
-use super::picture::{Picture, caption, ranges};
+use super::outputs::Output;
+use super::picture::{Picture, caption};
 use super::support::{
-    MANIFEST, Watch, finish, inputs, load, load_with_mechanism, open, put, refuse_electrical_state,
-    until_settled, warn, write_table, write_text,
+    file_name, load_held, load_model, located, outputs, pool, refuse_electrical_state, until_settled, warn,
 };
-use super::sweep::{bar, file_name, located, manifest_path, pool};
 use super::{interrupt, say};
 
 const EXAMPLES: &str = "\
@@ -57,27 +57,26 @@ pub struct Arguments {
 
 /// Computes the exponents and writes the table.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::new(&options.chart.plot, common)?;
+    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     if !options.over.is_empty() {
         return over(options, common, picture);
     }
     if picture.is_some() {
-        can_show_exponents(None)?;
+        can_show_exponents(&Grid::of_one())?;
     }
-    let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
-    let model = Model::build(&document.scene, mechanism).map_err(|faults| document.error_from(faults))?;
+    let (document, model) = load_model(&options.scene, common)?;
     if let Some(fault) = drive_fault(&model, &document.scene) {
         return Err(document.error_from(vec![fault]).into());
     }
     refuse_electrical_state(&document, &[], "exponents")?;
     let settings = settings(options, &document, Some(&model))?;
-    let mut sinks = open(&inputs(&options.scene, &document), [Some(("--out", common.out()))])?;
+    let mut outputs = outputs(&options.scene, &document, common)?;
     let found = exponents(&model, &settings, interrupt::listen()).map_err(|problem| match problem {
         NoExponents::Cancelled => Failure::interrupted(),
         _ => Failure::Failed(anyhow::anyhow!("{}: {problem}", document.name)),
     })?;
-    write_table(&mut sinks[0], &exponents_row(&found))?;
-    finish(sinks)?;
+    outputs.table(Output::DATA, &exponents_row(&found))?;
+    outputs.finish()?;
     if !common.quiet {
         say(&format!("{}: {}", document.name, about(&found, model.repeats())));
     }
@@ -117,73 +116,49 @@ fn about(found: &Exponents, forced: bool) -> String {
 
 /// Computes the exponents of every cell of a grid, one row for each.
 fn over(options: &Arguments, common: &Common, picture: Option<Picture>) -> Result<(), Failure> {
-    let axes = ranges(&options.chart, "--plot-x")?;
-    let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
-    let beside = manifest_path(common.out());
-    if beside.is_some() {
-        document.hold_files();
-    }
+    let (document, warnings, manifest_out) = load_held(&options.scene, common, Some(&options.over))?;
     let grid = Grid::new(document.axes(&options.over)?)?;
     refuse_electrical_state(&document, grid.axes(), "exponents")?;
     if picture.is_some() {
-        can_show_exponents(Some(&grid))?;
+        can_show_exponents(&grid)?;
     }
     let cells = ExponentCells::new(&document.scene, &document.files, grid);
     let task = Task { tick: &|| (), cancel: interrupt::listen() };
     let pool = pool(common)?;
     cells.validate(&pool, &task).map_err(|cell| located(&document, cell))?;
-    let first = cells.first_model(&task).and_then(Result::ok);
-    let settings = settings(options, &document, first.as_ref())?;
+    let settings = settings(options, &document, cells.first_model(&task).as_ref())?;
+    let cells = cells.with(settings);
     warn(&document, common, &warnings, cells.first_mechanism().ok().as_deref());
-    let beside = beside.as_deref().map(|path| (MANIFEST, path));
-    let [plot, data] = Picture::outputs(picture);
-    let outputs = [Some(("--out", common.out())), plot, data, beside];
-    let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
-    let mut shown = picture.map(|_| Table::new());
+    let outputs = outputs(&options.scene, &document, common)?;
     let grid = cells.grid();
-    let bar = bar(grid.cells(), "cells", common.quiet, common.out());
-    let task = Task { tick: &|| bar.inc(1), ..task };
-    let watch = Watch::start();
-    write_text(&mut sinks[0], &header(&cells.empty_table()))?;
-    let result = cells.run(&settings, &pool, &task, |table| {
-        if let Some(shown) = &mut shown {
-            shown.append(table);
-        }
-        put(&mut sinks[0], table, shown.is_some())
-    });
-    bar.finish_and_clear();
-    let tally = result.map_err(|end| match end {
-        SweepEnd::Cancelled => Failure::interrupted(),
-        SweepEnd::Write(failure) => failure,
+    let mut job = GridJob::open(&document, common, outputs, common.out(), picture, manifest_out, pool)?;
+    let columns: Vec<String> = cells.empty_table().columns().iter().map(|c| c.name.clone()).collect();
+    let (tally, _) = job.stream(&cells, "cells", &columns)?;
+    let figure = |rows: &Table, picture: &Picture| {
+        let shown = ExponentPicture { rows, grid, scene: &document.scene, ranges: picture.ranges };
+        Ok(exponents_figure(&shown, &caption(&document), &picture.theme)?)
+    };
+    let wall_s = job.finish(figure, |origin| {
+        Ok(exponents_manifest(&document, grid, &tally, origin, &file_name(common.out())))
     })?;
-    if let Some((picture, rows)) = picture.zip(shown) {
-        let shown = ExponentPicture { rows: &rows, grid, scene: &document.scene, ranges: axes };
-        picture.write(&mut sinks[1..3], exponents_figure(&shown, &caption(&document), &picture.theme)?)?;
-    }
-    if sinks[3].is_some() {
-        let origin = watch.origin(pool.count());
-        let text = exponents_manifest(&document, grid, &tally, &origin, &file_name(common.out()));
-        write_text(&mut sinks[3], &text)?;
-    }
-    finish(sinks)?;
     if !common.quiet && tally.cells == grid.cells() {
-        say(&summary(&tally, watch.wall_s()));
+        say(&summary(&tally, wall_s));
     }
     Ok(())
 }
 
 /// Sums up the cells in one line.
-fn summary(tally: &ExponentTally, seconds: f64) -> String {
+fn summary(tally: &Tally, seconds: f64) -> String {
     let cells = if tally.cells == 1 { "1 cell".to_owned() } else { format!("{} cells", tally.cells) };
     let mut text = format!("{cells} in {seconds:.2} s");
     if tally.resting > 0 {
         text += &format!(", {} with a rest on a stop, so that both exponents are -inf", tally.resting);
     }
-    if tally.missing > 0 {
+    if tally.without_exponents > 0 {
         text += &format!(
             ", {} without exponents (the motion ended early, touched a stop without speed, or the flexures \
              have no solution)",
-            tally.missing
+            tally.without_exponents
         );
     }
     text

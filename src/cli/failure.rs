@@ -7,7 +7,7 @@ use interwell::output::{NoPicture, OpenError};
 use interwell::scene::lesson::LessonError;
 use interwell::scene::{ArgumentError, SceneError};
 use interwell::study::accuracy::UnknownCase;
-use interwell::study::{CellFaults, GridError, OutsideCurve, TimesError};
+use interwell::study::{GridError, OutsideCurve, SweepEnd, TimesError};
 
 /// An error of a command, by its exit status.
 #[derive(Debug)]
@@ -80,10 +80,11 @@ impl From<OpenError> for Failure {
     }
 }
 
-/// The failure for a sweep's first wrong cell; `error` has its faults, with their places.
-pub fn wrong_cell(cell: &CellFaults, error: SceneError) -> Failure {
-    if cell.cell.is_empty() {
-        return error.into();
+impl From<SweepEnd<Self>> for Failure {
+    fn from(end: SweepEnd<Self>) -> Self {
+        match end {
+            SweepEnd::Cancelled => Self::interrupted(),
+            SweepEnd::Write(failure) => failure,
+        }
     }
-    Failure::Wrong(anyhow::anyhow!("in the cell {}:\n{error}", cell.cell))
 }

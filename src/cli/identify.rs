@@ -12,9 +12,10 @@ use interwell::study::{
 use super::columns::{ColumnOptions, PositionOptions};
 use super::failure::Failure;
 use super::options::{ChartOptions, Common};
-use super::picture::{Picture, ranges};
+use super::outputs::{Output, Outputs};
+use super::picture::Picture;
 use super::say;
-use super::support::{Watch, finish, open, write_table, write_text};
+use super::support::Watch;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -103,26 +104,26 @@ impl Arguments {
 /// Reads the record, identifies the quantity, and writes rows and summary.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     fits(options)?;
-    let summary = options.summary.as_deref().map(|path| ("--summary", path));
     let watch = Watch::start();
-    let picture = Picture::new(&options.chart.plot, common)?;
-    let axes = ranges(&options.chart, "--plot-x")?;
-    let [plot, data] = Picture::outputs(picture);
-    let outputs = [Some(("--out", common.out())), summary, plot, data];
-    let mut sinks = open(&[options.file().to_path_buf()], outputs)?;
+    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
+    let mut outputs = Outputs::new(&[options.file().to_path_buf()])
+        .with(Output::DATA, Some(common.out()))?
+        .with(Output::SUMMARY, options.summary.as_deref())?
+        .with_picture(picture)?;
     let Answer { timing, found, across, values } = answer(options, common.quiet)?;
     let found = found.map_err(|problem| about(options.file(), problem))?;
-    let [rows, about, pictures @ ..] = &mut sinks;
-    write_table(rows, &found.rows)?;
-    write_text(about, &identified(options.of(), &found, timing.as_ref(), &watch.origin(1)))?;
+    outputs.table(Output::DATA, &found.rows)?;
+    let summary = identified(options.of(), &found, timing.as_ref(), &watch.origin(1));
+    outputs.write(Output::SUMMARY, &summary)?;
     if let Some(picture) = picture {
         let name = options.file().file_name().unwrap_or_default().to_string_lossy();
         let caption = Caption::of_record(&name, options.of(), env!("CARGO_PKG_VERSION"));
         let (what, record) = ((options.of(), &found), (&across[..], &values.values[..]));
-        let figure = identified_figure(what, record, values.quantity, axes, &caption, &picture.theme);
-        picture.write(pictures, figure)?;
+        let figure =
+            identified_figure(what, record, values.quantity, picture.ranges, &caption, &picture.theme);
+        picture.write(&mut outputs, figure)?;
     }
-    finish(sinks)?;
+    outputs.finish()?;
     if !common.quiet {
         let name = options.file().display();
         if let Some(timing) = timing {

@@ -10,8 +10,8 @@ use interwell::system::files;
 
 use super::failure::Failure;
 use super::options::Common;
-use super::support::{finish, open, write_text};
-use super::sweep::pool;
+use super::outputs::{Output, Outputs, write_alone};
+use super::support::pool;
 use super::{interrupt, say};
 
 const EXAMPLES: &str = "\
@@ -48,14 +48,14 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         return begin(path);
     }
     let input: Vec<PathBuf> = options.lesson.iter().map(PathBuf::from).collect();
-    let mut sinks = open(&input, [Some(("--out", common.out()))])?;
+    let mut outputs = Outputs::new(&input).with(Output::DATA, Some(common.out()))?;
     let (text, wrong) = match &options.lesson {
         _ if options.check => checked(options, common)?,
         Some(spec) => (full_text(&load(spec)?), None),
         None => (list()?, None),
     };
-    write_text(&mut sinks[0], &text)?;
-    finish(sinks)?;
+    outputs.write(Output::DATA, &text)?;
+    outputs.finish()?;
     wrong.map_or(Ok(()), Err)
 }
 
@@ -151,7 +151,5 @@ fn begin(path: &Path) -> Result<(), Failure> {
     if files::exists(path) {
         return Err(Failure::argument(format!("--new {shown}: the file is there already; name another")));
     }
-    let mut sinks = open(&[], [Some(("--new", path))])?;
-    write_text(&mut sinks[0], TEMPLATE)?;
-    finish(sinks)
+    write_alone(Output::LESSON, path, TEMPLATE)
 }

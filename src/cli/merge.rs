@@ -4,7 +4,7 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use interwell::output::{Sink, merged_manifest, plan_differences};
+use interwell::output::{merged_manifest, plan_differences};
 use interwell::scene::PROGRAM;
 use interwell::study::{Shard, Slice};
 use interwell::system::checksum::Checksum;
@@ -13,8 +13,9 @@ use serde_json::Value;
 
 use super::failure::Failure;
 use super::options::Common;
+use super::outputs::{Output, Outputs};
 use super::shard::{PLACE, command, other_name, value};
-use super::support::{MANIFEST, Watch, file_name, finish, manifest_path, open, write_text};
+use super::support::{Watch, file_name, manifest_path};
 use super::{interrupt, say};
 
 #[derive(Debug, Args)]
@@ -37,31 +38,30 @@ struct Part {
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let watch = Watch::start();
     let mut parts = all(&options.parts)?;
-    let beside = manifest_path(common.out());
-    let outputs = [Some(("--out", common.out())), beside.as_deref().map(|path| (MANIFEST, path))];
     let inputs: Vec<PathBuf> = parts
         .iter()
         .flat_map(|part| [Some(part.path.clone()), manifest_path(&part.path)])
         .flatten()
         .collect();
-    let mut sinks = open(&inputs, outputs)?;
+    let mut outputs = Outputs::new(&inputs)
+        .with(Output::DATA, Some(common.out()))?
+        .with(Output::MANIFEST, manifest_path(common.out()).as_deref())?;
     let plan = &parts[0].manifest["plan"];
     let (rows, unit) = (plan["rows"].as_u64().unwrap_or(0), plan["unit"].as_u64().unwrap_or(0).max(1));
     let slice = Slice::new(rows, unit, parts[0].shard);
 
     let mut whole = Checksum::default();
-    let mut put = |sink: &mut Option<Sink>, text: &[u8]| {
+    let mut put = |text: &[u8]| {
         whole.add(text);
-        let Some(sink) = sink else { return Ok(()) };
-        sink.put_bytes(text).map_err(|error| Failure::writing(sink.name(), error))
+        outputs.write(Output::DATA, text)
     };
     let headers: Vec<Vec<u8>> = parts.iter_mut().map(|part| part.lines(1)).collect::<Result<_, _>>()?;
-    put(&mut sinks[0], &headers[0])?;
+    put(&headers[0])?;
     for (number, rows) in slice.dealt() {
         if interrupt::came() {
             return Err(Failure::interrupted());
         }
-        put(&mut sinks[0], &parts[number as usize - 1].lines(rows)?)?;
+        put(&parts[number as usize - 1].lines(rows)?)?;
     }
     for part in &parts {
         part.check()?;
@@ -70,8 +70,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let manifests: Vec<Value> = parts.into_iter().map(|part| part.manifest).collect();
     let origin = watch.origin(1);
     let text = merged_manifest(&manifests, &file_name(common.out()), &sum, &origin.arguments);
-    write_text(&mut sinks[1], &text)?;
-    finish(sinks)?;
+    outputs.write(Output::MANIFEST, &text)?;
+    outputs.finish()?;
     if !common.quiet {
         say(&format!("{rows} rows of {} shards in {:.2} s", manifests.len(), watch.wall_s()));
     }
@@ -81,14 +81,13 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
 /// Opens all shards of one sweep and orders them. An error names the files that do not belong together, or
 /// the missing shards with the commands that compute them.
 fn all(paths: &[PathBuf]) -> Result<Vec<Part>, Failure> {
-    let (mut parts, mut unfinished): (Vec<Part>, Vec<&Path>) = (Vec::new(), Vec::new());
+    let (mut parts, mut unfinished): (Vec<Part>, Vec<String>) = (Vec::new(), Vec::new());
     for path in paths {
         match Part::open(path)? {
             Some(part) => parts.push(part),
-            None => unfinished.push(path.as_path()),
+            None => unfinished.push(why_not(path)),
         }
     }
-    let unfinished: Vec<String> = unfinished.into_iter().map(why_not).collect();
     let Some(first) = parts.first() else {
         if paths.is_empty() {
             let example = "such as merge map-*-of-5.csv --out map.csv";
@@ -118,11 +117,9 @@ fn all(paths: &[PathBuf]) -> Result<Vec<Part>, Failure> {
     }
     let count = parts[0].shard.count();
     let has = |number: u64| parts.iter().any(|part| part.shard.number() == number);
-    let missing: Vec<String> = (1..=count)
-        .filter(|number| !has(*number))
-        .map(|number| Ok(parts[0].command_of(Shard::new(number, count)?)))
-        .collect::<Result<_, String>>()
-        .map_err(Failure::argument)?;
+    let missing = (1..=count).filter(|number| !has(*number));
+    let missing = missing.filter_map(|number| Shard::new(number, count).ok());
+    let missing: Vec<String> = missing.map(|shard| parts[0].command_of(shard)).collect();
     if missing.is_empty() {
         return Ok(parts);
     }

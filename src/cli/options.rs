@@ -219,21 +219,20 @@ impl Common {
     ///
     /// clap's global arguments would drop a `--set` before the command if another one follows the command.
     pub fn put_before(&mut self, before: Self) -> Result<(), &'static str> {
-        fn one<T>(after: &mut Option<T>, before: Option<T>, name: &'static str) -> Result<(), &'static str> {
-            match (after.is_some(), before) {
-                (_, None) => Ok(()),
-                (true, Some(_)) => Err(name),
-                (false, before) => {
-                    *after = before;
-                    Ok(())
-                }
-            }
+        let twice = [
+            ("--out", self.out.is_some() && before.out.is_some()),
+            ("--tolerance", self.tolerance.is_some() && before.tolerance.is_some()),
+            ("--jobs", self.jobs.is_some() && before.jobs.is_some()),
+        ];
+        if let Some((option, _)) = twice.into_iter().find(|(_, twice)| *twice) {
+            return Err(option);
         }
         self.set.splice(0..0, before.set);
         self.quiet |= before.quiet;
-        one(&mut self.out, before.out, "--out")?;
-        one(&mut self.tolerance, before.tolerance, "--tolerance")?;
-        one(&mut self.jobs, before.jobs, "--jobs")
+        self.out = self.out.take().or(before.out);
+        self.tolerance = self.tolerance.take().or(before.tolerance);
+        self.jobs = self.jobs.or(before.jobs);
+        Ok(())
     }
 
     /// The first of the named options that was given, for commands in which they have no meaning.

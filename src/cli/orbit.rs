@@ -12,10 +12,9 @@ use interwell::study::{Branch, BranchEnd, Family, NoOrbit, Table, Task, branch, 
 
 use super::failure::Failure;
 use super::options::{ChartOptions, Common, whole};
-use super::picture::{Picture, caption, ranges};
-use super::support::{
-    finish, inputs, mechanism, number, open, read, refuse_electrical_state, warn, write_table,
-};
+use super::outputs::Output;
+use super::picture::{Picture, caption};
+use super::support::{check, mechanism, number, outputs, read, refuse_electrical_state, warn};
 use super::{interrupt, say};
 
 const EXAMPLES: &str = "\
@@ -53,8 +52,7 @@ pub struct Arguments {
 
 /// Finds the motion, or follows its branch, and writes the table.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::new(&options.chart.plot, common)?;
-    let axes = ranges(&options.chart, "--plot-x")?;
+    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     if picture.is_some() && options.branch.is_none() {
         return Err(Failure::argument("--plot shows a branch; add --branch FIELD=A:B, or leave it out"));
     }
@@ -69,8 +67,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             &format!("--branch {}", options.branch.as_deref().unwrap_or_default()),
         )?;
     }
-    let moved = document.settle_within();
-    let warnings: Vec<String> = moved.into_iter().chain(document.check()?).collect();
+    let warnings = check(&mut document, None)?;
     let mechanism = mechanism(&document)?;
     warn(&document, common, &warnings, Some(&mechanism));
     let model = Model::build(&document.scene, Arc::clone(&mechanism))
@@ -84,9 +81,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     }
     refuse_electrical_state(&document, &[], "orbit")?;
     let cancel = interrupt::listen();
-    let [plot, data] = Picture::outputs(picture);
-    let outputs = [Some(("--out", common.out())), plot, data];
-    let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
+    let mut outputs = outputs(&options.scene, &document, common)?.with_picture(picture)?;
     let phase = phase_deg / 360.0;
     let failed = |error: NoOrbit, at: &str| match error {
         NoOrbit::Cancelled => Failure::interrupted(),
@@ -105,8 +100,9 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             bar.finish_and_clear();
             let found = found.map_err(|error| failed(error, &format!("at {field} = {from}: ")))?;
             if let Some(picture) = picture {
-                let figure = branch_figure(&found, phase_deg, axes, &caption(&document), &picture.theme);
-                picture.write(&mut sinks[1..3], figure)?;
+                let figure =
+                    branch_figure(&found, phase_deg, picture.ranges, &caption(&document), &picture.theme);
+                picture.write(&mut outputs, figure)?;
             }
             if !common.quiet {
                 remarks(&found, (from, to)).iter().for_each(|line| say(line));
@@ -114,8 +110,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             found.table()
         }
     };
-    write_table(&mut sinks[0], &table)?;
-    finish(sinks)
+    outputs.table(Output::DATA, &table)?;
+    outputs.finish()
 }
 
 /// A counter of motions on a terminal; their final number is not known.

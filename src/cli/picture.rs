@@ -5,24 +5,28 @@ use std::path::Path;
 use clap::parser::ValueSource;
 use clap::{ArgAction, ArgMatches, CommandFactory};
 use interwell::output::{
-    Argument, Caption, Figure, Format, Ranges, Sheet, SheetText, Sink, Theme, picture_arguments,
+    Argument, Caption, Figure, Format, Ranges, Sheet, SheetText, Theme, picture_arguments,
 };
 use interwell::scene::Document;
 
 use super::failure::Failure;
 use super::options::{ChartOptions, Common, Options, PlotOptions};
+use super::outputs::{Output, Outputs};
 use super::say;
-use super::support::{range, write_table};
+use super::support::range;
 
 /// A requested picture.
 #[derive(Debug, Clone, Copy)]
 pub struct Picture<'a> {
     /// Where it goes.
+    pub output: Output,
     pub path: &'a Path,
+    /// Where its numbers go.
+    pub data: Option<&'a Path>,
     /// Sheet of paper, and light or dark colours.
     pub theme: Theme,
-    option: &'static str,
-    data: Option<&'a Path>,
+    /// The ranges of its axes.
+    pub ranges: Ranges,
     format: Format,
     size: Option<(u32, u32)>,
     titled: bool,
@@ -32,8 +36,23 @@ pub struct Picture<'a> {
 impl<'a> Picture<'a> {
     /// The picture that `options` ask for; an error if its name does not end like one.
     pub fn new(options: &'a PlotOptions, common: &Common) -> Result<Option<Self>, Failure> {
-        let picture = Self::of("--plot", options.plot.as_deref(), options, common)?;
+        let picture = Self::of(Output::PLOT, options.plot.as_deref(), options, common)?;
         Ok(picture.map(|picture| picture.with_data(options)))
+    }
+
+    /// The same, with the ranges of its axes; errors name the horizontal one `across`.
+    pub fn of_chart(
+        options: &'a ChartOptions,
+        across: &'static str,
+        common: &Common,
+    ) -> Result<Option<Self>, Failure> {
+        let picture = Self::new(&options.plot, common)?;
+        let of = |option, text: &Option<String>| {
+            let form = "A:B with A below B, such as 0:2";
+            text.as_deref().map(|text| range(option, text, form)).transpose()
+        };
+        let ranges = Ranges { x: of(across, &options.plot_x)?, y: of("--plot-y", &options.plot_y)? };
+        Ok(picture.map(|picture| Self { ranges, ..picture }))
     }
 
     /// The same, with the path of `--plot-data`.
@@ -41,14 +60,14 @@ impl<'a> Picture<'a> {
         Self { data: options.plot_data.as_deref(), ..self }
     }
 
-    /// The picture at the `path` given by `option`, laid out as `options` say.
+    /// The picture at the `path` of an output, laid out as `options` say.
     pub fn of(
-        option: &'static str,
+        output: Output,
         path: Option<&'a Path>,
         options: &PlotOptions,
         common: &Common,
     ) -> Result<Option<Self>, Failure> {
-        let Some(path) = path else { return Ok(None) };
+        let (Some(path), option) = (path, output.option()) else { return Ok(None) };
         let format = Format::of(path)
             .map_err(|problem| Failure::argument(format!("{option} {}: {problem}", path.display())))?;
         if let Some(dpi) = options.dpi.as_deref().filter(|_| format != Format::Png) {
@@ -57,10 +76,11 @@ impl<'a> Picture<'a> {
             return Err(Failure::argument(message));
         }
         Ok(Some(Self {
+            output,
             path,
-            theme: Theme::of(options.dark, sheet(options, format)?),
-            option,
             data: None,
+            theme: Theme::of(options.dark, sheet(options, format)?),
+            ranges: Ranges::default(),
             format,
             size: options.plot_size.as_deref().map(size).transpose()?,
             titled: !options.no_title,
@@ -68,27 +88,19 @@ impl<'a> Picture<'a> {
         }))
     }
 
-    /// The option and path of the picture and of its data, where they are requested.
-    pub fn outputs(picture: Option<Self>) -> [Option<(&'static str, &'a Path)>; 2] {
-        let data = picture.and_then(|picture| picture.data);
-        [picture.map(|picture| (picture.option, picture.path)), data.map(|path| ("--plot-data", path))]
-    }
-
-    /// Writes the picture to the first sink and its data to the second, if there is one.
-    pub fn write(&self, sinks: &mut [Option<Sink>], figure: Figure) -> Result<(), Failure> {
+    /// Writes the picture, and its numbers if they are requested.
+    pub fn write(&self, outputs: &mut Outputs, figure: Figure) -> Result<(), Failure> {
         let mut figure = if self.titled { figure } else { figure.without_title() };
         figure.size = self.size;
         figure.origin.insert("arguments".into(), arguments().into());
         if let Some(words) = figure.grown().filter(|_| !self.quiet) {
             say(&format!("warning: --plot-height-mm: {words}"));
         }
-        let [plot, data @ ..] = sinks else { return Ok(()) };
-        if let Some(data) = data.first_mut() {
-            write_table(data, &figure.data)?;
+        if self.data.is_some() {
+            outputs.table(Output::PLOT_DATA, &figure.data)?;
         }
-        let Some(sink) = plot else { return Ok(()) };
         let bytes = self.format.bytes(&figure).map_err(|error| Failure::Failed(error.into()))?;
-        sink.put_bytes(&bytes).map_err(|error| Failure::writing(sink.name(), error))
+        outputs.write(self.output, &bytes)
     }
 }
 
@@ -137,14 +149,6 @@ fn sheet(options: &PlotOptions, format: Format) -> Result<Option<Sheet>, Failure
 /// The caption of a picture of this scene.
 pub fn caption(document: &Document) -> Caption {
     Caption::new(document, env!("CARGO_PKG_VERSION"))
-}
-
-/// The ranges of the axes that `options` ask for; errors name the horizontal one `across`.
-pub fn ranges(options: &ChartOptions, across: &'static str) -> Result<Ranges, Failure> {
-    let form = "A:B with A below B, such as 0:2";
-    let of =
-        |option, text: &Option<String>| text.as_deref().map(|text| range(option, text, form)).transpose();
-    Ok(Ranges { x: of(across, &options.plot_x)?, y: of("--plot-y", &options.plot_y)? })
 }
 
 /// A size `WxH` in pixels.

@@ -9,7 +9,7 @@ use interwell::system::files;
 
 use super::failure::Failure;
 use super::options::Common;
-use super::support::{finish, open, write_text};
+use super::outputs::{Output, Outputs};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -24,7 +24,7 @@ pub struct Arguments {
 
 /// Lists the built-in scenes, one line each, or writes them into a folder and lists the files.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let mut sinks = open(&[], [Some(("--out", common.out()))])?;
+    let mut outputs = Outputs::new(&[]).with(Output::DATA, Some(common.out()))?;
     let text = match &options.write {
         Some(folder) => write(folder, options.force)?,
         None => {
@@ -32,8 +32,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             PRESETS.iter().map(|preset| format!("{:width$}  {}\n", preset.name, preset.summary)).collect()
         }
     };
-    write_text(&mut sinks[0], &text)?;
-    finish(sinks)
+    outputs.write(Output::DATA, &text)?;
+    outputs.finish()
 }
 
 /// Writes all scenes and tables into `folder`, or none if a file of that name exists and differs.

@@ -81,9 +81,10 @@ impl Progress {
             self.bar.inc_length(1);
         }
     }
+}
 
-    /// Removes the bar.
-    pub fn finish_and_clear(&self) {
+impl Drop for Progress {
+    fn drop(&mut self) {
         self.bar.finish_and_clear();
     }
 }

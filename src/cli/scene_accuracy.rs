@@ -1,7 +1,6 @@
 //! `accuracy SCENE`: the error of a run, its cost over the tolerance, and its error in fixed steps.
 
-use interwell::dynamics::Model;
-use interwell::output::{Sink, aligned};
+use interwell::output::aligned;
 use interwell::study::accuracy::methods::Scheme;
 use interwell::study::accuracy::scene::{Unfit, scene_table, step_name, step_size, tolerances, trust};
 
@@ -10,15 +9,14 @@ use super::accuracy::show;
 use super::failure::Failure;
 use super::interrupt;
 use super::options::Common;
-use super::support::{finish, inputs, load_with_mechanism, open, write_table};
+use super::outputs::{Output, Outputs};
+use super::support::{inputs, load_model};
 
 /// Analyses the run of the scene called `spec`.
 pub fn run(spec: &str, options: &Arguments, common: &Common) -> Result<(), Failure> {
     let steps = options.step_s.as_deref().map_or_else(|| Ok(Vec::new()), steps)?;
-    let (document, mechanism) = load_with_mechanism(spec, common)?;
-    let model = Model::build(&document.scene, mechanism).map_err(|faults| document.error_from(faults))?;
-    let out = common.out.as_deref().map(|path| ("--out", path));
-    let mut sinks = open(&inputs(spec, &document), [out])?;
+    let (document, model) = load_model(spec, common)?;
+    let mut outputs = Outputs::new(&inputs(spec, &document)).with(Output::DATA, common.out.as_deref())?;
     let cancel = interrupt::listen();
 
     let trusted = trust(&model, cancel).ok_or_else(Failure::interrupted)?;
@@ -45,12 +43,9 @@ pub fn run(spec: &str, options: &Arguments, common: &Common) -> Result<(), Failu
     }
     let table = scene_table(&cost, &stepped);
     text += &format!("\n{}", aligned(&table));
-    let [csv] = &mut sinks;
-    if csv.is_some() {
-        write_table(csv, &table)?;
-    }
-    let to_stdout = csv.as_ref().is_some_and(Sink::is_stdout);
-    finish(sinks)?;
+    outputs.table(Output::DATA, &table)?;
+    let to_stdout = outputs.is_stdout(Output::DATA);
+    outputs.finish()?;
     show(&text, to_stdout, common.quiet)
 }
 

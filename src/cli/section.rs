@@ -1,22 +1,19 @@
 //! `section`: the state once a forcing period or at every impact; over a field the bifurcation diagram.
 
 use clap::Args;
-use interwell::dynamics::{Model, Summary};
-use interwell::output::{SectionPicture, header, manifest, section_figure};
-use interwell::scene::Document;
+use interwell::output::{SectionPicture, manifest, section_figure};
 use interwell::study::{
-    Carry, DIRECTION, Grid, MAX_SECTION, SectionAt, SectionOptions, Sections, SweepEnd, Table, Tally, Task,
-    section,
+    Carry, DIRECTION, Grid, MAX_SECTION, SectionAt, SectionOptions, Sections, Table, Tally, Task, section,
 };
 
 use super::failure::Failure;
+use super::grid_job::GridJob;
 use super::options::{ChartOptions, Common, whole};
-use super::picture::{Picture, caption, ranges};
+use super::outputs::Output;
+use super::picture::{Picture, caption};
 use super::support::{
-    MANIFEST, Watch, finish, inputs, load, load_with_mechanism, number, open, put, refuse_electrical_state,
-    until_settled, warn, write_table, write_text,
+    file_name, load_held, load_model, number, outputs, pool, refuse_electrical_state, until_settled, warn,
 };
-use super::sweep::{bar, file_name, located, manifest_path, pool};
 use super::{interrupt, say};
 
 const EXAMPLES: &str = "\
@@ -96,39 +93,35 @@ fn section_at(options: &Arguments) -> Result<SectionAt, Failure> {
 
 /// The section of one run.
 fn one(options: &Arguments, common: &Common, mut settings: SectionOptions) -> Result<(), Failure> {
-    let picture = Picture::new(&options.chart.plot, common)?;
-    let axes = ranges(&options.chart, "--plot-x")?;
-    let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
-    let model = Model::build(&document.scene, mechanism).map_err(|faults| document.error_from(faults))?;
+    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
+    let (document, model) = load_model(&options.scene, common)?;
     settings.until_settled =
         until_settled(options.until_settled.as_deref(), &document, &settings.run_of(&model))?;
-    let [plot, data] = Picture::outputs(picture);
-    let outputs = [Some(("--out", common.out())), plot, data];
-    let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
+    let mut outputs = outputs(&options.scene, &document, common)?.with_picture(picture)?;
     let found = section(&model, &document.scene, &settings, interrupt::listen());
     let (table, summary) = found.map_err(|fault| document.error_from(vec![fault]))?;
     if interrupt::came() {
         return Err(Failure::interrupted());
     }
     let names: Vec<String> = settings.columns().iter().map(|name| (*name).to_owned()).collect();
-    write_table(&mut sinks[0], &table.only(&names))?;
+    outputs.table(Output::DATA, &table.only(&names))?;
     if let Some(picture) = picture {
         let stops = model.stop_positions();
-        let shown =
-            SectionPicture { rows: &table, over: None, phase_deg: phase(&settings), stops, ranges: axes };
-        picture.write(&mut sinks[1..3], section_figure(&shown, &caption(&document), &picture.theme))?;
+        let shown = SectionPicture {
+            rows: &table,
+            over: None,
+            phase_deg: phase(&settings),
+            stops,
+            ranges: picture.ranges,
+        };
+        picture.write(&mut outputs, section_figure(&shown, &caption(&document), &picture.theme))?;
     }
-    finish(sinks)?;
-    report_early_end(&document, &summary);
-    Ok(())
-}
-
-/// Reports an early end of a run.
-fn report_early_end(document: &Document, summary: &Summary) {
+    outputs.finish()?;
     if let Some(at) = summary.outcome.ended_at() {
         let name = summary.outcome.name();
         say(&format!("{}: the run ended early at t = {at} s ({name}): the rows end there", document.name));
     }
+    Ok(())
 }
 
 fn phase(settings: &SectionOptions) -> Option<f64> {
@@ -137,13 +130,8 @@ fn phase(settings: &SectionOptions) -> Option<f64> {
 
 /// The sections of all cells, written as they are computed.
 fn diagram(options: &Arguments, common: &Common, settings: SectionOptions) -> Result<(), Failure> {
-    let picture = Picture::new(&options.chart.plot, common)?;
-    let axes = ranges(&options.chart, "--plot-x")?;
-    let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
-    let beside = manifest_path(common.out());
-    if beside.is_some() {
-        document.hold_files();
-    }
+    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
+    let (document, warnings, manifest_out) = load_held(&options.scene, common, Some(&options.over))?;
     let grid = Grid::new(document.axes(&options.over)?)?;
     if settings.carry.is_some() {
         refuse_electrical_state(&document, grid.axes(), "--carry")?;
@@ -154,61 +142,32 @@ fn diagram(options: &Arguments, common: &Common, settings: SectionOptions) -> Re
             "--plot shows a diagram over one field, not over {fields}: take the others out, or draw nothing"
         )));
     }
-    let sections = Sections::new(&document.scene, &document.files, grid, settings);
-    let trial = Task { tick: &|| (), cancel: interrupt::listen() };
-    let first = sections.first_model(&trial).and_then(Result::ok);
-    let until = match &first {
-        Some(model) => until_settled(options.until_settled.as_deref(), &document, model)?,
-        None => None, // `validate` reports the fault below, with its cell
-    };
-    let sections = sections.until_settled(until);
+    let sections = Sections::new(&document.scene, &document.files, grid).with(settings);
+    let first = sections.first_model(&Task { tick: &|| (), cancel: interrupt::listen() });
+    // a fault of the first cell is reported below, with its place
+    let until = first.as_ref().map(|model| until_settled(options.until_settled.as_deref(), &document, model));
+    let until_settled = until.transpose()?.flatten();
+    let sections = sections.with(SectionOptions { until_settled, ..settings });
     warn(&document, common, &warnings, first.as_ref().map(|model| &**model.mechanism()));
     let pool = pool(common)?;
-    let beside = beside.as_deref().map(|path| (MANIFEST, path));
-    let [plot, data] = Picture::outputs(picture);
-    let outputs = [Some(("--out", common.out())), plot, data, beside];
-    let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
-    let mut shown = picture.map(|_| Table::new());
-
-    let bar = bar(sections.runs(), "runs", common.quiet, common.out());
-    let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
-    let watch = Watch::start();
-    let mut count = 0;
-    let result = (|| {
-        sections.validate(&pool, &task).map_err(|cell| located(&document, cell))?;
-        let mut names = sections.grid().columns().to_vec();
-        names.extend(settings.carry.map(|_| DIRECTION.to_owned()));
-        names.extend(settings.columns().iter().map(|name| (*name).to_owned()));
-        write_text(&mut sinks[0], &header(&sections.empty_table().only(&names)))?;
-        let write = |table: &Table| {
-            if let Some(shown) = &mut shown {
-                shown.append(table);
-            }
-            count += table.rows();
-            put(&mut sinks[0], &table.only(&names), shown.is_some())
-        };
-        sections.run(&pool, &task, write).map_err(|end| match end {
-            SweepEnd::Cancelled => Failure::interrupted(),
-            SweepEnd::Write(failure) => failure,
-        })
-    })();
-    bar.finish_and_clear();
-    let tally = result?;
-    if let Some((picture, rows)) = picture.zip(shown) {
+    let outputs = outputs(&options.scene, &document, common)?;
+    let mut job = GridJob::open(&document, common, outputs, common.out(), picture, manifest_out, pool)?;
+    let mut names = sections.grid().columns().to_vec();
+    names.extend(settings.carry.map(|_| DIRECTION.to_owned()));
+    names.extend(settings.columns().iter().map(|name| (*name).to_owned()));
+    let (tally, count) = job.stream(&sections, "runs", &names)?;
+    let figure = |rows: &Table, picture: &Picture| {
         let over = sections.grid().columns().first().map(String::as_str);
-        let phase_deg = phase(&settings);
-        let shown = SectionPicture { rows: &rows, over, phase_deg, stops: (None, None), ranges: axes };
-        picture.write(&mut sinks[1..3], section_figure(&shown, &caption(&document), &picture.theme))?;
-    }
-    if sinks[3].is_some() {
-        let origin = watch.origin(pool.count());
+        let (phase_deg, ranges) = (phase(&settings), picture.ranges);
+        let shown = SectionPicture { rows, over, phase_deg, stops: (None, None), ranges };
+        Ok(section_figure(&shown, &caption(&document), &picture.theme))
+    };
+    let wall_s = job.finish(figure, |origin| {
         let data = file_name(common.out());
-        let text = manifest(("section", &document), sections.grid(), &tally, None, &origin, &data);
-        write_text(&mut sinks[3], &text)?;
-    }
-    finish(sinks)?;
-    if !common.quiet && tally.cells == sections.runs() {
-        say(&format!("{count} rows of {} in {:.2} s", runs(&tally), watch.wall_s()));
+        Ok(manifest("section", &document, sections.grid(), &tally, None, origin, &data))
+    })?;
+    if !common.quiet && tally.cells == sections.rows() {
+        say(&format!("{count} rows of {} in {wall_s:.2} s", runs(&tally)));
     }
     Ok(())
 }

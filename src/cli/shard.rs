@@ -47,9 +47,9 @@ pub fn shard(text: &str, variable: impl Fn(&str) -> Option<String>) -> Result<Sh
 /// the placeholder is required, because all tasks of an array job have the same arguments.
 pub fn placed(out: &Path, argument: Option<&str>, shard: Shard) -> Result<PathBuf, Failure> {
     let Some(argument) = argument else { return Ok(out.to_owned()) };
-    let has = out.to_string_lossy().contains(PLACE);
-    if has {
-        return Ok(filled(&out.to_string_lossy(), shard).into());
+    let name = out.to_string_lossy();
+    if name.contains(PLACE) {
+        return Ok(name.replace(PLACE, &named(shard)).into());
     }
     if argument.trim().starts_with("auto") && shard.count() > 1 && is_regular(out) {
         let (out, stem) = (out.display(), out.with_extension(""));
@@ -60,9 +60,9 @@ pub fn placed(out: &Path, argument: Option<&str>, shard: Shard) -> Result<PathBu
     Ok(out.to_owned())
 }
 
-/// Replaces `{shard}` in a name.
-fn filled(name: &str, shard: Shard) -> String {
-    name.replace(PLACE, &format!("{}-of-{}", shard.number(), shard.count()))
+/// The shard in the name of a file.
+fn named(shard: Shard) -> String {
+    format!("{}-of-{}", shard.number(), shard.count())
 }
 
 /// Options that belong to the shard or to this one call, and whether each takes a value.
@@ -116,7 +116,6 @@ pub fn other_name(out: &str, shard: Shard, other: Shard) -> String {
     if out.contains(PLACE) {
         return out.to_owned();
     }
-    let named = |shard: Shard| format!("{}-of-{}", shard.number(), shard.count());
     if out.contains(&named(shard)) {
         return out.replace(&named(shard), &named(other));
     }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use interwell::dynamics::{Model, Outcome};
 use interwell::numeric::{extent, short};
-use interwell::output::{Panel, measured_figure, push_number, run_figure, summary};
+use interwell::output::{Panel, Ranges, measured_figure, push_number, run_figure, summary};
 use interwell::study::{
     Keep, Sampling, ended_remedy, sample_times, simulate, simulate_with_trace, yield_warning,
 };
@@ -13,10 +13,9 @@ use interwell::study::{
 use super::failure::Failure;
 use super::measured::MeasuredOptions;
 use super::options::{ChartOptions, Common};
-use super::picture::{Picture, caption, ranges};
-use super::support::{
-    Watch, finish, inputs, load_with_mechanism, number, numbers, open, until_settled, write_table, write_text,
-};
+use super::outputs::{Output, Outputs};
+use super::picture::{Picture, caption};
+use super::support::{Watch, inputs, load_model, number, numbers, until_settled};
 use super::{interrupt, say};
 
 #[derive(Debug, Args)]
@@ -66,8 +65,8 @@ pub struct Arguments {
 
 /// Runs the scene and writes samples, events and summary.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::new(&options.chart.plot, common)?;
-    let axes = ranges(&options.chart, "--plot-time")?;
+    let picture = Picture::of_chart(&options.chart, "--plot-time", common)?;
+    let axes = picture.map_or(Ranges::default(), |picture| picture.ranges);
     let sampling = match (&options.at, &options.dt) {
         (Some(text), _) => Sampling::At(numbers("--at", text, ',')?),
         (None, Some(text)) => {
@@ -75,8 +74,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         }
         (None, None) => Sampling::Default,
     };
-    let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
-    let model = Model::build(&document.scene, mechanism).map_err(|faults| document.error_from(faults))?;
+    let (document, model) = load_model(&options.scene, common)?;
     let until_settled = until_settled(options.until_settled.as_deref(), &document, &model)?;
     let times = sample_times(&document.scene, &model, &sampling, until_settled)?;
     let window = axes.x.or_else(|| span(&sampling));
@@ -92,18 +90,18 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         let message = format!("--inset {from}:{to}: the run lasts from 0 to {longest} s");
         return Err(Failure::argument(message));
     }
-    let comparison = options.measured.comparison.as_deref().map(|path| ("--comparison", path));
-    let events = options.events.as_deref().map(|path| ("--events", path));
-    let summary_path = options.summary.as_deref().map(|path| ("--summary", path));
-    let [plot, data] = Picture::outputs(picture);
-    let outputs = [Some(("--out", common.out())), events, summary_path, plot, data, comparison];
     let mut read = inputs(&options.scene, &document);
     read.extend(options.measured.measured.clone());
-    let mut sinks = open(&read, outputs)?;
+    let mut outputs = Outputs::new(&read)
+        .with(Output::DATA, Some(common.out()))?
+        .with(Output::EVENTS, options.events.as_deref())?
+        .with(Output::SUMMARY, options.summary.as_deref())?
+        .with_picture(picture)?
+        .with(Output::COMPARISON, options.measured.comparison.as_deref())?;
 
     let cancel = interrupt::listen();
     let watch = Watch::start();
-    let keep = Keep { times, events: events.is_some(), until_settled };
+    let keep = Keep { times, events: options.events.is_some(), until_settled };
     let (simulation, trace) = match picture {
         None => (simulate(&model, &keep, Some(cancel)), None),
         Some(_) => {
@@ -117,10 +115,10 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     }
     let compared =
         record.as_ref().map(|measured| measured.compare(&document.scene, &model, cancel)).transpose()?;
-    let [samples, events, about, pictures @ .., comparison] = &mut sinks;
-    write_table(samples, &simulation.samples)?;
-    write_table(events, &simulation.events)?;
-    write_text(about, &summary(&simulation.summary, &document.scene, &watch.origin(1)))?;
+    outputs.table(Output::DATA, &simulation.samples)?;
+    outputs.table(Output::EVENTS, &simulation.events)?;
+    let about = summary(&simulation.summary, &document.scene, &watch.origin(1));
+    outputs.write(Output::SUMMARY, &about)?;
     if let Some((picture, trace)) = picture.zip(trace) {
         let (about, mechanism) = (caption(&document), &model.mechanism());
         let figure = match record.as_ref().zip(compared.as_ref()) {
@@ -135,12 +133,12 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
                 run_figure(run, mechanism, &panels, axes, &about, &picture.theme)
             }
         };
-        picture.write(pictures, figure)?;
+        picture.write(&mut outputs, figure)?;
     }
     if let Some(found) = &compared {
-        write_table(comparison, &found.table)?;
+        outputs.table(Output::COMPARISON, &found.table)?;
     }
-    finish(sinks)?;
+    outputs.finish()?;
     if let Some((measured, found)) = record.as_ref().zip(compared.as_ref()).filter(|_| !common.quiet) {
         measured.report(found);
     }

@@ -1,15 +1,15 @@
 //! `spectrum`: amplitude and power spectral density of a settled motion.
 
 use clap::Args;
-use interwell::dynamics::Model;
 use interwell::numeric::Taper;
 use interwell::output::{SpectrumQuantity, spectrum_figure};
 use interwell::study::{NoSpectrum, Signal, SpectrumOptions, Task, spectrum};
 
 use super::failure::Failure;
 use super::options::{ChartOptions, Common};
-use super::picture::{Picture, caption, ranges};
-use super::support::{finish, inputs, load_with_mechanism, number, open, until_settled, write_table};
+use super::outputs::Output;
+use super::picture::{Picture, caption};
+use super::support::{load_model, number, outputs, until_settled};
 use super::{interrupt, say};
 
 const EXAMPLES: &str = "\
@@ -59,15 +59,13 @@ pub struct Arguments {
 
 /// Runs the scene and writes the spectrum of its settled motion.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::new(&options.chart.plot, common)?;
-    let axes = ranges(&options.chart, "--plot-x")?;
-    if let Some((low, high)) = axes.y.filter(|(low, _)| !(*low > 0.0)) {
+    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
+    if let Some((low, high)) = picture.and_then(|picture| picture.ranges.y).filter(|(low, _)| !(*low > 0.0)) {
         return Err(Failure::argument(format!(
             "--plot-y {low}:{high}: the axis is logarithmic; give two numbers above 0, such as 1e-9:1e-2"
         )));
     }
-    let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
-    let model = Model::build(&document.scene, mechanism).map_err(|faults| document.error_from(faults))?;
+    let (document, model) = load_model(&options.scene, common)?;
     let until_settled = until_settled(options.until_settled.as_deref(), &document, &model)?;
     let settings = SpectrumOptions {
         signal: Signal::ALL
@@ -82,9 +80,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         rate_hz: options.rate_hz.as_deref().map(rate).transpose()?,
         until_settled,
     };
-    let [plot, data] = Picture::outputs(picture);
-    let outputs = [Some(("--out", common.out())), plot, data];
-    let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
+    let mut outputs = outputs(&options.scene, &document, common)?.with_picture(picture)?;
     let task = Task { tick: &|| (), cancel: interrupt::listen() };
     let found = spectrum(&model, &settings, &task).map_err(|problem| match problem {
         NoSpectrum::Cancelled => Failure::interrupted(),
@@ -95,18 +91,18 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             Failure::argument(format!("--rate-hz {given}: {}: {problem}", document.name))
         }
     })?;
-    write_table(&mut sinks[0], &found.table)?;
+    outputs.table(Output::DATA, &found.table)?;
     if let Some(picture) = picture {
         let quantity = match options.quantity.as_str() {
             "psd" => SpectrumQuantity::Density,
             _ => SpectrumQuantity::Amplitude,
         };
         picture.write(
-            &mut sinks[1..],
-            spectrum_figure(&found, quantity, axes, &caption(&document), &picture.theme),
+            &mut outputs,
+            spectrum_figure(&found, quantity, picture.ranges, &caption(&document), &picture.theme),
         )?;
     }
-    finish(sinks)?;
+    outputs.finish()?;
     if !common.quiet {
         say(&format!("{}: {}", document.name, found.describe()));
     }

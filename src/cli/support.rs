@@ -1,4 +1,4 @@
-//! Steps that several commands share: loading a scene, building its mechanism, opening and writing outputs.
+//! Steps that several commands share: loading a scene, building its mechanism and its model, reading numbers.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -6,18 +6,16 @@ use std::sync::Arc;
 
 use interwell::dynamics::Model;
 use interwell::mechanics::{BuildError, Mechanism};
-use interwell::output::{Provenance, Sink, header, is_regular, rows, same_target};
-use interwell::scene::{
-    self, Axis, Damping, Document, Scene, SceneError, Start, Stops, Transducer, is_manifest, is_scene_file,
-};
-use interwell::study::{CellFaults, ELECTRICAL_STATE, Table};
+use interwell::output::{Provenance, is_regular};
+use interwell::scene::{self, Axis, Damping, Document, Scene, SceneError, Start, Stops, Transducer};
+use interwell::study::{CellFaults, ELECTRICAL_STATE};
 use interwell::system::clock::{ProcessClock, WallClock};
-use interwell::system::files::{canonical, is_file};
 use interwell::system::threads::{Pool, processors};
 
-use super::failure::{Failure, wrong_cell};
+use super::failure::Failure;
 use super::options::Common;
-use super::{interrupt, say};
+use super::outputs::{Output, Outputs};
+use super::say;
 
 /// Wall-clock and CPU time since a command began its work.
 #[derive(Debug, Clone, Copy)]
@@ -55,9 +53,6 @@ impl Watch {
 /// Longest `--until-settled` in s, which is the longest duration of a run.
 const LONGEST_WAIT: f64 = 1e9;
 
-/// Rows that are formatted at a time.
-const ROWS: usize = 1 << 15;
-
 /// Loads the scene called `spec`, applies `--set` and `--tolerance`, checks it, and returns it with its
 /// warnings. For a sweep, `over` holds the arguments of `--over`, and the first cell is checked instead: the
 /// values that the scene has for the swept fields are never run.
@@ -67,21 +62,36 @@ pub fn load(
     over: Option<&[String]>,
 ) -> Result<(Document, Vec<String>), SceneError> {
     let mut document = read(spec, common)?;
-    let moved = document.settle_within();
-    let warnings = match over {
-        None => document.check()?,
-        Some(over) => {
-            let mut first_cell = document.clone();
-            for axis in document.axes(over)? {
-                axis.apply(&mut first_cell.scene, 0);
-            }
-            first_cell.check()?
-        }
-    };
-    Ok((document, moved.into_iter().chain(warnings).collect()))
+    let warnings = check(&mut document, over)?;
+    Ok((document, warnings))
 }
 
-/// The same without the check.
+/// Checks a document that was read; returns its warnings.
+pub fn check(document: &mut Document, over: Option<&[String]>) -> Result<Vec<String>, SceneError> {
+    let moved = document.settle_within();
+    let mut first_cell = document.clone();
+    for axis in over.map_or(Ok(Vec::new()), |over| document.axes(over))? {
+        axis.apply(&mut first_cell.scene, 0);
+    }
+    Ok(moved.into_iter().chain(first_cell.check()?).collect())
+}
+
+/// The same for a command that writes a manifest beside its rows if they go to a regular file: the scene then
+/// holds its files. Returns also the path of the manifest.
+pub fn load_held(
+    spec: &str,
+    common: &Common,
+    over: Option<&[String]>,
+) -> Result<(Document, Vec<String>, Option<PathBuf>), SceneError> {
+    let (mut document, warnings) = load(spec, common, over)?;
+    let manifest = manifest_path(common.out());
+    if manifest.is_some() {
+        document.hold_files();
+    }
+    Ok((document, warnings, manifest))
+}
+
+/// The scene without the check.
 pub fn read(spec: &str, common: &Common) -> Result<Document, SceneError> {
     let mut document = Document::of_argument(spec)?;
     for argument in &common.set {
@@ -98,6 +108,11 @@ pub fn inputs(spec: &str, document: &Document) -> Vec<PathBuf> {
     let mut inputs = document.named_files();
     inputs.push(spec.into());
     inputs
+}
+
+/// The outputs of a command that reads one scene, with `--out` open.
+pub fn outputs(spec: &str, document: &Document, common: &Common) -> Result<Outputs, Failure> {
+    Outputs::new(&inputs(spec, document)).with(Output::DATA, Some(common.out()))
 }
 
 /// The scene's mechanism.
@@ -142,6 +157,13 @@ pub fn load_with_mechanism(spec: &str, common: &Common) -> Result<(Document, Arc
     let mechanism = mechanism(&document)?;
     warn(&document, common, &warnings, Some(&mechanism));
     Ok((document, mechanism))
+}
+
+/// Loads the scene and builds its model; prints the warnings of both.
+pub fn load_model(spec: &str, common: &Common) -> Result<(Document, Model), Failure> {
+    let (document, mechanism) = load_with_mechanism(spec, common)?;
+    let model = Model::build(&document.scene, mechanism).map_err(|faults| document.error_from(faults))?;
+    Ok((document, model))
 }
 
 /// Prints the warnings of a scene and of its mechanism, unless `--quiet` is given.
@@ -215,87 +237,6 @@ pub fn until_settled(text: Option<&str>, document: &Document, model: &Model) -> 
     Ok(Some(until))
 }
 
-/// Name of the manifest of a sweep among its outputs.
-pub const MANIFEST: &str = "the manifest of --out";
-
-/// Opens the outputs, each given with its option, before any work is done. Listens for Ctrl-C first, which
-/// would otherwise leave unfinished files behind. It is an error if an output is one of the `inputs` (a
-/// scene's file, or a table or record that it names) or any other scene, if the manifest would replace a file
-/// that is no manifest, or if two outputs are the same.
-pub fn open<const N: usize>(
-    inputs: &[PathBuf],
-    outputs: [Option<(&str, &Path)>; N],
-) -> Result<[Option<Sink>; N], Failure> {
-    interrupt::listen();
-    let inputs: Vec<_> = inputs.iter().filter_map(|input| canonical(input)).collect();
-    let mut sinks = [const { None::<Sink> }; N];
-    for (i, output) in outputs.iter().enumerate() {
-        let Some((option, path)) = output else { continue };
-        let would_overwrite = |what: &str| {
-            let path = path.display();
-            Err(Failure::argument(format!("{option} {path} would overwrite {what}: name another file")))
-        };
-        if canonical(path).is_some_and(|path| is_file(&path) && inputs.contains(&path)) {
-            return would_overwrite("the scene or a file that it reads");
-        } else if is_scene_file(path) {
-            return would_overwrite("a scene");
-        } else if *option == MANIFEST && is_file(path) && !is_manifest(path) {
-            return would_overwrite("a file that is no manifest of a sweep");
-        }
-        let sink = Sink::open(path)?;
-        for (j, earlier) in sinks[..i].iter().enumerate() {
-            let clash = earlier.as_ref().filter(|earlier| same_target(earlier, &sink)).and(outputs[j]);
-            if let Some((first, _)) = clash {
-                let name = sink.name();
-                let message = format!("{first} and {option} both go to {name}: give each a place of its own");
-                return Err(Failure::argument(message));
-            }
-        }
-        sinks[i] = Some(sink);
-    }
-    Ok(sinks)
-}
-
-/// Writes header and rows of `table` if there is a `sink`.
-pub fn write_table(sink: &mut Option<Sink>, table: &Table) -> Result<(), Failure> {
-    write_text(sink, &header(table))?;
-    for begin in (0..table.rows()).step_by(ROWS) {
-        if interrupt::came() {
-            return Err(Failure::interrupted());
-        }
-        write_text(sink, &rows(table, begin..begin + ROWS))?;
-    }
-    Ok(())
-}
-
-/// Writes text if there is a `sink`.
-pub fn write_text(sink: &mut Option<Sink>, text: &str) -> Result<(), Failure> {
-    let Some(sink) = sink else { return Ok(()) };
-    sink.put(text).map_err(|error| Failure::writing(sink.name(), error))
-}
-
-/// Writes rows and flushes them. Returns whether more rows are needed: none are if the reader of a pipe has
-/// gone and nothing is `drawn`.
-pub fn put(sink: &mut Option<Sink>, table: &Table, drawn: bool) -> Result<bool, Failure> {
-    write_text(sink, &rows(table, 0..usize::MAX))?;
-    let Some(sink) = sink else { return Ok(drawn) };
-    sink.flush().map_err(|error| Failure::writing(sink.name(), error))?;
-    Ok(!sink.is_closed() || drawn)
-}
-
-/// Flushes all outputs, then gives the files their names. If one cannot be written to its end, no new file
-/// appears.
-pub fn finish<const N: usize>(mut sinks: [Option<Sink>; N]) -> Result<(), Failure> {
-    for sink in sinks.iter_mut().flatten() {
-        sink.flush().map_err(|error| Failure::writing(sink.name(), error))?;
-    }
-    for sink in sinks.into_iter().flatten() {
-        let name = sink.name().to_owned();
-        sink.finish().map_err(|error| Failure::writing(&name, error))?;
-    }
-    Ok(())
-}
-
 /// Refuses a scene whose transducer has an electrical state, in the scene or in a cell of the swept fields.
 /// Used by studies whose state is displacement and velocity alone.
 pub fn refuse_electrical_state(document: &Document, axes: &[Axis], what: &str) -> Result<(), Failure> {
@@ -335,8 +276,11 @@ pub fn pool(common: &Common) -> Result<Pool, Failure> {
 
 /// The failure for a wrong cell, with the places of its faults.
 pub fn located(document: &Document, cell: CellFaults) -> Failure {
-    let error = document.error_from(cell.faults.clone());
-    wrong_cell(&cell, error)
+    let error = document.error_from(cell.faults);
+    match cell.cell.as_str() {
+        "" => error.into(),
+        name => Failure::Wrong(anyhow::anyhow!("in the cell {name}:\n{error}")),
+    }
 }
 
 #[cfg(test)]

@@ -3,15 +3,14 @@
 use clap::Args;
 use interwell::output::{ThresholdPicture, can_show_thresholds, threshold_figure};
 use interwell::scene::{Axis, Document, is_whole};
-use interwell::study::{CellFaults, Grid, Onset, Scan, Table, Task, threshold_table};
+use interwell::study::{CellFaults, Grid, NoThresholds, Onset, Scan, Table, Task, threshold_table};
 
 use super::failure::Failure;
 use super::options::{ChartOptions, Common};
-use super::picture::{Picture, caption, ranges};
-use super::support::{
-    drive_alone, finish, inputs, load, mechanism, number, open, until_settled, warn, write_table,
-};
-use super::sweep::{bar, located, pool};
+use super::outputs::Output;
+use super::picture::{Picture, caption};
+use super::progress::bar;
+use super::support::{drive_alone, load, located, mechanism, number, outputs, pool, until_settled, warn};
 use super::{interrupt, say};
 
 const EXAMPLES: &str = "\
@@ -76,17 +75,16 @@ const MAX_NAMED: usize = 8;
 
 /// Searches and writes the table.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    let picture = Picture::new(&options.chart.plot, common)?;
-    let axes = ranges(&options.chart, "--plot-x")?;
+    let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     // without --over the sweep in the scene is ignored
     let over = Some(options.over.as_slice()).filter(|over| !over.is_empty());
     let (document, warnings) = load(&options.scene, common, over)?;
     let mut scan = scan(options, &document)?;
     let grid = match over {
-        None => None,
-        Some(over) => Some(Grid::new(document.axes(over)?)?),
+        None => Grid::of_one(),
+        Some(over) => Grid::new(document.axes(over)?)?,
     };
-    if let Some(axis) = grid.iter().flat_map(|grid| grid.axes()).find(|axis| axis.field == scan.field) {
+    if let Some(axis) = grid.axes().iter().find(|axis| axis.field == scan.field) {
         let field = &axis.field;
         return Err(Failure::argument(format!(
             "--over {field}: the threshold is over it; sweep another field"
@@ -94,38 +92,36 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     }
     let onset = Onset::ALL.into_iter().find(|onset| onset.name() == options.of).unwrap_or(Onset::Crossing);
     if picture.is_some() {
-        can_show_thresholds(grid.as_ref())?;
+        can_show_thresholds(&grid)?;
     }
-    let same = grid.as_ref().is_none_or(|grid| !grid.changes_mechanism());
-    let mechanism = same.then(|| mechanism(&document)).transpose()?;
+    let mechanism = (!grid.changes_mechanism()).then(|| mechanism(&document)).transpose()?;
     warn(&document, common, &warnings, mechanism.as_deref());
     if let Some(text) = options.until_settled.as_deref() {
         let mut first = document.scene.clone();
-        grid.iter().for_each(|grid| grid.apply(0, &mut first));
+        grid.apply(0, &mut first);
         scan.until_settled = until_settled(Some(text), &document, &drive_alone(&document, first)?)?;
     }
     let pool = pool(common)?;
-    let [plot, data] = Picture::outputs(picture);
-    let outputs = [Some(("--out", common.out())), plot, data];
-    let mut sinks = open(&inputs(&options.scene, &document), outputs)?;
-    let values = scan.values.len() as u64;
-    let bar = bar(grid.as_ref().map_or(1, Grid::cells) * values, "values", common.quiet, common.out());
+    let mut outputs = outputs(&options.scene, &document, common)?.with_picture(picture)?;
+    let bar = bar(grid.cells() * scan.values.len() as u64, "values", common.quiet, common.out());
     let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
-    let found =
-        threshold_table((&document.scene, &document.files), grid.as_ref(), (&scan, onset), &pool, &task);
-    bar.finish_and_clear();
-    let table = found.ok_or_else(Failure::interrupted)?.map_err(|cells| wrong(&document, cells))?;
-    write_table(&mut sinks[0], &table)?;
+    let found = threshold_table((&document.scene, &document.files), &grid, (&scan, onset), &pool, &task);
+    drop(bar);
+    let table = found.map_err(|end| match end {
+        NoThresholds::Cancelled => Failure::interrupted(),
+        NoThresholds::Wrong(cells) => wrong(&document, cells),
+    })?;
+    outputs.table(Output::DATA, &table)?;
     if !common.quiet {
-        let remarks = [missing(&table, (&scan, onset), grid.as_ref()), undecided(&table)];
+        let remarks = [missing(&table, &scan, onset, &grid), undecided(&table)];
         remarks.iter().flatten().for_each(|words| say(&format!("{}: {words}", document.name)));
     }
-    if let Some((picture, grid)) = picture.zip(grid.as_ref()) {
-        let scene = &document.scene;
-        let shown = ThresholdPicture { rows: &table, grid, scene, field: &scan.field, onset, ranges: axes };
-        picture.write(&mut sinks[1..3], threshold_figure(&shown, &caption(&document), &picture.theme)?)?;
+    if let Some(picture) = picture {
+        let (rows, grid, scene, field) = (&table, &grid, &document.scene, &*scan.field);
+        let shown = ThresholdPicture { rows, grid, scene, field, onset, ranges: picture.ranges };
+        picture.write(&mut outputs, threshold_figure(&shown, &caption(&document), &picture.theme)?)?;
     }
-    finish(sinks)
+    outputs.finish()
 }
 
 /// The clause "`count` of `all` rows" with the singular or plural of a verb. Returns `None` if `count` is 0.
@@ -151,7 +147,7 @@ fn undecided(table: &Table) -> Option<String> {
 }
 
 /// Explains an empty `value`, if a row has one.
-fn missing(table: &Table, (scan, onset): (&Scan, Onset), grid: Option<&Grid>) -> Option<String> {
+fn missing(table: &Table, scan: &Scan, onset: Onset, grid: &Grid) -> Option<String> {
     let values = table.numbers("value")?;
     let count = values.iter().filter(|value| value.is_nan()).count();
     let rows = of_rows(count, values.len(), ["has no value", "have no value"])?;
@@ -162,7 +158,7 @@ fn missing(table: &Table, (scan, onset): (&Scan, Onset), grid: Option<&Grid>) ->
     };
     let ends = scan.values.first().zip(scan.values.last());
     let (low, high) = ends.map_or((f64::NAN, f64::NAN), |(low, high)| (*low, *high));
-    let unsolved = match grid.is_some_and(Grid::changes_mechanism) || scan.field.starts_with("mechanism") {
+    let unsolved = match grid.changes_mechanism() || scan.field.starts_with("mechanism") {
         true => ", or the flexures are not solved",
         false => "",
     };

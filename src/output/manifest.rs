@@ -4,8 +4,8 @@ use serde_json::{Map, Value, json};
 
 use super::json::pretty;
 use super::plan::plan_checksum;
-use crate::scene::{Document, PROGRAM, Scene};
-use crate::study::{Answer, Basins, ExponentTally, Grid, Shard, Tally};
+use crate::scene::{Document, Excitation, PROGRAM, Scene};
+use crate::study::{Answer, Basins, Grid, Shard, Tally};
 
 /// Origin of a result, besides its scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,7 +41,8 @@ pub struct Made<'a> {
 /// `document` must hold its files. `data` is the name of the file with the rows; `made` describes that file
 /// if it may be a shard.
 pub fn manifest(
-    (command, document): (&str, &Document),
+    command: &str,
+    document: &Document,
     grid: &Grid,
     tally: &Tally,
     made: Option<Made>,
@@ -60,7 +61,7 @@ pub fn manifest(
         more["plan_sha256"] = json!(plan_checksum(plan));
         more["plan"] = plan.clone();
     }
-    swept((command, document), grid, more, origin, data)
+    swept(command, document, grid, more, origin, data)
 }
 
 /// The manifest of a whole sweep, from the manifests of its shards. `data` is the name of the merged file,
@@ -102,21 +103,22 @@ fn add(sum: &mut Value, other: &Value) {
 pub fn exponents_manifest(
     document: &Document,
     grid: &Grid,
-    tally: &ExponentTally,
+    tally: &Tally,
     origin: &Provenance,
     data: &str,
 ) -> String {
     let more = json!({
         "cells": tally.cells,
         "resting": tally.resting,
-        "without_exponents": tally.missing,
+        "without_exponents": tally.without_exponents,
     });
-    swept(("exponents", document), grid, more, origin, data)
+    swept("exponents", document, grid, more, origin, data)
 }
 
 /// The manifest of rows over a grid, with `more` entries of the command.
 fn swept(
-    (command, document): (&str, &Document),
+    command: &str,
+    document: &Document,
     grid: &Grid,
     more: Value,
     origin: &Provenance,
@@ -136,7 +138,7 @@ fn swept(
     if let (Value::Object(all), Value::Object(more)) = (&mut all, more) {
         all.extend(more);
     }
-    written((document, scene), command, all, origin, data)
+    written(document, scene, command, all, origin, data)
 }
 
 /// The manifest of a map of basins as text. It is that of a sweep with the starts in place of the grid.
@@ -159,12 +161,13 @@ pub fn basins_manifest(
         "length_scale_m": length,
         "speed_scale_m_per_s": speed,
     });
-    written((document, &document.scene), "basins", more, origin, data)
+    written(document, &document.scene, "basins", more, origin, data)
 }
 
 /// A manifest with `more` entries of the command; `scene` is the scene that ran.
 fn written(
-    (document, scene): (&Document, &Scene),
+    document: &Document,
+    scene: &Scene,
     command: &str,
     more: Value,
     origin: &Provenance,
@@ -243,27 +246,17 @@ fn name_infinity(value: &mut Value) {
 
 /// The seed of the scene's random numbers: null if it has none, a list if it has several.
 pub fn seed(scene: &Scene) -> Value {
-    let mut found = Vec::new();
-    collect(&serde_json::to_value(&scene.excitation).unwrap_or(Value::Null), &mut found);
-    match found.len() {
-        0 => Value::Null,
-        1 => found.swap_remove(0),
-        _ => Value::Array(found),
+    match seeds(&scene.excitation)[..] {
+        [] => Value::Null,
+        [seed] => json!(seed),
+        ref seeds => json!(seeds),
     }
 }
 
-fn collect(value: &Value, found: &mut Vec<Value>) {
-    match value {
-        Value::Object(map) => {
-            for (key, value) in map {
-                if key == "seed" {
-                    found.push(value.clone());
-                } else {
-                    collect(value, found);
-                }
-            }
-        }
-        Value::Array(values) => values.iter().for_each(|value| collect(value, found)),
-        _ => {}
+fn seeds(excitation: &Excitation) -> Vec<u64> {
+    match excitation {
+        Excitation::Noise { seed, .. } => vec![*seed],
+        Excitation::Sum(terms) => terms.iter().flat_map(seeds).collect(),
+        _ => Vec::new(),
     }
 }

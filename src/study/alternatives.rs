@@ -3,17 +3,17 @@
 
 use std::sync::Arc;
 
-use super::Task;
-use super::amplitudes::{Above, crossing};
+use super::amplitudes::{Above, crossing, frees_at};
 use super::bisection::multiple;
 use super::family::Family;
-use super::fields::{Read, SummaryField};
+use super::fields::SummaryField;
+use super::grid::{is_of_mechanism, name_of};
 use super::onset::Onset;
-use super::push::frees_at;
 use super::settled::{followed, settled_within};
 use super::shared_runs::shared_runs;
 use super::table::{Table, Values};
 use super::thresholds::Found;
+use super::{Cancelled, Task};
 use crate::dynamics::{Model, Run, Summary};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::numeric::round::decade;
@@ -97,9 +97,7 @@ fn parts(scenes: &[Alternative]) -> Vec<Part> {
 
 /// The sizes of a scene's mechanism that are not 0.
 fn sizes(scene: &Scene) -> Vec<String> {
-    let is_size = |path: &String| {
-        path.starts_with("mechanism.") && SIZES.contains(&path.rsplit('.').next().unwrap_or_default())
-    };
+    let is_size = |path: &String| is_of_mechanism(path) && SIZES.contains(&name_of(path));
     numeric_fields(scene).into_iter().filter(is_size).collect()
 }
 
@@ -119,10 +117,10 @@ pub fn alternatives(
     let work = |_: &mut (), index: usize| {
         let done = match &parts[index] {
             Part::Unchanged(i) => rating.rate(&scenes[*i]).map(|rated| Done::Unchanged(Box::new(rated))),
-            Part::Changed(i, field, by) => rating.changed(&scenes[*i], (field, *by)).map(Done::Changed),
+            Part::Changed(i, field, by) => rating.changed(&scenes[*i], field, *by).map(Done::Changed),
         };
         (task.tick)();
-        done.filter(|_| !task.is_cancelled()).ok_or(())
+        task.go_on().and(done)
     };
     let done = pool.map(parts.len(), || (), work).ok()?;
     let mut rated: Vec<Rated> = Vec::new();
@@ -158,54 +156,58 @@ impl Rated {
 }
 
 impl Rating<'_> {
-    fn rate(&self, scene: &Alternative) -> Option<Rated> {
+    fn rate(&self, scene: &Alternative) -> Result<Rated, Cancelled> {
         let trial = Scene { start: Start::Rest, ..scene.scene.clone() };
         let crossing = self.crossing(&trial, &scene.mechanism, Above::Searched)?;
-        let model = Model::build(&trial, Arc::clone(&scene.mechanism)).ok()?;
-        Some(Rated {
+        // the scene was checked
+        let model = Model::build(&trial, Arc::clone(&scene.mechanism)).map_err(|_| Cancelled)?;
+        Ok(Rated {
             name: scene.name.clone(),
             release_g: frees_at(&trial, &scene.mechanism),
             crossing,
-            summary: settled_within(&model, self.until_settled, self.task.cancel)?,
+            summary: settled_within(&model, self.until_settled, self.task.cancel).ok_or(Cancelled)?,
             crosses_hz: self.band(scene, &trial)?,
             sensitivity: None,
         })
     }
 
-    /// The crossing threshold; the inner `None` if there is none, the outer one if cancelled.
-    fn crossing(&self, trial: &Scene, mechanism: &Arc<Mechanism>, above: Above) -> Option<Option<Found>> {
-        let how = (Some(self.pool), self.until_settled);
-        let found = crossing(trial, mechanism, how, above, self.task);
-        (!self.task.is_cancelled()).then(|| found.map(|(found, _)| found))
+    /// The crossing threshold.
+    fn crossing(
+        &self,
+        trial: &Scene,
+        mechanism: &Arc<Mechanism>,
+        above: Above,
+    ) -> Result<Option<Found>, Cancelled> {
+        let found = crossing(trial, mechanism, Some(self.pool), self.until_settled, above, self.task)?;
+        Ok(found.map(|(found, _)| found))
     }
 
-    /// The crossing threshold with one size changed.
-    fn changed(&self, scene: &Alternative, (field, by): (&str, f64)) -> Option<Option<f64>> {
+    /// The crossing threshold with the share `by` added to one size.
+    fn changed(&self, scene: &Alternative, field: &str, by: f64) -> Result<Option<f64>, Cancelled> {
         let mut trial = Scene { start: Start::Rest, ..scene.scene.clone() };
         let path = FieldPath::new(field);
-        let value = path.get(&trial)?;
-        if !path.set(&mut trial, value * (1.0 + by)) {
-            return None;
-        }
-        let mechanism = match Mechanism::build_unless(&trial.mechanism, &scene.files, self.task.cancel)? {
+        // the scene has the field, which is one of its sizes
+        path.get(&trial).filter(|value| path.set(&mut trial, value * (1.0 + by))).ok_or(Cancelled)?;
+        let built = Mechanism::build_unless(&trial.mechanism, &scene.files, self.task.cancel);
+        let mechanism = match built.ok_or(Cancelled)? {
             Ok(mechanism) => Arc::new(mechanism),
-            Err(BuildError::Wrong(_) | BuildError::Unsolved(_)) => return Some(None),
+            Err(BuildError::Wrong(_) | BuildError::Unsolved(_)) => return Ok(None),
         };
-        Some(self.crossing(&trial, &mechanism, Above::Skipped)?.and_then(|found| found.value))
+        Ok(self.crossing(&trial, &mechanism, Above::Skipped)?.and_then(|found| found.value))
     }
 
     /// The band of frequencies that cross. All steps of a scan are run, and only the ends of the band are
     /// bisected: a gap or band narrower than a step may be missed.
-    fn band(&self, scene: &Alternative, trial: &Scene) -> Option<Option<(f64, f64)>> {
-        let Excitation::Sine { frequency_hz, .. } = trial.excitation else { return Some(None) };
+    fn band(&self, scene: &Alternative, trial: &Scene) -> Result<Option<(f64, f64)>, Cancelled> {
+        let Excitation::Sine { frequency_hz, .. } = trial.excitation else { return Ok(None) };
         let family = Family::new(trial, &scene.files, &scene.mechanism, FREQUENCY);
-        let ask = |values: &[f64]| -> Option<Vec<bool>> {
+        let ask = |values: &[f64]| -> Result<Vec<bool>, Cancelled> {
             let model = |number: usize| {
                 let model = family.model(values[number]).map_err(|_| false)?;
                 Ok(followed(model, self.until_settled))
             };
             let crosses = |run: &Run| Onset::Crossing.verdict(&run.summary).does;
-            shared_runs(Some(self.pool), self.task, values.len(), model, crosses)
+            shared_runs(Some(self.pool), self.task, values.len(), model, crosses).ok_or(Cancelled)
         };
         let values: Vec<f64> = (-STEPS..=STEPS)
             .map(|i| decimal(frequency_hz * SEARCHED_SPAN.powf(f64::from(i) / f64::from(STEPS))))
@@ -222,10 +224,10 @@ impl Rating<'_> {
         let holds = |band: &&(usize, usize)| (band.0..=band.1).contains(&middle);
         let widest = || bands.iter().rev().max_by_key(|band| band.1 - band.0);
         let Some((first, last)) = bands.iter().find(holds).or_else(widest).copied() else {
-            return Some(None);
+            return Ok(None);
         };
-        let edge = |inside: usize, outside: Option<usize>| -> Option<f64> {
-            let (mut inside, Some(outside)) = (values[inside], outside) else { return Some(values[inside]) };
+        let edge = |inside: usize, outside: Option<usize>| -> Result<f64, Cancelled> {
+            let (mut inside, Some(outside)) = (values[inside], outside) else { return Ok(values[inside]) };
             let mut outside = values[outside];
             while (outside / inside - 1.0).abs() > BAND_RESOLUTION {
                 let middle = decimal((inside * outside).sqrt());
@@ -234,11 +236,11 @@ impl Rating<'_> {
                     false => outside = middle,
                 }
             }
-            Some(inside)
+            Ok(inside)
         };
         let low = edge(first, first.checked_sub(1))?;
         let high = edge(last, Some(last + 1).filter(|i| *i < values.len()))?;
-        Some(Some((low, high)))
+        Ok(Some((low, high)))
     }
 }
 
@@ -252,14 +254,6 @@ fn decimal(value: f64) -> f64 {
 pub fn comparison_table(rated: &[Rated]) -> Table {
     let number =
         |of: fn(&Rated) -> Option<f64>| rated.iter().map(|row| of(row).unwrap_or(f64::NAN)).collect();
-    let summary = |name: &str| -> Values {
-        let read = SummaryField::find(name).map(|field| field.read);
-        let of = |row: &Rated| match read {
-            Some(Read::Number(of)) => of(&row.summary).unwrap_or(f64::NAN),
-            _ => f64::NAN,
-        };
-        rated.iter().map(of).collect()
-    };
     let names = |of: fn(&Rated) -> String| Values::Names(rated.iter().map(of).collect());
     let mut table = Table::new()
         .with("scene", names(|row| row.name.clone()))
@@ -272,8 +266,9 @@ pub fn comparison_table(rated: &[Rated]) -> Table {
             Some(_) => "false",
             None => "",
         });
-    for name in ["rms_velocity_m_per_s", "mean_load_power_w", "max_abs_x_m", "impact_speed_max_m_per_s"] {
-        table = table.with(name, summary(name));
+    let summary = ["rms_velocity_m_per_s", "mean_load_power_w", "max_abs_x_m", "impact_speed_max_m_per_s"];
+    for field in summary.into_iter().filter_map(SummaryField::find) {
+        table = table.with(field.name, field.column(rated.iter().map(|row| Some(&row.summary))));
     }
     table
         .with("crosses_from_hz", number(|row| row.crosses_hz.map(|band| band.0)))

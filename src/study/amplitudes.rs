@@ -2,18 +2,20 @@
 
 use std::sync::Arc;
 
-use super::Task;
 use super::bisection::multiple;
 use super::family::Family;
 use super::onset::{Onset, Verdict};
-use super::push::{AMPLITUDE, frees_at, holding_push};
 use super::settled::followed;
 use super::thresholds::{Answers, Found, Search};
-use crate::dynamics::{Model, Request};
-use crate::mechanics::Mechanism;
+use super::{Cancelled, Task};
+use crate::dynamics::{Model, Request, STANDARD_GRAVITY};
+use crate::mechanics::{Landscape, Mechanism};
 use crate::numeric::round::{ONE_TWO_FIVE, decade, round_down};
 use crate::scene::{Excitation, Files, Scene, Start, Stops};
 use crate::system::threads::Pool;
+
+/// The field of the amplitude of a sine.
+pub(super) const AMPLITUDE: &str = "excitation.amplitude_g";
 
 /// The unit of the third significant digit of a value.
 fn third_digit(value: f64) -> f64 {
@@ -53,7 +55,8 @@ const GAP_STEP: f64 = 0.01;
 /// Searches the amplitudes of a sine. `None` if the drive is no sine, there is no barrier, or the search
 /// was cancelled.
 pub fn thresholds(scene: &Scene, mechanism: &Arc<Mechanism>, task: &Task) -> Option<Thresholds> {
-    let (crossing, searched_to) = crossing(scene, mechanism, (None, None), Above::Searched, task)?;
+    let found = crossing(scene, mechanism, None, None, Above::Searched, task);
+    let (crossing, searched_to) = found.ok().flatten()?;
     Some(Thresholds { frees_at: frees_at(scene, mechanism), crossing, searched_to })
 }
 
@@ -65,16 +68,18 @@ pub(super) enum Above {
 }
 
 /// The least amplitude of a sine whose settled motion from rest crosses, and the largest amplitude searched;
-/// on a pool if given, each run followed up to `until_settled` in s if given. `None` as for [`thresholds`].
+/// on a pool if given, each run followed up to `until_settled` in s if given. `None` if the drive is no sine,
+/// or there is no barrier.
 pub(super) fn crossing(
     scene: &Scene,
     mechanism: &Arc<Mechanism>,
-    (pool, until_settled): (Option<&Pool>, Option<f64>),
+    pool: Option<&Pool>,
+    until_settled: Option<f64>,
     above: Above,
     task: &Task,
-) -> Option<(Found, f64)> {
-    let Excitation::Sine { .. } = scene.excitation else { return None };
-    let push = holding_push(scene, mechanism)?;
+) -> Result<Option<(Found, f64)>, Cancelled> {
+    let Excitation::Sine { .. } = scene.excitation else { return Ok(None) };
+    let Some(push) = holding_push(scene, mechanism) else { return Ok(None) };
     let step = push / f64::from(FINE_STEPS);
     let mut values: Vec<f64> = (1..=2 * FINE_STEPS).map(|i| step * f64::from(i)).collect();
     while let Some(last) = values.last().filter(|last| **last < MOST_PUSHES * push) {
@@ -109,7 +114,36 @@ pub(super) fn crossing(
         let high = [found.high, high].into_iter().flatten().reduce(f64::min);
         found = Found { high, windows, without_gap, ..found };
     }
-    Some((found, searched_to))
+    Ok(Some((found, searched_to)))
+}
+
+/// The amplitude in g whose push equals the largest force against which the mechanism must be moved from
+/// where the mass rests to the barrier.
+fn holding_push(scene: &Scene, mechanism: &Mechanism) -> Option<f64> {
+    let Landscape { barrier, extrema, .. } = &mechanism.landscape;
+    let barrier = barrier.as_ref()?;
+    let rests = match right_stop(scene) {
+        Some(stop) => stop.min(barrier.right_well),
+        None => barrier.right_well,
+    };
+    let between = |x: f64| x >= barrier.x && x <= rests;
+    let inside = extrema.iter().filter(|extremum| between(extremum.x)).map(|extremum| extremum.force.abs());
+    let force = inside.fold(mechanism.curve.force(rests).abs(), f64::max);
+    Some(force / (scene.mass_g / 1e3) / STANDARD_GRAVITY).filter(|push| *push > 0.0 && push.is_finite())
+}
+
+fn right_stop(scene: &Scene) -> Option<f64> {
+    scene.stops.limits_mm()[1].map(|mm| mm / 1e3)
+}
+
+/// The amplitude in g at which the base's push reaches the force that presses the mass on the stop that it
+/// rests on.
+pub(super) fn frees_at(scene: &Scene, mechanism: &Mechanism) -> Option<f64> {
+    let Excitation::Sine { .. } = scene.excitation else { return None };
+    let right = right_stop(scene)?;
+    let well = mechanism.landscape.right_stable()?.x;
+    let press = -mechanism.curve.force(right);
+    (right < well && press > 0.0).then(|| press / (scene.mass_g / 1e3) / STANDARD_GRAVITY)
 }
 
 /// Least number of steps of the search for stops from the well to the middle; it makes up to two and a half
@@ -117,8 +151,7 @@ pub(super) fn crossing(
 const FEWEST_STOPS: f64 = 50.0;
 
 /// The largest travel limit in mm inside the wells, the same on both sides, whose motion from rest is
-/// known to be interwell under the scene's excitation; the inner `None` if there is none, the outer one
-/// if cancelled.
+/// known to be interwell under the scene's excitation; `None` if there is none.
 ///
 /// The limits that cross form no interval, so every step is run instead of a bisection. A step is 1, 2 or 5
 /// of a decimal place: a tenth of a millimetre if the wells are some 7 mm away. `restitution` is that of the
@@ -128,10 +161,10 @@ pub fn stops_that_cross(
     mechanism: &Arc<Mechanism>,
     restitution: f64,
     task: &Task,
-) -> Option<Option<f64>> {
+) -> Result<Option<f64>, Cancelled> {
     let landscape = &mechanism.landscape;
     let Some(well) = landscape.right_stable().filter(|_| landscape.barrier.is_some()) else {
-        return Some(None);
+        return Ok(None);
     };
     let well_mm = well.x.abs() * 1e3;
     let step = round_down(well_mm / FEWEST_STOPS, &ONE_TWO_FIVE);
@@ -143,12 +176,10 @@ pub fn stops_that_cross(
         let (model, request) = followed(model, None);
         let run = model.run(&Request { cancel: Some(task.cancel), ..request });
         (task.tick)();
-        if task.is_cancelled() {
-            return None;
-        }
+        task.go_on()?;
         if Onset::Interwell.verdict(&run.summary) == (Verdict { does: true, known: true }) {
-            return Some(Some(travel_limit_mm));
+            return Ok(Some(travel_limit_mm));
         }
     }
-    Some(None)
+    Ok(None)
 }

@@ -2,11 +2,21 @@
 
 use std::collections::VecDeque;
 
+/// What is known of a value of a bisection.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Trial {
+    /// It has not been begun.
+    NotBegun,
+    /// It is being evaluated.
+    UnderWay,
+    /// The answer: yes or no.
+    Known(bool),
+}
+
 /// The next value of a bisection to evaluate: the one that follows from the known answers or, while that is
-/// under way, one that may follow it. `None` if `ahead` values are under way or nothing is left. `answer` is
-/// `None` for a value that was not asked, and `Some(None)` for one under way.
+/// under way, one that may follow it. `None` if `ahead` values are under way or nothing is left.
 pub(super) fn next_between(
-    answer: impl Fn(f64) -> Option<Option<bool>>,
+    trial: impl Fn(f64) -> Trial,
     span: (f64, f64),
     resolution: f64,
     ahead: usize,
@@ -16,11 +26,11 @@ pub(super) fn next_between(
         && let Some((low, high)) = spans.pop_front()
     {
         let Some(middle) = between(low, high, resolution) else { continue };
-        match answer(middle) {
-            None => return Some(middle),
-            Some(Some(true)) => spans.push_front((low, middle)),
-            Some(Some(false)) => spans.push_front((middle, high)),
-            Some(None) => {
+        match trial(middle) {
+            Trial::NotBegun => return Some(middle),
+            Trial::Known(true) => spans.push_front((low, middle)),
+            Trial::Known(false) => spans.push_front((middle, high)),
+            Trial::UnderWay => {
                 under_way += 1;
                 spans.extend([(low, middle), (middle, high)]);
             }
@@ -51,21 +61,21 @@ mod tests {
     fn what_is_asked_ahead_changes_nothing() {
         for (ahead, at) in [1, 2, 3, 7].into_iter().flat_map(|ahead| [0.51, 0.77, 1.0].map(|at| (ahead, at)))
         {
-            let mut trials: Vec<(f64, Option<bool>)> = Vec::new();
+            let mut trials: Vec<(f64, Trial)> = Vec::new();
             loop {
-                let answer = |trials: &[(f64, Option<bool>)], value| {
-                    trials.iter().find(|entry| entry.0 == value).map(|entry| entry.1)
+                let trial = |trials: &[(f64, Trial)], value| {
+                    trials.iter().find(|entry| entry.0 == value).map_or(Trial::NotBegun, |entry| entry.1)
                 };
-                while let Some(next) = next_between(|value| answer(&trials, value), (0.5, 1.0), 0.01, ahead) {
-                    trials.push((next, None));
+                while let Some(next) = next_between(|value| trial(&trials, value), (0.5, 1.0), 0.01, ahead) {
+                    trials.push((next, Trial::UnderWay));
                 }
-                let open = trials.iter().filter(|entry| entry.1.is_none()).count();
+                let open = trials.iter().filter(|entry| entry.1 == Trial::UnderWay).count();
                 assert!(open <= ahead);
                 // the last that was asked is answered first
-                let Some(last) = trials.iter_mut().rfind(|entry| entry.1.is_none()) else { break };
-                last.1 = Some(last.0 >= at);
+                let Some(last) = trials.iter_mut().rfind(|entry| entry.1 == Trial::UnderWay) else { break };
+                last.1 = Trial::Known(last.0 >= at);
             }
-            let does = |value: f64| trials.contains(&(value, Some(true)));
+            let does = |value: f64| trials.contains(&(value, Trial::Known(true)));
             let hundredths = (51..100).map(|i| f64::from(i) / 100.0);
             let least = hundredths.into_iter().find(|value| does(*value)).unwrap_or(1.0);
             assert_eq!(least, at);

@@ -64,7 +64,7 @@ pub enum SweepEnd<E> {
     Write(E),
 }
 
-/// Counts of the results of a sweep.
+/// Counts of the results of the cells of a grid.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Tally {
     /// Cells run, those without a solved mechanism among them.
@@ -73,6 +73,13 @@ pub struct Tally {
     pub ended_early: u64,
     /// Cells whose mechanism was not solved.
     pub not_converged: u64,
+    /// Cells whose motion rests on a stop, so that both exponents are minus infinity.
+    #[serde(skip)]
+    pub resting: u64,
+    /// Cells without exponents: the motion ended early or touched a stop without speed, or the flexures were
+    /// not solved.
+    #[serde(skip)]
+    pub without_exponents: u64,
     /// Cells in which the contact with a compliant stop was pressed beyond what its material bears.
     pub yielding: u64,
     /// Mechanisms built: one for each combination of the swept fields of the mechanism, however many cells
@@ -111,6 +118,8 @@ impl Tally {
         self.cells += other.cells;
         self.ended_early += other.ended_early;
         self.not_converged += other.not_converged;
+        self.resting += other.resting;
+        self.without_exponents += other.without_exponents;
         self.yielding += other.yielding;
         other.outcomes.iter().for_each(|(word, n)| add(&mut self.outcomes, word, *n));
         other.regimes.iter().for_each(|(word, n)| add(&mut self.regimes, word, *n));

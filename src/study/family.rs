@@ -21,21 +21,31 @@ impl<'a> Family<'a> {
         Self { scene, files, mechanism, path: FieldPath::new(field) }
     }
 
-    /// The model where the field has this value; else the faults of the scene, none if it has no such field
-    /// or its mechanism is not solved.
-    pub fn model(&self, value: f64) -> Result<Model, Vec<Fault>> {
+    /// The model where the field has this value, or why there is none.
+    pub fn model(&self, value: f64) -> Result<Model, NoModel> {
         let mut scene = self.scene.clone();
         if !self.path.set(&mut scene, value) {
-            return Err(Vec::new());
+            return Err(NoModel::NoField);
         }
         let mechanism = match scene.mechanism == self.scene.mechanism {
             true => Arc::clone(self.mechanism),
             false => match Mechanism::build(&scene.mechanism, self.files) {
                 Ok(mechanism) => Arc::new(mechanism),
-                Err(BuildError::Wrong(fault)) => return Err(vec![fault]),
-                Err(BuildError::Unsolved(_)) => return Err(Vec::new()),
+                Err(BuildError::Wrong(fault)) => return Err(NoModel::Faults(vec![fault])),
+                Err(BuildError::Unsolved(_)) => return Err(NoModel::Unsolved),
             },
         };
-        Model::build(&scene, mechanism)
+        Model::build(&scene, mechanism).map_err(NoModel::Faults)
     }
+}
+
+/// Why a value of a field makes no model.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NoModel {
+    /// The scene does not have the field.
+    NoField,
+    /// The scene has faults.
+    Faults(Vec<Fault>),
+    /// Its mechanism is valid but not solved.
+    Unsolved,
 }

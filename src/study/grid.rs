@@ -1,5 +1,6 @@
 //! Cells of a sweep: the product of its axes, the first one slowest.
 
+use super::table::Table;
 use crate::scene::{Axis, Scene, column_names};
 
 /// The largest number of cells of one sweep: at a thousandth of a second each, a day of one core.
@@ -26,9 +27,14 @@ pub struct Grid {
     cells: u64,
 }
 
-/// Whether another value on this axis means another mechanism.
-fn changes_mechanism(axis: &&Axis) -> bool {
-    axis.field.starts_with("mechanism.")
+/// Whether a field is one of the mechanism.
+pub(super) fn is_of_mechanism(field: &str) -> bool {
+    field.split('.').next() == Some("mechanism")
+}
+
+/// The name of a field, the last part of its path.
+pub(super) fn name_of(field: &str) -> &str {
+    field.rsplit('.').next().unwrap_or(field)
 }
 
 impl Grid {
@@ -37,6 +43,11 @@ impl Grid {
         let cells = count(axes.iter().map(|axis| axis.values.len() as u64))?;
         let fields: Vec<&str> = axes.iter().map(|axis| axis.field.as_str()).collect();
         Ok(Self { columns: column_names(&fields), axes, cells })
+    }
+
+    /// The grid without axes, whose one cell is the scene as it is.
+    pub fn of_one() -> Self {
+        Self { axes: Vec::new(), columns: Vec::new(), cells: 1 }
     }
 
     /// The axes, slowest first.
@@ -56,17 +67,20 @@ impl Grid {
 
     /// Where cell `index` stands on each axis.
     fn places(&self, index: u64) -> impl Iterator<Item = usize> {
-        let mut below = self.cells;
-        self.axes.iter().map(move |axis| {
-            let length = axis.values.len() as u64;
-            below /= length;
-            (index / below % length) as usize
-        })
+        places(self.axes.iter().map(|axis| axis.values.len()), index)
     }
 
     /// The values of cell `index`, in the order of the axes.
     pub fn values(&self, index: u64) -> impl Iterator<Item = f64> {
         self.axes.iter().zip(self.places(index)).map(|(axis, place)| axis.values[place])
+    }
+
+    /// The columns of the swept fields, a row for each of these cells.
+    pub(super) fn table<I: Iterator<Item = u64>>(&self, cells: impl Fn() -> I) -> Table {
+        let value = |place: usize| move |index: u64| self.values(index).nth(place).unwrap_or(f64::NAN);
+        let columns = self.columns.iter().enumerate();
+        columns
+            .fold(Table::new(), |table, (place, name)| table.with(name, cells().map(value(place)).collect()))
     }
 
     /// Puts the values of cell `index` into a scene that has the fields; allocates nothing.
@@ -76,17 +90,19 @@ impl Grid {
 
     /// Whether the cells have different mechanisms.
     pub fn changes_mechanism(&self) -> bool {
-        self.axes.iter().any(|axis| changes_mechanism(&axis))
+        self.axes.iter().any(|axis| is_of_mechanism(&axis.field))
     }
 
     /// The number of different mechanisms among the cells.
     pub fn mechanisms(&self) -> u64 {
-        self.axes.iter().filter(changes_mechanism).map(|axis| axis.values.len() as u64).product()
+        let axes = self.axes.iter().filter(|axis| is_of_mechanism(&axis.field));
+        axes.map(|axis| axis.values.len() as u64).product()
     }
 
     /// Which of the [`mechanisms`](Self::mechanisms) cell `index` has.
     pub fn mechanism(&self, index: u64) -> u64 {
-        let places = self.axes.iter().zip(self.places(index)).filter(|(axis, _)| changes_mechanism(axis));
+        let places =
+            self.axes.iter().zip(self.places(index)).filter(|(axis, _)| is_of_mechanism(&axis.field));
         places.fold(0, |number, (axis, place)| number * axis.values.len() as u64 + place as u64)
     }
 
@@ -96,6 +112,18 @@ impl Grid {
         let parts: Vec<String> = parts.map(|(column, value)| format!("{column} = {value}")).collect();
         parts.join(", ")
     }
+}
+
+/// Where cell `index` of a grid with axes of these lengths stands on each, the slowest first.
+pub(super) fn places<L>(lengths: L, index: u64) -> impl Iterator<Item = usize>
+where
+    L: Iterator<Item = usize> + Clone,
+{
+    let mut below: u64 = lengths.clone().map(|length| length as u64).product();
+    lengths.map(move |length| {
+        below /= length as u64;
+        (index / below % length as u64) as usize
+    })
 }
 
 /// The product of the axes' lengths.

@@ -3,9 +3,9 @@
 
 use std::sync::Arc;
 
+use super::amplitudes::frees_at;
 use super::contact::strikes_in_words;
 use super::curve::small_amplitude_frequency;
-use super::push::frees_at;
 use crate::dynamics::Model;
 use crate::mechanics::flexure::{Accuracy, Geometry, Group};
 use crate::mechanics::{Equilibrium, Landscape, Mechanism};

@@ -3,7 +3,7 @@
 //! Every eighth value of each axis first, then every fourth, every second, every one. The cells of a level
 //! are among those of the next, so nothing is run twice, and the last level is the grid itself.
 
-use super::grid::Grid;
+use super::grid::{Grid, places};
 
 /// The strides of the levels, coarse first: powers of two, 1 at last.
 pub const STRIDES: [usize; 4] = [8, 4, 2, 1];
@@ -30,7 +30,7 @@ impl Levels {
         let mut new: [Vec<u64>; STRIDES.len()] = Default::default();
         for index in 0..cells {
             // a power of two divides all places where it divides their bits together
-            let bits = places(&lengths, index).fold(0, |bits, place| bits | place);
+            let bits = places(lengths.iter().copied(), index).fold(0, |bits, place| bits | place);
             new[STRIDES.partition_point(|stride| !bits.is_multiple_of(*stride))].push(index);
         }
         let mut end = 0;
@@ -50,21 +50,13 @@ impl Levels {
     /// The cell that stands for cell `index` on a level: the nearest one that the level has.
     pub fn stand_in(&self, index: u64, level: usize) -> u64 {
         let stride = STRIDES[level];
-        let nearest = places(&self.lengths, index).zip(&self.lengths).map(|(place, length)| {
-            let last = (length - 1) / stride * stride;
-            ((place + stride / 2) / stride * stride).min(last)
-        });
+        let nearest =
+            places(self.lengths.iter().copied(), index).zip(&self.lengths).map(|(place, length)| {
+                let last = (length - 1) / stride * stride;
+                ((place + stride / 2) / stride * stride).min(last)
+            });
         nearest.zip(&self.lengths).fold(0, |index, (place, length)| index * *length as u64 + place as u64)
     }
-}
-
-/// Where cell `index` stands on each axis, the slowest first.
-fn places(lengths: &[usize], index: u64) -> impl Iterator<Item = usize> {
-    let mut below: u64 = lengths.iter().map(|length| *length as u64).product();
-    lengths.iter().map(move |length| {
-        below /= *length as u64;
-        (index / below % *length as u64) as usize
-    })
 }
 
 #[cfg(test)]

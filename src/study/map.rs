@@ -1,6 +1,7 @@
 //! Lines of a map at which motions begin to cross.
 
-use super::grid::Grid;
+use super::amplitudes::AMPLITUDE;
+use super::grid::{Grid, name_of};
 use super::table::{Table, Values};
 use crate::dynamics::{Regime, STANDARD_GRAVITY};
 use crate::mechanics::Mechanism;
@@ -9,8 +10,6 @@ use crate::scene::{Axis, Excitation, Scene, Start};
 
 /// The travel limit, over which the release is known in closed form.
 const LIMIT: &str = "stops.travel_limit_mm";
-/// The amplitude of that release.
-const AMPLITUDE: &str = "excitation.amplitude_g";
 
 /// Points of the line of releases.
 const POINTS: usize = 400;
@@ -48,7 +47,7 @@ pub fn release_line(scene: &Scene, mechanism: &Mechanism, grid: &Grid) -> Option
 /// Only for a grid over two fields of which one is an amplitude. `rows` are all rows of the sweep.
 pub fn first_crossing(grid: &Grid, rows: &Table) -> Option<Table> {
     let [a, b] = grid.axes() else { return None };
-    let amplitude = |axis: &Axis| axis.field == "amplitude_g" || axis.field.ends_with(".amplitude_g");
+    let amplitude = |axis: &Axis| name_of(&axis.field) == "amplitude_g";
     let (other, amplitude_axis) = match (amplitude(a), amplitude(b)) {
         (false, true) => (0, 1),
         (true, false) => (1, 0),

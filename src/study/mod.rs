@@ -11,7 +11,6 @@ mod basins;
 mod best;
 mod bisection;
 mod cell;
-mod cells;
 mod contact;
 mod continued;
 mod curve;
@@ -24,6 +23,7 @@ mod family;
 mod fields;
 mod flexures;
 mod grid;
+mod grid_study;
 mod identify;
 mod inspect;
 mod lesson;
@@ -33,7 +33,6 @@ mod measured;
 mod models;
 mod onset;
 mod orbit;
-mod push;
 mod section;
 mod settled;
 mod shared_runs;
@@ -62,7 +61,6 @@ pub use best::{
     SAMPLES, Spread, Variation, best, scan_runs,
 };
 pub use cell::{Cell, CellFaults, SweepEnd, Tally};
-pub use cells::Direction;
 pub use contact::{Strikes, contact, strikes, yield_speed, yield_warning};
 pub use continued::continued_scene;
 pub use curve::{
@@ -74,13 +72,14 @@ pub use distance::distances;
 pub use edges::{Edges, first_crossing_edge, line_meets};
 pub use ended::ended_remedy;
 pub use exponents::{
-    Estimate, ExponentCells, ExponentOptions, ExponentTally, Exponents, NoExponents, average_exponents,
-    drive_fault, exponents, exponents_row,
+    Estimate, ExponentCells, ExponentOptions, Exponents, NoExponents, average_exponents, drive_fault,
+    exponents, exponents_row,
 };
-pub use family::Family;
+pub use family::{Family, NoModel};
 pub use fields::{InJson, RMS_VELOCITY, Read, SUMMARY_FIELDS, SummaryField};
 pub use flexures::{StatesError, flexures_at, full_curve, shapes, states, stress_warning};
 pub use grid::{Grid, GridError, MAX_CELLS};
+pub use grid_study::{GridStudy, Question, Row};
 pub use identify::{
     FORCE_POINTS, Identified, Identity, Unidentified, damping, force, restitution, restitution_of_times,
 };
@@ -104,11 +103,11 @@ pub use slice::{Shard, Slice};
 pub use spectrum::{NoSpectrum, Signal, Spectrum, SpectrumOptions, spectrum};
 pub use sweep::{DIRECTION, STANDARD as STANDARD_COLUMNS, Sweep, SweepOptions};
 pub use table::{Column, Table, Values, label_and_unit};
-pub use thresholds::{Found, Scan, threshold, threshold_table};
+pub use thresholds::{Found, NoThresholds, Scan, threshold, threshold_table};
 pub use times::{MAX_SAMPLES, SamplingStep, TimesError, even_times, listed_times};
 pub use trace::{Trace, simulate_with_trace};
 pub use up_and_down::{Visit, up_and_down};
-pub use walk::Carry;
+pub use walk::{Carry, Direction};
 pub use watch::Watch;
 pub use watched_events::watched_events;
 
@@ -126,7 +125,16 @@ impl Task<'_> {
     pub fn is_cancelled(&self) -> bool {
         self.cancel.load(Ordering::Relaxed)
     }
+
+    /// An error if the study was told to stop.
+    fn go_on(&self) -> Result<(), Cancelled> {
+        if self.is_cancelled() { Err(Cancelled) } else { Ok(()) }
+    }
 }
+
+/// A study was told to stop before it had its answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Cancelled;
 
 /// Why a study that knows a motion by displacement and velocity alone refuses a scene.
 pub const ELECTRICAL_STATE: &str = "transducer: its current or voltage goes on with the motion as a third \

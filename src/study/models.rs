@@ -44,22 +44,21 @@ impl Models {
         }
     }
 
+    /// The model that held at a time in s, with its first time; before all of them the first.
+    fn entry(&self, t: f64) -> &(f64, Arc<Model>) {
+        let after = self.before.partition_point(|entry| entry.0 <= t);
+        let before = self.before.get(after.saturating_sub(1)).filter(|_| t < self.now.0);
+        before.unwrap_or(&self.now)
+    }
+
     /// The model that held at a time in s; before all of them the first.
     pub fn at(&self, t: f64) -> &Arc<Model> {
-        if t >= self.now.0 {
-            return &self.now.1;
-        }
-        let after = self.before.partition_point(|entry| entry.0 <= t);
-        self.before.get(after.saturating_sub(1)).map_or(&self.now.1, |entry| &entry.1)
+        &self.entry(t).1
     }
 
     /// The time in s from which the model held that held at a time in s.
     pub fn since(&self, t: f64) -> f64 {
-        if t >= self.now.0 {
-            return self.now.0;
-        }
-        let after = self.before.partition_point(|entry| entry.0 <= t);
-        self.before.get(after.saturating_sub(1)).map_or(self.now.0, |entry| entry.0)
+        self.entry(t).0
     }
 
     /// Forgets what held only before a time in s.

@@ -4,17 +4,13 @@
 
 use std::sync::atomic::AtomicBool;
 
-use super::Task;
-use super::cell::{CellFaults, SweepEnd, Tally};
-use super::cells::{Cells, Question, Ran};
+use super::cell::{Cell, Tally};
 use super::grid::Grid;
-use super::slice::{Shard, Slice};
-use super::sweep::fields;
+use super::grid_study::{AHEAD, GridStudy, Question, Row, fields};
 use super::table::Table;
 use super::walk::{Carry, without_a_period};
 use crate::dynamics::{EventKind, Model, Request, Run, SectionPoint, Side, Summary};
-use crate::scene::{Fault, Files, Scene};
-use crate::system::threads::Pool;
+use crate::scene::{Fault, Scene};
 
 /// The most states of one section.
 pub const MAX_SECTION: u64 = 1 << 22;
@@ -48,40 +44,41 @@ pub struct SectionOptions {
     pub carry: Option<Carry>,
 }
 
-/// The rows of one run.
+/// The section of one run.
 #[derive(Debug, Clone)]
-pub(super) enum Points {
-    States(Vec<SectionPoint>),
-    Impacts(Vec<Struck>),
+pub struct Sectioned {
+    cell: Cell,
+    /// Its states, where it is taken at a phase.
+    states: Vec<SectionPoint>,
+    /// Its impacts, where it is taken at them.
+    impacts: Vec<Struck>,
 }
 
 /// An impact: its time in s, the stop, the drive's phase in degrees, and the velocity in m/s before it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Struck {
+struct Struck {
     t: f64,
     side: Side,
     phase: f64,
     v_in: f64,
 }
 
-impl Points {
+impl Sectioned {
+    /// The number of its rows.
     fn len(&self) -> usize {
-        match self {
-            Self::States(states) => states.len(),
-            Self::Impacts(impacts) => impacts.len(),
-        }
+        self.states.len() + self.impacts.len()
     }
 }
 
 impl Question for SectionOptions {
-    type Answer = Points;
+    type Answer = Sectioned;
 
-    fn request(&self) -> Request<'_> {
+    fn request(&self) -> Option<Request<'_>> {
         let (section, events) = match self.at {
             SectionAt::Phase(degrees) => (Some(degrees.rem_euclid(360.0) / 360.0), false),
             SectionAt::Impacts => (None, true),
         };
-        Request { section, events, until_settled: self.until_settled, ..Request::default() }
+        Some(Request { section, events, until_settled: self.until_settled, ..Request::default() })
     }
 
     fn model(&self, model: Model) -> Model {
@@ -124,10 +121,8 @@ impl Question for SectionOptions {
         }
     }
 
-    fn answer(&self, model: &Model, run: Run) -> Points {
-        if matches!(self.at, SectionAt::Phase(_)) {
-            return Points::States(run.section);
-        }
+    fn answer(&self, model: &Model, run: Option<Run>, _: &AtomicBool) -> Sectioned {
+        let Some(run) = run else { return Self::without_model(Cell::NotRun) };
         let (from, to) = run.summary.window;
         let strikes = run.events.iter().filter(|event| {
             matches!(event.kind, EventKind::Impact | EventKind::Contact)
@@ -141,48 +136,37 @@ impl Question for SectionOptions {
             phase: model.drive_phase(event.t).map_or(f64::NAN, |turns| 360.0 * turns),
             v_in: event.v_in,
         });
-        Points::Impacts(struck.collect())
+        Sectioned { cell: Cell::Run(run.summary), impacts: struck.collect(), states: run.section }
     }
 
-    fn table(&self, grid: &Grid, ran: &[Ran<Points>]) -> Table {
-        let table = fields(grid, ran, |row| row.answer.as_ref().map_or(0, Points::len), self.carry.is_some());
-        let each = ran.iter().filter_map(|row| row.answer.as_ref().zip(row.cell.summary()));
-        self.rows(table, &each.collect::<Vec<_>>())
+    fn without_model(cell: Cell) -> Sectioned {
+        Sectioned { cell, states: Vec::new(), impacts: Vec::new() }
     }
 
-    fn most_cells(&self) -> u64 {
-        let each = self.periods.map_or(1 << 12, |(_, keep)| keep.max(1));
-        (KEPT / each).max(1)
+    fn count(tally: &mut Tally, answer: &Sectioned) {
+        tally.count(&answer.cell);
     }
-}
 
-impl SectionOptions {
-    /// The columns of the rows of these runs, after those of `table`.
-    fn rows(&self, table: Table, runs: &[(&Points, &Summary)]) -> Table {
-        let index = runs.iter().flat_map(|(points, _)| (0..points.len() as u64).map(Some));
+    fn table(&self, grid: &Grid, rows: &[Row<Sectioned>]) -> Table {
+        let table = fields(grid, rows, Sectioned::len, self.carry.is_some());
+        let index = rows.iter().flat_map(|row| (0..row.answer.len() as u64).map(Some));
         let table = table.with("index", index.collect());
         match self.at {
             SectionAt::Phase(_) => {
-                let states: Vec<(SectionPoint, u64)> = runs
-                    .iter()
-                    .flat_map(|(points, summary)| {
-                        let states: &[SectionPoint] =
-                            if let Points::States(states) = points { states } else { &[] };
-                        states.iter().map(|state| (*state, summary.impacts))
-                    })
-                    .collect();
+                let of_row = |row: &Row<Sectioned>| {
+                    let impacts = row.answer.cell.summary().map_or(0, |summary| summary.impacts);
+                    row.answer.states.iter().map(move |state| (*state, impacts)).collect::<Vec<_>>()
+                };
+                let states: Vec<(SectionPoint, u64)> = rows.iter().flat_map(of_row).collect();
                 table
-                    .each("t_s", &states, |state| state.0.t)
-                    .each("x_m", &states, |state| state.0.x)
-                    .each("v_m_per_s", &states, |state| state.0.v)
-                    .each(IMPACTS, &states, |state| Some(state.1))
+                    .each("t_s", &states, |(state, _)| state.t)
+                    .each("x_m", &states, |(state, _)| state.x)
+                    .each("v_m_per_s", &states, |(state, _)| state.v)
+                    .each(IMPACTS, &states, |(_, impacts)| Some(*impacts))
             }
             SectionAt::Impacts => {
-                let impacts: Vec<Struck> = runs
-                    .iter()
-                    .flat_map(|(points, _)| if let Points::Impacts(all) = points { &all[..] } else { &[] })
-                    .copied()
-                    .collect();
+                let impacts: Vec<Struck> =
+                    rows.iter().flat_map(|row| row.answer.impacts.iter().copied()).collect();
                 table
                     .each("t_s", &impacts, |impact| impact.t)
                     .each("side", &impacts, |impact| impact.side.name())
@@ -192,6 +176,24 @@ impl SectionOptions {
         }
     }
 
+    fn carry(&self) -> Option<Carry> {
+        self.carry
+    }
+
+    fn ahead(&self, threads: u64) -> u64 {
+        let each = self.periods.map_or(1 << 12, |(_, keep)| keep.max(1));
+        (KEPT / each).clamp(threads, AHEAD * threads)
+    }
+}
+
+impl Default for SectionOptions {
+    /// The states at the phase 0 over the scene's own run.
+    fn default() -> Self {
+        Self { at: SectionAt::Phase(0.0), periods: None, until_settled: None, carry: None }
+    }
+}
+
+impl SectionOptions {
     /// The model as it is run.
     pub fn run_of(&self, model: &Model) -> Model {
         self.model(model.clone())
@@ -219,75 +221,12 @@ pub fn section(
     if let Some(fault) = options.fault(&model, scene) {
         return Err(fault);
     }
-    let run = model.run(&Request { cancel: Some(cancel), ..options.request() });
+    let run = model.run(&Request { cancel: Some(cancel), ..options.request().unwrap_or_default() });
     let summary = run.summary;
-    let points = options.answer(&model, run);
-    Ok((options.rows(Table::new(), &[(&points, &summary)]), summary))
+    let row = Row { index: 0, direction: None, answer: options.answer(&model, Some(run), cancel) };
+    Ok((options.table(&Grid::of_one(), &[row]), summary))
 }
 
-/// Sections of the cells of a grid: the bifurcation diagram.
-#[derive(Debug)]
-pub struct Sections {
-    cells: Cells,
-    options: SectionOptions,
-}
-
-impl Sections {
-    /// Sections of `grid` over `base`, which has passed its check, as have the grid's corners.
-    pub fn new(base: &Scene, files: &Files, grid: Grid, options: SectionOptions) -> Self {
-        Self { cells: Cells::new(base, files, grid), options }
-    }
-
-    /// The grid.
-    pub fn grid(&self) -> &Grid {
-        &self.cells.grid
-    }
-
-    /// The number of runs.
-    pub fn runs(&self) -> u64 {
-        let walks = self.options.carry.map_or(1, |carry| carry.directions().len() as u64);
-        self.grid().cells() * walks
-    }
-
-    /// The table without rows: the swept fields, the direction of a walk, then as of one [`section`].
-    pub fn empty_table(&self) -> Table {
-        self.options.table(self.grid(), &[])
-    }
-
-    /// The model of the first cell as it is run, or its faults; `None` if its mechanism was not solved.
-    pub fn first_model(&self, task: &Task) -> Option<Result<Model, Vec<Fault>>> {
-        let built = self.cells.model(0, &mut self.cells.base.clone(), task)?;
-        Some(built.map(|model| self.options.model(model)))
-    }
-
-    /// The same with runs that go on until they have settled, or up to this time in s.
-    #[must_use]
-    pub fn until_settled(mut self, until: Option<f64>) -> Self {
-        self.options.until_settled = until;
-        self
-    }
-
-    /// Builds every cell without running it; the error is the first invalid one, with all its faults. A
-    /// cancelled check finds nothing.
-    pub fn validate(&self, pool: &Pool, task: &Task) -> Result<(), CellFaults> {
-        self.cells.validate(&self.options, (self.grid().cells(), |cell| cell), pool, task)
-    }
-
-    /// Runs every cell on `pool` and hands the rows to `write`, some at a time, in order. `write` answers
-    /// whether more rows are wanted. Precondition: [`validate`](Self::validate) found nothing.
-    pub fn run<E>(
-        &self,
-        pool: &Pool,
-        task: &Task,
-        mut write: impl FnMut(&Table) -> Result<bool, E>,
-    ) -> Result<Tally, SweepEnd<E>> {
-        let write = |table: &Table, _: &Tally| write(table);
-        let walk = self.grid().axes().last().map_or(1, |axis| axis.values.len() as u64);
-        let unit = self.options.carry.map_or(1, |_| walk);
-        let all = (&Slice::new(self.runs(), unit, Shard::WHOLE), 0);
-        match self.options.carry {
-            Some(carry) => self.cells.walk(&self.options, carry, all, pool, task, write),
-            None => self.cells.run(&self.options, all, pool, task, write),
-        }
-    }
-}
+/// Sections of the cells of a grid: the bifurcation diagram. Its rows are the swept fields, the direction of
+/// a walk, then as of one [`section`].
+pub type Sections = GridStudy<SectionOptions>;

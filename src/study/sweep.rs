@@ -1,20 +1,22 @@
 //! Sweep: a run for each cell of a grid, in parallel, a row a cell.
 
-use super::Task;
-use super::cell::{Cell, CellFaults, SweepEnd, Tally};
-use super::cells::{Built, Cells, Question, Ran};
+use std::sync::atomic::AtomicBool;
+
+use super::cell::{Cell, Tally};
 use super::fields::SummaryField;
 use super::grid::Grid;
-use super::slice::{Shard, Slice};
+use super::grid_study::{GridStudy, Question, Row, fields};
 use super::table::{Table, Values};
 use super::walk::{Carry, without_a_period};
 use crate::dynamics::{Model, Request, Run};
-use crate::scene::{Fault, Files, Scene};
-use crate::system::threads::Pool;
+use crate::scene::{Fault, Scene};
 
 /// The columns that every sweep has after those of its fields.
 pub const STANDARD: [&str; 7] =
-    ["rms_velocity_m_per_s", "regime", "crossings", "impacts", "max_abs_x_m", "period", "outcome"];
+    ["rms_velocity_m_per_s", "regime", "crossings", "impacts", "max_abs_x_m", "period", OUTCOME];
+
+/// The column of how a run ended.
+const OUTCOME: &str = "outcome";
 
 /// The column that says in which direction a field was walked.
 pub const DIRECTION: &str = "direction";
@@ -33,208 +35,62 @@ pub struct SweepOptions {
     pub carry: Option<Carry>,
 }
 
-/// A sweep of a grid over a scene.
-#[derive(Debug)]
-pub struct Sweep {
-    cells: Cells,
-    options: SweepOptions,
-}
+/// A run for each cell of a grid, a row a cell.
+pub type Sweep = GridStudy<SweepOptions>;
 
 impl Question for SweepOptions {
-    type Answer = ();
+    type Answer = Cell;
 
-    fn request(&self) -> Request<'_> {
+    fn request(&self) -> Option<Request<'_>> {
         let ledger = self.columns.iter().any(|field| field.needs_ledger);
-        Request { ledger, until_settled: self.until_settled, ..Request::default() }
+        Some(Request { ledger, until_settled: self.until_settled, ..Request::default() })
     }
 
     fn fault(&self, model: &Model, scene: &Scene) -> Option<Fault> {
         self.carry.and_then(|_| without_a_period(model, scene, "a walk from cell to cell"))
     }
 
-    fn answer(&self, _: &Model, _: Run) {}
+    fn answer(&self, _: &Model, run: Option<Run>, _: &AtomicBool) -> Cell {
+        run.map_or(Cell::NotRun, |run| Cell::Run(run.summary))
+    }
 
-    fn table(&self, grid: &Grid, ran: &[Ran<()>]) -> Table {
-        let mut table = fields(grid, ran, |_| 1, self.carry.is_some());
-        for name in STANDARD {
-            table = table.with(name, column(name, ran));
-        }
-        let more = self.columns.iter().filter(|field| !STANDARD.contains(&field.name));
-        more.fold(table, |table, field| table.with(field.name, column(field.name, ran)))
+    fn without_model(cell: Cell) -> Cell {
+        cell
+    }
+
+    fn count(tally: &mut Tally, cell: &Cell) {
+        tally.count(cell);
+    }
+
+    fn table(&self, grid: &Grid, rows: &[Row<Cell>]) -> Table {
+        let table = fields(grid, rows, |_| 1, self.carry.is_some());
+        let standard = STANDARD.into_iter().filter_map(SummaryField::find);
+        let more = self.columns.iter().copied().filter(|field| !STANDARD.contains(&field.name));
+        standard.chain(more).fold(table, |table, field| table.with(field.name, column(field, rows)))
+    }
+
+    fn carry(&self) -> Option<Carry> {
+        self.carry
     }
 }
 
-/// The columns of the swept fields, and that of the direction where the cells were walked; of each cell so
-/// many rows.
-pub(super) fn fields<A>(grid: &Grid, ran: &[Ran<A>], rows: impl Fn(&Ran<A>) -> usize, walked: bool) -> Table {
-    let mut table = Table::new();
-    for (i, name) in grid.columns().iter().enumerate() {
-        let value = |row: &Ran<A>| {
-            let value = grid.values(row.index).nth(i).unwrap_or(f64::NAN);
-            std::iter::repeat_n(value, rows(row))
-        };
-        table = table.with(name, ran.iter().flat_map(value).collect());
-    }
-    if !walked {
-        return table;
-    }
-    let word = |row: &Ran<A>| std::iter::repeat_n(row.direction.map_or("", |way| way.name()), rows(row));
-    table.with(DIRECTION, ran.iter().flat_map(word).collect())
-}
-
-fn column(name: &str, ran: &[Ran<()>]) -> Values {
-    match SummaryField::find(name) {
+fn column(field: &SummaryField, rows: &[Row<Cell>]) -> Values {
+    match field.name {
         // also for cells without a run
-        _ if name == "outcome" => Values::Words(ran.iter().map(|row| row.cell.outcome()).collect()),
-        Some(field) => field.column(ran.iter().map(|row| row.cell.summary())),
-        None => Values::Words(vec![""; ran.len()]),
-    }
-}
-
-impl Sweep {
-    /// A sweep of `grid` over `base`, which has passed its check, as have the grid's corners.
-    pub fn new(base: &Scene, files: &Files, grid: Grid) -> Self {
-        Self { cells: Cells::new(base, files, grid), options: SweepOptions::default() }
-    }
-
-    /// The same with these options.
-    #[must_use]
-    pub fn with(mut self, options: SweepOptions) -> Self {
-        self.options = options;
-        self
-    }
-
-    /// The grid.
-    pub fn grid(&self) -> &Grid {
-        &self.cells.grid
-    }
-
-    /// The number of rows.
-    pub fn rows(&self) -> u64 {
-        let walks = self.options.carry.map_or(1, |carry| carry.directions().len() as u64);
-        self.grid().cells() * walks
-    }
-
-    /// Rows that are computed one after the other: those of a walk, else one.
-    fn unit(&self) -> u64 {
-        let walk = self.grid().axes().last().map_or(1, |axis| axis.values.len() as u64);
-        self.options.carry.map_or(1, |_| walk)
-    }
-
-    /// The rows of a shard.
-    pub fn slice(&self, shard: Shard) -> Slice {
-        Slice::new(self.rows(), self.unit(), shard)
-    }
-
-    /// The options.
-    pub fn options(&self) -> &SweepOptions {
-        &self.options
-    }
-
-    /// Approximate upper bound of the bytes that a run of it keeps, however many cells there are. Walks are
-    /// kept while they go on.
-    pub fn memory(&self, threads: usize) -> u64 {
-        let length = self.options.carry.map(|_| self.unit());
-        self.cells.memory::<SweepOptions>(threads as u64, length)
-    }
-
-    /// The cell of a row.
-    pub fn cell(&self, row: u64) -> u64 {
-        let walks = self.options.carry.map_or(1, |carry| carry.directions().len() as u64);
-        let (walk, step) = (row / self.unit(), row % self.unit());
-        walk / walks * self.unit() + step
-    }
-
-    /// The table without rows.
-    pub fn empty_table(&self) -> Table {
-        self.table(0, &[])
-    }
-
-    /// The mechanism of the first cell, or why it has none. Where no axis changes the mechanism, it is that
-    /// of every cell.
-    pub fn first_mechanism(&self) -> Built {
-        self.cells.first_mechanism()
-    }
-
-    /// The model of the first cell, or its faults; `None` if its mechanism was not solved.
-    pub fn first_model(&self, task: &Task) -> Option<Result<Model, Vec<Fault>>> {
-        self.cells.model(0, &mut self.cells.base.clone(), task)
-    }
-
-    /// Builds every cell without running it; the error is the first invalid one, with all its faults. In a
-    /// walk, a drive that does not repeat is one. A mechanism that is not solved is no fault but an outcome.
-    /// A cancelled check finds nothing.
-    pub fn validate(&self, pool: &Pool, task: &Task) -> Result<(), CellFaults> {
-        self.validate_rows(&self.slice(Shard::WHOLE), 0, pool, task)
-    }
-
-    /// The same for the cells of a slice from its row `from` on.
-    pub fn validate_rows(
-        &self,
-        slice: &Slice,
-        from: u64,
-        pool: &Pool,
-        task: &Task,
-    ) -> Result<(), CellFaults> {
-        let cell = |place: u64| self.cell(slice.row(from + place));
-        self.cells.validate(&self.options, (slice.rows() - from, cell), pool, task)
-    }
-
-    /// Runs every cell on `pool` and hands the rows to `write`, some at a time, in order. `write` answers
-    /// whether more rows are wanted. Precondition: [`validate`](Self::validate) found nothing.
-    pub fn run<E>(
-        &self,
-        pool: &Pool,
-        task: &Task,
-        mut write: impl FnMut(&Table) -> Result<bool, E>,
-    ) -> Result<Tally, SweepEnd<E>> {
-        self.run_rows(&self.slice(Shard::WHOLE), 0, pool, task, |table, _| write(table))
-    }
-
-    /// The same for the rows of a slice from `from` on, the first row of a unit; `write` also gets the tally
-    /// of the rows that it gets.
-    pub fn run_rows<E>(
-        &self,
-        slice: &Slice,
-        from: u64,
-        pool: &Pool,
-        task: &Task,
-        write: impl FnMut(&Table, &Tally) -> Result<bool, E>,
-    ) -> Result<Tally, SweepEnd<E>> {
-        match self.options.carry {
-            Some(carry) => self.cells.walk(&self.options, carry, (slice, from), pool, task, write),
-            None => self.cells.run(&self.options, (slice, from), pool, task, write),
-        }
-    }
-
-    /// Runs these cells on `pool`, none of them carried, begun in their order, and hands each over from its
-    /// thread as soon as it is there. Returns whether all of them were run: false if cancelled.
-    pub fn run_cells(
-        &self,
-        pool: &Pool,
-        task: &Task,
-        cells: &[u64],
-        each: &(dyn Fn(u64, Cell) + Sync),
-    ) -> bool {
-        self.cells.run_each(&self.options, pool, task, cells, each)
-    }
-
-    /// The rows of the cells from `begin` on, none of them carried.
-    pub fn table(&self, begin: u64, rows: &[Cell]) -> Table {
-        let ran = |(index, cell): (u64, &Cell)| Ran { index, direction: None, cell: *cell, answer: Some(()) };
-        let rows: Vec<Ran<()>> = (begin..).zip(rows).map(ran).collect();
-        self.options.table(&self.cells.grid, &rows)
+        OUTCOME => Values::Words(rows.iter().map(|row| row.answer.outcome()).collect()),
+        _ => field.column(rows.iter().map(|row| row.answer.summary())),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;
-    use std::sync::atomic::AtomicBool;
 
     use super::*;
     use crate::mechanics::FlexureError;
     use crate::scene::Document;
+    use crate::study::Task;
+    use crate::system::threads::Pool;
 
     #[test]
     fn a_mechanism_that_was_not_solved_is_an_outcome_of_its_cells() {
@@ -245,7 +101,7 @@ mod tests {
         let grid = Grid::new(document.axes(&over).unwrap()).unwrap();
         let sweep = Sweep::new(&document.scene, &document.files, grid);
         let error = FlexureError::NotConverged { x: 1e-3, residual: 1.0, is_preloaded: true };
-        *sweep.cells.mechanisms[1].lock().unwrap() = Some(Err(error.into()));
+        sweep.set_mechanism(1, Err(error.into()));
         let pool = Pool::new(2).unwrap();
         let cancel = AtomicBool::new(false);
         let task = Task { tick: &|| (), cancel: &cancel };

@@ -8,17 +8,19 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::Task;
-use super::bisection::{between, next_between};
+use super::amplitudes::{AMPLITUDE, frees_at};
+use super::bisection::{Trial, between, next_between};
 use super::cell::CellFaults;
-use super::family::Family;
+use super::family::{Family, NoModel};
 use super::grid::Grid;
+use super::grid_study::Cells;
 use super::onset::{Onset, Verdict};
-use super::push::{AMPLITUDE, frees_at};
 use super::settled::followed;
 use super::shared_runs::runs_from;
 use super::table::Table;
-use crate::dynamics::{Model, Request, Run};
+use super::walk::excitation_fault;
+use super::{Cancelled, Task};
+use crate::dynamics::Run;
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, Files, Scene, Start};
 use crate::system::threads::{Pool, Queue, UnderWay};
@@ -56,7 +58,7 @@ pub struct Found {
     pub without_gap: Option<f64>,
 }
 
-/// Runs the scan of `scene`, each run from rest. `mechanism` is the scene's own, built from `files`. `None`
+/// Runs the scan of `scene`, each run from rest. `mechanism` is that of the scene, built from `files`. `None`
 /// if cancelled.
 ///
 /// A value that makes no valid model does not do it. A release under one sine that moves a mass from the stop
@@ -69,18 +71,19 @@ pub fn threshold(
     (scan, onset): (&Scan, Onset),
     task: &Task,
 ) -> Option<Found> {
-    threshold_on((None, 1), scene, mechanism, files, (scan, onset), task)
+    threshold_on(None, 1, scene, mechanism, files, (scan, onset), task).ok()
 }
 
 /// The same on a pool, with `ahead` values of a bisection asked at a time.
 fn threshold_on(
-    (pool, ahead): (Option<&Pool>, usize),
+    pool: Option<&Pool>,
+    ahead: usize,
     scene: &Scene,
     mechanism: &Arc<Mechanism>,
     files: &Files,
     (scan, onset): (&Scan, Onset),
     task: &Task,
-) -> Option<Found> {
+) -> Result<Found, Cancelled> {
     if onset == Onset::Release
         && scan.field == AMPLITUDE
         && let Some(frees) = frees_at(scene, mechanism)
@@ -90,7 +93,7 @@ fn threshold_on(
         scan.values.iter().for_each(|_| (task.tick)());
         let value = Some(frees.max(first)).filter(|value| *value <= last);
         let low = (frees >= first).then(|| frees.min(last));
-        return Some(Found { value, low, high: value, without_gap: value, ..Found::default() });
+        return Ok(Found { value, low, high: value, without_gap: value, ..Found::default() });
     }
     let trial = from_rest(scene);
     let family = Family::new(&trial, files, mechanism, &scan.field);
@@ -98,72 +101,67 @@ fn threshold_on(
     let search = Search { family, onset, until_settled, task, pool, ahead };
     let mut answers = Answers::default();
     search.scan(&mut answers, &scan.values, scan.resolution)?;
-    Some(answers.found(scan.resolution))
+    Ok(answers.found(scan.resolution))
+}
+
+/// Why there is no table of thresholds.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NoThresholds {
+    /// It was told to stop.
+    Cancelled,
+    /// In these cells no value makes a valid model, for interwell motion one with a drive that repeats.
+    Wrong(Vec<CellFaults>),
 }
 
 /// The thresholds of every cell of `grid` over `scene`, in order: the swept fields, then
 /// `of,value,low,high,undecided,windows`. A value that is not found is missing, as is that of a cell whose
-/// mechanism is not solved. Ticks for each value of the scan in each cell. The error lists every cell in
-/// which no value makes a valid model (for interwell motion, one with a drive that repeats); then nothing has
-/// been run. `None` if cancelled.
+/// mechanism is not solved. Ticks for each value of the scan in each cell. If cells are wrong, nothing has
+/// been run.
 pub fn threshold_table(
     (scene, files): (&Scene, &Files),
-    grid: Option<&Grid>,
+    grid: &Grid,
     (scan, onset): (&Scan, Onset),
     pool: &Pool,
     task: &Task,
-) -> Option<Result<Table, Vec<CellFaults>>> {
-    let cells = grid.map_or(1, Grid::cells) as usize;
-    let one = grid.is_none_or(|grid| !grid.changes_mechanism()).then(|| build(scene, files));
-    let prepared = |scene: &mut Scene, index: usize| {
-        grid.inspect(|grid| grid.apply(index as u64, scene));
-        one.clone().unwrap_or_else(|| build(scene, files))
-    };
+) -> Result<Table, NoThresholds> {
+    let cells = Cells::new(scene, files, grid.clone());
+    let count = grid.cells() as usize;
+    let begin = || cells.base.clone();
     let check = |scene: &mut Scene, index: usize| {
-        if task.is_cancelled() {
-            return Err(());
-        }
-        let faults = match prepared(scene, index) {
-            Ok(mechanism) => faults(&from_rest(scene), &mechanism, files, (scan, onset)),
-            Err(BuildError::Unsolved(_)) => return Ok(None),
+        task.go_on()?;
+        let built = cells.mechanism(index as u64, scene, task.cancel).ok_or(Cancelled)?;
+        let faults = match built {
+            Ok(mechanism) => faults(&from_rest(scene), &mechanism, files, scan, onset),
+            Err(BuildError::Unsolved(_)) => None,
             Err(BuildError::Wrong(fault)) => Some(vec![fault]),
         };
-        let cell = || grid.map_or_else(String::new, |grid| grid.describe(index as u64));
-        Ok(faults.map(|faults| CellFaults { cell: cell(), faults }))
+        Ok(faults.map(|faults| CellFaults { cell: grid.describe(index as u64), faults }))
     };
+    let cancelled = |Cancelled| NoThresholds::Cancelled;
     let wrong: Vec<CellFaults> =
-        pool.map(cells, || scene.clone(), check).ok()?.into_iter().flatten().collect();
+        pool.map(count, begin, check).map_err(cancelled)?.into_iter().flatten().collect();
     if !wrong.is_empty() {
-        return Some(Err(wrong));
+        return Err(NoThresholds::Wrong(wrong));
     }
     // several cells have a thread each
-    let ahead = if cells == 1 { pool.count() } else { 1 };
-    let cell = |scene: &mut Scene, index: usize| match prepared(scene, index) {
-        Ok(mechanism) => {
-            threshold_on((Some(pool), ahead), scene, &mechanism, files, (scan, onset), task).ok_or(())
-        }
-        Err(_) => {
+    let ahead = if count == 1 { pool.count() } else { 1 };
+    let cell = |scene: &mut Scene, index: usize| {
+        let built = cells.mechanism(index as u64, scene, task.cancel).ok_or(Cancelled)?;
+        let Ok(mechanism) = built else {
             scan.values.iter().for_each(|_| (task.tick)());
-            Ok(Found { undecided: true, ..Found::default() })
-        }
+            return Ok(Found { undecided: true, ..Found::default() });
+        };
+        threshold_on(Some(pool), ahead, scene, &mechanism, files, (scan, onset), task)
     };
-    let found = pool.map(cells, || scene.clone(), cell).ok()?;
-    let mut table = Table::new();
-    for (place, column) in grid.iter().flat_map(|grid| grid.columns()).enumerate() {
-        let value = |index: u64| grid.and_then(|grid| grid.values(index).nth(place)).unwrap_or(f64::NAN);
-        table = table.with(column, (0..cells as u64).map(value).collect());
-    }
-    Some(Ok(table
+    let found = pool.map(count, begin, cell).map_err(cancelled)?;
+    Ok(grid
+        .table(|| 0..grid.cells())
         .each("of", &found, |_| onset.name())
         .each("value", &found, |found| found.value.unwrap_or(f64::NAN))
         .each("low", &found, |found| found.low.unwrap_or(f64::NAN))
         .each("high", &found, |found| found.high.unwrap_or(f64::NAN))
         .each("undecided", &found, |found| if found.undecided { "true" } else { "false" })
-        .each("windows", &found, |found| found.value.map(|_| found.windows))))
-}
-
-fn build(scene: &Scene, files: &Files) -> Result<Arc<Mechanism>, BuildError> {
-    Mechanism::build(&scene.mechanism, files).map(Arc::new)
+        .each("windows", &found, |found| found.value.map(|_| found.windows)))
 }
 
 fn from_rest(scene: &Scene) -> Scene {
@@ -175,7 +173,8 @@ fn faults(
     trial: &Scene,
     mechanism: &Arc<Mechanism>,
     files: &Files,
-    (scan, onset): (&Scan, Onset),
+    scan: &Scan,
+    onset: Onset,
 ) -> Option<Vec<Fault>> {
     let family = Family::new(trial, files, mechanism, &scan.field);
     let mut first = None;
@@ -183,8 +182,8 @@ fn faults(
         let faults = match family.model(*value) {
             Ok(model) if onset != Onset::Interwell || model.repeats() => return None,
             Ok(_) => vec![no_period(trial)],
-            Err(faults) if faults.is_empty() => return None,
-            Err(faults) => faults,
+            Err(NoModel::NoField | NoModel::Unsolved) => return None,
+            Err(NoModel::Faults(faults)) => faults,
         };
         first = first.or(Some(faults));
     }
@@ -192,11 +191,9 @@ fn faults(
 }
 
 fn no_period(trial: &Scene) -> Fault {
-    let kind = format!("{:?}", trial.excitation);
-    let kind = kind.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default().to_owned();
     let problem = "does not repeat, so no motion can be said to repeat with it (interwell): ask for \
                    crossing, or take a Sine, or a Sum of sines whose frequencies have a common period";
-    Fault { field: "excitation".into(), value: kind, problem: problem.into() }
+    excitation_fault(trial, problem.into())
 }
 
 /// A value of the field and the verdict of its run; `None` while it is not known.
@@ -220,6 +217,14 @@ impl Answers {
         Self { scan: vec![(value, Some(verdict))], ..Self::default() }
     }
 
+    /// A value by its number: those of the scan first, then those of the bisection.
+    fn number(&mut self, number: usize) -> &mut Answer {
+        match number.checked_sub(self.scan.len()) {
+            Some(place) => &mut self.between[place],
+            None => &mut self.scan[number],
+        }
+    }
+
     /// The place in the scan of the first value that does it.
     pub fn first_that_does(&self) -> Option<usize> {
         self.scan.iter().position(|(_, verdict)| verdict.is_some_and(|verdict| verdict.does))
@@ -233,15 +238,15 @@ impl Answers {
         does(above)?.then_some((below.0, above.0))
     }
 
-    fn of_between(&self, value: f64) -> Option<Option<Verdict>> {
-        self.between.iter().find(|answer| answer.0 == value).map(|answer| answer.1)
-    }
-
     /// The next value that is to be asked of the bisection at the first change.
     fn next_between(&mut self, resolution: f64, ahead: usize) -> Option<f64> {
         let span = self.first_change()?;
-        let does = |value: f64| self.of_between(value).map(|verdict| verdict.map(|verdict| verdict.does));
-        next_between(does, span, resolution, ahead)
+        let trial = |value: f64| match self.between.iter().find(|answer| answer.0 == value) {
+            None => Trial::NotBegun,
+            Some((_, None)) => Trial::UnderWay,
+            Some((_, Some(verdict))) => Trial::Known(verdict.does),
+        };
+        next_between(trial, span, resolution, ahead)
     }
 
     /// The result of the scan and its bisection, once all is known.
@@ -258,9 +263,9 @@ impl Answers {
         let (mut low, mut high) = span.unwrap_or_default();
         while span.is_some()
             && let Some(middle) = between(low, high, resolution)
-            && let Some(Some(verdict)) = self.of_between(middle)
+            && let Some((_, Some(verdict))) = self.between.iter().find(|answer| answer.0 == middle)
         {
-            tried.insert(place, (middle, verdict));
+            tried.insert(place, (middle, *verdict));
             match verdict.does {
                 true => high = middle,
                 false => (low, place) = (middle, place + 1),
@@ -297,10 +302,10 @@ pub(super) struct Search<'a> {
     pub ahead: usize,
 }
 
-impl<'a> Search<'a> {
+impl Search<'_> {
     /// Runs further values of a scan, and beside them values of the bisection at its first change, which take
     /// little more time in the same lanes. Then completes the bisection. Ticks for each value of the scan.
-    pub fn scan(&self, answers: &mut Answers, values: &[f64], resolution: f64) -> Option<()> {
+    pub fn scan(&self, answers: &mut Answers, values: &[f64], resolution: f64) -> Result<(), Cancelled> {
         let first = answers.scan.len();
         answers.scan.extend(values.iter().map(|value| (*value, None)));
         let count = answers.scan.len();
@@ -320,31 +325,23 @@ impl<'a> Search<'a> {
             answers.between.push((next, None));
             Some(count + answers.between.len() - 1)
         };
-        let answer = |number: usize, verdict: Verdict| match number.checked_sub(count) {
-            Some(place) => lock().between[place].1 = Some(verdict),
-            None => {
-                lock().scan[number].1 = Some(verdict);
+        let answer = |number: usize, verdict: Verdict| {
+            lock().number(number).1 = Some(verdict);
+            if number < count {
                 (self.task.tick)();
             }
         };
         let model = |number: usize| {
-            let value = match number.checked_sub(count) {
-                Some(place) => lock().between[place].0,
-                None => lock().scan[number].0,
-            };
-            self.model(value).ok_or_else(|| answer(number, Verdict::NO_MODEL))
+            let value = lock().number(number).0;
+            let model = self.family.model(value).map_err(|_| answer(number, Verdict::NO_MODEL))?;
+            Ok(followed(model, self.until_settled))
         };
         let ended = |number: usize, run: &Run| answer(number, self.onset.verdict(&run.summary));
         loop {
-            runs_from(self.pool, self.task, &take, model, ended)?;
+            runs_from(self.pool, self.task, &take, model, ended).ok_or(Cancelled)?;
             if lock().next_between(resolution, 1).is_none() {
-                return Some(());
+                return Ok(());
             }
         }
-    }
-
-    /// The model of a value, if it is valid, and the request of its run.
-    fn model(&self, value: f64) -> Option<(Model, Request<'a>)> {
-        self.family.model(value).ok().map(|model| followed(model, self.until_settled))
     }
 }

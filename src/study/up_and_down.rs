@@ -4,8 +4,9 @@
 //! that grows needs them.
 
 use super::family::Family;
+use super::walk::Carried;
 use super::{Direction, Task};
-use crate::dynamics::{Model, Request, Run, Summary};
+use crate::dynamics::{Request, Run, Summary};
 use crate::system::threads::Pool;
 
 /// The most stroboscopic states that are kept of one run.
@@ -64,22 +65,18 @@ pub(super) fn walk_over(
     request: &Request,
     mut each: impl FnMut(f64, &Run) -> bool,
 ) -> usize {
-    let (mut last, mut unfit) = (None::<(Model, (f64, f64))>, 0);
+    let (mut carried, mut unfit) = (Carried::default(), 0);
     for value in values {
         let Ok(model) = family.model(*value) else {
             unfit += 1;
             continue;
         };
-        let model = match &last {
-            Some((before, state)) => model.carried_on(before, *state),
-            None => model,
-        };
+        let model = carried.on(model);
         let run = model.run(request);
         if !each(*value, &run) {
             break;
         }
-        let finite = run.carried.filter(|(x, v)| x.is_finite() && v.is_finite());
-        last = finite.map(|state| (model, state)).or(last);
+        carried.keep(&model, &run);
     }
     unfit
 }

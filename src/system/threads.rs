@@ -86,7 +86,9 @@ impl Pool {
     /// remain; then the results that are still complete and in order are passed on.
     pub fn in_order<R: Send>(
         &self,
-        (count, each, ahead): (usize, usize, usize),
+        count: usize,
+        each: usize,
+        ahead: usize,
         work: impl Fn(&dyn Fn(UnderWay) -> Option<usize>, &dyn Fn(usize, R)) + Sync,
         mut leave: impl FnMut(Vec<R>) -> bool,
     ) {

@@ -158,7 +158,7 @@ impl Drawing<'_> {
     fn diagram(&self, subject: &Subject) -> Result<Figure> {
         let (grid, pool) = (self.grid(subject)?, threads()?);
         let options = strobe_options(Some(Carry::Both));
-        let sections = Sections::new(&self.document.scene, &self.document.files, grid, options);
+        let sections = Sections::new(&self.document.scene, &self.document.files, grid).with(options);
         sections.validate(&pool, &self.task).map_err(|cell| self.faulty(cell.faults))?;
         let mut rows = Table::new();
         let end = sections.run(&pool, &self.task, |table| append(&mut rows, table));

@@ -55,7 +55,7 @@ impl Session {
         let restitution = known.into_iter().find_map(|stops| stops.restitutions()[1]).unwrap_or(1.0);
         let (mechanism, still) = (Arc::clone(&self.mechanism), !self.editor.in_gesture());
         self.stops_that_cross.want(self.built.clone(), still, &self.wake, move |scene, cancel, _| {
-            study::stops_that_cross(scene, &mechanism, restitution, &Task { tick: &|| (), cancel })
+            study::stops_that_cross(scene, &mechanism, restitution, &Task { tick: &|| (), cancel }).ok()
         });
         match (self.settled.answer(), self.thresholds.answer(), self.stops_that_cross.answer()) {
             (Some(settled), Some(thresholds), Some(stops)) => {

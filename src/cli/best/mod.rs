@@ -14,8 +14,9 @@ use words::{names, place, quantity, words};
 
 use super::failure::Failure;
 use super::options::Common;
-use super::support::{drive_alone, finish, inputs, load, open, until_settled, warn, write_table};
-use super::sweep::{bar, pool};
+use super::outputs::Output;
+use super::progress::bar;
+use super::support::{drive_alone, load, outputs, pool, until_settled, warn};
 use super::{interrupt, say};
 
 const EXAMPLES: &str = "\
@@ -91,14 +92,14 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     }
     warn(&document, common, &warnings, None);
     let pool = pool(common)?;
-    let mut sinks = open(&inputs(&options.scene, &document), [Some(("--out", common.out()))])?;
+    let mut outputs = outputs(&options.scene, &document, common)?;
     let bar = bar(scan_runs(&question), "runs", common.quiet, common.out());
     // the number of runs after the scan is not known in advance
     let tick = || bar.inc_beyond();
     let task = Task { tick: &tick, cancel: interrupt::listen() };
     let mut so_far = None;
     let found = best(&question, &pool, &task, &mut |design| so_far = Some(design.clone()));
-    bar.finish_and_clear();
+    drop(bar);
     if let (Err(NoBest::Cancelled), Some(design)) = (&found, &so_far) {
         let maximised = question.maximise.name;
         let at = place(&names(&question), &design.at);
@@ -106,11 +107,11 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         say(&format!("{}: best so far at {at}: {maximised} {value}", document.name));
     }
     let design = found.map_err(|why| failure(why, options, &question, &document))?;
-    write_table(&mut sinks[0], &design.table(&question))?;
+    outputs.table(Output::DATA, &design.table(&question))?;
     if !common.quiet {
         words(&design, &question).iter().for_each(|line| say(&format!("{}: {line}", document.name)));
     }
-    finish(sinks)
+    outputs.finish()
 }
 
 /// Checks that every field that is changed exists in every environment: a record has no amplitude.

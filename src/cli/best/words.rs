@@ -81,6 +81,7 @@ pub fn quantity(value: f64, name: &str) -> String {
     with_unit(&short(value), name)
 }
 
+/// A number with the unit of a field or column, in letters that any terminal has.
 fn with_unit(number: &str, name: &str) -> String {
     // a name such as `n_per_m` is a unit alone
     let (_, unit) = label_and_unit(&format!("_{}", name.rsplit('.').next().unwrap_or_default()));

@@ -4,8 +4,7 @@ use std::sync::Mutex;
 use std::time::Duration;
 
 use interwell::output::rows;
-use interwell::scene::Document;
-use interwell::study::{Shard, Slice, Sweep, Task};
+use interwell::study::{Shard, Sweep, Task};
 use interwell::system::clock::WallClock;
 use interwell::system::threads::{Pool, within};
 
@@ -13,6 +12,7 @@ use super::super::failure::Failure;
 use super::super::progress::duration;
 use super::super::shard::{command, value};
 use super::super::support::located;
+use super::prepared::Prepared;
 
 /// Cells of the first sample for each thread.
 const CELLS_PER_THREAD: u64 = 64;
@@ -30,12 +30,9 @@ const SHARD_S: f64 = 1800.0;
 const PROGRAM_BYTES: u64 = 20_000_000;
 
 /// Prints the number of cells, the time, the memory and the commands.
-pub fn print(
-    (document, sweep, slice): (&Document, &Sweep, &Slice),
-    columns: &[String],
-    (picture, sharded): (bool, bool),
-    pool: &Pool,
-) -> Result<(), Failure> {
+pub fn print(prepared: &Prepared, pool: &Pool) -> Result<(), Failure> {
+    let Prepared { document, sweep, slice, columns, .. } = prepared;
+    let (picture, sharded) = (prepared.picture.is_some(), prepared.options.shard.is_some());
     let wrong =
         within(PATIENCE, |cancel| sweep.validate_rows(slice, 0, pool, &Task { tick: &|| (), cancel }));
     wrong.map_err(|cell| located(document, cell))?;
@@ -49,7 +46,7 @@ pub fn print(
         let clock = WallClock::start();
         within(PATIENCE, |cancel| {
             let each = |index, cell| {
-                let text = rows(&sweep.table(index, &[cell]), 0..1).len();
+                let text = rows(&sweep.table(index, [cell]), 0..1).len();
                 if let Ok(mut found) = found.lock() {
                     *found = (found.0 + 1, found.1 + text);
                 }

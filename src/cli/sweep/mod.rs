@@ -1,29 +1,24 @@
 //! `sweep`: a grid of runs, one row for each cell, with progress on standard error.
 
-mod asked;
 mod dry_run;
+mod prepared;
 mod rows;
 
 use clap::Args;
-use interwell::output::{
-    Made, Overlay, Sink, SweepPicture, can_show, csv_table, header, manifest, plan, sweep_figure,
-};
+use interwell::output::{Figure, Made, Overlay, SweepPicture, header, manifest, rows, sweep_figure};
 use interwell::scene::Document;
-use interwell::study::{Grid, SummaryField, Sweep, SweepEnd, SweepOptions, Table, Tally, Task};
-use serde_json::json;
+use interwell::study::{SweepOptions, Table, Tally};
+use serde_json::Value;
 
 use super::failure::Failure;
+use super::grid_job::GridJob;
 use super::options::{ChartOptions, Common};
-use super::picture::{Picture, caption, ranges};
-pub use super::progress::bar;
-use super::shard;
-use super::support::{
-    MANIFEST, Watch, finish, inputs, load, open, refuse_electrical_state, until_settled, warn, write_text,
-};
-pub use super::support::{file_name, located, manifest_path, pool};
-use super::{interrupt, say};
-use asked::{Settings, view};
-use rows::{Blocks, Compared, RowFile, Rows};
+use super::outputs::{Output, Outputs};
+use super::picture::{Picture, caption};
+use super::say;
+use super::support::{file_name, inputs, manifest_path, pool};
+use prepared::Prepared;
+use rows::{Compared, RowFile, Rows};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -94,166 +89,47 @@ pub struct Arguments {
 
 /// Runs the grid and writes one row for each cell.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    asked::has_manifest(options)?;
-    let picture = Picture::new(&options.chart.plot, common)?;
-    let axes = ranges(&options.chart, "--plot-x")?;
-    let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
-    // Rows, plan and manifest then refer to the same bytes, even if the files change during the sweep.
-    document.hold_files();
-    let settings = Settings::new(options, &document)?;
-    let out = shard::placed(common.out(), options.shard.as_deref(), settings.shard)?;
-    let beside = manifest_path(&out).filter(|_| !options.check);
-    let sweep = Sweep::new(&document.scene, &document.files, Grid::new(document.axes(&options.over)?)?);
-    let mechanism = asked::first_mechanism(&document, &sweep)?;
-    if settings.carry.is_some() {
-        refuse_electrical_state(&document, sweep.grid().axes(), "--carry")?;
-    }
-    let (more, columns) = settings.columns(sweep.grid())?;
-    let trial = Task { tick: &|| (), cancel: interrupt::listen() };
-    let until_settled = match &sweep.first_model(&trial).and_then(Result::ok) {
-        Some(model) => until_settled(settings.until_settled.as_deref(), &document, model)?,
-        None => None, // `validate_rows` reports the fault below, with its cell
-    };
-    // the quantity of the picture is computed even if its column is not written
-    let quantity = picture.is_some().then_some(&options.quantity);
-    let shown = quantity.filter(|name| !columns.contains(name));
-    let fields = columns.iter().chain(shown).filter_map(|name| SummaryField::find(name)).collect();
-    let sweep = sweep.with(SweepOptions { columns: fields, until_settled, carry: settings.carry });
-    let slice = sweep.slice(settings.shard);
-    warn(&document, common, &warnings, mechanism.as_deref());
-    let view = view(options, sweep.grid())?;
-    if picture.is_some() {
-        can_show(sweep.grid(), (&options.quantity, &view), &sweep.empty_table())?;
-    }
+    let prepared = Prepared::new(options, common)?;
     let pool = pool(common)?;
     if options.dry_run {
-        let parts = (picture.is_some(), options.shard.is_some());
-        return dry_run::print((&document, &sweep, &slice), &columns, parts, &pool);
+        return dry_run::print(&prepared, &pool);
     }
-    let manifest_out = beside.as_deref().map(|path| (MANIFEST, path));
-    let [plot, data] = Picture::outputs(picture);
-    let rows_out = Some(("--out", &*out)).filter(|_| !options.check);
-    let mut sinks = open(&inputs(&options.scene, &document), [rows_out, plot, data, manifest_out])?;
-    // The manifest is opened again when it is written: a killed process would leave its unfinished file.
-    sinks[3] = None;
-    let mut shown = picture.map(|_| Table::new());
-
-    let mut plan = plan(&document, &sweep, &more, env!("CARGO_PKG_VERSION"));
-    (plan["rows"], plan["unit"]) = (json!(sweep.rows()), json!(slice.unit()));
-    let first = header(&sweep.empty_table().only(&columns));
-    let mut before = Tally::default();
-    let mut rows = match sinks[0].take() {
-        None => {
-            let mut file = Compared::new(&settings.data)?;
-            file.put(&first)?;
-            Rows::Compared(file)
-        }
-        Some(_) if beside.is_some() => {
-            let (unit, header) = (slice.unit(), &*first);
-            let (shard, rows, plan, out) = (settings.shard, slice.rows(), &plan, &*out);
-            let Arguments { resume, force, .. } = *options;
-            let table = sweep.empty_table();
-            let mut needed =
-                Some(&*options.quantity).into_iter().chain(table.columns().iter().map(|c| &*c.name));
-            let lacking =
-                needed.find(|name| picture.is_some() && !columns.iter().any(|column| column == name));
-            let lacking = lacking.map(str::to_owned);
-            match (RowFile { out, plan, shard, rows, unit, header, resume, force, lacking }).open()? {
-                Some((blocks, tally)) => {
-                    before = tally;
-                    Rows::Blocks(blocks)
-                }
-                None if picture.is_none() => {
-                    if !common.quiet {
-                        say(&format!("{} has all {rows} rows already", out.display()));
-                    }
-                    return Ok(());
-                }
-                None => {
-                    let out = out.display();
-                    let problem = format!("--resume: {out} has all its rows already: leave --resume out");
-                    return Err(Failure::argument(format!("{problem} to compute them for a picture")));
-                }
-            }
-        }
-        Some(mut sink) => {
-            sink.put(&first).map_err(|error| Failure::writing(sink.name(), error))?;
-            Rows::Stream(sink)
-        }
+    let Prepared { document, out, sweep, slice, picture, .. } = &prepared;
+    let manifest_out = manifest_path(out).filter(|_| !options.check);
+    let in_blocks = manifest_out.is_some();
+    let outputs = Outputs::new(&inputs(&options.scene, document))
+        .with(Output::DATA, Some(&**out).filter(|_| !options.check))?;
+    let mut job = GridJob::open(document, common, outputs, out, *picture, manifest_out, pool)?;
+    let plan = prepared.plan();
+    let opened = prepared.open_rows(&mut job.outputs, in_blocks, &plan)?;
+    let Some((mut rows_out, mut all)) = opened else { return prepared.has_all_rows(common.quiet) };
+    let from = all.cells;
+    if let (Rows::Blocks(blocks), Some(_), 1..) = (&rows_out, picture, from) {
+        job.shown = blocks.table(&sweep.empty_table())?;
+    }
+    let result = job.run(sweep, slice, from, "cells", |outputs, table, tally| {
+        rows_out.put(outputs, rows(&table.only(&prepared.columns), 0..usize::MAX), tally)
+    });
+    let tally = match result {
+        Ok(tally) => tally,
+        Err(end) => return Err(rows_out.ended(end)),
     };
-    let from = before.cells;
-    if let (Some(shown), Rows::Blocks(blocks)) = (&mut shown, &rows) {
-        *shown = shown_before(blocks, &sweep, from)?;
-    }
-
-    let bar = bar(slice.rows(), "cells", common.quiet, &out);
-    bar.begin_at(from);
-    let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
-    let watch = Watch::start();
-    let result = (|| {
-        let valid = sweep.validate_rows(&slice, from, &pool, &task);
-        valid.map_err(|cell| SweepEnd::Write(located(&document, cell)))?;
-        let write = |table: &Table, tally: &Tally| {
-            if let Some(shown) = &mut shown {
-                shown.append(table);
-            }
-            let text = interwell::output::rows(&table.only(&columns), 0..usize::MAX);
-            // A picture needs all rows, even if the reader of a pipe has gone.
-            Ok(rows.put(text, tally)? || shown.is_some())
-        };
-        sweep.run_rows(&slice, from, &pool, &task, write)
-    })();
-    bar.finish_and_clear();
-    let tally = match (result, rows) {
-        (Ok(tally), kept) => {
-            rows = kept;
-            tally
-        }
-        (Err(SweepEnd::Cancelled), Rows::Blocks(blocks)) => return Err(blocks.interrupted()),
-        (Err(SweepEnd::Cancelled), _) => return Err(Failure::interrupted()),
-        (Err(SweepEnd::Write(failure)), rows) => {
-            if let Rows::Blocks(blocks) = rows {
-                blocks.leave();
-            }
-            return Err(failure);
-        }
-    };
-    if let Some((picture, rows)) = picture.zip(shown) {
-        let grid = sweep.grid();
-        // The overlay holds for runs from rest only.
-        let overlay = match settings.carry {
-            Some(_) => Overlay::default(),
-            None => Overlay::of(&document.scene, mechanism.as_deref(), grid, &rows),
-        };
-        let (rows, scene, quantity) = (&rows, &document.scene, &*options.quantity);
-        let shown = SweepPicture { rows, grid, scene, until_settled, quantity, overlay, view, ranges: axes };
-        picture.write(&mut sinks[1..3], sweep_figure(&shown, &caption(&document), &picture.theme)?)?;
-    }
-    before.add(&tally);
-    let all = before;
-    match rows {
-        Rows::Stream(sink) => sinks[0] = Some(sink),
-        Rows::Compared(mut file) => {
-            file.end()?;
-            if !common.quiet {
-                say(&format!("{}: all {} rows are the same", settings.data.display(), all.cells));
-            }
-        }
-        Rows::Blocks(mut blocks) => {
-            let sha256 = blocks.close()?;
-            let made = Made { plan: &plan, shard: settings.shard, sha256: &sha256 };
-            let (grid, origin) = (sweep.grid(), watch.origin(pool.count()));
-            let text = manifest(("sweep", &document), grid, &all, Some(made), &origin, &file_name(&out));
-            sinks[3] = beside.as_deref().map(Sink::open).transpose()?;
-            write_text(&mut sinks[3], &text)?;
-            // The rows get their name last: until then --resume can continue them.
-            finish(sinks)?;
-            sinks = [const { None }; 4];
-            blocks.finish()?;
+    all.add(&tally);
+    if let Rows::Compared(file) = &mut rows_out {
+        file.end()?;
+        if !common.quiet {
+            say(&format!("{}: all {} rows are the same", prepared.data.display(), all.cells));
         }
     }
-    finish(sinks)?;
-    report(common.quiet, &document, &tally, (slice.rows(), from), watch.wall_s());
+    let figure = |rows: &Table, picture: &Picture| prepared.figure(rows, picture);
+    let wall_s = job.finish(figure, |origin| {
+        let sha256 = rows_out.close()?;
+        let made = Made { plan: &plan, shard: slice.shard(), sha256: &sha256 };
+        Ok(manifest("sweep", document, sweep.grid(), &all, Some(made), origin, &file_name(out)))
+    })?;
+    // The rows get their name last: until then --resume can continue them.
+    rows_out.finish()?;
+    report(common.quiet, document, &tally, slice.rows() - from, wall_s);
     let early = all.ended_early + all.not_converged;
     if options.strict && early > 0 {
         let cells = format!("{early} of {} cells did not come to their end", all.cells);
@@ -262,19 +138,62 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Reads the rows of an earlier process for a picture.
-fn shown_before(blocks: &Blocks, sweep: &Sweep, from: u64) -> Result<Table, Failure> {
-    if from == 0 {
-        return Ok(Table::new());
+impl Prepared<'_> {
+    /// Opens the rows, `in_blocks` if they go to a regular file. Returns the tally of those that an earlier
+    /// process left; `None` if there are all of them.
+    fn open_rows(
+        &self,
+        outputs: &mut Outputs,
+        in_blocks: bool,
+        plan: &Value,
+    ) -> Result<Option<(Rows, Tally)>, Failure> {
+        let header = header(&self.sweep.empty_table().only(&self.columns));
+        if self.options.check {
+            let mut file = Compared::new(&self.data)?;
+            file.put(&header)?;
+            return Ok(Some((Rows::Compared(file), Tally::default())));
+        }
+        if !in_blocks {
+            outputs.write(Output::DATA, &header)?;
+            return Ok(Some((Rows::Stream, Tally::default())));
+        }
+        outputs.leave(Output::DATA);
+        let file = RowFile { sweep: self, plan, header: &header };
+        Ok(file.open()?.map(|(blocks, tally)| (Rows::Blocks(blocks), tally)))
     }
-    let read = csv_table(&blocks.text()?, &sweep.empty_table());
-    read.map_err(|problem| Failure::Failed(anyhow::anyhow!("the rows that are there: {problem}")))
+
+    /// Says that nothing is left to do; an error if a picture was requested.
+    fn has_all_rows(&self, quiet: bool) -> Result<(), Failure> {
+        let (out, rows) = (self.out.display(), self.slice.rows());
+        if self.picture.is_some() {
+            return Err(Failure::argument(format!(
+                "--resume: {out} has all its rows already: leave --resume out to compute them for a picture"
+            )));
+        }
+        if !quiet {
+            say(&format!("{out} has all {rows} rows already"));
+        }
+        Ok(())
+    }
+
+    fn figure(&self, rows: &Table, picture: &Picture) -> Result<Figure, Failure> {
+        let (grid, scene) = (self.sweep.grid(), &self.document.scene);
+        let &SweepOptions { until_settled, carry, .. } = self.sweep.options();
+        // The overlay holds for runs from rest only.
+        let overlay = match carry {
+            Some(_) => Overlay::default(),
+            None => Overlay::of(scene, self.mechanism.as_deref(), grid, rows),
+        };
+        let (quantity, view, ranges) = (&*self.options.quantity, self.view.clone(), picture.ranges);
+        let shown = SweepPicture { rows, grid, scene, until_settled, quantity, overlay, view, ranges };
+        Ok(sweep_figure(&shown, &caption(&self.document), &picture.theme)?)
+    }
 }
 
-/// Prints a summary of the sweep of `rows` rows, of which `before` were there already.
-fn report(quiet: bool, document: &Document, tally: &Tally, (rows, before): (u64, u64), wall_s: f64) {
+/// Prints a summary of the `rows` that were computed now.
+fn report(quiet: bool, document: &Document, tally: &Tally, rows: u64, wall_s: f64) {
     // With fewer cells the reader of a pipe has gone, which is not worth a message.
-    if quiet || tally.cells != rows - before {
+    if quiet || tally.cells != rows {
         return;
     }
     let cells = if tally.cells == 1 { "1 cell".to_owned() } else { format!("{} cells", tally.cells) };

@@ -3,15 +3,17 @@
 use std::io::{BufReader, Read};
 use std::path::Path;
 
-use interwell::output::{Sink, plan_differences};
-use interwell::study::{Shard, Tally};
+use interwell::output::{csv_table, plan_differences};
+use interwell::study::{SweepEnd, Table, Tally};
 use interwell::system::checksum::Checksum;
 use interwell::system::clock::WallClock;
 use interwell::system::{Opened, Part, PartError, files};
 use serde_json::{Value, json};
 
 use super::super::failure::Failure;
+use super::super::outputs::{Output, Outputs};
 use super::super::support::manifest_path;
+use super::prepared::Prepared;
 
 /// Rows after which a block ends; a walk that is longer stays in one block.
 const MAX_BLOCK_ROWS: u64 = 4096;
@@ -21,7 +23,7 @@ const MAX_BLOCK_S: f64 = 5.0;
 /// The destination of the rows.
 pub enum Rows {
     /// To a pipe, a device or standard output.
-    Stream(Sink),
+    Stream,
     /// To a file that is written in blocks.
     Blocks(Blocks),
     /// To no output: they are compared with those of a file.
@@ -30,16 +32,36 @@ pub enum Rows {
 
 impl Rows {
     /// Writes or compares rows with their tally. Returns whether more rows are needed.
-    pub fn put(&mut self, text: String, tally: &Tally) -> Result<bool, Failure> {
+    pub fn put(&mut self, outputs: &mut Outputs, text: String, tally: &Tally) -> Result<bool, Failure> {
         match self {
-            Self::Stream(sink) => {
-                let put = sink.put(&text).and_then(|()| sink.flush());
-                put.map_err(|error| Failure::writing(sink.name(), error))?;
-                Ok(!sink.is_closed())
-            }
+            Self::Stream => outputs.stream(Output::DATA, &text),
             Self::Blocks(blocks) => blocks.put(text, tally).map(|()| true),
             Self::Compared(compared) => compared.put(&text).map(|()| true),
         }
+    }
+
+    /// The failure to report after the rows have ended early; blocks that are whole are kept.
+    pub fn ended(self, end: SweepEnd<Failure>) -> Failure {
+        match (end, self) {
+            (SweepEnd::Cancelled, Self::Blocks(blocks)) => blocks.interrupted(),
+            (SweepEnd::Write(failure), Self::Blocks(blocks)) => {
+                blocks.part.discard();
+                failure
+            }
+            (end, _) => end.into(),
+        }
+    }
+
+    /// Waits until all blocks are on the disk. Returns the checksum of their file.
+    pub fn close(&mut self) -> Result<String, Failure> {
+        if let Self::Blocks(blocks) = self { blocks.close() } else { Ok(String::new()) }
+    }
+
+    /// Gives the file of the blocks its name.
+    pub fn finish(self) -> Result<(), Failure> {
+        let Self::Blocks(Blocks { part, .. }) = self else { return Ok(()) };
+        let name = part.path().display().to_string();
+        part.finish().map_err(|error| Failure::writing(&name, error))
     }
 }
 
@@ -52,52 +74,41 @@ pub struct Blocks {
     clock: WallClock,
 }
 
-/// The file of a sweep: what is to be written, and how to treat rows that an earlier process left.
+/// The file of a sweep, with the plan of the sweep and the first line of the file.
 pub struct RowFile<'a> {
-    /// Path of the file.
-    pub out: &'a Path,
-    /// The plan of the sweep.
+    pub sweep: &'a Prepared<'a>,
     pub plan: &'a Value,
-    /// The shard whose rows these are.
-    pub shard: Shard,
-    /// Number of rows.
-    pub rows: u64,
-    /// Number of rows that are computed one after the other: 1, or the length of a walk.
-    pub unit: u64,
-    /// The first line of the file.
     pub header: &'a str,
-    /// Whether to continue the rows of an earlier process.
-    pub resume: bool,
-    /// Whether to discard those rows or, with `resume`, those from a damaged one on.
-    pub force: bool,
-    /// A column that a picture needs and the rows do not have.
-    pub lacking: Option<String>,
 }
 
 impl RowFile<'_> {
     /// Begins the file or continues it. Returns it with the tally of its rows, or `None` if it is complete.
     pub fn open(&self) -> Result<Option<(Blocks, Tally)>, Failure> {
-        let opened = Opened::new(self.out).map_err(refused)?;
+        let Prepared { options, out, slice, .. } = self.sweep;
+        let (resume, force) = (options.resume, options.force);
+        let opened = Opened::new(out).map_err(refused)?;
         let part = opened.part().display().to_string();
-        let head = json!({ "plan": self.plan, "shard": self.shard.to_string() });
-        if self.resume && !opened.has_rows() && self.is_whole() {
+        let head = json!({ "plan": self.plan, "shard": slice.shard().to_string() });
+        let is_of_another = |file: String, existing: &Value, made: &str| {
+            format!(
+                "--resume: {file} is of another sweep: {}; give the arguments that it was {made} with, name \
+                 another --out, or start anew with --force",
+                plan_differences(&plan_with_shard(existing), &plan_with_shard(&head))
+            )
+        };
+        if resume && !opened.has_rows() && self.is_whole() {
             opened.leave();
             return Ok(None);
         }
-        if self.resume
-            && !self.force
+        if resume
+            && !force
             && !opened.has_rows()
             && let Some(existing) = self.existing_head().filter(|existing| *existing != head)
         {
             opened.leave();
-            return Err(Failure::argument(format!(
-                "--resume: {} is of another sweep: {}; give the arguments that it was made with, name \
-                 another --out, or start anew with --force",
-                self.out.display(),
-                plan_differences(&plan_with_shard(&existing), &plan_with_shard(&head))
-            )));
+            return Err(Failure::argument(is_of_another(out.display().to_string(), &existing, "made")));
         }
-        if !opened.has_rows() || (self.force && !self.resume) {
+        if !opened.has_rows() || (force && !resume) {
             let part = opened.begin(&head.to_string(), self.header).map_err(refused)?;
             return Ok(Some((self.blocks(part), Tally::default())));
         }
@@ -107,23 +118,18 @@ impl RowFile<'_> {
                 let journal = format!("{part} stands there, and its journal is gone or cannot be read");
                 format!("{journal}: --force starts anew, or name another --out")
             }
-            Some(_) if !self.resume => {
-                let (rows, all) = (opened.rows(), self.rows);
+            Some(_) if !resume => {
+                let (rows, all) = (opened.rows(), slice.rows());
                 let left = format!("{part} has {rows} of {all} rows of a sweep that did not come to its end");
                 format!("{left}: go on with --resume, or start anew with --force")
             }
-            Some(existing) if existing != head => format!(
-                "--resume: {part} is of another sweep: {}; give the arguments that it was begun with, name \
-                 another --out, or start anew with --force",
-                plan_differences(&plan_with_shard(&existing), &plan_with_shard(&head))
-            ),
-            Some(_) if self.lacking.is_some() => format!(
-                "--resume: the rows in {part} have no column {}, which --plot needs: leave --plot out, or \
-                 start anew with --force and --columns all",
-                self.lacking.as_deref().unwrap_or_default()
+            Some(existing) if existing != head => is_of_another(part, &existing, "begun"),
+            Some(_) if let Some(column) = self.lacking_column() => format!(
+                "--resume: the rows in {part} have no column {column}, which --plot needs: leave --plot out, \
+                 or start anew with --force and --columns all"
             ),
             Some(_) => {
-                let (part, blocks) = opened.go_on(self.force).map_err(refused)?;
+                let (part, blocks) = opened.go_on(force).map_err(refused)?;
                 let mut tally = Tally::default();
                 let notes = blocks.iter().filter_map(|block| serde_json::from_str(&block.note).ok());
                 notes.for_each(|note| tally.add(&note));
@@ -135,13 +141,23 @@ impl RowFile<'_> {
     }
 
     fn blocks(&self, part: Part) -> Blocks {
-        let block = Tally::default();
-        Blocks { part, rows: self.rows, unit: self.unit, block, clock: WallClock::start() }
+        let (rows, unit) = (self.sweep.slice.rows(), self.sweep.slice.unit());
+        Blocks { part, rows, unit, block: Tally::default(), clock: WallClock::start() }
+    }
+
+    /// A column that a picture needs and the rows do not have.
+    fn lacking_column(&self) -> Option<String> {
+        let Prepared { options, sweep, columns, picture, .. } = self.sweep;
+        let table = sweep.empty_table();
+        let needed = table.columns().iter().map(|column| &column.name);
+        let mut needed = std::iter::once(&options.quantity).chain(needed).filter(|_| picture.is_some());
+        needed.find(|name| !columns.contains(name)).cloned()
     }
 
     /// The manifest of the file, if both exist.
     fn manifest(&self) -> Option<Value> {
-        let text = files::bytes(&manifest_path(self.out)?).ok().filter(|_| files::exists(self.out));
+        let out = &self.sweep.out;
+        let text = files::bytes(&manifest_path(out)?).ok().filter(|_| files::exists(out));
         text.and_then(|text| serde_json::from_slice::<Value>(&text).ok())
     }
 
@@ -155,8 +171,8 @@ impl RowFile<'_> {
     fn is_whole(&self) -> bool {
         self.manifest().is_some_and(|manifest| {
             manifest["plan"] == *self.plan
-                && manifest["shard"].as_str() == Some(&self.shard.to_string())
-                && manifest["sha256"].as_str() == file_checksum(self.out).as_deref()
+                && manifest["shard"].as_str() == Some(&self.sweep.slice.shard().to_string())
+                && manifest["sha256"].as_str() == file_checksum(&self.sweep.out).as_deref()
         })
     }
 }
@@ -208,18 +224,13 @@ impl Blocks {
         self.part.end_block(block.cells, serde_json::to_string(&block)?)
     }
 
-    /// Number of rows on the disk.
-    pub fn kept(&self) -> u64 {
-        self.part.kept()
-    }
-
     /// The failure for rows that cannot be written.
     fn failed(&self, error: &std::io::Error) -> Failure {
         Failure::Failed(anyhow::anyhow!(
             "cannot write {}: {error}; {} of {} rows are kept there: once there is room, the same command \
              with --resume goes on",
             self.part.path().display(),
-            self.kept(),
+            self.part.kept(),
             self.rows
         ))
     }
@@ -230,7 +241,7 @@ impl Blocks {
             let _ = self.end_block();
         }
         let closed = self.part.close();
-        let kept = self.kept();
+        let kept = self.part.kept();
         let part = self.part.path().display().to_string();
         let failure = match closed {
             Err(error) => self.failed(&error),
@@ -244,29 +255,19 @@ impl Blocks {
         failure
     }
 
-    /// Leaves the unfinished file as it is, or removes it if it has no rows.
-    pub fn leave(self) {
-        self.part.discard();
-    }
-
-    /// Waits until all rows are on the disk. Returns the checksum of the file.
-    pub fn close(&mut self) -> Result<String, Failure> {
+    fn close(&mut self) -> Result<String, Failure> {
         let ended = if self.block.cells > 0 { self.end_block() } else { Ok(()) };
         ended.and_then(|()| self.part.close()).map_err(|error| self.failed(&error))
     }
 
-    /// Gives the file its name.
-    pub fn finish(self) -> Result<(), Failure> {
-        let name = self.part.path().display().to_string();
-        self.part.finish().map_err(|error| Failure::writing(&name, error))
-    }
-
-    /// The text of the rows that were written.
-    pub fn text(&self) -> Result<String, Failure> {
+    /// The rows that were written, with the columns of `empty`.
+    pub fn table(&self, empty: &Table) -> Result<Table, Failure> {
         let path = self.part.path();
-        let bytes =
+        let text =
             files::bytes(path).and_then(|bytes| String::from_utf8(bytes).map_err(std::io::Error::other));
-        bytes.map_err(|error| Failure::Failed(anyhow::anyhow!("cannot read {}: {error}", path.display())))
+        let failed = |error| Failure::Failed(anyhow::anyhow!("cannot read {}: {error}", path.display()));
+        csv_table(&text.map_err(failed)?, empty)
+            .map_err(|problem| Failure::Failed(anyhow::anyhow!("the rows that are there: {problem}")))
     }
 }
 

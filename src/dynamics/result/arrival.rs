@@ -89,6 +89,11 @@ pub struct Pursuit<'a> {
     pub most_work: u64,
 }
 
+impl Pursuit<'_> {
+    /// The number of a state from which no repetition ends a pursuit.
+    pub const NEVER: u64 = u64::MAX;
+}
+
 /// Result of a pursuit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pursued {
@@ -145,4 +150,18 @@ pub enum Arrival {
     /// None of these. The settled window of the summary is the last hundred periods, or all if there
     /// were fewer.
     Unsettled(Box<Summary>),
+}
+
+impl Arrival {
+    /// The number of the first stroboscopic state after it; `None` if the motion is unsettled.
+    pub fn periods(&self) -> Option<u64> {
+        match self {
+            Self::Captured { periods, .. }
+            | Self::Entered { periods, .. }
+            | Self::Released { periods, .. }
+            | Self::Rests { periods, .. }
+            | Self::Repeats { periods, .. } => Some(*periods),
+            Self::Unsettled(_) => None,
+        }
+    }
 }

@@ -25,13 +25,11 @@ pub struct ExponentPicture<'a> {
     pub ranges: Ranges,
 }
 
-/// Whether exponents over this grid can be shown; none is a single motion.
-pub fn can_show_exponents(grid: Option<&Grid>) -> Result<(), NoPicture> {
-    match grid.map_or(0, |grid| grid.axes().len()) {
-        1 => match grid.map_or(0, Grid::cells) {
-            cells if cells > MAX_PICTURE_CELLS => Err(NoPicture::Cells(cells)),
-            _ => Ok(()),
-        },
+/// Whether exponents over this grid can be shown.
+pub fn can_show_exponents(grid: &Grid) -> Result<(), NoPicture> {
+    match grid.axes().len() {
+        1 if grid.cells() > MAX_PICTURE_CELLS => Err(NoPicture::Cells(grid.cells())),
+        1 => Ok(()),
         n => Err(NoPicture::Exponents(n)),
     }
 }
@@ -42,7 +40,7 @@ pub fn exponents_figure(
     caption: &Caption,
     theme: &Theme,
 ) -> Result<Figure, NoPicture> {
-    can_show_exponents(Some(picture.grid))?;
+    can_show_exponents(picture.grid)?;
     let ExponentPicture { rows, grid, ranges, .. } = *picture;
     let mut figure = Figure::new(theme, caption, LEAST);
     let x = &grid.columns()[0];

@@ -30,8 +30,8 @@ pub struct ThresholdPicture<'a> {
 }
 
 /// Whether thresholds over this grid can be shown.
-pub fn can_show_thresholds(grid: Option<&Grid>) -> Result<(), NoPicture> {
-    match grid.map_or(0, |grid| grid.axes().len()) {
+pub fn can_show_thresholds(grid: &Grid) -> Result<(), NoPicture> {
+    match grid.axes().len() {
         0 => Err(NoPicture::SingleThreshold),
         1 | 2 => Ok(()),
         n => Err(NoPicture::Fields(n)),
@@ -45,7 +45,7 @@ pub fn threshold_figure(
     caption: &Caption,
     theme: &Theme,
 ) -> Result<Figure, NoPicture> {
-    can_show_thresholds(Some(picture.grid))?;
+    can_show_thresholds(picture.grid)?;
     let ThresholdPicture { rows, grid, scene, onset, ranges, .. } = *picture;
     let mut figure = Figure::new(theme, caption, LEAST);
     let least = format!("least_{}", column_names(&[picture.field]).concat());

@@ -182,7 +182,7 @@ impl Basins {
         let mut attractors = Vec::with_capacity(keys.len());
         for ((key, row), starts) in keys.into_iter().zip(counts) {
             let settled = rows[row].map_or(0, |(_, periods)| periods);
-            let (summary, states) = self.describe(key, (row, settled), task)?;
+            let (summary, states) = self.describe(key, row, settled, task)?;
             attractors.push(Attractor {
                 regime: summary.regime,
                 period: summary.period,
@@ -231,7 +231,8 @@ impl Basins {
     fn describe(
         &self,
         key: Key,
-        (row, settled): (usize, u32),
+        row: usize,
+        settled: u32,
         task: &Task,
     ) -> Option<(Summary, Vec<(f64, f64)>)> {
         let period = self.model.forcing_period().unwrap_or(1.0);

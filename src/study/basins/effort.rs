@@ -37,17 +37,11 @@ impl Effort {
 
     /// Adds a pursuit whose forcing period in s is given.
     pub fn add(&self, pursuit: &Pursuit, pursued: &Pursued, period: f64) {
-        let periods = match &pursued.arrival {
-            Arrival::Captured { periods, .. }
-            | Arrival::Entered { periods, .. }
-            | Arrival::Released { periods, .. }
-            | Arrival::Rests { periods, .. }
-            | Arrival::Repeats { periods, .. } => *periods,
-            Arrival::Unsettled(summary) => {
-                let ended = summary.outcome.ended_at().map(|at| (at / period) as u64);
-                ended.unwrap_or(pursuit.most_periods)
-            }
+        let ended = || match &pursued.arrival {
+            Arrival::Unsettled(summary) => summary.outcome.ended_at().map(|at| (at / period) as u64),
+            _ => None,
         };
+        let periods = pursued.arrival.periods().or_else(ended).unwrap_or(pursuit.most_periods);
         self.done.fetch_add(pursued.work, Ordering::Relaxed);
         self.periods.fetch_add(periods, Ordering::Relaxed);
     }

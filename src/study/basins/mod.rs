@@ -8,7 +8,7 @@
 //!   orbit, inside an ellipse around it from which all motions go there (see `orbit`). A start that repeats
 //!   only proposes an orbit, so that a transient near a saddle is followed on. (Datseris and Wagemakers
 //!   (2022) also recognise a motion by its return to known ones, there on a grid of cells.)
-//! - It does neither for a thousand periods: `verdict` decides whether it is irregular for good. Around the
+//! - It does neither for a thousand periods: a `Verdict` says whether it is irregular for good. Around the
 //!   first such motions a region is looked for that no motion leaves (see `region`); later ones that enter it
 //!   need not be followed on.
 //!
@@ -24,7 +24,6 @@ mod rounds;
 mod starts;
 mod stroboscopic;
 mod sure;
-mod verdict;
 
 use std::sync::Arc;
 

@@ -10,6 +10,7 @@
 
 use super::stroboscopic::Stroboscope;
 use crate::dynamics::{Capture, Jacobian, Outcome};
+use crate::study::Cancelled;
 
 /// A displacement and a velocity in units of the scene's scales.
 type Point = [f64; 2];
@@ -56,24 +57,23 @@ pub(super) enum Found {
     Nothing,
 }
 
-/// The orbit of the proposed period, or twice that, near a state in m and m/s. `None` if cancelled.
-pub(super) fn find(scope: &Stroboscope, period: u32, state: (f64, f64)) -> Option<Found> {
+/// The orbit of the proposed period, or twice that, near a state in m and m/s.
+pub(super) fn find(scope: &Stroboscope, period: u32, state: (f64, f64)) -> Result<Found, Cancelled> {
     let first = of_period(scope, period, state)?;
-    match first {
-        // Soon after a period doubling the two halves of the doubled orbit are nearly equal.
-        Found::Unstable(_) => match of_period(scope, 2 * period, state)? {
-            Found::Stable(captures) => Some(Found::Stable(captures)),
-            _ => Some(first),
-        },
-        _ => Some(first),
+    // Soon after a period doubling the two halves of the doubled orbit are nearly equal.
+    if let Found::Unstable(_) = first
+        && let doubled @ Found::Stable(_) = of_period(scope, 2 * period, state)?
+    {
+        return Ok(doubled);
     }
+    Ok(first)
 }
 
-fn of_period(scope: &Stroboscope, period: u32, state: (f64, f64)) -> Option<Found> {
-    let Some(root) = newton(scope, period, scope.point(state)) else { return Some(Found::Nothing) };
+fn of_period(scope: &Stroboscope, period: u32, state: (f64, f64)) -> Result<Found, Cancelled> {
+    let Some(root) = newton(scope, period, scope.point(state)) else { return Ok(Found::Nothing) };
     let after: Vec<(Point, u32)> = (1..=period).map(|periods| (root, periods)).collect();
     let Some(states) = scope.map(&after)?.into_iter().collect::<Option<Vec<Point>>>() else {
-        return Some(Found::Nothing);
+        return Ok(Found::Nothing);
     };
     let same = |other: &Point| distance(other, &root) < SAME;
     let period = states.iter().position(same).map_or(period, |place| place as u32 + 1);
@@ -81,30 +81,35 @@ fn of_period(scope: &Stroboscope, period: u32, state: (f64, f64)) -> Option<Foun
     let mut orbit = vec![root];
     orbit.extend_from_slice(&states[..period as usize - 1]);
     for point in orbit {
-        let Some((_, jacobian)) = jacobian(scope, period, point) else { return Some(Found::Nothing) };
+        let Some((_, jacobian)) = jacobian(scope, period, point) else { return Ok(Found::Nothing) };
         if lyapunov(&jacobian).is_none() {
-            return Some(Found::Unstable(scope.state(root)));
+            return Ok(Found::Unstable(scope.state(root)));
         }
-        let Some(capture) = ellipse(scope, period, point, jacobian)? else { return Some(Found::Nothing) };
+        let Some(capture) = ellipse(scope, period, point, jacobian)? else { return Ok(Found::Nothing) };
         captures.push(capture);
     }
-    Some(Found::Stable(captures))
+    Ok(Found::Stable(captures))
 }
 
 /// The ellipse around a fixed point of the map of `period` forcing periods, by the map over the least
-/// multiple of it that has one; the inner `None` if none has one.
+/// multiple of it that has one.
 ///
 /// Where a motion passes a kink of the force the map bends sharply, so near an orbit it need not shrink at
 /// once in the norm of its derivative; after some more periods it does.
-fn ellipse(scope: &Stroboscope, period: u32, at: Point, mut jacobian: Matrix) -> Option<Option<Capture>> {
+fn ellipse(
+    scope: &Stroboscope,
+    period: u32,
+    at: Point,
+    mut jacobian: Matrix,
+) -> Result<Option<Capture>, Cancelled> {
     for times in TIMES {
         let Some(norm) = lyapunov(&jacobian) else { break };
         if let Some(radius) = radius(scope, times * period, at, &norm)? {
-            return Some(Some(capture(scope, at, &norm, radius)));
+            return Ok(Some(capture(scope, at, &norm, radius)));
         }
         jacobian = squared(&jacobian);
     }
-    Some(None)
+    Ok(None)
 }
 
 /// The product of a matrix with itself.
@@ -177,8 +182,8 @@ fn square([a, b, c]: &[f64; 3], [x, v]: Point) -> f64 {
 }
 
 /// The largest radius around a fixed point up to which the map shrinks every circle in the norm, by at least
-/// half as much as its derivative; the inner `None` if it does not shrink even the smallest.
-fn radius(scope: &Stroboscope, period: u32, at: Point, norm: &[f64; 3]) -> Option<Option<f64>> {
+/// half as much as its derivative; `None` if it does not shrink even the smallest.
+fn radius(scope: &Stroboscope, period: u32, at: Point, norm: &[f64; 3]) -> Result<Option<f64>, Cancelled> {
     let [a, b, c] = *norm;
     // the unit circle of the norm is (u, w) by M = L L^T
     let (l, m) = (a.sqrt(), b / a.sqrt());
@@ -201,7 +206,7 @@ fn radius(scope: &Stroboscope, period: u32, at: Point, norm: &[f64; 3]) -> Optio
     };
     let whole = circles.chunks(AROUND).zip(images.chunks(AROUND));
     let good = whole.take_while(|(from, to)| from.iter().zip(*to).all(shrinks)).count();
-    Some(good.checked_sub(1).and_then(|last| radii().nth(last)))
+    Ok(good.checked_sub(1).and_then(|last| radii().nth(last)))
 }
 
 /// The ellipse of this radius in a norm, in SI.

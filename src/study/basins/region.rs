@@ -9,6 +9,7 @@ use std::collections::BTreeSet;
 
 use super::stroboscopic::Stroboscope;
 use crate::dynamics::{Capture, Region};
+use crate::study::Cancelled;
 
 /// Motions that are followed to find an attractor.
 const MOTIONS: usize = 16;
@@ -28,18 +29,22 @@ const MOST_CELLS: usize = 20_000;
 /// Rounds in which cells may be added.
 const ROUNDS: usize = 40;
 
-/// A region around the irregular motion through `state` in m and m/s; the inner `None` if there is none or a
-/// state of it comes to a known orbit, the outer one if cancelled.
-pub(super) fn absorbing(scope: &Stroboscope, state: (f64, f64), known: &[Capture]) -> Option<Option<Region>> {
+/// A region around the irregular motion through `state` in m and m/s; `None` if there is none or a state of it
+/// comes to a known orbit.
+pub(super) fn absorbing(
+    scope: &Stroboscope,
+    state: (f64, f64),
+    known: &[Capture],
+) -> Result<Option<Region>, Cancelled> {
     let [x, v] = scope.point(state);
     let starts: Vec<(f64, f64)> = (0..MOTIONS)
         .map(|number| [x, v + APART * number as f64])
         .filter(|point| scope.has(*point))
         .map(|point| scope.state(point))
         .collect();
-    let Some(states) = scope.paths(&starts, PERIODS, SKIPPED)? else { return Some(None) };
+    let Some(states) = scope.paths(&starts, PERIODS, SKIPPED)? else { return Ok(None) };
     if states.iter().any(|state| known.iter().any(|other| other.holds(*state))) {
-        return Some(None);
+        return Ok(None);
     }
     let ends = |of: &dyn Fn(&(f64, f64)) -> f64| {
         let fold = |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
@@ -47,16 +52,16 @@ pub(super) fn absorbing(scope: &Stroboscope, state: (f64, f64), known: &[Capture
     };
     let ((left, right), (low, high)) = (ends(&|state| state.0), ends(&|state| state.1));
     if !(right > left && high > low) {
-        return Some(None);
+        return Ok(None);
     }
     for along in ALONG {
         let size = ((right - left) / along, (high - low) / along);
         let region = Region { corner: (left, low), size, cells: Vec::new() };
         if let Some(whole) = closed(scope, region, &states, known)? {
-            return Some(Some(whole));
+            return Ok(Some(whole));
         }
     }
-    Some(None)
+    Ok(None)
 }
 
 /// A region with the cells of these states and all that motions in them reach.
@@ -65,7 +70,7 @@ fn closed(
     region: Region,
     states: &[(f64, f64)],
     known: &[Capture],
-) -> Option<Option<Region>> {
+) -> Result<Option<Region>, Cancelled> {
     let mut cells: BTreeSet<(i32, i32)> = BTreeSet::new();
     for (i, j) in states.iter().map(|state| region.cell(*state)) {
         cells.extend((-1..=1).flat_map(|right| (-1..=1).map(move |up| (i + right, j + up))));
@@ -86,12 +91,12 @@ fn closed(
             unseen.iter().map(place).filter(|point| scope.has(*point)).map(|point| (point, 1)).collect();
         seen.extend(unseen);
         let Some(images) = scope.map(&starts)?.into_iter().collect::<Option<Vec<_>>>() else {
-            return Some(None);
+            return Ok(None);
         };
         new.clear();
         for image in images.into_iter().map(|point| scope.state(point)) {
             if known.iter().any(|capture| capture.holds(image)) {
-                return Some(None);
+                return Ok(None);
             }
             let cell = region.cell(image);
             if cells.insert(cell) {
@@ -99,11 +104,11 @@ fn closed(
             }
         }
         if new.is_empty() {
-            return Some(Some(Region { cells: cells.into_iter().collect(), ..region }));
+            return Ok(Some(Region { cells: cells.into_iter().collect(), ..region }));
         }
         if cells.len() > MOST_CELLS {
             break;
         }
     }
-    Some(None)
+    Ok(None)
 }

@@ -6,9 +6,10 @@ use super::orbit::{Found, find};
 use super::region::absorbing;
 use super::starts::Starts;
 use super::stroboscopic::Stroboscope;
-use super::verdict::{Verdict, verdict};
-use crate::dynamics::{Arrival, Capture, Outcome, Pursued, Pursuit, Region, ReleaseIdentity, Side, Summary};
-use crate::study::Task;
+use crate::dynamics::{
+    Arrival, Capture, Outcome, Place, Pursued, Pursuit, Regime, Region, ReleaseIdentity, Side, Summary,
+};
+use crate::study::{Cancelled, Task};
 use crate::system::threads::Pool;
 
 /// Starts of the first round of a map: while little is known, rounds are short.
@@ -27,6 +28,41 @@ const SAME_PROPOSAL: f64 = 1e-3;
 /// A state closer than this share of the scales to an unstable orbit lies on it.
 const ON_ORBIT: f64 = 1e-6;
 
+/// Classification of a motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Verdict {
+    /// A settled motion: all with the same regime, side and period (if any) are one attractor.
+    Settled {
+        /// See [`Regime`].
+        regime: Regime,
+        /// Where it is.
+        side: Option<Place>,
+        /// Its period, where no ellipse could be found around it.
+        period: Option<u32>,
+    },
+    /// It ended early.
+    Lost,
+    /// Its attractor is not known.
+    Undecided,
+}
+
+/// The verdict by the summary of a pursuit, whose window is its last hundred forcing periods, and whether it
+/// ended on an orbit that is unstable. A verdict without a period is confirmed by the exponent of one motion
+/// of its kind.
+///
+/// An exponent tells irregular motion from a motion that is slow to settle, but not from a long transient:
+/// the transients of a double well are themselves irregular, and end by chance. So a motion is called
+/// irregular only after a thousand periods in which it found no other.
+pub(super) fn verdict(summary: &Summary, on_unstable: bool) -> Verdict {
+    match summary.outcome {
+        Outcome::Done if on_unstable || summary.steady != Some(true) => Verdict::Undecided,
+        Outcome::Done => {
+            Verdict::Settled { regime: summary.regime, side: summary.side, period: summary.period }
+        }
+        _ => Verdict::Lost,
+    }
+}
+
 /// What is known of a start. Indices are those of the lists of [`Rounds`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Fate {
@@ -44,7 +80,7 @@ pub(super) enum Fate {
 }
 
 /// A kind of motion that a start goes to, other than by a release.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub(super) enum Kind {
     /// A stable orbit, by its number.
     Orbit(u32),
@@ -52,6 +88,17 @@ pub(super) enum Kind {
     Rest(Side),
     /// What [`verdict`] says, and the summary of the first one.
     Judged(Verdict, Box<Summary>),
+}
+
+impl Kind {
+    fn is_same(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Orbit(number), Self::Orbit(other)) => number == other,
+            (Self::Rest(side), Self::Rest(other)) => side == other,
+            (Self::Judged(verdict, _), Self::Judged(other, _)) => verdict == other,
+            _ => false,
+        }
+    }
 }
 
 /// A release, and what follows it.
@@ -107,12 +154,17 @@ impl Rounds {
         }
     }
 
-    fn kind(&mut self, same: impl Fn(&Kind) -> bool, new: impl FnOnce() -> Kind) -> u32 {
-        let place = self.kinds.iter().position(same);
-        place.unwrap_or_else(|| {
-            self.kinds.push(new());
-            self.kinds.len() - 1
-        }) as u32
+    /// The place of a kind that is known.
+    fn known_kind(&self, kind: &Kind) -> Option<u32> {
+        self.kinds.iter().position(|known| known.is_same(kind)).map(|place| place as u32)
+    }
+
+    /// The place of a kind.
+    fn kind(&mut self, kind: Kind) -> u32 {
+        self.known_kind(&kind).unwrap_or_else(|| {
+            self.kinds.push(kind);
+            self.kinds.len() as u32 - 1
+        })
     }
 
     /// The place of a release, and whether it is new.
@@ -131,22 +183,13 @@ impl Rounds {
 
     /// Records the result of an item; returns what to follow next for it.
     fn note(&mut self, item: Item, pursued: Pursued, scope: &Stroboscope) -> Option<Item> {
-        let crossings = pursued.crossings;
+        let way = item.way(pursued.arrival.periods().unwrap_or(PATIENCE), pursued.crossings);
         let fate = match pursued.arrival {
-            Arrival::Captured { which, periods } => {
-                let orbit = Kind::Orbit(self.orbit_of[which]);
-                Fate::Kind(self.kind(|kind| *kind == orbit, || orbit.clone()), item.way(periods, crossings))
-            }
-            Arrival::Entered { which, periods } => {
-                Fate::Kind(self.region_of[which], item.way(periods, crossings))
-            }
-            Arrival::Rests { side, periods } => {
-                let rest = Kind::Rest(side);
-                Fate::Kind(self.kind(|kind| *kind == rest, || rest.clone()), item.way(periods, crossings))
-            }
-            Arrival::Released { identity, periods } => {
+            Arrival::Captured { which, .. } => Fate::Kind(self.kind(Kind::Orbit(self.orbit_of[which])), way),
+            Arrival::Entered { which, .. } => Fate::Kind(self.region_of[which], way),
+            Arrival::Rests { side, .. } => Fate::Kind(self.kind(Kind::Rest(side)), way),
+            Arrival::Released { identity, .. } => {
                 let (place, new) = self.release(identity);
-                let way = item.way(periods, crossings);
                 self.put(item, Fate::Release(place, way));
                 let after = Some((place, item.after.map_or(way, |(_, before)| before.and(way))));
                 return new.then_some(Item { releases: item.releases + 1, after, repeats_from: 0, ..item });
@@ -157,9 +200,7 @@ impl Rounds {
             Arrival::Unsettled(summary) => match self.verdict(&summary, scope) {
                 Verdict::Lost => Fate::Lost { spent: matches!(summary.outcome, Outcome::StepBudget { .. }) },
                 Verdict::Undecided => Fate::Undecided,
-                settled @ Verdict::Settled { .. } => {
-                    self.judged(settled, summary, scope, item.way(PATIENCE, crossings))
-                }
+                settled @ Verdict::Settled { .. } => self.judged(settled, summary, scope, way),
             },
         };
         self.put(item, fate);
@@ -168,24 +209,20 @@ impl Rounds {
 
     /// The fate of an item that was followed once more; `None` if it is not among the known ones.
     pub fn known_fate(&self, item: &Item, pursued: &Pursued, scope: &Stroboscope) -> Option<Fate> {
-        let kind = |same: &dyn Fn(&Kind) -> bool| self.kinds.iter().position(same).map(|place| place as u32);
-        let (found, periods) = match &pursued.arrival {
-            Arrival::Captured { which, periods } => {
-                (kind(&|kind| *kind == Kind::Orbit(self.orbit_of[*which])), *periods)
-            }
-            Arrival::Entered { which, periods } => (Some(self.region_of[*which]), *periods),
-            Arrival::Rests { side, periods } => (kind(&|kind| *kind == Kind::Rest(*side)), *periods),
+        let way = item.way(pursued.arrival.periods().unwrap_or(PATIENCE), pursued.crossings);
+        let kind = match &pursued.arrival {
+            Arrival::Captured { which, .. } => self.known_kind(&Kind::Orbit(self.orbit_of[*which])),
+            Arrival::Entered { which, .. } => Some(self.region_of[*which]),
+            Arrival::Rests { side, .. } => self.known_kind(&Kind::Rest(*side)),
             Arrival::Unsettled(summary) => {
-                let verdict = self.verdict(summary, scope);
-                (kind(&|kind| matches!(kind, Kind::Judged(known, _) if *known == verdict)), PATIENCE)
+                self.known_kind(&Kind::Judged(self.verdict(summary, scope), summary.clone()))
             }
-            Arrival::Released { identity, periods } => {
-                let place = self.known_release(*identity)?;
-                return Some(Fate::Release(place, item.way(*periods, pursued.crossings)));
+            Arrival::Released { identity, .. } => {
+                return self.known_release(*identity).map(|place| Fate::Release(place, way));
             }
-            Arrival::Repeats { .. } => return None,
+            Arrival::Repeats { .. } => None,
         };
-        Some(Fate::Kind(found?, item.way(periods, pursued.crossings)))
+        kind.map(|kind| Fate::Kind(kind, way))
     }
 
     /// The verdict on a motion that has reached no known attractor.
@@ -197,16 +234,17 @@ impl Rounds {
     /// The kind of a motion that was judged. The first one without a period, or one of the next few, must be
     /// irregular by its exponent, since it may only be slow to settle.
     fn judged(&mut self, verdict: Verdict, summary: Box<Summary>, scope: &Stroboscope, way: Way) -> Fate {
-        let same = |kind: &Kind| matches!(kind, Kind::Judged(other, _) if *other == verdict);
         let repeats = matches!(verdict, Verdict::Settled { period: Some(_), .. });
-        if !repeats && !self.kinds.iter().any(same) {
+        let state = (summary.final_x, summary.final_v);
+        let kind = Kind::Judged(verdict, summary);
+        if !repeats && self.known_kind(&kind).is_none() {
             let doubts = self.doubted.iter().filter(|other| **other == verdict).count();
-            if doubts >= MOST_DOUBTS || !scope.is_irregular((summary.final_x, summary.final_v)) {
+            if doubts >= MOST_DOUBTS || !scope.is_irregular(state) {
                 self.doubted.push(verdict);
                 return Fate::Undecided;
             }
         }
-        Fate::Kind(self.kind(same, || Kind::Judged(verdict, summary)), way)
+        Fate::Kind(self.kind(kind), way)
     }
 
     fn put(&mut self, item: Item, fate: Fate) {
@@ -216,12 +254,12 @@ impl Rounds {
         }
     }
 
-    /// Looks for an orbit near a state that proposed one. `None` if cancelled.
-    fn propose(&mut self, scope: &Stroboscope, period: u32, state: (f64, f64)) -> Option<()> {
+    /// Looks for an orbit near a state that proposed one.
+    fn propose(&mut self, scope: &Stroboscope, period: u32, state: (f64, f64)) -> Result<(), Cancelled> {
         let known = self.captures.iter().any(|capture| capture.holds(state));
         let tried = self.rejected.iter().any(|rejected| is_near(scope, *rejected, state, SAME_PROPOSAL));
         if known || tried {
-            return Some(());
+            return Ok(());
         }
         match find(scope, period, state)? {
             Found::Stable(captures)
@@ -240,28 +278,27 @@ impl Rounds {
             }
             Found::Nothing => self.rejected.push(state),
         }
-        Some(())
+        Ok(())
     }
 
-    /// Looks for a region around the irregular motion to which an item goes and which passes `state`. `None`
-    /// if cancelled.
-    fn surround(&mut self, scope: &Stroboscope, item: Item, state: (f64, f64)) -> Option<()> {
+    /// Looks for a region around the irregular motion to which an item goes and which passes `state`.
+    fn surround(&mut self, scope: &Stroboscope, item: Item, state: (f64, f64)) -> Result<(), Cancelled> {
         let fate = item.after.map_or(self.fates[item.row], |after| self.releases[after.0 as usize].next);
-        let Fate::Kind(kind, _) = fate else { return Some(()) };
+        let Fate::Kind(kind, _) = fate else { return Ok(()) };
         let irregular = match &self.kinds[kind as usize] {
             Kind::Judged(Verdict::Settled { period, .. }, _) => period.is_none(),
             _ => false,
         };
         let searches = self.searches.iter().filter(|searched| **searched == kind).count();
         if !irregular || searches >= MOST_SEARCHES || self.is_surrounded(state) {
-            return Some(());
+            return Ok(());
         }
         self.searches.push(kind);
         if let Some(region) = absorbing(scope, state, &self.captures)? {
             self.regions.push(region);
             self.region_of.push(kind);
         }
-        Some(())
+        Ok(())
     }
 
     /// Whether a state lies in a region.
@@ -275,15 +312,14 @@ fn is_near(scope: &Stroboscope, a: (f64, f64), b: (f64, f64), share: f64) -> boo
     (a.0 - b.0).abs() <= share * length && (a.1 - b.1).abs() <= share * speed
 }
 
-/// Follows items with what is known now, then adds the results to it; returns what to follow next. `None`
-/// if cancelled.
+/// Follows items with what is known now, then adds the results to it; returns what to follow next.
 fn round(
     rounds: &mut Rounds,
     scope: &Stroboscope,
     starts: &Starts,
     items: Vec<Item>,
     task: &Task,
-) -> Option<Vec<Item>> {
+) -> Result<Vec<Item>, Cancelled> {
     let (known, regions) = (rounds.captures.clone(), rounds.regions.clone());
     let most_work = scope.effort.of_one(rounds.remaining);
     let pursuit = |item: &Item| item.pursuit(starts, (&known, &regions), most_work);
@@ -316,7 +352,7 @@ fn round(
     next.extend(
         unsettled.into_iter().filter(|(_, state)| rounds.is_surrounded(*state)).map(|(item, _)| item),
     );
-    (!task.is_cancelled()).then_some(next)
+    task.go_on().map(|()| next)
 }
 
 impl Basins {
@@ -341,7 +377,7 @@ impl Basins {
                 }
             }
             while !items.is_empty() {
-                let Some(next) = round(rounds, &scope, starts, items, task) else { return false };
+                let Ok(next) = round(rounds, &scope, starts, items, task) else { return false };
                 items = next;
             }
             rounds.remaining -= last - begin;

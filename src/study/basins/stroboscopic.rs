@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::effort::Effort;
 use crate::dynamics::{Arrival, Model, Outcome, Pursued, Pursuit, Request};
+use crate::study::Cancelled;
 use crate::study::exponents::{ExponentOptions, average_exponents};
 use crate::system::threads::{Pool, UnderWay, share};
 
@@ -50,11 +51,11 @@ impl Stroboscope<'_> {
 
     /// The images of points after a number of forcing periods each: `None` for those that begin outside the
     /// room, end early, or come to rest on the way, after which the map has no inverse, and for all if they
-    /// take more work than is left. Returns `None` if cancelled.
-    pub fn map(&self, starts: &[(Point, u32)]) -> Option<Vec<Option<Point>>> {
+    /// take more work than is left.
+    pub fn map(&self, starts: &[(Point, u32)]) -> Result<Vec<Option<Point>>, Cancelled> {
         let mut images = vec![None; starts.len()];
         if !self.effort.has_room_for(starts.iter().map(|(_, periods)| u64::from(*periods)).sum()) {
-            return Some(images);
+            return Ok(images);
         }
         let valid: Vec<usize> = (0..starts.len()).filter(|place| self.has(starts[*place].0)).collect();
         let pursuits: Vec<Pursuit> = valid
@@ -63,7 +64,7 @@ impl Stroboscope<'_> {
                 start: self.state(starts[*place].0),
                 known: &[],
                 regions: &[],
-                repeats_from: u64::MAX,
+                repeats_from: Pursuit::NEVER,
                 most_periods: starts[*place].1.into(),
                 releases: 0,
                 most_work: u64::MAX,
@@ -77,19 +78,19 @@ impl Stroboscope<'_> {
                 _ => None,
             };
         }
-        Some(images)
+        Ok(images)
     }
 
-    /// States of motions once a period for `periods`, without the first `skipped` ones; the inner `None` if a
-    /// motion ends early or they take more work than is left, the outer one if cancelled.
+    /// States of motions once a period for `periods`, without the first `skipped` ones; `None` if a motion
+    /// ends early or they take more work than is left.
     pub fn paths(
         &self,
         starts: &[(f64, f64)],
         periods: u32,
         skipped: usize,
-    ) -> Option<Option<Vec<(f64, f64)>>> {
+    ) -> Result<Option<Vec<(f64, f64)>>, Cancelled> {
         if !self.effort.has_room_for(starts.len() as u64 * u64::from(periods)) {
-            return Some(None);
+            return Ok(None);
         }
         let period = self.period();
         let times: Vec<f64> = (1..=periods).map(|number| f64::from(number) * period).collect();
@@ -101,13 +102,12 @@ impl Stroboscope<'_> {
             let run = model.run(&request);
             match run.summary.outcome {
                 Outcome::Done => Ok(Some(run.samples)),
-                Outcome::Cancelled { .. } => Err(()),
+                Outcome::Cancelled { .. } => Err(Cancelled),
                 _ => Ok(None),
             }
         };
-        let all = self.pool.map(starts.len(), || (), path).ok()?;
-        let all: Option<Vec<_>> = all.into_iter().collect();
-        Some(all.map(|paths| paths.iter().flatten().map(|sample| (sample.x, sample.v)).collect()))
+        let all: Option<Vec<_>> = self.pool.map(starts.len(), || (), path)?.into_iter().collect();
+        Ok(all.map(|paths| paths.iter().flatten().map(|sample| (sample.x, sample.v)).collect()))
     }
 
     /// Whether the motion through a stroboscopic state in m and m/s is irregular by its exponent; false if
@@ -121,8 +121,12 @@ impl Stroboscope<'_> {
         found.is_ok_and(|exponents| exponents.is_irregular())
     }
 
-    /// Results of pursuits, in their order; `tick` is called for each. `None` if cancelled.
-    pub fn pursue(&self, pursuits: &[Pursuit], tick: &(dyn Fn(&Pursuit) + Sync)) -> Option<Vec<Pursued>> {
+    /// Results of pursuits, in their order; `tick` is called for each.
+    pub fn pursue(
+        &self,
+        pursuits: &[Pursuit],
+        tick: &(dyn Fn(&Pursuit) + Sync),
+    ) -> Result<Vec<Pursued>, Cancelled> {
         let period = self.period();
         let work = |next: &dyn Fn(UnderWay) -> Option<usize>| {
             let mut all = Vec::new();
@@ -133,9 +137,9 @@ impl Stroboscope<'_> {
             };
             let mut next = |under_way: UnderWay| next(under_way).filter(|_| !self.is_cancelled());
             self.model.pursue(pursuits, Some(self.cancel), &mut next, &mut ended);
-            if self.is_cancelled() { Err(()) } else { Ok(all) }
+            if self.is_cancelled() { Err(Cancelled) } else { Ok(all) }
         };
-        share(Some(self.pool), pursuits.len(), work).ok()
+        share(Some(self.pool), pursuits.len(), work)
     }
 
     /// The forcing period in s.

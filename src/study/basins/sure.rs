@@ -13,7 +13,7 @@ use super::rounds::{Fate, Kind, LONGEST_ROUND};
 use super::stroboscopic::Stroboscope;
 use crate::dynamics::{Place, Pursuit};
 use crate::scene::TOLERANCES;
-use crate::study::Task;
+use crate::study::{Cancelled, Task};
 use crate::system::threads::Pool;
 
 /// Factor on the map's tolerance at which starts are followed once more; its inverse if that would exceed the
@@ -55,13 +55,13 @@ impl Basins {
         let mut sure = vec![true; answer.rows.len()];
         let items: Vec<Item> = self.rows_to_check(answer).into_iter().map(Item::of_start).collect();
         for part in items.chunks(LONGEST_ROUND) {
-            let Some(fates) = self.follow_again(&scope, part, &|| (task.tick)()) else { return false };
+            let Ok(fates) = self.follow_again(&scope, part, &|| (task.tick)()) else { return false };
             for (item, again) in part.iter().zip(fates) {
                 let first = (self.rounds.fates[item.row], Way::default());
                 sure[item.row] = self.is_same(first, again, self.is_alone(answer, item.row));
             }
         }
-        let Some(releases) = self.sure_releases(&scope, answer, &sure) else { return false };
+        let Ok(releases) = self.sure_releases(&scope, answer, &sure) else { return false };
         let chains: Vec<bool> = (0..releases.len())
             .map(|place| self.chain(place as u32).0.iter().all(|(passed, _)| releases[*passed as usize]))
             .collect();
@@ -74,9 +74,13 @@ impl Basins {
         true
     }
 
-    /// For each release, whether what follows it is sure as the continuation of a sure start. `None`
-    /// if cancelled.
-    fn sure_releases(&self, scope: &Stroboscope, answer: &Answer, sure: &[bool]) -> Option<Vec<bool>> {
+    /// For each release, whether what follows it is sure as the continuation of a sure start.
+    fn sure_releases(
+        &self,
+        scope: &Stroboscope,
+        answer: &Answer,
+        sure: &[bool],
+    ) -> Result<Vec<bool>, Cancelled> {
         let mut known = vec![false; self.rounds.releases.len()];
         // By release: the continuation of a start that comes to it.
         let mut next: BTreeMap<u32, Item> = BTreeMap::new();
@@ -107,23 +111,23 @@ impl Basins {
             }
             next.retain(|place, _| !tried[*place as usize]);
         }
-        Some(known)
+        Ok(known)
     }
 
-    /// The fates of items followed again in a scope, as far as known. `None` if cancelled.
+    /// The fates of items followed again in a scope, as far as known.
     fn follow_again(
         &self,
         scope: &Stroboscope,
         items: &[Item],
         tick: &(dyn Fn() + Sync),
-    ) -> Option<Vec<Option<Fate>>> {
+    ) -> Result<Vec<Option<Fate>>, Cancelled> {
         let known = (&self.rounds.captures[..], &self.rounds.regions[..]);
         let most_work = scope.effort.of_one(items.len());
-        let endless = |item: &Item| Item { repeats_from: u64::MAX, ..*item };
+        let endless = |item: &Item| Item { repeats_from: Pursuit::NEVER, ..*item };
         let pursuits: Vec<Pursuit> =
             items.iter().map(|item| endless(item).pursuit(&self.starts, known, most_work)).collect();
         let all = scope.pursue(&pursuits, &|_| tick())?;
-        Some(items.iter().zip(&all).map(|(item, end)| self.rounds.known_fate(item, end, scope)).collect())
+        Ok(items.iter().zip(&all).map(|(item, end)| self.rounds.known_fate(item, end, scope)).collect())
     }
 
     /// Whether a motion does the same again after the way `before`; if its attractor is the only one in its

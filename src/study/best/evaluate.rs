@@ -140,13 +140,10 @@ impl<'a> Evaluator<'a> {
 
     /// One design from its runs in each environment.
     fn judged(&self, runs: &[Ran]) -> Judged {
-        let mut summaries = Vec::new();
-        for run in runs {
-            match run {
-                Ok(summary) => summaries.push(summary),
-                Err(faults) => return Judged::Invalid(faults.clone()),
-            }
-        }
+        let summaries = match runs.iter().map(Result::as_ref).collect::<Result<Vec<_>, _>>() {
+            Ok(summaries) => summaries,
+            Err(faults) => return Judged::Invalid(faults.clone()),
+        };
         if summaries.iter().any(|summary| summary.outcome != Outcome::Done) {
             return Judged::Missing;
         }

@@ -59,15 +59,8 @@ fn indices(over: &[DesignRange]) -> Vec<Vec<usize>> {
 
 /// The best of some places that were judged, the first of equal ones.
 fn highest(places: &[Vec<f64>], judged: &[Judged]) -> Option<Optimum> {
-    let mut best: Option<Optimum> = None;
-    for (at, design) in places.iter().zip(judged) {
-        if let Some(optimum) = design.optimum(at)
-            && best.as_ref().is_none_or(|best| optimum.value > best.value)
-        {
-            best = Some(optimum);
-        }
-    }
-    best
+    let optima = places.iter().zip(judged).filter_map(|(at, design)| design.optimum(at));
+    optima.reduce(|best, next| if next.value > best.value { next } else { best })
 }
 
 pub(super) fn search(evaluator: &Evaluator, preview: &mut dyn FnMut(&Optimum)) -> Result<Found, NoBest> {
@@ -176,18 +169,12 @@ fn around(area: &Closer, over: &[DesignRange], grid: &[Vec<usize>], half: &[f64]
 
 /// Why no place has a value.
 fn none(places: &[Vec<f64>], judged: &[Judged]) -> NoBest {
-    let mut nearest: Option<(f64, usize)> = None;
-    for (i, design) in judged.iter().enumerate() {
-        if let Judged::Broken(by, _) = design
-            && nearest.is_none_or(|(least, _)| *by < least)
-        {
-            nearest = Some((*by, i));
-        }
-    }
-    if let Some((_, i)) = nearest
-        && let Judged::Broken(_, results) = &judged[i]
-    {
-        return NoBest::NoneMeets { nearest: places[i].clone(), results: results.clone() };
+    let broken = places.iter().zip(judged).filter_map(|(at, design)| match design {
+        Judged::Broken(by, results) => Some((by, at, results)),
+        _ => None,
+    });
+    if let Some((_, nearest, results)) = broken.min_by(|a, b| a.0.total_cmp(b.0)) {
+        return NoBest::NoneMeets { nearest: nearest.clone(), results: results.clone() };
     }
     let invalid = judged.iter().find_map(|design| match design {
         Judged::Invalid(faults) if !faults.is_empty() => Some(faults.clone()),

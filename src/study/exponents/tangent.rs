@@ -105,7 +105,7 @@ impl Tangent {
         let measured = match rested {
             true => f64::NEG_INFINITY,
             false => {
-                self.logarithm((&passage, &derivative), 1.0, FEW_LEFT).unwrap_or_else(|| self.by_parts(state))
+                self.logarithm(&passage, &derivative, 1.0, FEW_LEFT).unwrap_or_else(|| self.by_parts(state))
             }
         };
         Ok(Passed { state: passage.state, jacobian, measured, exact })
@@ -113,7 +113,7 @@ impl Tangent {
 
     /// Logarithm of the determinant of a share of a period; `None` if it is less than `least` of
     /// its products.
-    fn logarithm(&self, (passage, derivative): (&Passage, &Jacobian), share: f64, least: f64) -> Option<f64> {
+    fn logarithm(&self, passage: &Passage, derivative: &Jacobian, share: f64, least: f64) -> Option<f64> {
         let determinant = derivative.determinant().abs();
         let exact = passage.determinant.unwrap_or_else(|| (self.damped * share).exp());
         (exact.min(determinant) > least * products(derivative)).then(|| determinant.ln())
@@ -126,7 +126,7 @@ impl Tangent {
             let span = (f64::from(part) * share, f64::from(part + 1) * share);
             let (passage, derivative) = self.map.pass_part_with_jacobian(state, span);
             state = passage.state;
-            self.logarithm((&passage, &derivative), share, LOST).unwrap_or(f64::NAN)
+            self.logarithm(&passage, &derivative, share, LOST).unwrap_or(f64::NAN)
         });
         parts.sum()
     }

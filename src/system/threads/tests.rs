@@ -33,7 +33,7 @@ fn results_come_in_order_and_none_is_begun_too_far_ahead() {
             left.extend(results);
             true
         };
-        pool.in_order((500, 1, 7), work, leave);
+        pool.in_order(500, 1, 7, work, leave);
         assert_eq!(left.into_inner().unwrap(), (0..500).map(|i| i * i).collect::<Vec<_>>());
 
         let mut few = Vec::new();
@@ -41,9 +41,9 @@ fn results_come_in_order_and_none_is_begun_too_far_ahead() {
             few.extend(results);
             few.len() < 3
         };
-        pool.in_order((1_000_000_000, 1, 4), work, leave);
+        pool.in_order(1_000_000_000, 1, 4, work, leave);
         assert_eq!(few[..3], [0, 1, 4]);
-        pool.in_order((0, 1, 4), work, |_| unreachable!());
+        pool.in_order(0, 1, 4, work, |_| unreachable!());
     }
 }
 
@@ -67,7 +67,7 @@ fn one_that_gives_up_while_the_others_wait_ends_all() {
                 }
             };
             let mut left = Vec::new();
-            Pool::new(threads).unwrap().in_order((1_000_000_000, 1, 5), work, |results| {
+            Pool::new(threads).unwrap().in_order(1_000_000_000, 1, 5, work, |results| {
                 left.extend(results);
                 true
             });
@@ -85,7 +85,7 @@ fn a_panic_where_they_leave_ends_all() {
                 std::iter::from_fn(|| next(not_full(0))).for_each(|number| done(number, number));
             };
             let leave = |results: Vec<usize>| results.iter().all(|number| *number < 9 || panic!("the ninth"));
-            let run = || Pool::new(threads).unwrap().in_order((usize::MAX, 1, 3), work, leave);
+            let run = || Pool::new(threads).unwrap().in_order(usize::MAX, 1, 3, work, leave);
             std::panic::catch_unwind(std::panic::AssertUnwindSafe(run)).is_err()
         }));
     }
@@ -104,7 +104,7 @@ fn results_of_a_number_leave_together_or_up_to_its_end() {
             }
         };
         let mut left = Vec::new();
-        Pool::new(threads).unwrap().in_order((all, each, 4), work, |results| {
+        Pool::new(threads).unwrap().in_order(all, each, 4, work, |results| {
             assert!(results.len() <= MAX_BATCH);
             let (first, last) = (results[0], results[results.len() - 1]);
             let together = first % each == 0 && (last + 1) % each == 0;
@@ -151,7 +151,7 @@ fn a_panic_in_a_part_ends_all() {
             done(number, number);
         }
     };
-    let run = || pool.in_order((usize::MAX, 1, 2), work, |_| true);
+    let run = || pool.in_order(usize::MAX, 1, 2, work, |_| true);
     assert!(std::panic::catch_unwind(std::panic::AssertUnwindSafe(run)).is_err());
 }
 

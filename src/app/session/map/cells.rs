@@ -186,8 +186,7 @@ impl Map {
     fn table(&self) -> Table {
         let [columns, rows] = self.size();
         let cell = |i: usize| self.cell(i / rows, i % rows).map_or(Cell::NotRun, |found| *found.0);
-        let cells: Vec<Cell> = (0..columns * rows).map(cell).collect();
-        self.sweep.table(0, &cells)
+        self.sweep.table(0, (0..columns * rows).map(cell))
     }
 
     /// The cells along a line through the map: up a column (`upright`), or across a row. A cell that is not

@@ -1,0 +1,110 @@
+//! Run of a study over a grid by a command: its outputs, progress, rows, picture and manifest.
+
+use std::path::{Path, PathBuf};
+
+use interwell::output::{Figure, Provenance, header, rows};
+use interwell::scene::Document;
+use interwell::study::{GridStudy, Question, Shard, Slice, SweepEnd, Table, Tally, Task};
+use interwell::system::threads::Pool;
+
+use super::failure::Failure;
+use super::interrupt;
+use super::options::Common;
+use super::outputs::{Output, Outputs};
+use super::picture::Picture;
+use super::progress::bar;
+use super::support::{Watch, located};
+
+/// A study of a grid whose outputs are open.
+pub struct GridJob<'a> {
+    pub outputs: Outputs,
+    /// The rows so far, if they are drawn.
+    pub shown: Table,
+    document: &'a Document,
+    common: &'a Common,
+    /// Where the rows go.
+    out: &'a Path,
+    picture: Option<Picture<'a>>,
+    manifest: Option<PathBuf>,
+    pool: Pool,
+    watch: Watch,
+}
+
+impl<'a> GridJob<'a> {
+    /// Opens picture and manifest beside `outputs`, among which are the rows that go to `out`.
+    pub fn open(
+        document: &'a Document,
+        common: &'a Common,
+        outputs: Outputs,
+        out: &'a Path,
+        picture: Option<Picture<'a>>,
+        manifest: Option<PathBuf>,
+        pool: Pool,
+    ) -> Result<Self, Failure> {
+        let mut outputs = outputs.with_picture(picture)?.with(Output::MANIFEST, manifest.as_deref())?;
+        // It is opened again when it is written: a killed process would leave its unfinished file.
+        outputs.leave(Output::MANIFEST);
+        let (shown, watch) = (Table::new(), Watch::start());
+        Ok(Self { outputs, shown, document, common, out, picture, manifest, pool, watch })
+    }
+
+    /// Checks and runs the rows of a slice from `from` on, each called `unit`, and hands them to `write`,
+    /// which answers whether more are wanted. A picture needs all of them, even if the reader of a pipe has
+    /// gone.
+    pub fn run<Q: Question>(
+        &mut self,
+        study: &GridStudy<Q>,
+        slice: &Slice,
+        from: u64,
+        unit: &str,
+        mut write: impl FnMut(&mut Outputs, &Table, &Tally) -> Result<bool, Failure>,
+    ) -> Result<Tally, SweepEnd<Failure>> {
+        self.watch = Watch::start();
+        let progress = bar(slice.rows(), unit, self.common.quiet, self.out);
+        progress.begin_at(from);
+        let task = Task { tick: &|| progress.inc(1), cancel: interrupt::listen() };
+        let valid = study.validate_rows(slice, from, &self.pool, &task);
+        valid.map_err(|cell| SweepEnd::Write(located(self.document, cell)))?;
+        study.run_rows(slice, from, &self.pool, &task, |table, tally| {
+            if self.picture.is_some() {
+                self.shown.append(table);
+            }
+            Ok(write(&mut self.outputs, table, tally)? || self.picture.is_some())
+        })
+    }
+
+    /// Runs all rows and writes these of their columns to `--out` as they are computed. Returns the tally,
+    /// and the number of rows.
+    pub fn stream<Q: Question>(
+        &mut self,
+        study: &GridStudy<Q>,
+        unit: &str,
+        columns: &[String],
+    ) -> Result<(Tally, usize), Failure> {
+        self.outputs.write(Output::DATA, header(&study.empty_table().only(columns)))?;
+        let mut count = 0;
+        let tally = self.run(study, &study.slice(Shard::WHOLE), 0, unit, |outputs, table, _| {
+            count += table.rows();
+            outputs.stream(Output::DATA, &rows(&table.only(columns), 0..usize::MAX))
+        })?;
+        Ok((tally, count))
+    }
+
+    /// Draws the rows, writes the manifest and gives the outputs their names. Returns the wall-clock time
+    /// since the rows began in s.
+    pub fn finish(
+        mut self,
+        figure: impl FnOnce(&Table, &Picture) -> Result<Figure, Failure>,
+        manifest: impl FnOnce(&Provenance) -> Result<String, Failure>,
+    ) -> Result<f64, Failure> {
+        if let Some(picture) = self.picture {
+            picture.write(&mut self.outputs, figure(&self.shown, &picture)?)?;
+        }
+        if self.manifest.is_some() {
+            self.outputs = self.outputs.with(Output::MANIFEST, self.manifest.as_deref())?;
+            self.outputs.write(Output::MANIFEST, manifest(&self.watch.origin(self.pool.count()))?)?;
+        }
+        self.outputs.finish()?;
+        Ok(self.watch.wall_s())
+    }
+}

@@ -1,0 +1,176 @@
+//! A sweep whose arguments are checked.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use interwell::mechanics::{BuildError, Mechanism};
+use interwell::output::{Cut, View, can_show, plan};
+use interwell::scene::{Document, is_manifest};
+use interwell::study::{
+    Carry, DIRECTION, Grid, STANDARD_COLUMNS, SUMMARY_FIELDS, Shard, Slice, SummaryField, Sweep,
+    SweepOptions, Task,
+};
+use serde_json::{Value, json};
+
+use super::super::failure::Failure;
+use super::super::interrupt;
+use super::super::options::Common;
+use super::super::picture::Picture;
+use super::super::shard::{placed, shard};
+use super::super::support::{load, refuse_electrical_state, unbuilt, until_settled, warn};
+use super::Arguments;
+
+/// A sweep whose arguments are checked.
+pub struct Prepared<'a> {
+    pub options: &'a Arguments,
+    pub document: Document,
+    /// Where the rows go.
+    pub out: PathBuf,
+    /// The file with the rows of the manifest that is given as the scene.
+    pub data: PathBuf,
+    pub sweep: Sweep,
+    pub slice: Slice,
+    /// The mechanism of the first cell, if it is solved.
+    pub mechanism: Option<Arc<Mechanism>>,
+    /// The columns that are written.
+    pub columns: Vec<String>,
+    pub picture: Option<Picture<'a>>,
+    pub view: View,
+}
+
+impl<'a> Prepared<'a> {
+    /// Loads the scene, checks the arguments and prints the warnings. An argument overrides a manifest that is
+    /// given as the scene.
+    pub fn new(options: &'a Arguments, common: &Common) -> Result<Self, Failure> {
+        if options.check && !is_manifest(options.scene.as_ref()) {
+            return Err(Failure::argument(format!(
+                "--check {}: give the manifest of a sweep, such as map.csv.json, as the scene",
+                options.scene
+            )));
+        }
+        let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
+        let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
+        // Rows, plan and manifest then refer to the same bytes, even if the files change during the sweep.
+        document.hold_files();
+        let swept = document.swept.clone().unwrap_or_default();
+        let number = options.shard.as_ref().or(swept.shard.as_ref());
+        let variable = |name: &str| std::env::var(name).ok();
+        let shard = number.map_or(Ok(Shard::WHOLE), |text| shard(text, variable))?;
+        let out = placed(common.out(), options.shard.as_deref(), shard)?;
+        let sweep = Sweep::new(&document.scene, &document.files, Grid::new(document.axes(&options.over)?)?);
+        let mechanism = first_mechanism(&document, &sweep)?;
+        let carry = options.carry.as_ref().or(swept.carry.as_ref()).and_then(|word| Carry::named(word));
+        if carry.is_some() {
+            refuse_electrical_state(&document, sweep.grid().axes(), "--carry")?;
+        }
+        let chosen = if options.columns.is_empty() { &swept.columns } else { &options.columns };
+        let columns = columns(chosen, sweep.grid(), carry)?;
+        // a fault of the first cell is reported when the cells are checked, with its place
+        let first = sweep.first_model(&Task { tick: &|| (), cancel: interrupt::listen() });
+        let until = options.until_settled.clone().or(swept.until_settled.map(|limit| limit.to_string()));
+        let until = first.map(|model| until_settled(until.as_deref(), &document, &model)).transpose()?;
+        // the quantity of the picture is computed even if its column is not written
+        let shown = picture.map(|_| &options.quantity).filter(|name| !columns.contains(name));
+        let fields = columns.iter().chain(shown).filter_map(|name| SummaryField::find(name)).collect();
+        let sweep = sweep.with(SweepOptions { columns: fields, until_settled: until.flatten(), carry });
+        let slice = sweep.slice(shard);
+        warn(&document, common, &warnings, mechanism.as_deref());
+        let view = view(options, sweep.grid())?;
+        if picture.is_some() {
+            can_show(sweep.grid(), (&options.quantity, &view), &sweep.empty_table())?;
+        }
+        let data = Path::new(&options.scene).with_file_name(swept.data);
+        Ok(Self { options, document, out, data, sweep, slice, mechanism, columns, picture, view })
+    }
+
+    /// All that decides the bytes of the rows.
+    pub fn plan(&self) -> Value {
+        let fixed = self.sweep.grid().columns().len() + usize::from(self.sweep.options().carry.is_some());
+        let version = env!("CARGO_PKG_VERSION");
+        let mut plan = plan(&self.document, &self.sweep, &self.columns[fixed..], version);
+        (plan["rows"], plan["unit"]) = (json!(self.sweep.rows()), json!(self.slice.unit()));
+        plan
+    }
+}
+
+/// The names of all columns: those of the swept fields, the direction of a walk, and the chosen ones.
+fn columns(chosen: &[String], grid: &Grid, carry: Option<Carry>) -> Result<Vec<String>, Failure> {
+    let mut names = grid.columns().to_vec();
+    names.extend(carry.map(|_| DIRECTION.to_owned()));
+    match chosen {
+        [] => names.extend(STANDARD_COLUMNS.map(str::to_owned)),
+        [all] if all == "all" => {
+            let more = SUMMARY_FIELDS.iter().map(|field| field.name);
+            let more = more.filter(|name| !STANDARD_COLUMNS.contains(name));
+            names.extend(STANDARD_COLUMNS.into_iter().chain(more).map(str::to_owned));
+        }
+        list => {
+            for name in list.iter().map(|name| name.trim()) {
+                let Some(field) = SummaryField::find(name) else {
+                    let known: Vec<&str> = SUMMARY_FIELDS.iter().map(|field| field.name).collect();
+                    return Err(Failure::argument(format!(
+                        "--columns {name}: no such column; there are all, {}",
+                        known.join(", ")
+                    )));
+                };
+                if names.iter().any(|known| known == field.name) {
+                    return Err(Failure::argument(format!("--columns {name}: named twice; name it once")));
+                }
+                names.push(field.name.to_owned());
+            }
+        }
+    }
+    Ok(names)
+}
+
+/// Largest number of cuts beside a map.
+const MAX_CUTS: usize = 2;
+
+/// How the picture shows a sweep of this grid.
+fn view(options: &Arguments, grid: &Grid) -> Result<View, Failure> {
+    if options.surface {
+        return Ok(View::Surface);
+    }
+    let mut cuts: Vec<Cut> = Vec::new();
+    for text in &options.cut {
+        let wrong = |problem: String| Failure::argument(format!("--cut {text}: {problem}"));
+        let known = || grid.columns().join(", ");
+        let form = || wrong(format!("write FIELD=VALUE with a field of the sweep: {}", known()));
+        let (field, value) = text.split_once('=').ok_or_else(form)?;
+        let field = field.trim();
+        let place = grid
+            .axes()
+            .iter()
+            .zip(grid.columns())
+            .position(|(axis, column)| axis.field == field || column == field);
+        let place = place.ok_or_else(|| wrong(format!("no field of the sweep; these are: {}", known())))?;
+        let value: f64 = value.trim().parse().map_err(|_| form())?;
+        let column = grid.columns()[place].clone();
+        let values = &grid.axes()[place].values;
+        if !values.contains(&value) {
+            let mut near: Vec<f64> = values.clone();
+            near.sort_by(|a, b| (a - value).abs().total_cmp(&(b - value).abs()));
+            near.truncate(2);
+            let near: Vec<String> = near.iter().map(f64::to_string).collect();
+            return Err(wrong(format!(
+                "the sweep has no such value; the nearest are {}",
+                near.join(" and ")
+            )));
+        }
+        if cuts.len() == MAX_CUTS {
+            return Err(wrong(format!("at most {MAX_CUTS} cuts stand beside a map")));
+        }
+        cuts.push(Cut { column, value });
+    }
+    Ok(if cuts.is_empty() { View::Top } else { View::Cuts(cuts) })
+}
+
+/// The mechanism of the sweep's first cell. If its flexures have no solution, this is `None` if the mechanism
+/// is swept, because it is then an outcome of the cell, and an error if all cells have this mechanism.
+fn first_mechanism(document: &Document, sweep: &Sweep) -> Result<Option<Arc<Mechanism>>, Failure> {
+    match sweep.first_mechanism() {
+        Ok(mechanism) => Ok(Some(mechanism)),
+        Err(BuildError::Unsolved(_)) if sweep.grid().changes_mechanism() => Ok(None),
+        Err(error) => Err(unbuilt(document, error)),
+    }
+}

@@ -1,0 +1,400 @@
+//! One question asked of every cell of a grid, in parallel, many runs at once where the processor can.
+//!
+//! Rows leave in order as soon as those before them have left, and few cells are begun ahead of them, so
+//! memory does not grow with the number of cells. What a cell gives depends on its own scene alone, so the
+//! bytes are the same for any number of threads.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::Task;
+use super::cell::{Cell, CellFaults, SweepEnd, Tally};
+use super::grid::Grid;
+use super::slice::{Shard, Slice};
+use super::table::Table;
+use super::walk::{Carry, Direction, Walk};
+use crate::dynamics::{Model, Request, Run};
+use crate::mechanics::{BuildError, Mechanism};
+use crate::scene::{Fault, Files, Scene};
+use crate::system::threads::{Pool, Queue, UnderWay};
+
+/// The answer of one cell.
+#[derive(Debug, Clone)]
+pub struct Row<A> {
+    /// The number of the cell.
+    pub index: u64,
+    /// The direction of the walk, if each cell goes on from the one before.
+    pub direction: Option<Direction>,
+    /// What is known of the cell.
+    pub answer: A,
+}
+
+/// A question asked of each cell.
+pub trait Question: Default + Sync {
+    /// What is known of a cell.
+    type Answer: Send;
+
+    /// What a run keeps, and when it ends; `None` if the answer takes no run of the model as it is.
+    fn request(&self) -> Option<Request<'_>>;
+
+    /// The model to run, made from that of the cell.
+    fn model(&self, model: Model) -> Model {
+        model
+    }
+
+    /// Why the question does not apply to this model; `scene` is that of its cell.
+    fn fault(&self, model: &Model, scene: &Scene) -> Option<Fault>;
+
+    /// The answer by the model and the run that was [requested](Self::request).
+    fn answer(&self, model: &Model, run: Option<Run>, cancel: &AtomicBool) -> Self::Answer;
+
+    /// The answer for a cell without a model.
+    fn without_model(cell: Cell) -> Self::Answer;
+
+    /// Counts an answer.
+    fn count(tally: &mut Tally, answer: &Self::Answer);
+
+    /// The rows of some cells.
+    fn table(&self, grid: &Grid, rows: &[Row<Self::Answer>]) -> Table;
+
+    /// How the last field is walked, if each cell goes on from the one before.
+    fn carry(&self) -> Option<Carry> {
+        None
+    }
+
+    /// Cells that `threads` may have begun before the first of them has left.
+    fn ahead(&self, threads: u64) -> u64 {
+        AHEAD * threads
+    }
+}
+
+/// Cells that a thread may have begun, where they are small.
+pub(super) const AHEAD: u64 = 4096;
+
+/// The mechanism of a cell, or why it has none.
+pub(super) type Built = Result<Arc<Mechanism>, BuildError>;
+
+/// A scene, the grid over it, and the mechanisms that its cells share.
+#[derive(Debug)]
+pub(super) struct Cells {
+    pub base: Scene,
+    pub grid: Grid,
+    files: Files,
+    mechanisms: Vec<Mutex<Option<Built>>>,
+    /// Mechanisms built so far.
+    built: AtomicU64,
+}
+
+/// A question about the cells of a grid over a scene.
+#[derive(Debug)]
+pub struct GridStudy<Q> {
+    cells: Cells,
+    question: Q,
+}
+
+/// Walks that may be begun in any case, however long they are: as many as a thread has under way.
+const WALKS: u64 = 64;
+
+/// Mechanisms kept for the whole study; with more of them each cell builds its own.
+const KEPT_MECHANISMS: u64 = 4096;
+/// About the bytes of a large one (flexures with their states).
+const LARGEST_MECHANISM: u64 = 50_000;
+
+impl Cells {
+    pub fn new(base: &Scene, files: &Files, grid: Grid) -> Self {
+        // left out, so that it is not copied for each cell
+        let base = Scene { notes: String::new(), sweep: Vec::new(), app: None, ..base.clone() };
+        let kept = Some(grid.mechanisms()).filter(|n| *n <= KEPT_MECHANISMS).unwrap_or(0);
+        let mechanisms = (0..kept).map(|_| Mutex::new(None)).collect();
+        Self { base, files: files.clone(), grid, mechanisms, built: AtomicU64::new(0) }
+    }
+
+    /// Makes `scene` that of a cell and returns its mechanism; `None` if cancelled before it was built.
+    pub fn mechanism(&self, index: u64, scene: &mut Scene, cancel: &AtomicBool) -> Option<Built> {
+        self.grid.apply(index, scene);
+        let build = || {
+            let built = Mechanism::build_unless(&scene.mechanism, &self.files, cancel)?;
+            self.built.fetch_add(1, Ordering::Relaxed);
+            Some(built.map(Arc::new))
+        };
+        let Some(place) = self.mechanisms.get(self.grid.mechanism(index) as usize) else { return build() };
+        let mut place = place.lock().unwrap_or_else(PoisonError::into_inner);
+        if place.is_none() {
+            *place = build();
+        }
+        place.clone()
+    }
+
+    /// The model of a cell, or its faults; `None` if its mechanism was not solved, or the task was
+    /// cancelled meanwhile.
+    fn model(&self, index: u64, scene: &mut Scene, task: &Task) -> Option<Result<Model, Vec<Fault>>> {
+        match self.mechanism(index, scene, task.cancel)? {
+            Ok(mechanism) => Some(Model::build(scene, mechanism)),
+            Err(BuildError::Wrong(fault)) => Some(Err(vec![fault])),
+            Err(BuildError::Unsolved(_)) => None,
+        }
+    }
+}
+
+impl<Q: Question> GridStudy<Q> {
+    /// A study of `grid` over `base`, which has passed its check, as have the grid's corners.
+    pub fn new(base: &Scene, files: &Files, grid: Grid) -> Self {
+        Self { cells: Cells::new(base, files, grid), question: Q::default() }
+    }
+
+    /// The same with this question.
+    #[must_use]
+    pub fn with(mut self, question: Q) -> Self {
+        self.question = question;
+        self
+    }
+
+    /// The question.
+    pub fn options(&self) -> &Q {
+        &self.question
+    }
+
+    /// The grid.
+    pub fn grid(&self) -> &Grid {
+        &self.cells.grid
+    }
+
+    /// The number of runs, each of which is a row of a sweep.
+    pub fn rows(&self) -> u64 {
+        self.grid().cells() * self.ways()
+    }
+
+    /// How often each cell is run.
+    fn ways(&self) -> u64 {
+        self.question.carry().map_or(1, |carry| carry.directions().len() as u64)
+    }
+
+    /// Rows that are computed one after the other: those of a walk, else one.
+    fn unit(&self) -> u64 {
+        let walk = self.grid().axes().last().map_or(1, |axis| axis.values.len() as u64);
+        self.question.carry().map_or(1, |_| walk)
+    }
+
+    /// The rows of a shard.
+    pub fn slice(&self, shard: Shard) -> Slice {
+        Slice::new(self.rows(), self.unit(), shard)
+    }
+
+    /// The walk that begins with a row.
+    fn walk(&self, row: u64) -> Walk {
+        let number = (row / self.unit() % self.ways()) as usize;
+        let direction = self.question.carry().map(|carry| carry.directions()[number]);
+        Walk::new(self.cell(row), self.unit(), direction)
+    }
+
+    /// The cell of a row, where walks in both directions have their cells in the order of the grid.
+    pub fn cell(&self, row: u64) -> u64 {
+        row / self.unit() / self.ways() * self.unit() + row % self.unit()
+    }
+
+    /// Approximate upper bound of the bytes that a run of it keeps, however many cells there are. Walks are
+    /// kept while they go on.
+    pub fn memory(&self, threads: usize) -> u64 {
+        let kept = self.cells.mechanisms.len() as u64;
+        let mechanisms = if self.grid().changes_mechanism() { kept } else { 1 };
+        let ahead = self.question.carry().map_or(AHEAD, |_| self.walks_ahead() * self.unit());
+        ahead * threads as u64 * size_of::<Row<Q::Answer>>() as u64 + mechanisms * LARGEST_MECHANISM
+    }
+
+    /// Walks that may be begun, for each thread, before the first of them has left.
+    fn walks_ahead(&self) -> u64 {
+        (AHEAD / self.unit()).max(WALKS)
+    }
+
+    /// The table without rows.
+    pub fn empty_table(&self) -> Table {
+        self.table(0, [])
+    }
+
+    /// The rows of the cells from `begin` on, none of them carried.
+    pub fn table(&self, begin: u64, answers: impl IntoIterator<Item = Q::Answer>) -> Table {
+        let row = |(index, answer)| Row { index, direction: None, answer };
+        let rows: Vec<Row<Q::Answer>> = (begin..).zip(answers).map(row).collect();
+        self.question.table(self.grid(), &rows)
+    }
+
+    /// The mechanism of the first cell, or why it has none. Where no axis changes the mechanism, it is that
+    /// of every cell.
+    pub fn first_mechanism(&self) -> Result<Arc<Mechanism>, BuildError> {
+        let (mut scene, never) = (self.cells.base.clone(), AtomicBool::new(false));
+        let built = self.cells.mechanism(0, &mut scene, &never);
+        built.unwrap_or_else(|| Mechanism::build(&scene.mechanism, &self.cells.files).map(Arc::new))
+    }
+
+    /// The model of the first cell as it is run; `None` if its scene has faults, or its mechanism was not
+    /// solved.
+    pub fn first_model(&self, task: &Task) -> Option<Model> {
+        let model = self.cells.model(0, &mut self.cells.base.clone(), task)?.ok()?;
+        Some(self.question.model(model))
+    }
+
+    /// Builds every cell without running it; the error is the first invalid one, with all its faults. In a
+    /// walk, a drive that does not repeat is one. A mechanism that is not solved is no fault but an outcome.
+    /// A cancelled check finds nothing.
+    pub fn validate(&self, pool: &Pool, task: &Task) -> Result<(), CellFaults> {
+        self.validate_rows(&self.slice(Shard::WHOLE), 0, pool, task)
+    }
+
+    /// The same for the cells of a slice from its row `from` on.
+    pub fn validate_rows(
+        &self,
+        slice: &Slice,
+        from: u64,
+        pool: &Pool,
+        task: &Task,
+    ) -> Result<(), CellFaults> {
+        let faults = |scene: &mut Scene, place: u64| {
+            if task.is_cancelled() {
+                return None;
+            }
+            let index = self.cell(slice.row(from + place));
+            let faults = match self.cells.model(index, scene, task)? {
+                Ok(model) => vec![self.question.fault(&self.question.model(model), scene)?],
+                Err(faults) => faults,
+            };
+            Some(CellFaults { cell: self.grid().describe(index), faults })
+        };
+        pool.find_first(slice.rows() - from, || self.cells.base.clone(), faults).map_or(Ok(()), Err)
+    }
+
+    /// Puts a mechanism in the place of one that would be built.
+    #[cfg(test)]
+    pub fn set_mechanism(&self, number: usize, mechanism: Built) {
+        *self.cells.mechanisms[number].lock().unwrap() = Some(mechanism);
+    }
+
+    /// Answers every cell on `pool` and hands the rows to `write`, some at a time, in order. `write` answers
+    /// whether more rows are wanted. Precondition: [`validate`](Self::validate) found nothing.
+    pub fn run<E>(
+        &self,
+        pool: &Pool,
+        task: &Task,
+        mut write: impl FnMut(&Table) -> Result<bool, E>,
+    ) -> Result<Tally, SweepEnd<E>> {
+        self.run_rows(&self.slice(Shard::WHOLE), 0, pool, task, |table, _| write(table))
+    }
+
+    /// The same for the rows of a slice from `from` on, the first row of a unit; `write` also gets the tally
+    /// of the rows that it gets.
+    pub fn run_rows<E>(
+        &self,
+        slice: &Slice,
+        from: u64,
+        pool: &Pool,
+        task: &Task,
+        mut write: impl FnMut(&Table, &Tally) -> Result<bool, E>,
+    ) -> Result<Tally, SweepEnd<E>> {
+        let (unit, threads) = (self.unit(), pool.count() as u64);
+        let ahead = match self.question.carry() {
+            Some(_) => self.walks_ahead() * threads,
+            None => self.question.ahead(threads),
+        };
+        let walk = |number: usize| self.walk(slice.row(from + number as u64 * unit));
+        let work = |take: &dyn Fn(UnderWay) -> Option<usize>, done: &dyn Fn(usize, Row<Q::Answer>)| {
+            self.go(&walk, task, take, done);
+        };
+        let (mut tally, mut end) = (Tally::default(), None);
+        let leave = |rows: Vec<Row<Q::Answer>>| {
+            let mut part = Tally::default();
+            rows.iter().for_each(|row| Q::count(&mut part, &row.answer));
+            tally.add(&part);
+            tally.mechanisms = self.cells.built.load(Ordering::Relaxed);
+            let wanted = write(&self.question.table(self.grid(), &rows), &part);
+            wanted.unwrap_or_else(|error| {
+                end = Some(SweepEnd::Write(error));
+                false
+            })
+        };
+        let rows = slice.rows() - from;
+        pool.in_order((rows / unit) as usize, unit as usize, ahead as usize, work, leave);
+        let cancelled = task.is_cancelled() && tally.cells < rows;
+        end.or(cancelled.then_some(SweepEnd::Cancelled)).map_or(Ok(tally), Err)
+    }
+
+    /// Answers these cells on `pool`, none of them carried, begun in their order, and hands each over from
+    /// its thread as soon as it is there. Returns whether all of them were answered: false if cancelled.
+    pub fn run_cells(
+        &self,
+        pool: &Pool,
+        task: &Task,
+        cells: &[u64],
+        each: &(dyn Fn(u64, Q::Answer) + Sync),
+    ) -> bool {
+        let queue = Queue::new(cells.len(), pool.count());
+        let walk = |number: usize| Walk::new(cells[number], 1, None);
+        let done = |_, row: Row<Q::Answer>| each(row.index, row.answer);
+        pool.everywhere(|| self.go(&walk, task, &|under_way| queue.take(under_way), &done));
+        !task.is_cancelled()
+    }
+
+    /// Goes through walks on this thread, many at once where the processor can. `take` gets how many are
+    /// under way here and gives the number of a further one; each row goes to `done` with its number.
+    fn go(
+        &self,
+        walk: &dyn Fn(usize) -> Walk,
+        task: &Task,
+        take: &dyn Fn(UnderWay) -> Option<usize>,
+        done: &dyn Fn(usize, Row<Q::Answer>),
+    ) {
+        let (request, mut scene) = (self.question.request(), self.cells.base.clone());
+        // those that are to go on here, and those under way, by number
+        let (ready, walking) = (RefCell::new(Vec::new()), RefCell::new(BTreeMap::new()));
+        let answered = |number: usize, mut walk: Walk, answer: Q::Answer| {
+            if task.is_cancelled() {
+                return;
+            }
+            let row = Row { index: walk.cell(), direction: walk.direction, answer };
+            done(number * walk.length as usize + walk.done as usize, row);
+            (task.tick)();
+            walk.done += 1;
+            if walk.done < walk.length {
+                ready.borrow_mut().push((number, walk));
+            }
+        };
+        let mut next = |under_way: UnderWay| loop {
+            // checked before waiting for more, since there may be none left
+            if task.is_cancelled() {
+                return None;
+            }
+            let kept = ready.borrow_mut().pop();
+            let (number, begun) = kept.or_else(|| take(under_way).map(|number| (number, walk(number))))?;
+            let answer = match (self.cells.model(begun.cell(), &mut scene, task), request) {
+                (Some(Ok(model)), Some(request)) => {
+                    let model = begun.carried.on(self.question.model(model));
+                    let carry = begun.direction.is_some();
+                    walking.borrow_mut().insert(number, begun);
+                    return Some((number, model, Request { carry, cancel: Some(task.cancel), ..request }));
+                }
+                (Some(Ok(model)), None) => self.question.answer(&model, None, task.cancel),
+                // cannot happen once the grid has been validated
+                (Some(Err(_)), _) => Q::without_model(Cell::NotRun),
+                (None, _) => Q::without_model(Cell::Unsolved),
+            };
+            answered(number, begun, answer);
+        };
+        let mut ended = |number: usize, model: &Model, run: Run| {
+            let Some(mut walk): Option<Walk> = walking.borrow_mut().remove(&number) else { return };
+            walk.carried.keep(model, &run);
+            answered(number, walk, self.question.answer(model, Some(run), task.cancel));
+        };
+        Model::run_from(&mut next, &mut ended);
+    }
+}
+
+/// The columns of the swept fields, and that of the direction where the cells were `walked`, with so many
+/// rows for each answer.
+pub(super) fn fields<A>(grid: &Grid, rows: &[Row<A>], count: impl Fn(&A) -> usize, walked: bool) -> Table {
+    let each = || rows.iter().flat_map(|row| std::iter::repeat_n(row, count(&row.answer)));
+    let table = grid.table(|| each().map(|row| row.index));
+    if !walked {
+        return table;
+    }
+    table.with(super::DIRECTION, each().map(|row| row.direction.map_or("", Direction::name)).collect())
+}
