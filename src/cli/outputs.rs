@@ -9,7 +9,6 @@ use interwell::system::files::{canonical, is_file};
 
 use super::failure::Failure;
 use super::interrupt;
-use super::picture::Picture;
 
 /// Rows that are formatted at a time.
 const ROWS: usize = 1 << 15;
@@ -78,12 +77,6 @@ impl Outputs {
         }
         self.sinks.push((output, sink));
         Ok(self)
-    }
-
-    /// Opens those of a picture and of its numbers, where they are requested.
-    pub fn with_picture(self, picture: Option<Picture>) -> Result<Self, Failure> {
-        let Some(picture) = picture else { return Ok(self) };
-        self.with(picture.output, Some(picture.path))?.with(Output::PLOT_DATA, picture.data)
     }
 
     /// Closes an output without a change of its file.

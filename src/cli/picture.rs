@@ -104,6 +104,14 @@ impl<'a> Picture<'a> {
     }
 }
 
+impl Outputs {
+    /// Opens those of a picture and of its numbers, where they are requested.
+    pub fn with_picture(self, picture: Option<Picture>) -> Result<Self, Failure> {
+        let Some(picture) = picture else { return Ok(self) };
+        self.with(picture.output, Some(picture.path))?.with(Output::PLOT_DATA, picture.data)
+    }
+}
+
 /// The arguments of this call that the pictures depend on, in the order of `--help`.
 fn arguments() -> Vec<String> {
     let program = Options::command();

@@ -1,8 +1,9 @@
-//! A sweep whose arguments are checked.
+//! Arguments of `sweep`, and a sweep whose arguments are checked.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use clap::Args;
 use interwell::mechanics::{BuildError, Mechanism};
 use interwell::output::{Cut, View, can_show, plan};
 use interwell::scene::{Document, is_manifest};
@@ -14,11 +15,77 @@ use serde_json::{Value, json};
 
 use super::super::failure::Failure;
 use super::super::interrupt;
-use super::super::options::Common;
+use super::super::options::{ChartOptions, Common};
 use super::super::picture::Picture;
 use super::super::shard::{placed, shard};
 use super::super::support::{load, refuse_electrical_state, unbuilt, until_settled, warn};
-use super::Arguments;
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Scene file or built-in scene
+    #[arg(value_name = "SCENE", default_value = "paper")]
+    pub scene: String,
+
+    /// Sweep a field; replaces the scene's own sweep (repeatable, the first is the slowest)
+    #[arg(long, value_name = "FIELD=FROM:TO:STEP|a,b,c", allow_hyphen_values = true)]
+    pub over: Vec<String>,
+
+    /// Columns after those of the swept fields: names of the summary, or all [default: rms_velocity_m_per_s,
+    /// regime, crossings, impacts, max_abs_x_m, period, outcome]
+    #[arg(long, value_name = "A,B,..|all", allow_hyphen_values = true, value_delimiter = ',')]
+    pub columns: Vec<String>,
+
+    /// Let each run go on, window after window, until its motion repeats, or up to this time in s. Needs a
+    /// drive that repeats
+    #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
+    pub until_settled: Option<String>,
+
+    /// Walk the last --over field in its order (up), backwards (down) or both ways: each cell begins in the
+    /// state of the one before, only the first at the scene's start. Needs a drive that repeats
+    #[arg(long, value_name = "up|down|both", value_parser = ["up", "down", "both"])]
+    pub carry: Option<String>,
+
+    /// With --plot: the column that is shown, any one of --columns all
+    #[arg(long, value_name = "COLUMN", requires = "plot", default_value = "rms_velocity_m_per_s")]
+    pub quantity: String,
+
+    /// With --plot, over two fields: a surface whose height is the quantity
+    #[arg(long, requires = "plot", conflicts_with = "cut")]
+    pub surface: bool,
+
+    /// With --plot, over two fields: beside the map the quantity along a line through it, at this value of a
+    /// field (repeatable, at most twice)
+    #[arg(long, value_name = "FIELD=VALUE", allow_hyphen_values = true, requires = "plot")]
+    pub cut: Vec<String>,
+
+    /// Go on with the rows that an earlier process left in FILE.part, where there are some
+    #[arg(long)]
+    pub resume: bool,
+
+    /// Begin anew, whatever an earlier process left; with --resume: keep its rows before a damaged one
+    #[arg(long)]
+    pub force: bool,
+
+    /// Compute the I-th of N parts alone; auto or auto/N within an array job of Slurm or HyperQueue. {shard}
+    /// in --out becomes I-of-N. `merge` puts the parts together
+    #[arg(long, value_name = "I/N|auto", allow_hyphen_values = true, conflicts_with = "plot")]
+    pub shard: Option<String>,
+
+    /// Say how many cells there are, about how long they take and what memory, and which commands run them
+    #[arg(long, conflicts_with_all = ["resume", "force"])]
+    pub dry_run: bool,
+
+    /// With a manifest as SCENE: run it again, write nothing, and compare its rows byte for byte
+    #[arg(long, conflicts_with_all = ["out", "plot", "shard", "dry_run", "resume", "force"])]
+    pub check: bool,
+
+    /// End with exit status 1 where a cell ended early
+    #[arg(long)]
+    pub strict: bool,
+
+    #[command(flatten)]
+    pub chart: ChartOptions,
+}
 
 /// A sweep whose arguments are checked.
 pub struct Prepared<'a> {
@@ -39,8 +106,8 @@ pub struct Prepared<'a> {
 }
 
 impl<'a> Prepared<'a> {
-    /// Loads the scene, checks the arguments and prints the warnings. An argument overrides a manifest that is
-    /// given as the scene.
+    /// Loads the scene, checks the arguments and prints the warnings. An argument overrides a manifest that
+    /// is given as the scene.
     pub fn new(options: &'a Arguments, common: &Common) -> Result<Self, Failure> {
         if options.check && !is_manifest(options.scene.as_ref()) {
             return Err(Failure::argument(format!(

@@ -29,8 +29,8 @@ const MOST_CELLS: usize = 20_000;
 /// Rounds in which cells may be added.
 const ROUNDS: usize = 40;
 
-/// A region around the irregular motion through `state` in m and m/s; `None` if there is none or a state of it
-/// comes to a known orbit.
+/// A region around the irregular motion through `state` in m and m/s; `None` if there is none or a state of
+/// it comes to a known orbit.
 pub(super) fn absorbing(
     scope: &Stroboscope,
     state: (f64, f64),
