@@ -73,9 +73,10 @@ pub fn clipped(values: &[f64]) -> Option<Clipped> {
 /// Where the displacements `x` over `times` of a mass that may rest on stops are cut off: at their least
 /// value (first), and at their largest.
 ///
-/// A rest is flat too. The mass leaves it from standstill, since the force on it changes sign there, but a top
-/// that is cut off with a speed. Where it does not leave again, ever smaller bounces came before a rest. In noise
-/// a rest is not flat: where it is cut off within the noise, samples below the limit lie between others at it.
+/// A rest is flat too. The mass leaves it from standstill, since the force on it changes sign there, but a
+/// top that is cut off with a speed. Where it does not leave again, ever smaller bounces came before a rest.
+/// In noise a rest is not flat: where it is cut off within the noise, samples below the limit lie between
+/// others at it.
 pub fn cut_off(times: &[f64], x: &[f64]) -> [Option<CutOff>; 2] {
     let step = step(x);
     [-1.0, 1.0].map(|side| FlatTops::of(x, side, step)?.cut_off(times, x, step))
