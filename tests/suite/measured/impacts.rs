@@ -140,8 +140,7 @@ fn drawn(seed: u64) -> Drawn {
     Drawn { record, left: left_mm.map(|_| left), right: right_mm.map(|_| right), about }
 }
 
-/// Cuts the record off at a limit on the one side, or on the other; within the outermost places, about there or
-/// beyond.
+/// Cuts the record off at a limit on one side: within the outermost places, about there, or beyond.
 fn clip(draw: &mut Draw, x: &mut [f64]) -> String {
     let low = x.iter().copied().fold(f64::INFINITY, f64::min);
     let high = x.iter().copied().fold(f64::NEG_INFINITY, f64::max);
