@@ -83,8 +83,8 @@ fn thresholds() {
     let press = -mechanism.curve.force(4e-3);
     let found = |problem: &str, against: &str, scan: Scan, exact: f64| {
         row("threshold", problem, against, || {
-            let asked = (&scan, Onset::Release);
-            let found = threshold(&document.scene, &mechanism, &document.files, asked, &task).unwrap();
+            let found = threshold(&document.scene, &mechanism, &document.files, &scan, Onset::Release, &task)
+                .unwrap();
             (found.value.unwrap() / exact - 1.0).abs()
         });
     };
@@ -118,7 +118,7 @@ fn branches() {
         let mechanism = std::sync::Arc::new(mechanism);
         let field = "excitation.amplitude_g";
         let family = Family::new(&document.scene, &document.files, &mechanism, field);
-        of(&branch(&family, field, (from, to), (0.0, Some(1)), &task).unwrap())
+        of(&branch(&family, field, (from, to), 0.0, Some(1), &task).unwrap())
     };
     // the swing of the linear spring whose amplitude is the distance of the stop, 1 m
     let (w, c) = (0.7_f64, 0.2);
@@ -241,11 +241,10 @@ fn threshold_of(pool: &Pool) {
     let document = shared::changed("paper-unconstrained", &[]);
     let values = (1..=200).map(|i| 0.01 * f64::from(i)).collect();
     let scan = Scan { field: "excitation.amplitude_g".into(), values, resolution: 1e-5, until_settled: None };
-    let asked = (&scan, Onset::Interwell);
     let never = AtomicBool::new(false);
     let task = Task { tick: &|| (), cancel: &never };
     let grid = Grid::of_one();
-    threshold_table((&document.scene, &document.files), &grid, asked, pool, &task).unwrap();
+    threshold_table(&document.scene, &document.files, &grid, &scan, Onset::Interwell, pool, &task).unwrap();
 }
 
 fn lessons(pool: &Pool) {

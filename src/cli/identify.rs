@@ -118,9 +118,16 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if let Some(picture) = picture {
         let name = options.file().file_name().unwrap_or_default().to_string_lossy();
         let caption = Caption::of_record(&name, options.of(), env!("CARGO_PKG_VERSION"));
-        let (what, record) = ((options.of(), &found), (&across[..], &values.values[..]));
-        let figure =
-            identified_figure(what, record, values.quantity, picture.ranges, &caption, &picture.theme);
+        let record = (&across[..], &values.values[..]);
+        let figure = identified_figure(
+            options.of(),
+            &found,
+            record,
+            values.quantity,
+            picture.ranges,
+            &caption,
+            &picture.theme,
+        );
         picture.write(&mut outputs, figure)?;
     }
     outputs.finish()?;

@@ -96,7 +96,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             let family = Family::new(&document.scene, &document.files, &mechanism, &field);
             let bar = count(common.quiet);
             let task = Task { tick: &|| bar.inc(1), cancel };
-            let found = branch(&family, &field, (from, to), (phase, options.period), &task);
+            let found = branch(&family, &field, (from, to), phase, options.period, &task);
             bar.finish_and_clear();
             let found = found.map_err(|error| failed(error, &format!("at {field} = {from}: ")))?;
             if let Some(picture) = picture {

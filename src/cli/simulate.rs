@@ -129,8 +129,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             None => {
                 let named = options.panels.iter().filter_map(|name| Panel::named(name)).collect::<Vec<_>>();
                 let panels = if named.is_empty() { Panel::ALL.to_vec() } else { named };
-                let run = (&trace, &simulation.summary);
-                run_figure(run, mechanism, &panels, axes, &about, &picture.theme)
+                run_figure(&trace, &simulation.summary, mechanism, &panels, axes, &about, &picture.theme)
             }
         };
         picture.write(&mut outputs, figure)?;

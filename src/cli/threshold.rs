@@ -105,7 +105,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let mut outputs = outputs(&options.scene, &document, common)?.with_picture(picture)?;
     let bar = bar(grid.cells() * scan.values.len() as u64, "values", common.quiet, common.out());
     let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
-    let found = threshold_table((&document.scene, &document.files), &grid, (&scan, onset), &pool, &task);
+    let found = threshold_table(&document.scene, &document.files, &grid, &scan, onset, &pool, &task);
     drop(bar);
     let table = found.map_err(|end| match end {
         NoThresholds::Cancelled => Failure::interrupted(),

@@ -100,7 +100,7 @@ fn fitted(times: &[f64], values: &[f64], limits: (f64, f64)) -> Option<Polynomia
         (s, slope) = (next, next_slope);
     }
     let polynomial = by_powers(&legendre);
-    holds(times, values, (half, &polynomial), limits).then_some(polynomial)
+    holds(times, values, half, &polynomial, limits).then_some(polynomial)
 }
 
 /// The Legendre polynomials up to degree [`DEGREE`] + 2 at `s`.
@@ -135,7 +135,7 @@ fn by_powers(legendre: &Polynomial) -> Polynomial {
 /// Whether both integrals of a polynomial agree with those of the lines to within the limits. They are
 /// compared at each sample and at two points between samples, where the integral of a parabola's excess over
 /// its chord is large.
-fn holds(times: &[f64], values: &[f64], (half, polynomial): (f64, &Polynomial), limits: (f64, f64)) -> bool {
+fn holds(times: &[f64], values: &[f64], half: f64, polynomial: &Polynomial, limits: (f64, f64)) -> bool {
     let (mut once, mut twice) = ([0.0; DEGREE + 2], [0.0; DEGREE + 3]);
     for (k, c) in polynomial.iter().enumerate() {
         once[k + 1] = c / (k + 1) as f64;

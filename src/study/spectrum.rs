@@ -155,7 +155,7 @@ pub fn spectrum(model: &Model, options: &SpectrumOptions, task: &Task) -> Result
     (task.tick)();
     let period = summary.period;
     let taper = options.taper.unwrap_or(if period.is_some() { Taper::None } else { Taper::Hann });
-    let plan = Plan::new(model, summary.window, (summary.periods, period), options.rate_hz)?;
+    let plan = Plan::new(model, summary.window, summary.periods, period, options.rate_hz)?;
     let times: Vec<f64> = (0..plan.samples).map(|k| plan.time(k)).collect();
     let run = model.run(&Request { sample_times: &times, ..request });
     ended(run.summary.outcome)?;
@@ -206,7 +206,8 @@ impl Plan {
     fn new(
         model: &Model,
         (from, to): (f64, f64),
-        (periods, repeats): (u64, Option<u32>),
+        periods: u64,
+        repeats: Option<u32>,
         rate_hz: Option<f64>,
     ) -> Result<Self, NoSpectrum> {
         if !(to > from) {

@@ -68,40 +68,14 @@ pub fn threshold(
     scene: &Scene,
     mechanism: &Arc<Mechanism>,
     files: &Files,
-    (scan, onset): (&Scan, Onset),
+    scan: &Scan,
+    onset: Onset,
     task: &Task,
 ) -> Option<Found> {
-    threshold_on(None, 1, scene, mechanism, files, (scan, onset), task).ok()
-}
-
-/// The same on a pool, with `ahead` values of a bisection asked at a time.
-fn threshold_on(
-    pool: Option<&Pool>,
-    ahead: usize,
-    scene: &Scene,
-    mechanism: &Arc<Mechanism>,
-    files: &Files,
-    (scan, onset): (&Scan, Onset),
-    task: &Task,
-) -> Result<Found, Cancelled> {
-    if onset == Onset::Release
-        && scan.field == AMPLITUDE
-        && let Some(frees) = frees_at(scene, mechanism)
-        && let (Some(&first), Some(&last)) = (scan.values.first(), scan.values.last())
-        && first > -frees
-    {
-        scan.values.iter().for_each(|_| (task.tick)());
-        let value = Some(frees.max(first)).filter(|value| *value <= last);
-        let low = (frees >= first).then(|| frees.min(last));
-        return Ok(Found { value, low, high: value, without_gap: value, ..Found::default() });
-    }
     let trial = from_rest(scene);
     let family = Family::new(&trial, files, mechanism, &scan.field);
-    let until_settled = scan.until_settled;
-    let search = Search { family, onset, until_settled, task, pool, ahead };
-    let mut answers = Answers::default();
-    search.scan(&mut answers, &scan.values, scan.resolution)?;
-    Ok(answers.found(scan.resolution))
+    let search = Search { family, onset, until_settled: scan.until_settled, task, pool: None, ahead: 1 };
+    search.found(scene, mechanism, scan).ok()
 }
 
 /// Why there is no table of thresholds.
@@ -118,9 +92,11 @@ pub enum NoThresholds {
 /// mechanism is not solved. Ticks for each value of the scan in each cell. If cells are wrong, nothing has
 /// been run.
 pub fn threshold_table(
-    (scene, files): (&Scene, &Files),
+    scene: &Scene,
+    files: &Files,
     grid: &Grid,
-    (scan, onset): (&Scan, Onset),
+    scan: &Scan,
+    onset: Onset,
     pool: &Pool,
     task: &Task,
 ) -> Result<Table, NoThresholds> {
@@ -151,7 +127,11 @@ pub fn threshold_table(
             scan.values.iter().for_each(|_| (task.tick)());
             return Ok(Found { undecided: true, ..Found::default() });
         };
-        threshold_on(Some(pool), ahead, scene, &mechanism, files, (scan, onset), task)
+        let trial = from_rest(scene);
+        let family = Family::new(&trial, files, &mechanism, &scan.field);
+        let until_settled = scan.until_settled;
+        let search = Search { family, onset, until_settled, task, pool: Some(pool), ahead };
+        search.found(scene, &mechanism, scan)
     };
     let found = pool.map(count, begin, cell).map_err(cancelled)?;
     Ok(grid
@@ -303,6 +283,24 @@ pub(super) struct Search<'a> {
 }
 
 impl Search<'_> {
+    /// The threshold of `scene` with its `mechanism`, to which the family of models belongs.
+    fn found(&self, scene: &Scene, mechanism: &Mechanism, scan: &Scan) -> Result<Found, Cancelled> {
+        if self.onset == Onset::Release
+            && scan.field == AMPLITUDE
+            && let Some(frees) = frees_at(scene, mechanism)
+            && let (Some(&first), Some(&last)) = (scan.values.first(), scan.values.last())
+            && first > -frees
+        {
+            scan.values.iter().for_each(|_| (self.task.tick)());
+            let value = Some(frees.max(first)).filter(|value| *value <= last);
+            let low = (frees >= first).then(|| frees.min(last));
+            return Ok(Found { value, low, high: value, without_gap: value, ..Found::default() });
+        }
+        let mut answers = Answers::default();
+        self.scan(&mut answers, &scan.values, scan.resolution)?;
+        Ok(answers.found(scan.resolution))
+    }
+
     /// Runs further values of a scan, and beside them values of the bisection at its first change, which take
     /// little more time in the same lanes. Then completes the bisection. Ticks for each value of the scan.
     pub fn scan(&self, answers: &mut Answers, values: &[f64], resolution: f64) -> Result<(), Cancelled> {

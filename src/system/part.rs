@@ -217,7 +217,7 @@ impl Part {
         let (sender, receiver) = sync_channel(MAX_WAITING);
         let start = || {
             let (journal, kept) = (lock.try_clone()?, Arc::clone(&kept));
-            let work = move || write(receiver, (part, journal), whole, &kept);
+            let work = move || write(receiver, part, journal, whole, &kept);
             std::thread::Builder::new().name("blocks".into()).spawn(work)
         };
         let refused = |problem| PartError::Refused { path: paths.part.clone(), problem };
@@ -287,7 +287,8 @@ impl Drop for Part {
 /// Returns the checksum of all bytes.
 fn write(
     receiver: Receiver<Message>,
-    (mut part, mut journal): (File, File),
+    mut part: File,
+    mut journal: File,
     mut whole: Checksum,
     kept: &AtomicU64,
 ) -> io::Result<Checksum> {

@@ -151,7 +151,7 @@ fn a_rest_leaves_nothing() {
     }
     // averages say the same
     let own = preset("paper", &["excitation.amplitude_g=1"]);
-    assert!(average_exponents(&own, ((1e-3, 0.1), 0.2), 50, &NEVER).unwrap().rests());
+    assert!(average_exponents(&own, (1e-3, 0.1), 0.2, 50, &NEVER).unwrap().rests());
 }
 
 #[test]
@@ -184,7 +184,7 @@ fn the_sum_keeps_its_digits_where_the_mass_lingers_on_a_barrier() {
         let tolerance = format!("run.tolerance={:e}", 1e-13 * (1.0 + 1e-3 * f64::from(k)));
         let own = preset("paper-unconstrained", &["excitation.amplitude_g=1.5", &tolerance]);
         let start = (7e-3, 0.01 * f64::from(k));
-        let found = average_exponents(&own, (start, 0.0), 1000, &NEVER).unwrap();
+        let found = average_exponents(&own, start, 0.0, 1000, &NEVER).unwrap();
         near_relative(found.sum, found.exact_sum.unwrap(), 1e-11);
     }
 }
@@ -266,8 +266,8 @@ fn an_average_along_a_periodic_motion_tends_to_its_multipliers() {
     assert!(exact.first.per_s > exact.second.per_s);
     let settled = run(&own).summary;
     let phase = own.drive_phase(settled.window.1).unwrap();
-    let start = ((settled.final_x, settled.final_v), phase);
-    let found = average_exponents(&own, start, 1000, &NEVER).unwrap();
+    let start = (settled.final_x, settled.final_v);
+    let found = average_exponents(&own, start, phase, 1000, &NEVER).unwrap();
     near(found.first.per_s, exact.first.per_s, 1e-8);
     near(found.second.per_s, exact.second.per_s, 1e-8);
     assert!(found.period.is_none() && !found.is_irregular() && found.dimension() == 0.0);
@@ -312,8 +312,7 @@ fn what_has_no_exponents_says_why() {
     for name in ["duffing-chaos", "elastic-box"] {
         let own = preset(name, &[]);
         assert_eq!(exponents(&own, &ExponentOptions::default(), &told), Err(NoExponents::Cancelled));
-        let state = (own.start(), 0.0);
-        assert_eq!(average_exponents(&own, state, 10, &told), Err(NoExponents::Cancelled));
+        assert_eq!(average_exponents(&own, own.start(), 0.0, 10, &told), Err(NoExponents::Cancelled));
     }
     let far = preset("paper", &["stops=None", "excitation.amplitude_g=40"]);
     let problem = exponents(&far, &ExponentOptions::default(), &NEVER).unwrap_err();

@@ -129,7 +129,7 @@ fn least(onset: Onset, name: &str, changes: &[&str], range: Range<f64>) -> f64 {
     let scan =
         Scan { field: "excitation.amplitude_g".to_owned(), values, resolution: 1e-4, until_settled: None };
     let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
-    let found = threshold(&document.scene, &mechanism(&document), &document.files, (&scan, onset), &task);
+    let found = threshold(&document.scene, &mechanism(&document), &document.files, &scan, onset, &task);
     found.unwrap().value.unwrap()
 }
 

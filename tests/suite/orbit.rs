@@ -28,7 +28,7 @@ fn over_amplitude(document: &Document, range: (f64, f64), period: Option<u32>) -
     let mechanism = Arc::new(Mechanism::build(&document.scene.mechanism, &document.files).unwrap());
     let family = Family::new(&document.scene, &document.files, &mechanism, AMPLITUDE);
     let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
-    branch(&family, AMPLITUDE, range, (0.0, period), &task).unwrap_or_else(|error| panic!("{error}"))
+    branch(&family, AMPLITUDE, range, 0.0, period, &task).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn at(branch: &Branch, event: BranchEvent) -> Vec<f64> {

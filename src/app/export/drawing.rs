@@ -119,8 +119,7 @@ impl Drawing<'_> {
         let (simulation, trace) = simulate_with_trace(&model, &keep, times, Some(self.task.cancel));
         let ranges = Ranges { x: times, y: None };
         let mechanism = &model.mechanism();
-        let run = (&trace, &simulation.summary);
-        Ok(run_figure(run, mechanism, panels, ranges, &self.caption, &self.theme))
+        Ok(run_figure(&trace, &simulation.summary, mechanism, panels, ranges, &self.caption, &self.theme))
     }
 
     fn curve(&self) -> Result<Figure> {
@@ -140,7 +139,7 @@ impl Drawing<'_> {
         let options = SweepOptions { columns, until_settled: None, carry };
         let sweep = Sweep::new(scene, &self.document.files, grid).with(options);
         let view = if surface { View::Surface } else { View::Top };
-        can_show(sweep.grid(), (quantity, &view), &sweep.empty_table())?;
+        can_show(sweep.grid(), quantity, &view, &sweep.empty_table())?;
         sweep.validate(&pool, &self.task).map_err(|cell| self.faulty(cell.faults))?;
         let mut rows = Table::new();
         let end = sweep.run(&pool, &self.task, |table| append(&mut rows, table));

@@ -61,7 +61,7 @@ pub fn basins_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     stops_ui(ui, context, chart.rect, edges, 0.0);
     chart.numbers(ui, &style, "velocity at the start (mm/s)", 1e-3);
     if let Some(Ok(level)) = &level {
-        pointer_ui(ui, &response, context, (&chart, level, whole));
+        pointer_ui(ui, &response, context, &chart, level, whole);
     }
     let entries: Vec<(Symbol, &str)> = legend.iter().map(|(sign, words)| (*sign, words.as_str())).collect();
     chart.legend(ui, &style, area.right(), &entries);
@@ -131,7 +131,9 @@ fn pointer_ui(
     ui: &Ui,
     response: &egui::Response,
     context: &mut ViewContext<'_>,
-    (chart, level, whole): (&Chart, &Level, bool),
+    chart: &Chart,
+    level: &Level,
+    whole: bool,
 ) {
     let Some(pointer) = response.hover_pos().filter(|at| chart.rect.contains(*at)) else { return };
     let (x, v) = chart.world_from_screen(pointer);

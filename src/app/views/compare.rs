@@ -112,7 +112,7 @@ fn table_ui(ui: &mut Ui, context: &ViewContext<'_>) -> Option<PinAction> {
         ui.label("");
         cell_ui(ui, width, |ui| ui.label(RichText::new("now").heading()));
         for (pin, _) in &pins {
-            let clicked = cell_ui(ui, width, |ui| heading_ui(ui, context, (pin, width)));
+            let clicked = cell_ui(ui, width, |ui| heading_ui(ui, context, pin, width));
             action = action.take().or(clicked);
         }
         ui.end_row();
@@ -170,7 +170,7 @@ fn bare(text: &str, unit: &str) -> String {
 }
 
 /// Name of a pin and the buttons that act on it. Returns the action clicked.
-fn heading_ui(ui: &mut Ui, context: &ViewContext<'_>, (pin, width): (&Pin, f32)) -> Option<PinAction> {
+fn heading_ui(ui: &mut Ui, context: &ViewContext<'_>, pin: &Pin, width: f32) -> Option<PinAction> {
     let (letter, mut action) = (pin.letter(), None);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;

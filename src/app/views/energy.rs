@@ -155,7 +155,7 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
                 Rect::from_min_max(rect.min + vec2(GAP, 0.0), pos2(numbers.left() - 4.0, rect.bottom()));
             bar(ui, &style, bars, value(ledger), largest, color(&style));
             for (place, ghost) in ghosts {
-                ghost_bar(ui, &style, bars, (value(ghost) / largest, place));
+                ghost_bar(ui, &style, bars, value(ghost) / largest, place);
             }
             let number = written(value(ledger), unit, decimals(ledger, unit));
             put_ui(ui, numbers, RichText::new(number), Align::Max, hover);
@@ -206,7 +206,7 @@ fn bar(ui: &Ui, style: &Style, rect: Rect, value: f64, largest: f64, color: Colo
 }
 
 /// Draws the bar of a pinned motion as a dashed line below the row, a `share` of the longest bar.
-fn ghost_bar(ui: &Ui, style: &Style, rect: Rect, (share, place): (f64, usize)) {
+fn ghost_bar(ui: &Ui, style: &Style, rect: Rect, share: f64, place: usize) {
     let (middle, half) = (rect.center().x, 0.5 * rect.width() - 2.0);
     if half > 4.0 && share.is_finite() {
         let y = rect.bottom() - 1.0 - GHOSTS * place as f32;

@@ -61,8 +61,8 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
         None => {
             let middle = 0.5 * (top + bottom);
             let x = context.span.screen_from_world(state.x, rect);
-            let mass = (x, middle, half);
-            (middle, schematic(&painter, context, rect, mass, (top, bottom), &beside), None)
+            let mass = pos2(x, middle);
+            (middle, schematic(&painter, context, rect, mass, half, (top, bottom), &beside), None)
         }
     };
     let x = context.span.screen_from_world(state.x, rect);
@@ -83,7 +83,7 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
     rings(ui, context, rect, middle);
     let arrow = body.translate(vec2(0.0, -beside.lift() * half.y));
     push_arrow(&painter, context, arrow, state.base_accel, rect);
-    part_names(&painter, context, rect, (top, heights), body);
+    part_names(&painter, context, rect, top, heights, body);
     caption_ui(ui, &painter, context, rect, &words, state.base_accel);
 }
 
@@ -93,7 +93,8 @@ fn part_names(
     painter: &egui::Painter,
     context: &ViewContext<'_>,
     rect: Rect,
-    (top, walls): (f32, (f32, f32)),
+    top: f32,
+    walls: (f32, f32),
     body: Rect,
 ) {
     if rect.width() < MIN_LABELLED.x || rect.height() < MIN_LABELLED.y {

@@ -1,6 +1,6 @@
 //! Drawing of a mechanism without flexures: a spring, or a mass alone.
 
-use eframe::egui::{self, Rect, Shape, Stroke, pos2};
+use eframe::egui::{self, Pos2, Rect, Shape, Stroke, pos2};
 
 use crate::app::words::numbers::three;
 use crate::mechanics::Mechanism;
@@ -72,19 +72,21 @@ fn other_force(mechanism: &Mechanism) -> f64 {
     other_parts(mechanism).map(force).sum()
 }
 
-/// Draws the rail and, for a spring, the spring from above to the mass. Returns the caption.
+/// Draws the rail and, for a spring, the spring from above to the mass, whose middle is `mass` and half of
+/// whose size is `half`. Returns the caption.
 pub(super) fn schematic(
     painter: &egui::Painter,
     context: &ViewContext<'_>,
     rect: Rect,
-    (x, middle, half): (f32, f32, egui::Vec2),
+    mass: Pos2,
+    half: egui::Vec2,
     (top, bottom): (f32, f32),
     beside: &Attachments,
 ) -> String {
     let style = context.style;
     let mechanism = context.drawn.model(context.session).mechanism();
     let kind = Schematic::of(mechanism, context.span);
-    painter.hline(rect.x_range().shrink(6.0), middle + half.y + 3.0, Stroke::new(2.0, style.faint()));
+    painter.hline(rect.x_range().shrink(6.0), mass.y + half.y + 3.0, Stroke::new(2.0, style.faint()));
     let bar = |y: std::ops::RangeInclusive<f32>| Rect::from_x_y_ranges(rect.x_range().shrink(6.0), y);
     if beside.stands_below() {
         clamp(painter, &style, bar(bottom..=bottom + CLAMP), false);
@@ -93,7 +95,7 @@ pub(super) fn schematic(
         clamp(painter, &style, bar(top - CLAMP..=top), true);
         let barrier = mechanism.landscape.barrier;
         let foot = context.span.screen_from_world(barrier.map_or(0.0, |barrier| barrier.x), rect);
-        let (from, to) = (pos2(foot, top), pos2(x, middle - half.y));
+        let (from, to) = (pos2(foot, top), pos2(mass.x, mass.y - half.y));
         painter.add(Shape::line(coil((from, to), COILS, COIL, END), style.flexure_stroke()));
     }
     kind.words(mechanism, beside.is_drawn())

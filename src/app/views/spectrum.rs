@@ -52,7 +52,7 @@ pub fn spectrum_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     match parts.last() {
         Some(Ok(spectrum)) => {
             let forcing = context.session.model().forcing_period().map(|period| 1.0 / period);
-            picture_ui(ui, context.memory, &style, below, (spectrum, current, forcing));
+            picture_ui(ui, context.memory, &style, below, spectrum, current, forcing);
         }
         Some(Err(problem)) => message_ui(ui, &style, below, problem),
         None => message_ui(ui, &style, below, "Working it out."),
@@ -70,7 +70,9 @@ fn picture_ui(
     memory: &mut Memory,
     style: &Style,
     area: Rect,
-    (spectrum, current, forcing): (&Spectrum, bool, Option<f64>),
+    spectrum: &Spectrum,
+    current: bool,
+    forcing: Option<f64>,
 ) {
     let Some((_, name, unit, scale)) = SIGNALS.into_iter().find(|entry| entry.0 == spectrum.signal) else {
         return;

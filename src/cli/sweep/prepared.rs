@@ -144,7 +144,7 @@ impl<'a> Prepared<'a> {
         warn(&document, common, &warnings, mechanism.as_deref());
         let view = view(options, sweep.grid())?;
         if picture.is_some() {
-            can_show(sweep.grid(), (&options.quantity, &view), &sweep.empty_table())?;
+            can_show(sweep.grid(), &options.quantity, &view, &sweep.empty_table())?;
         }
         let data = Path::new(&options.scene).with_file_name(swept.data);
         Ok(Self { options, document, out, data, sweep, slice, mechanism, columns, picture, view })

@@ -45,8 +45,8 @@ pub fn basins_figure(basins: &Basins, answer: &Answer, caption: &Caption, theme:
     let rightward = PlotAxis::between(across.0, across.1, 8, "displacement at the start, mm");
     let frame = Frame::whole(&figure, (LEFT, top), rightward, upward);
     match basins.starts().axes() {
-        Some((x_mm, v)) => cells(&mut figure, &frame, (x_mm, v), (basins, answer), theme),
-        None => dots(&mut figure, &frame, (basins, answer), theme),
+        Some((x_mm, v)) => cells(&mut figure, &frame, (x_mm, v), basins, answer, theme),
+        None => dots(&mut figure, &frame, basins, answer, theme),
     }
     let (left, right) = basins.model().stop_positions();
     for (stop, is_left) in [(left, true), (right, false)] {
@@ -107,7 +107,8 @@ fn cells(
     figure: &mut Figure,
     frame: &Frame,
     (x_mm, v): (&[f64], &[f64]),
-    (basins, answer): (&Basins, &Answer),
+    basins: &Basins,
+    answer: &Answer,
     theme: &Theme,
 ) {
     let (across, up) = (Edges::new(x_mm), Edges::new(v));
@@ -127,13 +128,13 @@ fn cells(
                 Some(place) => {
                     figure.rect(area, attractor_colour(place));
                     if let Some(over) = hatch(place) {
-                        figure.hatch(area, style::HATCH, over);
+                        figure.hatch(area, over);
                     }
                 }
                 None if outside => {}
                 None => {
                     figure.rect(area, theme.rest);
-                    figure.hatch(area, style::HATCH, theme.rest_hatch);
+                    figure.hatch(area, theme.rest_hatch);
                 }
             }
         }
@@ -149,7 +150,7 @@ fn source_row(basins: &Basins) -> impl Fn(usize) -> usize {
 }
 
 /// Random starts as discs in the colours of their attractors.
-fn dots(figure: &mut Figure, frame: &Frame, (basins, answer): (&Basins, &Answer), theme: &Theme) {
+fn dots(figure: &mut Figure, frame: &Frame, basins: &Basins, answer: &Answer, theme: &Theme) {
     let size = (700.0 / (answer.rows.len() as f64).sqrt()).clamp(2.5, 9.0);
     for (row, found) in answer.rows.iter().enumerate() {
         let (x_mm, v) = basins.starts().at(row);

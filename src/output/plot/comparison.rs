@@ -271,8 +271,8 @@ fn draw(
     for (scene, entry) in panel.entries.iter().enumerate() {
         let y = frame.down(place(rated, scene));
         let ink = if best == Some(scene) { theme.stable } else { theme.soft.over(theme.paper, 0.35) };
-        bar(figure, &frame, (panel, entry), (y - half, y + half), ink);
-        words(figure, &frame, (panel, entry), (y, 0.95 * step), best == Some(scene), theme);
+        bar(figure, &frame, panel, entry, (y - half, y + half), ink);
+        words(figure, &frame, panel, entry, (y, 0.95 * step), best == Some(scene), theme);
         if panel.mark == Mark::Release
             && let Some(release) = rated[scene].release_g
         {
@@ -306,7 +306,7 @@ fn draw(
 }
 
 /// The bar of a value, or of a band.
-fn bar(figure: &mut Figure, frame: &Frame, (panel, entry): (&Panel, &Entry), rows: (f64, f64), ink: Ink) {
+fn bar(figure: &mut Figure, frame: &Frame, panel: &Panel, entry: &Entry, rows: (f64, f64), ink: Ink) {
     let (top, bottom) = rows;
     let ends = match panel.is_band {
         true => [entry.from.log10(), entry.to.log10()],
@@ -318,7 +318,7 @@ fn bar(figure: &mut Figure, frame: &Frame, (panel, entry): (&Panel, &Entry), row
     } else if entry.to == f64::INFINITY {
         // an infinite value: hatched over the whole width
         let area = Area::new(frame.area.left, top, frame.area.right, bottom);
-        figure.hatch(area, style::HATCH, ink);
+        figure.hatch(area, ink);
     }
 }
 
@@ -326,7 +326,8 @@ fn bar(figure: &mut Figure, frame: &Frame, (panel, entry): (&Panel, &Entry), row
 fn words(
     figure: &mut Figure,
     frame: &Frame,
-    (panel, entry): (&Panel, &Entry),
+    panel: &Panel,
+    entry: &Entry,
     (y, max_size): (f64, f64),
     is_best: bool,
     theme: &Theme,

@@ -30,7 +30,8 @@ pub(super) fn least(count: usize, theme: &Theme) -> f64 {
 pub(super) fn map_with_cuts(
     figure: &mut Figure,
     picture: &SweepPicture,
-    ((x, y), cuts): ((&str, &str), &[Cut]),
+    (x, y): (&str, &str),
+    cuts: &[Cut],
     theme: &Theme,
 ) {
     let map = Map::new(picture, (x, y));
@@ -49,7 +50,7 @@ pub(super) fn map_with_cuts(
     // narrow: the map has as much height as a cut
     let share = (bottom - top - BETWEEN * count) / (count + 1.0);
     let (right, low) = if narrow { (width - BESIDE, top + share) } else { (MAP * width, bottom) };
-    let frame = map.draw(figure, (picture, (x, y)), (top, right, low), BAR, theme);
+    let frame = map.draw(figure, picture, (x, y), (top, right, low), BAR, theme);
     let first = if narrow { low + BETWEEN } else { top + HEADING };
     let height = (bottom - first - BETWEEN * (count - 1.0)) / count;
     let mut drawn = map.drawn(picture, (x, y));
@@ -65,7 +66,7 @@ pub(super) fn map_with_cuts(
         let up = panel.quantity.axis(0.06, 5);
         let left = if narrow { Frame::left(figure, &up, LEFT, height) } else { CUTS * width };
         let area = Area::new(left, begin, figure.right(), begin + height);
-        panel.draw(figure, (area, up), theme);
+        panel.draw(figure, area, up, theme);
         for (series, at) in panel.thresholds() {
             let (a, b) = if panel.upright { (panel.value, at) } else { (at, panel.value) };
             drawn.put(series, &[a, b], &[]);
@@ -128,7 +129,7 @@ impl Panel {
         release.chain(self.crossing.iter().map(|at| ("cut_first_crossing", *at)))
     }
 
-    fn draw(&self, figure: &mut Figure, (area, up): (Area, PlotAxis), theme: &Theme) {
+    fn draw(&self, figure: &mut Figure, area: Area, up: PlotAxis, theme: &Theme) {
         let places = self.marks.iter().map(|mark| mark.0.0);
         let across = PlotAxis::around(places, 0.02, 5, &self.label).or_given(self.range, 5, &self.label);
         let frame = Frame::new(area, across, up);
@@ -147,8 +148,7 @@ impl Panel {
                 frame.line(figure, &points, style::FINE_LINE, theme.soft);
             }
             let size = 0.7 * style::MARKER;
-            let look = (theme.ink, theme);
-            mark_regimes(figure, &frame, part.iter().copied(), (size, MARKER_ROOM * size), look);
+            mark_regimes(figure, &frame, part.iter().copied(), size, MARKER_ROOM * size, theme.ink, theme);
         }
         frame.axes(figure, theme);
         let heading = Text::new(&self.heading, (area.left, area.top - 14.0), style::TICK, theme.ink);

@@ -76,7 +76,7 @@ pub fn exponents_figure(
     let mut order: Vec<usize> = (0..places.len()).collect();
     order.sort_by(|a, b| places[*a].total_cmp(&places[*b]));
     for line in &lines {
-        line.draw(&mut figure, &frame, rows, (places, &order), theme);
+        line.draw(&mut figure, &frame, rows, places, &order, theme);
     }
     for (place, value) in places.iter().zip(first).filter(|(_, value)| !value.is_finite()) {
         let ink = if value.is_nan() { theme.soft } else { theme.ink };
@@ -133,7 +133,8 @@ impl Line {
         figure: &mut Figure,
         frame: &Frame,
         rows: &Table,
-        (places, order): (&[f64], &[usize]),
+        places: &[f64],
+        order: &[usize],
         theme: &Theme,
     ) {
         let values = rows.numbers(&format!("{}_per_s", self.of)).unwrap_or_default();

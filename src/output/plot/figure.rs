@@ -301,8 +301,9 @@ impl Figure {
     }
 
     /// Hatches `area` with lines that go up to the right, in step with every other hatching.
-    pub fn hatch(&mut self, area: Area, (step, width): (f64, f64), ink: Ink) {
+    pub fn hatch(&mut self, area: Area, ink: Ink) {
         let Some(area) = area.common(self.canvas) else { return };
+        let (step, width) = style::HATCH;
         // Lines x + y = k step.
         let first = ((area.left + area.top) / step).ceil() as i64;
         let last = ((area.right + area.bottom) / step).floor() as i64;

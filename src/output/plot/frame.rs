@@ -236,7 +236,7 @@ impl Frame {
         let (from, to) = if left { (at - style::WALL, at) } else { (at, at + style::WALL) };
         if let Some(solid) = Area::new(from, top, to, bottom).common(self.area) {
             figure.rect(solid, theme.wall_fill());
-            figure.hatch(solid, style::HATCH, theme.wall_hatch());
+            figure.hatch(solid, theme.wall_hatch());
         }
         figure.line(&[(at, top), (at, bottom)], style::LINE, theme.wall, self.area);
     }

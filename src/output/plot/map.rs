@@ -77,7 +77,7 @@ impl Mosaic {
                     Cell::Value(value) => figure.rect(area, colour(value)),
                     Cell::Rest => {
                         figure.rect(area, theme.rest);
-                        figure.hatch(area, style::HATCH, theme.rest_hatch);
+                        figure.hatch(area, theme.rest_hatch);
                     }
                     Cell::Missing => {
                         figure.rect(area, theme.paper);
@@ -107,7 +107,7 @@ pub(super) fn map(figure: &mut Figure, picture: &SweepPicture, (x, y): (&str, &s
         (false, _) => canvas - BESIDE,
     };
     let place = if figure.is_narrow() { NARROW_BAR } else { BAR };
-    map.draw(figure, (picture, (x, y)), (top, right, figure.bottom()), place, theme);
+    map.draw(figure, picture, (x, y), (top, right, figure.bottom()), place, theme);
     figure.data = map.drawn(picture, (x, y)).table();
 }
 
@@ -144,7 +144,8 @@ impl Map {
     pub fn draw(
         &self,
         figure: &mut Figure,
-        (picture, (x, y)): (&SweepPicture, (&str, &str)),
+        picture: &SweepPicture,
+        (x, y): (&str, &str),
         (top, right, bottom): (f64, f64, f64),
         place: (f64, f64),
         theme: &Theme,

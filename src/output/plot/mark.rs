@@ -151,7 +151,7 @@ fn entry(figure: &mut Figure, theme: &Theme, sample: Sample, area: Area) {
         Sample::Patch(ink, hatch) => {
             figure.rect(area, ink);
             if let Some(hatch) = hatch {
-                figure.hatch(area, style::HATCH, hatch);
+                figure.hatch(area, hatch);
             }
             figure.outline(area, style::GRID, theme.soft);
         }

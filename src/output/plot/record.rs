@@ -70,7 +70,8 @@ struct RecordPicture {
 /// The picture of what was identified `of` a record, from the two columns that it was identified from in SI,
 /// the second one of this quantity; of impact times alone there is one column.
 pub fn identified_figure(
-    (of, found): (&str, &Identified),
+    of: &str,
+    found: &Identified,
     (across, values): (&[f64], &[f64]),
     quantity: Quantity,
     ranges: Ranges,
@@ -325,7 +326,7 @@ impl RecordPicture {
                 }
             }
         }
-        self.lower_frame(&mut figure, &lower, (of_record, theme));
+        self.lower_frame(&mut figure, &lower, of_record, theme);
         upper.axes(&mut figure, theme);
         lower.axes(&mut figure, theme);
         figure.data = self.data();
@@ -333,7 +334,7 @@ impl RecordPicture {
         figure
     }
 
-    fn lower_frame(&self, figure: &mut Figure, frame: &Frame, (of_record, theme): (Ink, &Theme)) {
+    fn lower_frame(&self, figure: &mut Figure, frame: &Frame, of_record: Ink, theme: &Theme) {
         let area = frame.area;
         match &self.lower {
             Lower::Rest(_, _, points) => {

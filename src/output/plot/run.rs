@@ -18,7 +18,8 @@ use crate::study::{Table, Trace};
 /// The picture of a run from its trace and its summary, with these panels. The trace says which times it
 /// shows; `ranges` may give the axis of the displacement, in mm.
 pub fn run_figure(
-    (trace, summary): (&Trace, &Summary),
+    trace: &Trace,
+    summary: &Summary,
     mechanism: &Mechanism,
     panels: &[Panel],
     ranges: Ranges,
@@ -67,7 +68,7 @@ pub fn run_figure(
     figure.data = seen.drawn();
     let judged = is_judged(summary, trace);
     if let Some(at) = places.account.filter(|_| judged) {
-        account(&mut figure, at, (summary, trace), seen.speed, theme);
+        account(&mut figure, at, summary, trace, seen.speed, theme);
     }
     let about = match judged || summary.outcome != Outcome::Done {
         true => subtitle(summary),
@@ -343,7 +344,8 @@ fn subtitle(summary: &Summary) -> String {
 fn account(
     figure: &mut Figure,
     (left, mut y): Point,
-    (summary, trace): (&Summary, &Trace),
+    summary: &Summary,
+    trace: &Trace,
     (scale, unit): (f64, &str),
     theme: &Theme,
 ) {

@@ -70,7 +70,7 @@ pub enum NoPicture {
 
 /// Whether the column `quantity` of a sweep of this grid can be shown in this way; `table` is that of its
 /// rows, which may be missing.
-pub fn can_show(grid: &Grid, (quantity, view): (&str, &View), table: &Table) -> Result<(), NoPicture> {
+pub fn can_show(grid: &Grid, quantity: &str, view: &View, table: &Table) -> Result<(), NoPicture> {
     if !quantities(table, grid).any(|column| column == quantity) {
         let mut known: Vec<&str> = quantities(table, grid).collect();
         let more = SUMMARY_FIELDS.iter().map(|field| field.name).filter(|name| !known.contains(name));
@@ -106,12 +106,12 @@ const MANY: usize = 3;
 /// has few.
 pub fn sweep_figure(picture: &SweepPicture, caption: &Caption, theme: &Theme) -> Result<Figure, NoPicture> {
     let SweepPicture { rows, grid, scene, until_settled, .. } = *picture;
-    can_show(grid, (picture.quantity, &picture.view), rows)?;
+    can_show(grid, picture.quantity, &picture.view, rows)?;
     let mut figure = Figure::new(theme, caption, least(picture, theme));
     match (grid.columns(), few_lines(rows, grid)) {
         ([x, y], _) if picture.view == View::Surface => surface(&mut figure, picture, (x, y), theme),
         ([x, y], _) if let View::Cuts(cuts) = &picture.view => {
-            map_with_cuts(&mut figure, picture, ((x, y), cuts), theme);
+            map_with_cuts(&mut figure, picture, (x, y), cuts, theme);
         }
         ([x], _) if walked_both(rows) => walked_lines(&mut figure, picture, x, theme),
         ([x, y], _) if walked_both(rows) => walked_maps(&mut figure, picture, (x, y), theme),
@@ -255,7 +255,7 @@ fn lines(figure: &mut Figure, picture: &SweepPicture, x: &str, series: Option<&s
             let size = if joined { 0.8 * style::MARKER } else { (0.55 * room).clamp(3.5, style::MARKER) };
             let apart = if joined { MARKER_ROOM * size } else { 0.0 };
             let edge = if size > 6.0 { theme.ink } else { theme.paper };
-            mark_regimes(figure, &frame, marks, (size, apart), (edge, theme));
+            mark_regimes(figure, &frame, marks, size, apart, edge, theme);
         }
     }
     figure.data = drawn(picture, &[(x, ranges.x)]).table();

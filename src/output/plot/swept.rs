@@ -151,8 +151,10 @@ pub(super) fn mark_regimes<'a>(
     figure: &mut Figure,
     frame: &Frame,
     points: impl Iterator<Item = (Point, &'a str)>,
-    (size, apart): (f64, f64),
-    (edge, theme): (Ink, &Theme),
+    size: f64,
+    apart: f64,
+    edge: Ink,
+    theme: &Theme,
 ) {
     let placed = points.map(|(point, word)| (frame.place(point), word));
     let marks: Vec<(Point, &str)> = placed.filter(|mark| frame.area.contains(mark.0)).collect();

@@ -52,9 +52,9 @@ pub fn threshold_figure(
     let values = rows.numbers("value").unwrap_or_default();
     let quantity = Column { name: least.clone(), values: Values::Numbers(values.to_vec()) };
     match (grid.columns(), few_lines(rows, grid)) {
-        ([x], _) => lines(&mut figure, picture, (x, None), &quantity.label(), theme),
+        ([x], _) => lines(&mut figure, picture, x, None, &quantity.label(), theme),
         ([_, _], Some((x, each))) => {
-            lines(&mut figure, picture, (x, Some(each)), &quantity.label(), theme);
+            lines(&mut figure, picture, x, Some(each), &quantity.label(), theme);
         }
         (columns, _) => {
             let named = rows.clone().with(&least, quantity.values);
@@ -96,7 +96,8 @@ fn about(onset: Onset) -> &'static str {
 fn lines(
     figure: &mut Figure,
     picture: &ThresholdPicture,
-    (x, series): (&str, Option<&str>),
+    x: &str,
+    series: Option<&str>,
     up: &str,
     theme: &Theme,
 ) {

@@ -82,7 +82,7 @@ pub(super) fn walked_lines(figure: &mut Figure, picture: &SweepPicture, x: &str,
             }
             let marks = part.iter().map(|row| (point(row), regimes.get(*row).copied().unwrap_or("")));
             let size = 0.8 * style::MARKER;
-            mark_regimes(figure, &frame, marks, (size, MARKER_ROOM * size), (ink, theme));
+            mark_regimes(figure, &frame, marks, size, MARKER_ROOM * size, ink, theme);
         }
     }
     figure.data = drawn(picture, &[(x, ranges.x)]).table();

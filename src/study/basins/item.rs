@@ -62,7 +62,8 @@ impl Item {
     pub fn pursuit<'a>(
         &self,
         starts: &Starts,
-        (known, regions): (&'a [Capture], &'a [Region]),
+        known: &'a [Capture],
+        regions: &'a [Region],
         most_work: u64,
     ) -> Pursuit<'a> {
         let (x_mm, v) = starts.at(self.row);

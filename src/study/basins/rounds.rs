@@ -322,7 +322,7 @@ fn round(
 ) -> Result<Vec<Item>, Cancelled> {
     let (known, regions) = (rounds.captures.clone(), rounds.regions.clone());
     let most_work = scope.effort.of_one(rounds.remaining);
-    let pursuit = |item: &Item| item.pursuit(starts, (&known, &regions), most_work);
+    let pursuit = |item: &Item| item.pursuit(starts, &known, &regions, most_work);
     let pursuits: Vec<Pursuit> = items.iter().map(pursuit).collect();
     let tick = |pursuit: &Pursuit| {
         if pursuit.repeats_from == 0 && pursuit.releases == 0 {

@@ -117,7 +117,7 @@ impl Stroboscope<'_> {
             return false;
         }
         let phase = self.model.drive_phase(0.0).unwrap_or(0.0);
-        let found = average_exponents(self.model, (state, phase), ExponentOptions::PERIODS, self.cancel);
+        let found = average_exponents(self.model, state, phase, ExponentOptions::PERIODS, self.cancel);
         found.is_ok_and(|exponents| exponents.is_irregular())
     }
 

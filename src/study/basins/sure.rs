@@ -57,8 +57,9 @@ impl Basins {
         for part in items.chunks(LONGEST_ROUND) {
             let Ok(fates) = self.follow_again(&scope, part, &|| (task.tick)()) else { return false };
             for (item, again) in part.iter().zip(fates) {
-                let first = (self.rounds.fates[item.row], Way::default());
-                sure[item.row] = self.is_same(first, again, self.is_alone(answer, item.row));
+                let first = self.rounds.fates[item.row];
+                let alone = self.is_alone(answer, item.row);
+                sure[item.row] = self.is_same(first, Way::default(), again, alone);
             }
         }
         let Ok(releases) = self.sure_releases(&scope, answer, &sure) else { return false };
@@ -98,7 +99,7 @@ impl Basins {
                     let Some((place, before)) = item.after else { continue };
                     tried[place as usize] = true;
                     let first = self.rounds.releases[place as usize].next;
-                    let same = self.is_same((first, before), again, self.is_alone(answer, item.row));
+                    let same = self.is_same(first, before, again, self.is_alone(answer, item.row));
                     known[place as usize] = same;
                     if let Fate::Release(following, way) = first
                         && same
@@ -121,18 +122,18 @@ impl Basins {
         items: &[Item],
         tick: &(dyn Fn() + Sync),
     ) -> Result<Vec<Option<Fate>>, Cancelled> {
-        let known = (&self.rounds.captures[..], &self.rounds.regions[..]);
+        let (known, regions) = (&self.rounds.captures, &self.rounds.regions);
         let most_work = scope.effort.of_one(items.len());
         let endless = |item: &Item| Item { repeats_from: Pursuit::NEVER, ..*item };
         let pursuits: Vec<Pursuit> =
-            items.iter().map(|item| endless(item).pursuit(&self.starts, known, most_work)).collect();
+            items.iter().map(|item| endless(item).pursuit(&self.starts, known, regions, most_work)).collect();
         let all = scope.pursue(&pursuits, &|_| tick())?;
         Ok(items.iter().zip(&all).map(|(item, end)| self.rounds.known_fate(item, end, scope)).collect())
     }
 
     /// Whether a motion does the same again after the way `before`; if its attractor is the only one in its
     /// well, equal crossings suffice.
-    fn is_same(&self, (first, before): (Fate, Way), again: Option<Fate>, alone: bool) -> bool {
+    fn is_same(&self, first: Fate, before: Way, again: Option<Fate>, alone: bool) -> bool {
         match (first, again) {
             (Fate::Kind(kind, way), Some(Fate::Kind(other, now))) if kind == other => {
                 let judged = matches!(self.rounds.kinds[kind as usize], Kind::Judged(..));

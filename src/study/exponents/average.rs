@@ -18,7 +18,8 @@ const TURNING: u32 = 20;
 /// (Flegal and Jones 2010): they cover the scatter of a motion whose correlations decay within a batch.
 pub fn average_exponents(
     model: &Model,
-    (state, phase): ((f64, f64), f64),
+    state: (f64, f64),
+    phase: f64,
     periods: u32,
     cancel: &AtomicBool,
 ) -> Result<Exponents, NoExponents> {

@@ -76,7 +76,7 @@ pub fn damping(times: &[f64], channel: &Channel) -> Result<Identified, Unidentif
         rows: table(&rows, &format!("amplitude{}", channel.quantity.ending())),
         fitted: whole.lines(),
         summary: whole.summary(),
-        remarks: remarks(&rows, &whole, channel, times, (flat, sparse)),
+        remarks: remarks(&rows, &whole, channel, times, flat, sparse),
     })
 }
 
@@ -86,7 +86,8 @@ fn remarks(
     whole: &Decay,
     channel: &Channel,
     times: &[f64],
-    (flat, sparse): (Option<Clipped>, Option<f64>),
+    flat: Option<Clipped>,
+    sparse: Option<f64>,
 ) -> Vec<String> {
     let (ending, quantity) = (channel.quantity.ending().replace("_per_", "/"), channel.quantity.name());
     let unit = ending.trim_start_matches('_');

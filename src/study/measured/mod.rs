@@ -172,7 +172,7 @@ pub fn compare(
         remarks.push(format!("{outside} of {} samples lie outside the run", motion.times.len()));
     }
     let computed: Vec<f64> = samples.iter().map(of).collect();
-    let table = numbers::table(scene, model, motion.channel.quantity, (&times, &measured, &computed));
+    let table = numbers::table(scene, model, motion.channel.quantity, &times, &measured, &computed);
     let rms = (rms, 100.0 * rms / of_measured);
     Ok(Comparison { table, times, measured, computed, shift, rms, remarks })
 }

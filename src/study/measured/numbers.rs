@@ -12,8 +12,14 @@ const AT_STOP: f64 = 0.1;
 pub(super) type Row = (&'static str, &'static str, f64, f64);
 
 /// The table of the numbers, from `times` in s, measured and computed values.
-pub fn table(scene: &Scene, model: &Model, quantity: Quantity, data: (&[f64], &[f64], &[f64])) -> Table {
-    let (_, measured, computed) = data;
+pub fn table(
+    scene: &Scene,
+    model: &Model,
+    quantity: Quantity,
+    times: &[f64],
+    measured: &[f64],
+    computed: &[f64],
+) -> Table {
     let unit = match quantity {
         Quantity::Velocity => "m/s",
         Quantity::Acceleration => "m/s2",
@@ -31,8 +37,8 @@ pub fn table(scene: &Scene, model: &Model, quantity: Quantity, data: (&[f64], &[
         both("maximum", &|values| fold(values, f64::max)),
     ];
     if quantity == Quantity::Displacement {
-        rows.extend(crossing(scene, model, data));
-        rows.extend(rebounds(model, data));
+        rows.extend(crossing(scene, model, times, measured, computed));
+        rows.extend(rebounds(model, times, measured, computed));
     }
     let apart: Vec<f64> = measured.iter().zip(computed).map(|(m, c)| c - m).collect();
     rows.insert(0, ("rms_difference", unit, f64::NAN, f64::NAN));
@@ -68,7 +74,7 @@ fn barrier(model: &Model) -> Option<f64> {
 }
 
 /// The first crossing of the barrier: when, and of an amplitude ramp at which amplitude.
-fn crossing(scene: &Scene, model: &Model, (times, measured, computed): (&[f64], &[f64], &[f64])) -> Vec<Row> {
+fn crossing(scene: &Scene, model: &Model, times: &[f64], measured: &[f64], computed: &[f64]) -> Vec<Row> {
     let Some(barrier) = barrier(model) else { return Vec::new() };
     let back = 0.5 * reach(measured, noise(measured));
     let first = |values: &[f64]| -> f64 {
@@ -101,7 +107,7 @@ struct Rebound {
 
 /// Heights of the first rebounds from each stop after a swing from the other side of the barrier, of which
 /// each measured one is compared with the computed one nearest in time.
-fn rebounds(model: &Model, (times, measured, computed): (&[f64], &[f64], &[f64])) -> Vec<Row> {
+fn rebounds(model: &Model, times: &[f64], measured: &[f64], computed: &[f64]) -> Vec<Row> {
     let Some(stops) = model.stops() else { return Vec::new() };
     let sides = [stops.left.map(|stop| stop.x), stops.right.map(|stop| stop.x)];
     let room = match sides {

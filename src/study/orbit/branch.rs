@@ -85,7 +85,8 @@ pub fn branch(
     family: &Family,
     field: &str,
     (from, to): (f64, f64),
-    (phase, period): (f64, Option<u32>),
+    phase: f64,
+    period: Option<u32>,
     task: &Task,
 ) -> Result<Branch, NoOrbit> {
     let model = family.model(from).map_err(|_| NoOrbit::NotConverged)?;

@@ -233,7 +233,8 @@ impl Corrector<'_> {
     /// the other is no scene. `by_state` are its derivatives by the state.
     fn by_field(
         &self,
-        (state, passage): ((f64, f64), &Passage),
+        state: (f64, f64),
+        passage: &Passage,
         by_state: &Jacobian,
         value: f64,
     ) -> Option<[f64; 2]> {
@@ -307,7 +308,7 @@ impl Corrector<'_> {
             return None;
         }
         let by_state = if self.mirrored { jacobian.mirrored() } else { jacobian };
-        let by_field = self.by_field((state, &passage), &by_state, value)?;
+        let by_field = self.by_field(state, &passage, &by_state, value)?;
         let determinant = passage.determinant.unwrap_or_else(|| by_state.determinant());
         let (passage, jacobian) = match self.mirrored {
             true => (passage.with_mirror_image(self.flight() * map.period()), by_state.after(&by_state)),

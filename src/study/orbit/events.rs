@@ -66,12 +66,14 @@ fn characteristic(point: &Point, at: f64) -> f64 {
 }
 
 /// The events between two points that follow each other, with motions between them that touch the stops as
-/// they do; in order, each with its point. Of the points are given the directions of the branch. None where
-/// something changes between them whose place was not found.
+/// they do; in order, each with its point. `along` and `onward` are the directions of the
+/// branch at them. None where something changes between them whose place was not found.
 pub(super) fn between(
     corrector: &Corrector,
-    (from, along): (&Point, &Vector3<f64>),
-    (to, onward): (&Point, &Vector3<f64>),
+    from: &Point,
+    along: &Vector3<f64>,
+    to: &Point,
+    onward: &Vector3<f64>,
 ) -> Option<Vec<(BranchEvent, Point)>> {
     let passes = |at: f64| characteristic(from, at) * characteristic(to, at) < 0.0;
     let mut found = Vec::new();

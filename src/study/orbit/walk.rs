@@ -235,7 +235,7 @@ impl<'a> Walk<'a> {
     /// The stretch to a point up to which the map is smooth.
     fn smooth(&self, next: &Directed, is_last: bool) -> Option<Stretch> {
         let (point, along) = &self.at;
-        let events = between(&self.corrector, (point, along), (&next.0, &next.1))?;
+        let events = between(&self.corrector, point, along, &next.0, &next.1)?;
         let events = events.into_iter().map(|(event, point)| (event, point, None)).collect();
         Some(Stretch { events, next: Some(next.clone()), is_last })
     }
@@ -316,7 +316,7 @@ impl<'a> Walk<'a> {
             if differ(&near.0, &far.0) {
                 continue;
             }
-            if let Some(events) = between(&self.corrector, (&near.0, &near.1), (&far.0, &far.1)) {
+            if let Some(events) = between(&self.corrector, &near.0, &near.1, &far.0, &far.1) {
                 let events = events.into_iter().map(|(event, point)| (event, point, None)).collect();
                 return (events, Some(far));
             }

@@ -71,7 +71,7 @@ impl Told {
             until_settled: None,
         };
         let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
-        let found = threshold(&document.scene, &mechanism(&document), &document.files, (&scan, onset), &task);
+        let found = threshold(&document.scene, &mechanism(&document), &document.files, &scan, onset, &task);
         found.unwrap().value.unwrap()
     }
 

@@ -223,7 +223,8 @@ pub fn duffing_cascade(text: &mut Text) {
     let scan =
         Scan { field: "excitation.amplitude_g".to_owned(), values, resolution: 1e-6, until_settled: None };
     let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
-    let asked = (&scan, Onset::Crossing);
-    let found = threshold(&document.scene, &mechanism(&document), &document.files, asked, &task).unwrap();
+    let found =
+        threshold(&document.scene, &mechanism(&document), &document.files, &scan, Onset::Crossing, &task)
+            .unwrap();
     text.says(&format!("From {:.4} g on it crosses", found.value.unwrap()));
 }

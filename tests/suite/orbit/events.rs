@@ -136,7 +136,7 @@ impl Drawn {
         let family = Family::new(&document.scene, &document.files, &mechanism, AMPLITUDE);
         let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
         let range = self.range();
-        let Ok(found) = branch(&family, AMPLITUDE, range, (0.0, Some(1)), &task) else {
+        let Ok(found) = branch(&family, AMPLITUDE, range, 0.0, Some(1), &task) else {
             prop_assert!(!self.upward, "the swing without impacts is not found");
             return Ok(false);
         };
@@ -320,7 +320,7 @@ impl Swing {
         let family = Family::new(&document.scene, &document.files, &mechanism, AMPLITUDE);
         let task = Task { tick: &|| (), cancel: &cancel };
         let range = (self.amplitude, 2.0 * self.amplitude);
-        let found = branch(&family, AMPLITUDE, range, (0.0, Some(1)), &task);
+        let found = branch(&family, AMPLITUDE, range, 0.0, Some(1), &task);
         let found = found.map_err(|error| TestCaseError::fail(error.to_string()))?;
         holds(&found, &family.model(range.0).unwrap(), range)?;
         turns_at_the_stop(&document.scene, &found)?;
@@ -370,7 +370,7 @@ fn events_of_any_scene_hold_their_equations() {
             cancel.store(before >= MOST_ROWS, Ordering::Relaxed);
         };
         let task = Task { tick: &tick, cancel: &cancel };
-        let Ok(found) = branch(&family, AMPLITUDE, range, (0.0, None), &task) else { return Ok(false) };
+        let Ok(found) = branch(&family, AMPLITUDE, range, 0.0, None, &task) else { return Ok(false) };
         holds(&found, &family.model(range.0).unwrap(), range)?;
         turns_at_the_stop(&scene, &found)?;
         events.set(events.get() + found.events.iter().flatten().count());
@@ -405,7 +405,7 @@ fn a_symmetric_motion_grazes_both_stops_once() {
     let family = Family::new(&scene.scene, &scene.files, &mechanism, "stops.travel_limit_mm");
     let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
     for range in [(7.5, 8.0), (8.0, 7.0), (8.0, 7.8)] {
-        let found = branch(&family, "stops.travel_limit_mm", range, (0.25, None), &task).unwrap();
+        let found = branch(&family, "stops.travel_limit_mm", range, 0.25, None, &task).unwrap();
         holds(&found, &family.model(range.0).unwrap(), range).unwrap();
         let place = |i: &usize| found.events[*i] == Some(BranchEvent::Grazing);
         let grazing = (0..found.values.len()).filter(place);

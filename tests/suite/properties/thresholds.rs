@@ -100,7 +100,7 @@ fn scan(field: &str, (low, high): (f64, f64), steps: u32, until_settled: Option<
 
 fn found(scene: &Scene, scan: &Scan, onset: Onset) -> Found {
     let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
-    threshold(scene, &mechanism(scene), &Files::default(), (scan, onset), &task).unwrap()
+    threshold(scene, &mechanism(scene), &Files::default(), scan, onset, &task).unwrap()
 }
 
 /// The least mass, and the least amplitude, that a push moves off the stop on which it rests are force over
@@ -271,7 +271,7 @@ fn two_searches_of_a_harvester_without_stops_bracket_one_threshold() {
     let task = Task { tick: &|| (), cancel: &AtomicBool::new(false) };
     let alone = thresholds(&scene, &mechanism, &task).unwrap().crossing;
     let scan = scan(AMPLITUDE, (1.3, 1.44), 7, None);
-    let scanned = threshold(&scene, &mechanism, &files, (&scan, Onset::Crossing), &task).unwrap();
+    let scanned = threshold(&scene, &mechanism, &files, &scan, Onset::Crossing, &task).unwrap();
     let ends = |found: Found| (found.low.unwrap_or(0.0), found.high.unwrap_or(f64::INFINITY));
     let ((low, high), (other_low, other_high)) = (ends(alone), ends(scanned));
     assert!(low > 1.0 && low <= other_high && other_low <= high, "{alone:?} {scanned:?}");

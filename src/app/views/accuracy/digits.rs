@@ -45,7 +45,7 @@ pub fn digits_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         }
         let rest = ui.available_rect_before_wrap();
         if rest.height() > PICTURE && rest.width() > 200.0 {
-            picture_ui(ui, &style, rest, (&known, tolerance), stepped.as_ref());
+            picture_ui(ui, &style, rest, &known, tolerance, stepped.as_ref());
         }
     });
 }
@@ -137,7 +137,8 @@ fn picture_ui(
     ui: &mut Ui,
     style: &Style,
     area: Rect,
-    (known, tolerance): (&Tolerances, f64),
+    known: &Tolerances,
+    tolerance: f64,
     stepped: Option<&StepSize>,
 ) {
     let smallest = MIN_ERROR * known.travel.max(f64::MIN_POSITIVE);

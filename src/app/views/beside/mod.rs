@@ -126,8 +126,8 @@ impl Attachments {
         let has_magnets = self.has_magnets();
         let pen = Pen { ui, painter, style, places, named, is_free_on_the_right, has_magnets };
         pen.spring(self.stiffness, &mut shapes);
-        if let Some(magnets) = self.magnets {
-            pen.magnets(magnets, self.pairs, &mut shapes);
+        if let Some((strength, gap)) = self.magnets {
+            pen.magnets(strength, gap, self.pairs, &mut shapes);
         }
         if self.transducer != Transducer::None {
             pen.transducer(&self.transducer, &mut shapes);
@@ -201,7 +201,7 @@ impl Pen<'_> {
         self.explain(place, "spring", &words);
     }
 
-    fn magnets(&self, (strength, gap): (f64, f64), pairs: usize, shapes: &mut Vec<Shape>) {
+    fn magnets(&self, strength: f64, gap: f64, pairs: usize, shapes: &mut Vec<Shape>) {
         let Places { rect, bottom, body, zero, ref below } = *self.places;
         let room = bottom - body.bottom();
         let pole = POLE.min((room - 6.0) / 4.0);

@@ -36,7 +36,7 @@ impl Pen<'_> {
     pub(super) fn transducer(&self, transducer: &Transducer, shapes: &mut Vec<Shape>) {
         let Places { rect, bottom, body, zero, ref below } = *self.places;
         let height = (bottom - body.bottom() - 12.0).clamp(8.0, 24.0);
-        let (name, part, coupled, load, words) = match *transducer {
+        let (name, part, coupled, (load, unit), words) = match *transducer {
             Transducer::None => return,
             Transducer::Electromagnetic { coupling_v_s_per_m, load_ohm, .. } => {
                 let corner = pos2(zero + self.reach_at(WOUND), bottom - 1.0 - WOUND);
@@ -65,7 +65,7 @@ impl Pen<'_> {
         let none = if coupled == 0.0 { " Its coupling is 0: it does nothing." } else { "" };
         self.explain(part, "transducer", &format!("{words}{none}"));
         let right = rect.right() - if below.is_some() { SCALE_ROOM } else { 8.0 };
-        self.load(part, load, (name, right), shapes);
+        self.load(part, load, unit, name, right, shapes);
     }
 
     /// Distance from x = 0 that the flexures below the mass reach at a height above the clamp, with the mass
@@ -112,13 +112,7 @@ impl Pen<'_> {
     }
 
     /// Draws the load and its two wires: a resistor, a wire for a short circuit, a gap for an open circuit.
-    fn load(
-        &self,
-        part: Rect,
-        (value, unit): (f64, &str),
-        (name, right): (&str, f32),
-        shapes: &mut Vec<Shape>,
-    ) {
+    fn load(&self, part: Rect, value: f64, unit: &str, name: &str, right: f32, shapes: &mut Vec<Shape>) {
         let y = WIRES.map(|height| self.places.bottom - height);
         let begin = (part.right() + 10.0).max(self.places.zero + self.reach_at(LOAD_TOP));
         let end = begin + LOAD + 9.0;

@@ -17,7 +17,8 @@ const SIZE: f32 = 7.0;
 pub fn draw(
     painter: &Painter,
     frame: &Coordinates,
-    (map, place): (&Map, [Option<f64>; 2]),
+    map: &Map,
+    place: [Option<f64>; 2],
     limit: Option<f64>,
     style: &Style,
 ) {

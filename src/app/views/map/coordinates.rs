@@ -128,17 +128,17 @@ impl Coordinates {
             number(at - vec2(TICK + 3.0, 0.0), Align2::RIGHT_CENTER, text);
         }
         let (beside, room) = (pos2(self.rect.left() - LEFT + 10.0, self.rect.center().y), self.rect.height());
-        upright(painter, style, (beside, room), &self.y.label);
+        upright(painter, style, beside, room, &self.y.label);
         if let (Some([across, _]), Some(quantity)) = (self.strips, quantity) {
             let beside = pos2(across.left() - LEFT + 10.0, across.center().y);
-            upright(painter, style, (beside, across.height()), quantity);
+            upright(painter, style, beside, across.height(), quantity);
         }
     }
 }
 
 /// Draws text that reads upwards, centred at a point. Where `room` is too short it is written small, or
 /// its unit alone.
-pub fn upright(painter: &Painter, style: &Style, (at, room): (Pos2, f32), text: &str) {
+pub fn upright(painter: &Painter, style: &Style, at: Pos2, room: f32, text: &str) {
     let unit = text.rsplit_once('(').map_or("", |(_, unit)| unit.trim_end_matches(')'));
     let written = |text: &str, font: FontId| painter.layout_no_wrap(text.to_owned(), font, style.ink());
     let all = [written(text, style.body()), written(text, style.small()), written(unit, style.small())];

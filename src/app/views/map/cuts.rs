@@ -41,7 +41,8 @@ struct Strip<'a> {
 pub fn draw(
     painter: &Painter,
     frame: &Coordinates,
-    (map, scale): (&Map, &ColourScale),
+    map: &Map,
+    scale: &ColourScale,
     (column, row): (usize, usize),
     style: &Style,
 ) {

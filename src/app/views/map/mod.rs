@@ -69,7 +69,7 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let painter = ui.painter().with_clip_rect(area);
     let about = sweep_about(map.grid(), &map.question.scene, &[], None);
     let is_surface = look.surface && scale.bar.is_some();
-    let legend = tools::legend(&painter, area, &picture, map, &style, (&about, look));
+    let legend = tools::legend(&painter, area, &picture, map, &style, &about, look);
     let area = area.with_min_y(legend);
     let place = context.session.place_on_map(&map.question);
     let scene = nearest_cell(map, place);
@@ -77,7 +77,8 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         let spoken = ui.interact(rect, ui.scope_id().with(("cells", name)), Sense::hover());
         spoken.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, name));
     };
-    let pointer_state = (&mut context.memory.map_pointer, context.session.map.is_enlarged());
+    let pointer_state = &mut context.memory.map_pointer;
+    let is_enlarged = context.session.map.is_enlarged();
     let wanted = if is_surface {
         let at = (area, painter.pixels_per_point());
         surface = surface.filter(|surface| surface.is_at(at));
@@ -87,9 +88,9 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         spoken("map as a surface", drawn.rect());
         drawn.draw(&painter, &style);
         if look.cuts {
-            drawn.cuts(&painter, (map, &scale), scene);
+            drawn.cuts(&painter, map, &scale, scene);
         }
-        veil(&painter, drawn.rect(), &style, (current, context.session.map.problem().is_some()));
+        veil(&painter, drawn.rect(), &style, current, context.session.map.problem().is_some());
         let ball = drawn.place_of(map, &scale, scene);
         if let Some(ball) = ball.filter(|_| is_inside(map, place)) {
             drawn.ball(&painter, &style, ball);
@@ -99,10 +100,10 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             let at = drawn.place_of(map, &scale, (column, row)).map_or(Pos2::ZERO, |ends| ends[0]);
             Shape::circle_stroke(at, 5.0, style.cell_stroke())
         };
-        hover(&response, &painter, (map, &scale), &cell_at, &outline);
+        hover(&response, &painter, map, &scale, &cell_at, &outline);
         let at = ball.map_or(drawn.rect().left_top(), |ends| ends[0]);
         let places = Targets { cell_at: &cell_at, frame: None, rect: area, scene: (at, scene) };
-        pointer::action_ui(ui, &response, map, pointer_state, (&style, &places))
+        pointer::action_ui(ui, &response, map, pointer_state, is_enlarged, &style, &places)
     } else {
         let room = area.width() > ROOM_FOR_CUTS.0 && area.height() > ROOM_FOR_CUTS.1;
         let frame = Coordinates::new(area, map, scale.bar.is_some(), look.cuts && room);
@@ -111,27 +112,27 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             spoken(name, *rect);
         }
         picture.draw(&painter, &frame, map, &style);
-        cuts::draw(&painter, &frame, (map, &scale), scene, &style);
+        cuts::draw(&painter, &frame, map, &scale, scene, &style);
         trail::draw(&painter, &frame, &style, &trail);
-        best::draw(&painter, &frame, (map, place), context.session.best.limit_mm(), &style);
+        best::draw(&painter, &frame, map, place, context.session.best.limit_mm(), &style);
         frame.axes(&painter, &style, scale.bar.as_ref().map(|bar| bar.label.as_str()));
         if let Some(rect) = frame.bar {
             bar(&painter, rect, &scale, &style);
         }
-        veil(&painter, frame.rect, &style, (current, context.session.map.problem().is_some()));
+        veil(&painter, frame.rect, &style, current, context.session.map.problem().is_some());
         let at = marker(&painter, &frame, &style, place);
         let cell_at = |at: Pos2| cell_at(&frame, map, scene, at);
         let outline = |(column, row)| outline(&frame, map, column, row, &style);
-        hover(&response, &painter, (map, &scale), &cell_at, &outline);
+        hover(&response, &painter, map, &scale, &cell_at, &outline);
         let places = Targets { cell_at: &cell_at, frame: Some(&frame), rect: frame.rect, scene: (at, scene) };
-        pointer::action_ui(ui, &response, map, pointer_state, (&style, &places))
+        pointer::action_ui(ui, &response, map, pointer_state, is_enlarged, &style, &places)
     };
     ui.data_mut(|data| data.insert_temp(id, Some(Drawings { picture, surface })));
     pointer::perform(context, wanted);
 }
 
 /// Draws a veil over a map that is not that of the scene.
-fn veil(painter: &egui::Painter, rect: Rect, style: &Style, (current, has_problem): (bool, bool)) {
+fn veil(painter: &egui::Painter, rect: Rect, style: &Style, current: bool, has_problem: bool) {
     if current {
         return;
     }
@@ -145,7 +146,8 @@ fn veil(painter: &egui::Painter, rect: Rect, style: &Style, (current, has_proble
 fn hover(
     response: &Response,
     painter: &egui::Painter,
-    (map, scale): (&Map, &ColourScale),
+    map: &Map,
+    scale: &ColourScale,
     cell_at: &dyn Fn(Pos2) -> Option<(usize, usize)>,
     outline: &dyn Fn((usize, usize)) -> Shape,
 ) {

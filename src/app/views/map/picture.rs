@@ -136,9 +136,9 @@ impl Picture {
         let mut shapes = Vec::new();
         let rest = |i: usize| self.resting[i];
         let missing = |i: usize| self.looks[i] == Look::Missing;
-        self.hatch(&mut shapes, frame.rect, rest, (1.0, style.hatch_stroke()));
+        self.hatch(&mut shapes, frame.rect, rest, 1.0, style.hatch_stroke());
         for slope in [1.0, -1.0] {
-            self.hatch(&mut shapes, frame.rect, missing, (slope, style.missing_stroke()));
+            self.hatch(&mut shapes, frame.rect, missing, slope, style.missing_stroke());
         }
         self.symbols(&mut shapes, frame.rect, style);
         self.dots(&mut shapes, frame.rect, style);
@@ -173,7 +173,8 @@ impl Picture {
         shapes: &mut Vec<Shape>,
         rect: Rect,
         wanted: impl Fn(usize) -> bool,
-        (slope, stroke): (f32, Stroke),
+        slope: f32,
+        stroke: Stroke,
     ) {
         if !(0..self.looks.len()).any(&wanted) {
             return;
@@ -273,7 +274,7 @@ pub fn bar(painter: &Painter, rect: Rect, scale: &ColourScale, style: &Style) {
         painter.line_segment([at, at + vec2(4.0, 0.0)], stroke);
         painter.text(at + vec2(7.0, 0.0), Align2::LEFT_CENTER, text, style.small(), style.ink());
     }
-    upright(painter, style, (pos2(rect.right() + 44.0, rect.center().y), rect.height()), &axis.label);
+    upright(painter, style, pos2(rect.right() + 44.0, rect.center().y), rect.height(), &axis.label);
 }
 
 /// The mark of a motion that may be a transient.

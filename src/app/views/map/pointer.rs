@@ -46,13 +46,15 @@ pub fn action_ui(
     ui: &Ui,
     response: &Response,
     map: &Map,
-    (state, is_enlarged): (&mut PointerState, bool),
-    (style, targets): (&Style, &Targets<'_>),
+    state: &mut PointerState,
+    is_enlarged: bool,
+    style: &Style,
+    targets: &Targets<'_>,
 ) -> Option<MapAction> {
     // a double click has a meaning only on an enlarged map
     let second = ui.options(|options| options.input_options.max_double_click_delay);
     let wait = if is_enlarged { second } else { 0.0 };
-    if let Some(action) = cross_hair_ui(ui, map, (style, targets)) {
+    if let Some(action) = cross_hair_ui(ui, map, style, targets) {
         return Some(action);
     }
     let time = ui.input(|input| input.time);
@@ -101,7 +103,7 @@ fn axes_of(frame: &Coordinates, map: &Map, dragged: Rect) -> [SweepAxis; 2] {
 }
 
 /// Handles the cross-hair: dragging, moving by the arrow keys, and enlarging around it.
-fn cross_hair_ui(ui: &Ui, map: &Map, (style, targets): (&Style, &Targets<'_>)) -> Option<MapAction> {
+fn cross_hair_ui(ui: &Ui, map: &Map, style: &Style, targets: &Targets<'_>) -> Option<MapAction> {
     let (at, (column, row)) = targets.scene;
     let grab = Rect::from_center_size(at, Vec2::splat(2.0 * GRAB));
     let id = ui.scope_id().with("cross-hair");

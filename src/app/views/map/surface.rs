@@ -150,7 +150,7 @@ impl Surface {
             [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)].map(|at| self.screen(at));
         let high = self.screen((0.0, 1.0, 1.0));
         let beside = pos2((left.x - 17.0 - widest).max(self.place.0.left() + 8.0), 0.5 * (left.y + high.y));
-        upright(painter, style, (beside, left.y - high.y), &z.label);
+        upright(painter, style, beside, left.y - high.y, &z.label);
         let bottom = self.place.0.bottom() - 3.0;
         for (label, (from, to)) in [(&x.label, (near, right)), (&y.label, (left, near))] {
             let at = pos2(0.5 * (from.x + to.x), bottom);
@@ -172,7 +172,7 @@ impl Surface {
     }
 
     /// Draws the lines of the cuts along a column and along a row.
-    pub fn cuts(&self, painter: &Painter, (map, scale): (&Map, &ColourScale), (column, row): (usize, usize)) {
+    pub fn cuts(&self, painter: &Painter, map: &Map, scale: &ColourScale, (column, row): (usize, usize)) {
         let [columns, rows] = map.size();
         let lines: [Vec<(usize, usize)>; 2] = [
             (0..rows).map(|row| (column, row)).collect(),

@@ -199,7 +199,8 @@ pub fn legend(
     picture: &Picture,
     map: &Map,
     style: &Style,
-    (about, look): (&str, MapLook),
+    about: &str,
+    look: MapLook,
 ) -> f32 {
     const ROW: f32 = 18.0;
     const SAMPLE: f32 = 24.0;
