@@ -4,11 +4,12 @@
 //! under the pointer, so that they can be read below each other. Their vertical ranges come from the scene
 //! and from [`Ranges`](super::ranges::Ranges), not from what is visible.
 
-use eframe::egui::{self, Align2, Ui, vec2};
-use egui_plot::{HLine, Line, LineStyle, PlotBounds, PlotPoint, PlotPoints, Span, VLine};
+use eframe::egui::{Align2, Stroke, Ui, vec2};
+use egui_plot::{HLine, Line, LineStyle, PlotBounds, PlotPoint, PlotPoints, PlotUi, Span, VLine};
 
 use crate::app::session::Session;
 use crate::app::session::pins::Pin;
+use crate::app::ui::style::Style;
 use crate::app::words::numbers::decimals_for;
 use crate::dynamics::{EventKind, Model, Phase, STANDARD_GRAVITY, Sample};
 use crate::scene::Quantity;
@@ -49,6 +50,9 @@ const MAX_GHOST_POINTS: usize = 4000;
 
 /// Largest number of flights drawn as separate lines; with more, the tips of one line are not visible.
 const MAX_FLIGHTS: usize = 400;
+
+/// The ends of a line over time, in s and mm.
+type StopLine = [[f64; 2]; 2];
 
 /// A quantity drawn over time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -127,6 +131,14 @@ impl TraceQuantity {
         }
     }
 
+    fn stroke(self, style: &Style) -> Stroke {
+        match self {
+            Self::Displacement | Self::Velocity => style.motion_stroke(),
+            Self::BaseAcceleration | Self::Power => style.base_stroke(),
+            Self::LoadPower { .. } => style.power_stroke(),
+        }
+    }
+
     /// The ends of the vertical axis, in its unit.
     fn ends(self, context: &mut ViewContext<'_>) -> (f64, f64) {
         let both = |end: f64| (-end, end);
@@ -150,74 +162,30 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
     let ends = quantity.ends(context);
     let ends = with_room(context.session, quantity.measured(), ends);
     let (low, high) = context.memory.axes.ends(Axis::Up(quantity.view()), ends);
-    let (now, model) = (context.session.player.time(), context.session.shown());
-    context.memory.timeline.default_window = stretch(model);
-    let window = context.memory.timeline.window.unwrap_or(context.memory.timeline.default_window);
-    let from = (now - PRESENT * window).max(-0.02 * window);
-    let (from, to) = context.memory.axes.ends(Axis::Time, (from, from + window));
+    let now = context.session.player.time();
+    let (from, to) = time_ends(context, now);
     let (window, end) = (to - from, now.min(to));
     let watch = context.session.player.watch();
-    let shown = watch.samples();
-    let first = shown.partition_point(|sample| sample.t < from).saturating_sub(1);
-    let last = shown.partition_point(|sample| sample.t <= end);
-    let state = if now <= to { context.session.player.state() } else { watch.state_at(end) };
-    let stride = ((last.max(first) - first) / MAX_POINTS).max(1);
-    let samples: Vec<Sample> =
-        shown.range(first..last.max(first)).step_by(stride).copied().chain([state]).collect();
+    let samples = shown_samples(context.session, from, to);
     let is_displacement = quantity == TraceQuantity::Displacement;
     let paths =
         paths(&samples, is_displacement, |sample| PlotPoint::new(sample.t, quantity.value_in(watch, sample)));
-    let has_ghosts = matches!(quantity, TraceQuantity::Displacement | TraceQuantity::Velocity);
-    let ghosts: Vec<(usize, Vec<PlotPoint>)> = match has_ghosts {
-        true => ghost_paths(context.session, (from, end), |watch, sample| quantity.value_in(watch, sample)),
-        false => Vec::new(),
-    };
+    let ghosts = ghost_paths(context.session, quantity, from, end);
     let measured = MeasuredTrace::of(context.session, quantity.measured(), (from, to));
     let rests = rest_spans(&samples);
-    let impacts: Vec<f64> = watch
-        .events()
-        .iter()
-        .skip(watch.events().partition_point(|event| event.t < from))
-        .take_while(|event| event.t <= end)
-        .filter(|event| matches!(event.kind, EventKind::Impact | EventKind::Contact))
-        .map(|event| event.t)
-        .collect();
+    let impacts = impact_times(watch, from, end);
     let stops = if is_displacement { stop_lines(watch, from, to) } else { Vec::new() };
     let pass = ui.ctx().cumulative_pass_nr();
     let cursor = context.memory.timeline.cursor.filter(|cursor| cursor.1 + 1 >= pass).map(|cursor| cursor.0);
     let tick = 0.035 * (high - low);
-    let stroke = match quantity {
-        TraceQuantity::Displacement | TraceQuantity::Velocity => style.motion_stroke(),
-        TraceQuantity::BaseAcceleration | TraceQuantity::Power => style.base_stroke(),
-        TraceQuantity::LoadPower { .. } => style.power_stroke(),
-    };
     let rows = f64::from((ui.available_height() / 40.0).clamp(2.0, 6.0));
     let columns = f64::from((ui.available_width() / 80.0).clamp(2.0, 8.0));
     let area = ui.max_rect();
     ui.painter().rect_filled(area, 0.0, style.ground());
-    let mut entries = Vec::new();
-    if !rests.is_empty() {
-        entries.push((Symbol::Shade(style.rest_shade()), "at rest on a stop"));
-    }
-    if !impacts.is_empty() {
-        entries.push((Symbol::Ticks(style.impact_stroke()), "impacts"));
-    }
-    if !stops.is_empty() {
-        entries.push((Symbol::Dashed(style.stop_stroke()), "stops"));
-    }
-    for (place, _) in &ghosts {
-        entries.push((Symbol::Dashes(style.ghost_motion_stroke(), *place), PINNED[*place]));
-    }
-    entries.extend(measured.as_ref().map(|trace| trace.entry(&style)));
-    let axis = format!("{} ({})", quantity.name(), quantity.unit());
+    let entries = entries(&style, &rests, &impacts, &stops, &ghosts, measured.as_ref());
+    let (axis, time_label) = axis_names(ui, quantity, &style);
     // a number at the very end of the axis would be cut off
     let edge = 0.02 * (high - low);
-    let is_low = ui.available_height() < LOW;
-    // a name that is longer than its axis would run into the legend
-    let name = ui.painter().layout_no_wrap(axis.clone(), style.small(), style.ink()).size().x;
-    let is_long = name > ui.available_height() - LEGEND - BELOW;
-    let axis = if is_low || is_long { quantity.unit().to_owned() } else { axis };
-    let time_label = if is_low { "" } else { "time (s)" };
     let digits = 1 + decimals_for(high - low);
     let (read, unit) = (|t: f64| quantity.value_in(watch, &watch.state_at(t)), quantity.unit());
     let at_each = |t: f64| format!("{:.digits$} {unit}", read(t));
@@ -240,14 +208,7 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
             for mark in marks(low, high, rows) {
                 plot.hline(HLine::new("", mark.value).stroke(style.grid_stroke()));
             }
-            for (begin, end) in rests {
-                let span = Span::new("", begin..=end).fill(style.rest_shade());
-                plot.span(span.border(egui::Stroke::NONE));
-            }
-            for ends in stops {
-                let line = Line::new("stop", ends.to_vec()).stroke(style.stop_stroke());
-                plot.line(line.style(LineStyle::dashed_loose()));
-            }
+            draw_rests_and_stops(plot, rests, stops, &style);
             plot.vline(VLine::new("now", now).stroke(style.ghost_stroke()));
             // the ticks stand at the edge, clear of the motion
             for t in thinned(&impacts, window) {
@@ -264,7 +225,8 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
                 plot.line(line.allow_band(!is_displacement));
             }
             for path in paths {
-                let line = Line::new(quantity.name(), PlotPoints::Owned(path)).stroke(stroke);
+                let line =
+                    Line::new(quantity.name(), PlotPoints::Owned(path)).stroke(quantity.stroke(&style));
                 // a band reaches beyond the ends of a steep line
                 plot.line(line.allow_band(!is_displacement));
             }
@@ -291,19 +253,100 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
     legend(&ui, &style, area, right, &entries);
 }
 
-/// Paths of the pinned motions since they were pinned, with the indices of the pins.
+/// The ends of the time axis in s, which shows the present near its end.
+fn time_ends(context: &mut ViewContext<'_>, now: f64) -> (f64, f64) {
+    let timeline = &mut context.memory.timeline;
+    timeline.default_window = stretch(context.session.shown());
+    let window = timeline.window.unwrap_or(timeline.default_window);
+    let from = (now - PRESENT * window).max(-0.02 * window);
+    context.memory.axes.ends(Axis::Time, (from, from + window))
+}
+
+/// The entries of the legend for what the trace shows besides the motion.
+fn entries(
+    style: &Style,
+    rests: &[(f64, f64)],
+    impacts: &[f64],
+    stops: &[StopLine],
+    ghosts: &[(usize, Vec<PlotPoint>)],
+    measured: Option<&MeasuredTrace>,
+) -> Vec<(Symbol, &'static str)> {
+    let seen = [
+        (!rests.is_empty(), Symbol::Shade(style.rest_shade()), "at rest on a stop"),
+        (!impacts.is_empty(), Symbol::Ticks(style.impact_stroke()), "impacts"),
+        (!stops.is_empty(), Symbol::Dashed(style.stop_stroke()), "stops"),
+    ];
+    let seen = seen.into_iter().filter(|entry| entry.0);
+    let mut entries: Vec<_> = seen.map(|(_, symbol, name)| (symbol, name)).collect();
+    let pinned = |place: usize| (Symbol::Dashes(style.ghost_motion_stroke(), place), PINNED[place]);
+    entries.extend(ghosts.iter().map(|ghost| pinned(ghost.0)));
+    entries.extend(measured.map(|trace| trace.entry(style)));
+    entries
+}
+
+fn draw_rests_and_stops(plot: &mut PlotUi<'_>, rests: Vec<(f64, f64)>, stops: Vec<StopLine>, style: &Style) {
+    for (begin, end) in rests {
+        let span = Span::new("", begin..=end).fill(style.rest_shade());
+        plot.span(span.border(Stroke::NONE));
+    }
+    for ends in stops {
+        let line = Line::new("stop", ends.to_vec()).stroke(style.stop_stroke());
+        plot.line(line.style(LineStyle::dashed_loose()));
+    }
+}
+
+/// The states from `from` to `to` in s, thinned, up to the present or to what is known at `to`.
+fn shown_samples(session: &Session, from: f64, to: f64) -> Vec<Sample> {
+    let (watch, now) = (session.player.watch(), session.player.time());
+    let (samples, end) = (watch.samples(), now.min(to));
+    let first = samples.partition_point(|sample| sample.t < from).saturating_sub(1);
+    let last = samples.partition_point(|sample| sample.t <= end).max(first);
+    let state = if now <= to { session.player.state() } else { watch.state_at(end) };
+    let stride = ((last - first) / MAX_POINTS).max(1);
+    samples.range(first..last).step_by(stride).copied().chain([state]).collect()
+}
+
+/// Times of the impacts from `from` to `to` in s.
+fn impact_times(watch: &Watch, from: f64, to: f64) -> Vec<f64> {
+    watch
+        .events()
+        .iter()
+        .skip(watch.events().partition_point(|event| event.t < from))
+        .take_while(|event| event.t <= to)
+        .filter(|event| matches!(event.kind, EventKind::Impact | EventKind::Contact))
+        .map(|event| event.t)
+        .collect()
+}
+
+/// Names of the vertical and of the time axis, as short as the height left in `ui` demands.
+fn axis_names(ui: &Ui, quantity: TraceQuantity, style: &Style) -> (String, &'static str) {
+    let axis = format!("{} ({})", quantity.name(), quantity.unit());
+    let is_low = ui.available_height() < LOW;
+    // a name that is longer than its axis would run into the legend
+    let name = ui.painter().layout_no_wrap(axis.clone(), style.small(), style.ink()).size().x;
+    let is_long = name > ui.available_height() - LEGEND - BELOW;
+    let axis = if is_low || is_long { quantity.unit().to_owned() } else { axis };
+    (axis, if is_low { "" } else { "time (s)" })
+}
+
+/// Paths of the displacement or the velocity of the pinned motions since they were pinned, with the indices
+/// of the pins; none of another quantity.
 fn ghost_paths(
     session: &Session,
-    (from, to): (f64, f64),
-    value: impl Fn(&Watch, &Sample) -> f64,
+    quantity: TraceQuantity,
+    from: f64,
+    to: f64,
 ) -> Vec<(usize, Vec<PlotPoint>)> {
+    if !matches!(quantity, TraceQuantity::Displacement | TraceQuantity::Velocity) {
+        return Vec::new();
+    }
     let path = |pin: &Pin| {
         let (watch, samples) = (pin.watch(), pin.watch().samples());
         let first = samples.partition_point(|sample| sample.t < from.max(pin.since())).saturating_sub(1);
         let last = samples.partition_point(|sample| sample.t <= to).max(first);
         let stride = ((last - first) / MAX_GHOST_POINTS).max(1);
         let shown = samples.range(first..last).step_by(stride).copied().chain([pin.state_at(to)]);
-        let points = shown.map(|sample| PlotPoint::new(sample.t, value(watch, &sample)));
+        let points = shown.map(|sample| PlotPoint::new(sample.t, quantity.value_in(watch, &sample)));
         (pin.place(), points.collect())
     };
     session.pins.all().iter().map(path).collect()
@@ -329,9 +372,9 @@ fn paths(samples: &[Sample], flights: bool, point: impl Fn(&Sample) -> PlotPoint
     parts.map(line).collect()
 }
 
-/// Lines of the stops over time, in s and mm; a stop that did not move is one line.
-fn stop_lines(watch: &Watch, from: f64, to: f64) -> Vec<[[f64; 2]; 2]> {
-    let mut lines: Vec<[[f64; 2]; 2]> = Vec::new();
+/// Lines of the stops over time; a stop that did not move is one line.
+fn stop_lines(watch: &Watch, from: f64, to: f64) -> Vec<StopLine> {
+    let mut lines: Vec<StopLine> = Vec::new();
     for (begin, end, model) in watch.models_between(from.max(0.0), to) {
         let (left, right) = model.stop_positions();
         for mm in [left, right].into_iter().flatten().map(|stop| stop * 1e3) {

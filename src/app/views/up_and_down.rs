@@ -3,12 +3,13 @@
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::{self, Align2, PopupCloseBehavior, Rect, RichText, Sense, Ui, UiBuilder, vec2};
 use egui_plot::{
-    HLine, Line, LineStyle, MarkerShape, PlotBounds, PlotPoint, PlotPoints, Points, Polygon, VLine,
+    HLine, Line, LineStyle, MarkerShape, PlotBounds, PlotPoint, PlotPoints, PlotUi, Points, Polygon, VLine,
 };
 
 use crate::app::session::Session;
 use crate::app::session::explore::WalkQuantity;
 use crate::app::session::map::label;
+use crate::app::ui::style::Style;
 use crate::app::words::numbers::{power, power_unit, three};
 use crate::dynamics::Regime;
 use crate::numeric::short;
@@ -21,7 +22,7 @@ use super::labels::haloed;
 use super::legend::{LEGEND, Symbol, legend};
 use super::plot::{MARGIN, marks, plot_place, still_plot};
 use super::view::Axis;
-use super::{View, ViewContext, too_small_ui};
+use super::{Span, View, ViewContext, too_small_ui};
 
 /// Height in points of the row of choices.
 const TOOLS: f32 = 30.0;
@@ -137,22 +138,14 @@ fn load_power(visit: &Visit) -> f64 {
     visit.summary.harvest.and_then(|harvest| harvest.mean_load_power).unwrap_or(f64::NAN)
 }
 
-fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area: Rect) {
-    let style = context.style;
-    let session = &mut *context.session;
-    let walks = &session.explore.walks;
-    let quantity = match walks.quantity {
-        WalkQuantity::LoadPower if !session.model().has_transducer() => WalkQuantity::RmsVelocity,
-        quantity => quantity,
-    };
-    let is_whole = walks.found.is_whole();
-    let (parts, current) = walks.found.parts();
-    let of_field = walks.found.question().is_some_and(|question| question.axis.field == axis.field);
-    let branches = branches(if of_field { parts } else { &[] });
-    let span = &context.span;
-    let powers = branches.iter().flat_map(|branch| branch.visits.iter().map(|visit| load_power(visit)));
-    let (per_watt, unit) = power_unit(powers.filter(|power| power.is_finite()).fold(0.0, f64::max));
-    let (low, high) = match quantity {
+/// The ends of the vertical axis, in the unit of the quantity.
+fn vertical_ends(
+    branches: &[WalkBranch<'_>; 2],
+    quantity: WalkQuantity,
+    per_watt: f64,
+    span: &Span,
+) -> (f64, f64) {
+    match quantity {
         WalkQuantity::Strobes => {
             let all =
                 branches.iter().flat_map(|branch| branch.visits.iter().flat_map(|visit| &visit.strobes));
@@ -165,10 +158,56 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
             let all = all.map(|visit| number(visit, quantity, per_watt));
             (0.0, 1.08 * all.filter(|value| value.is_finite()).fold(1e-3, f64::max))
         }
+    }
+}
+
+/// Draws the runs of one direction: as dots what repeats once a period, as a line any other quantity.
+fn draw_branch(
+    plot: &mut PlotUi<'_>,
+    branch: &WalkBranch<'_>,
+    quantity: WalkQuantity,
+    per_watt: f64,
+    style: &Style,
+) {
+    let (color, radius, shape) = match branch.direction {
+        Direction::Up => (style.motion(), 1.6, MarkerShape::Circle),
+        Direction::Down => (style.base(), 2.4, MarkerShape::Plus),
     };
-    let (up, down) = (style.motion(), style.base());
+    if quantity != WalkQuantity::Strobes {
+        let point = |visit: &&Visit| PlotPoint::new(visit.value, number(visit, quantity, per_watt));
+        let line: Vec<PlotPoint> = branch.visits.iter().map(point).collect();
+        let line = Line::new(branch.direction.name(), PlotPoints::Owned(line));
+        return plot.line(match branch.direction {
+            Direction::Up => line.stroke(style.motion_stroke()),
+            Direction::Down => line.stroke(style.base_stroke()).style(LineStyle::dashed_dense()),
+        });
+    }
+    let points: Vec<PlotPoint> = branch
+        .visits
+        .iter()
+        .flat_map(|visit| strobes(visit).iter().map(|x| PlotPoint::new(visit.value, x * 1e3)))
+        .collect();
+    let points = Points::new(branch.direction.name(), PlotPoints::Owned(points));
+    plot.points(points.radius(style.dot(radius)).shape(shape).color(color));
+}
+
+fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area: Rect) {
+    let style = context.style;
+    let session = &mut *context.session;
+    let walks = &session.explore.walks;
+    let quantity = match walks.quantity {
+        WalkQuantity::LoadPower if !session.model().has_transducer() => WalkQuantity::RmsVelocity,
+        quantity => quantity,
+    };
+    let is_whole = walks.found.is_whole();
+    let (parts, current) = walks.found.parts();
+    let of_field = walks.found.question().is_some_and(|question| question.axis.field == axis.field);
+    let branches = branches(if of_field { parts } else { &[] });
+    let powers = branches.iter().flat_map(|branch| branch.visits.iter().map(|visit| load_power(visit)));
+    let (per_watt, unit) = power_unit(powers.filter(|power| power.is_finite()).fold(0.0, f64::max));
+    let ends = vertical_ends(&branches, quantity, per_watt, &context.span);
     let [sign_up, sign_down] = match quantity {
-        WalkQuantity::Strobes => [Symbol::Dots(up), Symbol::Pluses(down)],
+        WalkQuantity::Strobes => [Symbol::Dots(style.motion()), Symbol::Pluses(style.base())],
         _ => [Symbol::Line(style.motion_stroke()), Symbol::Dashed(style.base_stroke())],
     };
     let entries = [
@@ -187,7 +226,7 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
     let (from, to) = (axis.from - 0.01 * (axis.to - axis.from), axis.to + 0.01 * (axis.to - axis.from));
     let [across_axis, up_axis] = [Axis::Across(View::UpAndDown), Axis::Up(View::UpAndDown)];
     let (from, to) = context.memory.axes.ends(across_axis, (from, to));
-    let (low, high) = context.memory.axes.ends(up_axis, (low, high));
+    let (low, high) = context.memory.axes.ends(up_axis, ends);
     let edge = 0.02 * (high - low);
     let here = FieldPath::new(&axis.field).get(session.scene());
     let state = session.player.state();
@@ -217,28 +256,7 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
                 plot.vline(VLine::new("here", here).stroke(style.focus_stroke()));
             }
             for branch in &branches {
-                let (color, radius, shape) = match branch.direction {
-                    Direction::Up => (up, 1.6, MarkerShape::Circle),
-                    Direction::Down => (down, 2.4, MarkerShape::Plus),
-                };
-                if quantity != WalkQuantity::Strobes {
-                    let point =
-                        |visit: &&Visit| PlotPoint::new(visit.value, number(visit, quantity, per_watt));
-                    let line: Vec<PlotPoint> = branch.visits.iter().map(point).collect();
-                    let line = Line::new(branch.direction.name(), PlotPoints::Owned(line));
-                    plot.line(match branch.direction {
-                        Direction::Up => line.stroke(style.motion_stroke()),
-                        Direction::Down => line.stroke(style.base_stroke()).style(LineStyle::dashed_dense()),
-                    });
-                    continue;
-                }
-                let points: Vec<PlotPoint> = branch
-                    .visits
-                    .iter()
-                    .flat_map(|visit| strobes(visit).iter().map(|x| PlotPoint::new(visit.value, x * 1e3)))
-                    .collect();
-                let points = Points::new(branch.direction.name(), PlotPoints::Owned(points));
-                plot.points(points.radius(style.dot(radius)).shape(shape).color(color));
+                draw_branch(plot, branch, quantity, per_watt, &style);
             }
             if let (Some(here), Some(x)) = (here, live) {
                 let ball = Points::new("now", vec![[here, x]]);

@@ -35,8 +35,42 @@ impl Model {
             }
             None => absent.push("stops"),
         }
+        let excitation = self.describe_excitation();
+        if excitation.is_empty() {
+            absent.push("excitation");
+        }
+        lines.extend(excitation);
+        match &self.transducer {
+            Some(transducer) => {
+                lines.push(transducer.describe());
+                lines.extend(self.fast_circuit());
+            }
+            None => absent.push("transducer"),
+        }
+        lines.push(format!(
+            "start at x = {} mm, v = {} m/s; runs {} s, settled after {} s",
+            short(self.start.0 * 1e3),
+            short(self.start.1),
+            short(self.duration),
+            short(self.settle)
+        ));
+        lines.push(format!(
+            "tolerance {:e}, relative to {} mm, {} m/s and {} s",
+            self.tolerance,
+            short(self.scales.length * 1e3),
+            short(self.scales.speed),
+            short(self.scales.time)
+        ));
+        if !absent.is_empty() {
+            lines.push(format!("left out: {}", absent.join(", ")));
+        }
+        lines
+    }
+
+    /// The constant acceleration, the tones, noises, chirps and records of the base, each in a line.
+    fn describe_excitation(&self) -> Vec<String> {
         let drive = &self.excitation;
-        let excitation_lines = lines.len();
+        let mut lines = Vec::new();
         if drive.constant != 0.0 {
             lines.push(format!("constant base acceleration of {} m/s^2", short(drive.constant)));
         }
@@ -81,33 +115,6 @@ impl Model {
                 Some(period) => format!("the excitation repeats after {} s", short(period)),
                 None => "the excitation has no common period within reach".into(),
             });
-        }
-        if excitation_lines == lines.len() {
-            absent.push("excitation");
-        }
-        match &self.transducer {
-            Some(transducer) => {
-                lines.push(transducer.describe());
-                lines.extend(self.fast_circuit());
-            }
-            None => absent.push("transducer"),
-        }
-        lines.push(format!(
-            "start at x = {} mm, v = {} m/s; runs {} s, settled after {} s",
-            short(self.start.0 * 1e3),
-            short(self.start.1),
-            short(self.duration),
-            short(self.settle)
-        ));
-        lines.push(format!(
-            "tolerance {:e}, relative to {} mm, {} m/s and {} s",
-            self.tolerance,
-            short(self.scales.length * 1e3),
-            short(self.scales.speed),
-            short(self.scales.time)
-        ));
-        if !absent.is_empty() {
-            lines.push(format!("left out: {}", absent.join(", ")));
         }
         lines
     }

@@ -66,6 +66,29 @@ fn faults_of_check(scene: &Scene) -> Vec<Fault> {
     faults
 }
 
+/// Damping coefficient in N s/m of the mechanism with this mass in kg.
+fn damping_coefficient(scene: &Scene, mechanism: &Mechanism, mass: f64) -> Result<f64, Fault> {
+    let xi = match scene.damping {
+        Damping::None => return Ok(0.0),
+        Damping::Coefficient { c_n_s_per_m } => return Ok(c_n_s_per_m),
+        Damping::Ratio(xi) => xi,
+    };
+    let Some(k) = mechanism.damping_stiffness() else {
+        let problem = "a damping ratio needs a stable equilibrium with a stiffness above 0, and this \
+                       mechanism has none; use Coefficient(c_n_s_per_m: ..) instead";
+        return Err(fault("damping.xi", xi, problem));
+    };
+    let c = 2.0 * xi * (k * mass).sqrt();
+    if !c.is_finite() {
+        let problem = format!(
+            "makes no finite damping coefficient with the stiffness {k:e} N/m of the equilibrium; use \
+             Coefficient(c_n_s_per_m: ..) instead"
+        );
+        return Err(fault("damping.xi", xi, problem));
+    }
+    Ok(c)
+}
+
 impl Model {
     /// Converts a scene that has passed its check. Returns all faults that only show here (no equilibrium to
     /// rest at, a damping ratio without a stable equilibrium, a start beyond a stop or the curve), and those
@@ -74,32 +97,10 @@ impl Model {
         let mut faults = Vec::new();
         let mass = scene.mass_g / 1e3;
         let landscape = &mechanism.landscape;
-        let damping = match scene.damping {
-            Damping::None => 0.0,
-            Damping::Coefficient { c_n_s_per_m } => c_n_s_per_m,
-            Damping::Ratio(xi) => match mechanism.damping_stiffness() {
-                Some(k) => {
-                    let c = 2.0 * xi * (k * mass).sqrt();
-                    if !c.is_finite() {
-                        let problem = format!(
-                            "makes no finite damping coefficient with the stiffness {k:e} N/m of the \
-                             equilibrium; use Coefficient(c_n_s_per_m: ..) instead"
-                        );
-                        faults.push(fault("damping.xi", xi, problem));
-                    }
-                    c
-                }
-                None => {
-                    faults.push(fault(
-                        "damping.xi",
-                        xi,
-                        "a damping ratio needs a stable equilibrium with a stiffness above 0, and this \
-                         mechanism has none; use Coefficient(c_n_s_per_m: ..) instead",
-                    ));
-                    0.0
-                }
-            },
-        };
+        let damping = damping_coefficient(scene, &mechanism, mass).unwrap_or_else(|found| {
+            faults.push(found);
+            0.0
+        });
         let transducer = Transducer::of(&scene.transducer, mass);
         if transducer.is_some_and(|transducer| !transducer.is_finite()) {
             let value = match scene.transducer {
@@ -112,13 +113,11 @@ impl Model {
         }
         let stops = StopPair::of(&scene.stops);
         let compliant = Hertz::of(&scene.stops);
-        let start = match start_state(scene, &mechanism, stops.as_ref(), compliant.as_ref()) {
-            Ok(start) => start,
-            Err(found) => {
-                faults.push(found);
-                (0.0, 0.0)
-            }
-        };
+        let start = start_state(scene, &mechanism, stops.as_ref(), compliant.as_ref());
+        let start = start.unwrap_or_else(|found| {
+            faults.push(found);
+            (0.0, 0.0)
+        });
         let drive = ExcitationParts::new(&scene.excitation).unwrap_or_else(|found| {
             faults.push(found);
             ExcitationParts::default()

@@ -27,74 +27,24 @@ pub(crate) struct Ending<T> {
     pub outcome: Outcome,
 }
 
+fn value<T: Scalar>(sum: &CompensatedSum<T>) -> f64 {
+    sum.value().to_f64()
+}
+
 impl<T: Scalar> Recorder<'_, T> {
     /// Closes the record.
     pub fn finish(mut self, ending: &Ending<T>) -> Run {
-        let &Ending { at: end, state: (x, v), start_v, circuit, phase, segment, potential, outcome } = ending;
+        let &Ending { at: end, state: (x, v), outcome, .. } = ending;
         let final_x = x.to_f64();
         let final_v = v.to_f64() / self.unit;
-        // A sample requested at the very end (to rounding) is the final state.
-        let last = self.clock.seconds(&end);
-        while let Some(t) = self.times.get(self.next_time).copied() {
-            if t > last * (1.0 + 4.0 * f64::EPSILON) {
-                break;
-            }
-            self.samples.push(Sample {
-                t,
-                x: final_x,
-                v: final_v,
-                base_accel: self.base(&self.clock.at(t), segment),
-                phase,
-                electrical: self.electrical(circuit.1),
-            });
-            self.next_time += 1;
-        }
+        self.sample_the_end(ending, (final_x, final_v));
         self.last_strobe(&end, (x, v));
         let (section, carried) = self.listed(&end, (final_x, final_v));
-        let m = self.model.mass;
-        let energy = m / (self.unit * self.unit);
-        let value = |sum: &CompensatedSum<T>| sum.value().to_f64();
         let covered = value(&self.covered);
         let seen = covered > 0.0;
-        let transducer = self.model.transducer;
-        let ledger = self.ledger.then(|| {
-            let kinetic = |v: T| (v * v).to_f64() * 0.5;
-            let work_j = value(&self.whole.work) * energy;
-            let damping_j = self.model.damping * value(&self.whole.squared_velocity) / self.unit;
-            let impact_j = value(&self.whole.impact) * energy;
-            let charged = transducer.map_or(0.0, |_| kinetic(circuit.1) - kinetic(circuit.0));
-            let stored_j = (kinetic(v) - kinetic(start_v) + charged) * energy + potential;
-            let (taken, moved) = ((work_j - damping_j) - impact_j, self.work_moved + self.peak_kinetic);
-            let moved = moved * energy + damping_j + impact_j.abs() + stored_j.abs();
-            let electrical =
-                transducer.map(|transducer| transducer.energies(self.squared_signal(&self.whole)));
-            let (harvested_j, coil_j) =
-                (electrical.map(|energies| energies.0), electrical.map(|energies| energies.1));
-            let (residual_j, moved) = match electrical {
-                Some((load, coil)) => ((taken - load - coil) - stored_j, moved + load + coil),
-                None => (taken - stored_j, moved),
-            };
-            let energy_residual = match residual_j.abs() / moved {
-                _ if moved == 0.0 => 0.0,
-                share if share.is_finite() => share,
-                _ => f64::INFINITY, // the run blew up
-            };
-            Ledger { work_j, damping_j, impact_j, harvested_j, coil_j, stored_j, residual_j, energy_residual }
-        });
+        let ledger = self.ledger.then(|| self.energy_ledger(ending));
         let rms = (value(&self.settled.squared_velocity) / covered).sqrt() / self.unit;
         let work = value(&self.settled.work);
-        let harvest = transducer.map(|transducer| {
-            let load = transducer.energies(self.squared_signal(&self.settled)).0;
-            let load_share = (self.ledger && seen && work.abs() > 0.0).then(|| load / (work * energy));
-            let squared = Some(self.squared_signal(&self.settled) / (covered * self.unit));
-            let squared = squared.filter(|squared| seen && squared.is_finite());
-            Harvest {
-                mean_load_power: squared.map(|squared| transducer.energies(squared).0),
-                mean_coil_power: squared.map(|squared| transducer.energies(squared).1),
-                voltage_rms: squared.map(|squared| transducer.voltage_rms(squared.sqrt())),
-                load_share,
-            }
-        });
         let travel = (self.high - self.low).to_f64();
         let scales = &self.model.scales;
         let counts = &self.counts;
@@ -105,26 +55,13 @@ impl<T: Scalar> Recorder<'_, T> {
         let moved = seen && (left || (travel > STILL * scales.length && !pressed));
         let rests = seen && !moved;
         let pressed_by = |force: f64| compliant.and_then(|stop| stop.pressure(force));
-        let force = compliant.map(|_| self.peak_contact.to_f64() * m / (self.unit * self.unit));
+        let force = compliant.map(|_| self.peak_contact.to_f64() * self.model.mass / (self.unit * self.unit));
         let pressure = force.and_then(pressed_by);
         let material = compliant.and_then(|stop| stop.material);
         let yields =
             pressure.zip(material).is_some_and(|(pressure, material)| pressure > material.yield_pressure());
         let impact_share =
             (self.ledger && seen && work.abs() > 0.0).then(|| value(&self.settled.impact) / work);
-        let regime = if self.model.one_well {
-            Regime::OneWell
-        } else if !moved {
-            Regime::Rest
-        } else if self.counts.crossings == 0 {
-            Regime::Intrawell
-        } else if self.model.rhythm != Rhythm::Periodic {
-            Regime::Crossing
-        } else if self.judge.crossings_repeat() {
-            Regime::Interwell
-        } else {
-            Regime::Irregular
-        };
         let done = outcome == Outcome::Done;
         let origin = self.origin();
         let strobed = |number: u64| {
@@ -150,7 +87,7 @@ impl<T: Scalar> Recorder<'_, T> {
                 final_x,
                 final_v,
                 rms_velocity: (seen && rms.is_finite()).then_some(rms),
-                regime,
+                regime: self.regime(moved),
                 crossings: self.counts.crossings,
                 impacts: self.counts.impacts,
                 impact_speed_max: (self.counts.impacts > 0).then(|| self.impact_speed.to_f64() / self.unit),
@@ -177,7 +114,7 @@ impl<T: Scalar> Recorder<'_, T> {
                 peak_contact_force: force,
                 peak_contact_pressure: pressure,
                 contact_yields: yields,
-                harvest,
+                harvest: self.harvest(seen, covered, work),
                 outcome,
                 steps: 0,
                 evaluations: 0,
@@ -187,11 +124,96 @@ impl<T: Scalar> Recorder<'_, T> {
         }
     }
 
+    /// Records the samples requested at the very end (to rounding), which are the final state.
+    fn sample_the_end(&mut self, ending: &Ending<T>, (x, v): (f64, f64)) {
+        let last = self.clock.seconds(&ending.at);
+        while let Some(t) = self.times.get(self.next_time).copied() {
+            if t > last * (1.0 + 4.0 * f64::EPSILON) {
+                break;
+            }
+            self.samples.push(Sample {
+                t,
+                x,
+                v,
+                base_accel: self.base(&self.clock.at(t), ending.segment),
+                phase: ending.phase,
+                electrical: self.electrical(ending.circuit.1),
+            });
+            self.next_time += 1;
+        }
+    }
+
+    /// Joules in the square of a speed of 1, kernel units, times the mass.
+    fn energy_unit(&self) -> f64 {
+        self.model.mass / (self.unit * self.unit)
+    }
+
+    /// The energies of the whole run, and what they leave unexplained.
+    fn energy_ledger(&self, ending: &Ending<T>) -> Ledger {
+        let &Ending { state: (_, v), start_v, circuit, potential, .. } = ending;
+        let (energy, transducer) = (self.energy_unit(), self.model.transducer);
+        let kinetic = |v: T| (v * v).to_f64() * 0.5;
+        let work_j = value(&self.whole.work) * energy;
+        let damping_j = self.model.damping * value(&self.whole.squared_velocity) / self.unit;
+        let impact_j = value(&self.whole.impact) * energy;
+        let charged = transducer.map_or(0.0, |_| kinetic(circuit.1) - kinetic(circuit.0));
+        let stored_j = (kinetic(v) - kinetic(start_v) + charged) * energy + potential;
+        let (taken, moved) = ((work_j - damping_j) - impact_j, self.work_moved + self.peak_kinetic);
+        let moved = moved * energy + damping_j + impact_j.abs() + stored_j.abs();
+        let electrical = transducer.map(|transducer| transducer.energies(self.squared_signal(&self.whole)));
+        let (harvested_j, coil_j) =
+            (electrical.map(|energies| energies.0), electrical.map(|energies| energies.1));
+        let (residual_j, moved) = match electrical {
+            Some((load, coil)) => ((taken - load - coil) - stored_j, moved + load + coil),
+            None => (taken - stored_j, moved),
+        };
+        let energy_residual = match residual_j.abs() / moved {
+            _ if moved == 0.0 => 0.0,
+            share if share.is_finite() => share,
+            _ => f64::INFINITY, // the run blew up
+        };
+        Ledger { work_j, damping_j, impact_j, harvested_j, coil_j, stored_j, residual_j, energy_residual }
+    }
+
+    /// What the transducer delivers in the settled window, of which `covered` is recorded and in which the
+    /// base does `work`, both in kernel units.
+    fn harvest(&self, seen: bool, covered: f64, work: f64) -> Option<Harvest> {
+        let transducer = self.model.transducer?;
+        let load = transducer.energies(self.squared_signal(&self.settled)).0;
+        let load_share =
+            (self.ledger && seen && work.abs() > 0.0).then(|| load / (work * self.energy_unit()));
+        let squared = Some(self.squared_signal(&self.settled) / (covered * self.unit));
+        let squared = squared.filter(|squared| seen && squared.is_finite());
+        Some(Harvest {
+            mean_load_power: squared.map(|squared| transducer.energies(squared).0),
+            mean_coil_power: squared.map(|squared| transducer.energies(squared).1),
+            voltage_rms: squared.map(|squared| transducer.voltage_rms(squared.sqrt())),
+            load_share,
+        })
+    }
+
+    /// The regime of a motion that has `moved` in the settled window or not.
+    fn regime(&self, moved: bool) -> Regime {
+        if self.model.one_well {
+            Regime::OneWell
+        } else if !moved {
+            Regime::Rest
+        } else if self.counts.crossings == 0 {
+            Regime::Intrawell
+        } else if self.model.rhythm != Rhythm::Periodic {
+            Regime::Crossing
+        } else if self.judge.crossings_repeat() {
+            Regime::Interwell
+        } else {
+            Regime::Irregular
+        }
+    }
+
     /// Integral over time in s of the squared signal of the transducer, SI.
     fn squared_signal(&self, sums: &Sums<T>) -> f64 {
         let squared = match self.model.circuit() {
-            Some(circuit) => circuit.amount * circuit.amount * sums.circuit.value().to_f64(),
-            None => sums.squared_velocity.value().to_f64(),
+            Some(circuit) => circuit.amount * circuit.amount * value(&sums.circuit),
+            None => value(&sums.squared_velocity),
         };
         squared / self.unit
     }

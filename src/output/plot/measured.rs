@@ -50,7 +50,8 @@ pub fn measured_figure(
     };
     let computed = scaled(column("t_s"), column(name));
     let measured = scaled(&found.times, &found.measured);
-    let (of_measured, timing) = (theme.regimes[3], Timing::of(&found.times));
+    let timing = Timing::of(&found.times);
+    let stops = (quantity == Quantity::Displacement).then_some(trace.stops);
     let panel =
         |(top, bottom): (f64, f64), (from, to): (f64, f64), given: Option<(f64, f64)>, count: usize| {
             let inside = |data: &[Point]| -> Vec<f64> {
@@ -79,49 +80,19 @@ pub fn measured_figure(
         })
         .collect();
     if let [first, second] = &panels[..] {
-        let Area { top, bottom, .. } = first.area;
-        let at = [second.x.low, second.x.high].map(|t| first.across(t).clamp(left, right));
-        figure.rect(Area::new(at[0], top, at[1].max(at[0] + 2.0), bottom), theme.rest);
-        for (from, to) in at.into_iter().zip([left, right]) {
-            let ends = [(from, bottom), (to, second.area.top)];
-            let between = Area::new(left, bottom, right, second.area.top);
-            figure.dashed(&ends, style::THIN, theme.soft, style::DOT, between);
-        }
+        connect(&mut figure, first, second, theme);
     }
     let mut dotted = false;
     for frame in &panels {
-        frame.grid(&mut figure, theme);
-        if quantity == Quantity::Displacement {
-            for (stop, below) in [(trace.stops.0, true), (trace.stops.1, false)] {
-                if stop.is_finite() {
-                    frame.wall_down(&mut figure, stop * 1e3, below, theme);
-                }
-            }
-        }
-        let inside = |point: &&Point| (frame.x.low..=frame.x.high).contains(&point.0);
-        let few = measured.iter().filter(inside).count() < DOTS;
-        if !few {
-            for part in measured.chunk_by(|a, b| !timing.is_gap(b.0 - a.0)) {
-                frame.dense_line(&mut figure, part.iter().copied(), style::LINE + 2.0, of_measured);
-            }
-        }
-        frame.dense_line(&mut figure, computed.iter().copied(), style::FINE_LINE, theme.ink);
-        if few {
-            dotted = true;
-            let places = measured.iter().filter(inside).map(|point| frame.place(*point));
-            places.filter(|at| frame.area.contains(*at)).for_each(|at| {
-                dot(&mut figure, Marker::Disc, at, 4.0, of_measured);
-            });
-        }
-        frame.axes(&mut figure, theme);
+        dotted |= draw_panel(&mut figure, frame, stops, &computed, &measured, &timing, theme);
     }
-    let lined = panels.len() > usize::from(dotted);
+    let (of_measured, lined) = (theme.regimes[3], panels.len() > usize::from(dotted));
     let mut entries = vec![(Sample::Line(theme.ink, style::LINE, None), "computed")];
     entries.push(match lined {
         true => (Sample::Line(of_measured, style::LINE + 2.0, None), "measured"),
         false => (Sample::Marker(Marker::Disc, of_measured), "measured"),
     });
-    if quantity == Quantity::Displacement && (trace.stops.0.is_finite() || trace.stops.1.is_finite()) {
+    if stops.is_some_and(|(left, right)| left.is_finite() || right.is_finite()) {
         entries.push((Sample::Patch(theme.wall_fill(), None), "stop"));
     }
     legend(&mut figure, theme, &entries, (LEFT, right), 142.0);
@@ -136,4 +107,52 @@ pub fn measured_figure(
     }
     caption.draw(&mut figure, theme, &words, LEFT);
     figure
+}
+
+/// Shades in the first panel the times that the second shows, and connects the two.
+fn connect(figure: &mut Figure, first: &Frame, second: &Frame, theme: &Theme) {
+    let Area { left, top, right, bottom } = first.area;
+    let at = [second.x.low, second.x.high].map(|t| first.across(t).clamp(left, right));
+    figure.rect(Area::new(at[0], top, at[1].max(at[0] + 2.0), bottom), theme.rest);
+    for (from, to) in at.into_iter().zip([left, right]) {
+        let ends = [(from, bottom), (to, second.area.top)];
+        let between = Area::new(left, bottom, right, second.area.top);
+        figure.dashed(&ends, style::THIN, theme.soft, style::DOT, between);
+    }
+}
+
+/// Draws a panel with its axes: stops, the computed motion over many measured samples or below few. Returns
+/// whether the samples are dots.
+fn draw_panel(
+    figure: &mut Figure,
+    frame: &Frame,
+    stops: Option<(f64, f64)>,
+    computed: &[Point],
+    measured: &[Point],
+    timing: &Timing,
+    theme: &Theme,
+) -> bool {
+    let color = theme.regimes[3];
+    frame.grid(figure, theme);
+    for (stop, below) in stops.into_iter().flat_map(|(left, right)| [(left, true), (right, false)]) {
+        if stop.is_finite() {
+            frame.wall_down(figure, stop * 1e3, below, theme);
+        }
+    }
+    let inside = |point: &&Point| (frame.x.low..=frame.x.high).contains(&point.0);
+    let few = measured.iter().filter(inside).count() < DOTS;
+    if !few {
+        for part in measured.chunk_by(|a, b| !timing.is_gap(b.0 - a.0)) {
+            frame.dense_line(figure, part.iter().copied(), style::LINE + 2.0, color);
+        }
+    }
+    frame.dense_line(figure, computed.iter().copied(), style::FINE_LINE, theme.ink);
+    if few {
+        let places = measured.iter().filter(inside).map(|point| frame.place(*point));
+        places.filter(|at| frame.area.contains(*at)).for_each(|at| {
+            dot(figure, Marker::Disc, at, 4.0, color);
+        });
+    }
+    frame.axes(figure, theme);
+    few
 }
