@@ -6,7 +6,6 @@
 
 use super::settings::{RESIDUAL, ROUNDINGS};
 use super::stepper::{MAX_HALVINGS, Step, Stepper};
-use crate::dynamics::clock::Instant;
 use crate::dynamics::drive::Drive;
 use crate::dynamics::series::Endpoint;
 use crate::dynamics::state::{BY_JERK, MotionState, Touch};
@@ -58,8 +57,18 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             if attempt > 0 {
                 self.work.add(self.costs.check);
             }
-            let arrival;
-            (h, arrival) = self.up_to_arrival(state, h, left, border);
+            let mut arrival = None;
+            if left <= h {
+                h = left;
+                arrival = Some(self.end);
+            }
+            if let Some(border) = border {
+                let to_border = self.clock.between(&state.at, &border);
+                if to_border <= h {
+                    h = to_border;
+                    arrival = Some(border);
+                }
+            }
             let end = self.series.state(h);
             if self.step_holds(state, h, &end) {
                 return Some(Step { length: h, arrival, end });
@@ -72,31 +81,6 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             }
         }
         None
-    }
-
-    /// The step of up to length `h` that ends at the latest at the end of the run, `left` away, and at the
-    /// `border` of the segment; with the instant of the one at which it ends.
-    #[inline(always)]
-    pub(super) fn up_to_arrival(
-        &self,
-        state: &MotionState<T>,
-        mut h: T,
-        left: T,
-        border: Option<Instant<T>>,
-    ) -> (T, Option<Instant<T>>) {
-        let mut arrival = None;
-        if left <= h {
-            h = left;
-            arrival = Some(self.end);
-        }
-        if let Some(border) = border {
-            let to_border = self.clock.between(&state.at, &border);
-            if to_border <= h {
-                h = to_border;
-                arrival = Some(border);
-            }
-        }
-        (h, arrival)
     }
 
     /// Extends the series to the full order.

@@ -125,12 +125,25 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let mut length = T::of(natural);
         let border = self.drive.segment_end(state.segment);
         for _ in 0..MAX_HALVINGS {
-            let arrival;
-            (length, arrival) = self.up_to_arrival(state, length, left, border);
+            let mut arrival = None;
+            let mut until = |time: T, instant| {
+                if time <= length {
+                    (length, arrival) = (time, Some(instant));
+                }
+            };
+            until(left, self.end);
+            if let Some(border) = border {
+                until(self.clock.between(&state.at, &border), border);
+            }
             if !(length * ringing > T::of(MIN_RADIANS)) {
                 return None;
             }
-            let (bound, fastest) = path.bounds(length);
+            let (mut bound, mut fastest, mut power) = (T::zero(), T::zero(), T::of(1.0));
+            for k in 1..=order {
+                fastest += path.depth[k].abs() * T::whole(k) * power;
+                power = power * length;
+                bound += path.depth[k].abs() * power;
+            }
             let deep = [End::Low, End::High]
                 .into_iter()
                 .all(|at| at == end.other() || at.sign::<T>() * (mode.end(at).0 - state.x) > bound + bound);

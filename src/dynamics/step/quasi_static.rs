@@ -106,18 +106,6 @@ impl<T: Scalar> QuasiStatic<T> {
         self.series.known - 1
     }
 
-    /// Bounds of the change of the depth and of its speed over a step of this length.
-    #[inline]
-    pub fn bounds(&self, length: T) -> (T, T) {
-        let (mut bound, mut fastest, mut power) = (T::zero(), T::zero(), T::of(1.0));
-        for k in 1..=self.order() {
-            fastest += self.depth[k].abs() * T::whole(k) * power;
-            power = power * length;
-            bound += self.depth[k].abs() * power;
-        }
-        (bound, fastest)
-    }
-
     /// Residual of the equation of motion at time `t`.
     pub fn residual(&self, t: T, surface: T, force: &PieceForce<T>, damping: T) -> T {
         let (mut depth, mut speed, mut half) = (T::zero(), T::zero(), T::zero());

@@ -4,8 +4,8 @@
 //! with `run/flight.rs`), and as its fast path (`run/event_free.rs`). The three do the same arithmetic and
 //! must stay equal to the bit.
 
+use super::Columns;
 use super::landing::Arrivals;
-use super::{Clocks, Columns};
 use crate::dynamics::drive::tone::Harmonic;
 use crate::dynamics::lanes::trial::Trial;
 use crate::dynamics::record::event_free::MARGIN;
@@ -38,7 +38,17 @@ impl<const W: usize> Columns<W> {
         let sum = (end.acceleration + self.damping * end.v) + base;
         let residual = (self.force.at(end.y) + sum).abs() * length;
 
-        let (candidate, left) = self.candidates(&residual, &length, &at, &end.v, trial);
+        let (mut candidate, mut left) = ([false; W], length);
+        for (lane, candidate) in candidate.iter_mut().enumerate() {
+            let (length, period) = (length.0[lane], self.period.0[lane]);
+            let cycles = self.border.cycle.0[lane] - self.at.cycle.0[lane];
+            let to_border = cycles * period + (self.border.phase.0[lane] - self.at.phase.0[lane]);
+            left.0[lane] = to_border - MARGIN * period;
+            trial.holds[lane] = (residual.0[lane] <= self.allowed.0[lane]) & (length > 0.0);
+            let early = (length < left.0[lane]) & (at.phase.0[lane] < period);
+            let finite = end.v.0[lane].abs() < f64::INFINITY;
+            *candidate = self.active[lane] & trial.holds[lane] & early & finite;
+        }
         let (x, acceleration) = (end.y + self.origin, end.acceleration);
         let mut to = Arrivals { length, x, v: end.v, acceleration, at, unit };
         let landed = self.land(&candidate, y, &end.bound, &mut to);
@@ -65,7 +75,16 @@ impl<const W: usize> Columns<W> {
                 curvatures: (curvatures.0.0[lane], curvatures.1.0[lane]),
                 limits: (self.low_end.0[lane], self.high_end.0[lane]),
             };
-            let (clear_low, clear_high) = self.clear_of_ends(lane, &chord, to.length.0[lane]);
+            let (limits, touch, monotone) = (chord.limits, self.touch.0[lane], chord.is_monotone());
+            let (clear_low, clear_high) = chord.is_clear();
+            let clear_low = clear_low | (self.x.0[lane] - limits.0 > bound);
+            let clear_high = clear_high | (limits.1 - self.x.0[lane] > bound);
+            // leaving a surface: its speed leads further away than all the other terms can lead back
+            let leaves = 2.0 * self.v.0[lane].abs() * to.length.0[lane] > bound * CLEARANCE;
+            let clear_low = clear_low | (leaves & (touch < 0.0));
+            let clear_high = clear_high | (leaves & (touch > 0.0));
+            let between = chord.stays_between((touch < 0.0, touch > 0.0));
+            let (clear_low, clear_high) = (clear_low | between.0, clear_high | between.1);
             clear.0[lane] = clear_low | landed[lane];
             clear.1[lane] = clear_high | landed[lane];
             let (lane_low, lane_high, turns) = chord.extremes((self.low.0[lane], self.high.0[lane]));
@@ -78,8 +97,8 @@ impl<const W: usize> Columns<W> {
             let (onto, passed) = (beyond == 0.0, beyond < 0.0);
             // outside the window only the number of crossings counts
             let countable = !inside & (to.length.0[lane] + to.length.0[lane] < left.0[lane]) & !landed[lane];
-            let clear_of_barrier = !(near | passed | onto)
-                | (chord.is_monotone() & (from > 0.0) & !onto & (!passed | countable));
+            let clear_of_barrier =
+                !(near | passed | onto) | (monotone & (from > 0.0) & !onto & (!passed | countable));
             event_free[lane] = candidate[lane] & clear_of_barrier;
             turning[lane] = turns & inside;
             crosses[lane] = passed;
@@ -99,69 +118,13 @@ impl<const W: usize> Columns<W> {
             }
         }
         for lane in 0..W {
-            let taken = event_free[lane];
+            let (taken, inside, length) = (event_free[lane], self.inside[lane], to.length.0[lane]);
             trial.taken[lane] = taken;
             trial.stopped[lane] = !taken & self.active[lane];
             trial.passed[lane] = taken & landed[lane];
-            trial.measured[lane] = self.inside[lane] & !landed[lane];
-        }
-        self.take(trial, &to, &squared, (&low, &high), &crosses);
-        (trial.length, trial.end, trial.at, trial.unit, trial.squared) = (length, end, at, unit, squared);
-    }
+            trial.measured[lane] = inside & !landed[lane];
 
-    /// The active lanes whose steps satisfy the equation of motion and end before the border of their segment
-    /// and within a cycle; and the times up to a margin before the border.
-    #[inline(always)]
-    fn candidates(
-        &self,
-        residual: &Lanes<W>,
-        length: &Lanes<W>,
-        at: &Clocks<W>,
-        v: &Lanes<W>,
-        trial: &mut Trial<W>,
-    ) -> ([bool; W], Lanes<W>) {
-        let (mut candidate, mut left) = ([false; W], *length);
-        for (lane, candidate) in candidate.iter_mut().enumerate() {
-            let (length, period) = (length.0[lane], self.period.0[lane]);
-            let cycles = self.border.cycle.0[lane] - self.at.cycle.0[lane];
-            let to_border = cycles * period + (self.border.phase.0[lane] - self.at.phase.0[lane]);
-            left.0[lane] = to_border - MARGIN * period;
-            trial.holds[lane] = (residual.0[lane] <= self.allowed.0[lane]) & (length > 0.0);
-            let early = (length < left.0[lane]) & (at.phase.0[lane] < period);
-            let finite = v.0[lane].abs() < f64::INFINITY;
-            *candidate = self.active[lane] & trial.holds[lane] & early & finite;
-        }
-        (candidate, left)
-    }
-
-    /// Whether the step of a lane is clear of the low and of the high end of its mode.
-    #[inline(always)]
-    fn clear_of_ends(&self, lane: usize, chord: &Chord<f64>, length: f64) -> (bool, bool) {
-        let (limits, bound, touch) = (chord.limits, chord.bound, self.touch.0[lane]);
-        let (clear_low, clear_high) = chord.is_clear();
-        let clear_low = clear_low | (self.x.0[lane] - limits.0 > bound);
-        let clear_high = clear_high | (limits.1 - self.x.0[lane] > bound);
-        // leaving a surface: its speed leads further away than all the other terms can lead back
-        let leaves = 2.0 * self.v.0[lane].abs() * length > bound * CLEARANCE;
-        let clear_low = clear_low | (leaves & (touch < 0.0));
-        let clear_high = clear_high | (leaves & (touch > 0.0));
-        let between = chord.stays_between((touch < 0.0, touch > 0.0));
-        (clear_low | between.0, clear_high | between.1)
-    }
-
-    /// Moves the lanes whose steps are taken to their ends, with the sums and counts of the window.
-    #[inline(always)]
-    fn take(
-        &mut self,
-        trial: &Trial<W>,
-        to: &Arrivals<W>,
-        squared: &Lanes<W>,
-        (low, high): (&Lanes<W>, &Lanes<W>),
-        crosses: &[bool; W],
-    ) {
-        for lane in 0..W {
-            let (taken, length) = (trial.taken[lane], to.length.0[lane]);
-            let measured = taken & self.inside[lane];
+            let measured = taken & inside;
             let (squared, covered) =
                 (self.squared.with(lane, squared.0[lane]), self.covered.with(lane, length));
             let set = |place: &mut f64, value: f64, which: bool| *place = if which { value } else { *place };
@@ -185,5 +148,6 @@ impl<const W: usize> Columns<W> {
             set(&mut self.value.0[lane], to.unit.0.0[lane], taken);
             set(&mut self.slope.0[lane], to.unit.1.0[lane], taken);
         }
+        (trial.length, trial.end, trial.at, trial.unit, trial.squared) = (length, end, at, unit, squared);
     }
 }
