@@ -283,7 +283,7 @@ impl Ask {
         let of_word = |word: &str| {
             let found = self.quantities.iter().find_map(|quantity| Unit::of_word(word, *quantity));
             found.ok_or_else(|| MeasuredError::UnknownUnit {
-                option: *unit_option,
+                option: unit_option,
                 unit: clip(word),
                 quantity: self.quantity_names(),
                 units: self.known_units(),
@@ -296,7 +296,7 @@ impl Ask {
         let unit = given.or(in_name).ok_or_else(|| MeasuredError::UnitNeeded {
             column: clip(name),
             quantity: self.quantity_names(),
-            option: *unit_option,
+            option: unit_option,
             units: self.known_units(),
         })?;
         Ok((at, unit))

@@ -151,7 +151,8 @@ pub fn dormand_prince(model: &Model, tolerance: f64, request: &Request) -> Metho
     let mut attempts = 0_u64;
     while march.now.t < model.duration() {
         attempts += 1;
-        let is_stopped = attempts > MOST_STEPS || (attempts % CANCEL_STRIDE == 0 && is_cancelled(request));
+        let is_stopped =
+            attempts > MOST_STEPS || (attempts.is_multiple_of(CANCEL_STRIDE) && is_cancelled(request));
         if is_stopped || !(march.rest() || march.step()) {
             break;
         }
