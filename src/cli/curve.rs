@@ -143,7 +143,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         table
     };
     outputs.table(Output::DATA, &table)?;
-    outputs.write(Output::LANDSCAPE, &landscape(&mechanism, document.scene.mass_g / 1e3))?;
+    outputs.write(Output::LANDSCAPE, landscape(&mechanism, document.scene.mass_g / 1e3))?;
     if let Some(picture) = picture {
         // The picture shows the whole curve, even if few positions were requested.
         let about = caption(&document);

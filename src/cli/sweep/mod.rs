@@ -92,7 +92,7 @@ impl Prepared<'_> {
         }
         outputs.leave(Output::DATA);
         let file = RowFile { sweep: self, plan, header: &header };
-        Ok(file.open()?.map(|(blocks, tally)| (Rows::Blocks(blocks), tally)))
+        Ok(file.open()?.map(|(blocks, tally)| (Rows::Blocks(Box::new(blocks)), tally)))
     }
 
     /// Says that nothing is left to do; an error if a picture was requested.

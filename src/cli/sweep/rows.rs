@@ -25,7 +25,7 @@ pub enum Rows {
     /// To a pipe, a device or standard output.
     Stream,
     /// To a file that is written in blocks.
-    Blocks(Blocks),
+    Blocks(Box<Blocks>),
     /// To no output: they are compared with those of a file.
     Compared(Compared),
 }
@@ -59,7 +59,8 @@ impl Rows {
 
     /// Gives the file of the blocks its name.
     pub fn finish(self) -> Result<(), Failure> {
-        let Self::Blocks(Blocks { part, .. }) = self else { return Ok(()) };
+        let Self::Blocks(blocks) = self else { return Ok(()) };
+        let part = blocks.part;
         let name = part.path().display().to_string();
         part.finish().map_err(|error| Failure::writing(&name, error))
     }
