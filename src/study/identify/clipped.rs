@@ -133,13 +133,14 @@ impl FlatTops {
         };
         let leaves = |(k, run): (usize, &Range<usize>)| {
             let next = self.runs.get(k + 1).map_or(x.len(), |next| next.start);
-            let last = (run.end + 2..next).find(|i| depth(*i) >= far)?;
-            speed(run.end - 1, last, run.len())
+            // the sample at the limit is before the record leaves it
+            let last = (run.end + 3..next).find(|i| depth(*i) >= far)?;
+            speed(run.end, last, run.len())
         };
         let arrives = |(k, run): (usize, &Range<usize>)| {
             let before = k.checked_sub(1).map_or(0, |k| self.runs[k].end);
-            let first = (before..run.start.saturating_sub(2)).rev().find(|i| depth(*i) >= far)?;
-            speed(first, run.start, run.len())
+            let first = (before..run.start.saturating_sub(3)).rev().find(|i| depth(*i) >= far)?;
+            speed(first, run.start - 1, run.len())
         };
         let runs = || self.runs.iter().enumerate();
         let speed = median(runs().filter_map(leaves).collect())

@@ -297,6 +297,21 @@ fn impacts_within_flat_tops_are_left_out_and_said() {
 }
 
 #[test]
+fn a_cut_is_seen_wherever_the_samples_next_to_it_lie() {
+    let changes = changes(&["run.duration_s=1.5", "run.settle_s=0"]);
+    let record = recorded("paper", &changes, 3e-4, 2e-7, 5);
+    for k in 0..40 {
+        // few swings, each with its own part of a step between the limit and the next sample
+        let limit = 2e-4 + 2.7e-5 * f64::from(k);
+        let mut record = record.clone();
+        record[1].iter_mut().for_each(|x| *x = x.min(limit));
+        let found = identified(&record).unwrap();
+        assert!(said(&found.remarks, "clipped: "), "{limit}: {:?}", found.remarks);
+        assert!(holds(number(&found, "restitution"), 0.36), "{limit}: {:?}", found.summary);
+    }
+}
+
+#[test]
 fn a_stop_that_lies_elsewhere_than_given_is_said() {
     let changes = changes(&["run.duration_s=5", "run.settle_s=0"]);
     let record = recorded("paper", &changes, 1e-3, 0.0, 1);
