@@ -298,7 +298,7 @@ fn impacts_within_flat_tops_are_left_out_and_said() {
 
 #[test]
 fn a_cut_is_seen_wherever_the_samples_next_to_it_lie() {
-    let changes = changes(&["run.duration_s=1.5", "run.settle_s=0"]);
+    let changes = changes(&["run.duration_s=0.7", "run.settle_s=0"]);
     let record = recorded("paper", &changes, 3e-4, 2e-7, 5);
     for k in 0..40 {
         // few swings, each with its own part of a step between the limit and the next sample
