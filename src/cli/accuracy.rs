@@ -6,7 +6,7 @@ use std::path::Path;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use interwell::output::{accuracy_figure, aligned};
+use interwell::output::{accuracy_chart, aligned};
 use interwell::study::Task;
 use interwell::study::accuracy::{PROBLEMS, Report, Selection, Stopped, accuracy, description, names};
 
@@ -87,8 +87,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         outputs.table(Output::DATA, &report.table())?;
     }
     if let Some(picture) = picture {
-        let figure = accuracy_figure(&report.work_table(), env!("CARGO_PKG_VERSION"), &picture.theme);
-        picture.write(&mut outputs, figure)?;
+        let (chart, caption) = accuracy_chart(&report.work_table(), env!("CARGO_PKG_VERSION"));
+        picture.write(&mut outputs, &chart, &caption)?;
     }
     let to_stdout = outputs.is_stdout(Output::DATA);
     outputs.finish()?;

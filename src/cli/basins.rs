@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use interwell::numeric::short;
-use interwell::output::{basins_figure, basins_manifest, can_show_starts, rows};
+use interwell::output::{basins_chart, basins_manifest, can_show_starts, rows};
 use interwell::study::{Answer, Basins, EvenRange, NoBasins, Starts, StartsError, Task};
 use interwell::system::threads::Pool;
 
@@ -88,8 +88,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     write_rows(&mut outputs, &basins, &answer, &pool)?;
     outputs.table(Output::ATTRACTORS, &answer.attractors_table())?;
     if let Some(picture) = picture {
-        let figure = basins_figure(&basins, &answer, &caption(&document), &picture.theme);
-        picture.write(&mut outputs, figure)?;
+        picture.write(&mut outputs, &basins_chart(&basins, &answer), &caption(&document))?;
     }
     if beside.is_some() {
         let (origin, data) = (watch.origin(pool.count()), file_name(common.out()));

@@ -3,7 +3,7 @@
 use clap::Args;
 use interwell::dynamics::Regime;
 use interwell::numeric::short;
-use interwell::output::{ComparisonPicture, comparison_figure};
+use interwell::output::{ComparisonPicture, comparison_chart};
 use interwell::scene::{Document, Excitation, RunSettings, Stops, Transducer};
 use interwell::study::{Alternative, Rated, Task, alternatives, comparison_parts, comparison_table};
 
@@ -107,7 +107,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         let (shaking, at) = (short(amplitude_g), short(frequency_hz));
         caption.title = format!("{count} scenes under a sine of {shaking} g at {at} Hz");
         let shown = ComparisonPicture { rated: &rated, frequency_hz };
-        picture.write(&mut outputs, comparison_figure(&shown, &caption, &picture.theme))?;
+        picture.write(&mut outputs, &comparison_chart(&shown), &caption)?;
     }
     outputs.finish()
 }

@@ -8,7 +8,7 @@ use clap::Args;
 use interwell::dynamics::Model;
 use interwell::mechanics::Mechanism;
 use interwell::mechanics::flexure::State;
-use interwell::output::{contact_figure, curve_figure, landscape, measured_force_figure};
+use interwell::output::{contact_chart, curve_chart, landscape, measured_force_chart};
 use interwell::scene::Document;
 use interwell::study::{
     CURVE_PICTURE_POINTS, CURVE_POINTS, StatesError, Table, Task, contact, curve, default_positions,
@@ -146,26 +146,19 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     outputs.write(Output::LANDSCAPE, landscape(&mechanism, document.scene.mass_g / 1e3))?;
     if let Some(picture) = picture {
         // The picture shows the whole curve, even if few positions were requested.
-        let about = caption(&document);
-        let figure = match &measured {
+        let chart = match &measured {
             Some(found) => {
                 let ends = |fold: fn(f64, f64) -> f64| found.positions.iter().copied().fold(f64::NAN, fold);
                 let over = even_positions((ends(f64::min), ends(f64::max)), CURVE_PICTURE_POINTS);
-                measured_force_figure(
-                    found,
-                    &curve(&mechanism, over)?,
-                    picture.ranges,
-                    &about,
-                    &picture.theme,
-                )
+                measured_force_chart(found, &curve(&mechanism, over)?, picture.ranges)
             }
             None => {
                 let table = curve(&mechanism, even(CURVE_PICTURE_POINTS))?;
                 let stops = stop_positions(&document.scene);
-                curve_figure(&table, &mechanism, stops, picture.ranges, &about, &picture.theme)
+                curve_chart(&table, &mechanism, stops, picture.ranges)
             }
         };
-        picture.write(&mut outputs, figure)?;
+        picture.write(&mut outputs, &chart, &caption(&document))?;
     }
     if outputs.has(Output::SHAPES) {
         let drawn = solved(&mechanism, &positions(SHAPES), &document.name, "--shapes")?;
@@ -174,8 +167,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if let Some((table, model)) = &contacts {
         outputs.table(Output::CONTACT, table)?;
         if let Some((picture, stop)) = contact_picture.zip(model.compliant()) {
-            let figure = contact_figure(table, &stop, model.mass(), &caption(&document), &picture.theme);
-            picture.write(&mut outputs, figure)?;
+            let chart = contact_chart(table, &stop, model.mass());
+            picture.write(&mut outputs, &chart, &caption(&document))?;
         }
     }
     outputs.finish()

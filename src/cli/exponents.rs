@@ -2,7 +2,7 @@
 
 use clap::Args;
 use interwell::dynamics::Model;
-use interwell::output::{ExponentPicture, can_show_exponents, exponents_figure, exponents_manifest};
+use interwell::output::{ExponentPicture, can_show_exponents, exponents_chart, exponents_manifest};
 use interwell::scene::Document;
 use interwell::study::{
     ExponentCells, ExponentOptions, Exponents, Grid, NoExponents, Table, Tally, Task, drive_fault, exponents,
@@ -13,7 +13,7 @@ use super::failure::Failure;
 use super::grid_job::GridJob;
 use super::options::{ChartOptions, Common, whole};
 use super::outputs::Output;
-use super::picture::{Picture, caption};
+use super::picture::Picture;
 use super::support::{
     file_name, load_held, load_model, located, outputs, pool, refuse_electrical_state, until_settled, warn,
 };
@@ -134,11 +134,11 @@ fn over(options: &Arguments, common: &Common, picture: Option<Picture>) -> Resul
     let mut job = GridJob::open(&document, common, outputs, common.out(), picture, manifest_out, pool)?;
     let columns: Vec<String> = cells.empty_table().columns().iter().map(|c| c.name.clone()).collect();
     let (tally, _) = job.stream(&cells, "cells", &columns)?;
-    let figure = |rows: &Table, picture: &Picture| {
+    let chart = |rows: &Table, picture: &Picture| {
         let shown = ExponentPicture { rows, grid, scene: &document.scene, ranges: picture.ranges };
-        Ok(exponents_figure(&shown, &caption(&document), &picture.theme)?)
+        Ok(exponents_chart(&shown)?)
     };
-    let wall_s = job.finish(figure, |origin| {
+    let wall_s = job.finish(chart, |origin| {
         Ok(exponents_manifest(&document, grid, &tally, origin, &file_name(common.out())))
     })?;
     if !common.quiet && tally.cells == grid.cells() {

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use interwell::output::{Figure, Provenance, header, rows};
+use interwell::output::{Chart, Provenance, header, rows};
 use interwell::scene::Document;
 use interwell::study::{GridStudy, Question, Shard, Slice, SweepEnd, Table, Tally, Task};
 use interwell::system::threads::Pool;
@@ -11,7 +11,7 @@ use super::failure::Failure;
 use super::interrupt;
 use super::options::Common;
 use super::outputs::{Output, Outputs};
-use super::picture::Picture;
+use super::picture::{Picture, caption};
 use super::progress::bar;
 use super::support::{Watch, located};
 
@@ -94,11 +94,12 @@ impl<'a> GridJob<'a> {
     /// since the rows began in s.
     pub fn finish(
         mut self,
-        figure: impl FnOnce(&Table, &Picture) -> Result<Figure, Failure>,
+        chart: impl FnOnce(&Table, &Picture) -> Result<Chart, Failure>,
         manifest: impl FnOnce(&Provenance) -> Result<String, Failure>,
     ) -> Result<f64, Failure> {
         if let Some(picture) = self.picture {
-            picture.write(&mut self.outputs, figure(&self.shown, &picture)?)?;
+            let chart = chart(&self.shown, &picture)?;
+            picture.write(&mut self.outputs, &chart, &caption(self.document))?;
         }
         if self.manifest.is_some() {
             self.outputs = self.outputs.with(Output::MANIFEST, self.manifest.as_deref())?;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use interwell::output::{Caption, identified, identified_figure};
+use interwell::output::{Caption, identified, identified_chart};
 use interwell::scene::{Ask, Channel, Measured, Quantity, Timing, read_measured};
 use interwell::study::{
     FORCE_POINTS, Identified, Unidentified, damping, force, restitution, restitution_of_times,
@@ -119,16 +119,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         let name = options.file().file_name().unwrap_or_default().to_string_lossy();
         let caption = Caption::of_record(&name, options.of(), env!("CARGO_PKG_VERSION"));
         let record = (&across[..], &values.values[..]);
-        let figure = identified_figure(
-            options.of(),
-            &found,
-            record,
-            values.quantity,
-            picture.ranges,
-            &caption,
-            &picture.theme,
-        );
-        picture.write(&mut outputs, figure)?;
+        let chart = identified_chart(options.of(), &found, record, values.quantity, picture.ranges);
+        picture.write(&mut outputs, &chart, &caption)?;
     }
     outputs.finish()?;
     if !common.quiet {

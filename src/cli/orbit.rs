@@ -6,7 +6,7 @@ use std::sync::Arc;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use interwell::dynamics::Model;
-use interwell::output::branch_figure;
+use interwell::output::branch_chart;
 use interwell::scene::{Axis, Document, is_whole};
 use interwell::study::{Branch, BranchEnd, Family, NoOrbit, Table, Task, branch, orbit, orbit_table};
 
@@ -100,9 +100,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             bar.finish_and_clear();
             let found = found.map_err(|error| failed(error, &format!("at {field} = {from}: ")))?;
             if let Some(picture) = picture {
-                let figure =
-                    branch_figure(&found, phase_deg, picture.ranges, &caption(&document), &picture.theme);
-                picture.write(&mut outputs, figure)?;
+                let chart = branch_chart(&found, phase_deg, picture.ranges);
+                picture.write(&mut outputs, &chart, &caption(&document))?;
             }
             if !common.quiet {
                 remarks(&found, (from, to)).iter().for_each(|line| say(line));

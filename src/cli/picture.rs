@@ -5,7 +5,7 @@ use std::path::Path;
 use clap::parser::ValueSource;
 use clap::{ArgAction, ArgMatches, CommandFactory};
 use interwell::output::{
-    Argument, Caption, Figure, Format, Ranges, Sheet, SheetText, Theme, picture_arguments,
+    Argument, Caption, Chart, Format, Ranges, Sheet, SheetText, Theme, picture_arguments,
 };
 use interwell::scene::Document;
 
@@ -89,7 +89,8 @@ impl<'a> Picture<'a> {
     }
 
     /// Writes the picture, and its numbers if they are requested.
-    pub fn write(&self, outputs: &mut Outputs, figure: Figure) -> Result<(), Failure> {
+    pub fn write(&self, outputs: &mut Outputs, chart: &Chart, caption: &Caption) -> Result<(), Failure> {
+        let figure = chart.figure(caption, &self.theme);
         let mut figure = if self.titled { figure } else { figure.without_title() };
         figure.size = self.size;
         figure.origin.insert("arguments".into(), arguments().into());

@@ -1,7 +1,7 @@
 //! `section`: the state once a forcing period or at every impact; over a field the bifurcation diagram.
 
 use clap::Args;
-use interwell::output::{SectionPicture, manifest, section_figure};
+use interwell::output::{SectionPicture, manifest, section_chart};
 use interwell::study::{
     Carry, DIRECTION, Grid, MAX_SECTION, SectionAt, SectionOptions, Sections, Table, Tally, Task, section,
 };
@@ -114,7 +114,7 @@ fn one(options: &Arguments, common: &Common, mut settings: SectionOptions) -> Re
             stops,
             ranges: picture.ranges,
         };
-        picture.write(&mut outputs, section_figure(&shown, &caption(&document), &picture.theme))?;
+        picture.write(&mut outputs, &section_chart(&shown), &caption(&document))?;
     }
     outputs.finish()?;
     if let Some(at) = summary.outcome.ended_at() {
@@ -156,13 +156,13 @@ fn diagram(options: &Arguments, common: &Common, settings: SectionOptions) -> Re
     names.extend(settings.carry.map(|_| DIRECTION.to_owned()));
     names.extend(settings.columns().iter().map(|name| (*name).to_owned()));
     let (tally, count) = job.stream(&sections, "runs", &names)?;
-    let figure = |rows: &Table, picture: &Picture| {
+    let chart = |rows: &Table, picture: &Picture| {
         let over = sections.grid().columns().first().map(String::as_str);
         let (phase_deg, ranges) = (phase(&settings), picture.ranges);
         let shown = SectionPicture { rows, over, phase_deg, stops: (None, None), ranges };
-        Ok(section_figure(&shown, &caption(&document), &picture.theme))
+        Ok(section_chart(&shown))
     };
-    let wall_s = job.finish(figure, |origin| {
+    let wall_s = job.finish(chart, |origin| {
         let data = file_name(common.out());
         Ok(manifest("section", &document, sections.grid(), &tally, None, origin, &data))
     })?;

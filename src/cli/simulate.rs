@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use interwell::dynamics::{Model, Outcome};
 use interwell::numeric::{extent, short};
-use interwell::output::{Panel, Ranges, measured_figure, push_number, run_figure, summary};
+use interwell::output::{Ranges, RunPanel, measured_chart, push_number, run_chart, summary};
 use interwell::study::{
     Keep, Sampling, ended_remedy, sample_times, simulate, simulate_with_trace, yield_warning,
 };
@@ -52,7 +52,7 @@ pub struct Arguments {
     /// With --plot: these panels alone, one under the other: displacement, velocity, acceleration (of the
     /// base), portrait (velocity over displacement) [default: all, with numbers beside them]
     #[arg(long, value_name = "A,B,..", requires = "plot", conflicts_with = "measured", value_delimiter = ',',
-          value_parser = Panel::ALL.map(Panel::name))]
+          value_parser = RunPanel::ALL.map(RunPanel::name))]
     pub panels: Vec<String>,
 
     /// A measured motion to compare with.
@@ -120,19 +120,20 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let about = summary(&simulation.summary, &document.scene, &watch.origin(1));
     outputs.write(Output::SUMMARY, &about)?;
     if let Some((picture, trace)) = picture.zip(trace) {
-        let (about, mechanism) = (caption(&document), &model.mechanism());
-        let figure = match record.as_ref().zip(compared.as_ref()) {
+        let mechanism = model.mechanism();
+        let chart = match record.as_ref().zip(compared.as_ref()) {
             Some((measured, found)) => {
                 let quantity = measured.record.channels[1].quantity;
-                measured_figure(&trace, (found, quantity), measured.inset, axes, &about, &picture.theme)
+                measured_chart(&trace, (found, quantity), measured.inset, axes)
             }
             None => {
-                let named = options.panels.iter().filter_map(|name| Panel::named(name)).collect::<Vec<_>>();
-                let panels = if named.is_empty() { Panel::ALL.to_vec() } else { named };
-                run_figure(&trace, &simulation.summary, mechanism, &panels, axes, &about, &picture.theme)
+                let named =
+                    options.panels.iter().filter_map(|name| RunPanel::named(name)).collect::<Vec<_>>();
+                let panels = if named.is_empty() { RunPanel::ALL.to_vec() } else { named };
+                run_chart(&trace, &simulation.summary, (mechanism, model.mass()), &panels, axes)
             }
         };
-        picture.write(&mut outputs, figure)?;
+        picture.write(&mut outputs, &chart, &caption(&document))?;
     }
     if let Some(found) = &compared {
         outputs.table(Output::COMPARISON, &found.table)?;

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use interwell::numeric::Taper;
-use interwell::output::{SpectrumQuantity, spectrum_figure};
+use interwell::output::{SpectrumQuantity, spectrum_chart};
 use interwell::study::{NoSpectrum, Signal, SpectrumOptions, Task, spectrum};
 
 use super::failure::Failure;
@@ -97,10 +97,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             "psd" => SpectrumQuantity::Density,
             _ => SpectrumQuantity::Amplitude,
         };
-        picture.write(
-            &mut outputs,
-            spectrum_figure(&found, quantity, picture.ranges, &caption(&document), &picture.theme),
-        )?;
+        let chart = spectrum_chart(&found, quantity, picture.ranges);
+        picture.write(&mut outputs, &chart, &caption(&document))?;
     }
     outputs.finish()?;
     if !common.quiet {

@@ -1,7 +1,7 @@
 //! `threshold`: thresholds of a field, a row for each cell of a grid.
 
 use clap::Args;
-use interwell::output::{ThresholdPicture, can_show_thresholds, threshold_figure};
+use interwell::output::{ThresholdPicture, can_show_thresholds, threshold_chart};
 use interwell::scene::{Axis, Document, is_whole};
 use interwell::study::{CellFaults, Grid, NoThresholds, Onset, Scan, Table, Task, threshold_table};
 
@@ -119,7 +119,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if let Some(picture) = picture {
         let (rows, grid, scene, field) = (&table, &grid, &document.scene, &*scan.field);
         let shown = ThresholdPicture { rows, grid, scene, field, onset, ranges: picture.ranges };
-        picture.write(&mut outputs, threshold_figure(&shown, &caption(&document), &picture.theme)?)?;
+        picture.write(&mut outputs, &threshold_chart(&shown)?, &caption(&document))?;
     }
     outputs.finish()
 }

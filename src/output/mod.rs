@@ -15,14 +15,15 @@ pub use json::{identified, landscape, summary};
 pub use manifest::{Made, Provenance, basins_manifest, exponents_manifest, manifest, merged_manifest};
 pub use plan::{plan, plan_checksum, plan_differences};
 pub use plot::{
-    AXIS_EDGES, Argument, BACK_EDGES, BLACK, BoxPlace, Caption, ComparisonPicture, Cut, ExponentPicture,
-    Face, Figure, Format, Ink, MAX_PICTURE_CELLS, NoPicture, Overlay, PaintError, Panel, PlotAxis,
-    Projection, RMS, Ranges, SIDES, SectionPicture, Sheet, SheetError, SheetText, SpectrumQuantity,
-    SweepPicture, Theme, ThresholdPicture, UnknownFormat, View, accuracy_figure, attractor_colour,
-    basins_figure, branch_figure, can_show, can_show_exponents, can_show_starts, can_show_thresholds,
-    comparison_figure, contact_figure, curve_figure, exponents_figure, identified_figure, measured_figure,
-    measured_force_figure, picture_arguments, quantities, run_figure, section_figure, spectrum_figure,
-    speed_unit, surface_faces, sweep_about, sweep_figure, threshold_figure, viridis, wall_lines, words_of,
+    AXIS_EDGES, Argument, BACK_EDGES, BLACK, BoxPlace, Caption, Cell, Cells, Chart, Colours, Column,
+    ComparisonPicture, Cut, ExponentPicture, Face, Figure, Format, Ink, Layer, Look, MAX_PICTURE_CELLS,
+    Marks, NoPicture, Note, Overlay, PaintError, Panel, PlotAxis, Projection, RMS, Ranges, Role, RunPanel,
+    SIDES, SectionPicture, Sheet, SheetError, SheetText, Side, SpectrumQuantity, SweepPicture, Theme,
+    ThresholdPicture, UnknownFormat, View, accuracy_chart, attractor_colour, basins_chart, branch_chart,
+    can_show, can_show_exponents, can_show_starts, can_show_thresholds, comparison_chart, contact_chart,
+    curve_chart, exponents_chart, identified_chart, measured_chart, measured_force_chart, picture_arguments,
+    quantities, run_chart, section_chart, separatrix, spectrum_chart, speed_unit, surface_faces, sweep_about,
+    sweep_chart, threshold_chart, viridis, wall_lines, words_of,
 };
 pub use text::aligned;
 

@@ -88,10 +88,10 @@ impl Column {
         label_and_unit(&self.name).1
     }
 
-    /// The name as a person writes it, with the unit: `travel limit, mm`.
+    /// The name as a person writes it, with the unit: `travel limit (mm)`.
     pub fn label(&self) -> String {
         let (words, unit) = label_and_unit(&self.name);
-        if unit.is_empty() { words } else { format!("{words}, {unit}") }
+        if unit.is_empty() { words } else { format!("{words} ({unit})") }
     }
 }
 

@@ -71,8 +71,10 @@ pub fn texts(path: &Path) -> Vec<String> {
 fn says(line: &str, words: &[&str]) -> Vec<String> {
     let folder = tempfile::tempdir().unwrap();
     let texts = texts(&plot(line, folder.path(), "a.svg"));
+    // a label may have several lines
+    let joined = texts.join(" ");
     for word in words {
-        assert!(texts.iter().any(|text| text.contains(word)), "`{word}` is not in {line}: {texts:?}");
+        assert!(joined.contains(word), "`{word}` is not in {line}: {texts:?}");
     }
     texts
 }
@@ -101,16 +103,19 @@ fn every_command_draws_light_and_dark() {
 
 #[test]
 fn pictures_say_what_they_show() {
-    says("curve", &["Prototype with travel limits", "displacement, mm", "force to hold, N", "potential, mJ"]);
+    says(
+        "curve",
+        &["Prototype with travel limits", "displacement (mm)", "force to hold (N)", "potential (mJ)"],
+    );
     says("curve", &["stable equilibrium", "unstable equilibrium", "kink of the force", "stop", "barrier"]);
     let version =
         format!("interwell {} \u{b7} built-in paper \u{b7} tolerance 1e-9", env!("CARGO_PKG_VERSION"));
-    says("simulate", &[&version, "time, s", "displacement, mm", "velocity, mm/s", "base accel., g"]);
+    says("simulate", &[&version, "time (s)", "displacement (mm)", "velocity (mm/s)", "base accel. (g)"]);
     says(
         "simulate",
         &["impact", "at rest on a stop", "phase portrait", "interwell", "RMS velocity 49.49 mm/s"],
     );
-    says(SMALL_MAP, &["travel limit, mm", "amplitude, g", "RMS velocity, mm/s", "at rest"]);
+    says(SMALL_MAP, &["travel limit (mm)", "amplitude (g)", "RMS velocity (mm/s)", "at rest"]);
     says(
         SMALL_MAP,
         &["release in closed form", "first crossing cell", "7 \u{d7} 9 runs of 2 s, each from rest"],
@@ -118,20 +123,21 @@ fn pictures_say_what_they_show() {
     let line = "exponents duffing --periods 50 --over excitation.amplitude_g=";
     says(
         &format!("{line}0.02:0.05:0.01"),
-        &["first exponent", "standard error", "Lyapunov exponent, 1/s", "amplitude, g", "4 motions"],
+        &["first exponent", "standard error", "Lyapunov exponent (1/s)", "amplitude (g)", "4 motions"],
     );
     let resting = says("exponents paper --over excitation.amplitude_g=0.5,1", &["(rests on a stop)"]);
     assert!(!resting.iter().any(|text| text == "first exponent"), "nothing is drawn: {resting:?}");
     let line = "sweep duffing --set run.settle_s=100 --set run.duration_s=300 \
         --over excitation.amplitude_g=0.02,0.05";
-    says(line, &["amplitude, g", "RMS velocity, mm/s", "2 runs of 300 s", "intrawell"]);
+    says(line, &["amplitude (g)", "RMS velocity (mm/s)", "2 runs of 300 s", "intrawell"]);
     // A long name is cut, signs of XML are not taken for XML.
     let title = format!("title=<a> & \"b\" {}", "long ".repeat(200));
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.svg");
     with_plot("curve --out /dev/null", &path).arg("--set").arg(title).assert().success();
     assert!(
-        texts(&path).iter().any(|text| text.starts_with("&lt;a&gt; &amp;") && text.ends_with('\u{2026}'))
+        texts(&path).iter().any(|text| text.starts_with("&lt;a&gt; &amp;"))
+            && texts(&path).iter().any(|text| text.ends_with('\u{2026}'))
     );
 }
 
@@ -139,7 +145,7 @@ fn pictures_say_what_they_show() {
 fn a_wall_leaves_the_picture_and_the_picture_says_so() {
     // 25 N at 8 mm against 0.2 N between the wells: the axis shows the wells.
     let texts =
-        says("curve paper-table", &["force leaves the picture (", " N at 8 mm)", "0.2", "force to hold, N"]);
+        says("curve paper-table", &["force leaves the picture (", " N at 8 mm)", "0.2", "force to hold (N)"]);
     assert!(!texts.iter().any(|text| text == "20" || text == "10"), "{texts:?}");
     // The rows have all of it.
     let force =
@@ -324,5 +330,5 @@ fn no_font_of_the_machine_is_needed() {
             ["font-kit", "fontconfig", "freetype", "yeslogic"].iter().any(|own| name.starts_with(own));
         assert!(!system, "`{line}` looks for fonts of the machine");
     }
-    assert!(tree.contains("plotters"));
+    assert!(tree.contains("tiny-skia") && !tree.contains("ab_glyph"));
 }

@@ -12,8 +12,8 @@ use crate::app::task::pool;
 use crate::dynamics::Model;
 use crate::mechanics::Mechanism;
 use crate::output::{
-    Caption, Figure, Overlay, Panel, Ranges, SectionPicture, SpectrumQuantity, SweepPicture, Theme, View,
-    basins_figure, can_show, curve_figure, run_figure, section_figure, spectrum_figure, sweep_figure,
+    Caption, Chart, Figure, Overlay, Ranges, RunPanel, SectionPicture, SpectrumQuantity, SweepPicture, Theme,
+    View, basins_chart, can_show, curve_chart, run_chart, section_chart, spectrum_chart, sweep_chart,
 };
 use crate::scene::{Document, Fault, FieldPath, arguments};
 use crate::study::{
@@ -42,13 +42,9 @@ pub(super) fn draw(order: &FigureOrder, cancel: &AtomicBool) -> Result<Option<Fi
 /// The figure; if cancelled, any error.
 fn figure(order: &FigureOrder, cancel: &AtomicBool) -> Result<Figure> {
     let document = document(order)?;
-    let drawing = Drawing {
-        caption: Caption::new(&document, env!("CARGO_PKG_VERSION")),
-        theme: Theme::of(false, Some(order.sheet)),
-        task: Task { tick: &|| (), cancel },
-        document,
-    };
-    match &order.subject {
+    let caption = Caption::new(&document, env!("CARGO_PKG_VERSION"));
+    let drawing = Drawing { task: Task { tick: &|| (), cancel }, document };
+    let chart = match &order.subject {
         Subject::Run(times, panels) => drawing.run(*times, panels),
         Subject::Curve => drawing.curve(),
         Subject::Sweep(_, quantity, surface) => drawing.sweep(&order.subject, quantity, *surface),
@@ -56,7 +52,8 @@ fn figure(order: &FigureOrder, cancel: &AtomicBool) -> Result<Figure> {
         Subject::Section => drawing.section(),
         Subject::Basins(x_mm, v) => drawing.basins(*x_mm, *v),
         Subject::Spectrum(signal, until) => drawing.spectrum(*signal, *until),
-    }
+    };
+    Ok(chart?.figure(&caption, &Theme::of(false, Some(order.sheet))))
 }
 
 /// Reads the document as the command line does; an error if it differs from the scene of the window.
@@ -89,8 +86,6 @@ fn cancelled() -> Error {
 /// What all figures need.
 struct Drawing<'a> {
     document: Document,
-    caption: Caption,
-    theme: Theme,
     task: Task<'a>,
 }
 
@@ -112,25 +107,25 @@ impl Drawing<'_> {
         self.document.error_from(faults).into()
     }
 
-    fn run(&self, times: Option<(f64, f64)>, panels: &[Panel]) -> Result<Figure> {
+    fn run(&self, times: Option<(f64, f64)>, panels: &[RunPanel]) -> Result<Chart> {
         let (document, model) = (&self.document, self.model()?);
         let sample_times = sample_times(&document.scene, &model, &Sampling::Default, None)?;
         let keep = Keep { times: sample_times, events: false, until_settled: None };
         let (simulation, trace) = simulate_with_trace(&model, &keep, times, Some(self.task.cancel));
         let ranges = Ranges { x: times, y: None };
-        let mechanism = &model.mechanism();
-        Ok(run_figure(&trace, &simulation.summary, mechanism, panels, ranges, &self.caption, &self.theme))
+        let mechanism = model.mechanism();
+        Ok(run_chart(&trace, &simulation.summary, (mechanism, model.mass()), panels, ranges))
     }
 
-    fn curve(&self) -> Result<Figure> {
+    fn curve(&self) -> Result<Chart> {
         let (scene, mechanism) = (&self.document.scene, self.mechanism()?);
         let positions = default_positions(scene, &mechanism, CURVE_PICTURE_POINTS);
         let table = curve(&mechanism, positions)?;
         let stops = stop_positions(scene);
-        Ok(curve_figure(&table, &mechanism, stops, Ranges::default(), &self.caption, &self.theme))
+        Ok(curve_chart(&table, &mechanism, stops, Ranges::default()))
     }
 
-    fn sweep(&self, subject: &Subject, quantity: &str, surface: bool) -> Result<Figure> {
+    fn sweep(&self, subject: &Subject, quantity: &str, surface: bool) -> Result<Chart> {
         let (grid, pool) = (self.grid(subject)?, threads()?);
         let scene = &self.document.scene;
         let carry = subject.is_walked().then_some(Carry::Both);
@@ -151,10 +146,10 @@ impl Drawing<'_> {
         };
         let (rows, ranges) = (&rows, Ranges::default());
         let plot = SweepPicture { rows, grid, scene, until_settled: None, quantity, overlay, view, ranges };
-        Ok(sweep_figure(&plot, &self.caption, &self.theme)?)
+        Ok(sweep_chart(&plot)?)
     }
 
-    fn diagram(&self, subject: &Subject) -> Result<Figure> {
+    fn diagram(&self, subject: &Subject) -> Result<Chart> {
         let (grid, pool) = (self.grid(subject)?, threads()?);
         let options = strobe_options(Some(Carry::Both));
         let sections = Sections::new(&self.document.scene, &self.document.files, grid).with(options);
@@ -166,19 +161,19 @@ impl Drawing<'_> {
         Ok(self.of_section(&rows, over, (None, None)))
     }
 
-    fn section(&self) -> Result<Figure> {
+    fn section(&self) -> Result<Chart> {
         let (model, options) = (self.model()?, strobe_options(None));
         let found = section(&model, &self.document.scene, &options, self.task.cancel);
         let (rows, _) = found.map_err(|fault| self.faulty(vec![fault]))?;
         Ok(self.of_section(&rows, None, model.stop_positions()))
     }
 
-    fn of_section(&self, rows: &Table, over: Option<&str>, stops: (Option<f64>, Option<f64>)) -> Figure {
+    fn of_section(&self, rows: &Table, over: Option<&str>, stops: (Option<f64>, Option<f64>)) -> Chart {
         let plot = SectionPicture { rows, over, phase_deg: Some(0.0), stops, ranges: Ranges::default() };
-        section_figure(&plot, &self.caption, &self.theme)
+        section_chart(&plot)
     }
 
-    fn basins(&self, x_mm: (f64, f64), v: (f64, f64)) -> Result<Figure> {
+    fn basins(&self, x_mm: (f64, f64), v: (f64, f64)) -> Result<Chart> {
         let even = |(from, to): (f64, f64)| EvenRange { from, to, count: STARTS };
         let starts = Starts::grid(&even(x_mm), &even(v))?;
         let basins = Basins::new(&self.document.scene, self.mechanism()?, starts);
@@ -189,14 +184,14 @@ impl Drawing<'_> {
         let pool = threads()?;
         while !basins.is_whole() && basins.run_level(&pool, &self.task) {}
         let answer = basins.answer(&self.task).ok_or_else(cancelled)?;
-        Ok(basins_figure(&basins, &answer, &self.caption, &self.theme))
+        Ok(basins_chart(&basins, &answer))
     }
 
-    fn spectrum(&self, signal: Signal, until_settled: Option<f64>) -> Result<Figure> {
+    fn spectrum(&self, signal: Signal, until_settled: Option<f64>) -> Result<Chart> {
         let options = SpectrumOptions { signal, taper: None, rate_hz: None, until_settled };
         let found = spectrum(&self.model()?, &options, &self.task)?;
         let (quantity, ranges) = (SpectrumQuantity::Amplitude, Ranges::default());
-        Ok(spectrum_figure(&found, quantity, ranges, &self.caption, &self.theme))
+        Ok(spectrum_chart(&found, quantity, ranges))
     }
 }
 

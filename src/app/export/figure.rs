@@ -11,7 +11,7 @@ use crate::app::session::explore::{STARTS, WalkQuantity, longest_wait};
 use crate::app::session::map::{ground, over};
 use crate::numeric::short;
 use crate::output::{
-    Argument, Figure, Format, Panel, RMS, Sheet, Sink, header, picture_arguments, rows, words_of,
+    Argument, Figure, Format, RMS, RunPanel, Sheet, Sink, header, picture_arguments, rows, words_of,
 };
 use crate::scene::{FieldPath, Scene, Start, SweepAxis, arguments};
 use crate::study::Signal;
@@ -24,7 +24,7 @@ use super::quoted;
 #[derive(Debug, Clone, PartialEq)]
 pub enum Subject {
     /// Panels of a run, over a range of times in s or over all times.
-    Run(Option<(f64, f64)>, Vec<Panel>),
+    Run(Option<(f64, f64)>, Vec<RunPanel>),
     /// Force and potential of the mechanism.
     Curve,
     /// A quantity over two fields, or over one that is walked up and down; over two, optionally as a surface.
@@ -126,7 +126,7 @@ impl Subject {
         let mut ranges = Vec::new();
         let name = match self {
             Self::Run(times, panels) => {
-                if panels.len() < Panel::ALL.len() {
+                if panels.len() < RunPanel::ALL.len() {
                     options.extend(panels.iter().map(|panel| Argument::of("panels", panel.name())));
                 }
                 ranges.extend(times.map(|(from, to)| Argument::of("plot-x", format!("{from}:{to}"))));

@@ -12,7 +12,7 @@ use crate::app::ui::widgets::kind_shapes;
 use crate::app::words::numbers::three;
 use crate::app::words::status::Kind;
 use crate::dynamics::{Model, Phase, Sample};
-use crate::numeric::bisect;
+use crate::output::separatrix as separatrix_of;
 use crate::study::between;
 
 use super::chart::Chart;
@@ -167,38 +167,13 @@ fn within(context: &ViewContext<'_>, x: f64) -> bool {
 /// Draws the states with the energy of the top of the barrier. Returns whether there is a barrier.
 fn separatrix(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) -> bool {
     let model = context.session.shown();
-    let Some(barrier) = model.mechanism().landscape.barrier else { return false };
-    let curve = &model.mechanism().curve;
-    let top = curve.potential(barrier.x);
-    let domain = curve.domain();
-    let (low, high) = (context.span.low.max(domain.0), context.span.high.min(domain.1));
     let stroke = context.style.ghost_stroke();
-    // from the barrier outwards, to the point where the potential is as high again
-    for end in [low, high] {
-        let place = |i: usize| barrier.x + (end - barrier.x) * i as f64 / 400.0;
-        let square = |x: f64| 2.0 * (top - curve.potential(x)) / model.mass();
-        let mut path: Vec<(f64, f64)> = vec![(barrier.x, 0.0)];
-        for i in 1..=400 {
-            let square = square(place(i));
-            if !(square > 0.0) {
-                let turn = turning_point(|x| top - curve.potential(x), place(i - 1), place(i));
-                path.push((turn, 0.0));
-                break;
-            }
-            path.push((place(i), square.sqrt()));
-        }
-        for sign in [1.0, -1.0] {
-            let points: Vec<Pos2> = path.iter().map(|(x, v)| chart.screen_from_world(*x, sign * v)).collect();
-            painter.extend(Shape::dashed_line(&points, stroke, 5.0, 4.0));
-        }
+    let branches = separatrix_of(model.mechanism(), model.mass(), (context.span.low, context.span.high));
+    for path in &branches {
+        let points: Vec<Pos2> = path.iter().map(|(x, v)| chart.screen_from_world(*x, *v)).collect();
+        painter.extend(Shape::dashed_line(&points, stroke, 5.0, 4.0));
     }
-    true
-}
-
-/// The zero of `height` between a point where it is positive and one where it is not, to screen accuracy.
-fn turning_point(height: impl Fn(f64) -> f64, above: f64, below: f64) -> f64 {
-    let (above, below) = bisect(above, below, 20, |x| height(x) > 0.0);
-    0.5 * (above + below)
+    !branches.is_empty()
 }
 
 /// Draws the recent path, fading with age. An impact is a dashed jump; moving the mass by hand leaves a gap.
@@ -343,10 +318,5 @@ mod tests {
         assert!(path.len() == 2001 && path.last().is_some_and(|last| last.t == 10.0005));
         assert_eq!(recent(&samples, sample(19.0), 1e9).len(), MAX_POINTS + 1);
         assert_eq!(recent(&VecDeque::new(), sample(0.0), 1.0).len(), 1);
-    }
-
-    #[test]
-    fn a_turning_point_is_found() {
-        assert!((turning_point(|x| 1.0 - x, 0.0, 4.0) - 1.0).abs() < 1e-5);
     }
 }

@@ -6,7 +6,7 @@ use crate::app::export::figure::{FigureOrder, Place, Subject, round_times};
 use crate::app::session::Session;
 use crate::app::task::Background;
 use crate::app::views::{Memory, View, stretch};
-use crate::output::{Format, Panel, Sheet, SheetText};
+use crate::output::{Format, RunPanel, Sheet, SheetText};
 use crate::system::files;
 
 use super::messages::WriteResult;
@@ -29,7 +29,7 @@ pub struct Figures {
     pub data: bool,
     /// The times in s of a run; empty for all of it.
     pub times: [String; 2],
-    /// The panels of a run, in the order of [`Panel::ALL`].
+    /// The panels of a run, in the order of [`RunPanel::ALL`].
     pub panels: [bool; 4],
     /// Why the last figure was not saved.
     pub(super) problem: Option<String>,
@@ -89,7 +89,7 @@ impl Figures {
         self.choose(&folder.join(format!("{stem}-{name}.{ending}")));
         self.times = times(session, memory)
             .map_or([String::new(), String::new()], |(from, to)| [from, to].map(|t| t.to_string()));
-        self.panels = Panel::ALL.map(|shown| panel(view) == Some(shown));
+        self.panels = RunPanel::ALL.map(|shown| panel(view) == Some(shown));
         (self.view, self.problem, self.had_focus) = (Some(view), None, false);
     }
 
@@ -119,8 +119,9 @@ impl Figures {
     fn subject(&self, view: View, session: &Session, memory: &Memory) -> Result<Subject, String> {
         match view {
             _ if panel(view).is_some() => {
-                let shown = Panel::ALL.into_iter().zip(self.panels).filter(|pair| pair.1).map(|pair| pair.0);
-                let shown: Vec<Panel> = shown.collect();
+                let shown =
+                    RunPanel::ALL.into_iter().zip(self.panels).filter(|pair| pair.1).map(|pair| pair.0);
+                let shown: Vec<RunPanel> = shown.collect();
                 let none = "Panels: at least one is needed.";
                 if shown.is_empty() {
                     Err(none.to_owned())
@@ -194,12 +195,12 @@ impl Figures {
     }
 }
 
-pub(super) fn panel(view: View) -> Option<Panel> {
+pub(super) fn panel(view: View) -> Option<RunPanel> {
     match view {
-        View::Displacement => Some(Panel::Displacement),
-        View::Velocity => Some(Panel::Velocity),
-        View::BaseAcceleration => Some(Panel::Acceleration),
-        View::PhasePortrait => Some(Panel::Portrait),
+        View::Displacement => Some(RunPanel::Displacement),
+        View::Velocity => Some(RunPanel::Velocity),
+        View::BaseAcceleration => Some(RunPanel::Acceleration),
+        View::PhasePortrait => Some(RunPanel::Portrait),
         _ => None,
     }
 }

@@ -4,7 +4,7 @@ mod dry_run;
 mod prepared;
 mod rows;
 
-use interwell::output::{Figure, Made, Overlay, SweepPicture, header, manifest, rows, sweep_figure};
+use interwell::output::{Chart, Made, Overlay, SweepPicture, header, manifest, rows, sweep_chart};
 use interwell::scene::Document;
 use interwell::study::{SweepOptions, Table, Tally};
 use serde_json::Value;
@@ -13,7 +13,7 @@ use super::failure::Failure;
 use super::grid_job::GridJob;
 use super::options::Common;
 use super::outputs::{Output, Outputs};
-use super::picture::{Picture, caption};
+use super::picture::Picture;
 use super::say;
 use super::support::{file_name, inputs, manifest_path, pool};
 pub use prepared::Arguments;
@@ -54,8 +54,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             say(&format!("{}: all {} rows are the same", prepared.data.display(), all.cells));
         }
     }
-    let figure = |rows: &Table, picture: &Picture| prepared.figure(rows, picture);
-    let wall_s = job.finish(figure, |origin| {
+    let chart = |rows: &Table, picture: &Picture| prepared.chart(rows, picture);
+    let wall_s = job.finish(chart, |origin| {
         let sha256 = rows_out.close()?;
         let made = Made { plan: &plan, shard: slice.shard(), sha256: &sha256 };
         Ok(manifest("sweep", document, sweep.grid(), &all, Some(made), origin, &file_name(out)))
@@ -109,7 +109,7 @@ impl Prepared<'_> {
         Ok(())
     }
 
-    fn figure(&self, rows: &Table, picture: &Picture) -> Result<Figure, Failure> {
+    fn chart(&self, rows: &Table, picture: &Picture) -> Result<Chart, Failure> {
         let (grid, scene) = (self.sweep.grid(), &self.document.scene);
         let &SweepOptions { until_settled, carry, .. } = self.sweep.options();
         // The overlay holds for runs from rest only.
@@ -119,7 +119,7 @@ impl Prepared<'_> {
         };
         let (quantity, view, ranges) = (&*self.options.quantity, self.view.clone(), picture.ranges);
         let shown = SweepPicture { rows, grid, scene, until_settled, quantity, overlay, view, ranges };
-        Ok(sweep_figure(&shown, &caption(&self.document), &picture.theme)?)
+        Ok(sweep_chart(&shown)?)
     }
 }
 

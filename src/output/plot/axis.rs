@@ -14,6 +14,20 @@ pub struct PlotAxis {
     pub ticks: Vec<(f64, String)>,
     /// What the axis shows, with unit and power of ten.
     pub label: String,
+    /// What it shows, without a power of ten.
+    name: String,
+    scale: Scale,
+}
+
+/// How ticks are placed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Scale {
+    /// At steps of 1, 2 or 5 times a power of ten.
+    Linear,
+    /// At powers of ten; the ends are logarithms.
+    Decades,
+    /// Where they were given.
+    Given,
 }
 
 /// The requested ranges of a picture's axes: of the horizontal one and of the (first) vertical one.
@@ -25,25 +39,36 @@ pub struct Ranges {
     pub y: Option<(f64, f64)>,
 }
 
+/// Ticks of an axis that has no place yet.
+const USUAL: usize = 6;
+
 /// Values beyond this are drawn at it, so that no difference of two values overflows.
 const LARGEST: f64 = 1e300;
 
 impl PlotAxis {
-    /// An axis from the least to the greatest of `values`, with `margin` of that range added at both ends
-    /// and about `count` ticks. Values that are not finite are ignored; a range of length 0 is widened.
-    pub fn around(values: impl IntoIterator<Item = f64>, margin: f64, count: usize, label: &str) -> Self {
+    /// An axis from the least to the greatest of `values`, with `margin` of that range added at both ends.
+    /// Values that are not finite are ignored; a range of length 0 is widened.
+    pub fn around(values: impl IntoIterator<Item = f64>, margin: f64, label: &str) -> Self {
         let (low, high) = extent(values.into_iter().filter(|value| value.is_finite()));
         if low > high {
-            return Self::between(0.0, 1.0, count, label);
+            return Self::between(0.0, 1.0, label);
         }
         let more = margin * (high - low);
-        Self::between(low - more, high + more, count, label)
+        Self::between(low - more, high + more, label)
     }
 
-    /// An axis from `low` to `high` with about `count` ticks at steps of 1, 2 or 5 times a power of ten.
-    pub fn between(low: f64, high: f64, count: usize, label: &str) -> Self {
+    /// An axis from `low` to `high` with ticks at steps of 1, 2 or 5 times a power of ten.
+    pub fn between(low: f64, high: f64, label: &str) -> Self {
+        Self::linear(low, high, USUAL, label)
+    }
+
+    fn linear(low: f64, high: f64, count: usize, label: &str) -> Self {
         let (low, high) = finite_range(low, high);
-        let step = round_up((high - low) / count.max(1) as f64, &ONE_TWO_FIVE);
+        let ticks = |step: f64| (high / step + 1e-9).floor() - (low / step - 1e-9).ceil() + 1.0;
+        let usual = round_up((high - low) / count.max(1) as f64, &ONE_TWO_FIVE);
+        // a smaller step where its ticks are not more than those of a range that begins and ends with one
+        let finer = round_up(0.39 * usual, &ONE_TWO_FIVE);
+        let step = if ticks(finer) <= count as f64 + 1.0 { finer } else { usual };
         // Where plain numbers would be long, a common power of ten goes into the label.
         let largest = low.abs().max(high.abs());
         let power = decade(largest);
@@ -65,41 +90,76 @@ impl PlotAxis {
         } else {
             [low, high].map(|value| (value, format!("{:.12}", value / scale))).into()
         };
-        let label =
-            if power == 0 { label.to_owned() } else { format!("{label} (\u{d7}10{})", superscript(power)) };
-        Self { low, high, ticks, label }
+        let name = label.to_owned();
+        let label = match (power, label.rsplit_once(" (")) {
+            (0, _) => label.to_owned(),
+            (_, Some((words, unit))) => format!("{words} (10{} {unit}", superscript(power)),
+            (_, None) => format!("{label} (\u{d7}10{})", superscript(power)),
+        };
+        Self { low, high, ticks, label, name, scale: Scale::Linear }
+    }
+
+    /// An axis with these ticks.
+    pub fn given(low: f64, high: f64, ticks: Vec<(f64, String)>, label: &str) -> Self {
+        Self { low, high, ticks, label: label.to_owned(), name: label.to_owned(), scale: Scale::Given }
+    }
+
+    /// The axis with about `count` ticks.
+    #[must_use]
+    pub fn with_ticks(&self, count: usize) -> Self {
+        match self.scale {
+            Scale::Linear => Self::linear(self.low, self.high, count, &self.name),
+            Scale::Decades => Self::logarithmic(self.low, self.high, count, &self.name),
+            Scale::Given => self.clone(),
+        }
+    }
+
+    /// The axis without its label.
+    #[must_use]
+    pub fn unlabelled(&self) -> Self {
+        Self { label: String::new(), name: String::new(), ..self.clone() }
+    }
+
+    /// Whether a value lies between its ends.
+    pub fn contains(&self, value: f64) -> bool {
+        (self.low..=self.high).contains(&value)
     }
 
     /// The axis over the given range, or `self` if there is none.
     #[must_use]
-    pub fn or_given(self, range: Option<(f64, f64)>, count: usize, label: &str) -> Self {
-        range.map_or(self, |(low, high)| Self::between(low, high, count, label))
+    pub fn or_given(self, range: Option<(f64, f64)>) -> Self {
+        match range {
+            Some((low, high)) => Self::linear(low, high, USUAL, &self.name),
+            None => self,
+        }
     }
 
     /// A logarithmic axis in whole decades that covers `values`, which are not logarithms and above 0, with
-    /// about `count` ticks at powers of ten.
-    pub fn decades(values: impl IntoIterator<Item = f64>, count: usize, label: &str) -> Self {
+    /// ticks at powers of ten.
+    pub fn decades(values: impl IntoIterator<Item = f64>, label: &str) -> Self {
         let logs = values.into_iter().filter(|value| value.is_finite() && *value > 0.0).map(f64::log10);
         let (low, high) = extent(logs);
         let (low, high) =
             if low > high { (0.0, 1.0) } else { (low.floor(), high.ceil().max(low.floor() + 1.0)) };
-        let every = ((high - low) / count.max(1) as f64).ceil() as i32;
-        let powers = (low as i32..=high as i32).filter(|power| power.rem_euclid(every) == 0);
+        Self::powers(low, high, label)
+    }
+
+    /// A logarithmic axis between these logarithms, with ticks at powers of ten.
+    pub fn powers(low: f64, high: f64, label: &str) -> Self {
+        Self::logarithmic(low, high, USUAL, label)
+    }
+
+    fn logarithmic(low: f64, high: f64, count: usize, label: &str) -> Self {
+        let every = (((high - low) / count.max(1) as f64).ceil() as i32).max(1);
+        let powers = low.ceil() as i32..=high.floor() as i32;
+        let powers = powers.filter(|power| power.rem_euclid(every) == 0);
         let ticks = powers.map(|power| (f64::from(power), format!("10{}", superscript(power)))).collect();
-        Self { low, high, ticks, label: label.to_owned() }
+        Self { scale: Scale::Decades, ..Self::given(low, high, ticks, label) }
     }
 
     /// Where `value` stands between the ends: 0 at the lower, 1 at the upper.
     pub fn share(&self, value: f64) -> f64 {
         (value.clamp(-LARGEST, LARGEST) - self.low) / (self.high - self.low)
-    }
-
-    /// The axis without numbers at its ticks, and without a label.
-    #[must_use]
-    pub fn silent(mut self) -> Self {
-        self.ticks.iter_mut().for_each(|tick| tick.1.clear());
-        self.label.clear();
-        self
     }
 }
 
@@ -138,25 +198,25 @@ mod tests {
 
     #[test]
     fn decades_cover_what_they_show() {
-        let axis = PlotAxis::decades([3e-5, f64::NAN, 0.0, 2.0], 3, "error");
+        let axis = PlotAxis::decades([3e-5, f64::NAN, 0.0, 2.0], "error").with_ticks(3);
         assert_eq!((axis.low, axis.high), (-5.0, 1.0));
         assert_eq!(numbers(&axis), "10\u{207b}\u{2074} 10\u{207b}\u{b2} 10\u{2070}");
-        let one = PlotAxis::decades([1e-3], 5, "");
+        let one = PlotAxis::decades([1e-3], "");
         assert_eq!((one.low, one.high), (-3.0, -2.0));
-        let none = PlotAxis::decades([], 5, "");
+        let none = PlotAxis::decades([], "");
         assert_eq!((none.low, none.high), (0.0, 1.0));
     }
 
     #[test]
     fn ticks_are_short_numbers() {
-        assert_eq!(numbers(&PlotAxis::between(0.0, 2.0, 5, "")), "0.0 0.5 1.0 1.5 2.0");
-        assert_eq!(numbers(&PlotAxis::between(-1.7, 1.7, 4, "")), "\u{2212}1 0 1");
-        assert_eq!(numbers(&PlotAxis::between(0.0, 10.0, 5, "")), "0 2 4 6 8 10");
-        assert_eq!(numbers(&PlotAxis::between(0.0, 1570.8, 5, "")), "0 500 1000 1500");
-        let small = PlotAxis::between(0.0, 2e-9, 4, "x, m");
+        assert_eq!(numbers(&PlotAxis::between(0.0, 2.0, "").with_ticks(5)), "0.0 0.5 1.0 1.5 2.0");
+        assert_eq!(numbers(&PlotAxis::between(-1.7, 1.7, "").with_ticks(4)), "\u{2212}1 0 1");
+        assert_eq!(numbers(&PlotAxis::between(0.0, 10.0, "").with_ticks(5)), "0 2 4 6 8 10");
+        assert_eq!(numbers(&PlotAxis::between(0.0, 1570.8, "").with_ticks(5)), "0 500 1000 1500");
+        let small = PlotAxis::between(0.0, 2e-9, "x (m)").with_ticks(4);
         assert_eq!(
             (numbers(&small), small.label.as_str()),
-            ("0.0 0.5 1.0 1.5 2.0".into(), "x, m (\u{d7}10\u{207b}\u{2079})")
+            ("0.0 0.5 1.0 1.5 2.0".into(), "x (10\u{207b}\u{2079} m)")
         );
     }
 
@@ -167,7 +227,7 @@ mod tests {
         for low in ends {
             for high in ends.into_iter().chain([low * (1.0 + 1e-15), low + 1.0]) {
                 for count in [0, 1, 5, 12] {
-                    let axis = PlotAxis::between(low, high, count, "x");
+                    let axis = PlotAxis::between(low, high, "x").with_ticks(count);
                     assert!(axis.low < axis.high, "{low} {high}");
                     assert!(!axis.ticks.is_empty() && axis.ticks.len() < 42, "{low} {high}: {axis:?}");
                     let shares = axis.ticks.iter().map(|tick| axis.share(tick.0));
@@ -175,7 +235,7 @@ mod tests {
                 }
             }
         }
-        assert_eq!(PlotAxis::around([nan, nan], 0.1, 5, "").low, 0.0);
-        assert_eq!(PlotAxis::around([3.0], 0.1, 5, "").ticks.len(), 3);
+        assert_eq!(PlotAxis::around([nan, nan], 0.1, "").low, 0.0);
+        assert_eq!(PlotAxis::around([3.0], 0.1, "").ticks.len(), 5);
     }
 }

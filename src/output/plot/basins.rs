@@ -1,18 +1,15 @@
 //! Picture of basins of attraction: the attractor of each start as colour, and the states of the attractors.
 
 use super::axis::PlotAxis;
+use super::cells::{Cell, Cells, Colours};
+use super::chart::{Chart, Marks, Panel};
 use super::drawn::Drawn;
-use super::figure::{Area, Figure};
-use super::frame::Frame;
-use super::mark::{Caption, Marker, Sample, marker};
-use super::style::{self, Ink, KINDS, Theme};
+use super::figure::Point;
+use super::role::Role;
+use super::style::{Ink, KINDS};
 use super::sweep::{MAX_PICTURE_CELLS, NoPicture};
-use super::swept::{LEAST, LEFT, below_legend};
 use crate::numeric::short;
 use crate::study::{Answer, Attractor, Basins, Edges, Starts, Table};
-
-/// Markers of attractors, in turn.
-const MARKERS: [Marker; 4] = [Marker::Disc, Marker::Square, Marker::Diamond, Marker::Triangle];
 
 /// Number of attractors that the legend names, those with the largest shares.
 const MAX_NAMED: usize = 9;
@@ -24,49 +21,71 @@ pub fn can_show_starts(starts: &Starts) -> Result<(), NoPicture> {
 }
 
 /// The picture of a map, which may be incomplete.
-pub fn basins_figure(basins: &Basins, answer: &Answer, caption: &Caption, theme: &Theme) -> Figure {
-    let mut figure = Figure::new(theme, caption, LEAST);
-    let entries = entries(basins, answer, theme);
-    let entries: Vec<(Sample, &str)> =
-        entries.iter().map(|(sample, words)| (*sample, words.as_str())).collect();
-    let top = below_legend(&mut figure, theme, &entries);
-    let (across, up) = match basins.starts().axes() {
+pub fn basins_chart(basins: &Basins, answer: &Answer) -> Chart {
+    let starts = basins.starts();
+    let (across, up) = match starts.axes() {
         Some((x_mm, v)) => (Edges::new(x_mm).ends(), Edges::new(v).ends()),
         None => {
-            let all = || (0..basins.starts().count()).map(|row| basins.starts().at(row));
+            let all = || (0..starts.count()).map(|row| starts.at(row));
             let around = |values: Vec<f64>| {
-                let axis = PlotAxis::around(values, 0.02, 8, "");
+                let axis = PlotAxis::around(values, 0.02, "");
                 (axis.low, axis.high)
             };
             (around(all().map(|start| start.0).collect()), around(all().map(|start| start.1).collect()))
         }
     };
-    let upward = PlotAxis::between(up.0, up.1, 7, "velocity at the start, m/s");
-    let rightward = PlotAxis::between(across.0, across.1, 8, "displacement at the start, mm");
-    let frame = Frame::whole(&figure, (LEFT, top), rightward, upward);
-    match basins.starts().axes() {
-        Some((x_mm, v)) => cells(&mut figure, &frame, (x_mm, v), basins, answer, theme),
-        None => dots(&mut figure, &frame, basins, answer, theme),
-    }
-    let (left, right) = basins.model().stop_positions();
-    for (stop, is_left) in [(left, true), (right, false)] {
-        if let Some(mm) = stop.map(|x| 1e3 * x).filter(|mm| *mm > across.0 && *mm < across.1) {
-            frame.wall_across(&mut figure, mm, is_left, theme);
+    let rightward = PlotAxis::between(across.0, across.1, "displacement at the start (mm)");
+    let mut panel = Panel::new(rightward, PlotAxis::between(up.0, up.1, "velocity at the start (m/s)"));
+    let (room, source) = (basins.room(), source_row(basins));
+    let is_outside = |x_mm: f64| x_mm / 1e3 < room.0 || x_mm / 1e3 > room.1;
+    let found = |row: usize| answer.rows[source(row)].map(|found| found.0 as usize - 1);
+    let names = names(basins, answer);
+    let missing = "none found";
+    match starts.axes() {
+        Some((x_mm, v)) => {
+            let kinds = (0..answer.attractors.len()).map(|place| (Role::Kind(place), names[place].clone()));
+            let cell = |row: usize| match found(row) {
+                Some(place) => Cell::Value(place as f64),
+                None if is_outside(x_mm[row / v.len()]) => Cell::Blank,
+                None => Cell::Missing,
+            };
+            let cells = Cells {
+                across: Edges::new(x_mm),
+                up: Edges::new(v),
+                cells: (0..starts.count()).map(cell).collect(),
+                colours: Colours::Categories(kinds.collect()),
+                missing,
+            };
+            panel.draw(Role::Motion, Marks::Cells(cells));
         }
-    }
-    for (place, attractor) in answer.attractors.iter().enumerate() {
-        for (x, v) in &attractor.states {
-            let at = frame.place((1e3 * x, *v));
-            if frame.area.contains(at) {
-                marker(&mut figure, shape(place), at, style::MARKER + 5.0, style::BLACK, style::BLACK);
-                marker(&mut figure, shape(place), at, style::MARKER, attractor_colour(place), style::WHITE);
+        None => {
+            let mut clouds = vec![Vec::new(); names.len() + 1];
+            for row in 0..starts.count() {
+                let (x_mm, v): Point = starts.at(row);
+                if !is_outside(x_mm) {
+                    clouds[found(row).unwrap_or(names.len())].push((x_mm, v));
+                }
+            }
+            let roles = (0..names.len()).map(Role::Kind).chain([Role::Missing]);
+            let words = names.iter().map(String::as_str).chain([missing]);
+            for ((role, name), cloud) in roles.zip(words).zip(clouds) {
+                if !cloud.is_empty() {
+                    panel.layer(role, name, Marks::Cloud(cloud));
+                }
             }
         }
     }
-    frame.axes(&mut figure, theme);
-    figure.data = drawn(basins, answer);
-    caption.draw(&mut figure, theme, &about(basins, answer), LEFT);
-    figure
+    let more = answer.attractors.len().saturating_sub(MAX_NAMED);
+    if more > 0 {
+        panel.layer(Role::Several, format!("{more} more"), Marks::Patch);
+    }
+    let (left, right) = basins.model().stop_positions();
+    panel.upright_stops((left.map_or(f64::NAN, |x| x * 1e3), right.map_or(f64::NAN, |x| x * 1e3)));
+    for (place, attractor) in answer.attractors.iter().enumerate() {
+        let states = attractor.states.iter().map(|(x, v)| (1e3 * x, *v)).collect();
+        panel.draw(Role::Kind(place), Marks::Points(states));
+    }
+    Chart::stack(vec![panel], about(basins, answer), drawn(basins, answer))
 }
 
 /// The data of the picture: the starts with the numbers of their attractors, and the attractors' states.
@@ -91,56 +110,6 @@ pub fn attractor_colour(place: usize) -> Ink {
     KINDS[place % KINDS.len()]
 }
 
-fn shape(place: usize) -> Marker {
-    MARKERS[place % MARKERS.len()]
-}
-
-/// The hatching of an attractor whose colour is used a second time.
-fn hatch(place: usize) -> Option<Ink> {
-    let dark = |Ink(r, g, b): Ink| 2 * u32::from(r) + 5 * u32::from(g) + u32::from(b) < 8 * 128;
-    let over = if dark(attractor_colour(place)) { style::WHITE } else { style::BLACK };
-    (place >= KINDS.len()).then_some(over)
-}
-
-/// The attractor of each start of a grid as the colour of its cell.
-fn cells(
-    figure: &mut Figure,
-    frame: &Frame,
-    (x_mm, v): (&[f64], &[f64]),
-    basins: &Basins,
-    answer: &Answer,
-    theme: &Theme,
-) {
-    let (across, up) = (Edges::new(x_mm), Edges::new(v));
-    let source = source_row(basins);
-    for (column, x_mm) in x_mm.iter().enumerate() {
-        let attractor = |row: usize| answer.rows[source(column * v.len() + row)].map(|found| found.0);
-        let all: Vec<Option<u32>> = (0..v.len()).map(attractor).collect();
-        let (low, high) = basins.room();
-        let outside = x_mm / 1e3 < low || x_mm / 1e3 > high;
-        let mut row = 0;
-        for run in all.chunk_by(|a, b| a == b) {
-            let (left, right) = (frame.across(across.edges[column]), frame.across(across.edges[column + 1]));
-            let (bottom, top) = (frame.down(up.edges[row]), frame.down(up.edges[row + run.len()]));
-            row += run.len();
-            let Some(area) = Area::new(left, top, right, bottom).common(frame.area) else { continue };
-            match run[0].map(|number| number as usize - 1) {
-                Some(place) => {
-                    figure.rect(area, attractor_colour(place));
-                    if let Some(over) = hatch(place) {
-                        figure.hatch(area, over);
-                    }
-                }
-                None if outside => {}
-                None => {
-                    figure.rect(area, theme.rest);
-                    figure.hatch(area, theme.rest_hatch);
-                }
-            }
-        }
-    }
-}
-
 /// Maps each row to the row whose answer is shown for it: itself, or the nearest one that has been run.
 fn source_row(basins: &Basins) -> impl Fn(usize) -> usize {
     let (levels, done) = basins.levels();
@@ -149,43 +118,15 @@ fn source_row(basins: &Basins) -> impl Fn(usize) -> usize {
     }
 }
 
-/// Random starts as discs in the colours of their attractors.
-fn dots(figure: &mut Figure, frame: &Frame, basins: &Basins, answer: &Answer, theme: &Theme) {
-    let size = (700.0 / (answer.rows.len() as f64).sqrt()).clamp(2.5, 9.0);
-    for (row, found) in answer.rows.iter().enumerate() {
-        let (x_mm, v) = basins.starts().at(row);
-        let (low, high) = basins.room();
-        if x_mm / 1e3 < low || x_mm / 1e3 > high {
-            continue;
-        }
-        let at = frame.place((x_mm, v));
-        figure.disc(at, size, theme.soft);
-        figure.disc(
-            at,
-            0.85 * size,
-            found.map_or(theme.rest, |found| attractor_colour(found.0 as usize - 1)),
-        );
+/// The names of the attractors with their shares; of many only those with the largest shares have one.
+fn names(basins: &Basins, answer: &Answer) -> Vec<String> {
+    let mut order: Vec<usize> = (0..answer.attractors.len()).collect();
+    order.sort_by_key(|place| std::cmp::Reverse(answer.attractors[*place].starts));
+    let mut names = vec![String::new(); order.len()];
+    for place in order.into_iter().take(MAX_NAMED) {
+        names[place] = words(place, &answer.attractors[place], basins.starts().is_grid());
     }
-}
-
-/// Entries of the legend: the attractors with their shares. If there are many, only the largest are named.
-fn entries(basins: &Basins, answer: &Answer, theme: &Theme) -> Vec<(Sample, String)> {
-    let mut named: Vec<usize> = (0..answer.attractors.len()).collect();
-    named.sort_by_key(|place| std::cmp::Reverse(answer.attractors[*place].starts));
-    let more = named.split_off(named.len().min(MAX_NAMED)).len();
-    named.sort_unstable();
-    let mut entries: Vec<(Sample, String)> = Vec::new();
-    for place in named {
-        let words = words(place, &answer.attractors[place], basins.starts().is_grid());
-        entries.push((Sample::Patch(attractor_colour(place), hatch(place)), words));
-    }
-    if more > 0 {
-        entries.push((Sample::Patch(theme.paper, None), format!("{more} more")));
-    }
-    if answer.lost + answer.undecided > 0 {
-        entries.push((Sample::Patch(theme.rest, Some(theme.rest_hatch)), "none found".into()));
-    }
-    entries
+    names
 }
 
 /// An attractor in words, with its number and its share; for random starts with the interval of the share.

@@ -2,83 +2,56 @@
 //! dashed, events marked.
 
 use super::axis::{PlotAxis, Ranges};
+use super::chart::{Chart, Marks, Panel};
 use super::drawn::Drawn;
-use super::figure::{Figure, Point};
-use super::frame::Frame;
-use super::mark::{Caption, Marker, Sample, marker};
-use super::style::{self, Theme};
-use super::swept::{LEAST, LEFT, below_legend, swept_axis};
+use super::figure::Point;
+use super::role::Role;
+use super::swept::swept_axis;
 use crate::numeric::short;
 use crate::study::{Branch, BranchEvent};
 
-/// The kinds of events with their markers.
-const EVENTS: [(BranchEvent, Marker); 4] = [
-    (BranchEvent::Fold, Marker::Triangle),
-    (BranchEvent::Flip, Marker::Diamond),
-    (BranchEvent::Symmetry, Marker::Square),
-    (BranchEvent::Grazing, Marker::DoubleArrow),
-];
+/// The kinds of events in the order of their markers.
+const EVENTS: [BranchEvent; 4] =
+    [BranchEvent::Fold, BranchEvent::Flip, BranchEvent::Symmetry, BranchEvent::Grazing];
 
 /// The picture of a branch; `phase_deg` is the phase of its strobe in degrees.
-pub fn branch_figure(
-    branch: &Branch,
-    phase_deg: f64,
-    ranges: Ranges,
-    caption: &Caption,
-    theme: &Theme,
-) -> Figure {
-    let mut figure = Figure::new(theme, caption, LEAST);
+pub fn branch_chart(branch: &Branch, phase_deg: f64, ranges: Ranges) -> Chart {
     let table = branch.table();
+    let field = table.columns()[0].name.as_str();
     let millimetres: Vec<f64> = branch.orbits.iter().map(|orbit| orbit.state.0 * 1e3).collect();
     let points: Vec<Point> = branch.values.iter().copied().zip(millimetres.iter().copied()).collect();
     let stable: Vec<bool> = branch.orbits.iter().map(|orbit| orbit.is_stable()).collect();
-    let mut entries = Vec::new();
-    if stable.contains(&true) {
-        entries.push((Sample::Line(theme.ink, style::LINE, None), "stable"));
-    }
-    if stable.contains(&false) {
-        entries.push((Sample::Line(theme.unstable, style::LINE, Some(style::DASH)), "unstable"));
-    }
-    for (event, shape) in EVENTS.into_iter().filter(|kind| branch.events.contains(&Some(kind.0))) {
-        entries.push((Sample::Marker(shape, theme.soft), event.name()));
-    }
-    let top = below_legend(&mut figure, theme, &entries);
-    let y_label = "displacement at the strobe, mm";
-    let across = swept_axis(&table, &table.columns()[0].name, ranges.x);
-    let up = PlotAxis::around(millimetres, 0.08, 6, y_label).or_given(ranges.y, 6, y_label);
-    let frame = Frame::whole(&figure, (LEFT, top), across, up);
-    frame.grid(&mut figure, theme);
+    let up = PlotAxis::around(millimetres, 0.08, "displacement at the strobe (mm)").or_given(ranges.y);
+    let mut panel = Panel::new(swept_axis(&table, field, ranges.x), up);
     // a stable or unstable stretch ends at the point where the next one begins
-    let mut from = 0;
-    for to in 1..=points.len() {
-        if to < points.len() && stable[to] == stable[from] {
-            continue;
+    for (is_stable, role, name) in [(true, Role::Curve, "stable"), (false, Role::UnstableMotion, "unstable")]
+    {
+        let mut line = Vec::new();
+        for (i, point) in points.iter().enumerate() {
+            if stable[i] == is_stable || (i > 0 && stable[i - 1] == is_stable) {
+                line.push(*point);
+            }
+            if stable[i] != is_stable {
+                line.push((f64::NAN, f64::NAN));
+            }
         }
-        let stretch = &points[from..=to.min(points.len() - 1)];
-        if stable[from] {
-            frame.line(&mut figure, stretch, style::LINE, theme.ink);
-        } else {
-            frame.dashed(&mut figure, stretch, style::LINE, theme.unstable, style::DASH);
-        }
-        from = to;
-    }
-    for (event, point) in branch.events.iter().zip(&points) {
-        let shape = event.and_then(|event| EVENTS.iter().find(|known| known.0 == event));
-        let at = frame.place(*point);
-        if let Some((_, shape)) = shape.filter(|_| frame.area.contains(at)) {
-            marker(&mut figure, *shape, at, style::MARKER, theme.soft, theme.ink);
+        if stable.contains(&is_stable) {
+            panel.layer(role, name, Marks::Path(line));
         }
     }
-    frame.axes(&mut figure, theme);
-    let mut drawn = Drawn::new([table.columns()[0].name.as_str(), "x_m"], &["stable", "event"]);
-    for (i, value) in branch.values.iter().enumerate() {
-        if (frame.x.low..=frame.x.high).contains(value) {
-            let words =
-                [if stable[i] { "true" } else { "false" }, branch.events[i].map_or("", |event| event.name())];
-            drawn.put("branch", &[*value, branch.orbits[i].state.0], &words);
+    for (place, event) in EVENTS.into_iter().enumerate() {
+        let marked = branch.events.iter().zip(&points).filter(|row| *row.0 == Some(event));
+        let marked: Vec<Point> = marked.map(|row| *row.1).collect();
+        if !marked.is_empty() {
+            panel.layer(Role::Event(place), event.name(), Marks::Points(marked));
         }
     }
-    figure.data = drawn.table();
+    let mut drawn = Drawn::new([field, "x_m"], &["stable", "event"]);
+    for (i, value) in branch.values.iter().enumerate().filter(|row| panel.x.contains(*row.1)) {
+        let words =
+            [if stable[i] { "true" } else { "false" }, branch.events[i].map_or("", |event| event.name())];
+        drawn.put("branch", &[*value, branch.orbits[i].state.0], &words);
+    }
     let period = branch.orbits.first().map_or(1, |orbit| orbit.period);
     let about = format!(
         "{} periodic motions of period {period}, at the drive's phase {}\u{b0}; the branch ends {}",
@@ -86,6 +59,5 @@ pub fn branch_figure(
         short(phase_deg),
         branch.end
     );
-    caption.draw(&mut figure, theme, &about, LEFT);
-    figure
+    Chart::stack(vec![panel], about, drawn.table())
 }

@@ -1,14 +1,13 @@
-//! Picture of scenes side by side: one row for each scene, one panel for each quantity, the best marked.
+//! Picture of scenes side by side: one bar for each scene, one panel for each quantity, the best marked.
 
 use std::collections::BTreeSet;
 
 use super::axis::PlotAxis;
-use super::figure::{Align, Area, Figure, Text, fitted};
-use super::font;
-use super::frame::Frame;
-use super::mark::{Caption, Marker, REGIMES, Sample, legend, marker, regime};
+use super::chart::{Chart, Column, Marks, Panel};
+use super::figure::Point;
+use super::mark::REGIMES;
+use super::role::Role;
 use super::run::speed_unit;
-use super::style::{self, Ink, Theme};
 use crate::numeric::round::decade;
 use crate::numeric::short;
 use crate::study::{Rated, SEARCHED_SPAN, Table, Values};
@@ -22,24 +21,15 @@ pub struct ComparisonPicture<'a> {
     pub frequency_hz: f64,
 }
 
-/// Least width of a panel.
-const LEAST_WIDTH: f64 = 186.0;
-/// Room between two panels.
-const BETWEEN: f64 = 34.0;
-/// Largest width of the names of the scenes.
-const NAME_WIDTH: f64 = 330.0;
-/// Room over a panel for its title in two lines.
-const TITLE: f64 = 74.0;
-/// Room under a panel for the numbers of its axis.
-const NUMBERS: f64 = 74.0;
-/// Least height of a row.
-const ROW: f64 = 46.0;
-/// Height of a bar: the largest, and as a share of its row.
-const BAR: (f64, f64) = (46.0, 0.5);
-/// Room behind the longest bar for its number.
-const NUMBER: f64 = 88.0;
-/// Height of the first line of the legend.
-const LEGEND: f64 = 146.0;
+/// The most panels side by side.
+const COLUMNS: usize = 4;
+
+/// Height of a bar over that of its row, and of a row over that of a panel of height 1.
+const BAR: f64 = 0.5;
+const ROW: f64 = 0.2;
+
+/// How much longer an axis is than the longest bar, as room for its number.
+const ROOM: f64 = 1.45;
 
 /// A frequency within this factor of an end of the search counts as that end.
 const NEAR: f64 = 1.001;
@@ -69,7 +59,7 @@ enum Mark {
     Regime,
 }
 
-struct Panel {
+struct Shown {
     title: &'static str,
     mark: Mark,
     unit: String,
@@ -79,7 +69,7 @@ struct Panel {
     is_band: bool,
 }
 
-impl Panel {
+impl Shown {
     /// The number by which entries are compared.
     fn merit(&self, entry: &Entry) -> f64 {
         if self.is_band { entry.to / entry.from } else { entry.to }
@@ -111,47 +101,20 @@ fn three(value: f64) -> String {
 }
 
 /// The picture of a comparison.
-pub fn comparison_figure(picture: &ComparisonPicture<'_>, caption: &Caption, theme: &Theme) -> Figure {
+pub fn comparison_chart(picture: &ComparisonPicture<'_>) -> Chart {
     let ComparisonPicture { rated, .. } = *picture;
-    let panels = panels(picture);
+    let shown = shown(picture);
+    let count = shown.len().div_ceil(shown.len().div_ceil(COLUMNS).max(1)).max(1);
     let names = names(rated);
-    let widest = names.iter().map(|name| font::width(name, style::TICK, false)).fold(0.0, f64::max);
-    // the number of panels side by side depends on the width alone
-    let probe = Figure::new(theme, caption, 0.0);
-    let (left, right) = probe.breadth((60.0, probe.right()));
-    let name_width = widest.min(NAME_WIDTH).min(0.3 * (right - left));
-    let room = right - left - name_width - 20.0;
-    let fits = ((room + BETWEEN) / (LEAST_WIDTH + BETWEEN)).floor().max(1.0) as usize;
-    let rows = panels.len().div_ceil(fits);
-    let each = panels.len().div_ceil(rows);
-    let least_row = TITLE + NUMBERS + ROW * rated.len() as f64;
-    let mut figure = Figure::new(theme, caption, rows as f64 * least_row + 60.0);
-
-    let entries = legend_entries(rated, &panels, theme);
-    let top = LEGEND.max(legend(&mut figure, theme, &entries, (left, right), LEGEND)) + 12.0;
-    // below each frame are numbers but no label
-    let end = figure.bottom() + 40.0 + NUMBERS;
-    let height = (end - top) / rows as f64;
-    let width = (room - BETWEEN * (each as f64 - 1.0)) / each as f64;
-    for (i, panel) in panels.iter().enumerate() {
-        let (row, column) = (i / each, i % each);
-        let from = left + name_width + 20.0 + column as f64 * (width + BETWEEN);
-        let above = top + row as f64 * height;
-        let bottom = (above + height - NUMBERS).max(above + TITLE + 10.0);
-        let area = Area::new(from, above + TITLE, from + width, bottom);
-        let frame = draw(&mut figure, picture, panel, area, theme);
-        for (scene, name) in names.iter().enumerate().filter(|_| column == 0) {
-            let step = (area.bottom - area.top) / names.len() as f64;
-            let size = style::TICK.min(0.9 * step);
-            let at = (from - 18.0, frame.down(place(rated, scene)) + 0.5 * size * font::CAPITAL);
-            let text = Text::new(fitted(name, size, false, name_width), at, size, theme.ink);
-            figure.text(Text { align: Align::Right, ..text });
-        }
-    }
-    figure.data = drawn(rated);
+    let places: Vec<f64> = (0..rated.len()).map(|scene| place(rated, scene)).collect();
+    let ticks = places.iter().copied().zip(names).collect();
+    let up = PlotAxis::given(0.0, rated.len() as f64, ticks, "");
+    let columns = (0..count).map(|column| {
+        let of_column = shown.iter().skip(column).step_by(count);
+        Column { width: 1.0, panels: of_column.map(|shown| panel(picture, shown, &up)).collect() }
+    });
     let about = "from rest; speeds, reach and impacts over the settled window, numbers to three digits";
-    caption.draw(&mut figure, theme, about, left);
-    figure
+    Chart { columns: columns.collect(), subtitle: about.to_owned(), data: drawn(rated) }
 }
 
 /// The position of a scene on the vertical axis.
@@ -168,7 +131,7 @@ fn names(rated: &[Rated]) -> Vec<String> {
 }
 
 /// The quantities that are above 0 for at least one of the scenes.
-fn panels(picture: &ComparisonPicture<'_>) -> Vec<Panel> {
+fn shown(picture: &ComparisonPicture<'_>) -> Vec<Shown> {
     let ComparisonPicture { rated, frequency_hz } = *picture;
     let panel = |title, unit: &str, best, scale: f64, of: &dyn Fn(&Rated) -> Option<f64>| {
         let entry = |scene: &Rated| {
@@ -182,7 +145,7 @@ fn panels(picture: &ComparisonPicture<'_>) -> Vec<Panel> {
             Entry { from: 0.0, to, words }
         };
         let entries = rated.iter().map(entry).collect();
-        Panel { title, mark: Mark::None, unit: unit.to_owned(), best, entries, is_band: false }
+        Shown { title, mark: Mark::None, unit: unit.to_owned(), best, entries, is_band: false }
     };
     let speed = |scene: &Rated| scene.summary.rms_velocity;
     // without impacts the impact speed is 0
@@ -197,8 +160,8 @@ fn panels(picture: &ComparisonPicture<'_>) -> Vec<Panel> {
     };
     let sensitivity = |scene: &Rated| scene.sensitivity.as_ref().map(|change| change.0);
     let all = [
-        Panel { mark: Mark::Release, ..panel("crosses from", "g", Best::Least, 1.0, &Rated::crossing_g) },
-        Panel { mark: Mark::Regime, ..panel("RMS velocity", speed_name, Best::Most, per_speed, &speed) },
+        Shown { mark: Mark::Release, ..panel("crosses from", "g", Best::Least, 1.0, &Rated::crossing_g) },
+        Shown { mark: Mark::Regime, ..panel("RMS velocity", speed_name, Best::Most, per_speed, &speed) },
         panel("power", watt, Best::Most, per_watt, &power),
         panel("reach", "mm", Best::Least, 1e3, &|scene| scene.summary.max_abs_x),
         panel("fastest impact", impact_name, Best::Least, per_impact, &impact),
@@ -210,7 +173,7 @@ fn panels(picture: &ComparisonPicture<'_>) -> Vec<Panel> {
 
 /// The bands of frequencies. An end that coincides with that of the search is marked, as it may lie further
 /// out.
-fn bands(rated: &[Rated], frequency_hz: f64) -> Panel {
+fn bands(rated: &[Rated], frequency_hz: f64) -> Shown {
     let entry = |scene: &Rated| {
         let Some((from, to)) = scene.crosses_hz else {
             return Entry { from: f64::NAN, to: f64::NAN, words: "\u{2013}".to_owned() };
@@ -220,7 +183,7 @@ fn bands(rated: &[Rated], frequency_hz: f64) -> Panel {
         Entry { from, to, words: format!("{at_most}{}\u{2013}{at_least}{}", three(from), three(to)) }
     };
     let entries = rated.iter().map(entry).collect();
-    Panel {
+    Shown {
         title: "crosses at",
         mark: Mark::None,
         unit: "Hz".to_owned(),
@@ -230,149 +193,77 @@ fn bands(rated: &[Rated], frequency_hz: f64) -> Panel {
     }
 }
 
-/// The axis of the frequencies that were searched for crossings.
-fn searched(frequency_hz: f64) -> PlotAxis {
-    let (low, high) = ((frequency_hz / SEARCHED_SPAN).log10(), (frequency_hz * SEARCHED_SPAN).log10());
-    let powers = low.ceil() as i32..=high.floor() as i32;
-    let ticks = powers.map(|power| (f64::from(power), short(10_f64.powi(power)))).collect();
-    PlotAxis { low, high, ticks, label: String::new() }
-}
-
-/// A panel with its title.
-fn draw(
-    figure: &mut Figure,
-    picture: &ComparisonPicture<'_>,
-    panel: &Panel,
-    area: Area,
-    theme: &Theme,
-) -> Frame {
+/// The panel of a quantity.
+fn panel(picture: &ComparisonPicture<'_>, shown: &Shown, up: &PlotAxis) -> Panel {
     let ComparisonPicture { rated, frequency_hz } = *picture;
-    let ends = panel.entries.iter().map(|entry| entry.to).filter(|end| end.is_finite());
-    let longest = ends.fold(0.0, f64::max);
-    let count = ((area.right - area.left) / 95.0).floor().clamp(1.0, 4.0) as usize;
-    let across = match panel.is_band {
-        true => searched(frequency_hz),
-        // with room for the number behind the longest bar
-        false if longest > 0.0 => {
-            let width = area.right - area.left;
-            PlotAxis::between(0.0, longest * width / (width - NUMBER), count, "")
-        }
-        false => PlotAxis::between(0.0, 1.0, count, ""),
-    };
-    let up = PlotAxis { low: 0.0, high: rated.len() as f64, ticks: Vec::new(), label: String::new() };
-    let frame = Frame::new(area, across, up);
-    frame.grid(figure, theme);
-    if panel.is_band {
-        frame.vertical(figure, frequency_hz.log10(), style::THIN, theme.shaking, Some(style::DASH));
-    }
-    let best = panel.best();
-    let step = (area.bottom - area.top) / rated.len() as f64;
-    let half = 0.5 * BAR.0.min(BAR.1 * step);
-    for (scene, entry) in panel.entries.iter().enumerate() {
-        let y = frame.down(place(rated, scene));
-        let ink = if best == Some(scene) { theme.stable } else { theme.soft.over(theme.paper, 0.35) };
-        bar(figure, &frame, panel, entry, (y - half, y + half), ink);
-        words(figure, &frame, panel, entry, (y, 0.95 * step), best == Some(scene), theme);
-        if panel.mark == Mark::Release
-            && let Some(release) = rated[scene].release_g
-        {
-            let at = (frame.across(release), y);
-            marker(figure, Marker::Triangle, at, style::MARKER, theme.unstable, theme.ink);
-        }
-        if panel.mark == Mark::Regime && entry.to.is_finite() {
-            let name = rated[scene].summary.regime.name();
-            let (shape, ink) = regime(name, theme);
-            let x = (area.left + 18.0).max(frame.across(entry.to));
-            if !name.is_empty() {
-                marker(figure, shape, (x.min(area.right - 16.0), y), style::MARKER, ink, theme.ink);
-            }
-        }
-    }
-    frame.axes(figure, theme);
-    let better = match (panel.best, panel.is_band) {
+    let longest =
+        shown.entries.iter().map(|entry| entry.to).filter(|end| end.is_finite()).fold(0.0, f64::max);
+    let better = match (shown.best, shown.is_band) {
         (_, true) => "wide",
         (Best::Least, _) => "small",
         (Best::Most, _) => "large",
     };
-    let unit = format!("{}, {better} is good", panel.unit);
-    for (text, size, ink, y) in
-        [(panel.title, style::TICK, theme.ink, 42.0), (&*unit, style::FOOTER, theme.soft, 14.0)]
-    {
-        let size =
-            size * ((area.right - area.left + BETWEEN - 8.0) / font::width(text, size, false)).min(1.0);
-        figure.text(Text::new(text, (area.left, area.top - y), size, ink));
-    }
-    frame
-}
-
-/// The bar of a value, or of a band.
-fn bar(figure: &mut Figure, frame: &Frame, panel: &Panel, entry: &Entry, rows: (f64, f64), ink: Ink) {
-    let (top, bottom) = rows;
-    let ends = match panel.is_band {
-        true => [entry.from.log10(), entry.to.log10()],
-        false => [0.0, entry.to],
+    let label = format!("{}, {better} is good", shown.unit);
+    let across = match shown.is_band {
+        true => {
+            let ends = [frequency_hz / SEARCHED_SPAN, frequency_hz * SEARCHED_SPAN].map(f64::log10);
+            PlotAxis::powers(ends[0], ends[1], &label)
+        }
+        false => PlotAxis::between(0.0, if longest > 0.0 { ROOM * longest } else { 1.0 }, &label),
     };
-    if ends.iter().all(|end| end.is_finite()) {
-        let [left, right] = ends.map(|end| frame.across(end));
-        figure.rect(Area::new(left, top, right.max(left + 2.0), bottom), ink);
-    } else if entry.to == f64::INFINITY {
-        // an infinite value: hatched over the whole width
-        let area = Area::new(frame.area.left, top, frame.area.right, bottom);
-        figure.hatch(area, ink);
+    let scaled = |value: f64| if shown.is_band { value.log10() } else { value };
+    let (low, high) = (across.low, across.high);
+    let best = shown.best();
+    let height = (ROW * rated.len() as f64).max(1.0);
+    let mut panel = Panel { height, heading: shown.title.to_owned(), ..Panel::new(across, up.clone()) };
+    if shown.is_band {
+        panel.layer(Role::Drive, "frequency of the drive", Marks::Verticals(vec![frequency_hz.log10()]));
     }
-}
-
-/// The text of a bar: behind it, or inside if there is no room behind.
-fn words(
-    figure: &mut Figure,
-    frame: &Frame,
-    panel: &Panel,
-    entry: &Entry,
-    (y, max_size): (f64, f64),
-    is_best: bool,
-    theme: &Theme,
-) {
-    let Area { left, right, .. } = frame.area;
-    let size = style::FOOTER.min(max_size);
-    let width = font::width(&entry.words, size, is_best);
-    let end = match panel.is_band {
-        true if entry.to.is_finite() => frame.across(entry.to.log10()),
-        false if entry.to.is_finite() => frame.across(entry.to),
-        _ => left,
+    let bars = |chosen: &dyn Fn(usize, &Entry) -> bool| -> Vec<[f64; 3]> {
+        let entries = shown.entries.iter().enumerate().filter(|(scene, entry)| chosen(*scene, entry));
+        let ends = |entry: &Entry| match entry.to == f64::INFINITY {
+            true => [low, high],
+            false => [if shown.is_band { scaled(entry.from) } else { 0.0 }, scaled(entry.to)],
+        };
+        entries.map(|(scene, entry)| [place(rated, scene), ends(entry)[0], ends(entry)[1]]).collect()
     };
-    let behind = end + if panel.mark == Mark::Regime { 24.0 } else { 8.0 };
-    let is_behind = behind + width <= right - 4.0;
-    let x = if is_behind { behind } else { (left + 8.0).min(right - width) };
-    // the colour of the best bar is light in both themes
-    let ink = if is_best && !is_behind { style::BLACK } else { theme.ink };
-    let text = Text::new(&entry.words, (x, y + 0.5 * size * font::CAPITAL), size, ink);
-    figure.text(Text { bold: is_best, ..text });
-}
-
-/// Entries of the legend for the marks and colours that are drawn.
-fn legend_entries(rated: &[Rated], panels: &[Panel], theme: &Theme) -> Vec<(Sample, &'static str)> {
-    let mut entries = Vec::new();
-    if panels.iter().any(|panel| panel.best().is_some()) {
-        entries.push((Sample::Patch(theme.stable, None), "best of its panel"));
+    let is_best = |scene: usize| best == Some(scene);
+    panel.draw(Role::Other, Marks::Bars(bars(&|scene, entry| !is_best(scene) && entry.to.is_finite()), BAR));
+    if best.is_some() {
+        let best = bars(&|scene, entry| is_best(scene) && entry.to.is_finite());
+        panel.layer(Role::Best, "best of its panel", Marks::Bars(best, BAR));
     }
-    if rated.iter().any(|scene| scene.release_g.is_some()) {
-        entries.push((Sample::Marker(Marker::Triangle, theme.unstable), "leaves its stop from"));
+    let lost = bars(&|_, entry| entry.to == f64::INFINITY);
+    if !lost.is_empty() {
+        panel.layer(Role::Rest, "crossing lost by 1 % of a size", Marks::Bars(lost, BAR));
     }
-    for (name, _) in REGIMES {
-        if rated
-            .iter()
-            .any(|scene| scene.summary.regime.name() == name && scene.summary.rms_velocity.is_some())
-        {
-            let (shape, ink) = regime(name, theme);
-            entries.push((Sample::Marker(shape, ink), name));
+    let words = shown.entries.iter().enumerate().map(|(scene, entry)| {
+        let end = if entry.to.is_finite() { scaled(entry.to) } else { low };
+        ((end, place(rated, scene)), entry.words.clone())
+    });
+    panel.draw(Role::Motion, Marks::Words(words.collect()));
+    let marks = rated.iter().enumerate();
+    match shown.mark {
+        Mark::None => {}
+        Mark::Release => {
+            let released =
+                marks.filter_map(|(scene, rated_scene)| Some((rated_scene.release_g?, place(rated, scene))));
+            let released: Vec<Point> = released.collect();
+            if !released.is_empty() {
+                panel.layer(Role::Gaps, "leaves its stop from", Marks::Points(released));
+            }
+        }
+        Mark::Regime => {
+            let known = marks.filter(|(scene, _)| shown.entries[*scene].to.is_finite());
+            let at = low + 0.05 * (high - low);
+            let regimes = known.filter_map(|(scene, rated_scene)| {
+                let name = rated_scene.summary.regime.name();
+                REGIMES.iter().any(|regime| regime.0 == name).then_some(((at, place(rated, scene)), name))
+            });
+            panel.draw(Role::Motion, Marks::Regimes(regimes.collect(), false));
         }
     }
-    entries.push((Sample::Line(theme.shaking, style::THIN, Some(style::DASH)), "frequency of the drive"));
-    if panels.iter().flat_map(|panel| &panel.entries).any(|entry| entry.to == f64::INFINITY) {
-        let patch = Sample::Patch(theme.paper, Some(theme.soft.over(theme.paper, 0.35)));
-        entries.push((patch, "crossing lost by 1 % of a size"));
-    }
-    entries
+    panel
 }
 
 /// The data of the picture, one row for each value, in SI.

@@ -1,54 +1,36 @@
 //! Picture of a compliant stop: restitution over impact speed, beside a rigid stop's constant.
 
 use super::axis::PlotAxis;
+use super::chart::{Chart, Marks, Panel};
 use super::drawn::Drawn;
-use super::figure::{Area, Figure, Point};
-use super::frame::Frame;
-use super::mark::{Caption, Sample, legend};
-use super::style::{self, Theme};
-use super::swept::{LEAST, LEFT, TOP};
+use super::figure::Point;
+use super::role::Role;
 use crate::mechanics::Hertz;
 use crate::numeric::short;
 use crate::study::{Table, yield_speed};
 
 /// The picture of `table` (as [`contact`](crate::study::contact) gives it) for `stop` and a mass in kg.
-pub fn contact_figure(table: &Table, stop: &Hertz, mass: f64, caption: &Caption, theme: &Theme) -> Figure {
-    let mut figure = Figure::new(theme, caption, LEAST);
+pub fn contact_chart(table: &Table, stop: &Hertz, mass: f64) -> Chart {
     let column = |name: &str| table.numbers(name).unwrap_or_default();
     let speeds = column("speed_m_per_s");
     let top = speeds.last().copied().unwrap_or(1.0);
-    let yields = yield_speed(stop, mass).filter(|speed| *speed < top);
     let rigid = column("rigid_restitution").first().copied().unwrap_or(f64::NAN);
-    let rigid = format!("rigid stop, {}", short(rigid));
-    let mut entries = vec![
-        (Sample::Line(theme.ink, style::LINE + 0.8, None), "compliant stop"),
-        (Sample::Line(theme.soft, style::LINE, Some(style::DASH)), rigid.as_str()),
-    ];
-    let words = yields.map(|speed| format!("yields from {} m/s on", short(speed)));
-    if let Some(words) = &words {
-        entries.push((Sample::Line(theme.unstable, style::LINE, Some(style::DOT)), words));
-    }
-    let ends = (LEFT, figure.right());
-    let above = TOP.max(legend(&mut figure, theme, &entries, ends, 142.0) + 18.0);
-    let up = PlotAxis::between(0.0, 1.05, 6, "restitution");
-    let left = Frame::left(&figure, &up, LEFT, figure.bottom() - above);
-    let area = Area::new(left, above, figure.right(), figure.bottom() - 8.0);
-    let frame = Frame::new(area, PlotAxis::between(0.0, top, 8, "impact speed, m/s"), up);
     let pairs =
         |name: &str| -> Vec<Point> { speeds.iter().copied().zip(column(name).iter().copied()).collect() };
-    frame.grid(&mut figure, theme);
-    if let Some(speed) = yields {
-        frame.vertical(&mut figure, speed, style::LINE, theme.unstable, Some(style::DOT));
+    let across = PlotAxis::between(0.0, top, "impact speed (m/s)");
+    let mut panel = Panel::new(across, PlotAxis::between(0.0, 1.05, "restitution"));
+    panel.layer(Role::Curve, "compliant stop", Marks::Path(pairs("restitution")));
+    let name = format!("rigid stop, {}", short(rigid));
+    panel.layer(Role::Separatrix, name, Marks::Path(pairs("rigid_restitution")));
+    if let Some(speed) = yield_speed(stop, mass).filter(|speed| *speed < top) {
+        let name = format!("yields from {} m/s on", short(speed));
+        panel.layer(Role::UnstableMotion, name, Marks::Verticals(vec![speed]));
     }
-    frame.dashed(&mut figure, &pairs("rigid_restitution"), style::LINE, theme.soft, style::DASH);
-    frame.line(&mut figure, &pairs("restitution"), style::LINE + 0.8, theme.ink);
-    frame.axes(&mut figure, theme);
     let names = ["speed_m_per_s", "restitution", "rigid_restitution"];
     let mut drawn = Drawn::new(names, &[]);
     for row in 0..speeds.len() {
         drawn.put("contact", &names.map(|name| column(name)[row]), &[]);
     }
-    figure.data = drawn.table();
     let about = format!(
         "one contact alone: {} N/m^1.5, loss {} s/m; {} ms at {} m/s",
         short(stop.stiffness),
@@ -56,6 +38,5 @@ pub fn contact_figure(table: &Table, stop: &Hertz, mass: f64, caption: &Caption,
         short(stop.contact_time(mass, 0.5 * top) * 1e3),
         short(0.5 * top)
     );
-    caption.draw(&mut figure, theme, &about, LEFT);
-    figure
+    Chart::stack(vec![panel], about, drawn.table())
 }

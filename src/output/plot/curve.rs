@@ -1,34 +1,17 @@
 //! Picture of a mechanism: force and potential over displacement, with equilibria, kinks and stops.
 
 use super::axis::{PlotAxis, Ranges};
+use super::chart::{Chart, Marks, Panel};
 use super::drawn::Drawn;
-use super::figure::{Area, Figure, Point};
-use super::frame::{Frame, stretched};
-use super::mark::{Caption, Marker, Sample, legend, marker};
-use super::style::{self, Theme};
+use super::figure::Point;
+use super::role::Role;
 use crate::mechanics::{Landscape, Mechanism};
 use crate::numeric::{extent, short};
 use crate::study::Table;
 
-const LEFT: f64 = 160.0;
-const GUTTER: f64 = 110.0;
-/// Upper and lower edges of the frames on the canvas for a screen.
-const FRAMES: [(f64, f64); 2] = [(175.0, 520.0), (550.0, 860.0)];
-/// What the frames need between the captions.
-const LEAST: f64 = 560.0;
-const TICKS: usize = 5;
-
 /// The picture of the curve in `table` (as [`curve`](crate::study::curve) gives it), with stops at these
 /// positions in m, NaN where there is none. `ranges` are those of displacement and force.
-pub fn curve_figure(
-    table: &Table,
-    mechanism: &Mechanism,
-    stops: (f64, f64),
-    ranges: Ranges,
-    caption: &Caption,
-    theme: &Theme,
-) -> Figure {
-    let mut figure = Figure::new(theme, caption, LEAST);
+pub fn curve_chart(table: &Table, mechanism: &Mechanism, stops: (f64, f64), ranges: Ranges) -> Chart {
     let column = |name: &str| table.numbers(name).unwrap_or_default();
     let x: Vec<f64> = column("x_m").iter().map(|x| x * 1e3).collect();
     let pairs =
@@ -38,78 +21,43 @@ pub fn curve_figure(
     let potential_range = telling(&x, column("potential_j"), landscape);
     let (force, force_unit) = scaled(force_range, &[(1.0, "N"), (1e-3, "mN")]);
     let (potential, potential_unit) = scaled(potential_range, &[(1.0, "J"), (1e-3, "mJ"), (1e-6, "\u{b5}J")]);
-    let label = "displacement, mm";
-    let across = PlotAxis::around(x.iter().copied(), 0.0, 9, label).or_given(ranges.x, 9, label);
-    let inside = |at: f64| at * 1e3 >= across.low && at * 1e3 <= across.high;
-
+    let across = PlotAxis::around(x.iter().copied(), 0.0, "displacement (mm)").or_given(ranges.x);
     let height = |(low, high): (f64, f64), scale: f64, least: f64, label: &str| {
-        PlotAxis::around([low * scale, high * scale, least], 0.08, TICKS, label)
+        PlotAxis::around([low * scale, high * scale, least], 0.08, label)
     };
-    let force_label = format!("force to hold, {force_unit}");
-    let force_axis = height(force_range, force, 0.0, &force_label).or_given(ranges.y, TICKS, &force_label);
-    let potential_axis =
-        height(potential_range, potential, f64::NAN, &format!("potential, {potential_unit}"));
+    let up = height(force_range, force, 0.0, &format!("force to hold ({force_unit})")).or_given(ranges.y);
+    let below = height(potential_range, potential, f64::NAN, &format!("potential ({potential_unit})"));
+    let inside = |at: f64| across.contains(at * 1e3);
     let kinks: Vec<f64> = landscape.kinks.iter().map(|kink| kink.x).filter(|x| inside(*x)).collect();
-    let mut entries = Vec::new();
-    let any = |stable: bool| {
-        landscape.equilibria.iter().any(|equilibrium| equilibrium.stable == stable && inside(equilibrium.x))
-    };
-    for (stable, words) in [(true, "stable equilibrium"), (false, "unstable equilibrium")] {
-        if any(stable) {
-            let (shape, ink) = kind(stable, theme);
-            entries.push((Sample::Marker(shape, ink), words));
+    let mut panels = [Panel::new(across.clone(), up), Panel::new(across.clone(), below)];
+    let lines = [pairs(column("force_n"), force), pairs(column("potential_j"), potential)];
+    let energy = |x: f64| mechanism.curve.potential(x) * potential;
+    for (i, (panel, line)) in panels.iter_mut().zip(lines).enumerate() {
+        panel.upright_stops((stops.0 * 1e3, stops.1 * 1e3));
+        if !kinks.is_empty() {
+            let at = kinks.iter().map(|x| x * 1e3).collect();
+            panel.layer(Role::Kink, "kink of the force", Marks::Verticals(at));
         }
-    }
-    if !kinks.is_empty() {
-        entries.push((Sample::Line(theme.soft, style::LINE, Some(style::DOT)), "kink of the force"));
-    }
-    if inside(stops.0) || inside(stops.1) {
-        entries.push((Sample::Patch(theme.wall_fill(), Some(theme.wall_hatch())), "stop"));
-    }
-    let ends = (LEFT, figure.right());
-    let more = (legend(&mut figure, theme, &entries, ends, 142.0) - 161.0).max(0.0);
-    let left = if figure.is_narrow() { GUTTER + style::AXIS } else { LEFT };
-    let bottom = figure.bottom() - 8.0;
-    let [upper, lower] = stretched(FRAMES, 175.0 + more, bottom)
-        .map(|(top, bottom)| Area::new(left, top, figure.right(), bottom));
-    let framed = |area, x, y| Frame { gutter: Some(GUTTER), ..Frame::new(area, x, y) };
-    let frames = [
-        (framed(upper, across.clone().silent(), force_axis), pairs(column("force_n"), force), theme.ink),
-        (
-            framed(lower, across.clone(), potential_axis),
-            pairs(column("potential_j"), potential),
-            theme.second,
-        ),
-    ];
-    for (frame, line, ink) in &frames {
-        frame.grid(&mut figure, theme);
-        for (at, left) in [(stops.0, true), (stops.1, false)] {
-            if at.is_finite() {
-                frame.wall_across(&mut figure, at * 1e3, left, theme);
+        if i == 0 {
+            panel.draw(Role::Reference, Marks::Horizontals(vec![0.0]));
+        }
+        panel.draw(Role::Curve, Marks::Path(line));
+        for (stable, role, name) in
+            [(true, Role::Stable, "stable equilibrium"), (false, Role::Unstable, "unstable equilibrium")]
+        {
+            let equilibria = landscape.equilibria.iter().filter(|e| e.stable == stable && inside(e.x));
+            let height = |x: f64| if i == 0 { 0.0 } else { energy(x) };
+            let points: Vec<Point> = equilibria.map(|e| (e.x * 1e3, height(e.x))).collect();
+            if !points.is_empty() {
+                panel.layer(role, name, Marks::Points(points));
             }
         }
-        kinks
-            .iter()
-            .for_each(|x| frame.vertical(&mut figure, x * 1e3, style::THIN, theme.soft, Some(style::DOT)));
-        frame.path(&mut figure, line.iter().copied(), style::LINE + 0.8, *ink);
     }
-    frames[0].0.horizontal(&mut figure, 0.0, style::THIN, theme.soft, None);
-    for equilibrium in landscape.equilibria.iter().filter(|equilibrium| inside(equilibrium.x)) {
-        let (shape, ink) = kind(equilibrium.stable, theme);
-        let x = equilibrium.x;
-        for (frame, y) in [(&frames[0].0, 0.0), (&frames[1].0, mechanism.curve.potential(x) * potential)] {
-            marker(&mut figure, shape, frame.place((x * 1e3, y)), style::MARKER + 2.0, ink, theme.ink);
-        }
-    }
-    frames.iter().for_each(|(frame, ..)| frame.axes(&mut figure, theme));
-
-    figure.data = drawn(table, mechanism, stops, inside);
     let mut words = subtitle(landscape);
-    if let Some(wall) = wall(column("x_m"), column("force_n"), &frames[0].0.y, force) {
+    if let Some(wall) = wall(column("x_m"), column("force_n"), &panels[0].y, force) {
         words += &wall;
     }
-    caption.draw(&mut figure, theme, &words, LEFT);
-    figure
+    Chart::stack(panels.into(), words, drawn(table, mechanism, stops, inside))
 }
 
 /// All that is drawn at the positions in m that lie `inside`.
@@ -129,10 +77,6 @@ fn drawn(table: &Table, mechanism: &Mechanism, stops: (f64, f64), inside: impl F
         drawn.put(name, &[at], &[]);
     }
     drawn.table()
-}
-
-fn kind(stable: bool, theme: &Theme) -> (Marker, style::Ink) {
-    if stable { (Marker::Disc, theme.stable) } else { (Marker::Triangle, theme.unstable) }
 }
 
 fn subtitle(landscape: &Landscape) -> String {

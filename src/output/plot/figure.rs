@@ -1,14 +1,15 @@
 //! Picture as a list of plain shapes, in the order in which they are painted.
 //!
-//! The plots write down what they show; [`paint`](super::paint) turns that into pixels or SVG. So
+//! The plots write down what they show; [`Format`](super::Format) turns that into a file. So
 //! each plot is written once for both, and a test can read what a picture says.
 
 use serde_json::{Map, Value};
 
 use super::font;
 use super::mark::Caption;
-use super::sheet::{Sheet, canvas_width};
-use super::style::{self, CAPTIONS, Ink, SIZE, Theme};
+use super::role::Look;
+use super::sheet::Sheet;
+use super::style::{self, Ink, Theme};
 use crate::numeric::short;
 use crate::study::Table;
 
@@ -104,6 +105,15 @@ impl Text {
     pub fn new(words: impl Into<String>, at: Point, size: f64, ink: Ink) -> Self {
         Self { words: words.into(), at, size, ink, bold: false, align: Align::Left, upright: false }
     }
+
+    /// How much of it stands before its given point.
+    pub fn before(&self) -> f64 {
+        match self.align {
+            Align::Left => 0.0,
+            Align::Centre => 0.5 * font::width(&self.words, self.size, self.bold),
+            Align::Right => font::width(&self.words, self.size, self.bold),
+        }
+    }
 }
 
 /// One shape.
@@ -139,82 +149,30 @@ pub struct Figure {
     pub origin: Map<String, Value>,
     /// What is drawn: a row a point, a cell or a mark, its kind in the column `series`.
     pub data: Table,
-    /// How much higher than one line the footer is.
-    foot: f64,
+    /// Upper and lower edge of what stands between the captions.
+    body: (f64, f64),
 }
 
-/// What the canvas keeps free at its right edge, and below the frames for numbers, label and footer.
-const RIGHT: f64 = 40.0;
-const BELOW: f64 = 132.0;
-
-/// What captions and legends leave free at both edges of a narrow canvas.
-const NARROW_LEFT: f64 = 24.0;
-
-/// Height of the data on a sheet over its width.
-const PROPORTION: f64 = 0.625;
-
 impl Figure {
-    /// An empty canvas for a picture with this caption. On a sheet that leaves the height open, what stands
-    /// between the captions has at least `least` units.
-    pub fn new(theme: &Theme, caption: &Caption, least: f64) -> Self {
-        let sheet = theme.sheet;
-        let width = canvas_width(sheet.as_ref());
-        let foot = style::FOOTER_LINE * (caption.footer_lines(width).len() as f64 - 1.0).max(0.0);
-        let captions = CAPTIONS.0 + CAPTIONS.1 + foot;
-        let height = sheet.map_or(f64::from(SIZE.1), |sheet| {
-            let around = if sheet.titled { captions } else { 0.0 };
-            let asked = sheet.height_mm.map_or(PROPORTION * width, |mm| mm / sheet.unit_mm() - around);
-            captions + asked.max(least)
-        });
+    /// An empty canvas of this width and height, with captions over and under the `body`.
+    pub fn new(theme: &Theme, (width, height): (f64, f64), body: (f64, f64), caption: &Caption) -> Self {
         let canvas = Area::new(0.0, 0.0, width, height);
         Self {
             shapes: vec![Shape::Rect(canvas, theme.paper)],
             canvas,
             shown: canvas,
             size: None,
-            sheet,
-            foot,
+            sheet: theme.sheet,
+            body,
             origin: caption.origin.clone(),
             data: Table::new(),
         }
     }
 
-    /// Makes the canvas higher by `more`, where its sheet leaves the height open. Before anything is drawn.
-    pub fn grow(&mut self, more: f64) {
-        if self.sheet.is_some_and(|sheet| sheet.height_mm.is_none()) {
-            self.canvas.bottom += more;
-            self.shown = self.canvas;
-            if let Some(Shape::Rect(paper, _)) = self.shapes.first_mut() {
-                *paper = self.canvas;
-            }
-        }
-    }
-
-    /// Whether the canvas is narrow.
-    pub fn is_narrow(&self) -> bool {
-        self.canvas.right < style::NARROW
-    }
-
-    /// From where to where captions and legends stand: between these `ends` on a wide canvas.
-    pub fn breadth(&self, ends: (f64, f64)) -> (f64, f64) {
-        if self.is_narrow() { (NARROW_LEFT, self.canvas.right - NARROW_LEFT) } else { ends }
-    }
-
-    /// Where the rightmost frame ends.
-    pub fn right(&self) -> f64 {
-        self.canvas.right - RIGHT
-    }
-
-    /// Where the lowest frame ends.
-    pub fn bottom(&self) -> f64 {
-        self.canvas.bottom - BELOW - self.foot
-    }
-
     /// The picture without what stands over and under it, as for a page that has a caption of its own.
     #[must_use]
     pub fn without_title(mut self) -> Self {
-        self.shown.top = CAPTIONS.0;
-        self.shown.bottom = self.canvas.bottom - CAPTIONS.1 - self.foot;
+        (self.shown.top, self.shown.bottom) = self.body;
         let shown = self.shown;
         self.shapes.retain_mut(|shape| match shape {
             Shape::Text(text) => (shown.top..=shown.bottom).contains(&text.at.1),
@@ -271,6 +229,17 @@ impl Figure {
         }
     }
 
+    /// Adds a line as it looks: its dash, and the outline under it.
+    pub fn styled(&mut self, points: &[Point], look: &Look, within: Area) {
+        if let Some(halo) = look.halo {
+            self.line(points, look.width + 4.0, halo, within);
+        }
+        match look.dash {
+            Some(dash) => self.dashed(points, look.width, look.ink, dash, within),
+            None => self.line(points, look.width, look.ink, within),
+        }
+    }
+
     /// Adds a filled convex polygon where all of it lies on the canvas.
     pub fn polygon(&mut self, points: Vec<Point>, ink: Ink) {
         if points.iter().all(|point| self.canvas.contains(*point)) {
@@ -320,22 +289,6 @@ impl Figure {
             Shape::Text(text) => Some(text.words.as_str()),
             _ => None,
         })
-    }
-}
-
-/// `words` cut so that they fit into `room`, with an ellipsis where they did not.
-pub fn fitted(words: &str, size: f64, bold: bool, room: f64) -> String {
-    // No line of text has more letters than this on the canvas.
-    let mut letters: Vec<char> = words.chars().take(400).collect();
-    if letters.len() == words.chars().count() && font::width(words, size, bold) <= room {
-        return words.to_owned();
-    }
-    loop {
-        let text: String = letters.iter().collect::<String>().trim_end().to_owned() + "\u{2026}";
-        if letters.is_empty() || font::width(&text, size, bold) <= room {
-            return text;
-        }
-        letters.pop();
     }
 }
 

@@ -1,45 +1,96 @@
-//! Font of the pictures, and the width of a text.
+//! Font of the pictures: its letters, their outlines, and the width of a text.
 //!
 //! Inter (The Inter Project Authors, SIL Open Font License 1.1, text in `assets/fonts`), cut down to
 //! Latin, Greek and the signs that a formula needs. It is part of the program: no font of the machine is
-//! looked for, so a picture is the same everywhere.
+//! looked for, so a picture is the same everywhere. Pairs of letters are not kerned.
 
-use std::sync::Once;
+use std::sync::LazyLock;
 
-use plotters::style::{FontDesc, FontFamily, FontStyle, register_font};
+use skrifa::charmap::Charmap;
+use skrifa::instance::{LocationRef, Size};
+use skrifa::metrics::GlyphMetrics;
+use skrifa::outline::{DrawSettings, OutlineGlyphCollection, OutlinePen};
+use skrifa::{FontRef, GlyphId, MetadataProvider};
 
-/// The name under which the letters are registered, and that an SVG asks its reader for.
-const FAMILY: &str = "Inter, Helvetica, Arial, sans-serif";
-
-/// Ascent and descent of the font together, in ems: what plotters' bitmaps call the size of a text.
-pub const LINE_HEIGHT: f64 = 2478.0 / 2048.0;
+/// Units of the font in an em.
+pub const UNITS: f64 = 2048.0;
 
 /// Height of a capital letter in ems.
-pub const CAPITAL: f64 = 1490.0 / 2048.0;
+pub const CAPITAL: f64 = 1490.0 / UNITS;
 
-/// The files of the font, regular and bold.
-pub const FACES: [&[u8]; 2] = [
-    include_bytes!("../../../assets/fonts/Inter-Regular.ttf"),
-    include_bytes!("../../../assets/fonts/Inter-SemiBold.ttf"),
-];
+/// One weight of the font.
+pub struct Face {
+    /// Its file.
+    pub bytes: &'static [u8],
+    /// The name that a PDF gives it.
+    pub name: &'static str,
+    letters: Charmap<'static>,
+    metrics: GlyphMetrics<'static>,
+    outlines: OutlineGlyphCollection<'static>,
+}
 
-/// The font in a size given as plotters' bitmaps understand it.
-pub fn font(plotters_size: f64, bold: bool) -> FontDesc<'static> {
-    static REGISTER: Once = Once::new();
-    REGISTER.call_once(|| {
-        let [regular, bold] = FACES;
-        // A font that were broken would show as an error of every drawing; a test draws.
-        let _ = register_font(FAMILY, FontStyle::Normal, regular);
-        let _ = register_font(FAMILY, FontStyle::Bold, bold);
-    });
-    let style = if bold { FontStyle::Bold } else { FontStyle::Normal };
-    FontDesc::new(FontFamily::Name(FAMILY), plotters_size, style)
+/// A letter of a text.
+#[derive(Debug, Clone, Copy)]
+pub struct Letter {
+    /// The character.
+    pub character: char,
+    /// Its glyph in the font.
+    pub glyph: GlyphId,
+    /// From the begin of the text to that of the letter, in ems.
+    pub begin: f64,
+    /// Its width in ems.
+    pub width: f64,
+}
+
+impl Face {
+    /// The regular or the heavier weight.
+    pub fn of(bold: bool) -> &'static Self {
+        static FACES: LazyLock<[Face; 2]> = LazyLock::new(|| {
+            [
+                Face::new("Inter-Regular", include_bytes!("../../../assets/fonts/Inter-Regular.ttf")),
+                Face::new("Inter-SemiBold", include_bytes!("../../../assets/fonts/Inter-SemiBold.ttf")),
+            ]
+        });
+        &FACES[usize::from(bold)]
+    }
+
+    fn new(name: &'static str, bytes: &'static [u8]) -> Self {
+        let font = FontRef::new(bytes).expect("the font is part of the program, and tests draw with it");
+        Self {
+            bytes,
+            name,
+            letters: font.charmap(),
+            metrics: font.glyph_metrics(Size::unscaled(), LocationRef::default()),
+            outlines: font.outline_glyphs(),
+        }
+    }
+
+    /// The letters of a text; what the font does not have is its box for a missing letter.
+    pub fn letters(&self, words: &str) -> impl Iterator<Item = Letter> {
+        words.chars().scan(0.0, |end, character| {
+            let glyph = self.letters.map(character).unwrap_or_default();
+            let begin = *end;
+            let width = self.width(glyph);
+            *end += width;
+            Some(Letter { character, glyph, begin, width })
+        })
+    }
+
+    /// Width of a glyph in ems.
+    pub fn width(&self, glyph: GlyphId) -> f64 {
+        f64::from(self.metrics.advance_width(glyph).unwrap_or_default()) / UNITS
+    }
+
+    /// Draws the outline of a glyph, in units of the font and upward, with `pen`.
+    pub fn outline(&self, glyph: GlyphId, pen: &mut impl OutlinePen) {
+        if let Some(outline) = self.outlines.get(glyph) {
+            // fails only for a broken font
+            let _ = outline.draw(DrawSettings::unhinted(Size::unscaled(), LocationRef::default()), pen);
+        }
+    }
 }
 
 /// Width of `words` where an em is `size` high.
 pub fn width(words: &str, size: f64, bold: bool) -> f64 {
-    // Measured large, because the answer comes in whole pixels.
-    const ENLARGED: f64 = 16.0;
-    let measured = font(size * LINE_HEIGHT * ENLARGED, bold).box_size(words);
-    measured.map_or(0.0, |(width, _)| f64::from(width) / ENLARGED)
+    size * Face::of(bold).letters(words).last().map_or(0.0, |letter| letter.begin + letter.width)
 }

@@ -1,9 +1,31 @@
-//! Frame with two axes, which places data on the canvas.
+//! Frame with two axes, and the layers that it shows.
+
+use std::collections::HashSet;
 
 use super::axis::PlotAxis;
+use super::cells::{Cell, Cells};
+use super::chart::{Layer, Marks, Side};
 use super::figure::{Align, Area, Figure, Point, Text};
 use super::font;
-use super::style::{self, Ink, Theme};
+use super::mark::{REGIMES, cross, dot, mark, marker};
+use super::role::{Look, Role};
+use super::style::{self, Theme};
+
+/// Half the size of a point of a cloud: of few, and of many; as many or more of them.
+const CLOUD: (f64, f64) = (6.0, 2.2);
+const FEW: f64 = 100.0;
+const MANY: f64 = 2000.0;
+
+/// Length of a tick of a layer, and the least distance between two.
+const TICK: f64 = 20.0;
+const APART: f64 = 4.5;
+
+/// So many times its half height apart, markers on a line are told from each other.
+const MARKER_ROOM: f64 = 5.0;
+
+/// Half the size of a marker where there are many: this share of the width over their number, at least.
+const SIZE_SHARE: f64 = 0.3;
+const SMALLEST: f64 = 3.5;
 
 /// A rectangle of the canvas with an axis to the right and one upward.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,52 +36,9 @@ pub struct Frame {
     pub x: PlotAxis,
     /// The axis upward.
     pub y: PlotAxis,
-    /// How far left of the frame the label of the axis upward stands at least, so that labels of several
-    /// frames are in line; the numbers may push it further.
-    pub gutter: Option<f64>,
-}
-
-/// Distance of the upward label's line from the frame, besides the width of the numbers between them.
-const BESIDE: f64 = style::TICK_LENGTH + 7.0 + 18.0;
-
-/// From the first line of an upward label to its second.
-const SECOND: f64 = 32.0;
-
-/// Whether a label can stand in full size beside a frame of this height.
-fn fits(label: &str, height: f64) -> bool {
-    font::width(label, style::AXIS, false) <= height + 20.0
-}
-
-/// A label in two lines, parted at the blank next to its middle.
-fn halves(label: &str) -> Option<(&str, &str)> {
-    let middle = label.len() / 2;
-    let blank = label.match_indices(' ').map(|blank| blank.0).min_by_key(|at| at.abs_diff(middle))?;
-    Some((&label[..blank], &label[blank + 1..]))
 }
 
 impl Frame {
-    /// A frame at `area` with these axes.
-    pub fn new(area: Area, x: PlotAxis, y: PlotAxis) -> Self {
-        Self { area, x, y, gutter: None }
-    }
-
-    /// Where the left edge of a frame with this axis upward stands, so that numbers and label have room: on a
-    /// wide canvas at `wide`. On a narrow one a label that is too long for the frame's `height` has two
-    /// lines.
-    pub fn left(figure: &Figure, y: &PlotAxis, wide: f64, height: f64) -> f64 {
-        if !figure.is_narrow() {
-            return wide;
-        }
-        let numbers = y.ticks.iter().map(|tick| font::width(&tick.1, style::TICK, false)).fold(0.0, f64::max);
-        BESIDE + numbers + style::AXIS + if fits(&y.label, height) { 0.0 } else { SECOND }
-    }
-
-    /// A frame from `top` to the lower edge of the canvas, on a wide canvas from `wide` on.
-    pub fn whole(figure: &Figure, (wide, top): (f64, f64), x: PlotAxis, y: PlotAxis) -> Self {
-        let left = Self::left(figure, &y, wide, figure.bottom() - top);
-        Self::new(Area::new(left, top, figure.right(), figure.bottom()), x, y)
-    }
-
     /// Where a value of x stands on the canvas.
     pub fn across(&self, x: f64) -> f64 {
         self.area.left + self.x.share(x) * (self.area.right - self.area.left)
@@ -70,9 +49,10 @@ impl Frame {
         self.area.bottom - self.y.share(y) * (self.area.bottom - self.area.top)
     }
 
-    /// Where a pair of values stands on the canvas.
+    /// Where a pair of values stands on the canvas; values that are not finite stay so.
     pub fn place(&self, (x, y): Point) -> Point {
-        (self.across(x), self.down(y))
+        let finite = |value: f64, place: f64| if value.is_finite() { place } else { f64::NAN };
+        (finite(x, self.across(x)), finite(y, self.down(y)))
     }
 
     /// Grid lines, under everything else.
@@ -88,55 +68,42 @@ impl Frame {
         }
     }
 
-    /// Frame, ticks, numbers and labels, over everything else.
-    pub fn axes(&self, figure: &mut Figure, theme: &Theme) {
-        let Area { left, top, right, bottom } = self.area;
+    /// The frame with its ticks over everything else, and their numbers where they are shown: those upward
+    /// within this width, smaller where they are longer or stand close.
+    pub fn ticks(&self, figure: &mut Figure, theme: &Theme, shows_x: bool, numbers: Option<f64>) {
+        let Area { left, bottom, .. } = self.area;
         figure.outline(self.area, style::FRAME, theme.ink);
         let ascent = style::TICK * font::CAPITAL;
         let text = |words: &str, at: Point, align: Align| Text {
             align,
             ..Text::new(words, at, style::TICK, theme.ink)
         };
-        let (numbered, narrow) = (self.numbered(), figure.is_narrow());
+        let numbered = self.numbered();
         for (i, (value, words)) in self.x.ticks.iter().enumerate() {
             let at = self.across(*value);
-            let words = if numbered(i) { words } else { "" };
             let tick = [(at, bottom), (at, bottom + style::TICK_LENGTH)];
             figure.line(&tick, style::FRAME, theme.ink, figure.canvas);
-            figure.text(text(words, (at, bottom + style::TICK_LENGTH + ascent + 8.0), Align::Centre));
-        }
-        let mut widest: f64 = 0.0;
-        for (value, words) in &self.y.ticks {
-            let at = self.down(*value);
-            let tick = [(left - style::TICK_LENGTH, at), (left, at)];
-            figure.line(&tick, style::FRAME, theme.ink, figure.canvas);
-            widest = widest.max(font::width(words, style::TICK, false));
-            figure.text(text(words, (left - style::TICK_LENGTH - 7.0, at + 0.5 * ascent), Align::Right));
-        }
-        // A label too long for its axis is smaller, so that it does not reach into the next one.
-        let mut label = |words: &str, at: Point, upright: bool| {
-            let room = if upright { bottom - top + 20.0 } else { right - left + 60.0 };
-            let size = style::AXIS * (room / font::width(words, style::AXIS, false)).min(1.0);
-            figure.text(Text { size, upright, ..text(words, at, Align::Centre) });
-        };
-        let below = bottom + style::TICK_LENGTH + ascent + 16.0 + style::AXIS;
-        label(&self.x.label, (0.5 * (left + right), below), false);
-        let near = BESIDE + widest;
-        let beside = (left - self.gutter.map_or(near, |gutter| gutter.max(near))).max(style::AXIS);
-        let middle = 0.5 * (top + bottom);
-        let two = narrow && beside >= style::AXIS + SECOND && !fits(&self.y.label, bottom - top);
-        match halves(&self.y.label).filter(|_| two) {
-            Some((first, second)) => {
-                label(first, (beside - SECOND, middle), true);
-                label(second, (beside, middle), true);
+            if shows_x && numbered(i) {
+                figure.text(text(words, (at, bottom + style::TICK_LENGTH + ascent + 8.0), Align::Centre));
             }
-            None => label(&self.y.label, (beside, middle), true),
+        }
+        let places: Vec<f64> = self.y.ticks.iter().map(|tick| self.down(tick.0)).collect();
+        let apart = places.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(f64::INFINITY, f64::min);
+        for (at, (_, words)) in places.iter().zip(&self.y.ticks) {
+            let tick = [(left - style::TICK_LENGTH, *at), (left, *at)];
+            figure.line(&tick, style::FRAME, theme.ink, figure.canvas);
+            if let Some(room) = numbers {
+                let share = (room / font::width(words, style::TICK, false)).min(1.0);
+                let size = (share * style::TICK).min(0.9 * apart);
+                let place = (left - style::TICK_LENGTH - 7.0, at + 0.5 * size * font::CAPITAL);
+                figure.text(Text { size, ..text(words, place, Align::Right) });
+            }
         }
     }
 
     /// Which ticks to the right have their number: as many as stand apart, 0 among them.
     fn numbered(&self) -> impl Fn(usize) -> bool + use<> {
-        const APART: f64 = 16.0;
+        const BETWEEN: f64 = 16.0;
         let ticks: Vec<(f64, f64)> = self
             .x
             .ticks
@@ -146,142 +113,323 @@ impl Frame {
         let zero = self.x.ticks.iter().position(|tick| tick.0 == 0.0).unwrap_or(0);
         let apart = |every: &usize| {
             let kept: Vec<_> = ticks.iter().skip(zero % every).step_by(*every).collect();
-            kept.windows(2).all(|pair| pair[1].0 - pair[0].0 >= pair[0].1 + pair[1].1 + APART)
+            kept.windows(2).all(|pair| pair[1].0 - pair[0].0 >= pair[0].1 + pair[1].1 + BETWEEN)
         };
         let every = (1..=ticks.len().max(1)).find(apart).unwrap_or(1);
         move |i| i % every == zero % every
     }
 
-    /// A line through data.
-    pub fn line(&self, figure: &mut Figure, data: &[Point], width: f64, ink: Ink) {
-        figure.line(&self.places(data), width, ink, self.area);
-    }
-
-    /// A dashed line through data.
-    pub fn dashed(&self, figure: &mut Figure, data: &[Point], width: f64, ink: Ink, dash: (f64, f64)) {
-        figure.dashed(&self.places(data), width, ink, dash, self.area);
-    }
-
-    fn places(&self, data: &[Point]) -> Vec<Point> {
-        data.iter().map(|point| self.place(*point)).collect()
-    }
-
-    /// A line through data with ascending x, of which there may be millions: in each column of the
-    /// canvas the first, the least, the greatest and the last are kept, which cover what all of them would.
-    pub fn dense_line(&self, figure: &mut Figure, data: impl Iterator<Item = Point>, width: f64, ink: Ink) {
-        let mut kept: Vec<Point> = Vec::new();
-        let mut column: Vec<Point> = Vec::new();
-        let flush = |column: &mut Vec<Point>, kept: &mut Vec<Point>| {
-            kept.extend(extremes(column));
-            column.clear();
-        };
-        for point in data {
-            let place = self.place(point);
-            let same = column.first().is_some_and(|first| first.0.floor() == place.0.floor());
-            if !same {
-                flush(&mut column, &mut kept);
+    /// Draws a layer.
+    pub fn layer(&self, figure: &mut Figure, layer: &Layer, theme: &Theme) {
+        let look = theme.look(layer.role);
+        let Area { left, top, right, bottom } = self.area;
+        match &layer.marks {
+            Marks::Path(points) => self.path(figure, points, &look),
+            Marks::Trace(points) => self.trace(figure, points, &look),
+            Marks::Points(points) => {
+                let places = self.inside(points);
+                let room = SIZE_SHARE * (right - left) / places.len().max(1) as f64;
+                let size = look.size.min(room.max(SMALLEST));
+                places.into_iter().for_each(|at| mark(figure, &look, at, size, theme));
             }
-            // Only four of a column count, so no more than a few are held.
-            if column.len() >= 64 {
-                column = extremes(&column);
+            Marks::Regimes(points, on_line) => self.regimes(figure, points, *on_line, theme),
+            Marks::Cloud(points) => self.cloud(figure, points, &look, theme),
+            Marks::Sticks(points) => self.sticks(figure, points, &look),
+            Marks::Intervals(rows) => {
+                for [x, low, high] in rows {
+                    // an end that is not known lies beyond the picture
+                    let end = |y: &f64, edge: f64| if y.is_finite() { self.down(*y) } else { edge };
+                    let at = self.across(*x);
+                    figure.styled(&[(at, end(low, bottom)), (at, end(high, top))], &look, self.area);
+                }
             }
-            column.push(place);
+            Marks::Band(rows) => self.band(figure, rows, &look),
+            Marks::Bars(rows, share) => {
+                let half = 0.5 * share * self.height_of_one();
+                for [y, from, to] in rows.iter().filter(|row| row[0].is_finite()) {
+                    let at = self.down(*y);
+                    let [from, to] = [from, to].map(|x| self.across(*x).clamp(left, right));
+                    let bar = Area::new(from, at - half, to.max(from + 2.0), at + half);
+                    self.fill(figure, bar, &look);
+                }
+            }
+            Marks::Spans(spans) => self.spans(figure, spans, &look),
+            Marks::Verticals(values) => {
+                for at in values.iter().map(|x| self.across(*x)).filter(|at| at.is_finite()) {
+                    figure.styled(&[(at, bottom), (at, top)], &look, self.area);
+                }
+            }
+            Marks::Horizontals(values) => {
+                for at in values.iter().map(|y| self.down(*y)).filter(|at| at.is_finite()) {
+                    figure.styled(&[(left, at), (right, at)], &look, self.area);
+                }
+            }
+            Marks::Wall(at, side) => self.wall(figure, *at, *side, &look, theme),
+            Marks::Ticks(values, side) => {
+                let [edge, inner] = match side {
+                    Side::Top => [top, top + TICK],
+                    _ => [bottom, bottom - TICK],
+                };
+                let mut last = f64::NEG_INFINITY;
+                for at in values.iter().map(|x| self.across(*x)) {
+                    if at - last >= APART || at < last {
+                        figure.line(&[(at, edge), (at, inner)], look.width.min(2.4), look.ink, self.area);
+                        last = at;
+                    }
+                }
+            }
+            Marks::Words(places) => {
+                for (point, words) in places {
+                    let (x, y) = self.place(*point);
+                    let size = style::FOOTER.min(0.95 * self.height_of_one());
+                    let width = font::width(words, size, false);
+                    let x = (x + 8.0).min(right - width - 4.0).max(left + 4.0);
+                    figure.text(Text::new(words, (x, y + 0.5 * size * font::CAPITAL), size, theme.ink));
+                }
+            }
+            Marks::Cells(cells) => self.cells(figure, cells, theme),
+            Marks::Surface(..) | Marks::Patch => {}
         }
-        flush(&mut column, &mut kept);
-        figure.line(&kept, width, ink, self.area);
+    }
+
+    /// The points that lie inside, on the canvas.
+    fn inside(&self, points: &[Point]) -> Vec<Point> {
+        points.iter().map(|point| self.place(*point)).filter(|at| self.area.contains(*at)).collect()
+    }
+
+    /// The height of 1 upward.
+    fn height_of_one(&self) -> f64 {
+        (self.area.bottom - self.area.top) / (self.y.high - self.y.low)
+    }
+
+    fn fill(&self, figure: &mut Figure, area: Area, look: &Look) {
+        if let Some(area) = area.common(self.area) {
+            figure.rect(area, look.ink);
+            if let Some(hatch) = look.hatch {
+                figure.hatch(area, hatch);
+            }
+        }
     }
 
     /// A line through data in any order: points nearer to the last kept one than a part of a pixel are left
-    /// out.
-    pub fn path(&self, figure: &mut Figure, data: impl Iterator<Item = Point>, width: f64, ink: Ink) {
+    /// out. A point alone is a dash.
+    fn path(&self, figure: &mut Figure, points: &[Point], look: &Look) {
         const NEAR: f64 = 0.35;
-        let mut kept: Vec<Point> = Vec::new();
-        let mut last = None;
-        for point in data {
-            let place = self.place(point);
-            let far =
-                kept.last().is_none_or(|last: &Point| (last.0 - place.0).hypot(last.1 - place.1) > NEAR);
-            if far {
-                kept.push(place);
+        let places: Vec<Point> = points.iter().map(|point| self.place(*point)).collect();
+        for part in places.split(|(x, y)| !(x.is_finite() && y.is_finite())) {
+            let mut kept: Vec<Point> = Vec::new();
+            for place in part {
+                let far =
+                    kept.last().is_none_or(|last: &Point| (last.0 - place.0).hypot(last.1 - place.1) > NEAR);
+                if far {
+                    kept.push(*place);
+                }
             }
-            last = Some(place);
-        }
-        kept.extend(last);
-        figure.line(&kept, width, ink, self.area);
-    }
-
-    /// A line at one x from the lower to the upper edge.
-    pub fn vertical(&self, figure: &mut Figure, x: f64, width: f64, ink: Ink, dash: Option<(f64, f64)>) {
-        let at = self.across(x);
-        self.guide(figure, [(at, self.area.bottom), (at, self.area.top)], width, ink, dash);
-    }
-
-    /// A line at one y from the left to the right edge.
-    pub fn horizontal(&self, figure: &mut Figure, y: f64, width: f64, ink: Ink, dash: Option<(f64, f64)>) {
-        let at = self.down(y);
-        self.guide(figure, [(self.area.left, at), (self.area.right, at)], width, ink, dash);
-    }
-
-    fn guide(&self, figure: &mut Figure, ends: [Point; 2], width: f64, ink: Ink, dash: Option<(f64, f64)>) {
-        match dash {
-            Some(dash) => figure.dashed(&ends, width, ink, dash, self.area),
-            None => figure.line(&ends, width, ink, self.area),
+            match part {
+                [(x, y)] => figure.line(&[(x - 4.0, *y), (x + 4.0, *y)], look.width, look.ink, self.area),
+                _ => {
+                    kept.extend(part.last());
+                    figure.styled(&kept, look, self.area);
+                }
+            }
         }
     }
 
-    /// A wall at `x`, solid towards its left (`left`) or right.
-    pub fn wall_across(&self, figure: &mut Figure, x: f64, left: bool, theme: &Theme) {
-        let at = self.across(x);
-        let Area { top, bottom, .. } = self.area;
-        let (from, to) = if left { (at - style::WALL, at) } else { (at, at + style::WALL) };
-        if let Some(solid) = Area::new(from, top, to, bottom).common(self.area) {
-            figure.rect(solid, theme.wall_fill());
-            figure.hatch(solid, theme.wall_hatch());
+    /// A line through data with ascending x: in each column of the canvas the first, the least, the greatest
+    /// and the last are kept, which cover what all of them would.
+    fn trace(&self, figure: &mut Figure, points: &[Point], look: &Look) {
+        let places: Vec<Point> = points.iter().map(|point| self.place(*point)).collect();
+        for part in places.split(|(x, y)| !(x.is_finite() && y.is_finite())) {
+            let columns = part.chunk_by(|a, b| a.0.floor() == b.0.floor());
+            let kept: Vec<Point> = columns.flat_map(extremes).collect();
+            figure.styled(&kept, look, self.area);
         }
-        figure.line(&[(at, top), (at, bottom)], style::LINE, theme.wall, self.area);
     }
 
-    /// A wall at `y`, solid below or above it.
-    pub fn wall_down(&self, figure: &mut Figure, y: f64, below: bool, theme: &Theme) {
-        let at = self.down(y);
-        let Area { left, right, .. } = self.area;
-        let (top, bottom) = if below { (at, at + style::WALL) } else { (at - style::WALL, at) };
-        if let Some(solid) = Area::new(left, top, right, bottom).common(self.area) {
-            figure.rect(solid, theme.wall_fill());
+    /// On a line those that lie close are left out; else each is shown, the smaller the more there are.
+    fn regimes(&self, figure: &mut Figure, points: &[(Point, &'static str)], on_line: bool, theme: &Theme) {
+        let placed = points.iter().map(|(point, word)| (self.place(*point), *word));
+        let marks: Vec<(Point, &str)> = placed.filter(|mark| self.area.contains(mark.0)).collect();
+        let usual = 0.8 * style::MARKER;
+        let (marks, size) = match on_line {
+            true => (thinned(&marks, MARKER_ROOM * usual, 1.5 * usual), usual),
+            false => {
+                let room = SIZE_SHARE * (self.area.right - self.area.left) / marks.len().max(1) as f64;
+                (marks, room.clamp(SMALLEST, usual))
+            }
+        };
+        for (at, word) in marks {
+            let role = REGIMES.iter().position(|regime| regime.0 == word).map_or(Role::Motion, Role::Regime);
+            let look = theme.look(role);
+            marker(figure, look.marker, at, size, look.ink, if size < 6.0 { theme.paper } else { theme.ink });
         }
-        figure.line(&[(left, at), (right, at)], style::LINE, theme.wall, self.area);
     }
-}
 
-/// Upper and lower edges of frames one under the other, drawn up or down so that they fill the room from
-/// `top` to `bottom`.
-pub fn stretched<const N: usize>(frames: [(f64, f64); N], top: f64, bottom: f64) -> [(f64, f64); N] {
-    let (first, last) = (frames[0].0, frames[N - 1].1);
-    let scale = (bottom - top) / (last - first);
-    frames.map(|(from, to)| (top + scale * (from - first), top + scale * (to - first)))
+    /// Points on the same half pixel are one.
+    fn cloud(&self, figure: &mut Figure, points: &[Point], look: &Look, theme: &Theme) {
+        let mut taken = HashSet::new();
+        let mut places = self.inside(points);
+        places.retain(|at| taken.insert(((2.0 * at.0) as i64, (2.0 * at.1) as i64)));
+        let many = ((places.len() as f64 / FEW).ln() / (MANY / FEW).ln()).clamp(0.0, 1.0);
+        let size = CLOUD.0 + many * (CLOUD.1 - CLOUD.0);
+        for at in places {
+            if look.halo.is_some() {
+                dot(figure, look.marker, at, size + 0.6, theme.soft);
+            }
+            dot(figure, look.marker, at, size, look.ink);
+        }
+    }
+
+    /// Of the lines in one pixel the highest.
+    fn sticks(&self, figure: &mut Figure, points: &[Point], look: &Look) {
+        let placed = points.iter().filter(|point| point.1 > self.y.low).map(|point| self.place(*point));
+        let mut highest: Vec<Point> = Vec::new();
+        for (x, y) in placed.filter(|place| place.1.is_finite()) {
+            match highest.last_mut() {
+                Some(last) if x - last.0 < 1.0 => last.1 = last.1.min(y),
+                _ => highest.push((x, y)),
+            }
+        }
+        for (x, y) in highest {
+            figure.line(&[(x, self.area.bottom), (x, y)], look.width, look.ink, self.area);
+        }
+    }
+
+    /// What lies between two lines from one x to the next, where both have values; the lines may cross.
+    fn band(&self, figure: &mut Figure, rows: &[[f64; 3]], look: &Look) {
+        let within = self.area;
+        let clamped =
+            |(x, y): Point| (x.clamp(within.left, within.right), y.clamp(within.top, within.bottom));
+        for pair in rows.windows(2) {
+            let [a, b] =
+                [pair[0], pair[1]].map(|[x, low, high]| (self.place((x, low)), self.place((x, high))));
+            if ![a.0, a.1, b.0, b.1].iter().all(|(x, y)| x.is_finite() && y.is_finite()) {
+                continue;
+            }
+            let (before, after) = (a.0.1 - a.1.1, b.0.1 - b.1.1);
+            if before * after < 0.0 {
+                let share = before / (before - after);
+                let mix = |p: f64, q: f64| p + share * (q - p);
+                let meet = clamped((mix(a.0.0, b.0.0), mix(a.0.1, b.0.1)));
+                figure.polygon(vec![clamped(a.0), meet, clamped(a.1)], look.ink);
+                figure.polygon(vec![clamped(b.0), meet, clamped(b.1)], look.ink);
+            } else {
+                figure.polygon(vec![clamped(a.0), clamped(b.0), clamped(b.1), clamped(a.1)], look.ink);
+            }
+        }
+    }
+
+    /// Spans that are shaded; neighbours nearer than a part of a pixel are one.
+    fn spans(&self, figure: &mut Figure, spans: &[(f64, f64)], look: &Look) {
+        let mut merged: Vec<(f64, f64)> = Vec::new();
+        for (left, right) in spans.iter().map(|(from, to)| (self.across(*from), self.across(*to))) {
+            match merged.last_mut() {
+                Some(last) if left - last.1 < 0.7 => last.1 = last.1.max(right),
+                _ => merged.push((left, right)),
+            }
+        }
+        for (left, right) in merged {
+            if let Some(area) = Area::new(left, self.area.top, right, self.area.bottom).common(self.area) {
+                figure.rect(area, look.ink);
+            }
+        }
+    }
+
+    fn wall(&self, figure: &mut Figure, at: f64, side: Side, look: &Look, theme: &Theme) {
+        let Area { left, top, right, bottom } = self.area;
+        let (solid, line) = match side {
+            Side::Left | Side::Right => {
+                let at = self.across(at);
+                let (from, to) =
+                    if side == Side::Left { (at - style::WALL, at) } else { (at, at + style::WALL) };
+                (Area::new(from, top, to, bottom), [(at, top), (at, bottom)])
+            }
+            Side::Top | Side::Bottom => {
+                let at = self.down(at);
+                let (from, to) =
+                    if side == Side::Top { (at - style::WALL, at) } else { (at, at + style::WALL) };
+                (Area::new(left, from, right, to), [(left, at), (right, at)])
+            }
+        };
+        let filled = Look { ink: theme.wall_fill(), ..*look };
+        self.fill(figure, solid, &filled);
+        figure.line(&line, look.width, look.ink, self.area);
+    }
+
+    fn cells(&self, figure: &mut Figure, grid: &Cells, theme: &Theme) {
+        let rows = grid.up.values.len();
+        for column in 0..grid.across.values.len() {
+            let mut row = 0;
+            for run in grid.cells[column * rows..][..rows].chunk_by(|a, b| a == b) {
+                let across = [column, column + 1].map(|edge| self.across(grid.across.edges[edge]));
+                let down = [row, row + run.len()].map(|edge| self.down(grid.up.edges[edge]));
+                row += run.len();
+                let Some(area) = Area::new(across[0], down[1], across[1], down[0]).common(self.area) else {
+                    continue;
+                };
+                match run[0] {
+                    Cell::Value(value) => {
+                        figure.rect(area, grid.colours.ink(value, theme));
+                        if let Some(hatch) = grid.colours.hatch(value, theme) {
+                            figure.hatch(area, hatch);
+                        }
+                    }
+                    Cell::Rest => {
+                        figure.rect(area, theme.rest);
+                        figure.hatch(area, theme.rest_hatch);
+                    }
+                    Cell::Missing => {
+                        figure.rect(area, theme.paper);
+                        cross(figure, area, theme.soft);
+                    }
+                    Cell::Blank => {}
+                }
+            }
+        }
+    }
 }
 
 /// First, least, greatest and last of a column, in their order.
 fn extremes(column: &[Point]) -> Vec<Point> {
     let by = |better: fn(f64, f64) -> bool| {
-        let mut best: Option<usize> = None;
-        for (i, point) in column.iter().enumerate() {
-            if !point.1.is_nan() && best.is_none_or(|best| better(point.1, column[best].1)) {
-                best = Some(i);
-            }
-        }
-        best
+        (1..column.len()).fold(0, |best, i| if better(column[i].1, column[best].1) { i } else { best })
     };
-    let mut places: Vec<usize> = [
-        column.first().map(|_| 0),
-        by(|value, best| value < best),
-        by(|value, best| value > best),
-        column.len().checked_sub(1),
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
-    places.sort_unstable();
-    places.dedup();
-    places.into_iter().map(|i| column[i]).collect()
+    let mut kept = vec![0, by(|a, b| a < b), by(|a, b| a > b), column.len() - 1];
+    kept.sort_unstable();
+    kept.dedup();
+    kept.into_iter().map(|i| column[i]).collect()
+}
+
+/// The marks of a line that stand `apart` from the one before; where the word changes, `close` is enough.
+fn thinned<'a>(marks: &[(Point, &'a str)], apart: f64, close: f64) -> Vec<(Point, &'a str)> {
+    let mut kept: Vec<(Point, &str)> = Vec::new();
+    for (at, word) in marks {
+        let stands = kept.last().is_none_or(|(last, other)| {
+            (at.0 - last.0).hypot(at.1 - last.1) >= if other == word { apart } else { close.min(apart) }
+        });
+        if stands {
+            kept.push((*at, word));
+        }
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn markers_on_a_line_stand_apart_and_a_change_is_seen() {
+        let marks: Vec<(Point, &str)> = (0..100)
+            .map(|i| ((f64::from(i) * 4.0, 0.0), if i < 50 { "rest" } else { "interwell" }))
+            .collect();
+        let kept = thinned(&marks, 40.0, 10.0);
+        assert!(kept.windows(2).all(|pair| {
+            let step = pair[1].0.0 - pair[0].0.0;
+            step >= 40.0 || (pair[0].1 != pair[1].1 && step >= 10.0)
+        }));
+        let first = kept.iter().find(|mark| mark.1 == "interwell").unwrap();
+        assert!(first.0.0 <= 200.0 + 10.0, "{first:?}");
+        assert_eq!(thinned(&marks, 0.0, 10.0), marks);
+    }
 }

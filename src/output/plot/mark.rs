@@ -2,8 +2,10 @@
 
 use serde_json::{Map, Value, json};
 
-use super::figure::{Area, Figure, Point, Text, fitted};
+use super::figure::{Area, Figure, Point};
 use super::font;
+use super::page::wrapped_to;
+use super::role::Look;
 use super::style::{self, Ink, Theme};
 use crate::output::manifest::origin;
 use crate::scene::{Document, PROGRAM};
@@ -30,12 +32,6 @@ pub const REGIMES: [(&str, Marker); 4] = [
     ("irregular", Marker::Diamond),
     ("interwell", Marker::DoubleArrow),
 ];
-
-/// Marker and colour of a regime by its word in the tables; ink and a disc where it has none.
-pub fn regime(word: &str, theme: &Theme) -> (Marker, Ink) {
-    let place = REGIMES.iter().position(|(regime, _)| *regime == word);
-    place.map_or((Marker::Disc, theme.ink), |place| (REGIMES[place].1, theme.regimes[place]))
-}
 
 /// Draws a marker with an outline of `edge`; `size` is half its height.
 pub fn marker(figure: &mut Figure, marker: Marker, at: Point, size: f64, ink: Ink, edge: Ink) {
@@ -71,86 +67,29 @@ pub fn dot(figure: &mut Figure, marker: Marker, (x, y): Point, size: f64, ink: I
 /// What an entry of a legend shows beside its words.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sample {
-    /// A line, dashed where there is a dash.
-    Line(Ink, f64, Option<(f64, f64)>),
-    /// The same with an outline, as over a map.
-    Outlined(Ink, Option<(f64, f64)>),
+    /// A line.
+    Line(Look),
     /// A marker.
-    Marker(Marker, Ink),
-    /// A filled patch, hatched where there is a second colour.
-    Patch(Ink, Option<Ink>),
-    /// A patch with a cross in it.
+    Marker(Look),
+    /// A filled patch.
+    Patch(Look),
+    /// A patch with a cross in it, both in these colours.
     Crossed(Ink, Ink),
     /// Two short upright lines.
     Ticks(Ink),
 }
 
-/// Width of a legend's sample, and its distance from the words.
-const SAMPLE: f64 = 44.0;
-const GAP: f64 = 12.0;
-/// From one row of a legend to the next.
-const ROW: f64 = 38.0;
-
-/// Where the entries of a legend between `left` and `right` begin, each with its row: those that do not fit
-/// start another one.
-fn laid_out(entries: &[(Sample, &str)], left: f64, right: f64) -> Vec<(f64, usize)> {
-    const BETWEEN: f64 = 38.0;
-    let (mut x, mut row) = (left, 0);
-    let place = |(_, words): &(Sample, &str)| {
-        let width = SAMPLE + GAP + font::width(words, style::TICK, false);
-        if x > left && x + width > right {
-            (x, row) = (left, row + 1);
-        }
-        let place = (x, row);
-        x += width + BETWEEN;
-        place
-    };
-    entries.iter().map(place).collect()
-}
-
-/// Draws rows of entries, the first one at the height `middle`, between these ends; on a narrow canvas from
-/// edge to edge. A sheet that leaves its height open becomes higher by the rows after the first, so a legend
-/// comes before the frames. Returns the lower edge.
-pub fn legend(
-    figure: &mut Figure,
-    theme: &Theme,
-    entries: &[(Sample, &str)],
-    ends: (f64, f64),
-    middle: f64,
-) -> f64 {
-    let (left, right) = figure.breadth(ends);
-    let places = laid_out(entries, left, right);
-    let rows = places.last().map_or(0, |place| place.1);
-    figure.grow(ROW * rows as f64);
-    for ((sample, words), (x, row)) in entries.iter().zip(places) {
-        let y = middle + ROW * row as f64;
-        entry(figure, theme, *sample, Area::new(x, y - 12.0, x + SAMPLE, y + 12.0));
-        let words = fitted(words, style::TICK, false, right - x - SAMPLE - GAP);
-        let at = (x + SAMPLE + GAP, y + 0.5 * style::TICK * font::CAPITAL);
-        figure.text(Text::new(words, at, style::TICK, theme.ink));
-    }
-    middle + ROW * (rows as f64 + 0.5)
-}
-
-fn entry(figure: &mut Figure, theme: &Theme, sample: Sample, area: Area) {
+/// Draws the sample of a legend's entry in `area`.
+pub fn entry(figure: &mut Figure, theme: &Theme, sample: Sample, area: Area) {
     let Area { left, top, right, bottom } = area;
     let middle = (0.5 * (left + right), 0.5 * (top + bottom));
-    let ends = [(left, middle.1), (right, middle.1)];
     let canvas = figure.canvas;
-    let mut across = |width: f64, ink: Ink, dash: Option<(f64, f64)>| match dash {
-        Some(dash) => figure.dashed(&ends, width, ink, dash, canvas),
-        None => figure.line(&ends, width, ink, canvas),
-    };
     match sample {
-        Sample::Line(ink, width, dash) => across(width, ink, dash),
-        Sample::Outlined(ink, dash) => {
-            across(style::GUIDE + 4.0, style::BLACK, None);
-            across(style::GUIDE, ink, dash);
-        }
-        Sample::Marker(shape, ink) => marker(figure, shape, middle, style::MARKER, ink, theme.ink),
-        Sample::Patch(ink, hatch) => {
-            figure.rect(area, ink);
-            if let Some(hatch) = hatch {
+        Sample::Line(look) => figure.styled(&[(left, middle.1), (right, middle.1)], &look, canvas),
+        Sample::Marker(look) => mark(figure, &look, middle, style::MARKER, theme),
+        Sample::Patch(look) => {
+            figure.rect(area, look.ink);
+            if let Some(hatch) = look.hatch {
                 figure.hatch(area, hatch);
             }
             figure.outline(area, style::GRID, theme.soft);
@@ -165,6 +104,19 @@ fn entry(figure: &mut Figure, theme: &Theme, sample: Sample, area: Area) {
                 figure.line(&[(at, top), (at, bottom)], style::LINE, ink, canvas);
             }
         }
+    }
+}
+
+/// Draws the marker of a look, with an outline.
+pub fn mark(figure: &mut Figure, look: &Look, at: Point, size: f64, theme: &Theme) {
+    if let Some(halo) = look.halo {
+        dot(figure, look.marker, at, size + 5.0, theme.ink);
+        marker(figure, look.marker, at, size, look.ink, halo);
+        return;
+    }
+    marker(figure, look.marker, at, size, look.ink, if size < 5.0 { theme.paper } else { theme.ink });
+    if look.hollow {
+        dot(figure, look.marker, at, size - 3.0, theme.paper);
     }
 }
 
@@ -185,6 +137,9 @@ pub struct Caption {
     /// What made it, for the picture's file.
     pub origin: Map<String, Value>,
 }
+
+/// The most lines of a footer, about.
+const MOST_FOOTER_LINES: usize = 8;
 
 /// What stands between the parts of a footer.
 const PART: &str = " \u{b7} ";
@@ -211,10 +166,8 @@ impl Caption {
         Self { title: name.to_owned(), footer, origin }
     }
 
-    /// The footer in lines that fit on a canvas of this `width`; what does not fit into the last one is cut.
-    pub fn footer_lines(&self, width: f64) -> Vec<String> {
-        const MOST: usize = 4;
-        let room = width - if width < style::NARROW { 48.0 } else { 220.0 };
+    /// The footer in lines that are no longer than `room`, parted between its parts where that is enough.
+    pub fn footer_lines(&self, room: f64) -> Vec<String> {
         let fits = |words: &str| font::width(words, style::FOOTER, false) <= room;
         let mut lines: Vec<String> = Vec::new();
         for part in self.footer.split(PART) {
@@ -226,31 +179,8 @@ impl Caption {
                 _ => lines.push(part.to_owned()),
             }
         }
-        if lines.len() > MOST {
-            let rest = lines.split_off(MOST - 1).join(PART);
-            lines.push(rest);
-        }
-        lines.iter().map(|line| fitted(line, style::FOOTER, false, room)).collect()
-    }
-
-    /// Draws title, subtitle and footer, on a wide canvas from `left` on.
-    pub fn draw(&self, figure: &mut Figure, theme: &Theme, subtitle: &str, left: f64) {
-        let (canvas, on_paper) = (figure.canvas, figure.sheet.is_some());
-        let (left, right) = figure.breadth((left, canvas.right - 30.0));
-        let room = right - left;
-        let mut row = |words: &str, size: f64, bold: bool, ink: Ink, height: f64| {
-            // On paper the words are smaller before they are cut.
-            let share = (room / font::width(words, size, bold)).clamp(0.7, 1.0);
-            let size = if on_paper { share * size } else { size };
-            let words = fitted(words, size, bold, room);
-            figure.text(Text { bold, ..Text::new(words, (left, height), size, ink) });
-        };
-        row(&self.title, style::TITLE, true, theme.ink, 58.0);
-        row(subtitle, style::SUBTITLE, false, theme.soft, 100.0);
-        let lines = self.footer_lines(canvas.right);
-        for (above, line) in lines.iter().rev().enumerate() {
-            let height = canvas.bottom - 16.0 - style::FOOTER_LINE * above as f64;
-            row(line, style::FOOTER, false, theme.soft, height);
-        }
+        let most = MOST_FOOTER_LINES.saturating_sub(lines.len() - 1).max(1);
+        lines.truncate(MOST_FOOTER_LINES);
+        lines.iter().flat_map(|line| wrapped_to(line, style::FOOTER, false, room, most)).collect()
     }
 }

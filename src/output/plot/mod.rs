@@ -1,71 +1,79 @@
 //! Pictures as PNG, SVG or PDF.
 //!
-//! A plot writes a [`Figure`], a list of plain shapes; [`Format::bytes`] paints it. Light or dark, the data
-//! and their places are the same, and the same data give the same bytes.
+//! A study's table becomes a [`Chart`]: panels, axes and layers, each with its [`Role`]. [`Chart::figure`]
+//! lays it out as a list of plain shapes, and [`Format::bytes`] paints those. Light or dark, the data and
+//! their places are the same, and the same data give the same bytes.
 
 mod accuracy;
 mod arguments;
 mod axis;
 mod basins;
 mod branch;
+mod cells;
+mod chart;
 mod comparison;
 mod contact;
 mod curve;
-mod cut;
 mod drawn;
 mod exponents;
 mod figure;
 mod font;
 mod frame;
-mod map;
+mod grid;
 mod mark;
 mod measured;
-mod paint;
-mod panels;
+mod page;
 mod pdf;
+mod png;
+mod portrait;
 mod projection;
 mod quantity;
 mod record;
+mod role;
 mod run;
 mod section;
 mod sheet;
 mod spectrum;
 mod style;
+mod subset;
 mod surface;
+mod svg;
 mod sweep;
 mod swept;
 mod threshold;
-mod walk;
 
 use std::path::Path;
 
-pub use accuracy::accuracy_figure;
+pub use accuracy::accuracy_chart;
 pub use arguments::{Argument, picture_arguments};
 pub use axis::{PlotAxis, Ranges};
-pub use basins::{attractor_colour, basins_figure, can_show_starts};
-pub use branch::branch_figure;
-pub use comparison::{ComparisonPicture, comparison_figure};
-pub use contact::contact_figure;
-pub use curve::curve_figure;
-pub use exponents::{ExponentPicture, can_show_exponents, exponents_figure};
+pub use basins::{attractor_colour, basins_chart, can_show_starts};
+pub use branch::branch_chart;
+pub use cells::{Cell, Cells, Colours};
+pub use chart::{Chart, Column, Layer, Marks, Note, Panel, Side};
+pub use comparison::{ComparisonPicture, comparison_chart};
+pub use contact::contact_chart;
+pub use curve::curve_chart;
+pub use exponents::{ExponentPicture, can_show_exponents, exponents_chart};
 pub use figure::Figure;
 pub use mark::Caption;
-pub use measured::measured_figure;
-pub use paint::PaintError;
-pub use panels::Panel;
+pub use measured::measured_chart;
+pub use png::PaintError;
+pub use portrait::separatrix;
 pub use projection::{
     AXIS_EDGES, BACK_EDGES, BoxPlace, Face, Projection, SIDES, faces as surface_faces, wall_lines,
 };
 pub use quantity::{RMS, quantities, words_of};
-pub use record::{identified_figure, measured_force_figure};
-pub use run::{run_figure, speed_unit};
-pub use section::{SectionPicture, section_figure};
+pub use record::{identified_chart, measured_force_chart};
+pub use role::{Look, Role};
+pub use run::{RunPanel, run_chart, speed_unit};
+pub use section::{SectionPicture, section_chart};
 pub use sheet::{Sheet, SheetError, SheetText};
-pub use spectrum::{SpectrumQuantity, spectrum_figure};
+pub use spectrum::{SpectrumQuantity, spectrum_chart};
 pub use style::{BLACK, Ink, Theme, viridis};
-pub use sweep::{MAX_PICTURE_CELLS, NoPicture, can_show, sweep_about, sweep_figure};
+pub use sweep::{MAX_PICTURE_CELLS, NoPicture, can_show, sweep_about, sweep_chart};
 pub use swept::{Cut, Overlay, SweepPicture, View};
-pub use threshold::{ThresholdPicture, can_show_thresholds, threshold_figure};
+pub use threshold::{ThresholdPicture, can_show_thresholds, threshold_chart};
 
 /// A kind of file that holds a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -98,9 +106,9 @@ impl Format {
     /// The picture as a file of this kind.
     pub fn bytes(self, figure: &Figure) -> Result<Vec<u8>, PaintError> {
         match self {
-            Self::Png => paint::png(figure),
-            Self::Svg => paint::svg(figure).map(String::into_bytes),
-            Self::Pdf => pdf::pdf(figure),
+            Self::Png => png::png(figure),
+            Self::Svg => Ok(svg::svg(figure).into_bytes()),
+            Self::Pdf => Ok(pdf::pdf(figure)),
         }
     }
 }

@@ -1,31 +1,45 @@
 //! Painting of a list of shapes as PDF: paths, and text as text with the letters used embedded.
 //!
-//! krilla writes the file, without a date and with an identity made from what is in it, so the same picture
-//! is the same bytes.
+//! The file has no date and no random identity: the same picture is the same bytes.
 
-use krilla::Document;
-use krilla::color::rgb;
-use krilla::geom::{PathBuilder, Point as Place, Rect, Transform};
-use krilla::metadata::Metadata;
-use krilla::page::PageSettings;
-use krilla::paint::{Fill, LineCap, LineJoin, Stroke};
-use krilla::surface::Surface;
-use krilla::text::{Font, TextDirection};
+use std::collections::BTreeMap;
+use std::io::Write;
 
-use super::figure::{Align, Area, Figure, Point, Shape, Text};
-use super::font::{self, FACES};
-use super::paint::{PaintError, failed};
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
+use pdf_writer::types::{CidFontType, FontFlags, LineCapStyle, LineJoinStyle, SystemInfo, UnicodeCmap};
+use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
+use skrifa::GlyphId;
+use xmp_writer::XmpWriter;
+
+use super::figure::{Area, Figure, Point, Shape, Text};
+use super::font::{Face, UNITS};
 use super::style::Ink;
+use super::subset::subset;
 
 /// Points of PDF in a mm, and in a pixel of a screen.
 const A_MM: f64 = 72.0 / 25.4;
 const A_PIXEL: f64 = 72.0 / 96.0;
 
-/// Distance of a cubic's control points from the ends of a quarter of a unit circle, for the least error.
-const QUARTER: f64 = 0.551_915_024_5;
+const CATALOG: Ref = Ref::new(1);
+const PAGES: Ref = Ref::new(2);
+const PAGE: Ref = Ref::new(3);
+const CONTENT: Ref = Ref::new(4);
+const INFO: Ref = Ref::new(5);
+const METADATA: Ref = Ref::new(6);
+/// The first object of the regular font; the heavier one has the next [`FONT_OBJECTS`].
+const FONTS: i32 = 7;
+const FONT_OBJECTS: i32 = 5;
+
+/// What the content calls the two fonts.
+const FONT_NAMES: [Name<'static>; 2] = [Name(b"R"), Name(b"B")];
+
+/// How glyphs are numbered: as in the font's file.
+const IDENTITY: SystemInfo<'static> =
+    SystemInfo { registry: Str(b"Adobe"), ordering: Str(b"Identity"), supplement: 0 };
 
 /// The picture as PDF.
-pub fn pdf(figure: &Figure) -> Result<Vec<u8>, PaintError> {
+pub fn pdf(figure: &Figure) -> Vec<u8> {
     let Area { left, top, right, bottom } = figure.shown;
     let (wide, high) = (right - left, bottom - top);
     let (width, height) = match (figure.size_mm(), figure.size) {
@@ -33,135 +47,194 @@ pub fn pdf(figure: &Figure) -> Result<Vec<u8>, PaintError> {
         (None, Some((width, height))) => (f64::from(width) * A_PIXEL, f64::from(height) * A_PIXEL),
         (None, None) => (wide * A_PIXEL, high * A_PIXEL),
     };
-    let faces = FACES.map(|bytes| Font::new(bytes.to_vec().into(), 0));
-    let [Some(regular), Some(bold)] = faces else { return Err(failed("the font cannot be read")) };
-    let mut document = Document::new();
-    let title = figure.origin.get("title").and_then(|title| title.as_str()).unwrap_or_default();
-    let about = Metadata::new().title(title.to_owned()).creator(figure.software());
-    document.set_metadata(about.description(figure.made()));
-    let settings = PageSettings::from_wh(width as f32, height as f32);
-    let settings = settings.ok_or_else(|| failed(format!("a page of {width} by {height} points")))?;
-    let mut page = document.start_page_with(settings);
-    let mut surface = page.surface();
-    if let Some(Shape::Rect(_, paper)) = figure.shapes.first() {
-        fill(&mut surface, *paper);
-        rect(&mut surface, Area::new(0.0, 0.0, width, height));
-    }
     let scale = (width / wide).min(height / high);
-    let move_by = (0.5 * (width - wide * scale) - left * scale, 0.5 * (height - high * scale) - top * scale);
-    surface.push_transform(&Transform::from_row(
-        scale as f32,
-        0.0,
-        0.0,
-        scale as f32,
-        move_by.0 as f32,
-        move_by.1 as f32,
-    ));
-    for shape in figure.shapes.iter().skip(1) {
-        match shape {
-            Shape::Rect(area, ink) => {
-                fill(&mut surface, *ink);
-                rect(&mut surface, *area);
-            }
-            Shape::Line(points, width, ink) => line(&mut surface, points, *width, *ink),
-            Shape::Polygon(points, ink) => {
-                fill(&mut surface, *ink);
-                outline(&mut surface, points, true);
-            }
-            Shape::Disc(centre, radius, ink) => {
-                fill(&mut surface, *ink);
-                disc(&mut surface, *centre, *radius);
-            }
-            Shape::Text(text) => write(&mut surface, text, if text.bold { &bold } else { &regular }),
-        }
+    let move_by = (0.5 * (width - wide * scale) - left * scale, 0.5 * (height + high * scale) + top * scale);
+    let used = [BTreeMap::new(), BTreeMap::new()];
+    let mut sheet = Sheet { content: Content::new(), used, filling: None, drawing: None };
+    if let Some(Shape::Rect(_, paper)) = figure.shapes.first() {
+        sheet.fill(*paper);
+        sheet.content.rect(0.0, 0.0, width as f32, height as f32).fill_nonzero();
     }
-    surface.pop();
-    surface.finish();
+    // the canvas goes down, a page up
+    let (x, y) = (move_by.0 as f32, move_by.1 as f32);
+    sheet.content.transform([scale as f32, 0.0, 0.0, -scale as f32, x, y]);
+    sheet.content.set_line_cap(LineCapStyle::RoundCap).set_line_join(LineJoinStyle::RoundJoin);
+    figure.shapes.iter().skip(1).for_each(|shape| sheet.paint(shape));
+
+    let mut pdf = Pdf::new();
+    pdf.catalog(CATALOG).pages(PAGES).metadata(METADATA);
+    pdf.pages(PAGES).kids([PAGE]).count(1);
+    let mut page = pdf.page(PAGE);
+    page.media_box(Rect::new(0.0, 0.0, width as f32, height as f32)).parent(PAGES).contents(CONTENT);
+    let mut resources = page.resources();
+    let mut fonts = resources.fonts();
+    for (place, name) in FONT_NAMES.into_iter().enumerate() {
+        fonts.pair(name, font_object(place, 0));
+    }
+    fonts.finish();
+    resources.finish();
     page.finish();
-    document.finish().map_err(|error| failed(format!("{error:?}")))
-}
-
-fn colour(Ink(red, green, blue): Ink) -> rgb::Color {
-    rgb::Color::new(red, green, blue)
-}
-
-fn fill(surface: &mut Surface, ink: Ink) {
-    surface.set_stroke(None);
-    surface.set_fill(Some(Fill { paint: colour(ink).into(), ..Fill::default() }));
-}
-
-fn rect(surface: &mut Surface, Area { left, top, right, bottom }: Area) {
-    let mut path = PathBuilder::new();
-    if let Some(rect) = Rect::from_ltrb(left as f32, top as f32, right as f32, bottom as f32) {
-        path.push_rect(rect);
+    pdf.stream(CONTENT, &packed(&sheet.content.finish())).filter(Filter::FlateDecode);
+    for (place, used) in sheet.used.iter().enumerate() {
+        embed(&mut pdf, place, used);
     }
-    if let Some(path) = path.finish() {
-        surface.draw_path(&path);
-    }
+    let title = figure.origin.get("title").and_then(|title| title.as_str()).unwrap_or_default();
+    let (made, software) = (figure.made(), figure.software());
+    pdf.document_info(INFO).title(TextStr(title)).subject(TextStr(&made)).creator(TextStr(&software));
+    let mut xmp = XmpWriter::new();
+    xmp.title([(None, title)]).description([(None, made.as_str())]).creator_tool(&software);
+    pdf.metadata(METADATA, xmp.finish(None).as_bytes());
+    pdf.finish()
 }
 
-/// A path through points, filled or drawn as the surface is set.
-fn outline(surface: &mut Surface, points: &[Point], closed: bool) {
-    let mut path = PathBuilder::new();
-    for (i, (x, y)) in points.iter().enumerate() {
-        if i == 0 {
-            path.move_to(*x as f32, *y as f32);
-        } else {
-            path.line_to(*x as f32, *y as f32);
+/// An object of one of the two fonts: 0 the font, 1 its glyphs, 2 its descriptor, 3 its file, 4 its letters.
+fn font_object(place: usize, object: i32) -> Ref {
+    Ref::new(FONTS + FONT_OBJECTS * place as i32 + object)
+}
+
+fn packed(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::new(9));
+    // a vector takes all that is written to it
+    let _ = encoder.write_all(bytes);
+    encoder.finish().unwrap_or_default()
+}
+
+/// Writes a font with the glyphs that are used, each with its letter.
+fn embed(pdf: &mut Pdf, place: usize, used: &BTreeMap<GlyphId, char>) {
+    let face = Face::of(place == 1);
+    // six letters before the name say that the font is not whole
+    let name = format!("INTERW+{}", face.name);
+    let name = Name(name.as_bytes());
+    pdf.type0_font(font_object(place, 0))
+        .base_font(name)
+        .encoding_predefined(Name(b"Identity-H"))
+        .descendant_font(font_object(place, 1))
+        .to_unicode(font_object(place, 4));
+    let mut glyphs = pdf.cid_font(font_object(place, 1));
+    glyphs.subtype(CidFontType::Type2).base_font(name).system_info(IDENTITY);
+    glyphs.font_descriptor(font_object(place, 2)).default_width(0.0);
+    glyphs.cid_to_gid_map_predefined(Name(b"Identity"));
+    let mut widths = glyphs.widths();
+    for glyph in used.keys() {
+        widths.consecutive(glyph.to_u32() as u16, [(1e3 * face.width(*glyph)) as f32]);
+    }
+    widths.finish();
+    glyphs.finish();
+    // bounds, ascent and descent of the whole font, in thousandths of an em
+    let thousandth = |units: f64| (units * 1e3 / UNITS) as f32;
+    let bounds = Rect::new(thousandth(-1513.0), thousandth(-660.0), thousandth(5290.0), thousandth(2269.0));
+    pdf.font_descriptor(font_object(place, 2))
+        .name(name)
+        .flags(FontFlags::SYMBOLIC)
+        .bbox(bounds)
+        .italic_angle(0.0)
+        .ascent(thousandth(1984.0))
+        .descent(thousandth(-494.0))
+        .cap_height(thousandth(1490.0))
+        .stem_v(if place == 1 { 120.0 } else { 80.0 })
+        .font_file2(font_object(place, 3));
+    let file = subset(face.bytes, used.keys().map(|glyph| glyph.to_u32() as usize));
+    let bytes = packed(&file);
+    let mut stream = pdf.stream(font_object(place, 3), &bytes);
+    stream.filter(Filter::FlateDecode).pair(Name(b"Length1"), file.len() as i32);
+    stream.finish();
+    let mut letters: UnicodeCmap<u16> = UnicodeCmap::new(Name(b"Letters"), IDENTITY);
+    used.iter().for_each(|(glyph, letter)| letters.pair(glyph.to_u32() as u16, *letter));
+    pdf.stream(font_object(place, 4), &packed(&letters.finish())).filter(Filter::FlateDecode);
+}
+
+/// The content of a page, and the glyphs of both fonts that it uses, with their letters.
+struct Sheet {
+    content: Content,
+    used: [BTreeMap<GlyphId, char>; 2],
+    /// The present colour of areas.
+    filling: Option<Ink>,
+    /// The present colour and width of lines.
+    drawing: Option<(Ink, f64)>,
+}
+
+/// Red, green and blue from 0 to 1.
+fn parts(Ink(red, green, blue): Ink) -> [f32; 3] {
+    [red, green, blue].map(|part| f32::from(part) / 255.0)
+}
+
+/// A length on the canvas, rounded to what no print can show.
+fn rounded(length: f64) -> f32 {
+    ((length * 100.0).round() / 100.0) as f32
+}
+
+impl Sheet {
+    /// Sets the colour of areas, where it changes.
+    fn fill(&mut self, ink: Ink) {
+        if self.filling != Some(ink) {
+            let [red, green, blue] = parts(ink);
+            self.content.set_fill_rgb(red, green, blue);
+            self.filling = Some(ink);
         }
     }
-    if closed {
-        path.close();
-    }
-    if let Some(path) = path.finish() {
-        surface.draw_path(&path);
-    }
-}
 
-fn line(surface: &mut Surface, points: &[Point], width: f64, ink: Ink) {
-    surface.set_fill(None);
-    surface.set_stroke(Some(Stroke {
-        paint: colour(ink).into(),
-        width: width as f32,
-        line_cap: LineCap::Round,
-        line_join: LineJoin::Round,
-        ..Stroke::default()
-    }));
-    outline(surface, points, false);
-}
-
-fn disc(surface: &mut Surface, (x, y): Point, radius: f64) {
-    let at = |dx: f64, dy: f64| ((x + radius * dx) as f32, (y + radius * dy) as f32);
-    let mut path = PathBuilder::new();
-    let (begin_x, begin_y) = at(1.0, 0.0);
-    path.move_to(begin_x, begin_y);
-    let mut from = (1.0, 0.0);
-    for to in [(0.0, 1.0), (-1.0, 0.0), (0.0, -1.0), (1.0, 0.0)] {
-        let (a, b) = (
-            at(from.0 + QUARTER * to.0, from.1 + QUARTER * to.1),
-            at(to.0 + QUARTER * from.0, to.1 + QUARTER * from.1),
-        );
-        let end = at(to.0, to.1);
-        path.cubic_to(a.0, a.1, b.0, b.1, end.0, end.1);
-        from = to;
+    /// Sets the colour and the width of lines, where they change.
+    fn pen(&mut self, ink: Ink, width: f64) {
+        if self.drawing.is_none_or(|last| last.0 != ink) {
+            let [red, green, blue] = parts(ink);
+            self.content.set_stroke_rgb(red, green, blue);
+        }
+        if self.drawing.is_none_or(|last| last.1 != width) {
+            self.content.set_line_width(rounded(width));
+        }
+        self.drawing = Some((ink, width));
     }
-    path.close();
-    if let Some(path) = path.finish() {
-        surface.draw_path(&path);
-    }
-}
 
-fn write(surface: &mut Surface, text: &Text, face: &Font) {
-    let back = match text.align {
-        Align::Left => 0.0,
-        Align::Centre => 0.5,
-        Align::Right => 1.0,
-    } * font::width(&text.words, text.size, text.bold);
-    let (x, y) = (text.at.0 as f32, text.at.1 as f32);
-    let turn = if text.upright { (0.0, -1.0, 1.0, 0.0) } else { (1.0, 0.0, 0.0, 1.0) };
-    surface.push_transform(&Transform::from_row(turn.0, turn.1, turn.2, turn.3, x, y));
-    fill(surface, text.ink);
-    let begin = Place::from_xy(-back as f32, 0.0);
-    surface.draw_text(begin, face.clone(), text.size as f32, &text.words, false, TextDirection::LeftToRight);
-    surface.pop();
+    fn paint(&mut self, shape: &Shape) {
+        match shape {
+            Shape::Rect(Area { left, top, right, bottom }, ink) => {
+                self.fill(*ink);
+                let [left, top, right, bottom] = [*left, *top, *right, *bottom].map(rounded);
+                self.content.rect(left, top, right - left, bottom - top).fill_nonzero();
+            }
+            Shape::Line(points, width, ink) => {
+                self.pen(*ink, *width);
+                self.outline(points);
+                self.content.stroke();
+            }
+            Shape::Polygon(points, ink) => {
+                self.fill(*ink);
+                self.outline(points);
+                self.content.close_path().fill_nonzero();
+            }
+            // a line of no length with round ends (ISO 32000-1, 8.4.3.3)
+            Shape::Disc(centre, radius, ink) => {
+                self.pen(*ink, 2.0 * radius);
+                self.outline(&[*centre, *centre]);
+                self.content.stroke();
+            }
+            Shape::Text(text) => self.write(text),
+        }
+    }
+
+    fn outline(&mut self, points: &[Point]) {
+        for (i, (x, y)) in points.iter().enumerate() {
+            match i {
+                0 => self.content.move_to(rounded(*x), rounded(*y)),
+                _ => self.content.line_to(rounded(*x), rounded(*y)),
+            };
+        }
+    }
+
+    fn write(&mut self, text: &Text) {
+        self.fill(text.ink);
+        let mut glyphs = Vec::new();
+        for letter in Face::of(text.bold).letters(&text.words) {
+            glyphs.extend((letter.glyph.to_u32() as u16).to_be_bytes());
+            self.used[usize::from(text.bold)].entry(letter.glyph).or_insert(letter.character);
+        }
+        let (back, (x, y)) = (text.before(), text.at);
+        // letters stand upright on a canvas that goes down
+        let matrix = match text.upright {
+            false => [1.0, 0.0, 0.0, -1.0, rounded(x - back), rounded(y)],
+            true => [0.0, -1.0, -1.0, 0.0, rounded(x), rounded(y + back)],
+        };
+        self.content.begin_text().set_font(FONT_NAMES[usize::from(text.bold)], rounded(text.size));
+        self.content.set_text_matrix(matrix).show(Str(&glyphs)).end_text();
+    }
 }

@@ -1,7 +1,8 @@
 //! Column of a sweep that a picture shows, in units that suit it.
 
 use super::axis::PlotAxis;
-use super::style::{self, Ink, Theme};
+use super::role::Role;
+use super::swept::missing_words;
 use crate::study::{Grid, RMS_VELOCITY, SummaryField, Table, Values, label_and_unit};
 
 /// The column that is shown where none is named.
@@ -26,21 +27,24 @@ pub fn words_of(name: &str) -> Option<&'static [&'static str]> {
     Some(words).filter(|words| !words.is_empty())
 }
 
+/// Counts with more values than this are numbers on a scale.
+const MOST_COUNTS: usize = 8;
+
 /// A column to show.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Quantity {
-    /// Its values, a row each; NaN where there is none.
+    /// Its values, a row each; NaN where there is none. Of kinds, their places.
     pub values: Vec<f64>,
     /// What stands at its axis.
     pub label: String,
     /// The unit at the end of the label; empty where it has none.
     pub unit: String,
-    /// The words that the values are places of, where it has words.
-    pub words: Option<&'static [&'static str]>,
-    /// Whether these are the regimes.
-    regimes: bool,
-    /// Whether it is the velocity, which is 0 at rest.
-    pub velocity: bool,
+    /// The kinds that the values are places of, with their words, where it has kinds.
+    pub kinds: Option<Vec<(Role, String)>>,
+    /// Whether a motion at rest is shown as such.
+    pub rests: bool,
+    /// Whether it is the velocity.
+    velocity: bool,
 }
 
 /// The columns of `table` that can be shown, which are those of the summary and of thresholds, not the swept
@@ -59,17 +63,22 @@ impl Quantity {
     /// The column called `name` of `rows`; no values where there is none.
     pub fn of(rows: &Table, name: &str) -> Self {
         let column = rows.column(name);
-        let values: Vec<f64> = match column.map(|column| &column.values) {
+        let words = words_of(name);
+        let mut values: Vec<f64> = match column.map(|column| &column.values) {
             Some(Values::Numbers(values)) => values.clone(),
             Some(Values::Counts(values)) => values.iter().map(|n| n.map_or(f64::NAN, |n| n as f64)).collect(),
-            Some(Values::Names(_)) => Vec::new(),
-            Some(Values::Words(words)) => {
-                let known = words_of(name).unwrap_or_default();
-                let place = |word: &&str| known.iter().position(|entry| entry == word);
-                words.iter().map(|word| place(word).map_or(f64::NAN, |place| place as f64)).collect()
+            Some(Values::Words(shown)) => {
+                let place = |word: &&str| words.unwrap_or_default().iter().position(|entry| entry == word);
+                shown.iter().map(|word| place(word).map_or(f64::NAN, |place| place as f64)).collect()
             }
-            None => Vec::new(),
+            Some(Values::Names(_)) | None => Vec::new(),
         };
+        let role = |place| if name == "regime" { Role::Regime(place) } else { Role::Kind(place) };
+        let mut kinds: Option<Vec<(Role, String)>> = words
+            .map(|words| words.iter().enumerate().map(|(i, word)| (role(i), (*word).to_owned())).collect());
+        if name == PERIOD {
+            kinds = Some(counted(&mut values));
+        }
         let greatest = values.iter().filter(|v| v.is_finite()).fold(0.0_f64, |a, b| a.max(b.abs()));
         let (words, unit) =
             column.map_or_else(|| (name.to_owned(), ""), |column| label_and_unit(&column.name));
@@ -83,24 +92,44 @@ impl Quantity {
             "m" | "m/s" if greatest < 2.0 => (1e3, format!("m{unit}")),
             _ => (1.0, unit.to_owned()),
         };
-        let label = if unit.is_empty() { words.to_owned() } else { format!("{words}, {unit}") };
+        let label = if unit.is_empty() { words.to_owned() } else { format!("{words} ({unit})") };
         let values = values.into_iter().map(|value| value * scale).collect();
-        Self { values, label, unit, words: words_of(name), regimes: name == "regime", velocity: name == RMS }
+        let velocity = name == RMS;
+        Self { values, label, unit, kinds, rests: velocity || name == PERIOD, velocity }
     }
 
-    /// The colour of a value that is the place of a word.
-    pub fn ink(&self, value: f64, theme: &Theme) -> Ink {
-        let all: &[Ink] = if self.regimes { &theme.regimes } else { &style::KINDS };
-        all[value as usize % all.len()]
+    /// What a legend says of cells without a value.
+    pub fn missing(&self, rows: &Table) -> &'static str {
+        if self.velocity { missing_words(rows.words("outcome")) } else { "no value" }
     }
 
     /// Its axis: from 0, or from below where there are negative values, with `margin` of the range as room;
     /// the words where it has those.
-    pub fn axis(&self, margin: f64, count: usize) -> PlotAxis {
-        if let Some(words) = self.words {
-            let ticks = words.iter().enumerate().map(|(i, name)| (i as f64, (*name).to_owned())).collect();
-            return PlotAxis { low: -0.5, high: words.len() as f64 - 0.5, ticks, label: self.label.clone() };
+    pub fn axis(&self, margin: f64) -> PlotAxis {
+        if let Some(kinds) = &self.kinds {
+            let ticks = kinds.iter().enumerate().map(|(i, kind)| (i as f64, kind.1.clone())).collect();
+            return PlotAxis::given(-0.5, kinds.len() as f64 - 0.5, ticks, &self.label);
         }
-        PlotAxis::around(self.values.iter().copied().chain([0.0]), margin, count, &self.label)
+        PlotAxis::around(self.values.iter().copied().chain([0.0]), margin, &self.label)
     }
+}
+
+/// The period of a motion in forcing periods.
+const PERIOD: &str = "period";
+
+/// Whole numbers as kinds: each value becomes its place among them; the greatest ones are one kind.
+fn counted(values: &mut [f64]) -> Vec<(Role, String)> {
+    let mut all: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+    all.sort_by(f64::total_cmp);
+    all.dedup();
+    let rest = all.len() > MOST_COUNTS;
+    all.truncate(MOST_COUNTS);
+    for value in values.iter_mut().filter(|value| value.is_finite()) {
+        *value = all.partition_point(|known| known <= value).saturating_sub(1) as f64;
+    }
+    let name = |(i, value): (usize, &f64)| {
+        let least = if rest && i + 1 == MOST_COUNTS { "\u{2265} " } else { "" };
+        (Role::Kind(i), format!("period {least}{value}"))
+    };
+    all.iter().enumerate().map(name).collect()
 }

@@ -2,27 +2,21 @@
 //! what is left over, or the numbers with their intervals.
 
 use super::axis::{PlotAxis, Ranges};
+use super::chart::{Chart, Marks, Panel};
 use super::drawn::Drawn;
-use super::figure::{Area, Figure, Point};
-use super::frame::{Frame, stretched};
-use super::mark::{Caption, Marker, Sample, dot, legend, marker};
+use super::figure::Point;
+use super::role::Role;
 use super::run::speed_unit;
-use super::style::{self, Ink, Theme};
-use super::swept::LEFT;
 use crate::dynamics::STANDARD_GRAVITY;
 use crate::numeric::{extent, short};
 use crate::scene::{Quantity, Timing};
 use crate::study::{ForceComparison, Identified, Identity, Table};
 
-/// The least height of the canvas, and the two frames in a canvas of the usual height.
-const LEAST: f64 = 640.0;
-const FRAMES: [(f64, f64); 2] = [(175.0, 640.0), (700.0, 900.0)];
-
 /// Fewer samples than this are dots.
-const DOTS: usize = 400;
+pub(super) const DOTS: usize = 400;
 
-/// Points of the lower frame that are drawn at most; of more every so manieth.
-const MOST_LOWER: usize = 4000;
+/// The height of the lower panel over that of the upper one.
+const LOWER: f64 = 0.5;
 
 /// A line or points over the record.
 struct Series {
@@ -31,15 +25,9 @@ struct Series {
     /// In the table of what is drawn.
     series: &'static str,
     points: Vec<Point>,
-    ink: Ink,
-    kind: Kind,
-}
-
-/// How a series is drawn.
-enum Kind {
-    Line,
-    Dashed,
-    Marks(Marker),
+    role: Role,
+    /// Whether it is markers.
+    is_marks: bool,
 }
 
 /// What stands below.
@@ -69,15 +57,13 @@ struct RecordPicture {
 
 /// The picture of what was identified `of` a record, from the two columns that it was identified from in SI,
 /// the second one of this quantity; of impact times alone there is one column.
-pub fn identified_figure(
+pub fn identified_chart(
     of: &str,
     found: &Identified,
     (across, values): (&[f64], &[f64]),
     quantity: Quantity,
     ranges: Ranges,
-    caption: &Caption,
-    theme: &Theme,
-) -> Figure {
+) -> Chart {
     let (scale, up, unit) = axis_of(quantity, values);
     let column = |table: &'_ Table, name: &str| table.numbers(name).unwrap_or_default().to_vec();
     let fitted = |x: &str, y: &str, k: f64| -> Vec<Point> {
@@ -89,26 +75,26 @@ pub fn identified_figure(
         x.into_iter().enumerate().map(|(i, x)| (x, [0, 1, 2].map(|k| all[k][i]))).collect()
     };
     let first = found.summary.first().copied();
-    let line = |name, series, points, kind| Series { name, series, points, ink: theme.ink, kind };
+    let line = |name, series, points, role| Series { name, series, points, role, is_marks: false };
     let names = [if of == "force" { "x_m" } else { "t_s" }.to_owned(), column_of(quantity)];
     let k = if of == "force" { 1e3 } else { 1.0 };
     let record = across.iter().zip(values).map(|(x, y)| (x * k, y * scale)).collect();
     let picture = match of {
         "force" => RecordPicture {
-            across: "position, mm",
+            across: "position (mm)",
             up,
             unit,
             columns: names,
             scales: [k, scale],
             record,
             rises: false,
-            over: vec![line("identified curve", "identified", pairs(&found.rows, scale), Kind::Line)],
+            over: vec![line("identified curve", "identified", pairs(&found.rows, scale), Role::Curve)],
             lower: Lower::Rest("residual", "residual", fitted("x_m", "residual_n", 1e3)),
         },
         "damping" => {
             let (from, to) = (column(&found.rows, "from_s"), column(&found.rows, "to_s"));
             let middle = from.iter().zip(&to).map(|(a, b)| 0.5 * (a + b)).collect();
-            let envelope = |name, series, end| line(name, series, fitted("t_s", end, 1.0), Kind::Dashed);
+            let envelope = |name, series, end| line(name, series, fitted("t_s", end, 1.0), Role::Envelope);
             let over = vec![
                 envelope("identified envelope", "upper_envelope", "upper"),
                 envelope("", "lower_envelope", "lower"),
@@ -116,44 +102,31 @@ pub fn identified_figure(
             let rows = intervals(middle, "damping_ratio");
             let lower = Lower::Intervals("damping ratio", "damping_ratio", rows, first);
             let (columns, scales) = (names, [k, scale]);
-            RecordPicture { across: "time, s", up, unit, columns, scales, record, rises: true, over, lower }
+            RecordPicture { across: "time (s)", up, unit, columns, scales, record, rises: true, over, lower }
         }
         _ => {
-            let marks = |name, series, x, y, mark, ink| Series {
+            let marks = |name, series, x, y, role| Series {
                 name,
                 series,
                 points: fitted(x, y, 1.0),
-                ink,
-                kind: Kind::Marks(mark),
+                role,
+                is_marks: true,
             };
             let over = vec![
-                marks("impact", "impact", "t_s", "x_m", Marker::Disc, theme.ink),
-                marks(
-                    "end of a rebound",
-                    "rebound",
-                    "rebound_t_s",
-                    "rebound_x_m",
-                    Marker::Triangle,
-                    theme.second,
-                ),
+                marks("impact", "impact", "t_s", "x_m", Role::Impact),
+                marks("end of a rebound", "rebound", "rebound_t_s", "rebound_x_m", Role::Rebound),
             ];
             let rows = intervals(column(&found.rows, "t_s"), "restitution");
             let lower = Lower::Intervals("restitution", "restitution", rows, first);
             let (columns, scales) = (names, [k, scale]);
-            RecordPicture { across: "time, s", up, unit, columns, scales, record, rises: true, over, lower }
+            RecordPicture { across: "time (s)", up, unit, columns, scales, record, rises: true, over, lower }
         }
     };
-    picture.draw(&summary_words(&found.summary), ranges, caption, theme)
+    picture.chart(&summary_words(&found.summary), ranges)
 }
 
 /// The picture of a measured force over the computed curve, of which `curve` is the table.
-pub fn measured_force_figure(
-    found: &ForceComparison,
-    curve: &Table,
-    ranges: Ranges,
-    caption: &Caption,
-    theme: &Theme,
-) -> Figure {
+pub fn measured_force_chart(found: &ForceComparison, curve: &Table, ranges: Ranges) -> Chart {
     let (scale, up, unit) = axis_of(Quantity::Force, &found.measured);
     let mm = |values: &[f64]| -> Vec<Point> {
         found.positions.iter().zip(values).map(|(x, value)| (x * 1e3, value * scale)).collect()
@@ -162,9 +135,9 @@ pub fn measured_force_figure(
     let (low, high) = extent(found.positions.iter().copied());
     let near = pairs(curve, scale).into_iter().filter(|point| (low * 1e3..=high * 1e3).contains(&point.0));
     let name = "computed";
-    let computed = Series { name, series: name, points: near.collect(), ink: theme.ink, kind: Kind::Line };
+    let computed = Series { name, series: name, points: near.collect(), role: Role::Curve, is_marks: false };
     let picture = RecordPicture {
-        across: "displacement, mm",
+        across: "displacement (mm)",
         up,
         unit,
         columns: ["x_m".to_owned(), column_of(Quantity::Force)],
@@ -178,7 +151,7 @@ pub fn measured_force_figure(
     let mut words = rms_difference(found.rms, scale, unit);
     let (most, at) = (short((largest * scale).abs()), short(at * 1e3).replace('-', "\u{2212}"));
     words += &format!("; at most {most} {unit}, at {at} mm");
-    picture.draw(&words, ranges, caption, theme)
+    picture.chart(&words, ranges)
 }
 
 /// The first number with its interval and the second one; of a force curve the wells, the barrier and the
@@ -241,33 +214,13 @@ pub(super) fn rms_difference((rms, percent): (f64, f64), scale: f64, unit: &str)
 }
 
 impl RecordPicture {
-    fn draw(&self, words: &str, ranges: Ranges, caption: &Caption, theme: &Theme) -> Figure {
-        let mut figure = Figure::new(theme, caption, LEAST);
-        let of_record = theme.regimes[3];
+    fn chart(&self, words: &str, ranges: Ranges) -> Chart {
         let inside = |point: &&Point| ranges.x.is_none_or(|(a, b)| (a..=b).contains(&point.0));
         let shown = || self.record.iter().filter(inside);
-        let dots = shown().count() < DOTS;
-        let mut entries = Vec::new();
-        if !self.record.is_empty() {
-            entries.push((if dots { disc(of_record) } else { bar(of_record) }, "measured"));
-        }
-        entries.extend(self.over.iter().filter(|series| !series.name.is_empty()).map(|series| {
-            let sample = match series.kind {
-                Kind::Line => Sample::Line(series.ink, style::LINE, None),
-                Kind::Dashed => Sample::Line(series.ink, style::LINE, Some(style::DASH)),
-                Kind::Marks(mark) => Sample::Marker(mark, series.ink),
-            };
-            (sample, series.name)
-        }));
-        if matches!(self.lower, Lower::Intervals(..)) {
-            let band = theme.ink.over(theme.paper, 0.14);
-            entries.push((Sample::Patch(band, None), "of all, with its 95 % interval"));
-        }
-        let ends = (LEFT, figure.right());
-        let more = (legend(&mut figure, theme, &entries, ends, 142.0) - 161.0).max(0.0);
         let (label, lower) = match &self.lower {
             Lower::Rest(label, _, points) => {
-                (format!("{label}, {}", self.unit), points.iter().map(|point| point.1).chain([0.0]).collect())
+                let label = format!("{label} ({})", self.unit);
+                (label, points.iter().map(|point| point.1).chain([0.0]).collect())
             }
             Lower::Intervals(label, _, rows, all) => {
                 let ends = all.iter().flat_map(|number| [number.interval.0, number.interval.1]);
@@ -279,97 +232,47 @@ impl RecordPicture {
             Lower::Intervals(_, _, rows, _) => rows.iter().map(|row| row.0).collect(),
             Lower::Rest(..) => Vec::new(),
         });
-        let across = PlotAxis::around(places, 0.0, 8, self.across).or_given(ranges.x, 8, self.across);
+        let across = PlotAxis::around(places, 0.0, self.across).or_given(ranges.x);
         let drawn = self.over.iter().flat_map(|series| &series.points).filter(inside);
         let heights = shown().chain(drawn).map(|point| point.1);
-        let up = format!("{}, {}", self.up, self.unit);
-        let up = PlotAxis::around(heights, 0.08, 6, &up).or_given(ranges.y, 6, &up);
-        let below = PlotAxis::around(lower, 0.12, 4, &label);
-        let [first, second] = stretched(FRAMES, 175.0 + more, figure.bottom() - 8.0);
-        let height = |edges: (f64, f64)| edges.1 - edges.0;
-        let left = Frame::left(&figure, &up, LEFT, height(first));
-        let left = left.max(Frame::left(&figure, &below, LEFT, height(second)));
-        let area = |(top, bottom): (f64, f64)| Area::new(left, top, figure.right(), bottom);
-        let upper = Frame::new(area(first), across.clone().silent(), up);
-        let lower = Frame::new(area(second), across, below);
-
-        upper.grid(&mut figure, theme);
-        lower.grid(&mut figure, theme);
-        match (dots, self.rises) {
-            (true, _) => {
-                let at = self.record.iter().map(|point| upper.place(*point));
-                at.filter(|at| upper.area.contains(*at)).for_each(|at| {
-                    dot(&mut figure, Marker::Disc, at, 4.0, of_record);
-                });
-            }
-            (_, true) => {
-                let timing = Timing::of(&self.record.iter().map(|point| point.0).collect::<Vec<_>>());
-                for part in self.record.chunk_by(|a, b| !timing.is_gap(b.0 - a.0)) {
-                    upper.dense_line(&mut figure, part.iter().copied(), style::LINE, of_record);
-                }
-            }
-            (_, false) => upper.path(&mut figure, self.record.iter().copied(), style::LINE, of_record),
+        let up = PlotAxis::around(heights, 0.08, &format!("{} ({})", self.up, self.unit)).or_given(ranges.y);
+        let mut upper = Panel::new(across.clone(), up);
+        let is_cloud = shown().count() < DOTS;
+        if !self.record.is_empty() {
+            let marks = match (is_cloud, self.rises) {
+                (true, _) => Marks::Cloud(self.record.clone()),
+                (_, true) => Marks::Trace(parted(&self.record)),
+                (_, false) => Marks::Path(self.record.clone()),
+            };
+            upper.layer(Role::Measured, "measured", marks);
         }
         for series in &self.over {
-            match series.kind {
-                Kind::Line => {
-                    upper.path(&mut figure, series.points.iter().copied(), style::FINE_LINE, series.ink)
-                }
-                Kind::Dashed => {
-                    upper.dashed(&mut figure, &series.points, style::FINE_LINE, series.ink, style::DASH);
-                }
-                Kind::Marks(mark) => {
-                    let at = series.points.iter().map(|point| upper.place(*point));
-                    at.filter(|at| upper.area.contains(*at)).for_each(|at| {
-                        marker(&mut figure, mark, at, 6.0, series.ink, theme.paper);
-                    });
-                }
-            }
+            let points = series.points.clone();
+            let marks = if series.is_marks { Marks::Points(points) } else { Marks::Path(points) };
+            upper.layer(series.role, series.name, marks);
         }
-        self.lower_frame(&mut figure, &lower, of_record, theme);
-        upper.axes(&mut figure, theme);
-        lower.axes(&mut figure, theme);
-        figure.data = self.data();
-        caption.draw(&mut figure, theme, words, LEFT);
-        figure
-    }
-
-    fn lower_frame(&self, figure: &mut Figure, frame: &Frame, of_record: Ink, theme: &Theme) {
-        let area = frame.area;
+        let below = PlotAxis::around(lower, 0.12, &label);
+        let mut lower = Panel { height: LOWER, ..Panel::new(across, below) };
         match &self.lower {
             Lower::Rest(_, _, points) => {
-                let every = points.len().div_ceil(MOST_LOWER).max(1);
-                for point in points.iter().step_by(every) {
-                    let at = frame.place(*point);
-                    if area.contains(at) {
-                        dot(figure, Marker::Disc, at, 2.4, of_record);
-                    }
-                }
-                frame.horizontal(figure, 0.0, style::FINE_LINE, theme.ink, None);
+                lower.draw(Role::Measured, Marks::Cloud(points.clone()));
+                lower.draw(Role::Motion, Marks::Horizontals(vec![0.0]));
             }
             Lower::Intervals(_, _, rows, all) => {
                 if let Some(number) = all {
-                    let ends = [number.interval.1, number.interval.0].map(|end| frame.down(end));
-                    let [top, bottom] = ends.map(|end| end.clamp(area.top, area.bottom));
-                    if ends.iter().all(|end| end.is_finite()) {
-                        figure.rect(
-                            Area::new(area.left, top, area.right, bottom.max(top + 1.0)),
-                            theme.ink.over(theme.paper, 0.14),
-                        );
-                    }
-                    frame.horizontal(figure, number.value, style::THIN, theme.ink, None);
+                    let (low, high) = number.interval;
+                    let band = [lower.x.low, lower.x.high].map(|x| [x, low, high]);
+                    lower.layer(Role::Around, "of all, with its 95 % interval", Marks::Band(band.into()));
+                    lower.draw(Role::Reference, Marks::Horizontals(vec![number.value]));
                 }
-                for (x, [value, low, high]) in rows {
-                    let (at, ends) = (frame.place((*x, *value)), [*low, *high].map(|end| frame.down(end)));
-                    if ends.iter().all(|end| end.is_finite()) {
-                        figure.line(&[(at.0, ends[0]), (at.0, ends[1])], style::LINE, of_record, area);
-                    }
-                    if area.contains(at) {
-                        marker(figure, Marker::Disc, at, 7.0, of_record, theme.paper);
-                    }
-                }
+                let bars = rows.iter().filter(|row| row.1[1].is_finite() && row.1[2].is_finite());
+                let bars = bars.map(|(x, [_, low, high])| [*x, *low, *high]).collect();
+                lower.draw(Role::Measured, Marks::Intervals(bars));
+                let points = rows.iter().map(|(x, [value, ..])| (*x, *value)).collect();
+                lower.draw(Role::Interval, Marks::Points(points));
             }
         }
+        Chart::stack(vec![upper, lower], words, self.data())
     }
 
     /// What is drawn, in SI.
@@ -399,10 +302,9 @@ impl RecordPicture {
     }
 }
 
-fn disc(ink: Ink) -> Sample {
-    Sample::Marker(Marker::Disc, ink)
-}
-
-fn bar(ink: Ink) -> Sample {
-    Sample::Line(ink, style::LINE, None)
+/// A record over time, parted where samples are missing.
+pub(super) fn parted(record: &[Point]) -> Vec<Point> {
+    let timing = Timing::of(&record.iter().map(|point| point.0).collect::<Vec<_>>());
+    let parts = record.chunk_by(|a, b| !timing.is_gap(b.0 - a.0));
+    parts.flat_map(|part| part.iter().copied().chain([(f64::NAN, f64::NAN)])).collect()
 }

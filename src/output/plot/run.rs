@@ -3,35 +3,64 @@
 use std::ops::Range;
 
 use super::axis::{PlotAxis, Ranges};
+use super::chart::{Chart, Column, Marks, Note, Panel, Side};
 use super::drawn::Drawn;
-use super::figure::{Area, Figure, Point, Text};
-use super::font;
-use super::frame::Frame;
-use super::mark::{Caption, Marker, Sample, legend, marker, regime};
-use super::panels::{GUTTER, LEFT, Panel, Places};
-use super::style::{self, Ink, Theme};
+use super::mark::REGIMES;
+use super::portrait::separatrix;
+use super::role::Role;
 use crate::dynamics::{Outcome, STANDARD_GRAVITY, Summary};
 use crate::mechanics::Mechanism;
 use crate::numeric::{extent, short};
 use crate::study::{Table, Trace};
 
-/// The picture of a run from its trace and its summary, with these panels. The trace says which times it
-/// shows; `ranges` may give the axis of the displacement, in mm.
-pub fn run_figure(
+/// A panel of the picture of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RunPanel {
+    /// Displacement over time.
+    Displacement,
+    /// Velocity over time.
+    Velocity,
+    /// Acceleration of the base over time.
+    Acceleration,
+    /// Velocity over displacement.
+    Portrait,
+}
+
+impl RunPanel {
+    /// All of them, in the order in which they stand. All together have numbers beside them.
+    pub const ALL: [Self; 4] = [Self::Displacement, Self::Velocity, Self::Acceleration, Self::Portrait];
+
+    /// Its word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Displacement => "displacement",
+            Self::Velocity => "velocity",
+            Self::Acceleration => "acceleration",
+            Self::Portrait => "portrait",
+        }
+    }
+
+    /// The panel that is called so.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|panel| panel.name() == name)
+    }
+}
+
+/// The picture of a run from its trace and its summary, of a mass in kg, with these panels. The trace says
+/// which times it shows; `ranges` may give the axis of the displacement, in mm.
+pub fn run_chart(
     trace: &Trace,
     summary: &Summary,
-    mechanism: &Mechanism,
-    panels: &[Panel],
+    (mechanism, mass): (&Mechanism, f64),
+    panels: &[RunPanel],
     ranges: Ranges,
-    caption: &Caption,
-    theme: &Theme,
-) -> Figure {
-    let mut figure = Figure::new(theme, caption, Places::least(theme, panels));
+) -> Chart {
     let column = |name: &str| trace.path.numbers(name).unwrap_or_default();
     let stable = mechanism.landscape.equilibria.iter().filter(|equilibrium| equilibrium.stable);
     let seen = Seen {
         trace,
-        theme,
+        mechanism,
+        mass,
         t: column("t_s"),
         x: column("x_m"),
         v: column("v_m_per_s"),
@@ -40,48 +69,35 @@ pub fn run_figure(
         speed: speed_unit(column("v_m_per_s").iter().copied()),
         displacements: ranges.y,
         panels,
+        // on a compliant stop it never rests: it trembles
+        rests: if summary.peak_contact_force.is_some() { "on a stop" } else { "at rest on a stop" },
     };
-    let reach = seen.displacement(&seen.x[seen.rows(trace.shown_from)]);
-    let mut entries = Vec::new();
-    if trace.impacts.rows() > 0 && seen.has(Panel::Displacement) {
-        entries.push((Sample::Ticks(theme.ink), "impact"));
-    }
-    if trace.rests.rows() > 0 && seen.is_over_time() {
-        // On a compliant stop it never rests: it trembles.
-        let words = if summary.peak_contact_force.is_some() { "on a stop" } else { "at rest on a stop" };
-        entries.push((Sample::Patch(theme.rest, None), words));
-    }
-    let has_places = seen.has(Panel::Displacement) || seen.has(Panel::Portrait);
-    if has_places && (trace.stops.0.is_finite() || trace.stops.1.is_finite()) {
-        entries.push((Sample::Patch(theme.wall_fill(), None), "stop"));
-    }
-    if has_places && seen.wells.iter().any(|well| (reach.low..=reach.high).contains(&(well * 1e3))) {
-        entries.push((Sample::Line(theme.stable, style::LINE, Some(style::DASH)), "well"));
-    }
-    let ends = (LEFT, figure.canvas.right - 615.0);
-    let more = (legend(&mut figure, theme, &entries, ends, 142.0) - 161.0).max(0.0);
-    let places = Places::new(&figure, more, panels);
-    seen.over_time(&mut figure, &places);
-    if let Some(area) = places.portrait {
-        seen.portrait(&mut figure, area);
-    }
-    figure.data = seen.drawn();
     let judged = is_judged(summary, trace);
-    if let Some(at) = places.account.filter(|_| judged) {
-        account(&mut figure, at, summary, trace, seen.speed, theme);
-    }
     let about = match judged || summary.outcome != Outcome::Done {
         true => subtitle(summary),
         false => format!("from {} to {} s", short(trace.shown_from), short(trace.shown_to)),
     };
-    caption.draw(&mut figure, theme, &about, LEFT);
-    figure
+    let over_time = seen.over_time();
+    let mut portrait = seen.has(RunPanel::Portrait).then(|| seen.portrait());
+    let whole = RunPanel::ALL.iter().all(|panel| seen.has(*panel));
+    if let Some(portrait) = portrait.as_mut().filter(|_| whole && judged) {
+        portrait.notes = account(summary, trace, seen.speed);
+    }
+    let data = seen.drawn(portrait.as_ref());
+    let mut chart = Chart::stack(over_time, about, data);
+    match portrait {
+        Some(portrait) if whole => chart.columns.push(Column { width: 0.44, panels: vec![portrait] }),
+        Some(portrait) => chart.columns[0].panels.push(portrait),
+        None => {}
+    }
+    chart
 }
 
 /// What a run's picture is drawn from. SI.
 struct Seen<'a> {
     trace: &'a Trace,
-    theme: &'a Theme,
+    mechanism: &'a Mechanism,
+    mass: f64,
     t: &'a [f64],
     x: &'a [f64],
     v: &'a [f64],
@@ -91,16 +107,18 @@ struct Seen<'a> {
     speed: (f64, &'static str),
     /// The axis of the displacement in mm, where it was asked for.
     displacements: Option<(f64, f64)>,
-    panels: &'a [Panel],
+    panels: &'a [RunPanel],
+    /// What a span at rest is called.
+    rests: &'static str,
 }
 
 impl Seen<'_> {
-    fn has(&self, panel: Panel) -> bool {
+    fn has(&self, panel: RunPanel) -> bool {
         self.panels.contains(&panel)
     }
 
     fn is_over_time(&self) -> bool {
-        self.panels.iter().any(|panel| *panel != Panel::Portrait)
+        self.panels.iter().any(|panel| *panel != RunPanel::Portrait)
     }
 
     /// The rows from a time on up to where the picture ends.
@@ -118,26 +136,158 @@ impl Seen<'_> {
         let room = if low < high { NEAR * (high - low) } else { 3.0 * high.abs() };
         let stops = [self.trace.stops.0, self.trace.stops.1];
         let near = stops.into_iter().filter(|stop| (low - room..=high + room).contains(stop));
-        let label = "displacement, mm";
-        let axis = PlotAxis::around(x.iter().copied().chain(near).map(|x| x * 1e3), 0.11, 6, label);
-        axis.or_given(self.displacements, 6, label)
+        let axis =
+            PlotAxis::around(x.iter().copied().chain(near).map(|x| x * 1e3), 0.11, "displacement (mm)");
+        axis.or_given(self.displacements)
     }
 
-    /// All that is drawn.
-    fn drawn(&self) -> Table {
+    fn velocity(&self, v: &[f64]) -> PlotAxis {
+        let (scale, unit) = self.speed;
+        PlotAxis::around(v.iter().map(|v| v * scale), 0.08, &format!("velocity ({unit})"))
+    }
+
+    fn stops_mm(&self) -> (f64, f64) {
+        (self.trace.stops.0 * 1e3, self.trace.stops.1 * 1e3)
+    }
+
+    /// The wells in mm that an axis shows.
+    fn wells_mm(&self, axis: &PlotAxis) -> Vec<f64> {
+        self.wells.iter().map(|well| well * 1e3).filter(|well| axis.contains(*well)).collect()
+    }
+
+    /// Displacement, velocity and base acceleration over time.
+    fn over_time(&self) -> Vec<Panel> {
+        let Self { trace, .. } = *self;
+        let time = PlotAxis::between(trace.shown_from, trace.shown_to, "time (s)");
+        let shown = self.rows(trace.shown_from);
+        let in_g = self.accel[shown.clone()].iter().map(|a| a / STANDARD_GRAVITY);
+        let panels = [
+            (
+                RunPanel::Displacement,
+                self.displacement(&self.x[shown.clone()]),
+                self.x,
+                1e3,
+                Role::Motion,
+                1.0,
+            ),
+            (
+                RunPanel::Velocity,
+                self.velocity(&self.v[shown.clone()]),
+                self.v,
+                self.speed.0,
+                Role::Second,
+                0.9,
+            ),
+            (
+                RunPanel::Acceleration,
+                PlotAxis::around(in_g.chain([0.0]), 0.1, "base accel. (g)"),
+                self.accel,
+                1.0 / STANDARD_GRAVITY,
+                Role::Drive,
+                0.85,
+            ),
+        ];
+        let rests: Vec<(f64, f64)> = {
+            let column = |name: &str| trace.rests.numbers(name).unwrap_or_default();
+            column("from_s").iter().copied().zip(column("to_s").iter().copied()).collect()
+        };
+        let build = |(kind, up, values, scale, role, height): (_, PlotAxis, &[f64], f64, _, _)| {
+            let mut panel = Panel { height, ..Panel::new(time.clone(), up) };
+            if !rests.is_empty() {
+                panel.layer(Role::Rest, self.rests, Marks::Spans(rests.clone()));
+            }
+            if kind == RunPanel::Displacement {
+                panel.level_stops(self.stops_mm());
+                let wells = self.wells_mm(&panel.y);
+                if !wells.is_empty() {
+                    panel.layer(Role::Well, "well", Marks::Horizontals(wells));
+                }
+            } else {
+                panel.draw(Role::Reference, Marks::Horizontals(vec![0.0]));
+            }
+            let pairs =
+                shown.clone().map(|i| (self.t[i], values[i] * scale)).filter(|pair| pair.1.is_finite());
+            panel.draw(role, Marks::Trace(pairs.collect()));
+            if kind == RunPanel::Displacement {
+                let times = trace.impacts.numbers("t_s").unwrap_or_default();
+                let sides = trace.impacts.words("side");
+                for (word, side) in [("left", Side::Bottom), ("right", Side::Top)] {
+                    let of_side = times.iter().zip(sides).filter(|impact| *impact.1 == word);
+                    let at: Vec<f64> = of_side.map(|impact| *impact.0).collect();
+                    if !at.is_empty() {
+                        panel.layer(Role::Impact, "impact", Marks::Ticks(at, side));
+                    }
+                }
+            }
+            panel
+        };
+        panels.into_iter().filter(|panel| self.has(panel.0)).map(build).collect()
+    }
+
+    /// Velocity over displacement.
+    fn portrait(&self) -> Panel {
+        let Self { trace, .. } = *self;
+        let shown = self.rows(trace.portrait_from);
+        let (x, v) = (&self.x[shown.clone()], &self.v[shown]);
+        let mut panel = Panel { height: 1.2, ..Panel::new(self.displacement(x), self.velocity(v)) };
+        panel.heading = match short(trace.portrait_from) {
+            from if trace.shown_to < trace.end => {
+                format!("phase portrait, {from} to {} s", short(trace.shown_to))
+            }
+            from => format!("phase portrait from {from} s on"),
+        };
+        panel.upright_stops(self.stops_mm());
+        let loops = separatrix(self.mechanism, self.mass, (panel.x.low * 1e-3, panel.x.high * 1e-3));
+        for part in loops {
+            let part = part.into_iter().map(|(x, v)| (x * 1e3, v * self.speed.0));
+            let part: Vec<_> = part.filter(|point| panel.x.contains(point.0)).collect();
+            panel.layer(Role::Separatrix, "separatrix", Marks::Path(part));
+        }
+        for (stable, role, name) in
+            [(true, Role::Stable, "stable equilibrium"), (false, Role::Unstable, "unstable equilibrium")]
+        {
+            let equilibria = self.mechanism.landscape.equilibria.iter().filter(|e| e.stable == stable);
+            let points: Vec<_> =
+                equilibria.map(|e| (e.x * 1e3, 0.0)).filter(|point| panel.x.contains(point.0)).collect();
+            if !points.is_empty() {
+                panel.layer(role, name, Marks::Points(points));
+            }
+        }
+        let path = x.iter().zip(v).map(|(x, v)| (x * 1e3, v * self.speed.0)).collect();
+        panel.draw(Role::Motion, Marks::Path(path));
+        if let (Some(x), true, true) = (x.first(), is_still(x), is_still(v)) {
+            panel.draw(Role::Motion, Marks::Points(vec![(x * 1e3, 0.0)]));
+        }
+        panel
+    }
+
+    /// All that is drawn, with this portrait.
+    fn drawn(&self, portrait: Option<&Panel>) -> Table {
         let Self { trace, t, x, v, accel, .. } = *self;
         let mut drawn = Drawn::new(["t_s", "x_m", "v_m_per_s", "base_accel_m_per_s2"], &["side"]);
-        let shown = [Panel::Displacement, Panel::Velocity, Panel::Acceleration].map(|panel| self.has(panel));
+        let shown =
+            [RunPanel::Displacement, RunPanel::Velocity, RunPanel::Acceleration].map(|panel| self.has(panel));
         for i in self.rows(trace.shown_from).filter(|_| self.is_over_time()) {
             let value = |place: usize, of: &[f64]| if shown[place] { of[i] } else { f64::NAN };
             drawn.put("run", &[t[i], value(0, x), value(1, v), value(2, accel)], &[]);
         }
-        for i in self.rows(trace.portrait_from).filter(|_| self.has(Panel::Portrait)) {
+        for i in self.rows(trace.portrait_from).filter(|_| self.has(RunPanel::Portrait)) {
             drawn.put("portrait", &[t[i], x[i], v[i]], &[]);
         }
-        let has_places = self.has(Panel::Displacement) || self.has(Panel::Portrait);
+        for layer in portrait.iter().flat_map(|panel| &panel.layers) {
+            let name = match layer.role {
+                Role::Separatrix => "separatrix",
+                Role::Stable => "stable_equilibrium",
+                Role::Unstable => "unstable_equilibrium",
+                _ => continue,
+            };
+            if let Marks::Path(points) | Marks::Points(points) = &layer.marks {
+                points.iter().for_each(|(x, v)| drawn.put(name, &[f64::NAN, x / 1e3, v / self.speed.0], &[]));
+            }
+        }
+        let has_places = self.has(RunPanel::Displacement) || self.has(RunPanel::Portrait);
         let shown = trace.shown_from..=trace.shown_to;
-        let impacts = Some(&trace.impacts).filter(|_| self.has(Panel::Displacement));
+        let impacts = Some(&trace.impacts).filter(|_| self.has(RunPanel::Displacement));
         let column = |table: &Table, name: &str| table.numbers(name).unwrap_or_default().to_vec();
         if let Some(impacts) = impacts {
             let sides = impacts.words("side");
@@ -158,91 +308,16 @@ impl Seen<'_> {
                 drawn.put("stop", &[f64::NAN, at], &[side]);
             }
         }
-        self.wells.iter().filter(|_| has_places).for_each(|at| drawn.put("well", &[f64::NAN, *at], &[]));
+        self.wells
+            .iter()
+            .filter(|_| self.has(RunPanel::Displacement))
+            .for_each(|at| drawn.put("well", &[f64::NAN, *at], &[]));
         drawn.table()
-    }
-
-    fn velocity(&self, v: &[f64], count: usize) -> PlotAxis {
-        let (scale, unit) = self.speed;
-        PlotAxis::around(v.iter().map(|v| v * scale), 0.08, count, &format!("velocity, {unit}"))
-    }
-
-    /// Displacement, velocity and base acceleration over time.
-    fn over_time(&self, figure: &mut Figure, places: &Places) {
-        let Self { trace, theme, .. } = *self;
-        let time = PlotAxis::between(trace.shown_from, trace.shown_to, 6, "time, s");
-        let shown = self.rows(trace.shown_from);
-        let in_g = self.accel[shown.clone()].iter().map(|a| a / STANDARD_GRAVITY);
-        let g_axis = PlotAxis::around(in_g.chain([0.0]), 0.1, 4, "base accel., g");
-        let axes =
-            [self.displacement(&self.x[shown.clone()]), self.velocity(&self.v[shown.clone()], 5), g_axis];
-        let lines = [
-            (self.x, 1e3, theme.ink),
-            (self.v, self.speed.0, theme.second),
-            (self.accel, 1.0 / STANDARD_GRAVITY, theme.shaking),
-        ];
-        for (i, (up, (values, scale, ink))) in axes.into_iter().zip(lines).enumerate() {
-            let Some(area) = places.panels[i] else { continue };
-            let across = if places.last() == Some(i) { time.clone() } else { time.clone().silent() };
-            let frame = Frame { gutter: Some(GUTTER), ..Frame::new(area, across, up) };
-            let strength = if i == 0 { 1.0 } else { 0.5 };
-            rests(figure, &frame, trace, theme.rest.over(theme.paper, strength));
-            frame.grid(figure, theme);
-            if i == 0 {
-                for (stop, below) in [(trace.stops.0, true), (trace.stops.1, false)] {
-                    if stop.is_finite() {
-                        frame.wall_down(figure, stop * 1e3, below, theme);
-                    }
-                }
-                for well in &self.wells {
-                    frame.horizontal(figure, well * 1e3, style::LINE, theme.stable, Some(style::DASH));
-                }
-            } else {
-                frame.horizontal(figure, 0.0, style::THIN, theme.soft, None);
-            }
-            let pairs = shown.clone().map(|i| (self.t[i], values[i] * scale));
-            frame.dense_line(figure, pairs.filter(|pair| pair.1.is_finite()), style::FINE_LINE, ink);
-            if i == 0 {
-                impacts(figure, &frame, trace, theme);
-            }
-            frame.axes(figure, theme);
-        }
-    }
-
-    /// Velocity over displacement.
-    fn portrait(&self, figure: &mut Figure, area: Area) {
-        let Self { trace, theme, .. } = *self;
-        let shown = self.rows(trace.portrait_from);
-        let (x, v) = (&self.x[shown.clone()], &self.v[shown]);
-        let frame = Frame::new(area, self.displacement(x), self.velocity(v, 8));
-        frame.grid(figure, theme);
-        for (stop, left) in [(trace.stops.0, true), (trace.stops.1, false)] {
-            if stop.is_finite() {
-                frame.wall_across(figure, stop * 1e3, left, theme);
-            }
-        }
-        for well in &self.wells {
-            frame.vertical(figure, well * 1e3, style::LINE, theme.stable, Some(style::DASH));
-        }
-        let path = x.iter().zip(v).map(|(x, v)| (x * 1e3, v * self.speed.0));
-        frame.path(figure, path, style::FINE_LINE, theme.second);
-        if let (Some(x), true, true) = (x.first(), still(x), still(v)) {
-            let at = frame.place((x * 1e3, 0.0));
-            marker(figure, Marker::Disc, at, style::MARKER, theme.second, theme.ink);
-        }
-        frame.axes(figure, theme);
-        let words = match short(trace.portrait_from) {
-            from if trace.shown_to < trace.end => {
-                format!("phase portrait, {from} to {} s", short(trace.shown_to))
-            }
-            from => format!("phase portrait from {from} s on"),
-        };
-        note(figure, &words, (area.left, area.top - 23.0), style::TICK, theme.ink, false);
     }
 }
 
 /// Whether all values are the first one.
-fn still(values: &[f64]) -> bool {
+fn is_still(values: &[f64]) -> bool {
     values.iter().all(|value| *value == values[0])
 }
 
@@ -250,53 +325,6 @@ fn still(values: &[f64]) -> bool {
 pub fn speed_unit(values: impl Iterator<Item = f64>) -> (f64, &'static str) {
     let greatest = values.filter(|value| value.is_finite()).fold(0.0_f64, |a, b| a.max(b.abs()));
     if greatest < 2.0 { (1e3, "mm/s") } else { (1.0, "m/s") }
-}
-
-/// Spans at rest, shaded; neighbours nearer than a part of a pixel are one.
-fn rests(figure: &mut Figure, frame: &Frame, trace: &Trace, ink: Ink) {
-    let from = trace.rests.numbers("from_s").unwrap_or_default();
-    let to = trace.rests.numbers("to_s").unwrap_or_default();
-    let mut open: Option<(f64, f64)> = None;
-    let mut shade = |span: Option<(f64, f64)>| {
-        if let Some((left, right)) = span {
-            let area = Area::new(left, frame.area.top, right, frame.area.bottom);
-            if let Some(area) = area.common(frame.area) {
-                figure.rect(area, ink);
-            }
-        }
-    };
-    for (from, to) in from.iter().zip(to) {
-        let (left, right) = (frame.across(*from), frame.across(*to));
-        open = match open {
-            Some((first, last)) if left - last < 0.7 => Some((first, right.max(last))),
-            other => {
-                shade(other);
-                Some((left, right))
-            }
-        };
-    }
-    shade(open);
-}
-
-/// A tick for each impact at the edge on its stop's side; of those that lie close, some.
-fn impacts(figure: &mut Figure, frame: &Frame, trace: &Trace, theme: &Theme) {
-    const TICK: f64 = 20.0;
-    /// So far apart the wall is still seen between them.
-    const APART: f64 = 4.5;
-    let times = trace.impacts.numbers("t_s").unwrap_or_default();
-    let sides = trace.impacts.words("side");
-    let mut last = [f64::NEG_INFINITY; 2];
-    let shown = trace.shown_from..=trace.shown_to;
-    for (t, side) in times.iter().zip(sides).filter(|impact| shown.contains(impact.0)) {
-        let left = *side == "left";
-        let at = frame.across(*t);
-        if at - last[usize::from(left)] >= APART {
-            last[usize::from(left)] = at;
-            let edge = if left { frame.area.bottom } else { frame.area.top };
-            let inner = if left { edge - TICK } else { edge + TICK };
-            figure.line(&[(at, edge), (at, inner)], 2.0, theme.ink, frame.area);
-        }
-    }
 }
 
 fn reason(outcome: Outcome) -> &'static str {
@@ -341,59 +369,41 @@ fn subtitle(summary: &Summary) -> String {
 }
 
 /// Regime and numbers, under the phase portrait.
-fn account(
-    figure: &mut Figure,
-    (left, mut y): Point,
-    summary: &Summary,
-    trace: &Trace,
-    (scale, unit): (f64, &str),
-    theme: &Theme,
-) {
+fn account(summary: &Summary, trace: &Trace, (scale, unit): (f64, &str)) -> Vec<Note> {
     let name = summary.regime.name();
-    if summary.rms_velocity.is_some() && !name.is_empty() {
-        let (shape, ink) = regime(name, theme);
-        marker(figure, shape, (left + 14.0, y - 10.0), style::MARKER + 1.0, ink, theme.ink);
-        note(figure, name, (left + 42.0, y), style::SUBTITLE, theme.ink, true);
-        y += 40.0;
-    }
-    let mut lines = Vec::new();
+    let mut notes = Vec::new();
+    let mut say = |words: String| notes.push(Note { words, role: None });
     if let Some(rms) = summary.rms_velocity {
         let (from, to) = (short(summary.window.0), short(summary.window.1));
-        lines.push(match (summary.settled, summary.is_transient()) {
+        let when = match (summary.settled, summary.is_transient()) {
             (Some(true), _) => format!("settled, from {from} s on:"),
             (_, true) => format!("not settled, {from} to {to} s:"),
             (Some(false), false) => format!("averages steady, {from} to {to} s:"),
             (None, _) => format!("from {from} to {to} s:"),
-        });
-        lines.push(format!("RMS velocity {} {unit}", short(rms * scale)));
-    }
-    if summary.rms_velocity.is_some() {
-        let share = summary.rested_share.filter(|share| *share > 0.0);
-        let impacts = format!("{} impacts", summary.impacts);
-        match name {
-            _ if !shows_window(summary, trace) => {}
-            "" => lines.push(impacts),
-            _ if figure.is_narrow() => lines.extend([format!("{} crossings", summary.crossings), impacts]),
-            _ => lines.push(format!("{} crossings, {impacts}", summary.crossings)),
+        };
+        say(when);
+        say(format!("RMS velocity {} {unit}", short(rms * scale)));
+        if shows_window(summary, trace) {
+            let impacts = format!("{} impacts", summary.impacts);
+            say(match name {
+                "" => impacts,
+                _ => format!("{} crossings, {impacts}", summary.crossings),
+            });
         }
         let words = if summary.peak_contact_force.is_some() { "in contact" } else { "at rest" };
-        lines.extend(share.map(|share| format!("{words} {:.0} % of the time", 100.0 * share)));
-        if let Some(force) = summary.peak_contact_force.filter(|force| *force > 0.0) {
-            lines.push(format!("contact force up to {} N", short(force)));
+        if let Some(share) = summary.rested_share.filter(|share| *share > 0.0) {
+            say(format!("{words} {:.0} % of the time", 100.0 * share));
         }
+        if let Some(force) = summary.peak_contact_force.filter(|force| *force > 0.0) {
+            say(format!("contact force up to {} N", short(force)));
+        }
+    } else if trace.path.rows() > 0 {
+        say("ended before its settled window".to_owned());
     }
-    if trace.path.rows() > 0 && lines.is_empty() {
-        lines.push("ended before its settled window".to_owned());
+    let regime =
+        REGIMES.iter().position(|regime| regime.0 == name).filter(|_| summary.rms_velocity.is_some());
+    if let Some(place) = regime {
+        notes.insert(0, Note { words: name.to_owned(), role: Some(Role::Regime(place)) });
     }
-    for line in lines {
-        note(figure, &line, (left, y), style::TICK, theme.ink, false);
-        y += 36.0;
-    }
-}
-
-fn note(figure: &mut Figure, words: &str, at: Point, size: f64, ink: Ink, bold: bool) {
-    let room = figure.canvas.right - at.0 - 10.0;
-    let words = super::figure::fitted(words, size, bold, room);
-    debug_assert!(font::width(&words, size, bold) <= room + 1.0);
-    figure.text(Text { bold, ..Text::new(words, at, size, ink) });
+    notes
 }

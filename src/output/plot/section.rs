@@ -1,26 +1,14 @@
 //! Picture of a section: points of the phase plane, and over a field the bifurcation diagram.
 
-use std::collections::HashSet;
-
 use super::axis::{PlotAxis, Ranges};
+use super::chart::{Chart, Marks, Panel};
 use super::drawn::Drawn;
-use super::figure::{Align, Area, Figure, Text};
-use super::frame::Frame;
-use super::mark::{Caption, Marker, Sample, dot};
+use super::figure::Point;
+use super::role::Role;
 use super::run::speed_unit;
-use super::style::{self, Ink, Theme};
-use super::swept::{LEAST, LEFT, below_legend, label};
+use super::swept::label;
 use crate::numeric::short;
 use crate::study::{DIRECTION, Direction, IMPACTS, Table, Values};
-
-/// Half the size of a point: one of few, and one of many; as many or more of them.
-const LARGE: f64 = 6.0;
-const SMALL: f64 = 2.2;
-const FEW: f64 = 100.0;
-const MANY: f64 = 2000.0;
-
-/// Room between two panels.
-const BETWEEN: f64 = 46.0;
 
 /// What the picture of a section is drawn from.
 #[derive(Debug, Clone)]
@@ -37,83 +25,43 @@ pub struct SectionPicture<'a> {
     pub ranges: Ranges,
 }
 
-/// How points of one kind are drawn.
-struct Kind {
-    name: &'static str,
-    shape: Marker,
-    ink: Ink,
-}
-
 /// The picture of a section.
-pub fn section_figure(picture: &SectionPicture, caption: &Caption, theme: &Theme) -> Figure {
-    let mut figure = Figure::new(theme, caption, LEAST);
+pub fn section_chart(picture: &SectionPicture) -> Chart {
     let SectionPicture { rows, over, phase_deg, ranges, .. } = *picture;
-    let kinds = match phase_deg {
-        Some(_) => [("without impacts", Marker::Disc, 1), ("with impacts", Marker::Triangle, 3)],
-        None => [("left stop", Marker::Disc, 1), ("right stop", Marker::Triangle, 3)],
+    let states = phase_deg.is_some();
+    let kinds = if states { ["without impacts", "with impacts"] } else { ["left stop", "right stop"] };
+    let kind = kind_of(rows, states);
+    let (across, up) = columns_of(rows, over, states);
+    let x = match over.is_none() && !states {
+        true => turn(&across.label),
+        false => PlotAxis::around(across.values.iter().copied(), 0.02, &across.label),
     };
-    let kinds = kinds.map(|(name, shape, ink)| Kind { name, shape, ink: theme.regimes[ink] });
-    let kind = kind_of(rows, phase_deg.is_some());
-    let present = |place: usize| (0..rows.rows()).any(|row| kind(row) == place);
-    let mut entries: Vec<(Sample, &str)> = Vec::new();
-    for (_, kind) in kinds.iter().enumerate().filter(|(place, _)| present(*place)) {
-        entries.push((Sample::Marker(kind.shape, kind.ink), kind.name));
-    }
-    let wall = over.is_none() && phase_deg.is_some();
-    if wall && (picture.stops.0.is_some() || picture.stops.1.is_some()) {
-        entries.push((Sample::Patch(theme.wall_fill(), None), "stop"));
-    }
-    let (across, up) = columns_of(rows, over, phase_deg.is_some());
+    let x = x.or_given(ranges.x);
+    let y = PlotAxis::around(up.values.iter().copied(), 0.06, &up.label).or_given(ranges.y);
     let ways = rows.words(DIRECTION);
     let both = [Direction::Up, Direction::Down].iter().all(|way| ways.contains(&way.name()));
-    let panels: &[Option<Direction>] =
+    let shown: &[Option<Direction>] =
         if both { &[Some(Direction::Up), Some(Direction::Down)] } else { &[None] };
-    let top = below_legend(&mut figure, theme, &entries);
-    let x = PlotAxis::around(across.values.iter().copied(), 0.02, 8, &across.label);
-    let x = if over.is_none() && phase_deg.is_none() { turn(&across.label) } else { x };
-    let x = x.or_given(ranges.x, 8, &across.label);
-    let y = PlotAxis::around(up.values.iter().copied(), 0.06, 6, &up.label);
-    let y = y.or_given(ranges.y, 6, &up.label);
-    let (left, right) =
-        (Frame::left(&figure, &y, LEFT, (figure.bottom() - top) / panels.len() as f64), figure.right());
-    let height = (figure.bottom() - top - BETWEEN * (panels.len() - 1) as f64) / panels.len() as f64;
-    for (number, way) in panels.iter().enumerate() {
-        let begin = top + number as f64 * (height + BETWEEN);
-        let last = number + 1 == panels.len();
-        let axis = if last { x.clone() } else { x.clone().silent() };
-        let frame = Frame::new(Area::new(left, begin, right, begin + height), axis, y.clone());
-        frame.grid(&mut figure, theme);
-        for (stop, left) in [(picture.stops.0, true), (picture.stops.1, false)] {
-            if let Some(at) = stop.map(|x| x * 1e3).filter(|at| wall && (x.low..=x.high).contains(at)) {
-                frame.wall_across(&mut figure, at, left, theme);
+    let panel_of = |way: &Option<Direction>| {
+        let mut panel = Panel::new(x.clone(), y.clone());
+        panel.heading = way.map_or_else(String::new, |way| way.name().to_owned());
+        if over.is_none() && states {
+            let mm = |stop: Option<f64>| stop.map_or(f64::NAN, |x| x * 1e3);
+            panel.upright_stops((mm(picture.stops.0), mm(picture.stops.1)));
+        }
+        for (place, name) in kinds.into_iter().enumerate() {
+            let is_shown = |row: usize| way.is_none_or(|way| ways[row] == way.name()) && kind(row) == place;
+            let of_kind = (0..rows.rows()).filter(|row| is_shown(*row));
+            let points: Vec<Point> = of_kind.map(|row| (across.values[row], up.values[row])).collect();
+            if !points.is_empty() {
+                panel.layer([Role::Regime(1), Role::Impacts][place], name, Marks::Cloud(points));
             }
         }
-        let shown = |row: usize| way.is_none_or(|way| ways[row] == way.name());
-        // Points on the same half pixel are one.
-        let mut taken = HashSet::new();
-        let mut points = Vec::new();
-        for row in (0..rows.rows()).filter(|row| shown(*row)) {
-            let at = frame.place((across.values[row], up.values[row]));
-            let kind = kind(row);
-            let pixel = ((2.0 * at.0) as i64, (2.0 * at.1) as i64, kind);
-            if at.0.is_finite() && at.1.is_finite() && frame.area.contains(at) && taken.insert(pixel) {
-                points.push((at, kind));
-            }
-        }
-        let many = ((points.len() as f64 / FEW).ln() / (MANY / FEW).ln()).clamp(0.0, 1.0);
-        let size = LARGE + many * (SMALL - LARGE);
-        for (at, kind) in points {
-            dot(&mut figure, kinds[kind].shape, at, size, kinds[kind].ink);
-        }
-        frame.axes(&mut figure, theme);
-        if let Some(way) = way {
-            let text = Text::new(way.name(), (right, begin - 12.0), style::AXIS, theme.ink);
-            figure.text(Text { align: Align::Right, ..text });
-        }
-    }
-    figure.data = drawn(rows, over, phase_deg.is_some(), |at| (x.low..=x.high).contains(&at));
-    caption.draw(&mut figure, theme, &about(rows, picture), LEFT);
-    figure
+        panel
+    };
+    let panels = shown.iter().map(panel_of).collect();
+    let data = drawn(rows, over, states, |at| x.contains(at));
+    Chart::stack(panels, about(rows, picture), data)
 }
 
 /// The rows whose place to the right is `inside`.
@@ -137,7 +85,7 @@ fn drawn(rows: &Table, over: Option<&str>, states: bool, inside: impl Fn(f64) ->
 /// The axis of a phase in degrees.
 fn turn(label: &str) -> PlotAxis {
     let ticks = (0..=6).map(|i| (60.0 * f64::from(i), (60 * i).to_string())).collect();
-    PlotAxis { low: 0.0, high: 360.0, ticks, label: label.to_owned() }
+    PlotAxis::given(0.0, 360.0, ticks, label)
 }
 
 /// Which of the two kinds a row is.
@@ -167,9 +115,9 @@ fn columns_of(rows: &Table, over: Option<&str>, states: bool) -> (Along, Along) 
     };
     let speed = |name: &str, words: &str| {
         let (scale, unit) = speed_unit(rows.numbers(name).unwrap_or_default().iter().copied());
-        scaled(name, scale, format!("{words}, {unit}"))
+        scaled(name, scale, format!("{words} ({unit})"))
     };
-    let displacement = || scaled("x_m", 1e3, "displacement, mm".to_owned());
+    let displacement = || scaled("x_m", 1e3, "displacement (mm)".to_owned());
     match (over, states) {
         (Some(field), true) => (scaled(field, 1.0, label(rows, field)), displacement()),
         (Some(field), false) => {
@@ -177,7 +125,7 @@ fn columns_of(rows: &Table, over: Option<&str>, states: bool) -> (Along, Along) 
         }
         (None, true) => (displacement(), speed("v_m_per_s", "velocity")),
         (None, false) => (
-            scaled("phase_deg", 1.0, "phase of the drive, \u{b0}".to_owned()),
+            scaled("phase_deg", 1.0, "phase of the drive (\u{b0})".to_owned()),
             speed("v_in_m_per_s", "velocity of the impact"),
         ),
     }

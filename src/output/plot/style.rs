@@ -24,9 +24,6 @@ impl Ink {
 /// Width and height of the canvas for a screen.
 pub const SIZE: (u32, u32) = (1600, 1000);
 
-/// How far below the upper edge the subtitle has ended, and above the lower one a footer of one line begun.
-pub const CAPTIONS: (f64, f64) = (116.0, 44.0);
-
 /// Canvases of less width are narrow.
 pub const NARROW: f64 = 1150.0;
 
@@ -75,6 +72,7 @@ const GREEN: Ink = Ink(0x00, 0x9e, 0x73);
 const BLUE: Ink = Ink(0x00, 0x72, 0xb2);
 const VERMILION: Ink = Ink(0xd5, 0x5e, 0x00);
 const PURPLE: Ink = Ink(0xcc, 0x79, 0xa7);
+const PURPLE_LINE: Ink = Ink(0xb0, 0x54, 0x88);
 
 /// The look of one picture: the sheet that it is laid out for, and its colours by what they mean.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -99,6 +97,8 @@ pub struct Theme {
     pub stable: Ink,
     /// Unstable equilibria.
     pub unstable: Ink,
+    /// Impacts.
+    pub impact: Ink,
     /// Time spent at rest, cells at rest.
     pub rest: Ink,
     /// The hatching over cells at rest.
@@ -115,11 +115,12 @@ impl Theme {
         ink: Ink(0x1a, 0x1a, 0x1a),
         soft: Ink(0x5a, 0x5a, 0x5a),
         grid: Ink(0xe0, 0xe0, 0xe0),
-        second: GREEN,
-        shaking: ORANGE,
-        wall: Ink(0x40, 0x40, 0x40),
+        second: PURPLE_LINE,
+        shaking: Ink(0x1e, 0x7d, 0xb4),
+        wall: GREEN,
         stable: SKY,
         unstable: ORANGE,
+        impact: VERMILION,
         rest: Ink(0xe4, 0xe4, 0xe4),
         rest_hatch: Ink(0x9a, 0x9a, 0x9a),
         regimes: [Ink(0x80, 0x80, 0x80), BLUE, PURPLE, VERMILION],
@@ -132,11 +133,12 @@ impl Theme {
         ink: Ink(0xf2, 0xf2, 0xf2),
         soft: Ink(0xb0, 0xb5, 0xbd),
         grid: Ink(0x33, 0x38, 0x40),
-        second: Ink(0x1f, 0xc4, 0x93),
-        shaking: ORANGE,
-        wall: Ink(0xc8, 0xc8, 0xc8),
+        second: PURPLE,
+        shaking: SKY,
+        wall: Ink(0x28, 0xbe, 0x91),
         stable: SKY,
         unstable: ORANGE,
+        impact: Ink(0xf0, 0x78, 0x28),
         rest: Ink(0x3a, 0x3f, 0x47),
         rest_hatch: Ink(0x72, 0x78, 0x82),
         regimes: [Ink(0x9a, 0x9a, 0x9a), Ink(0x2b, 0x95, 0xd6), PURPLE, Ink(0xf0, 0x73, 0x10)],
@@ -181,6 +183,13 @@ pub const KINDS: [Ink; 8] = [
     Ink(0x48, 0x1e, 0x5a),
     Ink(0xa6, 0xa8, 0x9c),
 ];
+
+/// The hatching of a kind whose colour is used a second time.
+pub fn kind_hatch(place: usize) -> Option<Ink> {
+    let Ink(red, green, blue) = KINDS[place % KINDS.len()];
+    let is_dark = 2 * u32::from(red) + 5 * u32::from(green) + u32::from(blue) < 8 * 128;
+    (place >= KINDS.len()).then_some(if is_dark { WHITE } else { BLACK })
+}
 
 /// White, for what lies over a map in either theme.
 pub const WHITE: Ink = Ink(0xff, 0xff, 0xff);

@@ -1,19 +1,17 @@
-//! Picture of a sweep over two fields as a surface in projection: its height and its colour are the quantity.
+//! Cells as a surface in projection: their height and their colour are the value.
 
 use super::axis::PlotAxis;
+use super::cells::{Cell, Cells};
 use super::figure::{Align, Area, Figure, Point, Text};
 use super::font;
-use super::map::{Cell, Mosaic, colour_bar, meanings};
 use super::projection::{AXIS_EDGES, BACK_EDGES, BoxPlace, Projection, SIDES, faces, wall_lines};
-use super::quantity::Quantity;
-use super::style::{self, Ink, Theme, viridis};
-use super::swept::{LEFT, SweepPicture, below_legend, drawn, label};
+use super::style::{self, Ink, Theme};
 
 /// The most cells that are drawn as faces.
 pub const MAX_SURFACE_CELLS: u64 = 60_000;
 
-/// What the surface needs between its captions.
-pub(super) const SURFACE: f64 = 560.0;
+/// Room for the numbers left and right of the box.
+const BESIDE: (f64, f64) = (130.0, 30.0);
 
 /// A box in projection: each axis from 0 to 1.
 struct View {
@@ -98,55 +96,44 @@ impl View {
     }
 }
 
-/// The quantity as a surface over the fields `x` and `y`.
-pub(super) fn surface(figure: &mut Figure, picture: &SweepPicture, (x, y): (&str, &str), theme: &Theme) {
-    let rows = picture.rows;
-    let quantity = Quantity::of(rows, picture.quantity);
-    let within = |name: &str, range: Option<(f64, f64)>| {
-        let values = rows.numbers(name).unwrap_or_default();
-        move |row: usize| range.is_none_or(|(low, high)| (low..=high).contains(&values[row]))
-    };
-    let (in_x, in_y) = (within(x, picture.ranges.x), within(y, picture.ranges.y));
-    let mosaic = Mosaic::new(rows, (x, y), &quantity, |row| in_x(row) && in_y(row));
-    let mut entries = meanings(rows, &quantity, &mosaic.cells, theme);
-    // a missing cell is a hole, and needs no patch
-    entries.retain(|entry| entry.1 == "at rest");
-    let top = below_legend(figure, theme, &entries);
-    let axis = |values: &[f64], range, name: &str| {
-        let label = label(rows, name);
-        PlotAxis::around(values.iter().copied(), 0.0, 6, &label).or_given(range, 6, &label)
-    };
-    let bar = quantity.axis(0.0, 5);
-    let (margin, beside) = if figure.is_narrow() { (120.0, 165.0) } else { (LEFT + 20.0, 250.0) };
+/// Draws the surface of `cells` over the axes in `area`, below which there is room for the numbers.
+pub fn draw(
+    figure: &mut Figure,
+    area: Area,
+    (x, y, z): (&PlotAxis, &PlotAxis, &PlotAxis),
+    cells: &Cells,
+    theme: &Theme,
+) {
+    let Area { left, top, right, bottom } = area;
     let view = View {
-        area: Area::new(margin, top, figure.canvas.right - beside, figure.bottom() - 20.0),
-        x: axis(&mosaic.across.values, picture.ranges.x, x),
-        y: axis(&mosaic.up.values, picture.ranges.y, y),
-        z: bar.clone(),
+        area: Area::new(left + BESIDE.0, top, right - BESIDE.1, bottom),
+        x: x.with_ticks(6),
+        y: y.with_ticks(6),
+        z: z.with_ticks(5),
     };
     view.walls(figure, theme);
-    skin(figure, &view, &mosaic, theme);
+    skin(figure, &view, cells, theme);
     view.axes(figure, theme);
-    let high = 0.55 * (figure.bottom() - top);
-    let right = figure.canvas.right - if figure.is_narrow() { 130.0 } else { 160.0 };
-    let area = Area::new(right - 28.0, top, right, top + high);
-    colour_bar(figure, area, &PlotAxis { label: String::new(), ..bar }, theme, viridis);
-    figure.data = drawn(picture, &[(x, picture.ranges.x), (y, picture.ranges.y)]).table();
 }
 
 /// The faces of the surface; none where one of the four values is missing.
-fn skin(figure: &mut Figure, view: &View, mosaic: &Mosaic, theme: &Theme) {
-    let (across, up) = (&mosaic.across.values, &mosaic.up.values);
-    let height = |column: usize, row: usize| match mosaic.cells[column * up.len() + row] {
-        Cell::Missing => None,
+fn skin(figure: &mut Figure, view: &View, cells: &Cells, theme: &Theme) {
+    let height = |column: usize, row: usize| match cells.at(column, row) {
+        Cell::Missing | Cell::Blank => None,
         Cell::Rest => Some((0.0, true)),
         Cell::Value(value) => Some((value, false)),
     };
     let shares =
         |values: &[f64], axis: &PlotAxis| values.iter().map(|value| axis.share(*value)).collect::<Vec<_>>();
+    let (across, up) = (shares(&cells.across.values, &view.x), shares(&cells.up.values, &view.y));
+    let inside = |shares: &[f64], i: usize| (-1e-9..=1.0 + 1e-9).contains(&shares[i]);
+    let height = |column: usize, row: usize| {
+        height(column, row).filter(|_| inside(&across, column) && inside(&up, row))
+    };
     let canvas = figure.canvas;
-    for face in faces(&shares(across, &view.x), &shares(up, &view.y), height, |value| view.z.share(value)) {
-        let ink = if face.resting { theme.rest } else { viridis(face.share) };
+    for face in faces(&across, &up, height, |value| view.z.share(value)) {
+        let value = view.z.low + face.share * (view.z.high - view.z.low);
+        let ink = if face.resting { theme.rest } else { cells.colours.ink(value, theme) };
         let mut points: Vec<Point> = face.corners.iter().map(|corner| view.place(*corner)).collect();
         for three in [[0, 1, 2], [0, 2, 3]] {
             figure.polygon(three.map(|i| points[i]).to_vec(), ink);

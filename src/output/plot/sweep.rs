@@ -1,21 +1,19 @@
-//! Picture of a sweep: lines over one field, drawn here; over two a [`map`](super::map).
+//! Picture of a sweep: lines over one field, maps over two, both ways of a walk, surfaces and cuts.
 
-use super::cut::{self, map_with_cuts};
-use super::figure::{Area, Figure};
-use super::frame::Frame;
-use super::map::map;
-use super::mark::{Caption, REGIMES, Sample, regime};
+use super::axis::PlotAxis;
+use super::cells::{Cell, Cells, Colours};
+use super::chart::{Chart, Column, Marks, Panel, Side};
+use super::drawn::Drawn;
+use super::figure::Point;
 use super::quantity::{Quantity, quantities, words_of};
-use super::style::{self, Theme};
-use super::surface::{MAX_SURFACE_CELLS, SURFACE, surface};
-use super::swept::{
-    LEAST, LEFT, MARKER_ROOM, SweepPicture, View, below_legend, drawn, mark_regimes, missing_words, of_each,
-    swept_axis,
-};
-use super::walk::{STACKED, walked_both, walked_lines, walked_maps};
+use super::role::Role;
+use super::surface::MAX_SURFACE_CELLS;
+use super::swept::{Cut, SweepPicture, View, ascending, cells, drawn, label, marks, of_each, swept_axis};
 use crate::numeric::short;
 use crate::scene::{Excitation, Scene, Start};
-use crate::study::{DIRECTION, Direction, Grid, SUMMARY_FIELDS, Table};
+use crate::study::{
+    DIRECTION, Direction, Grid, SUMMARY_FIELDS, Table, first_crossing_edge, label_and_unit, line_meets,
+};
 
 /// The most cells that a picture shows: more than it has pixels to tell apart.
 pub const MAX_PICTURE_CELLS: u64 = 500_000;
@@ -102,40 +100,35 @@ pub fn can_show(grid: &Grid, quantity: &str, view: &View, table: &Table) -> Resu
 const FEW: usize = 6;
 const MANY: usize = 3;
 
+/// The most values without a quantity that have a line each; of more each has a tick at the lower edge.
+const MOST_LINES: usize = 20;
+
+/// The distance between two lines as a share of the axis upward from which on they are seen apart.
+const VISIBLE: f64 = 2e-3;
+
+/// Width of the cuts over that of the map.
+const CUTS: f64 = 0.8;
+
 /// The picture of a sweep: over one field a line, over two a map, or a line for each value of a field that
 /// has few.
-pub fn sweep_figure(picture: &SweepPicture, caption: &Caption, theme: &Theme) -> Result<Figure, NoPicture> {
+pub fn sweep_chart(picture: &SweepPicture) -> Result<Chart, NoPicture> {
     let SweepPicture { rows, grid, scene, until_settled, .. } = *picture;
     can_show(grid, picture.quantity, &picture.view, rows)?;
-    let mut figure = Figure::new(theme, caption, least(picture, theme));
-    match (grid.columns(), few_lines(rows, grid)) {
-        ([x, y], _) if picture.view == View::Surface => surface(&mut figure, picture, (x, y), theme),
-        ([x, y], _) if let View::Cuts(cuts) = &picture.view => {
-            map_with_cuts(&mut figure, picture, (x, y), cuts, theme);
-        }
-        ([x], _) if walked_both(rows) => walked_lines(&mut figure, picture, x, theme),
-        ([x, y], _) if walked_both(rows) => walked_maps(&mut figure, picture, (x, y), theme),
-        ([x], _) => lines(&mut figure, picture, x, None, theme),
-        (_, Some((x, each))) => lines(&mut figure, picture, x, Some(each), theme),
-        ([x, y], None) => map(&mut figure, picture, (x, y), theme),
-        (other, None) => return Err(NoPicture::Fields(other.len())),
-    }
     let ways = rows.words(DIRECTION);
     let walked = [Direction::Up, Direction::Down].into_iter().filter(|way| ways.contains(&way.name()));
     let walked: Vec<Direction> = walked.collect();
-    caption.draw(&mut figure, theme, &sweep_about(grid, scene, &walked, until_settled), LEFT);
-    Ok(figure)
-}
-
-/// What the picture needs between its captions.
-fn least(picture: &SweepPicture, theme: &Theme) -> f64 {
-    let maps = picture.grid.axes().len() == 2 && walked_both(picture.rows);
-    match &picture.view {
-        View::Surface => SURFACE,
-        View::Cuts(cuts) => cut::least(cuts.len(), theme),
-        View::Top if maps && theme.is_narrow() => STACKED,
-        View::Top => LEAST,
-    }
+    let mut chart = match (grid.columns(), few_lines(rows, grid)) {
+        ([x, y], _) if picture.view == View::Surface => surface(picture, (x, y)),
+        ([x, y], _) if let View::Cuts(cuts) = &picture.view => map_with_cuts(picture, (x, y), cuts),
+        ([x], _) if walked.len() == 2 => walked_lines(picture, x),
+        ([x, y], _) if walked.len() == 2 => walked_maps(picture, (x, y)),
+        ([x], _) => lines(picture, x, None),
+        (_, Some((x, each))) => lines(picture, x, Some(each)),
+        ([x, y], None) => map(picture, (x, y)),
+        (other, None) => return Err(NoPicture::Fields(other.len())),
+    };
+    chart.subtitle = sweep_about(grid, scene, &walked, until_settled);
+    Ok(chart)
 }
 
 /// Of two swept fields the one to the right and the one of which each value has a line, where one has few.
@@ -189,80 +182,293 @@ pub fn sweep_about(grid: &Grid, scene: &Scene, walked: &[Direction], until_settl
 }
 
 /// The quantity over the field `x`, each value marked with its regime; a line for each value of `series`.
-fn lines(figure: &mut Figure, picture: &SweepPicture, x: &str, series: Option<&str>, theme: &Theme) {
+fn lines(picture: &SweepPicture, x: &str, series: Option<&str>) -> Chart {
     let SweepPicture { rows, ranges, .. } = *picture;
-    let values = rows.numbers(x).unwrap_or_default();
+    let places = rows.numbers(x).unwrap_or_default();
     let quantity = Quantity::of(rows, picture.quantity);
-    let regimes = rows.words("regime");
-    let of_series = series.and_then(|name| rows.numbers(name)).unwrap_or_default();
-    let each = if series.is_some() { distinct(of_series) } else { vec![f64::NAN] };
-    let ink = |i: usize| match each.len() {
-        1 => theme.soft,
-        n => theme.step(i as f64 / (n - 1) as f64),
-    };
-
-    let mut entries: Vec<(Sample, String)> = Vec::new();
-    for (i, words) in series.iter().flat_map(|name| of_each(name, &each)).enumerate() {
-        entries.push((Sample::Line(ink(i), style::GUIDE, None), words));
-    }
-    for (name, shape) in REGIMES {
-        if regimes.contains(&name) {
-            entries.push((Sample::Marker(shape, regime(name, theme).1), name.to_owned()));
-        }
-    }
-    let missing: Vec<f64> =
-        (0..values.len()).filter(|i| !quantity.values[*i].is_finite()).map(|i| values[i]).collect();
-    // Many lines from edge to edge would be all that is seen.
-    let lines = missing.len() <= MOST_LINES;
-    if !missing.is_empty() {
-        let dotted = Sample::Line(theme.soft, style::LINE, Some(style::DOT));
-        let dotted = if lines { dotted } else { Sample::Ticks(theme.soft) };
-        let why = if quantity.velocity { missing_words(rows.words("outcome")) } else { "no value" };
-        entries.push((dotted, why.to_owned()));
-    }
-    let entries: Vec<(Sample, &str)> =
-        entries.iter().map(|(sample, words)| (*sample, words.as_str())).collect();
-    let top = below_legend(figure, theme, &entries);
-
-    let across = swept_axis(rows, x, ranges.x);
     // Most quantities are never negative; the little room below 0 is for the markers.
-    let up = quantity.axis(0.05, 6).or_given(ranges.y, 6, &quantity.label);
-    let frame = Frame::whole(figure, (LEFT, top), across, up);
-    let Area { left, right, bottom, .. } = frame.area;
-    frame.grid(figure, theme);
-    for at in &missing {
-        if lines {
-            frame.vertical(figure, *at, style::LINE, theme.soft, Some(style::DOT));
-        } else {
-            let at = frame.across(*at);
-            figure.line(&[(at, bottom - TICK), (at, bottom)], style::FINE_LINE, theme.soft, frame.area);
-        }
+    let mut panel = Panel::new(swept_axis(rows, x, ranges.x), quantity.axis(0.05).or_given(ranges.y));
+    let regimes = rows.words("regime");
+    let rests = |row: usize| quantity.rests && regimes.get(row) == Some(&"rest");
+    let without_value = |at_rest: bool| -> Vec<f64> {
+        let order = ascending(places, |row| !quantity.values[row].is_finite() && rests(row) == at_rest);
+        order.into_iter().map(|row| places[row]).collect()
+    };
+    let (missing, resting) = (without_value(false), without_value(true));
+    if !resting.is_empty() {
+        panel.layer(Role::Regime(0), "at rest", Marks::Ticks(resting, Side::Bottom));
+    }
+    if !missing.is_empty() {
+        // Many lines from edge to edge would be all that is seen.
+        let marks = match missing.len() <= MOST_LINES {
+            true => Marks::Verticals(missing),
+            false => Marks::Ticks(missing, Side::Bottom),
+        };
+        panel.layer(Role::Missing, quantity.missing(rows), marks);
     }
     // One seed has nothing between it and the next, nor has one regime.
-    let joined = !(x == "seed" || x.ends_with(".seed") || quantity.words.is_some());
-    for (i, value) in each.iter().enumerate() {
-        let mut order: Vec<usize> =
-            (0..values.len()).filter(|row| series.is_none() || of_series[*row] == *value).collect();
-        order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
-        for part in order.split(|row| !quantity.values[*row].is_finite()) {
-            let point = |row: &usize| (values[*row], quantity.values[*row]);
-            if joined {
-                let width = if series.is_some() { style::LINE } else { style::FINE_LINE };
-                frame.dense_line(figure, part.iter().map(point), width, ink(i));
-            }
-            let marks = part.iter().map(|row| (point(row), regimes.get(*row).copied().unwrap_or("")));
-            let room = (right - left) / order.len().max(1) as f64;
-            let size = if joined { 0.8 * style::MARKER } else { (0.55 * room).clamp(3.5, style::MARKER) };
-            let apart = if joined { MARKER_ROOM * size } else { 0.0 };
-            let edge = if size > 6.0 { theme.ink } else { theme.paper };
-            mark_regimes(figure, &frame, marks, size, apart, edge, theme);
+    let joined = !(x == "seed" || x.ends_with(".seed") || quantity.kinds.is_some());
+    let mut all = Vec::new();
+    for line in each_line(rows, series) {
+        let order = ascending(places, |row| line.has(row));
+        let points: Vec<Point> = order.iter().map(|&row| (places[row], quantity.values[row])).collect();
+        if joined {
+            let role = if series.is_some() { line.role } else { Role::Joined };
+            panel.layer(role, &line.name, Marks::Path(points));
         }
+        all.extend(marks(&order, places, &quantity.values, regimes));
     }
-    figure.data = drawn(picture, &[(x, ranges.x)]).table();
-    frame.axes(figure, theme);
+    panel.draw(Role::Motion, Marks::Regimes(all, joined));
+    Chart::stack(vec![panel], "", drawn(picture, &[(x, ranges.x)]).table())
 }
 
-/// The most values without a quantity that have a line each; of more each has a tick at the lower edge, so
-/// long.
-const MOST_LINES: usize = 20;
-const TICK: f64 = 18.0;
+/// One of several lines: its rows, its words and its role.
+pub(super) struct SeriesLine<'a> {
+    values: Option<(&'a [f64], f64)>,
+    pub name: String,
+    pub role: Role,
+}
+
+impl SeriesLine<'_> {
+    /// Whether a row belongs to it.
+    pub fn has(&self, row: usize) -> bool {
+        self.values.is_none_or(|(values, value)| values[row] == value)
+    }
+}
+
+/// A line for each value of `series`, or one of all rows.
+pub(super) fn each_line<'a>(rows: &'a Table, series: Option<&str>) -> Vec<SeriesLine<'a>> {
+    let Some(name) = series else {
+        return vec![SeriesLine { values: None, name: String::new(), role: Role::Curve }];
+    };
+    let values = rows.numbers(name).unwrap_or_default();
+    let each = distinct(values);
+    let last = each.len().saturating_sub(1).max(1) as f64;
+    let line = |(i, (value, name))| SeriesLine {
+        values: Some((values, value)),
+        name,
+        role: Role::Step(i as f64 / last),
+    };
+    each.iter().copied().zip(of_each(name, &each)).enumerate().map(line).collect()
+}
+
+/// The lines over a map, in its fields.
+struct Lines {
+    release: Option<Vec<Point>>,
+    /// The edges of the first crossing cells.
+    crossing: Vec<Vec<Point>>,
+}
+
+impl Lines {
+    fn new(picture: &SweepPicture, (x, y): (&str, &str), cells: &Cells) -> Self {
+        let pairs = |table: &Table| -> Option<Vec<Point>> {
+            Some(table.numbers(x)?.iter().copied().zip(table.numbers(y)?.iter().copied()).collect())
+        };
+        let crossing = picture.overlay.first_crossing.as_ref();
+        let edge = |table| first_crossing_edge(table, (x, y), &cells.across, &cells.up);
+        Self {
+            release: picture.overlay.release.as_ref().and_then(pairs),
+            crossing: crossing.map(edge).unwrap_or_default(),
+        }
+    }
+
+    fn draw(&self, panel: &mut Panel) {
+        for part in &self.crossing {
+            panel.layer(Role::FirstCrossing, "first crossing cell", Marks::Path(part.clone()));
+        }
+        if let Some(points) = &self.release {
+            let name = "release in closed form, |F(limit)|/mass";
+            panel.layer(Role::Release, name, Marks::Path(points.clone()));
+        }
+    }
+
+    fn record(&self, drawn: &mut Drawn) {
+        let release = self.release.iter().flatten().map(|point| ("release", point));
+        let crossing = self.crossing.iter().flatten().map(|point| ("first_crossing", point));
+        for (series, (a, b)) in release.chain(crossing) {
+            drawn.put(series, &[*a, *b], &[]);
+        }
+    }
+}
+
+/// A panel of cells, with a colour bar where they have a scale.
+fn cells_panel(picture: &SweepPicture, (x, y): (&str, &str), cells: Cells, bar: PlotAxis) -> Panel {
+    let SweepPicture { rows, ranges, .. } = *picture;
+    let axis = |ends: (f64, f64), given, name: &str| {
+        PlotAxis::between(ends.0, ends.1, &label(rows, name)).or_given(given)
+    };
+    let mut panel = Panel::new(axis(cells.across.ends(), ranges.x, x), axis(cells.up.ends(), ranges.y, y));
+    panel.bar = Some(bar).filter(|_| !matches!(cells.colours, Colours::Categories(_)));
+    panel.draw(Role::Motion, Marks::Cells(cells));
+    panel
+}
+
+/// The map and its lines.
+fn map_panel(picture: &SweepPicture, (x, y): (&str, &str)) -> (Panel, Lines) {
+    let quantity = Quantity::of(picture.rows, picture.quantity);
+    let cells = cells(picture.rows, (x, y), &quantity, |_| true);
+    let lines = Lines::new(picture, (x, y), &cells);
+    let mut panel = cells_panel(picture, (x, y), cells, quantity.axis(0.0));
+    lines.draw(&mut panel);
+    (panel, lines)
+}
+
+/// The quantity as colour over two fields.
+pub(super) fn map(picture: &SweepPicture, (x, y): (&str, &str)) -> Chart {
+    let (panel, lines) = map_panel(picture, (x, y));
+    let mut drawn = drawn(picture, &[(x, picture.ranges.x), (y, picture.ranges.y)]);
+    lines.record(&mut drawn);
+    Chart::stack(vec![panel], "", drawn.table())
+}
+
+/// The quantity as height and colour over two fields.
+fn surface(picture: &SweepPicture, (x, y): (&str, &str)) -> Chart {
+    let SweepPicture { rows, ranges, .. } = *picture;
+    let quantity = Quantity::of(rows, picture.quantity);
+    let within = |name: &str, range: Option<(f64, f64)>| {
+        let values = rows.numbers(name).unwrap_or_default();
+        move |row: usize| range.is_none_or(|(low, high)| (low..=high).contains(&values[row]))
+    };
+    let (in_x, in_y) = (within(x, ranges.x), within(y, ranges.y));
+    let cells = cells(rows, (x, y), &quantity, |row| in_x(row) && in_y(row));
+    let axis = |values: &[f64], range, name: &str| {
+        PlotAxis::around(values.iter().copied(), 0.0, &label(rows, name)).or_given(range)
+    };
+    let across = axis(&cells.across.values, ranges.x, x);
+    let mut panel = Panel::new(across, axis(&cells.up.values, ranges.y, y));
+    let up = quantity.axis(0.0);
+    panel.draw(Role::Motion, Marks::Surface(cells, up));
+    Chart::stack(vec![panel], "", drawn(picture, &[(x, ranges.x), (y, ranges.y)]).table())
+}
+
+/// The map over the fields `x` and `y`, with the quantity along cuts through it beside it.
+fn map_with_cuts(picture: &SweepPicture, (x, y): (&str, &str), cuts: &[Cut]) -> Chart {
+    let SweepPicture { rows, ranges, .. } = *picture;
+    let (mut panel, lines) = map_panel(picture, (x, y));
+    let mut drawn = drawn(picture, &[(x, ranges.x), (y, ranges.y)]);
+    lines.record(&mut drawn);
+    let quantity = Quantity::of(rows, picture.quantity);
+    let mut panels = Vec::new();
+    for Cut { column, value } in cuts {
+        let is_upright = column == x;
+        let (along, range) = if is_upright { (y, ranges.y) } else { (x, ranges.x) };
+        let ends = match is_upright {
+            true => [(*value, panel.y.low), (*value, panel.y.high)],
+            false => [(panel.x.low, *value), (panel.x.high, *value)],
+        };
+        panel.draw(Role::Cut, Marks::Path(ends.into()));
+        let (at, places) =
+            (rows.numbers(column).unwrap_or_default(), rows.numbers(along).unwrap_or_default());
+        let order = ascending(places, |row| at[row] == *value);
+        let mut below = Panel::new(swept_axis(rows, along, range), quantity.axis(0.06));
+        let (name, unit) = label_and_unit(column);
+        below.heading = format!("at {name} {} {unit}", short(*value)).trim_end().to_owned();
+        let meets = |lines: &[Vec<Point>]| {
+            let mut all: Vec<f64> =
+                lines.iter().flat_map(|line| line_meets(line, *value, is_upright)).collect();
+            all.sort_by(f64::total_cmp);
+            all.dedup();
+            all
+        };
+        let thresholds = [
+            (Role::Release, "cut_release", meets(lines.release.as_slice())),
+            (Role::FirstCrossing, "cut_first_crossing", meets(&lines.crossing)),
+        ];
+        for (role, series, at) in thresholds {
+            for at in &at {
+                let (a, b) = if is_upright { (*value, *at) } else { (*at, *value) };
+                drawn.put(series, &[a, b], &[]);
+            }
+            below.draw(role, Marks::Verticals(at));
+        }
+        if quantity.kinds.is_none() {
+            let points = order.iter().map(|&row| (places[row], quantity.values[row])).collect();
+            below.draw(Role::Joined, Marks::Path(points));
+        }
+        let regimes = marks(&order, places, &quantity.values, rows.words("regime"));
+        below.draw(Role::Motion, Marks::Regimes(regimes, quantity.kinds.is_none()));
+        panels.push(below);
+    }
+    let mut chart = Chart::stack(vec![panel], "", drawn.table());
+    chart.columns.push(Column { width: CUTS, panels });
+    chart
+}
+
+/// The quantity over the field `x` on the way up and on the way down, each value marked with its regime: two
+/// lines, or of kinds two panels.
+fn walked_lines(picture: &SweepPicture, x: &str) -> Chart {
+    let SweepPicture { rows, ranges, .. } = *picture;
+    let places = rows.numbers(x).unwrap_or_default();
+    let quantity = Quantity::of(rows, picture.quantity);
+    let (ways, regimes) = (rows.words(DIRECTION), rows.words("regime"));
+    let mut panel = Panel::new(swept_axis(rows, x, ranges.x), quantity.axis(0.05).or_given(ranges.y));
+    let walks = [(Direction::Up, Role::Curve), (Direction::Down, Role::Down)]
+        .map(|(way, role)| (way.name(), role, ascending(places, |row| ways[row] == way.name())));
+    let data = drawn(picture, &[(x, ranges.x)]).table();
+    let marks_of = |order: &[usize]| marks(order, places, &quantity.values, regimes);
+    if quantity.kinds.is_some() {
+        let panels = walks.map(|(name, _, order)| {
+            let mut panel = Panel { heading: name.to_owned(), ..panel.clone() };
+            panel.draw(Role::Motion, Marks::Regimes(marks_of(&order), false));
+            panel
+        });
+        return Chart::stack(panels.into(), "", data);
+    }
+    let both = walks[0].2.iter().zip(&walks[1].2);
+    let between = both.map(|(&a, &b)| [places[a], quantity.values[a], quantity.values[b]]);
+    let between: Vec<[f64; 3]> = between.collect();
+    let apart = |row: &[f64; 3]| (panel.y.share(row[1]) - panel.y.share(row[2])).abs() > VISIBLE;
+    if between.iter().any(apart) {
+        panel.layer(Role::Hysteresis, "hysteresis", Marks::Band(between));
+    }
+    for (name, role, order) in &walks {
+        let points = order.iter().map(|&row| (places[row], quantity.values[row])).collect();
+        panel.layer(*role, *name, Marks::Path(points));
+    }
+    for (_, _, order) in &walks {
+        panel.draw(Role::Motion, Marks::Regimes(marks_of(order), true));
+    }
+    Chart::stack(vec![panel], "", data)
+}
+
+/// The quantity over two fields on the way up and on the way down, and what the way down has more.
+fn walked_maps(picture: &SweepPicture, (x, y): (&str, &str)) -> Chart {
+    let SweepPicture { rows, ranges, .. } = *picture;
+    let quantity = Quantity::of(rows, picture.quantity);
+    let ways = rows.words(DIRECTION);
+    let [up, down] = [Direction::Up, Direction::Down]
+        .map(|way| cells(rows, (x, y), &quantity, |row| ways[row] == way.name()));
+    let has_kinds = quantity.kinds.is_some();
+    let more: Vec<Cell> =
+        up.cells.iter().zip(&down.cells).map(|(up, down)| difference(*down, *up, has_kinds)).collect();
+    let largest = more.iter().filter_map(|cell| cell.value()).map(f64::abs).fold(0.0, f64::max);
+    let reach = if largest > 0.0 { largest } else { 1.0 };
+    let unit = if quantity.unit.is_empty() { &quantity.label } else { &quantity.unit };
+    let signed = PlotAxis::between(-reach, reach, &format!("down \u{2212} up ({unit})"));
+    let colours = match has_kinds {
+        true => Colours::Categories(vec![(Role::Rest, String::new()), (Role::Curve, "differs".to_owned())]),
+        false => Colours::Signed(reach),
+    };
+    let difference = Cells { cells: more, colours, ..up.clone() };
+    let last = if has_kinds { "where they differ" } else { "down \u{2212} up" };
+    let bar = quantity.axis(0.0);
+    let columns = [(up, "up", &bar), (down, "down", &bar), (difference, last, &signed)];
+    let columns = columns.into_iter().enumerate().map(|(i, (cells, heading, axis))| {
+        let mut panel = cells_panel(picture, (x, y), cells, axis.clone());
+        heading.clone_into(&mut panel.heading);
+        // the first two share a scale
+        panel.bar = panel.bar.filter(|_| i > 0);
+        Column { width: 1.0, panels: vec![panel] }
+    });
+    let data = drawn(picture, &[(x, ranges.x), (y, ranges.y)]).table();
+    Chart { columns: columns.collect(), subtitle: String::new(), data }
+}
+
+/// What the one cell has more than the other; of kinds, whether they differ.
+fn difference(down: Cell, up: Cell, has_kinds: bool) -> Cell {
+    match (down, up) {
+        (Cell::Missing | Cell::Blank, _) | (_, Cell::Missing | Cell::Blank) => Cell::Missing,
+        (down, up) if has_kinds => Cell::Value(f64::from(u8::from(down != up))),
+        (down, up) => Cell::Value(down.value().unwrap_or(0.0) - up.value().unwrap_or(0.0)),
+    }
+}

@@ -1,26 +1,14 @@
-//! Rows of a sweep as its pictures need them: what a picture is drawn from, places, words, marks.
+//! Rows of a sweep as its pictures need them: what a picture is drawn from, cells, words.
 
 use super::axis::{PlotAxis, Ranges};
+use super::cells::{Cell, Cells, Colours};
 use super::drawn::{Drawn, as_numbers};
-use super::figure::{Figure, Point};
-use super::frame::Frame;
-use super::mark::{Sample, legend, marker, regime};
-use super::style::{Ink, Theme};
+use super::figure::Point;
+use super::quantity::Quantity;
 use crate::mechanics::Mechanism;
 use crate::numeric::short;
 use crate::scene::Scene;
-use crate::study::{Column, DIRECTION, Grid, Table, first_crossing, label_and_unit, release_line};
-
-pub(super) const LEFT: f64 = 160.0;
-pub(super) const TOP: f64 = 185.0;
-/// What a picture with one frame needs between its captions.
-pub(super) const LEAST: f64 = 420.0;
-
-/// Draws the legend of a picture with one frame; where the frame begins.
-pub(super) fn below_legend(figure: &mut Figure, theme: &Theme, entries: &[(Sample, &str)]) -> f64 {
-    let ends = (LEFT, figure.right());
-    TOP.max(legend(figure, theme, entries, ends, 146.0) + 18.0)
-}
+use crate::study::{Column, DIRECTION, Edges, Grid, Table, first_crossing, label_and_unit, release_line};
 
 /// The lines over a map, each where it makes sense.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -116,8 +104,58 @@ pub(super) fn label(rows: &Table, name: &str) -> String {
 
 /// The axis to the right over the swept field `x`.
 pub(super) fn swept_axis(rows: &Table, x: &str, range: Option<(f64, f64)>) -> PlotAxis {
-    let (label, values) = (label(rows, x), rows.numbers(x).unwrap_or_default());
-    PlotAxis::around(values.iter().copied(), 0.02, 8, &label).or_given(range, 8, &label)
+    let values = rows.numbers(x).unwrap_or_default();
+    PlotAxis::around(values.iter().copied(), 0.02, &label(rows, x)).or_given(range)
+}
+
+/// The rows in ascending order of these values, of those that are `shown`.
+pub(super) fn ascending(values: &[f64], shown: impl Fn(usize) -> bool) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..values.len()).filter(|row| shown(*row)).collect();
+    order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
+    order
+}
+
+/// Points of these rows with their regimes, where they have values.
+pub(super) fn marks(
+    order: &[usize],
+    places: &[f64],
+    values: &[f64],
+    regimes: &[&'static str],
+) -> Vec<(Point, &'static str)> {
+    let finite = order.iter().filter(|row| values[**row].is_finite());
+    finite.map(|&row| ((places[row], values[row]), regimes.get(row).copied().unwrap_or(""))).collect()
+}
+
+/// The cells of those rows over the fields `x` and `y` that are to be `shown`.
+pub(super) fn cells(
+    rows: &Table,
+    (x, y): (&str, &str),
+    quantity: &Quantity,
+    shown: impl Fn(usize) -> bool,
+) -> Cells {
+    let (xs, ys) = (rows.numbers(x).unwrap_or_default(), rows.numbers(y).unwrap_or_default());
+    let of = |all: &[f64]| {
+        let values: Vec<f64> = (0..all.len()).filter(|row| shown(*row)).map(|row| all[row]).collect();
+        Edges::new(&values)
+    };
+    let (across, up) = (of(xs), of(ys));
+    let regimes = rows.words("regime");
+    let mut cells = vec![Cell::Missing; across.values.len() * up.values.len()];
+    for row in (0..rows.rows()).filter(|row| shown(*row)) {
+        if let (Some(column), Some(level)) = (across.place(xs[row]), up.place(ys[row])) {
+            cells[column * up.values.len() + level] = match regimes.get(row) {
+                Some(&"rest") if quantity.rests => Cell::Rest,
+                _ if !quantity.values[row].is_finite() => Cell::Missing,
+                _ => Cell::Value(quantity.values[row]),
+            };
+        }
+    }
+    let bar = quantity.axis(0.0);
+    let colours = match &quantity.kinds {
+        Some(kinds) => Colours::Categories(kinds.clone()),
+        None => Colours::Scale(bar.low, bar.high),
+    };
+    Cells { across, up, cells, colours, missing: quantity.missing(rows) }
 }
 
 /// The values of the field `name`, for each of which there is a line, as a legend names them.
@@ -143,59 +181,9 @@ pub(super) fn missing_words(outcomes: &[&'static str]) -> &'static str {
     }
 }
 
-/// So many times its half height apart, markers on a line are told from each other.
-pub(super) const MARKER_ROOM: f64 = 5.0;
-
-/// Marks points of the data with their regimes, outlined by `edge`, as many as stand `apart`.
-pub(super) fn mark_regimes<'a>(
-    figure: &mut Figure,
-    frame: &Frame,
-    points: impl Iterator<Item = (Point, &'a str)>,
-    size: f64,
-    apart: f64,
-    edge: Ink,
-    theme: &Theme,
-) {
-    let placed = points.map(|(point, word)| (frame.place(point), word));
-    let marks: Vec<(Point, &str)> = placed.filter(|mark| frame.area.contains(mark.0)).collect();
-    for (at, word) in thinned(&marks, apart, 1.5 * size) {
-        let (shape, ink) = regime(word, theme);
-        marker(figure, shape, at, size, ink, edge);
-    }
-}
-
-/// The marks of a line that stand `apart` from the one before; where the word changes, `close` is enough.
-fn thinned<'a>(marks: &[(Point, &'a str)], apart: f64, close: f64) -> Vec<(Point, &'a str)> {
-    let mut kept: Vec<(Point, &str)> = Vec::new();
-    for (at, word) in marks {
-        let stands = kept.last().is_none_or(|(last, other)| {
-            (at.0 - last.0).hypot(at.1 - last.1) >= if other == word { apart } else { close.min(apart) }
-        });
-        if stands {
-            kept.push((*at, word));
-        }
-    }
-    kept
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn markers_on_a_line_stand_apart_and_a_change_is_seen() {
-        let marks: Vec<(Point, &str)> = (0..100)
-            .map(|i| ((f64::from(i) * 4.0, 0.0), if i < 50 { "rest" } else { "interwell" }))
-            .collect();
-        let kept = thinned(&marks, 40.0, 10.0);
-        assert!(kept.windows(2).all(|pair| {
-            let step = pair[1].0.0 - pair[0].0.0;
-            step >= 40.0 || (pair[0].1 != pair[1].1 && step >= 10.0)
-        }));
-        let first = kept.iter().find(|mark| mark.1 == "interwell").unwrap();
-        assert!(first.0.0 <= 200.0 + 10.0, "{first:?}");
-        assert_eq!(thinned(&marks, 0.0, 10.0), marks);
-    }
 
     #[test]
     fn a_legend_says_why_a_cell_has_no_speed() {

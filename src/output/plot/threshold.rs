@@ -1,14 +1,12 @@
-//! Picture of thresholds: over one field lines, drawn here; over two a [`map`](super::map) or lines.
+//! Picture of thresholds: over one field lines, over two a map or lines.
 
 use super::axis::{PlotAxis, Ranges};
+use super::chart::{Chart, Marks, Panel, Side};
 use super::drawn::{Drawn, as_numbers};
-use super::figure::{Area, Figure, Point};
-use super::frame::Frame;
-use super::map::map;
-use super::mark::{Caption, Marker, Sample, marker};
-use super::style::{self, Theme};
-use super::sweep::{NoPicture, distinct, few_lines};
-use super::swept::{LEAST, LEFT, Overlay, SweepPicture, View, below_legend, of_each, swept_axis};
+use super::figure::Point;
+use super::role::Role;
+use super::sweep::{NoPicture, each_line, few_lines, map};
+use super::swept::{Overlay, SweepPicture, View, ascending, swept_axis};
 use crate::scene::{Scene, column_names};
 use crate::study::{Column, Grid, Onset, Table, Values};
 
@@ -40,32 +38,24 @@ pub fn can_show_thresholds(grid: &Grid) -> Result<(), NoPicture> {
 
 /// The picture of thresholds: over one field a line, over two a line for each value of the one that has few,
 /// else a map.
-pub fn threshold_figure(
-    picture: &ThresholdPicture,
-    caption: &Caption,
-    theme: &Theme,
-) -> Result<Figure, NoPicture> {
+pub fn threshold_chart(picture: &ThresholdPicture) -> Result<Chart, NoPicture> {
     can_show_thresholds(picture.grid)?;
     let ThresholdPicture { rows, grid, scene, onset, ranges, .. } = *picture;
-    let mut figure = Figure::new(theme, caption, LEAST);
     let least = format!("least_{}", column_names(&[picture.field]).concat());
     let values = rows.numbers("value").unwrap_or_default();
     let quantity = Column { name: least.clone(), values: Values::Numbers(values.to_vec()) };
-    match (grid.columns(), few_lines(rows, grid)) {
-        ([x], _) => lines(&mut figure, picture, x, None, &quantity.label(), theme),
-        ([_, _], Some((x, each))) => {
-            lines(&mut figure, picture, x, Some(each), &quantity.label(), theme);
-        }
+    let mut chart = match (grid.columns(), few_lines(rows, grid)) {
+        ([x], _) => lines(picture, x, None, &quantity.label()),
+        ([_, _], Some((x, each))) => lines(picture, x, Some(each), &quantity.label()),
         (columns, _) => {
             let named = rows.clone().with(&least, quantity.values);
-            let (quantity, overlay) = (least.as_str(), Overlay::default());
-            let until_settled = None;
-            let view = View::Top;
+            let (quantity, overlay, view) = (least.as_str(), Overlay::default(), View::Top);
+            let rows = &named;
             let shown =
-                SweepPicture { rows: &named, grid, scene, until_settled, quantity, overlay, view, ranges };
-            map(&mut figure, &shown, (&columns[0], &columns[1]), theme);
+                SweepPicture { rows, grid, scene, until_settled: None, quantity, overlay, view, ranges };
+            map(&shown, (&columns[0], &columns[1]))
         }
-    }
+    };
     let names = grid.columns().iter().map(String::as_str);
     let mut drawn = Drawn::new(names.chain([&*least, "low", "high", "windows"]), &[]);
     let windows = rows.column("windows").and_then(as_numbers).unwrap_or_default();
@@ -76,9 +66,9 @@ pub fn threshold_figure(
         let numbers: Vec<f64> = columns.chain([windows]).collect();
         drawn.put("threshold", &numbers, &[]);
     }
-    figure.data = drawn.table();
-    caption.draw(&mut figure, theme, about(onset), LEFT);
-    Ok(figure)
+    chart.data = drawn.table();
+    about(onset).clone_into(&mut chart.subtitle);
+    Ok(chart)
 }
 
 /// What begins at the threshold.
@@ -93,91 +83,41 @@ fn about(onset: Onset) -> &'static str {
 }
 
 /// The threshold over the field `x`; a line for each value of `series`.
-fn lines(
-    figure: &mut Figure,
-    picture: &ThresholdPicture,
-    x: &str,
-    series: Option<&str>,
-    up: &str,
-    theme: &Theme,
-) {
+fn lines(picture: &ThresholdPicture, x: &str, series: Option<&str>, up: &str) -> Chart {
     let ThresholdPicture { rows, ranges, .. } = *picture;
     let numbers = |name: &str| rows.numbers(name).unwrap_or_default();
-    let (places, values) = (numbers(x), numbers("value"));
-    let gaps: Vec<bool> = match rows.column("windows").map(|column| &column.values) {
-        Some(Values::Counts(counts)) => {
-            counts.iter().map(|count| count.is_some_and(|count| count > 0)).collect()
-        }
-        _ => Vec::new(),
-    };
-    let of_series = series.map(numbers).unwrap_or_default();
-    let each = if series.is_some() { distinct(of_series) } else { vec![f64::NAN] };
-    let ink = |i: usize| match each.len() {
-        1 => theme.ink,
-        n => theme.step(i as f64 / (n - 1) as f64),
-    };
-
-    let mut entries: Vec<(Sample, String)> = Vec::new();
-    for (i, words) in series.iter().flat_map(|name| of_each(name, &each)).enumerate() {
-        entries.push((Sample::Line(ink(i), style::GUIDE, None), words));
-    }
-    let gap = gaps.contains(&true);
-    if gap {
-        entries.push((Sample::Marker(Marker::Disc, theme.ink), "no gap found above".to_owned()));
-        entries.push((Sample::Marker(Marker::Triangle, theme.unstable), "gaps above".to_owned()));
-    }
-    let undecided = rows.words("undecided").iter().enumerate().filter(|(_, word)| **word == "true");
-    let bars: Vec<(usize, [f64; 2])> =
-        undecided.map(|(row, _)| (row, ["low", "high"].map(|name| numbers(name)[row]))).collect();
+    let (places, values, low, high) = (numbers(x), numbers("value"), numbers("low"), numbers("high"));
+    let windows = rows.column("windows").and_then(as_numbers).unwrap_or_default();
+    let has_gaps = |row: usize| windows.get(row).is_some_and(|count| *count > 0.0);
+    let undecided = rows.words("undecided");
+    let bars: Vec<[f64; 3]> = (0..rows.rows())
+        .filter(|row| undecided.get(*row) == Some(&"true"))
+        .map(|row| [places[row], low[row], high[row]])
+        .collect();
+    let from_zero = values.iter().copied().chain(bars.iter().flat_map(|bar| [bar[1], bar[2]])).chain([0.0]);
+    let upward = PlotAxis::around(from_zero, 0.05, up).or_given(ranges.y);
+    let mut panel = Panel::new(swept_axis(rows, x, ranges.x), upward);
     if !bars.is_empty() {
-        entries.push((Sample::Line(theme.soft, style::GUIDE, None), "undecided between".to_owned()));
+        panel.layer(Role::Joined, "undecided between", Marks::Intervals(bars));
     }
-    let missing: Vec<usize> = (0..values.len()).filter(|i| !values[*i].is_finite()).collect();
+    let missing = ascending(places, |row| !values[row].is_finite());
     if !missing.is_empty() {
-        entries.push((Sample::Ticks(theme.soft), "none in the range".to_owned()));
+        let at = missing.iter().map(|row| places[*row]).collect();
+        panel.layer(Role::Missing, "none in the range", Marks::Ticks(at, Side::Bottom));
     }
-    let entries: Vec<(Sample, &str)> =
-        entries.iter().map(|(sample, words)| (*sample, words.as_str())).collect();
-    let top = below_legend(figure, theme, &entries);
-
-    let across = swept_axis(rows, x, ranges.x);
-    let from_zero = values.iter().copied().chain(bars.iter().flat_map(|(_, bar)| *bar)).chain([0.0]);
-    let upward = PlotAxis::around(from_zero, 0.05, 6, up).or_given(ranges.y, 6, up);
-    let frame = Frame::whole(figure, (LEFT, top), across, upward);
-    let edges = [frame.y.low, frame.y.high];
-    let Area { left, right, bottom, .. } = frame.area;
-    frame.grid(figure, theme);
-    for (row, ends) in bars {
-        // an end that is not known lies beyond the picture
-        let end = |i: usize| (places[row], if ends[i].is_finite() { ends[i] } else { edges[i] });
-        frame.line(figure, &[end(0), end(1)], style::GUIDE, theme.soft);
+    let any_gap = (0..rows.rows()).any(has_gaps);
+    if any_gap {
+        panel.layer(Role::Curve, "no gap found above", Marks::Points(Vec::new()));
     }
-    for row in missing {
-        let at = frame.across(places[row]);
-        figure.line(&[(at, bottom - TICK), (at, bottom)], style::LINE, theme.soft, frame.area);
+    for line in each_line(rows, series) {
+        let order = ascending(places, |row| line.has(row));
+        let point = |row: &usize| (places[*row], values[*row]);
+        panel.layer(line.role, &line.name, Marks::Path(order.iter().map(point).collect()));
+        let of = |gaps: bool| -> Vec<Point> {
+            order.iter().filter(|row| has_gaps(**row) == gaps).map(point).collect()
+        };
+        panel.draw(line.role, Marks::Points(of(false)));
+        panel.layer(Role::Gaps, if any_gap { "gaps above" } else { "" }, Marks::Points(of(true)));
     }
-    for (i, value) in each.iter().enumerate() {
-        let mut order: Vec<usize> =
-            (0..values.len()).filter(|row| series.is_none() || of_series[*row] == *value).collect();
-        order.sort_by(|a, b| places[*a].total_cmp(&places[*b]));
-        let size = (0.3 * (right - left) / order.len().max(1) as f64).clamp(3.5, style::MARKER);
-        for part in order.split(|row| !values[*row].is_finite()) {
-            let points: Vec<Point> = part.iter().map(|row| (places[*row], values[*row])).collect();
-            frame.line(figure, &points, style::LINE, ink(i));
-            for (row, point) in part.iter().zip(points) {
-                let at = frame.place(point);
-                let (shape, colour) = match gaps.get(*row) {
-                    Some(true) => (Marker::Triangle, theme.unstable),
-                    _ => (Marker::Disc, ink(i)),
-                };
-                if frame.area.contains(at) {
-                    marker(figure, shape, at, size, colour, if size > 6.0 { theme.ink } else { theme.paper });
-                }
-            }
-        }
-    }
-    frame.axes(figure, theme);
+    Chart::stack(vec![panel], "", Table::new())
 }
-
-/// Length of a tick at the lower edge where there is no threshold.
-const TICK: f64 = 18.0;

@@ -82,7 +82,7 @@ fn what_stands_beside_the_rows() {
     assert_eq!((&manifest["not_sure"], &manifest["out_of_work"]), (&0.into(), &0.into()));
     let svg = fs::read_to_string(place("map.svg")).unwrap();
     for words in
-        ["rest left", "rest right", "displacement at the start, mm", "none found", "9 \u{d7} 3 starts"]
+        ["rest left", "rest right", "displacement at the start (mm)", "none found", "9 \u{d7} 3 starts"]
     {
         assert!(svg.contains(words), "{words}");
     }

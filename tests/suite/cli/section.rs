@@ -71,17 +71,17 @@ fn a_diagram_has_a_manifest_and_pictures() {
         serde_json::from_str(&fs::read_to_string(folder.path().join("d.csv.json")).unwrap()).unwrap();
     assert_eq!((&manifest["command"], &manifest["cells"]), (&"section".into(), &22.into()));
     let text = fs::read_to_string(folder.path().join("d.svg")).unwrap();
-    for words in ["up", "down", "with impacts", "without impacts", "amplitude, g", "displacement, mm"] {
-        assert!(text.lines().any(|line| line == words), "{words}");
+    for words in ["up", "down", "with impacts", "without impacts", "amplitude (g)", "displacement (mm)"] {
+        assert!(text.contains(&format!(">{words}</text>")), "{words}");
     }
     run("section paper --plot s.svg --out s.csv");
-    assert!(fs::read_to_string(folder.path().join("s.svg")).unwrap().contains("displacement, mm"));
+    assert!(fs::read_to_string(folder.path().join("s.svg")).unwrap().contains("displacement (mm)"));
     assert!(!folder.path().join("s.csv.json").exists(), "one run has no manifest");
     run("section paper --at impacts --plot i.svg --out i.csv");
     assert!(fs::read_to_string(folder.path().join("i.svg")).unwrap().contains("phase of the drive"));
     run("sweep monostable --over excitation.frequency_hz=12:16:1 --carry both --out w.csv --plot w.svg");
     let text = fs::read_to_string(folder.path().join("w.svg")).unwrap();
-    assert!(text.contains("\nhysteresis\n"));
+    assert!(text.contains(">hysteresis</text>"));
     assert!(
         text.contains("2 \u{d7} 5 runs of ") && text.contains(", up and down, each from where"),
         "{text}"
@@ -95,7 +95,7 @@ fn a_diagram_has_a_manifest_and_pictures() {
     run("sweep paper --over stops.travel_limit_mm=1.5:3:0.5 --over excitation.amplitude_g=0.5,1 \
          --carry both --out m.csv --plot m.svg");
     let text = fs::read_to_string(folder.path().join("m.svg")).unwrap();
-    assert!(text.contains("\ndown \u{2212} up\n"), "the difference of the two maps");
+    assert!(text.contains(">down \u{2212} up</text>"), "the difference of the two maps");
 }
 
 #[test]

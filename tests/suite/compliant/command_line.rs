@@ -162,7 +162,7 @@ fn restitution_over_impact_speed_as_rows_and_as_a_picture() {
             .all(|(next, own)| { next[1].parse::<f64>().unwrap() < own[1].parse::<f64>().unwrap() })
     );
     let drawn = std::fs::read_to_string(picture).unwrap();
-    for words in ["impact speed, m/s", "restitution", "rigid stop, 0.36", "yields from"] {
+    for words in ["impact speed (m/s)", "restitution", "rigid stop, 0.36", "yields from"] {
         assert!(drawn.contains(words), "{words}");
     }
     refused(headless("curve paper --contact - --out /dev/null"), &["--contact", "not compliant", "Hertz("]);

@@ -47,7 +47,7 @@ fn the_envelope_of_a_decay_is_the_one_that_made_it() {
     });
     let path = file(folder.path(), "decay.csv", "t_s,x_mm", record);
     let (texts, csv) = drawn("identify --of damping", &path);
-    says(&texts, &["decay.csv", "damping ratio 0.02", "95 % interval", "time, s", "displacement, mm"]);
+    says(&texts, &["decay.csv", "damping ratio 0.02", "95 % interval", "time (s)", "displacement (mm)"]);
     says(&texts, &["measured", "identified envelope", "identify decay.csv --of damping"]);
     let (t, upper) = (of_series(&csv, "upper_envelope", "t_s"), of_series(&csv, "upper_envelope", "x_m"));
     assert!(t.len() > 100);
@@ -91,12 +91,12 @@ fn what_is_left_of_a_pull_is_its_friction() {
     let rows = there.map(|x| (x, force(x) + 5.0)).chain(back.map(|x| (x, force(x) - 5.0)));
     let path = file(folder.path(), "pull.csv", "x_mm,f_mn", rows);
     let (texts, csv) = drawn("identify --of force", &path);
-    says(&texts, &["wells at \u{2212}7.071 and 7.071 mm", "hysteresis 0.01 N", "residual, N"]);
+    says(&texts, &["wells at \u{2212}7.071 and 7.071 mm", "hysteresis 0.01 N", "residual (N)"]);
     let residual = of_series(&csv, "residual", "force_n");
     assert!(residual.len() > 3000 && residual.iter().all(|own| (own.abs() - 5e-3).abs() < 1e-9));
     let scene = "--set mechanism=Cubic(linear_n_per_m:-40,cubic_n_per_m3:8e5)";
     let (texts, csv) = drawn(&format!("curve nominal-cubic {scene} --measured"), &path);
-    says(&texts, &["RMS difference 0.005 N", "at most 0.005 N", "computed", "difference, N"]);
+    says(&texts, &["RMS difference 0.005 N", "at most 0.005 N", "computed", "difference (N)"]);
     let difference = of_series(&csv, "difference", "force_n");
     assert_eq!(difference.len(), 3602);
     assert!((difference[0] + 5e-3).abs() < 1e-12 && (difference[3601] - 5e-3).abs() < 1e-12);

@@ -19,7 +19,7 @@ fn the_footer_says_what_arguments_changed() {
 fn any_column_of_numbers_can_be_shown_and_the_regime() {
     says(
         &format!("{SMALL_MAP} --quantity max_abs_x_m"),
-        &["largest |x|, mm", "travel limit, mm", "first crossing cell"],
+        &["largest |x| (mm)", "travel limit (mm)", "first crossing cell"],
     );
     let impacts = says(&format!("{SMALL_MAP} --quantity impacts"), &["impacts"]);
     // No velocity, so a mass at rest is a number like any other.
@@ -27,14 +27,14 @@ fn any_column_of_numbers_can_be_shown_and_the_regime() {
     let regimes = says(&format!("{SMALL_MAP} --quantity regime"), &["rest", "interwell"]);
     assert!(!regimes.iter().any(|text| text == "regime" || text.contains("RMS")), "{regimes:?}");
     let line = format!("sweep {SHORT} --over excitation.amplitude_g=0,1,2");
-    says(&format!("{line} --quantity crossings"), &["crossings", "amplitude, g"]);
+    says(&format!("{line} --quantity crossings"), &["crossings", "amplitude (g)"]);
     says(&format!("{line} --quantity regime"), &["regime", "irregular"]);
     // whether or not it is written
     for (name, word) in [("outcome", "left_table"), ("side", "both"), ("settled", "false")] {
         says(&format!("{line} --quantity {name}"), &[name, word]);
     }
     says(&format!("{SMALL_MAP} --quantity side"), &["right", "both", "first crossing cell"]);
-    says(&format!("{line} --quantity travel_m"), &["travel, mm"]);
+    says(&format!("{line} --quantity travel_m"), &["travel (mm)"]);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.png");
     for (name, words) in [
@@ -52,21 +52,22 @@ fn a_field_of_few_values_is_drawn_as_lines() {
     let lines =
         format!("sweep {SHORT} --over stops.travel_limit_mm=1,2,3 --over excitation.amplitude_g=0:2:0.2");
     let along =
-        says(&lines, &["travel limit 1 mm", "2 mm", "3 mm", "amplitude, g", "RMS velocity, mm/s", "rest"]);
-    assert!(!along.iter().any(|text| text == "travel limit, mm" || text == "at rest"), "{along:?}");
+        says(&lines, &["travel limit 1 mm", "2 mm", "3 mm", "amplitude (g)", "RMS velocity (mm/s)", "rest"]);
+    assert!(!along.iter().any(|text| text == "travel limit (mm)" || text == "at rest"), "{along:?}");
     // Whichever stands first.
     says(
         &format!("sweep {SHORT} --over excitation.amplitude_g=0:2:0.2 --over stops.travel_limit_mm=2,1"),
-        &["travel limit 1 mm", "2 mm", "amplitude, g"],
+        &["travel limit 1 mm", "2 mm", "amplitude (g)"],
     );
-    says(SMALL_MAP, &["travel limit, mm"]);
+    says(SMALL_MAP, &["travel limit (mm)"]);
 }
 
 /// Lines of the colour in which a sweep over one field is drawn.
 fn joined(line: &str) -> usize {
     let folder = tempfile::tempdir().unwrap();
     let svg = std::fs::read_to_string(plot(line, folder.path(), "a.svg")).unwrap();
-    svg.lines().filter(|own| own.starts_with("<polyline") && own.contains("stroke=\"#5A5A5A\"")).count()
+    let paths = svg.lines().filter(|line| line.contains("fill=\"none\" stroke=\"#5a5a5a\" "));
+    paths.map(|path| path.matches('M').count()).sum()
 }
 
 #[test]
@@ -80,7 +81,7 @@ fn seeds_are_not_joined() {
 fn the_first_crossing_parts_a_map_of_frequencies() {
     let line = "sweep paper-unconstrained --set run.duration_s=6 --set run.settle_s=3 --tolerance 1e-6 \
                 --over excitation.frequency_hz=1:13:2 --over excitation.amplitude_g=0.5:3:0.125";
-    says(line, &["frequency, Hz", "first crossing cell"]);
+    says(line, &["frequency (Hz)", "first crossing cell"]);
     // from one frequency to the next it moves by a few cells, and does not run up and down the whole map
     let csv = crate::cli::stdout(&format!("{line} --quiet"));
     let mut least = std::collections::BTreeMap::new();
@@ -121,7 +122,7 @@ fn a_picture_has_the_size_that_was_asked_for() {
             || text.contains("wells at"))
     );
     assert!(
-        bare.iter().any(|text| text == "displacement, mm") && bare.iter().any(|text| text == "stop"),
+        bare.iter().any(|text| text == "displacement (mm)") && bare.iter().any(|text| text == "stop"),
         "{bare:?}"
     );
     let path = folder.path().join("e.png");

@@ -77,8 +77,10 @@ impl Coordinates {
         let ends = map.edges.each_ref().map(|edges| edges.ends());
         let count = |points: f32, each: f32| (points / each).clamp(2.0, 12.0) as usize;
         Self {
-            x: PlotAxis::between(ends[0].0, ends[0].1, count(rect.width(), 55.0), &label(&names[0])),
-            y: PlotAxis::between(ends[1].0, ends[1].1, count(rect.height(), 42.0), &label(&names[1])),
+            x: PlotAxis::between(ends[0].0, ends[0].1, &label(&names[0]))
+                .with_ticks(count(rect.width(), 55.0)),
+            y: PlotAxis::between(ends[1].0, ends[1].1, &label(&names[1]))
+                .with_ticks(count(rect.height(), 42.0)),
             rect,
             bar,
             strips,

@@ -78,11 +78,11 @@ impl ColourScale {
             _ if info.shown_words().is_some() => (None, Steps::Even),
             "period" => {
                 let ticks = (1..=PERIODS).map(|n| (n as f64, n.to_string())).collect();
-                let bar = PlotAxis { low: 0.5, high: PERIODS as f64 + 0.5, ticks, label };
+                let bar = PlotAxis::given(0.5, PERIODS as f64 + 0.5, ticks, &label);
                 (Some(bar), Steps::Whole)
             }
             _ if info.is_count() => (Some(counts(high, &label)), Steps::Ratios),
-            _ => (Some(PlotAxis::between(low, high, 5, &label)), Steps::Even),
+            _ => (Some(PlotAxis::between(low, high, &label)), Steps::Even),
         };
         Self { info, factor, unit, bar, steps }
     }
@@ -182,7 +182,7 @@ fn counts(largest: f64, label: &str) -> PlotAxis {
     let high = largest.max(1.0);
     let powers = (0..9).flat_map(|power| [1, 3].map(|digit| digit * 10_u64.pow(power)));
     let ticks = std::iter::once(0).chain(powers).map(|n| (n as f64, n.to_string()));
-    PlotAxis { low: 0.0, high, ticks: ticks.filter(|tick| tick.0 <= high).collect(), label: label.to_owned() }
+    PlotAxis::given(0.0, high, ticks.filter(|tick| tick.0 <= high).collect(), label)
 }
 
 #[cfg(test)]

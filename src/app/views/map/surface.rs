@@ -47,7 +47,11 @@ impl Surface {
         let names = map.grid().columns();
         let axis = |i: usize| {
             let values = map.edges[i].values.iter().copied();
-            PlotAxis::around(values, 0.0, if area.width() > 500.0 { 6 } else { 4 }, &label(&names[i]))
+            PlotAxis::around(values, 0.0, &label(&names[i])).with_ticks(if area.width() > 500.0 {
+                6
+            } else {
+                4
+            })
         };
         let axes = [axis(0), axis(1), bar.clone()];
         let shares: Vec<f64> = bar.ticks.iter().map(|tick| scale.share(tick.0, &bar)).collect();

@@ -1,0 +1,182 @@
+//! Roles of what is drawn, and the look of each: colour, width, dash and marker.
+
+use super::mark::Marker;
+use super::style::{self, Ink, Theme};
+
+/// What a layer stands for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Role {
+    /// The computed motion, and what follows from it.
+    Motion,
+    /// A second quantity of the same motion.
+    Second,
+    /// The shaking.
+    Drive,
+    /// Force and potential of the mechanism.
+    Curve,
+    /// A stop.
+    Stop,
+    /// An impact.
+    Impact,
+    /// Time or a cell at rest.
+    Rest,
+    /// A well.
+    Well,
+    /// A stable equilibrium.
+    Stable,
+    /// An unstable equilibrium.
+    Unstable,
+    /// A kink of the force.
+    Kink,
+    /// States with the energy of the top of the barrier.
+    Separatrix,
+    /// A line to compare with, such as 0.
+    Reference,
+    /// A measured record.
+    Measured,
+    /// The end of a rebound.
+    Rebound,
+    /// A number with its interval.
+    Interval,
+    /// What lies around a line: an interval, a standard error.
+    Around,
+    /// What was identified from a record, dashed.
+    Envelope,
+    /// A regime by its place among [`REGIMES`](super::mark::REGIMES).
+    Regime(usize),
+    /// One of several lines, by its share from 0 to 1 of a colour scale.
+    Step(f64),
+    /// A line without a meaning of its own, under markers.
+    Joined,
+    /// The way down of a field that is walked.
+    Down,
+    /// What lies between the way up and the way down.
+    Hysteresis,
+    /// One of several kinds without a colour of their own, such as an attractor.
+    Kind(usize),
+    /// An event of a branch, or of a motion, by its place.
+    Event(usize),
+    /// An unstable motion.
+    UnstableMotion,
+    /// The release in closed form, over a map.
+    Release,
+    /// The first crossing cells, over a map.
+    FirstCrossing,
+    /// A cut through a map.
+    Cut,
+    /// No value.
+    Missing,
+    /// The best of several.
+    Best,
+    /// One of several that is not the best.
+    Other,
+    /// Motions with impacts.
+    Impacts,
+    /// A threshold above which there are gaps.
+    Gaps,
+    /// One of several methods.
+    Method(usize),
+    /// Several kinds together.
+    Several,
+    /// The part that another panel shows closer.
+    Closer,
+}
+
+/// How a role looks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Look {
+    /// Colour.
+    pub ink: Ink,
+    /// Width of its lines.
+    pub width: f64,
+    /// Dash and gap of its lines.
+    pub dash: Option<(f64, f64)>,
+    /// Outline under its lines.
+    pub halo: Option<Ink>,
+    /// Marker.
+    pub marker: Marker,
+    /// Half the height of its markers.
+    pub size: f64,
+    /// Whether its markers are empty.
+    pub hollow: bool,
+    /// Hatching over what it fills.
+    pub hatch: Option<Ink>,
+}
+
+impl Theme {
+    /// The look of a role.
+    pub fn look(&self, role: Role) -> Look {
+        let plain = Look {
+            ink: self.ink,
+            width: style::LINE,
+            dash: None,
+            halo: None,
+            marker: Marker::Disc,
+            size: style::MARKER,
+            hollow: false,
+            hatch: None,
+        };
+        let of = |ink: Ink| Look { ink, ..plain };
+        let fine = |ink: Ink| Look { ink, width: style::FINE_LINE, ..plain };
+        let dashed = |ink: Ink| Look { ink, dash: Some(style::DASH), ..plain };
+        let dotted = |ink: Ink| Look { ink, dash: Some(style::DOT), ..plain };
+        let marked = |ink: Ink, marker: Marker| Look { ink, marker, ..plain };
+        const MARKERS: [Marker; 5] =
+            [Marker::Disc, Marker::Square, Marker::Triangle, Marker::Diamond, Marker::DoubleArrow];
+        match role {
+            Role::Motion => fine(self.ink),
+            Role::Second => fine(self.second),
+            Role::Drive => fine(self.shaking),
+            Role::Curve => Look { width: style::LINE + 0.8, ..plain },
+            Role::Stop => Look { hatch: Some(self.wall_hatch()), ..of(self.wall) },
+            Role::Impact => Look { width: 2.0, ..marked(self.impact, Marker::Disc) },
+            Role::Rest => Look { hatch: Some(self.rest_hatch), ..of(self.rest) },
+            Role::Well => dashed(self.stable),
+            Role::Stable => Look { size: style::MARKER + 2.0, ..of(self.ink) },
+            Role::Unstable => Look { hollow: true, size: style::MARKER + 2.0, ..of(self.ink) },
+            Role::Kink => Look { marker: Marker::Diamond, ..dotted(self.soft) },
+            Role::Separatrix => Look { width: style::FINE_LINE, ..dashed(self.soft) },
+            Role::Reference => Look { width: style::THIN, ..of(self.soft) },
+            Role::Measured => Look { size: 4.0, width: style::LINE + 1.0, ..of(self.regimes[2]) },
+            Role::Rebound => Look { size: 6.0, ..marked(self.second, Marker::Triangle) },
+            Role::Interval => Look { size: 7.0, ..of(self.regimes[2]) },
+            Role::Around => of(self.ink.over(self.paper, 0.14)),
+            Role::Envelope => Look { width: style::FINE_LINE, ..dashed(self.ink) },
+            Role::Regime(place) => marked(self.regimes[place % 4], super::mark::REGIMES[place % 4].1),
+            Role::Step(share) => of(self.step(share)),
+            Role::Joined => fine(self.soft),
+            Role::Down => dashed(self.second),
+            Role::Hysteresis => of(self.shaking.over(self.paper, 0.3)),
+            Role::Kind(place) => Look {
+                hatch: style::kind_hatch(place),
+                halo: Some(style::WHITE),
+                ..marked(style::KINDS[place % style::KINDS.len()], MARKERS[place % 4])
+            },
+            Role::Event(place) => {
+                let shapes = [Marker::Triangle, Marker::Diamond, Marker::Square, Marker::DoubleArrow];
+                marked(self.soft, shapes[place % 4])
+            }
+            Role::UnstableMotion => dashed(self.unstable),
+            Role::Release => Look { width: style::GUIDE, halo: Some(style::BLACK), ..dashed(style::WHITE) },
+            Role::FirstCrossing => {
+                Look { width: style::GUIDE, halo: Some(style::WHITE), ..of(style::OVER_MAP) }
+            }
+            Role::Cut => Look { halo: Some(style::BLACK), ..dotted(style::WHITE) },
+            Role::Missing => dotted(self.soft),
+            Role::Best => of(self.stable),
+            Role::Other => of(self.soft.over(self.paper, 0.35)),
+            Role::Method(place) => {
+                let inks = [self.regimes[3], self.regimes[1], self.unstable, self.regimes[2], self.second];
+                Look {
+                    size: 0.75 * style::MARKER,
+                    width: if place == 0 { style::LINE } else { style::FINE_LINE },
+                    ..marked(inks[place % 5], MARKERS[place % 5])
+                }
+            }
+            Role::Gaps => marked(self.unstable, Marker::Triangle),
+            Role::Impacts => marked(self.regimes[3], Marker::Triangle),
+            Role::Several => of(self.paper),
+            Role::Closer => of(self.rest),
+        }
+    }
+}
