@@ -85,13 +85,11 @@
 #[cfg(feature = "app")]
 #[doc(hidden)]
 pub mod app;
-pub mod dynamics;
-pub mod mechanics;
-pub mod numeric;
-pub mod output;
-pub mod scene;
-pub mod study;
-pub mod system;
+
+#[doc(inline)]
+pub use interwell_kernel::{dynamics, mechanics, numeric, scene, system};
+#[doc(inline)]
+pub use interwell_studies::{output, study};
 
 /// Compiles the program in the README.
 #[cfg(doctest)]

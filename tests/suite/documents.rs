@@ -31,10 +31,10 @@ fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
 /// Each declared field of a scene, `name: Type,` in the source, with the comment above it.
 fn declared_fields() -> Vec<(String, String)> {
     let sources = [
-        include_str!("../../src/scene/data.rs"),
-        include_str!("../../src/scene/mechanism.rs"),
-        include_str!("../../src/scene/stops.rs"),
-        include_str!("../../src/scene/transducer.rs"),
+        include_str!("../../kernel/src/scene/data.rs"),
+        include_str!("../../kernel/src/scene/mechanism.rs"),
+        include_str!("../../kernel/src/scene/stops.rs"),
+        include_str!("../../kernel/src/scene/transducer.rs"),
     ];
     let (mut fields, mut comment) = (Vec::new(), String::new());
     for line in sources.iter().flat_map(|text| text.lines()).map(str::trim) {
@@ -85,7 +85,7 @@ fn every_field_of_a_scene_is_documented_with_its_range() {
         let name = field.path.rsplit('.').next().unwrap();
         let range = field.range.to_string();
         let commented = declared.iter().any(|(other, comment)| other == name && comment.contains(&range));
-        assert!(commented, "src/scene does not say that `{name}` is {range}");
+        assert!(commented, "kernel/src/scene does not say that `{name}` is {range}");
         let range = range.trim_start_matches("whole, ");
         let in_text = SCENE.lines().any(|line| says(line, field.path) && line.contains(range));
         let in_rows = rows(name).iter().any(|row| row.contains(range));

@@ -6,7 +6,7 @@ use egui_kittest::{Harness, kittest::Queryable as _};
 use interwell::app::export::map_command_line;
 use interwell::app::session::map::Map;
 use interwell::app::window::{Command, Window};
-use interwell::app::words::columns::COLUMNS;
+use interwell::app::words::columns::{COLUMNS, ShownColumn};
 use interwell::output::Projection;
 use interwell::scene::{Layout, Stops, SweepAxis};
 use interwell::study::{Cell, STANDARD_COLUMNS, SummaryField, line_meets};

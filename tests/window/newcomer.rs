@@ -4,6 +4,7 @@
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
+use interwell::app::session::sliders::reach;
 use interwell::app::window::Command;
 use interwell::app::window::Window;
 use interwell::app::words::fields::info;
@@ -156,7 +157,7 @@ fn no_slider_jumps_while_another_one_is_moved() {
     let mut harness = opened("first-look", WIDE);
     let paths = ["excitation.amplitude_g", "stops.travel_limit_mm", "excitation.frequency_hz", "mass_g"];
     let reach = |harness: &Harness<'static, Window>| {
-        paths.map(|path| info(path).unwrap().reach(&harness.state().session))
+        paths.map(|path| reach(info(path).unwrap(), &harness.state().session))
     };
     let before = reach(&harness);
     set(&mut harness, "mechanism.preload_mm", 0.1);

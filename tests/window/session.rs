@@ -5,6 +5,7 @@ use std::sync::Arc;
 use interwell::app::session::Session;
 use interwell::app::session::editor::Editor;
 use interwell::app::session::player::fitting_speed;
+use interwell::app::session::sliders::reach;
 use interwell::app::words::fields::{Reach, info};
 use interwell::scene::{FIELDS, FieldPath, Start, Stops};
 
@@ -106,19 +107,19 @@ fn session(preset: &str) -> Session {
 
 #[test]
 fn sliders_follow_the_scales_of_the_scene() {
-    let reach = |preset: &str, path: &str| info(path).unwrap().reach(&session(preset));
-    assert_eq!(reach("first-look", "excitation.amplitude_g"), Reach::even(0.0, 2.0, 0.01));
-    assert_eq!(reach("paper", "stops.travel_limit_mm"), Reach::even(0.1, 8.6, 0.05));
-    assert_eq!(reach("first-look", "excitation.frequency_hz"), Reach::even(0.5, 20.0, 0.1));
-    assert_eq!(reach("duffing", "excitation.amplitude_g"), Reach::even(0.0, 0.07, 2e-4));
-    assert_eq!(reach("duffing", "stops.travel_limit_mm"), Reach::even(10.0, 1200.0, 5.0));
-    assert_eq!(reach("duffing", "mass_g").high, 3000.0);
-    assert_eq!(reach("duffing", "run.duration_s").high, 4000.0);
+    let of_preset = |preset: &str, path: &str| reach(info(path).unwrap(), &session(preset));
+    assert_eq!(of_preset("first-look", "excitation.amplitude_g"), Reach::even(0.0, 2.0, 0.01));
+    assert_eq!(of_preset("paper", "stops.travel_limit_mm"), Reach::even(0.1, 8.6, 0.05));
+    assert_eq!(of_preset("first-look", "excitation.frequency_hz"), Reach::even(0.5, 20.0, 0.1));
+    assert_eq!(of_preset("duffing", "excitation.amplitude_g"), Reach::even(0.0, 0.07, 2e-4));
+    assert_eq!(of_preset("duffing", "stops.travel_limit_mm"), Reach::even(10.0, 1200.0, 5.0));
+    assert_eq!(of_preset("duffing", "mass_g").high, 3000.0);
+    assert_eq!(of_preset("duffing", "run.duration_s").high, 4000.0);
     // every number is at a position that its slider can reach
     for preset in interwell::scene::PRESETS {
         let session = session(preset.name);
         for field in FIELDS.iter().filter_map(|field| field.control.as_ref()) {
-            let (reach, value) = (field.reach(&session), FieldPath::new(field.path).get(session.scene()));
+            let (reach, value) = (reach(field, &session), FieldPath::new(field.path).get(session.scene()));
             assert!(reach.low < reach.high && reach.step > 0.0, "{}: {reach:?}", field.path);
             let Some(value) = value else { continue };
             if reach.ratios {

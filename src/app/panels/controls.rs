@@ -4,6 +4,7 @@
 use eframe::egui::{self, Color32, Label, Rect, RichText, Ui};
 
 use crate::app::session::Session;
+use crate::app::session::sliders::reach;
 use crate::app::ui::knob::{How, Knob, refuse};
 use crate::app::ui::widgets::hover_beside;
 use crate::app::words::fields::{Reach, info, name_and_unit};
@@ -316,7 +317,7 @@ pub(super) fn field_ui(ui: &mut Ui, session: &mut Session, path: &str, width: f3
     let Some(value) = session.number(path) else { return };
     let (name, unit) = name_and_unit(path);
     let (reach, typed, hover) = match info(path) {
-        Some(field) => (field.reach(session), field.typed, field.hover),
+        Some(field) => (reach(field, session), field.typed, field.hover),
         None => (around(session, path, value), (f64::MIN, f64::MAX), ""),
     };
     let id = egui::Id::unique(("field", path));

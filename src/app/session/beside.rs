@@ -21,6 +21,7 @@ use super::map::cells::too_many;
 use super::map::{Map, Mapping, Question, axes, ground};
 use super::measured::{Differences, MeasuredQuestion, MeasuredRecord};
 use super::pins::{LETTERS, Pin, PinKind};
+use super::sliders::reach;
 
 /// Time in s without a change after which a map is begun in the middle of a gesture.
 const STILL: f64 = 0.25;
@@ -223,7 +224,7 @@ impl Session {
                         “different stops left and right” under Advanced first.");
         }
         let Some(field) = info(LIMIT) else { return Err("") };
-        let reach = field.reach(self);
+        let reach = reach(field, self);
         let axis = SweepAxis { field: LIMIT.to_owned(), step: reach.step, ..SweepAxis::default() };
         let mut scene = ground(self.scene(), self.remembered_stops(), std::slice::from_ref(&axis));
         if !FieldPath::new(LIMIT).set(&mut scene, reach.low) {

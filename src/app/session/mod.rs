@@ -16,7 +16,7 @@ pub mod map;
 pub mod measured;
 pub mod pins;
 pub mod player;
-mod sliders;
+pub mod sliders;
 mod state;
 
 use std::sync::Arc;

@@ -7,39 +7,37 @@ use crate::scene::{Control, FieldPath, Mechanism, Scale, Stops};
 
 use super::Session;
 
-impl Control {
-    /// The range of the slider in a scene: that for the prototype if it suits the scales of the scene, else
-    /// one that is derived from them.
-    pub fn reach(&self, session: &Session) -> Reach {
-        let (low, high, step) = self.slider;
-        let saved = FieldPath::new(self.path).get(session.editor.saved());
-        let scales = session.opened();
-        // for the prototype these are 2 g and 20 Hz
-        let scaled = match self.scale {
-            Scale::Fixed => None,
-            Scale::Value => saved.map(|value| 2.5 * value.abs()),
-            Scale::Push => Some(0.15 * high * scales.length / scales.time.powi(2) / STANDARD_GRAVITY),
-            Scale::Rate => Some(0.065 * high / (std::f64::consts::TAU * scales.time)),
-            Scale::Travel => return travel(session),
-            Scale::Preload => return preload(session).unwrap_or(Reach::even(low, high, step)),
-            Scale::Ratio => {
-                return decades(saved).unwrap_or(Reach { ratios: true, ..Reach::even(low, high, step) });
-            }
+/// The range of a control's slider in a scene: that for the prototype if it suits the scales of the scene,
+/// else one that is derived from them.
+pub fn reach(control: &Control, session: &Session) -> Reach {
+    let (low, high, step) = control.slider;
+    let saved = FieldPath::new(control.path).get(session.editor.saved());
+    let scales = session.opened();
+    // for the prototype these are 2 g and 20 Hz
+    let scaled = match control.scale {
+        Scale::Fixed => None,
+        Scale::Value => saved.map(|value| 2.5 * value.abs()),
+        Scale::Push => Some(0.15 * high * scales.length / scales.time.powi(2) / STANDARD_GRAVITY),
+        Scale::Rate => Some(0.065 * high / (std::f64::consts::TAU * scales.time)),
+        Scale::Travel => return travel(session),
+        Scale::Preload => return preload(session).unwrap_or(Reach::even(low, high, step)),
+        Scale::Ratio => {
+            return decades(saved).unwrap_or(Reach { ratios: true, ..Reach::even(low, high, step) });
+        }
+    };
+    let fits = saved.is_none_or(|value| (low..=high).contains(&value))
+        && match control.scale {
+            Scale::Push | Scale::Rate => scaled.is_none_or(|end| (0.25..=4.0).contains(&(end / high))),
+            Scale::Value => saved.is_none_or(|value| value == 0.0 || value.abs() > high / 200.0),
+            _ => true,
         };
-        let fits = saved.is_none_or(|value| (low..=high).contains(&value))
-            && match self.scale {
-                Scale::Push | Scale::Rate => scaled.is_none_or(|end| (0.25..=4.0).contains(&(end / high))),
-                Scale::Value => saved.is_none_or(|value| value == 0.0 || value.abs() > high / 200.0),
-                _ => true,
-            };
-        let Some(scaled) = scaled.filter(|scaled| !fits && *scaled > 0.0 && scaled.is_finite()) else {
-            return Reach::even(low, high, step);
-        };
-        let new_high = round_up(scaled.max(1.25 * saved.map_or(0.0, f64::abs)));
-        let new_low = if low < 0.0 { -new_high } else { low / high * new_high };
-        let step = below(new_high / 200.0);
-        Reach::even((new_low / step).round() * step, new_high, step)
-    }
+    let Some(scaled) = scaled.filter(|scaled| !fits && *scaled > 0.0 && scaled.is_finite()) else {
+        return Reach::even(low, high, step);
+    };
+    let new_high = round_up(scaled.max(1.25 * saved.map_or(0.0, f64::abs)));
+    let new_low = if low < 0.0 { -new_high } else { low / high * new_high };
+    let step = below(new_high / 200.0);
+    Reach::even((new_low / step).round() * step, new_high, step)
 }
 
 /// The range of the slider of a travel limit: from near the middle to beyond the well.

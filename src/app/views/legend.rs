@@ -35,7 +35,6 @@ pub enum Symbol {
     Ring(Stroke),
     Shade(Color32),
     Dots(Color32),
-    Pluses(Color32),
     Ticks(Stroke),
 }
 
@@ -50,15 +49,6 @@ impl Symbol {
             Self::Dots(color) => [-6.0, 0.0, 6.0]
                 .map(|x| Shape::circle_filled(rect.center() + vec2(x, 0.0), 2.2, color))
                 .to_vec(),
-            Self::Pluses(color) => [-6.0, 0.0, 6.0]
-                .into_iter()
-                .flat_map(|x| {
-                    [vec2(2.4, 0.0), vec2(0.0, 2.4)].map(|arm| {
-                        let middle = rect.center() + vec2(x, 0.0);
-                        Shape::line_segment([middle - arm, middle + arm], Stroke::new(1.2, color))
-                    })
-                })
-                .collect(),
             Self::Shade(color) => vec![Shape::rect_filled(rect, 0.0, color)],
             Self::Ticks(stroke) => [-4.0, 0.0, 4.0]
                 .map(|x| {

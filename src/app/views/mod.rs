@@ -29,6 +29,7 @@ mod measured;
 mod mechanism;
 mod memory;
 mod overlay;
+mod pane;
 mod phase;
 mod plot;
 mod power;

@@ -3,6 +3,7 @@
 use eframe::egui::{self, CursorIcon, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use crate::app::session::Session;
+use crate::app::session::sliders::reach;
 use crate::app::ui::style::GRAB;
 use crate::app::ui::widgets::arrows;
 use crate::app::words::fields::info;
@@ -16,7 +17,7 @@ const FINE: f64 = 0.2;
 
 /// The step in mm of the slider of a stop, which the arrow keys take as well.
 pub(super) fn key_step(session: &Session) -> f64 {
-    info("stops.travel_limit_mm").map_or(0.05, |field| field.reach(session).step)
+    info("stops.travel_limit_mm").map_or(0.05, |field| reach(field, session).step)
 }
 
 /// Thickness of a wall in points.

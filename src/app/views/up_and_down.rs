@@ -1,27 +1,21 @@
 //! View of a walk over one field, up and down: states or means of the motion, and hysteresis.
 
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
-use eframe::egui::{self, Align2, PopupCloseBehavior, Rect, RichText, Sense, Ui, UiBuilder, vec2};
-use egui_plot::{
-    HLine, Line, LineStyle, MarkerShape, PlotBounds, PlotPoint, PlotPoints, PlotUi, Points, Polygon, VLine,
-};
+use eframe::egui::{self, Align2, PopupCloseBehavior, Rect, RichText, Ui, UiBuilder, vec2};
 
 use crate::app::session::Session;
 use crate::app::session::explore::WalkQuantity;
 use crate::app::session::map::label;
-use crate::app::ui::style::Style;
 use crate::app::words::numbers::{power, power_unit, three};
 use crate::dynamics::Regime;
 use crate::numeric::short;
+use crate::output::{Chart, Marks, Panel, PlotAxis, Role};
 use crate::scene::{FieldPath, SweepAxis, column_names};
-use crate::study::{Direction, Visit};
+use crate::study::{Direction, Table, Visit};
 
 use super::axes::{field_name, field_ui, range_row_ui};
-use super::hand::axes_input;
 use super::labels::haloed;
-use super::legend::{LEGEND, Symbol, legend};
-use super::plot::{MARGIN, marks, plot_place, still_plot};
-use super::view::Axis;
+use super::pane::pane_ui;
 use super::{Span, View, ViewContext, too_small_ui};
 
 /// Height in points of the row of choices.
@@ -32,7 +26,6 @@ const SAME: f64 = 0.01;
 
 /// The runs of one direction by rising value, coarse ones where the fine ones are still to come.
 struct WalkBranch<'a> {
-    direction: Direction,
     visits: Vec<&'a Visit>,
 }
 
@@ -116,7 +109,7 @@ fn branches(parts: &[(usize, Visit)]) -> [WalkBranch<'_>; 2] {
         let coarse = runs().filter(|part| part.0 > 1 && is_ahead(part.1.value)).map(|part| &part.1);
         let mut visits: Vec<&Visit> = fine.iter().copied().chain(coarse).collect();
         visits.sort_by(|a, b| a.value.total_cmp(&b.value));
-        WalkBranch { direction, visits }
+        WalkBranch { visits }
     })
 }
 
@@ -161,34 +154,34 @@ fn vertical_ends(
     }
 }
 
-/// Draws the runs of one direction: as dots what repeats once a period, as a line any other quantity.
-fn draw_branch(
-    plot: &mut PlotUi<'_>,
-    branch: &WalkBranch<'_>,
+/// The runs of both directions over the field: as points what repeats once a period, as a line any other
+/// quantity, and where the two differ.
+fn chart(
+    branches: &[WalkBranch<'_>; 2],
     quantity: WalkQuantity,
     per_watt: f64,
-    style: &Style,
-) {
-    let (color, radius, shape) = match branch.direction {
-        Direction::Up => (style.motion(), 1.6, MarkerShape::Circle),
-        Direction::Down => (style.base(), 2.4, MarkerShape::Plus),
-    };
-    if quantity != WalkQuantity::Strobes {
-        let point = |visit: &&Visit| PlotPoint::new(visit.value, number(visit, quantity, per_watt));
-        let line: Vec<PlotPoint> = branch.visits.iter().map(point).collect();
-        let line = Line::new(branch.direction.name(), PlotPoints::Owned(line));
-        return plot.line(match branch.direction {
-            Direction::Up => line.stroke(style.motion_stroke()),
-            Direction::Down => line.stroke(style.base_stroke()).style(LineStyle::dashed_dense()),
-        });
+    axes: (PlotAxis, PlotAxis),
+    here: Option<f64>,
+) -> Chart {
+    let mut panel = Panel::new(axes.0, axes.1);
+    let differing = differing(branches, panel.y.high - panel.y.low);
+    panel.layer(Role::Closer, "the two differ", Marks::Spans(differing));
+    panel.draw(Role::Drive, Marks::Verticals(here.into_iter().collect()));
+    for (branch, role, name) in
+        [(&branches[0], Role::Motion, "turned up"), (&branches[1], Role::Down, "turned down")]
+    {
+        let of_visit = |visit: &&Visit| (visit.value, number(visit, quantity, per_watt));
+        let strobed = |visit: &&Visit| {
+            let value = visit.value;
+            strobes(visit).iter().map(move |x| (value, x * 1e3)).collect::<Vec<_>>()
+        };
+        let marks = match quantity {
+            WalkQuantity::Strobes => Marks::Cloud(branch.visits.iter().flat_map(strobed).collect()),
+            _ => Marks::Path(branch.visits.iter().map(of_visit).collect()),
+        };
+        panel.layer(role, name, marks);
     }
-    let points: Vec<PlotPoint> = branch
-        .visits
-        .iter()
-        .flat_map(|visit| strobes(visit).iter().map(|x| PlotPoint::new(visit.value, x * 1e3)))
-        .collect();
-    let points = Points::new(branch.direction.name(), PlotPoints::Owned(points));
-    plot.points(points.radius(style.dot(radius)).shape(shape).color(color));
+    Chart::stack(vec![panel], "", Table::new())
 }
 
 fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area: Rect) {
@@ -205,87 +198,45 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
     let branches = branches(if of_field { parts } else { &[] });
     let powers = branches.iter().flat_map(|branch| branch.visits.iter().map(|visit| load_power(visit)));
     let (per_watt, unit) = power_unit(powers.filter(|power| power.is_finite()).fold(0.0, f64::max));
-    let ends = vertical_ends(&branches, quantity, per_watt, &context.span);
-    let [sign_up, sign_down] = match quantity {
-        WalkQuantity::Strobes => [Symbol::Dots(style.motion()), Symbol::Pluses(style.base())],
-        _ => [Symbol::Line(style.motion_stroke()), Symbol::Dashed(style.base_stroke())],
-    };
-    let entries = [
-        (sign_up, "turned up"),
-        (sign_down, "turned down"),
-        (Symbol::Shade(style.rest_shade()), "the two differ"),
-    ];
     let vertical = match quantity {
         WalkQuantity::Strobes => "displacement once a period (mm)".to_owned(),
         WalkQuantity::RmsVelocity => "RMS velocity (mm/s)".to_owned(),
         WalkQuantity::LoadPower => format!("mean power into the load ({unit})"),
     };
     let across = label(&column_names(&[axis.field.as_str()]).pop().unwrap_or_default());
-    let rows = f64::from((area.height() / 40.0).clamp(2.0, 7.0));
-    let columns = f64::from((area.width() / 80.0).clamp(2.0, 10.0));
-    let (from, to) = (axis.from - 0.01 * (axis.to - axis.from), axis.to + 0.01 * (axis.to - axis.from));
-    let [across_axis, up_axis] = [Axis::Across(View::UpAndDown), Axis::Up(View::UpAndDown)];
-    let (from, to) = context.memory.axes.ends(across_axis, (from, to));
-    let (low, high) = context.memory.axes.ends(up_axis, ends);
-    let edge = 0.02 * (high - low);
+    let (low, high) = vertical_ends(&branches, quantity, per_watt, &context.span);
+    let axes =
+        (PlotAxis::around([axis.from, axis.to], 0.01, &across), PlotAxis::between(low, high, &vertical));
     let here = FieldPath::new(&axis.field).get(session.scene());
     let state = session.player.state();
     let live = (quantity == WalkQuantity::Strobes).then_some(state.x * 1e3);
-    let plot = Rect::from_min_max(area.min + vec2(MARGIN, LEGEND), area.max - vec2(MARGIN, 0.0));
-    let mut child = plot_place(ui, &style, plot);
+    let mut child = ui.new_child(UiBuilder::new().max_rect(area));
     if !current {
         child.set_opacity(0.4);
     }
-    let shown = still_plot("up and down")
-        .sense(Sense::click_and_drag())
-        .x_grid_spacer(|_| marks(from, to, columns))
-        .y_grid_spacer(|_| marks(low + edge, high - edge, rows))
-        .x_axis_label(across)
-        .y_axis_label(vertical.as_str())
-        .show(&mut child, |plot| {
-            plot.set_plot_bounds(PlotBounds::from_min_max([from, low], [to, high]));
-            for mark in marks(low, high, rows) {
-                plot.hline(HLine::new("", mark.value).stroke(style.grid_stroke()));
-            }
-            for (a, b) in differing(&branches, high - low) {
-                let corners = vec![[a, low], [b, low], [b, high], [a, high]];
-                let shade = Polygon::new("", PlotPoints::from(corners)).fill_color(style.rest_shade());
-                plot.polygon(shade.stroke(egui::Stroke::NONE));
-            }
-            if let Some(here) = here {
-                plot.vline(VLine::new("here", here).stroke(style.focus_stroke()));
-            }
-            for branch in &branches {
-                draw_branch(plot, branch, quantity, per_watt, &style);
-            }
-            if let (Some(here), Some(x)) = (here, live) {
-                let ball = Points::new("now", vec![[here, x]]);
-                plot.points(ball.radius(6.0).color(style.mass_edge()));
-                plot.points(Points::new("now", vec![[here, x]]).radius(4.5).color(style.mass()));
-            }
-        });
-    let (transform, response) = (shown.transform, shown.response);
+    let chart = chart(&branches, quantity, per_watt, axes, here);
+    let pane = pane_ui(&mut child, context.memory, View::UpAndDown, &style, area, chart);
+    let ball = here.zip(live).and_then(|point| pane.place(point));
+    let frame = pane.frame(0).unwrap_or(area);
+    if let Some(at) = ball.filter(|at| frame.contains(*at)) {
+        child.painter().circle(at, 4.5, style.mass(), egui::Stroke::new(1.5, style.mass_edge()));
+    }
     let name = format!("{vertical} over {}, turned up and down", field_name(&axis.field));
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, name.clone()));
-    let mut right = area.right();
-    if let Some(at) = response.hover_pos() {
-        let value = transform.value_from_position(at).x.clamp(axis.from, axis.to);
-        let painter = ui.painter().with_clip_rect(area);
-        let at = (area.right_top() + vec2(-6.0, 0.5 * LEGEND), Align2::RIGHT_CENTER);
-        let text = reading(&branches, value, quantity);
-        right = haloed(&painter, &style, at, &text, (style.small(), style.ink())).left();
+    pane.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, name.clone()));
+    let write = |at: egui::Pos2, align: Align2, text: &str, colour: egui::Color32| {
+        haloed(ui.painter(), &style, (at, align), text, (style.small(), colour));
+    };
+    if let Some(value) = pane.response.hover_pos().and_then(|at| pane.x_at(at)) {
+        let text = reading(&branches, value.clamp(axis.from, axis.to), quantity);
+        write(frame.right_top() + vec2(-4.0, 4.0), Align2::RIGHT_TOP, &text, style.ink());
     }
-    legend(ui, &style, area, right, &entries);
-    let shift = ui.input(|input| input.modifiers.shift);
-    if !shift {
-        drag(session, &response, |at| transform.value_from_position(at).x);
+    if !is_whole && area.height() > 220.0 {
+        let text = "not all of it is known yet";
+        write(area.right_bottom() - vec2(8.0, 3.0), Align2::RIGHT_BOTTOM, text, style.faint());
     }
-    let note = if is_whole { "" } else { "not all of it is known yet" };
-    if !note.is_empty() && area.height() > 220.0 {
-        let at = (area.right_bottom() - vec2(8.0, 3.0), Align2::RIGHT_BOTTOM);
-        haloed(ui.painter(), &style, at, note, (style.small(), style.faint()));
+    if !ui.input(|input| input.modifiers.shift) {
+        drag(session, &pane.response, |at| pane.x_at(at).unwrap_or(axis.from));
     }
-    axes_input(ui, context.memory, View::UpAndDown, &response, (area, *transform.frame()));
 }
 
 /// Takes the scene to the value under the pointer, by a click or a drag.

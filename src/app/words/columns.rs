@@ -32,19 +32,31 @@ pub const COLUMNS: [(&str, &[&str]); 7] = [
     ]),
 ];
 
-impl SummaryField {
+/// A column as the screen shows it.
+pub trait ShownColumn {
     /// Its label with an initial capital, for a heading.
-    pub fn title(&self) -> String {
+    fn title(&self) -> String;
+
+    /// The words that can be its values, in order; `None` for a numeric column.
+    fn shown_words(&self) -> Option<&'static [&'static str]>;
+
+    /// The factor from the unit in files to the unit that suits `values`, and the name of that unit.
+    fn unit(&self, values: impl Iterator<Item = f64>) -> (f64, &'static str);
+
+    /// Whether its values are whole numbers.
+    fn is_count(&self) -> bool;
+}
+
+impl ShownColumn for SummaryField {
+    fn title(&self) -> String {
         capital(self.label)
     }
 
-    /// The words that can be its values, in order; `None` for a numeric column.
-    pub fn shown_words(&self) -> Option<&'static [&'static str]> {
+    fn shown_words(&self) -> Option<&'static [&'static str]> {
         words_of(self.name)
     }
 
-    /// The factor from the unit in files to the unit that suits `values`, and the name of that unit.
-    pub fn unit(&self, values: impl Iterator<Item = f64>) -> (f64, &'static str) {
+    fn unit(&self, values: impl Iterator<Item = f64>) -> (f64, &'static str) {
         match label_and_unit(self.name).1 {
             "m" => (1e3, "mm"),
             "m/s" => speed_unit(values),
@@ -55,8 +67,7 @@ impl SummaryField {
         }
     }
 
-    /// Whether its values are whole numbers.
-    pub fn is_count(&self) -> bool {
+    fn is_count(&self) -> bool {
         matches!(self.read, Read::Count(_))
     }
 }

@@ -12,7 +12,7 @@ fn one_case_is_shown_as_a_table() {
     let heading: Vec<&str> =
         lines.next().unwrap().split("  ").map(str::trim).filter(|w| !w.is_empty()).collect();
     let names =
-        ["case", "variant", "quantity", "digits allowed", "digits reached", "steps", "cpu, s", "verdict"];
+        ["case", "variant", "quantity", "digits allowed", "digits reached", "steps", "cpu (s)", "verdict"];
     assert_eq!(heading, names);
     let cases: Vec<&str> = lines.filter_map(|line| line.split_whitespace().next()).collect();
     // in the study's own order

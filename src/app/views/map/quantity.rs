@@ -1,7 +1,7 @@
 //! Colour scale of a column of the map.
 
 use crate::app::session::map::Map;
-use crate::app::words::columns::said;
+use crate::app::words::columns::{ShownColumn, said};
 use crate::app::words::kind::Kind;
 use crate::app::words::numbers::three;
 use crate::dynamics::{Regime, Summary};

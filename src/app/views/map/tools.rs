@@ -8,7 +8,7 @@ use crate::app::session::map::{Map, Mapping};
 use crate::app::ui::knob::refuse;
 use crate::app::ui::style::Style;
 use crate::app::ui::widgets::kind_shapes;
-use crate::app::words::columns::COLUMNS;
+use crate::app::words::columns::{COLUMNS, ShownColumn};
 use crate::scene::SweepAxis;
 use crate::study::SummaryField;
 

@@ -1,0 +1,209 @@
+//! A part of a motion between two strobes, and its events.
+
+use crate::dynamics::clock::{Clock, Instant};
+use crate::dynamics::drive::Drive;
+use crate::dynamics::equation::{End, EndKind, Equation};
+use crate::dynamics::model::Model;
+use crate::dynamics::motion::Motion;
+use crate::dynamics::record::barrier::side_of;
+use crate::dynamics::result::{Event, EventKind, Outcome, Request, Side};
+use crate::dynamics::state::{Contact, HELD, MotionState};
+use crate::dynamics::step::settings::ROUNDINGS;
+use crate::numeric::{PolynomialRoots, Scalar};
+
+/// The motion between two strobes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Passage {
+    /// Displacement in m and velocity in m/s at the end.
+    pub state: (f64, f64),
+    /// Events in order of time, in s from the start of the drive. A mass that rests on a stop from the
+    /// beginning has no event for that.
+    pub events: Vec<Event>,
+    /// Determinant of the map from the start to here, computed without integration: exp(-c t/m) times the
+    /// squared restitution of each impact, 0 if the mass has rested. `None` with compliant stops, whose loss
+    /// depends on the motion, and with a circuit.
+    pub determinant: Option<f64>,
+    /// Points at which the mass turned back before a stop without touching it, in order of time. The
+    /// beginning of a motion from rest is not one of them.
+    pub misses: Vec<Miss>,
+    /// `Done`, or how the motion ended early.
+    pub outcome: Outcome,
+    /// Number of impacts faster than [`least_impact_speed`](Model::least_impact_speed), with the contacts of
+    /// compliant stops.
+    pub impacts: u64,
+}
+
+/// A point at which the mass turned back before a stop without touching it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Miss {
+    /// Time in s from the start of the drive.
+    pub t: f64,
+    /// Side of the stop.
+    pub side: Side,
+    /// Distance from the stop in m.
+    pub gap: f64,
+}
+
+impl Passage {
+    /// Smallest distance in m between a stop and a point at which the mass turned back without touching it;
+    /// `None` if there is no such point.
+    pub fn nearest_miss(&self) -> Option<f64> {
+        self.misses.iter().map(|miss| miss.gap).reduce(f64::min)
+    }
+
+    /// This passage followed by its mirror image, `later` seconds after it, which ends mirrored too.
+    #[must_use]
+    pub fn with_mirror_image(mut self, later: f64) -> Self {
+        let image = |event: &Event| Event {
+            t: event.t + later,
+            side: event.side.other(),
+            v_in: -event.v_in,
+            v_out: -event.v_out,
+            ..*event
+        };
+        let events: Vec<Event> = self.events.iter().map(image).collect();
+        let image = |miss: &Miss| Miss { t: miss.t + later, side: miss.side.other(), ..*miss };
+        let misses: Vec<Miss> = self.misses.iter().map(image).collect();
+        self.events.extend(events);
+        self.misses.extend(misses);
+        self.state = (-self.state.0, -self.state.1);
+        self.determinant = self.determinant.map(|half| half * half);
+        self.impacts *= 2;
+        self
+    }
+
+    fn count(&self, kinds: [EventKind; 2]) -> u64 {
+        self.events.iter().filter(|event| kinds.contains(&event.kind)).count() as u64
+    }
+
+    /// Whether the mass has hit a stop, at any speed.
+    pub fn strikes(&self) -> bool {
+        self.count([EventKind::Impact, EventKind::Contact]) > 0
+    }
+
+    /// Times the mass came to rest on a stop.
+    pub fn rests(&self) -> u64 {
+        self.count([EventKind::Rest; 2])
+    }
+
+    /// Crossings of the barrier.
+    pub fn crossings(&self) -> u64 {
+        self.count([EventKind::Crossing; 2])
+    }
+}
+
+/// A passage, the state at its end in kernel units, and whether the mass has rested on a stop on the way.
+pub(super) struct Traced<T> {
+    pub passage: Passage,
+    pub end: (T, T),
+    pub rested: bool,
+}
+
+/// Integrates the motion between two instants, from a state in kernel units.
+pub(super) fn trace<T: Scalar, D: Drive<T>>(
+    model: &Model,
+    equation: &Equation<T>,
+    clock: Clock<T>,
+    drive: &D,
+    (x, v): (T, T),
+    (from, to): (Instant<T>, Instant<T>),
+) -> Traced<T> {
+    let request = Request { events: true, ..Request::default() };
+    let mut motion = Motion::new(model, &request, model.tolerance, equation, clock, drive);
+    motion.stepper.end = to;
+    motion.record.next_strobe = None;
+    let mode = equation.mode_at(x, model.mechanism.curve.piece_index(x.to_f64()));
+    motion.state = MotionState { at: from, ..MotionState::new((x, v), mode, Contact::Free) };
+    motion.record.barrier_side = motion.record.barrier.map_or(0, |barrier| side_of(x, barrier));
+    motion.place_at_start();
+    if matches!(motion.state.contact, Contact::Resting(_)) {
+        motion.record.events = Some(Vec::new());
+        motion.record.counts.total_impacts = 0;
+        motion.state.v = T::zero();
+    }
+    let mut misses = Vec::new();
+    let outcome = loop {
+        let left = motion.stepper.left(&motion.state);
+        if !(left > T::zero()) {
+            break Outcome::Done;
+        }
+        let (before, steps, sums) = (motion.state, motion.steps, motion.record.counts.sums);
+        let flow = motion.proceed(left);
+        let flown = before.contact == Contact::Free
+            && motion.steps > steps
+            && motion.record.counts.sums == sums
+            && flow.is_none();
+        if flown {
+            add_misses(&motion, &before, &mut misses);
+        }
+        if let Some(outcome) = flow.or_else(|| motion.spent()) {
+            break outcome;
+        }
+    };
+    let MotionState { at, x, v, .. } = motion.state;
+    let rested = motion.record.counts.rests > 0;
+    let impacts = motion.record.counts.total_impacts;
+    let events = motion.record.events.take().unwrap_or_default();
+    let time = clock.between(&from, &at).to_f64() * equation.unit;
+    let known = equation.compliant.is_none() && model.circuit().is_none();
+    let determinant = known.then(|| match rested {
+        true => 0.0,
+        false => (-model.total_damping() * time / model.mass).exp() * squared_restitutions(model, &events),
+    });
+    let state = (x.to_f64(), v.to_f64() / equation.unit);
+    let passage = Passage { state, events, determinant, misses, outcome, impacts };
+    Traced { passage, end: (x, v), rested }
+}
+
+/// The product of the squared restitution of each impact.
+fn squared_restitutions(model: &Model, events: &[Event]) -> f64 {
+    let restitution = |side: Side| {
+        let stop = model.stops.and_then(|pair| if side == Side::Left { pair.left } else { pair.right });
+        stop.map_or(1.0, |stop| stop.restitution)
+    };
+    let impacts = events.iter().filter(|event| event.kind == EventKind::Impact);
+    impacts.map(|event| restitution(event.side).powi(2)).product()
+}
+
+/// Adds the points before a stop at which the mass turned back during the last step, which began in the
+/// state `before`.
+fn add_misses<T: Scalar, D: Drive<T>>(
+    motion: &Motion<'_, T, D>,
+    before: &MotionState<T>,
+    misses: &mut Vec<Miss>,
+) {
+    let mode = motion.stepper.mode(before);
+    let is_stop = |end: End| matches!(mode.end(end).1, EndKind::Stop | EndKind::Compliant);
+    if !is_stop(End::Low) && !is_stop(End::High) {
+        return;
+    }
+    let series = &motion.stepper.series;
+    let clock = &motion.stepper.clock;
+    let length = clock.between(&before.at, &motion.state.at).to_f64();
+    // where it leaves a surface, coefficients that are 0 by definition may differ from 0 by rounding
+    let multiplicity =
+        before.touch.map_or(1, |touch| if touch.multiplicity == HELD { 1 } else { touch.multiplicity });
+    let (mut velocity, mut power) = (Vec::with_capacity(series.known), 1.0);
+    for (k, c) in series.coefficients().iter().enumerate().skip(1) {
+        velocity.push(if k < multiplicity { 0.0 } else { k as f64 * c.to_f64() * power });
+        power *= length;
+    }
+    // A mass that begins at rest has not turned there, and one that stands still to rounding does not turn.
+    let Some(first) = velocity.iter().find(|coefficient| **coefficient != 0.0) else { return };
+    let mut rises = *first > 0.0;
+    let place = |t: f64| series.coefficients().iter().rev().fold(0.0, |sum, c| sum * t + c.to_f64());
+    let (first, last) = (place(0.0), place(length));
+    let rounding = ROUNDINGS * f64::EPSILON * before.x.to_f64().abs();
+    PolynomialRoots::new(&velocity).each_sign_change(&mut |s| {
+        let (end, side) = if rises { (End::High, Side::Right) } else { (End::Low, Side::Left) };
+        rises = !rises;
+        let y = place(s * length);
+        let gap = (mode.end(end).0.to_f64() - (mode.origin.to_f64() + y)).abs();
+        let moves = (y - first).abs().max((y - last).abs()) > rounding;
+        if s < 1.0 && moves && gap > 0.0 && is_stop(end) {
+            let t = clock.seconds(&clock.advance(&before.at, T::of(s * length)));
+            misses.push(Miss { t, side, gap });
+        }
+        true
+    });
+}

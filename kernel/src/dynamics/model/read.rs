@@ -1,0 +1,209 @@
+//! Accessors of a model, and copies of it that differ in their run alone.
+
+use std::sync::Arc;
+
+use super::Model;
+use super::excitation::ExcitationParts;
+use super::scales::{LEAST_IMPACT, Scales};
+use super::stops::StopPair;
+use super::transducer::{Circuit, Output};
+use crate::dynamics::result::Sample;
+use crate::mechanics::{Hertz, Mechanism};
+use crate::numeric::{DoubleDouble, Number, Scalar};
+use crate::scene;
+
+impl Model {
+    /// Proof mass in kg.
+    pub fn mass(&self) -> f64 {
+        self.mass
+    }
+
+    /// Damping coefficient in N s/m of the mechanism alone.
+    pub fn damping(&self) -> f64 {
+        self.damping
+    }
+
+    /// Damping coefficient in N s/m that acts on the motion, including that of a transducer without an
+    /// electrical state.
+    pub fn total_damping(&self) -> f64 {
+        self.damping + self.transducer.map_or(0.0, |transducer| transducer.damping)
+    }
+
+    /// Whether the scene has a transducer.
+    pub fn has_transducer(&self) -> bool {
+        self.transducer.is_some()
+    }
+
+    /// The transducer as given in the scene.
+    pub fn transducer(&self) -> scene::Transducer {
+        self.transducer.map_or(scene::Transducer::None, |transducer| transducer.described)
+    }
+
+    /// Output of the transducer at a sample of the motion; `None` without a transducer.
+    pub fn output(&self, sample: &Sample) -> Option<Output> {
+        self.transducer.map(|transducer| transducer.output(sample.v, sample.electrical))
+    }
+
+    /// Whether the transducer has a state of its own, a current or a voltage, that is integrated with
+    /// the motion.
+    pub fn has_electrical_state(&self) -> bool {
+        self.circuit().is_some()
+    }
+
+    /// Explains why a circuit that is far faster than the motion makes the steps short, and how to model the
+    /// scene without it; `None` if there is no such circuit.
+    pub fn fast_circuit(&self) -> Option<String> {
+        self.transducer.as_ref()?.fast_circuit(self.mass, self.scales.time)
+    }
+
+    /// Electrical state at the start in A or V; 0 without one.
+    pub fn start_electrical(&self) -> f64 {
+        self.start_electrical
+    }
+
+    /// The circuit of the transducer, if it has a state.
+    pub(in crate::dynamics) fn circuit(&self) -> Option<&Circuit> {
+        self.transducer.as_ref().and_then(|transducer| transducer.circuit.as_ref())
+    }
+
+    /// Energy in J that the transducer stores in this electrical state.
+    pub(in crate::dynamics) fn electrical_energy(&self, electrical: f64) -> f64 {
+        self.circuit().map_or(0.0, |circuit| 0.5 * self.mass * circuit.state(electrical).powi(2))
+    }
+
+    /// The electrical state of this model when it takes over a run from another model in the
+    /// state `electrical`.
+    pub(in crate::dynamics) fn electrical_after(&self, before: &Self, electrical: f64) -> f64 {
+        let pair = self.transducer.as_ref().zip(before.transducer.as_ref());
+        pair.map_or(0.0, |(present, previous)| present.electrical_after(previous, electrical))
+    }
+
+    /// The mechanism.
+    pub fn mechanism(&self) -> &Arc<Mechanism> {
+        &self.mechanism
+    }
+
+    /// The stops; `None` if both sides are open.
+    pub fn stops(&self) -> Option<StopPair> {
+        self.stops
+    }
+
+    /// The contact law of the stops, if they are compliant.
+    pub fn compliant(&self) -> Option<Hertz> {
+        self.compliant
+    }
+
+    /// The excitation.
+    pub fn excitation(&self) -> &ExcitationParts {
+        &self.excitation
+    }
+
+    /// Displacement in m and velocity in m/s at the start.
+    pub fn start(&self) -> (f64, f64) {
+        self.start
+    }
+
+    /// Displacement in m at which crossings are counted, if the mechanism has a barrier.
+    pub fn crossing_level(&self) -> Option<f64> {
+        self.crossing_level
+    }
+
+    /// Duration in s.
+    pub fn duration(&self) -> f64 {
+        self.duration
+    }
+
+    /// Begin of the settled window in s.
+    pub fn settle(&self) -> f64 {
+        self.settle
+    }
+
+    /// Period of the excitation in s, if it has one.
+    pub fn forcing_period(&self) -> Option<f64> {
+        self.forcing_period
+    }
+
+    /// Phase of the drive at a time in s, in turns: the argument of its sine, or for a sum the fraction of
+    /// the common period since the start. `None` if the drive does not repeat.
+    pub fn drive_phase(&self, t: f64) -> Option<f64> {
+        let frequency = self.excitation.fastest().filter(|_| self.repeats())?;
+        let cycles = DoubleDouble::of(self.window_periods().1 as f64);
+        let turns = DoubleDouble::product(t, frequency) / cycles + DoubleDouble::of(self.start_phase);
+        let share = (turns - turns.floor()).to_f64();
+        Some(if share < 1.0 { share } else { 0.0 })
+    }
+
+    /// Length, speed and time to which the tolerance is relative.
+    pub fn scales(&self) -> Scales {
+        self.scales
+    }
+
+    /// The speed in m/s above which an impact is counted. A chatter has infinitely many impacts, and how many
+    /// of the slower ones are computed one by one depends on the tolerance.
+    pub fn least_impact_speed(&self) -> f64 {
+        LEAST_IMPACT * self.scales.speed
+    }
+
+    /// Permitted local error, relative to the scales.
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
+    /// Whether a run may be completed from a recurrence of its motion.
+    pub fn recurrence(&self) -> bool {
+        self.recurrence
+    }
+
+    /// The same model with another tolerance.
+    pub fn with_tolerance(&self, tolerance: f64) -> Self {
+        Self { tolerance, ..self.clone() }
+    }
+
+    /// The same model, with the same scales, from another start: displacement in m and velocity in m/s.
+    /// Precondition: the start lies in the curve and between the stops.
+    pub fn with_start(&self, start: (f64, f64)) -> Self {
+        Self { start, motionless: false, ..self.clone() }
+    }
+
+    /// The same model without stops.
+    pub fn without_stops(&self) -> Self {
+        Self { stops: None, compliant: None, ..self.clone() }
+    }
+
+    /// The same model with recurrence on or off.
+    pub fn with_recurrence(&self, recurrence: bool) -> Self {
+        Self { recurrence, ..self.clone() }
+    }
+
+    /// The same model with a run of another duration in s, whose settled window begins at `settle` in s.
+    pub fn with_duration(&self, duration: f64, settle: f64) -> Self {
+        Self { duration, settle, ..self.clone() }
+    }
+
+    /// The same model, continuing from a state of a run of `before`: displacement in m and velocity in m/s,
+    /// as in [`Run::carried`](crate::dynamics::Run::carried). A stop of this model that lies on the other
+    /// side of the mass carries it along and takes its speed, as does the end of the known curve.
+    #[must_use]
+    pub fn carried_on(mut self, before: &Self, state: (f64, f64)) -> Self {
+        let pressed = before.compliant.and(self.compliant).and_then(|_| before.pressed_depth(state.0));
+        self.start = self.held_within(state, pressed.map_or(0.0, |(depth, _)| depth));
+        self.motionless = false;
+        self
+    }
+
+    /// Moves a state to between the stops, or up to `depth` into them, and into the known curve. A mass that
+    /// has to be moved loses its speed.
+    pub fn held_within(&self, (x, v): (f64, f64), depth: f64) -> (f64, f64) {
+        let domain = self.mechanism.curve.domain();
+        let (left, right) = self.stop_positions();
+        let low = left.map_or(domain.0, |stop| (stop - depth).max(domain.0));
+        let high = right.map_or(domain.1, |stop| (stop + depth).min(domain.1));
+        if !(x <= high) {
+            (high, 0.0)
+        } else if x < low {
+            (low, 0.0)
+        } else {
+            (x, v)
+        }
+    }
+}

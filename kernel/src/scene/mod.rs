@@ -1,0 +1,74 @@
+//! Scenes: their fields, checks and files, and the presets.
+//!
+//! A scene is read by [`Document::load`], changed by [`Document::set`] and checked by [`Document::check`]. A
+//! scene that passes becomes a `dynamics::Model`, which is always valid. [`Document::error_from`] adds file
+//! and line to faults that only the model can find.
+//!
+//! ```
+//! use interwell::scene::Document;
+//!
+//! let mut document = Document::load("paper")?;
+//! document.set("stops.travel_limit_mm=2")?;
+//! assert_eq!(document.check()?, Vec::<String>::new());
+//! document.set("stops.restitution=1.2")?;
+//! let error = document.check().unwrap_err().to_string();
+//! assert!(error.contains("stops.restitution = 1.2: must be 0 to 1"), "{error}");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod arguments;
+mod axis;
+mod check;
+mod columns;
+mod data;
+mod document;
+mod error;
+mod field_table;
+mod fields;
+mod files;
+pub mod lesson;
+mod locate;
+mod manifest;
+mod measured;
+mod mechanism;
+mod presets;
+mod record;
+mod scanner;
+mod shape;
+mod steps;
+mod stops;
+mod text;
+mod timing;
+mod transducer;
+mod unit;
+mod walk;
+
+pub use arguments::arguments;
+pub use axis::{Axis, MAX_AXES, MAX_AXIS_VALUES, column_names};
+pub(crate) use check::is_sound;
+pub use check::{Checked, check, corners};
+pub use columns::{Columns, ColumnsError, MOST_ROWS, read_columns};
+pub use data::*;
+pub use document::{Document, Source, is_scene_file, named_paths};
+pub use error::{ArgumentError, Fault, Origin, PlacedFault, SceneError};
+pub use field_table::{
+    Control, FIELDS, FieldInfo, MAX_COEFFICIENTS, Range, Scale, TOLERANCES, field_info, without_indices,
+};
+pub use fields::{FieldPath, all_fields, is_whole, numeric_fields};
+pub use files::{FileError, Files, MAX_TABLE_BYTES};
+pub use locate::{Place, Places};
+pub use manifest::{PROGRAM, SweepRequest, is_manifest};
+pub use measured::{
+    Ask, AskOptions, Channel, ChosenColumn, MAX_MEASURED_BYTES, MAX_MEASURED_ROWS, Measured, MeasuredError,
+    MeasuredText, read_measured,
+};
+pub use mechanism::{FlexureGroup, Mechanism};
+pub use presets::{EmbeddedTable, PRESETS, Preset, TABLES, export};
+pub use record::{Record, RecordError, read_record};
+pub use scanner::has_comments;
+pub use stops::Stops;
+pub use text::{MAX_SCENE_BYTES, write};
+pub use timing::Timing;
+pub use transducer::Transducer;
+pub use unit::unit_ending;
+pub use unit::{Quantity, STANDARD_GRAVITY, Unit};

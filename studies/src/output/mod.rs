@@ -1,0 +1,32 @@
+//! Output formats of tables: CSV, JSON, text for a terminal, pictures.
+//!
+//! Nothing is computed here. A number is written in the shortest form that parses back to the same double, a
+//! missing one as an empty cell (CSV) or `null` (JSON).
+
+mod csv;
+mod json;
+mod manifest;
+mod plan;
+mod plot;
+mod text;
+
+pub use csv::{csv_table, header, rows};
+pub use json::{identified, landscape, summary};
+pub use manifest::{Made, Provenance, basins_manifest, exponents_manifest, manifest, merged_manifest};
+pub use plan::{plan, plan_checksum, plan_differences};
+pub use plot::{
+    AXIS_EDGES, Area, Argument, BACK_EDGES, BLACK, BoxPlace, Caption, Cell, Cells, Chart, Colours, Column,
+    ComparisonPicture, Cut, ExponentPicture, Face, Figure, Format, Frame, Ink, Layer, Look,
+    MAX_PICTURE_CELLS, Marks, NoPicture, Note, Overlay, PaintError, Panel, PlotAxis, Projection, RMS, Ranges,
+    Role, RunPanel, SIDES, SectionPicture, Shape, Sheet, SheetError, SheetText, Side, SpectrumQuantity,
+    SweepPicture, TICK, Theme, ThresholdPicture, UnknownFormat, View, accuracy_chart, attractor_colour,
+    basins_chart, branch_chart, can_show, can_show_exponents, can_show_starts, can_show_thresholds,
+    comparison_chart, contact_chart, curve_chart, exponents_chart, identified_chart, measured_chart,
+    measured_force_chart, picture_arguments, quantities, run_chart, section_chart, separatrix,
+    spectrum_chart, speed_unit, surface_faces, sweep_about, sweep_chart, threshold_chart, viridis,
+    wall_lines, words_of,
+};
+pub use text::aligned;
+
+pub use crate::numeric::push_number;
+pub use crate::system::{OpenError, Sink, is_regular, same_target, write_file};

@@ -1,0 +1,248 @@
+//! Axes with their ticks and labels.
+
+use crate::numeric::extent;
+use crate::numeric::round::{ONE_TWO_FIVE, decade, round_up};
+
+/// A range of values with its ticks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlotAxis {
+    /// Value at the left or lower end.
+    pub low: f64,
+    /// Value at the other end; above `low`.
+    pub high: f64,
+    /// Values that have a tick, with the text at it.
+    pub ticks: Vec<(f64, String)>,
+    /// What the axis shows, with unit and power of ten.
+    pub label: String,
+    /// What it shows, without a power of ten.
+    name: String,
+    scale: Scale,
+}
+
+/// How ticks are placed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Scale {
+    /// At steps of 1, 2 or 5 times a power of ten.
+    Linear,
+    /// At powers of ten; the ends are logarithms.
+    Decades,
+    /// Where they were given.
+    Given,
+}
+
+/// The requested ranges of a picture's axes: of the horizontal one and of the (first) vertical one.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Ranges {
+    /// Range of the horizontal axis.
+    pub x: Option<(f64, f64)>,
+    /// Range of the vertical axis.
+    pub y: Option<(f64, f64)>,
+}
+
+/// Ticks of an axis that has no place yet.
+const USUAL: usize = 6;
+
+/// Values beyond this are drawn at it, so that no difference of two values overflows.
+const LARGEST: f64 = 1e300;
+
+impl PlotAxis {
+    /// An axis from the least to the greatest of `values`, with `margin` of that range added at both ends.
+    /// Values that are not finite are ignored; a range of length 0 is widened.
+    pub fn around(values: impl IntoIterator<Item = f64>, margin: f64, label: &str) -> Self {
+        let (low, high) = extent(values.into_iter().filter(|value| value.is_finite()));
+        if low > high {
+            return Self::between(0.0, 1.0, label);
+        }
+        let more = margin * (high - low);
+        Self::between(low - more, high + more, label)
+    }
+
+    /// An axis from `low` to `high` with ticks at steps of 1, 2 or 5 times a power of ten.
+    pub fn between(low: f64, high: f64, label: &str) -> Self {
+        Self::linear(low, high, USUAL, label)
+    }
+
+    fn linear(low: f64, high: f64, count: usize, label: &str) -> Self {
+        let (low, high) = finite_range(low, high);
+        let ticks = |step: f64| (high / step + 1e-9).floor() - (low / step - 1e-9).ceil() + 1.0;
+        let usual = round_up((high - low) / count.max(1) as f64, &ONE_TWO_FIVE);
+        // a smaller step where the usual one has hardly a tick, or where its ticks are no more than those of
+        // a range that begins and ends with one
+        let finer = round_up(0.39 * usual, &ONE_TWO_FIVE);
+        let step = if ticks(usual) < 3.0 || ticks(finer) <= count as f64 + 1.0 { finer } else { usual };
+        // Where plain numbers would be long, a common power of ten goes into the label.
+        let largest = low.abs().max(high.abs());
+        let power = decade(largest);
+        let power = if (-3..5).contains(&power) { 0 } else { power };
+        let scale = 10_f64.powi(power);
+        let decimals = (power - (step.log10() + 1e-9).floor() as i32).clamp(0, 12) as usize;
+        // If the step is lost in the rounding of large numbers, only the ends get ticks.
+        let ticks = if step > 8.0 * f64::EPSILON * largest {
+            let (first, last) = ((low / step - 1e-9).ceil(), (high / step + 1e-9).floor());
+            let number = |k: i64| {
+                let value = (first + k as f64) * step;
+                let text = format!("{:.decimals$}", value / scale);
+                // Zero gets no sign, and negative numbers a minus sign instead of a hyphen.
+                let zero = text.bytes().all(|b| matches!(b, b'-' | b'0' | b'.'));
+                let text = if zero { text.replace('-', "") } else { text.replace('-', "\u{2212}") };
+                (value.clamp(low, high), text)
+            };
+            (0..=(last - first).clamp(0.0, 40.0) as i64).map(number).collect()
+        } else {
+            [low, high].map(|value| (value, format!("{:.12}", value / scale))).into()
+        };
+        let name = label.to_owned();
+        let label = match (power, label.rsplit_once(" (")) {
+            (0, _) => label.to_owned(),
+            (_, Some((words, unit))) => format!("{words} (10{} {unit}", superscript(power)),
+            (_, None) => format!("{label} (\u{d7}10{})", superscript(power)),
+        };
+        Self { low, high, ticks, label, name, scale: Scale::Linear }
+    }
+
+    /// An axis with these ticks.
+    pub fn given(low: f64, high: f64, ticks: Vec<(f64, String)>, label: &str) -> Self {
+        Self { low, high, ticks, label: label.to_owned(), name: label.to_owned(), scale: Scale::Given }
+    }
+
+    /// The axis with about `count` ticks.
+    #[must_use]
+    pub fn with_ticks(&self, count: usize) -> Self {
+        match self.scale {
+            Scale::Linear => Self::linear(self.low, self.high, count, &self.name),
+            Scale::Decades => Self::logarithmic(self.low, self.high, count, &self.name),
+            Scale::Given => self.clone(),
+        }
+    }
+
+    /// The axis between other ends, which are logarithms where its own are.
+    #[must_use]
+    pub fn zoomed(&self, (low, high): (f64, f64)) -> Self {
+        Self { low, high, ..self.clone() }.with_ticks(USUAL)
+    }
+
+    /// The axis without its label.
+    #[must_use]
+    pub fn unlabelled(&self) -> Self {
+        Self { label: String::new(), name: String::new(), ..self.clone() }
+    }
+
+    /// Whether a value lies between its ends.
+    pub fn contains(&self, value: f64) -> bool {
+        (self.low..=self.high).contains(&value)
+    }
+
+    /// The axis over the given range, or `self` if there is none.
+    #[must_use]
+    pub fn or_given(self, range: Option<(f64, f64)>) -> Self {
+        match range {
+            Some((low, high)) => Self::linear(low, high, USUAL, &self.name),
+            None => self,
+        }
+    }
+
+    /// A logarithmic axis in whole decades that covers `values`, which are not logarithms and above 0, with
+    /// ticks at powers of ten.
+    pub fn decades(values: impl IntoIterator<Item = f64>, label: &str) -> Self {
+        let logs = values.into_iter().filter(|value| value.is_finite() && *value > 0.0).map(f64::log10);
+        let (low, high) = extent(logs);
+        let (low, high) =
+            if low > high { (0.0, 1.0) } else { (low.floor(), high.ceil().max(low.floor() + 1.0)) };
+        Self::powers(low, high, label)
+    }
+
+    /// A logarithmic axis between these logarithms, with ticks at powers of ten.
+    pub fn powers(low: f64, high: f64, label: &str) -> Self {
+        Self::logarithmic(low, high, USUAL, label)
+    }
+
+    fn logarithmic(low: f64, high: f64, count: usize, label: &str) -> Self {
+        let every = (((high - low) / count.max(1) as f64).ceil() as i32).max(1);
+        let powers = low.ceil() as i32..=high.floor() as i32;
+        let powers = powers.filter(|power| power.rem_euclid(every) == 0);
+        let ticks = powers.map(|power| (f64::from(power), format!("10{}", superscript(power)))).collect();
+        Self { scale: Scale::Decades, ..Self::given(low, high, ticks, label) }
+    }
+
+    /// Where `value` stands between the ends: 0 at the lower, 1 at the upper.
+    pub fn share(&self, value: f64) -> f64 {
+        (value.clamp(-LARGEST, LARGEST) - self.low) / (self.high - self.low)
+    }
+}
+
+/// The ends of a range, made finite and distinct.
+fn finite_range(low: f64, high: f64) -> (f64, f64) {
+    let tame = |value: f64| if value.is_finite() { value.clamp(-LARGEST, LARGEST) } else { 0.0 };
+    let (low, high) = (tame(low.min(high)), tame(low.max(high)));
+    let least = 1e-9 * low.abs().max(high.abs());
+    if high - low > least && high - low > 1e-290 {
+        return (low, high);
+    }
+    let half = if low == 0.0 || low.abs() < 1e-280 { 1.0 } else { 0.1 * low.abs() };
+    let middle = 0.5 * low + 0.5 * high;
+    (middle - half, middle + half)
+}
+
+/// A whole number in superscript digits.
+fn superscript(power: i32) -> String {
+    let digit = |c: char| match c {
+        '-' => '\u{207b}',
+        '1' => '\u{b9}',
+        '2' => '\u{b2}',
+        '3' => '\u{b3}',
+        c => char::from_u32(0x2070 + c.to_digit(10).unwrap_or(0)).unwrap_or(c),
+    };
+    power.to_string().chars().map(digit).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn numbers(axis: &PlotAxis) -> String {
+        axis.ticks.iter().map(|tick| tick.1.as_str()).collect::<Vec<_>>().join(" ")
+    }
+
+    #[test]
+    fn decades_cover_what_they_show() {
+        let axis = PlotAxis::decades([3e-5, f64::NAN, 0.0, 2.0], "error").with_ticks(3);
+        assert_eq!((axis.low, axis.high), (-5.0, 1.0));
+        assert_eq!(numbers(&axis), "10\u{207b}\u{2074} 10\u{207b}\u{b2} 10\u{2070}");
+        let one = PlotAxis::decades([1e-3], "");
+        assert_eq!((one.low, one.high), (-3.0, -2.0));
+        let none = PlotAxis::decades([], "");
+        assert_eq!((none.low, none.high), (0.0, 1.0));
+    }
+
+    #[test]
+    fn ticks_are_short_numbers() {
+        assert_eq!(numbers(&PlotAxis::between(0.0, 2.0, "").with_ticks(5)), "0.0 0.5 1.0 1.5 2.0");
+        assert_eq!(numbers(&PlotAxis::between(-1.7, 1.7, "").with_ticks(4)), "\u{2212}1 0 1");
+        assert_eq!(numbers(&PlotAxis::between(0.0, 10.0, "").with_ticks(5)), "0 2 4 6 8 10");
+        assert_eq!(numbers(&PlotAxis::between(0.0, 1570.8, "").with_ticks(5)), "0 500 1000 1500");
+        let small = PlotAxis::between(0.0, 2e-9, "x (m)").with_ticks(4);
+        assert_eq!(
+            (numbers(&small), small.label.as_str()),
+            ("0.0 0.5 1.0 1.5 2.0".into(), "x (10\u{207b}\u{2079} m)")
+        );
+    }
+
+    #[test]
+    fn degenerate_ranges_become_ranges() {
+        let nan = f64::NAN;
+        let ends = [0.0, -0.0, 1.0, -3.0, 1e308, -1e308, 5e-324, 1e-300, 1e15, nan, f64::INFINITY];
+        for low in ends {
+            for high in ends.into_iter().chain([low * (1.0 + 1e-15), low + 1.0]) {
+                for count in [0, 1, 5, 12] {
+                    let axis = PlotAxis::between(low, high, "x").with_ticks(count);
+                    assert!(axis.low < axis.high, "{low} {high}");
+                    assert!(!axis.ticks.is_empty() && axis.ticks.len() < 42, "{low} {high}: {axis:?}");
+                    let shares = axis.ticks.iter().map(|tick| axis.share(tick.0));
+                    assert!(shares.into_iter().all(|s| (-1e-9..=1.0 + 1e-9).contains(&s)), "{axis:?}");
+                }
+            }
+        }
+        assert_eq!(PlotAxis::around([nan, nan], 0.1, "").low, 0.0);
+        assert_eq!(PlotAxis::around([3.0], 0.1, "").ticks.len(), 7);
+    }
+}

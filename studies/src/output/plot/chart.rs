@@ -1,0 +1,176 @@
+//! Picture as data: panels with axes and layers, without a pixel or a colour.
+//!
+//! A study's table becomes a [`Chart`]; [`Chart::figure`] lays it out for a screen or a sheet of paper. Each
+//! layer names its [`Role`], from which its colour, width, dash and marker follow, and the legend is made of
+//! the layers that have a name.
+
+use super::axis::PlotAxis;
+use super::cells::Cells;
+use super::figure::Point;
+use super::role::Role;
+use crate::study::Table;
+
+/// A picture as data.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Chart {
+    /// The columns of panels, side by side; on a narrow canvas they are stacked.
+    pub columns: Vec<Column>,
+    /// What is shown, in one sentence.
+    pub subtitle: String,
+    /// What is drawn: a row a point, a cell or a mark, its kind in the column `series`.
+    pub data: Table,
+}
+
+/// Panels one above the other. Neighbours with the same horizontal axis share its numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    /// Its width in proportion to that of the others.
+    pub width: f64,
+    /// From top to bottom.
+    pub panels: Vec<Panel>,
+}
+
+/// Layers over two axes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Panel {
+    /// The words over it; empty for none.
+    pub heading: String,
+    /// The axis to the right.
+    pub x: PlotAxis,
+    /// The axis upward.
+    pub y: PlotAxis,
+    /// What is drawn, from back to front.
+    pub layers: Vec<Layer>,
+    /// The axis of the colour scale beside it.
+    pub bar: Option<PlotAxis>,
+    /// Its height in proportion to that of the others in the column.
+    pub height: f64,
+    /// Lines of text below it.
+    pub notes: Vec<Note>,
+}
+
+/// A line of text, with the marker of a role before it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Note {
+    /// What it says.
+    pub words: String,
+    /// Whose marker stands before it.
+    pub role: Option<Role>,
+}
+
+/// Marks of one role.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layer {
+    /// What is drawn, in the units of the axes.
+    pub marks: Marks,
+    /// What it stands for.
+    pub role: Role,
+    /// Its words in the legend; empty for none.
+    pub name: String,
+}
+
+/// A side of a panel or of a wall.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// To the left.
+    Left,
+    /// To the right.
+    Right,
+    /// Above.
+    Top,
+    /// Below.
+    Bottom,
+}
+
+/// What a layer draws. Points that are not finite are left out and part a line.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Marks {
+    /// A line through points in any order.
+    Path(Vec<Point>),
+    /// A line through points with ascending x, of which there may be millions.
+    Trace(Vec<Point>),
+    /// A marker at each point.
+    Points(Vec<Point>),
+    /// Markers of regimes by their words; on a line, of those that lie close, some.
+    Regimes(Vec<(Point, &'static str)>, bool),
+    /// Small markers, the smaller the more there are.
+    Cloud(Vec<Point>),
+    /// A line from the lower edge to each point.
+    Sticks(Vec<Point>),
+    /// A line from the second to the third value at each x.
+    Intervals(Vec<[f64; 3]>),
+    /// What lies between the second and the third value over x.
+    Band(Vec<[f64; 3]>),
+    /// A bar at each y from one x to another, as high as the last share of a unit of the axis.
+    Bars(Vec<[f64; 3]>, f64),
+    /// Spans of x over the whole height.
+    Spans(Vec<(f64, f64)>),
+    /// Lines from the lower to the upper edge.
+    Verticals(Vec<f64>),
+    /// Lines from the left to the right edge.
+    Horizontals(Vec<f64>),
+    /// A wall at a value, solid on this side of it.
+    Wall(f64, Side),
+    /// Short ticks along this edge; of those that lie close, some.
+    Ticks(Vec<f64>, Side),
+    /// Words, each beginning at its place, or before it where it has no room there.
+    Words(Vec<(Point, String)>),
+    /// A colour for each cell of a grid.
+    Cells(Cells),
+    /// The cells as a surface in projection, over a third axis.
+    Surface(Cells, PlotAxis),
+    /// Nothing but an entry of the legend.
+    Patch,
+}
+
+impl Chart {
+    /// A chart of panels one above the other.
+    pub fn stack(panels: Vec<Panel>, subtitle: impl Into<String>, data: Table) -> Self {
+        Self { columns: vec![Column { width: 1.0, panels }], subtitle: subtitle.into(), data }
+    }
+
+    /// The first panel.
+    pub fn first_panel(&mut self) -> Option<&mut Panel> {
+        self.columns.first_mut()?.panels.first_mut()
+    }
+
+    /// All panels, column by column.
+    pub fn panels(&self) -> impl Iterator<Item = &Panel> {
+        self.columns.iter().flat_map(|column| &column.panels)
+    }
+}
+
+impl Panel {
+    /// A panel without layers.
+    pub fn new(x: PlotAxis, y: PlotAxis) -> Self {
+        Self { heading: String::new(), x, y, layers: Vec::new(), bar: None, height: 1.0, notes: Vec::new() }
+    }
+
+    /// Adds a layer without an entry in the legend.
+    pub fn draw(&mut self, role: Role, marks: Marks) {
+        self.layer(role, "", marks);
+    }
+
+    /// Adds a layer with its words in the legend.
+    pub fn layer(&mut self, role: Role, name: impl Into<String>, marks: Marks) {
+        self.layers.push(Layer { marks, role, name: name.into() });
+    }
+
+    /// Adds the stops that lie in the range of the horizontal axis, in its units.
+    pub fn upright_stops(&mut self, stops: (f64, f64)) {
+        for (at, side) in [(stops.0, Side::Left), (stops.1, Side::Right)] {
+            if self.x.contains(at) {
+                self.layer(Role::Stop, "stop", Marks::Wall(at, side));
+            }
+        }
+    }
+
+    /// Adds the stops in the units of the vertical axis; those outside its range are in the legend alone.
+    pub fn level_stops(&mut self, stops: (f64, f64)) {
+        for (at, side) in [(stops.0, Side::Bottom), (stops.1, Side::Top)] {
+            if at.is_finite() {
+                self.layer(Role::Stop, "stop", Marks::Wall(at, side));
+            }
+        }
+    }
+}

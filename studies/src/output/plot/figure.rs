@@ -1,0 +1,348 @@
+//! Picture as a list of plain shapes, in the order in which they are painted.
+//!
+//! The plots write down what they show; [`Format`](super::Format) turns that into a file. So
+//! each plot is written once for both, and a test can read what a picture says.
+
+use serde_json::{Map, Value};
+
+use super::font;
+use super::frame::Frame;
+use super::role::Look;
+use super::sheet::Sheet;
+use super::style::{self, Ink, Theme};
+use crate::numeric::short;
+use crate::study::Table;
+
+/// A place on the canvas: to the right and down from the upper left corner.
+pub type Point = (f64, f64);
+
+/// A rectangle by two corners, the first one above and to the left.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Area {
+    /// Left edge.
+    pub left: f64,
+    /// Upper edge.
+    pub top: f64,
+    /// Right edge.
+    pub right: f64,
+    /// Lower edge.
+    pub bottom: f64,
+}
+
+impl Area {
+    /// The rectangle with these edges.
+    pub fn new(left: f64, top: f64, right: f64, bottom: f64) -> Self {
+        Self { left, top, right, bottom }
+    }
+
+    /// What this and `other` share; none where that is nothing.
+    pub fn common(self, other: Self) -> Option<Self> {
+        let (left, right) = (self.left.max(other.left), self.right.min(other.right));
+        let (top, bottom) = (self.top.max(other.top), self.bottom.min(other.bottom));
+        (left < right && top < bottom).then_some(Self { left, top, right, bottom })
+    }
+
+    /// Whether a place lies inside.
+    pub fn contains(self, (x, y): Point) -> bool {
+        (self.left..=self.right).contains(&x) && (self.top..=self.bottom).contains(&y)
+    }
+
+    /// The part of the segment from `a` to `b` that lies inside (Liang and Barsky 1984).
+    pub fn clip(self, a: Point, b: Point) -> Option<(Point, Point)> {
+        let (dx, dy) = (b.0 - a.0, b.1 - a.1);
+        let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+        let edges =
+            [(-dx, a.0 - self.left), (dx, self.right - a.0), (-dy, a.1 - self.top), (dy, self.bottom - a.1)];
+        for (towards, room) in edges {
+            if !(towards.is_finite() && room.is_finite()) || (towards == 0.0 && room < 0.0) {
+                return None;
+            }
+            if towards < 0.0 {
+                enter = enter.max(room / towards);
+            } else if towards > 0.0 {
+                leave = leave.min(room / towards);
+            }
+        }
+        let at = |share: f64| (a.0 + share * dx, a.1 + share * dy);
+        // Whole ends stay as they are, bit for bit: the next segment begins there.
+        let (from, to) = (if enter > 0.0 { at(enter) } else { a }, if leave < 1.0 { at(leave) } else { b });
+        (enter <= leave).then_some((from, to))
+    }
+}
+
+/// Where a text's given point lies on it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Align {
+    /// At its beginning.
+    Left,
+    /// In its middle.
+    Centre,
+    /// At its end.
+    Right,
+}
+
+/// A line of text.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Text {
+    /// What it says.
+    pub words: String,
+    /// Where on the canvas; its height is that of the baseline.
+    pub at: Point,
+    /// Height of an em.
+    pub size: f64,
+    /// Colour.
+    pub ink: Ink,
+    /// Heavier letters.
+    pub bold: bool,
+    /// Which part of it is at `at`.
+    pub align: Align,
+    /// Read from below to above.
+    pub upright: bool,
+}
+
+impl Text {
+    /// Plain words that begin at a place.
+    pub fn new(words: impl Into<String>, at: Point, size: f64, ink: Ink) -> Self {
+        Self { words: words.into(), at, size, ink, bold: false, align: Align::Left, upright: false }
+    }
+
+    /// How much of it stands before its given point.
+    pub fn before(&self) -> f64 {
+        match self.align {
+            Align::Left => 0.0,
+            Align::Centre => 0.5 * font::width(&self.words, self.size, self.bold),
+            Align::Right => font::width(&self.words, self.size, self.bold),
+        }
+    }
+}
+
+/// One shape.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Shape {
+    /// A filled rectangle.
+    Rect(Area, Ink),
+    /// A line through points, with round ends and corners.
+    Line(Vec<Point>, f64, Ink),
+    /// A filled convex polygon.
+    Polygon(Vec<Point>, Ink),
+    /// A filled disc.
+    Disc(Point, f64, Ink),
+    /// A text.
+    Text(Text),
+}
+
+/// A picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Figure {
+    /// The shapes in the order in which they are painted.
+    pub shapes: Vec<Shape>,
+    /// All that can be drawn on.
+    pub canvas: Area,
+    /// What of the canvas is painted.
+    pub shown: Area,
+    /// Width and height in pixels; left out, one for each unit of the canvas. What is shown keeps its
+    /// proportions and stands in their middle.
+    pub size: Option<(u32, u32)>,
+    /// The sheet of paper that it is laid out for; none for a screen.
+    pub sheet: Option<Sheet>,
+    /// What made it: names and values, as in a manifest.
+    pub origin: Map<String, Value>,
+    /// What is drawn: a row a point, a cell or a mark, its kind in the column `series`.
+    pub data: Table,
+    /// The frames of its panels, without those of surfaces.
+    pub frames: Vec<Frame>,
+    /// Upper and lower edge of what stands between the captions.
+    body: (f64, f64),
+}
+
+impl Figure {
+    /// An empty canvas of this width and height, with captions over and under the `body`.
+    pub fn new(theme: &Theme, (width, height): (f64, f64), body: (f64, f64)) -> Self {
+        let canvas = Area::new(0.0, 0.0, width, height);
+        Self {
+            shapes: vec![Shape::Rect(canvas, theme.paper)],
+            canvas,
+            shown: canvas,
+            size: None,
+            sheet: theme.sheet,
+            body,
+            origin: Map::new(),
+            frames: Vec::new(),
+            data: Table::new(),
+        }
+    }
+
+    /// The picture without what stands over and under it, as for a page that has a caption of its own.
+    #[must_use]
+    pub fn without_title(mut self) -> Self {
+        (self.shown.top, self.shown.bottom) = self.body;
+        let shown = self.shown;
+        self.shapes.retain_mut(|shape| match shape {
+            Shape::Text(text) => (shown.top..=shown.bottom).contains(&text.at.1),
+            Shape::Rect(area, _) => area.common(shown).inspect(|part| *area = *part).is_some(),
+            _ => true,
+        });
+        self
+    }
+
+    /// What is said where the height that was asked for has no room for the picture; it is then higher.
+    pub fn grown(&self) -> Option<String> {
+        let (asked, made) = (self.sheet?.height_mm?, self.size_mm()?.1);
+        let words = || format!("{asked} mm are too low; the picture is {} mm high", short(made));
+        (made > asked + 1e-6).then(words)
+    }
+
+    /// What made it, as JSON in one line.
+    pub fn made(&self) -> String {
+        Value::Object(self.origin.clone()).to_string()
+    }
+
+    /// Program and version that made it.
+    pub fn software(&self) -> String {
+        let word = |key: &str| self.origin.get(key).and_then(Value::as_str).unwrap_or_default();
+        format!("{} {}", word("program"), word("version"))
+    }
+
+    /// Width and height in mm of what is shown, on a sheet.
+    pub fn size_mm(&self) -> Option<(f64, f64)> {
+        let unit = self.sheet?.unit_mm();
+        Some(((self.shown.right - self.shown.left) * unit, (self.shown.bottom - self.shown.top) * unit))
+    }
+
+    /// Adds a filled rectangle; what lies outside the canvas is cut off.
+    pub fn rect(&mut self, area: Area, ink: Ink) {
+        if let Some(area) = area.common(self.canvas) {
+            self.shapes.push(Shape::Rect(area, ink));
+        }
+    }
+
+    /// Adds a line; parts outside `within` and points that are not finite are left out.
+    pub fn line(&mut self, points: &[Point], width: f64, ink: Ink, within: Area) {
+        for part in clipped(points, within) {
+            self.shapes.push(Shape::Line(part, width, ink));
+        }
+    }
+
+    /// Adds a broken line with dashes and gaps of the given lengths.
+    pub fn dashed(&mut self, points: &[Point], width: f64, ink: Ink, dash: (f64, f64), within: Area) {
+        for part in clipped(points, within) {
+            for piece in dashes(&part, dash) {
+                self.shapes.push(Shape::Line(piece, width, ink));
+            }
+        }
+    }
+
+    /// Adds a line as it looks: its dash, and the outline under it.
+    pub fn styled(&mut self, points: &[Point], look: &Look, within: Area) {
+        if let Some(halo) = look.halo {
+            self.line(points, look.width + 4.0, halo, within);
+        }
+        match look.dash {
+            Some(dash) => self.dashed(points, look.width, look.ink, dash, within),
+            None => self.line(points, look.width, look.ink, within),
+        }
+    }
+
+    /// Adds a filled convex polygon where all of it lies on the canvas.
+    pub fn polygon(&mut self, points: Vec<Point>, ink: Ink) {
+        if points.iter().all(|point| self.canvas.contains(*point)) {
+            self.shapes.push(Shape::Polygon(points, ink));
+        }
+    }
+
+    /// Adds a filled disc where its centre lies on the canvas.
+    pub fn disc(&mut self, centre: Point, radius: f64, ink: Ink) {
+        if self.canvas.contains(centre) {
+            self.shapes.push(Shape::Disc(centre, radius, ink));
+        }
+    }
+
+    /// Adds a text; control characters become blanks.
+    pub fn text(&mut self, mut text: Text) {
+        text.words = text.words.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+        if self.canvas.contains(text.at) && !text.words.trim().is_empty() {
+            self.shapes.push(Shape::Text(text));
+        }
+    }
+
+    /// Adds the outline of `area`.
+    pub fn outline(&mut self, area: Area, width: f64, ink: Ink) {
+        let Area { left, top, right, bottom } = area;
+        let corners = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
+        self.line(&corners, width, ink, self.canvas);
+    }
+
+    /// Hatches `area` with lines that go up to the right, in step with every other hatching.
+    pub fn hatch(&mut self, area: Area, ink: Ink) {
+        let Some(area) = area.common(self.canvas) else { return };
+        let (step, width) = style::HATCH;
+        // Lines x + y = k step.
+        let first = ((area.left + area.top) / step).ceil() as i64;
+        let last = ((area.right + area.bottom) / step).floor() as i64;
+        for k in first..=last {
+            let sum = k as f64 * step;
+            let line = [(sum - area.top, area.top), (sum - area.bottom, area.bottom)];
+            self.line(&line, width, ink, area);
+        }
+    }
+
+    /// Everything that can be read on the picture.
+    pub fn words(&self) -> impl Iterator<Item = &str> {
+        self.shapes.iter().filter_map(|shape| match shape {
+            Shape::Text(text) => Some(text.words.as_str()),
+            _ => None,
+        })
+    }
+}
+
+/// The parts of a line that lie inside.
+fn clipped(points: &[Point], within: Area) -> Vec<Vec<Point>> {
+    let mut parts: Vec<Vec<Point>> = Vec::new();
+    let mut end = None;
+    for pair in points.windows(2) {
+        let Some((from, to)) = within.clip(pair[0], pair[1]) else {
+            end = None;
+            continue;
+        };
+        match parts.last_mut().filter(|_| end == Some(from)) {
+            Some(part) => part.push(to),
+            None => parts.push(vec![from, to]),
+        }
+        end = Some(to);
+    }
+    parts
+}
+
+/// A line cut into dashes.
+fn dashes(points: &[Point], (on, off): (f64, f64)) -> Vec<Vec<Point>> {
+    let mut pieces = Vec::new();
+    let mut piece: Vec<Point> = points.first().copied().into_iter().collect();
+    let (mut drawing, mut left) = (true, on);
+    for pair in points.windows(2) {
+        let (mut from, to) = (pair[0], pair[1]);
+        loop {
+            let length = (to.0 - from.0).hypot(to.1 - from.1);
+            if length <= left {
+                left -= length;
+                if drawing {
+                    piece.push(to);
+                }
+                break;
+            }
+            let share = left / length;
+            from = (from.0 + share * (to.0 - from.0), from.1 + share * (to.1 - from.1));
+            if drawing {
+                piece.push(from);
+                pieces.push(std::mem::take(&mut piece));
+            } else {
+                piece = vec![from];
+            }
+            drawing = !drawing;
+            left = if drawing { on } else { off };
+        }
+    }
+    if drawing && piece.len() > 1 {
+        pieces.push(piece);
+    }
+    pieces
+}

@@ -1,0 +1,357 @@
+//! Places of the panels of a chart: columns side by side, rows one under the other, and what axes need beside
+//! and below the frames.
+
+use super::axis::PlotAxis;
+use super::cells::{Cells, Colours};
+use super::chart::{Chart, Layer, Marks, Panel};
+use super::figure::{Align, Area, Figure, Text};
+use super::font;
+use super::frame::Frame;
+use super::mark::marker;
+use super::page::wrapped;
+use super::style::{self, Theme};
+use super::surface;
+
+/// Height of a heading over a panel, and of a line of a note below it.
+const HEADING: f64 = 46.0;
+const NOTE: f64 = 36.0;
+/// Under a panel: the numbers of its axis, and each line of its label.
+const NUMBERS: f64 = style::TICK_LENGTH + 8.0 + 0.75 * style::TICK;
+const LABEL: f64 = 38.0;
+/// Under a surface.
+const SURFACE: f64 = 100.0;
+/// Beside a panel: from its frame to its numbers, from those to the label, and the width of a line of that.
+const TO_NUMBERS: f64 = style::TICK_LENGTH + 7.0;
+const TO_LABEL: f64 = 8.0;
+const LABEL_WIDTH: f64 = 36.0;
+/// A colour bar: its distance from the frame, and its width.
+const BAR: (f64, f64) = (22.0, 30.0);
+/// Between two panels one above the other, and between two columns.
+const BETWEEN: f64 = 22.0;
+const BETWEEN_COLUMNS: f64 = 26.0;
+/// The least width of a frame, and a usual size of one.
+const LEAST_WIDTH: f64 = 60.0;
+const USUAL: f64 = 230.0;
+/// The share of the canvas that numbers or names upward may take; longer ones are made smaller.
+const MOST_NUMBERS: f64 = 0.3;
+/// Room for a tick on an axis upward and on one to the right.
+const A_TICK: (f64, f64) = (75.0, 130.0);
+
+/// A panel in its place.
+pub struct Slot<'a> {
+    panel: &'a Panel,
+    /// Its axes, with the ticks that they have room for.
+    x: PlotAxis,
+    y: PlotAxis,
+    bar: Option<PlotAxis>,
+    /// Whether the axes have numbers and a label; else they have those of a neighbour.
+    shows_x: bool,
+    shows_y: bool,
+    x_label: Vec<String>,
+    y_label: Vec<String>,
+    bar_label: Vec<String>,
+    /// Room for the numbers upward.
+    numbers: f64,
+    /// How much wider than the column's its frame is, where it has no colour bar.
+    more: f64,
+    /// Where the frame is.
+    area: Area,
+}
+
+/// A column of slots, with the width of its frames and of what stands beside them.
+struct Stack<'a> {
+    slots: Vec<Slot<'a>>,
+    share: f64,
+    left: f64,
+    right: f64,
+    width: f64,
+    /// The height of a panel of height 1.
+    unit: f64,
+}
+
+/// What a row of panels needs: over the frame, its height in proportion, and under the frame.
+#[derive(Clone, Copy, Default)]
+struct Row {
+    over: f64,
+    height: f64,
+    under: f64,
+}
+
+/// The panels of a chart in their places.
+pub struct Grid<'a> {
+    stacks: Vec<Stack<'a>>,
+    /// Whether the panels of a row stand at the same height.
+    aligned: bool,
+    /// Where the first column begins.
+    begin: f64,
+}
+
+impl<'a> Grid<'a> {
+    /// The panels of a chart; on a narrow canvas all in one column.
+    pub fn new(chart: &'a Chart, narrow: bool) -> Self {
+        let columns: Vec<(f64, Vec<&Panel>)> = match narrow {
+            true => vec![(1.0, chart.panels().collect())],
+            false => {
+                chart.columns.iter().map(|column| (column.width, column.panels.iter().collect())).collect()
+            }
+        };
+        let total: f64 = columns.iter().map(|column| column.0).sum();
+        let mut stacks: Vec<Stack> = Vec::new();
+        for (share, panels) in columns {
+            let beside = stacks.last();
+            let slot = |(i, panel): (usize, &&'a Panel)| {
+                let shares_x =
+                    |next: &&&Panel| next.x == panel.x && next.heading.is_empty() && panel.notes.is_empty();
+                let left = beside.and_then(|stack| stack.slots.get(i));
+                Slot {
+                    panel,
+                    x: panel.x.clone(),
+                    y: panel.y.clone(),
+                    bar: panel.bar.clone(),
+                    shows_x: panels.get(i + 1).filter(shares_x).is_none(),
+                    shows_y: left.is_none_or(|left| left.panel.y != panel.y),
+                    x_label: Vec::new(),
+                    y_label: Vec::new(),
+                    bar_label: Vec::new(),
+                    numbers: 0.0,
+                    more: 0.0,
+                    area: Area::new(0.0, 0.0, 0.0, 0.0),
+                }
+            };
+            let slots = panels.iter().enumerate().map(slot).collect();
+            stacks.push(Stack {
+                slots,
+                share: share / total,
+                left: 0.0,
+                right: 0.0,
+                width: 0.0,
+                unit: USUAL,
+            });
+        }
+        let aligned = stacks.iter().flat_map(|stack| &stack.slots).any(|slot| !slot.shows_y);
+        Self { stacks, aligned, begin: 0.0 }
+    }
+
+    /// Finds the sizes of the frames between these edges and within this height, where a panel of height 1
+    /// has at least `least`; the height that is needed.
+    pub fn fit(&mut self, (left, right): (f64, f64), height: f64, least: f64) -> f64 {
+        self.begin = left;
+        let mut needed = height;
+        // The ticks depend on the size of the frames, and that on the room for the ticks.
+        for _ in 0..3 {
+            let last = self.stacks.len().saturating_sub(1);
+            let most = MOST_NUMBERS * (right - left);
+            for (i, stack) in self.stacks.iter_mut().enumerate() {
+                stack.measure(most, (if i == 0 { left } else { 0.0 }, if i == last { left } else { 0.0 }));
+            }
+            let beside: f64 = self.stacks.iter().map(|stack| stack.left + stack.right).sum();
+            let frames = right - left - beside - BETWEEN_COLUMNS * last as f64;
+            self.stacks.iter_mut().for_each(|stack| stack.width = (frames * stack.share).max(LEAST_WIDTH));
+            let rows: Vec<Vec<Row>> = (0..self.stacks.len()).map(|column| self.rows(column)).collect();
+            let fixed = |rows: &[Row]| rows.iter().map(|row| row.over + row.under).sum::<f64>();
+            let weights = |rows: &[Row]| rows.iter().map(|row| row.height).sum::<f64>();
+            needed = rows.iter().map(|rows| fixed(rows) + least * weights(rows)).fold(height, f64::max);
+            for (stack, rows) in self.stacks.iter_mut().zip(&rows) {
+                stack.unit = (needed - fixed(rows)) / weights(rows).max(1e-3);
+            }
+        }
+        needed
+    }
+
+    /// The rows of a column; where rows are aligned, those of all columns.
+    fn rows(&self, column: usize) -> Vec<Row> {
+        let row_of = |stack: &Stack, i: usize| stack.row(i);
+        if !self.aligned {
+            return (0..self.stacks[column].slots.len()).map(|i| row_of(&self.stacks[column], i)).collect();
+        }
+        let count = self.stacks.iter().map(|stack| stack.slots.len()).max().unwrap_or(0);
+        let widest = |i: usize| {
+            let rows = self.stacks.iter().filter(|stack| i < stack.slots.len()).map(|stack| row_of(stack, i));
+            rows.fold(Row::default(), |a, b| Row {
+                over: a.over.max(b.over),
+                height: a.height.max(b.height),
+                under: a.under.max(b.under),
+            })
+        };
+        (0..count).map(widest).collect()
+    }
+
+    /// The slots with their places below `top`.
+    pub fn place(mut self, top: f64) -> impl Iterator<Item = Slot<'a>> {
+        let mut begin = self.begin;
+        for column in 0..self.stacks.len() {
+            let rows = self.rows(column);
+            let stack = &mut self.stacks[column];
+            let (left, right) = (begin + stack.left, begin + stack.left + stack.width);
+            begin = right + stack.right + BETWEEN_COLUMNS;
+            let mut y = top;
+            for (slot, row) in stack.slots.iter_mut().zip(rows) {
+                y += row.over;
+                let height = stack.unit * row.height;
+                slot.area = Area::new(left, y, right + slot.more, y + height);
+                y += height + row.under;
+            }
+        }
+        self.stacks.into_iter().flat_map(|stack| stack.slots)
+    }
+}
+
+fn widest(axis: &PlotAxis) -> f64 {
+    axis.ticks.iter().map(|tick| font::width(&tick.1, style::TICK, false)).fold(0.0, f64::max)
+}
+
+/// The lines of a label, which may be empty.
+fn label(axis: &PlotAxis, room: f64) -> Vec<String> {
+    let mut lines = wrapped(&axis.label, style::AXIS, false, room);
+    lines.retain(|line| !line.is_empty());
+    lines
+}
+
+impl Stack<'_> {
+    /// Finds ticks and labels for the present sizes, and the room that they take; the canvas has these spare
+    /// edges to the left and to the right.
+    fn measure(&mut self, most: f64, (spare_left, spare_right): (f64, f64)) {
+        (self.left, self.right) = (0.0, 0.0);
+        let mut numbers: f64 = 0.0;
+        for slot in &mut self.slots {
+            let height = self.unit * slot.panel.height;
+            let count = (height / A_TICK.0).round().clamp(2.0, 8.0) as usize;
+            slot.y = slot.panel.y.with_ticks(count);
+            if slot.shows_y && slot.panel.surface().is_none() {
+                numbers = numbers.max(widest(&slot.y).min(most));
+            }
+            slot.bar = slot.panel.bar.as_ref().map(|axis| axis.with_ticks(count));
+            let count = (self.width / A_TICK.1).round().clamp(2.0, 9.0) as usize;
+            slot.x = slot.panel.x.with_ticks(count);
+            let along = height + BETWEEN - 6.0;
+            slot.y_label = if slot.shows_y { label(&slot.y, along) } else { Vec::new() };
+            slot.x_label =
+                if slot.shows_x { label(&slot.x, self.width.max(USUAL) + 10.0) } else { Vec::new() };
+            if let Some(axis) = &slot.bar {
+                slot.bar_label = label(axis, along);
+                let label = LABEL_WIDTH * slot.bar_label.len() as f64;
+                let right = BAR.0 + BAR.1 + TO_NUMBERS + widest(axis) + TO_LABEL + label;
+                self.right = self.right.max(right);
+            }
+            // half of the first and of the last number may stand beside the frame
+            let half = |tick: Option<&(f64, String)>| {
+                let width = tick.map_or(0.0, |tick| font::width(&tick.1, style::TICK, false));
+                if slot.shows_x { 0.5 * width } else { 0.0 }
+            };
+            self.left = self.left.max(half(slot.x.ticks.first()) - spare_left + 2.0);
+            self.right = self.right.max(half(slot.x.ticks.last()) - spare_right + 2.0);
+        }
+        // a frame takes the room of a bar that it lacks, unless one with the same axis has the bar
+        let barred: Vec<PlotAxis> =
+            self.slots.iter().filter(|slot| slot.bar.is_some()).map(|slot| slot.panel.x.clone()).collect();
+        for slot in &mut self.slots {
+            let number = slot.x.ticks.last().map_or(0.0, |tick| font::width(&tick.1, style::TICK, false));
+            let is_free = slot.bar.is_none() && !barred.contains(&slot.panel.x);
+            slot.more = if is_free { (self.right - 0.5 * number).max(0.0) } else { 0.0 };
+        }
+        // labels of a column stand in line
+        for slot in &mut self.slots {
+            slot.numbers = if slot.shows_y { numbers } else { 0.0 };
+            if slot.panel.surface().is_none() {
+                let before = if slot.numbers > 0.0 { TO_NUMBERS + slot.numbers + TO_LABEL } else { 0.0 };
+                self.left = self.left.max(before + LABEL_WIDTH * slot.y_label.len() as f64);
+            }
+        }
+    }
+
+    fn row(&self, i: usize) -> Row {
+        let slot = &self.slots[i];
+        let heading = if slot.panel.heading.is_empty() { 0.0 } else { HEADING };
+        // a number stands at the upper edge of a frame
+        let over = if i == 0 { heading.max(14.0) } else { heading + BETWEEN };
+        let axis = match slot.panel.surface() {
+            Some(_) => SURFACE,
+            None if slot.shows_x => NUMBERS + LABEL * slot.x_label.len() as f64 + 8.0,
+            None => 0.0,
+        };
+        Row { over, height: slot.panel.height, under: axis + NOTE * slot.panel.notes.len() as f64 }
+    }
+}
+
+impl Panel {
+    fn surface(&self) -> Option<(&Cells, &PlotAxis)> {
+        self.layers.iter().find_map(|layer| match &layer.marks {
+            Marks::Surface(cells, axis) => Some((cells, axis)),
+            _ => None,
+        })
+    }
+
+    fn colours(&self) -> Option<&Colours> {
+        self.layers.iter().find_map(|layer| match &layer.marks {
+            Marks::Cells(cells) => Some(&cells.colours),
+            _ => None,
+        })
+    }
+}
+
+impl Slot<'_> {
+    /// Draws the panel in its place, with its axes, its heading and its notes.
+    pub fn draw(&self, figure: &mut Figure, theme: &Theme) {
+        let Area { left, top, right, .. } = self.area;
+        match self.panel.surface() {
+            Some((cells, up)) => surface::draw(figure, self.area, (&self.x, &self.y, up), cells, theme),
+            None => self.draw_frame(figure, theme),
+        }
+        if !self.panel.heading.is_empty() {
+            let share = ((right - left) / font::width(&self.panel.heading, style::TICK, true)).min(1.0);
+            let text = Text::new(&self.panel.heading, (left, top - 14.0), share * style::TICK, theme.ink);
+            figure.text(Text { bold: true, ..text });
+        }
+        let under = if self.shows_x { NUMBERS + LABEL * self.x_label.len() as f64 + 8.0 } else { 0.0 };
+        for (i, note) in self.panel.notes.iter().enumerate() {
+            let y = self.area.bottom + under + NOTE * i as f64;
+            let mut x = left;
+            if let Some(role) = note.role {
+                let look = theme.look(role);
+                marker(figure, look.marker, (x + 14.0, y + 0.5 * NOTE), style::MARKER, look.ink, theme.ink);
+                x += 38.0;
+            }
+            let share = ((right - x) / font::width(&note.words, style::TICK, false)).min(1.0);
+            figure.text(Text::new(&note.words, (x, y + 0.75 * NOTE), share * style::TICK, theme.ink));
+        }
+    }
+
+    fn draw_frame(&self, figure: &mut Figure, theme: &Theme) {
+        let area = self.area;
+        let frame = Frame { area, x: self.x.clone(), y: self.y.clone() };
+        let is_under = |layer: &&Layer| {
+            matches!(layer.marks, Marks::Band(_) | Marks::Spans(_) | Marks::Cells(_) | Marks::Patch)
+        };
+        let layers = &self.panel.layers;
+        layers.iter().filter(is_under).for_each(|layer| frame.layer(figure, layer, theme));
+        if self.panel.colours().is_none() {
+            frame.grid(figure, theme);
+        }
+        layers.iter().filter(|layer| !is_under(layer)).for_each(|layer| frame.layer(figure, layer, theme));
+        frame.ticks(figure, theme, self.shows_x, self.shows_y.then_some(self.numbers));
+        figure.frames.push(frame);
+        let centred = |words: &str, at: (f64, f64), upright: bool| Text {
+            align: Align::Centre,
+            upright,
+            ..Text::new(words, at, style::AXIS, theme.ink)
+        };
+        let middle = (0.5 * (area.left + area.right), 0.5 * (area.top + area.bottom));
+        for (i, line) in self.x_label.iter().enumerate() {
+            figure.text(centred(line, (middle.0, area.bottom + NUMBERS + LABEL * (i as f64 + 0.8)), false));
+        }
+        let numbers = if self.numbers > 0.0 { TO_NUMBERS + self.numbers + TO_LABEL } else { 0.0 };
+        for (i, line) in self.y_label.iter().enumerate() {
+            let x = area.left - numbers - LABEL_WIDTH * (self.y_label.len() - 1 - i) as f64 - 8.0;
+            figure.text(centred(line, (x, middle.1), true));
+        }
+        if let (Some(axis), Some(colours)) = (&self.bar, self.panel.colours()) {
+            let from = area.right + BAR.0;
+            let place = Area::new(from, area.top, from + BAR.1, area.bottom);
+            colours.bar(figure, place, axis, theme);
+            for (i, line) in self.bar_label.iter().enumerate() {
+                let x = place.right + TO_NUMBERS + widest(axis) + TO_LABEL + LABEL_WIDTH * (i as f64 + 0.75);
+                figure.text(centred(line, (x, middle.1), true));
+            }
+        }
+    }
+}

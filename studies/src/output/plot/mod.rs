@@ -1,0 +1,115 @@
+//! Pictures as PNG, SVG or PDF.
+//!
+//! A study's table becomes a [`Chart`]: panels, axes and layers, each with its [`Role`]. [`Chart::figure`]
+//! lays it out as a list of plain shapes, and [`Format::bytes`] paints those. Light or dark, the data and
+//! their places are the same, and the same data give the same bytes.
+
+mod accuracy;
+mod arguments;
+mod axis;
+mod basins;
+mod branch;
+mod cells;
+mod chart;
+mod comparison;
+mod contact;
+mod curve;
+mod drawn;
+mod exponents;
+mod figure;
+mod font;
+mod frame;
+mod grid;
+mod mark;
+mod measured;
+mod page;
+mod pdf;
+mod png;
+mod portrait;
+mod projection;
+mod quantity;
+mod record;
+mod role;
+mod run;
+mod section;
+mod sheet;
+mod spectrum;
+mod style;
+mod subset;
+mod surface;
+mod svg;
+mod sweep;
+mod swept;
+mod threshold;
+
+use std::path::Path;
+
+pub use accuracy::accuracy_chart;
+pub use arguments::{Argument, picture_arguments};
+pub use axis::{PlotAxis, Ranges};
+pub use basins::{attractor_colour, basins_chart, can_show_starts};
+pub use branch::branch_chart;
+pub use cells::{Cell, Cells, Colours};
+pub use chart::{Chart, Column, Layer, Marks, Note, Panel, Side};
+pub use comparison::{ComparisonPicture, comparison_chart};
+pub use contact::contact_chart;
+pub use curve::curve_chart;
+pub use exponents::{ExponentPicture, can_show_exponents, exponents_chart};
+pub use figure::{Area, Figure, Shape};
+pub use frame::Frame;
+pub use mark::Caption;
+pub use measured::measured_chart;
+pub use png::PaintError;
+pub use portrait::separatrix;
+pub use projection::{
+    AXIS_EDGES, BACK_EDGES, BoxPlace, Face, Projection, SIDES, faces as surface_faces, wall_lines,
+};
+pub use quantity::{RMS, quantities, words_of};
+pub use record::{identified_chart, measured_force_chart};
+pub use role::{Look, Role};
+pub use run::{RunPanel, run_chart, speed_unit};
+pub use section::{SectionPicture, section_chart};
+pub use sheet::{Sheet, SheetError, SheetText};
+pub use spectrum::{SpectrumQuantity, spectrum_chart};
+pub use style::{BLACK, Ink, TICK, Theme, viridis};
+pub use sweep::{MAX_PICTURE_CELLS, NoPicture, can_show, sweep_about, sweep_chart};
+pub use swept::{Cut, Overlay, SweepPicture, View};
+pub use threshold::{ThresholdPicture, can_show_thresholds, threshold_chart};
+
+/// A kind of file that holds a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// Pixels.
+    Png,
+    /// Shapes.
+    Svg,
+    /// Shapes on a page, with their font.
+    Pdf,
+}
+
+/// A file name that tells no kind of picture.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("a picture's name ends in .png, .svg or .pdf")]
+pub struct UnknownFormat;
+
+impl Format {
+    /// The kind that the ending of a file's name asks for.
+    pub fn of(path: &Path) -> Result<Self, UnknownFormat> {
+        let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+        match ending.as_deref() {
+            Some("png") => Ok(Self::Png),
+            Some("svg") => Ok(Self::Svg),
+            Some("pdf") => Ok(Self::Pdf),
+            _ => Err(UnknownFormat),
+        }
+    }
+
+    /// The picture as a file of this kind.
+    pub fn bytes(self, figure: &Figure) -> Result<Vec<u8>, PaintError> {
+        match self {
+            Self::Png => png::png(figure),
+            Self::Svg => Ok(svg::svg(figure).into_bytes()),
+            Self::Pdf => Ok(pdf::pdf(figure)),
+        }
+    }
+}

@@ -1,0 +1,247 @@
+//! Layout of a chart: captions and legend over the panels, a footer below, each where its text has room.
+
+use super::chart::{Chart, Layer, Marks};
+use super::figure::{Area, Figure, Text};
+use super::font;
+use super::grid::Grid;
+use super::mark::{Caption, Sample, entry};
+use super::role::{Look, Role};
+use super::sheet::canvas_width;
+use super::style::{self, Theme};
+
+/// Free space at the left and right edges of a narrow canvas and of a wide one.
+const EDGE: (f64, f64) = (24.0, 40.0);
+/// From one line of the title to the next, of the subtitle, and of a legend.
+const TITLE_LINE: f64 = 46.0;
+const SUBTITLE_LINE: f64 = 36.0;
+const ROW: f64 = 38.0;
+/// Width of a legend's sample, its distance from its words, and from those to the next entry.
+const SAMPLE: f64 = 44.0;
+const GAP: f64 = 12.0;
+const BETWEEN_ENTRIES: f64 = 38.0;
+/// The least height of a panel of height 1: of a page, and of a place of the window.
+const LEAST: f64 = 230.0;
+const LEAST_PANE: f64 = 90.0;
+/// Free space around a place of the window.
+const PANE: f64 = 16.0;
+/// Height of the panels on a sheet over its width, where it is not given.
+const PROPORTION: f64 = 0.625;
+
+/// `words` in lines that are no longer than `room`, parted at blanks, and where that is not enough within a
+/// word.
+pub fn wrapped(words: &str, size: f64, bold: bool, room: f64) -> Vec<String> {
+    let fits = |line: &str| font::width(line, size, bold) <= room;
+    let mut lines: Vec<String> = Vec::new();
+    let mut line = String::new();
+    for mut word in words.split(' ') {
+        let longer = if line.is_empty() { word.to_owned() } else { format!("{line} {word}") };
+        if fits(&longer) {
+            line = longer;
+            continue;
+        }
+        if !line.is_empty() {
+            lines.push(std::mem::take(&mut line));
+        }
+        while !word.is_empty() && !fits(word) {
+            let ends = word.char_indices().map(|(begin, letter)| begin + letter.len_utf8());
+            let first = ends.clone().next().unwrap_or(word.len());
+            let end = ends.take_while(|end| fits(&word[..*end])).last().unwrap_or(first);
+            lines.push(word[..end].to_owned());
+            word = &word[end..];
+        }
+        word.clone_into(&mut line);
+    }
+    lines.push(line);
+    lines
+}
+
+/// The same, of which at most so many lines are kept; the last one then ends in an ellipsis.
+pub fn wrapped_to(words: &str, size: f64, bold: bool, room: f64, most: usize) -> Vec<String> {
+    let mut lines = wrapped(words, size, bold, room);
+    if lines.len() > most {
+        lines.truncate(most);
+        if let Some(last) = lines.last_mut() {
+            while font::width(&format!("{last}\u{2026}"), size, bold) > room && last.pop().is_some() {}
+            last.push('\u{2026}');
+        }
+    }
+    lines
+}
+
+/// The most lines of a title or a subtitle.
+const MOST_LINES: usize = 3;
+
+/// Lines of text of one size.
+struct Lines {
+    lines: Vec<String>,
+    size: f64,
+}
+
+impl Lines {
+    /// On paper the words are smaller before they have a second line.
+    fn new(words: &str, size: f64, bold: bool, room: f64, on_paper: bool) -> Self {
+        let share = if on_paper { (room / font::width(words, size, bold)).clamp(0.7, 1.0) } else { 1.0 };
+        let size = share * size;
+        Self { lines: wrapped_to(words, size, bold, room, MOST_LINES), size }
+    }
+}
+
+/// An entry of a legend, placed from the legend's upper left corner on.
+struct Entry<'a> {
+    sample: Sample,
+    words: &'a str,
+    size: f64,
+    left: f64,
+    row: usize,
+}
+
+impl Chart {
+    /// The chart with this caption, laid out for the sheet of the theme or for a screen.
+    pub fn figure(&self, caption: &Caption, theme: &Theme) -> Figure {
+        let sheet = theme.sheet;
+        let width = canvas_width(sheet.as_ref());
+        let edge = if theme.is_narrow() { EDGE.0 } else { EDGE.1 };
+        let room = width - 2.0 * edge;
+        let title = Lines::new(&caption.title, style::TITLE, true, room, sheet.is_some());
+        let subtitle = Lines::new(&self.subtitle, style::SUBTITLE, false, room, sheet.is_some());
+        let footer = caption.footer_lines(room);
+        let above =
+            30.0 + TITLE_LINE * title.lines.len() as f64 + SUBTITLE_LINE * subtitle.lines.len() as f64 + 8.0;
+        let below = 14.0 + style::FOOTER_LINE * footer.len() as f64;
+        let named = self.entries(theme);
+        let legend = Legend::new(&named, room);
+        let mut grid = Grid::new(self, theme.is_narrow());
+        let around = if sheet.is_some_and(|sheet| !sheet.titled) { 0.0 } else { above + below };
+        let asked = match sheet {
+            None => style::SIZE.1.into(),
+            Some(sheet) => sheet.height_mm.map_or(PROPORTION * width + around, |mm| mm / sheet.unit_mm()),
+        };
+        let body = grid.fit((edge, width - edge), asked - around - legend.height, LEAST) + legend.height;
+        let height = above + body + below;
+        let mut figure = Figure::new(theme, (width, height), (above, height - below));
+        figure.origin = caption.origin.clone();
+        let mut y = 24.0;
+        for (lines, step, bold, ink) in
+            [(&title, TITLE_LINE, true, theme.ink), (&subtitle, SUBTITLE_LINE, false, theme.soft)]
+        {
+            for line in &lines.lines {
+                let at = (edge, y + 0.78 * step);
+                figure.text(Text { bold, ..Text::new(line, at, lines.size, ink) });
+                y += step;
+            }
+        }
+        for (i, line) in footer.iter().enumerate() {
+            let at = (edge, height - below + 18.0 + style::FOOTER_LINE * i as f64);
+            figure.text(Text::new(line, at, style::FOOTER, theme.soft));
+        }
+        legend.draw(&mut figure, (edge, above), theme);
+        grid.place(above + legend.height).for_each(|slot| slot.draw(&mut figure, theme));
+        figure.data = self.data.clone();
+        figure
+    }
+
+    /// The chart without captions in this width and height, as for a place of the window.
+    pub fn pane(&self, (width, height): (f64, f64), theme: &Theme) -> Figure {
+        let named = self.entries(theme);
+        let legend = Legend::new(&named, width - 2.0 * PANE);
+        let mut grid = Grid::new(self, width < style::NARROW);
+        grid.fit((PANE, width - PANE), height - legend.height - PANE, LEAST_PANE);
+        let mut figure = Figure::new(theme, (width, height), (0.0, height));
+        legend.draw(&mut figure, (PANE, 0.5 * PANE), theme);
+        grid.place(0.5 * PANE + legend.height).for_each(|slot| slot.draw(&mut figure, theme));
+        figure
+    }
+
+    /// The entries of the legend: those of the layers that have a name, each once.
+    fn entries(&self, theme: &Theme) -> Vec<(Sample, String)> {
+        let mut entries: Vec<(Sample, String)> = Vec::new();
+        let mut add = |sample: Sample, name: &str| {
+            if !name.is_empty() && !entries.iter().any(|entry| entry.1 == name) {
+                entries.push((sample, name.to_owned()));
+            }
+        };
+        for layer in self.panels().flat_map(|panel| &panel.layers) {
+            match &layer.marks {
+                Marks::Regimes(points, _) => {
+                    for (place, (name, _)) in super::mark::REGIMES.iter().enumerate() {
+                        if points.iter().any(|point| point.1 == *name) {
+                            add(Sample::Marker(theme.look(Role::Regime(place))), name);
+                        }
+                    }
+                }
+                Marks::Cells(cells) => {
+                    for (role, name) in cells.entries() {
+                        let look = theme.look(role);
+                        match role {
+                            Role::Missing => add(Sample::Crossed(theme.paper, theme.soft), &name),
+                            _ => add(Sample::Patch(look), &name),
+                        }
+                    }
+                }
+                // a missing value is a hole
+                Marks::Surface(cells, _) if cells.entries().iter().any(|entry| entry.0 == Role::Rest) => {
+                    add(Sample::Patch(theme.look(Role::Rest)), "at rest");
+                }
+                _ => add(sample(layer, theme), &layer.name),
+            }
+        }
+        entries
+    }
+}
+
+/// A legend in rows, with its height.
+struct Legend<'a> {
+    entries: Vec<Entry<'a>>,
+    height: f64,
+}
+
+impl<'a> Legend<'a> {
+    /// These entries in rows that are no wider than `room`.
+    fn new(named: &'a [(Sample, String)], room: f64) -> Self {
+        let (mut left, mut row) = (0.0, 0);
+        let mut entries = Vec::new();
+        for (sample, words) in named {
+            let share = ((room - SAMPLE - GAP) / font::width(words, style::TICK, false)).min(1.0);
+            let size = share * style::TICK;
+            let width = SAMPLE + GAP + font::width(words, size, false);
+            if left > 0.0 && left + width > room + 0.5 {
+                (left, row) = (0.0, row + 1);
+            }
+            entries.push(Entry { sample: *sample, words, size, left, row });
+            left += width + BETWEEN_ENTRIES;
+        }
+        let height = if entries.is_empty() { 0.0 } else { ROW * (row as f64 + 1.0) + 10.0 };
+        Self { entries, height }
+    }
+
+    /// Draws it with its upper left corner at a place.
+    fn draw(&self, figure: &mut Figure, (left, top): (f64, f64), theme: &Theme) {
+        for Entry { sample, words, size, left: from, row } in &self.entries {
+            let (x, middle) = (left + from, top + ROW * (*row as f64 + 0.5));
+            entry(figure, theme, *sample, Area::new(x, middle - 12.0, x + SAMPLE, middle + 12.0));
+            let at = (x + SAMPLE + GAP, middle + 0.5 * size * font::CAPITAL);
+            figure.text(Text::new(*words, at, *size, theme.ink));
+        }
+    }
+}
+
+/// What stands for a layer in the legend.
+fn sample(layer: &Layer, theme: &Theme) -> Sample {
+    let look = theme.look(layer.role);
+    match &layer.marks {
+        Marks::Points(_) | Marks::Cloud(_) | Marks::Regimes(..) => Sample::Marker(look),
+        Marks::Ticks(..) => Sample::Ticks(look.ink),
+        Marks::Wall(..) => Sample::Patch(Look { ink: theme.wall_fill(), ..look }),
+        Marks::Spans(_) => Sample::Patch(Look { hatch: None, ..look }),
+        Marks::Band(_) | Marks::Bars(..) | Marks::Patch | Marks::Cells(_) | Marks::Surface(..) => {
+            Sample::Patch(look)
+        }
+        Marks::Path(_)
+        | Marks::Trace(_)
+        | Marks::Sticks(_)
+        | Marks::Intervals(_)
+        | Marks::Verticals(_)
+        | Marks::Horizontals(_)
+        | Marks::Words(_) => Sample::Line(look),
+    }
+}
