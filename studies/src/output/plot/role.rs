@@ -42,7 +42,7 @@ pub enum Role {
     Around,
     /// What was identified from a record, dashed.
     Envelope,
-    /// A regime by its place among [`REGIMES`](super::mark::REGIMES).
+    /// A regime by its place: rest, intrawell, irregular, interwell.
     Regime(usize),
     /// One of several lines, by its share from 0 to 1 of a colour scale.
     Step(f64),
