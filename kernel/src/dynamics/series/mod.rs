@@ -176,8 +176,7 @@ impl<T: Number> Series<T> {
         // Powers, and sums of terms: Horner's rule waits for a product and a sum at each coefficient, this
         // only for one of them.
         let (mut before, mut power) = (T::of(1.0), t);
-        each_order::<2>(
-            T::QUICK,
+        each_order::<T, true, 2>(
             2..self.known,
             #[inline(always)]
             |k| {
@@ -280,8 +279,7 @@ fn recur<T: Number, D: Tail<T>, const SIMPLE: bool>(
     mut force: impl FnMut(usize, &[T; ROOM], Option<T>) -> T,
     mut more: impl FnMut(usize, T) -> bool,
 ) {
-    each_order_while::<0>(
-        T::QUICK && SIMPLE,
+    each_order_while::<T, SIMPLE, 0>(
         known,
         #[inline(always)]
         |k| {
@@ -301,16 +299,15 @@ fn recur<T: Number, D: Tail<T>, const SIMPLE: bool>(
     );
 }
 
-/// Calls `next` for each of the orders. If `unrolled` and the first order is `USUAL`, the loop is unrolled
-/// with constant orders: the bookkeeping of a loop may cost as much as its body.
+/// Calls `next` for each of the orders. If `UNROLLED`, the first order is `USUAL` and the arithmetic of `T`
+/// is quick, the loop is unrolled with constant orders: the bookkeeping of a loop may cost as much as its
+/// body.
 #[inline(always)]
-pub(crate) fn each_order<const USUAL: usize>(
-    unrolled: bool,
+pub(crate) fn each_order<T: Number, const UNROLLED: bool, const USUAL: usize>(
     orders: std::ops::Range<usize>,
     mut next: impl FnMut(usize),
 ) {
-    each_order_while::<USUAL>(
-        unrolled,
+    each_order_while::<T, UNROLLED, USUAL>(
         orders,
         #[inline(always)]
         |k| {
@@ -322,13 +319,14 @@ pub(crate) fn each_order<const USUAL: usize>(
 
 /// The same until `next` returns false.
 #[inline(always)]
-fn each_order_while<const USUAL: usize>(
-    unrolled: bool,
+fn each_order_while<T: Number, const UNROLLED: bool, const USUAL: usize>(
     orders: std::ops::Range<usize>,
     mut next: impl FnMut(usize) -> bool,
 ) {
     let mut rest = orders.start;
-    if unrolled && orders.start == USUAL {
+    // Each condition is a constant of its own: what does not hold is then not compiled at all, and twenty
+    // copies of a body in double-double arithmetic take long.
+    if UNROLLED && T::QUICK && orders.start == USUAL {
         macro_rules! each {
             ($($k:literal)*) => {
                 $(

@@ -66,8 +66,7 @@ pub(crate) fn curvature<T: Number>(y: &[T], t: T) -> T {
 #[inline(always)]
 pub(crate) fn chord_deviations<T: Number>(y: &[T], h: T) -> (T, T, T) {
     let (mut second, mut third, mut fourth, mut power) = (T::zero(), T::zero(), T::zero(), h);
-    each_order::<2>(
-        T::QUICK,
+    each_order::<T, true, 2>(
         2..y.len(),
         #[inline(always)]
         |k| {

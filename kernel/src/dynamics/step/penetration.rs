@@ -183,16 +183,13 @@ impl<T: Scalar> Penetration<T> {
             loss: stiffness * self.stop.loss,
             damping,
         };
-        let quick = T::QUICK;
         match terms {
-            Terms::Few => each_order::<0>(
-                quick,
+            Terms::Few => each_order::<T, true, 0>(
                 0..order,
                 #[inline(always)]
                 |k| self.extend::<false>(k, &constants, None),
             ),
-            Terms::More => each_order::<0>(
-                quick,
+            Terms::More => each_order::<T, true, 0>(
                 0..order,
                 #[inline(always)]
                 |k| self.extend::<true>(k, &constants, None),
