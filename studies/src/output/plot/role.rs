@@ -145,7 +145,7 @@ impl Theme {
             Role::Regime(place) => marked(self.regimes[place % 4], super::mark::REGIMES[place % 4].1),
             Role::Step(share) => of(self.step(share)),
             Role::Joined => fine(self.soft),
-            Role::Down => dashed(self.second),
+            Role::Down => Look { marker: Marker::Diamond, ..dashed(self.second) },
             Role::Hysteresis => of(self.shaking.over(self.paper, 0.3)),
             Role::Kind(place) => Look {
                 hatch: style::kind_hatch(place),
