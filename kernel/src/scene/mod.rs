@@ -5,6 +5,7 @@
 //! and line to faults that only the model can find.
 //!
 //! ```
+//! # use interwell_kernel as interwell;
 //! use interwell::scene::Document;
 //!
 //! let mut document = Document::load("paper")?;
