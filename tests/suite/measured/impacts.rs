@@ -265,6 +265,15 @@ fn clean_records_of_the_prototype_give_its_restitution_at_all_rates() {
     }
 }
 
+#[test]
+fn a_ball_that_comes_to_rest_is_not_cut_off() {
+    for rate in [500.0, 1e3, 2e3, 1e4] {
+        let found = identified(&recorded("bouncing-ball", &[], 1.0 / rate, 0.0, 1)).unwrap();
+        assert!(holds(number(&found, "restitution"), 0.8), "{rate}: {:?}", found.summary);
+        assert!(!said(&found.remarks, "clipped"), "{rate}: {:?}", found.remarks);
+    }
+}
+
 fn said(remarks: &[String], begin: &str) -> bool {
     remarks.iter().any(|text| text.starts_with(begin))
 }

@@ -102,7 +102,7 @@ fn a_picture_has_the_size_that_was_asked_for() {
     for (size, wanted) in [
         ("--plot-size 800x500", (800, 500)),
         ("--plot-size 601X900 --no-title", (601, 900)),
-        ("--no-title", (1600, 840)),
+        ("--no-title", (1600, 830)),
     ] {
         let line = format!("simulate {SHORT} {size}");
         let (width, height, _) = pixels(&plot(&line, folder.path(), "a.png"));

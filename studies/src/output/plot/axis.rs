@@ -121,12 +121,6 @@ impl PlotAxis {
         Self { low, high, ..self.clone() }.with_ticks(USUAL)
     }
 
-    /// The axis without its label.
-    #[must_use]
-    pub fn unlabelled(&self) -> Self {
-        Self { label: String::new(), name: String::new(), ..self.clone() }
-    }
-
     /// Whether a value lies between its ends.
     pub fn contains(&self, value: f64) -> bool {
         (self.low..=self.high).contains(&value)

@@ -8,6 +8,7 @@ use super::axis::PlotAxis;
 use super::cells::Cells;
 use super::figure::Point;
 use super::role::Role;
+use crate::mechanics::{Equilibrium, Landscape};
 use crate::study::Table;
 
 /// A picture as data.
@@ -113,7 +114,7 @@ pub enum Marks {
     Wall(f64, Side),
     /// Short ticks along this edge; of those that lie close, some.
     Ticks(Vec<f64>, Side),
-    /// Words, each beginning at its place, or before it where it has no room there.
+    /// Words, each beginning at its place, or as far before it as they would leave the frame.
     Words(Vec<(Point, String)>),
     /// A colour for each cell of a grid.
     Cells(Cells),
@@ -146,6 +147,46 @@ impl Panel {
         Self { heading: String::new(), x, y, layers: Vec::new(), bar: None, height: 1.0, notes: Vec::new() }
     }
 
+    /// Whether a point lies within both axes.
+    pub fn contains(&self, (x, y): Point) -> bool {
+        self.x.contains(x) && self.y.contains(y)
+    }
+
+    /// Whether something of a layer may lie within the axes; of one that draws nothing, its entry in the
+    /// legend counts.
+    pub fn shows(&self, layer: &Layer) -> bool {
+        let reaches = |axis: &PlotAxis, a: f64, b: f64| a.max(b) >= axis.low && a.min(b) <= axis.high;
+        // a part of a line counts where its box and the frame have something in common
+        let is_crossed = |points: &[Point]| {
+            points.len() < 2
+                || points.windows(2).any(|pair| {
+                    reaches(&self.x, pair[0].0, pair[1].0) && reaches(&self.y, pair[0].1, pair[1].1)
+                })
+        };
+        let spans_x = |rows: &[[f64; 3]]| rows.iter().any(|row| self.x.contains(row[0]));
+        match &layer.marks {
+            Marks::Points(points) | Marks::Cloud(points) => {
+                points.is_empty() || points.iter().any(|point| self.contains(*point))
+            }
+            Marks::Path(points) | Marks::Trace(points) => is_crossed(points),
+            Marks::Sticks(points) => points.iter().any(|point| self.x.contains(point.0)),
+            Marks::Intervals(rows) => spans_x(rows),
+            Marks::Band(rows) => rows.windows(2).any(|pair| reaches(&self.x, pair[0][0], pair[1][0])),
+            Marks::Spans(spans) => spans.is_empty() || spans.iter().any(|(a, b)| reaches(&self.x, *a, *b)),
+            Marks::Verticals(values) | Marks::Ticks(values, _) => {
+                values.iter().any(|value| self.x.contains(*value))
+            }
+            Marks::Horizontals(values) => values.iter().any(|value| self.y.contains(*value)),
+            Marks::Wall(..)
+            | Marks::Regimes(..)
+            | Marks::Bars(..)
+            | Marks::Words(_)
+            | Marks::Cells(_)
+            | Marks::Surface(..)
+            | Marks::Patch => true,
+        }
+    }
+
     /// Adds a layer without an entry in the legend.
     pub fn draw(&mut self, role: Role, marks: Marks) {
         self.layer(role, "", marks);
@@ -165,10 +206,25 @@ impl Panel {
         }
     }
 
-    /// Adds the stops in the units of the vertical axis; those outside its range are in the legend alone.
+    /// Adds the equilibria of a landscape that lie in the range of the horizontal axis, in mm, each at this
+    /// height.
+    pub fn equilibria(&mut self, landscape: &Landscape, height: impl Fn(&Equilibrium) -> f64) {
+        for (stable, role, name) in
+            [(true, Role::Stable, "stable equilibrium"), (false, Role::Unstable, "unstable equilibrium")]
+        {
+            let of_kind = landscape.equilibria.iter().filter(|equilibrium| equilibrium.stable == stable);
+            let points = of_kind.map(|equilibrium| (equilibrium.x * 1e3, height(equilibrium)));
+            let points: Vec<Point> = points.filter(|point| self.x.contains(point.0)).collect();
+            if !points.is_empty() {
+                self.layer(role, name, Marks::Points(points));
+            }
+        }
+    }
+
+    /// Adds the stops that lie in the range of the vertical axis, in its units.
     pub fn level_stops(&mut self, stops: (f64, f64)) {
         for (at, side) in [(stops.0, Side::Bottom), (stops.1, Side::Top)] {
-            if at.is_finite() {
+            if self.y.contains(at) {
                 self.layer(Role::Stop, "stop", Marks::Wall(at, side));
             }
         }

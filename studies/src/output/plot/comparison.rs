@@ -28,6 +28,15 @@ const COLUMNS: usize = 4;
 const BAR: f64 = 0.5;
 const ROW: f64 = 0.2;
 
+/// The most letters of a name.
+const LONGEST_NAME: usize = 28;
+
+/// Where the marker of a regime stands, and its number begins at least, as shares of the axis.
+const MARKED: (f64, f64) = (0.06, 0.12);
+
+/// Room beyond the frequencies that were searched, as a share of their axis.
+const BAND_ROOM: f64 = 0.55;
+
 /// How much longer an axis is than the longest bar, as room for its number.
 const ROOM: f64 = 1.45;
 
@@ -127,7 +136,17 @@ fn names(rated: &[Rated]) -> Vec<String> {
     let last = |scene: &Rated| scene.name.rsplit(['/', '\\']).next().unwrap_or(&scene.name).to_owned();
     let names: Vec<String> = rated.iter().map(last).collect();
     let apart: BTreeSet<&String> = names.iter().collect();
-    if apart.len() == names.len() { names } else { rated.iter().map(|scene| scene.name.clone()).collect() }
+    let names = if apart.len() == names.len() {
+        names
+    } else {
+        rated.iter().map(|scene| scene.name.clone()).collect()
+    };
+    // the end of a long name tells it from others
+    let shortened = |name: String| match name.char_indices().rev().nth(LONGEST_NAME - 1) {
+        Some((begin, _)) if begin > 0 => format!("\u{2026}{}", &name[begin..]),
+        _ => name,
+    };
+    names.into_iter().map(shortened).collect()
 }
 
 /// The quantities that are above 0 for at least one of the scenes.
@@ -207,7 +226,8 @@ fn panel(picture: &ComparisonPicture<'_>, shown: &Shown, up: &PlotAxis) -> Panel
     let across = match shown.is_band {
         true => {
             let ends = [frequency_hz / SEARCHED_SPAN, frequency_hz * SEARCHED_SPAN].map(f64::log10);
-            PlotAxis::powers(ends[0], ends[1], &label)
+            // with room for the words beyond the widest band
+            PlotAxis::powers(ends[0], ends[1] + BAND_ROOM * (ends[1] - ends[0]), &label)
         }
         false => PlotAxis::between(0.0, if longest > 0.0 { ROOM * longest } else { 1.0 }, &label),
     };
@@ -216,9 +236,6 @@ fn panel(picture: &ComparisonPicture<'_>, shown: &Shown, up: &PlotAxis) -> Panel
     let best = shown.best();
     let height = (ROW * rated.len() as f64).max(1.0);
     let mut panel = Panel { height, heading: shown.title.to_owned(), ..Panel::new(across, up.clone()) };
-    if shown.is_band {
-        panel.layer(Role::Drive, "frequency of the drive", Marks::Verticals(vec![frequency_hz.log10()]));
-    }
     let bars = |chosen: &dyn Fn(usize, &Entry) -> bool| -> Vec<[f64; 3]> {
         let entries = shown.entries.iter().enumerate().filter(|(scene, entry)| chosen(*scene, entry));
         let ends = |entry: &Entry| match entry.to == f64::INFINITY {
@@ -239,9 +256,14 @@ fn panel(picture: &ComparisonPicture<'_>, shown: &Shown, up: &PlotAxis) -> Panel
     }
     let words = shown.entries.iter().enumerate().map(|(scene, entry)| {
         let end = if entry.to.is_finite() { scaled(entry.to) } else { low };
+        let least = if shown.mark == Mark::Regime { low + MARKED.1 * (high - low) } else { low };
+        let end = end.max(least);
         ((end, place(rated, scene)), entry.words.clone())
     });
     panel.draw(Role::Motion, Marks::Words(words.collect()));
+    if shown.is_band {
+        panel.layer(Role::Drive, "frequency of the drive", Marks::Verticals(vec![frequency_hz.log10()]));
+    }
     let marks = rated.iter().enumerate();
     match shown.mark {
         Mark::None => {}
@@ -255,7 +277,7 @@ fn panel(picture: &ComparisonPicture<'_>, shown: &Shown, up: &PlotAxis) -> Panel
         }
         Mark::Regime => {
             let known = marks.filter(|(scene, _)| shown.entries[*scene].to.is_finite());
-            let at = low + 0.05 * (high - low);
+            let at = low + MARKED.0 * (high - low);
             let regimes = known.filter_map(|(scene, rated_scene)| {
                 let name = rated_scene.summary.regime.name();
                 REGIMES.iter().any(|regime| regime.0 == name).then_some(((at, place(rated, scene)), name))

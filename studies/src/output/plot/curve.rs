@@ -42,19 +42,10 @@ pub fn curve_chart(table: &Table, mechanism: &Mechanism, stops: (f64, f64), rang
             panel.draw(Role::Reference, Marks::Horizontals(vec![0.0]));
         }
         panel.draw(Role::Curve, Marks::Path(line));
-        for (stable, role, name) in
-            [(true, Role::Stable, "stable equilibrium"), (false, Role::Unstable, "unstable equilibrium")]
-        {
-            let equilibria = landscape.equilibria.iter().filter(|e| e.stable == stable && inside(e.x));
-            let height = |x: f64| if i == 0 { 0.0 } else { energy(x) };
-            let points: Vec<Point> = equilibria.map(|e| (e.x * 1e3, height(e.x))).collect();
-            if !points.is_empty() {
-                panel.layer(role, name, Marks::Points(points));
-            }
-        }
+        panel.equilibria(landscape, |equilibrium| if i == 0 { 0.0 } else { energy(equilibrium.x) });
     }
     let mut words = subtitle(landscape);
-    if let Some(wall) = wall(column("x_m"), column("force_n"), &panels[0].y, force) {
+    if let Some(wall) = wall(column("x_m"), column("force_n"), &panels[0], force) {
         words += &wall;
     }
     Chart::stack(panels.into(), words, drawn(table, mechanism, stops, inside))
@@ -98,11 +89,11 @@ fn subtitle(landscape: &Landscape) -> String {
     parts.join(", ")
 }
 
-/// What the picture does not show, where the force leaves it: how large it becomes, and where. `scale` is
-/// that of the axis `up`.
-fn wall(x: &[f64], force: &[f64], up: &PlotAxis, scale: f64) -> Option<String> {
-    let beyond = |force: f64| force * scale < up.low || force * scale > up.high;
-    let outside = x.iter().zip(force).filter(|(_, force)| force.is_finite() && beyond(**force));
+/// What the panel of the force does not show of the positions in its range: how large the force becomes, and
+/// where. `scale` is that of the axis upward.
+fn wall(x: &[f64], force: &[f64], panel: &Panel, scale: f64) -> Option<String> {
+    let shown = x.iter().zip(force).filter(|(x, force)| panel.x.contains(**x * 1e3) && force.is_finite());
+    let outside = shown.filter(|(_, force)| !panel.y.contains(**force * scale));
     let (x, force) = outside.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
     let (force, x) = (short(*force), short(x * 1e3));
     Some(format!(", force leaves the picture ({force} N at {x} mm)").replace('-', "\u{2212}"))

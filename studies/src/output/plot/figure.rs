@@ -47,6 +47,32 @@ impl Area {
         (self.left..=self.right).contains(&x) && (self.top..=self.bottom).contains(&y)
     }
 
+    /// The part of a convex polygon that lies inside (Sutherland and Hodgman 1974); empty if none does.
+    pub fn clip_polygon(self, points: Vec<Point>) -> Vec<Point> {
+        // inside is where the normal takes a point beyond the edge
+        let edges = [
+            ((1.0, 0.0), self.left),
+            ((-1.0, 0.0), -self.right),
+            ((0.0, 1.0), self.top),
+            ((0.0, -1.0), -self.bottom),
+        ];
+        edges.into_iter().fold(points, |points, (normal, edge)| {
+            let depth = |at: Point| normal.0 * at.0 + normal.1 * at.1 - edge;
+            let mut inside = Vec::new();
+            for (a, b) in points.iter().zip(points.iter().cycle().skip(1)) {
+                let (before, after) = (depth(*a), depth(*b));
+                if before >= 0.0 {
+                    inside.push(*a);
+                }
+                if before * after < 0.0 {
+                    let share = before / (before - after);
+                    inside.push((a.0 + share * (b.0 - a.0), a.1 + share * (b.1 - a.1)));
+                }
+            }
+            inside
+        })
+    }
+
     /// The part of the segment from `a` to `b` that lies inside (Liang and Barsky 1984).
     pub fn clip(self, a: Point, b: Point) -> Option<(Point, Point)> {
         let (dx, dy) = (b.0 - a.0, b.1 - a.1);
@@ -270,6 +296,20 @@ impl Figure {
         let Area { left, top, right, bottom } = area;
         let corners = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
         self.line(&corners, width, ink, self.canvas);
+    }
+
+    /// Hatches `area` with lines that go down to the right, as a value that is missing.
+    pub fn hatch_missing(&mut self, area: Area, ink: Ink) {
+        let Some(area) = area.common(self.canvas) else { return };
+        let (step, width) = style::HATCH;
+        // Lines x - y = k step.
+        let first = ((area.left - area.bottom) / step).ceil() as i64;
+        let last = ((area.right - area.top) / step).floor() as i64;
+        for k in first..=last {
+            let difference = k as f64 * step;
+            let line = [(difference + area.top, area.top), (difference + area.bottom, area.bottom)];
+            self.line(&line, width, ink, area);
+        }
     }
 
     /// Hatches `area` with lines that go up to the right, in step with every other hatching.

@@ -7,7 +7,7 @@ use super::cells::{Cell, Cells};
 use super::chart::{Layer, Marks, Side};
 use super::figure::{Align, Area, Figure, Point, Text};
 use super::font;
-use super::mark::{REGIMES, cross, dot, mark, marker};
+use super::mark::{REGIMES, dot, mark, marker};
 use super::role::{Look, Role};
 use super::style::{self, Theme};
 
@@ -297,9 +297,12 @@ impl Frame {
 
     /// What lies between two lines from one x to the next, where both have values; the lines may cross.
     fn band(&self, figure: &mut Figure, rows: &[[f64; 3]], look: &Look) {
-        let within = self.area;
-        let clamped =
-            |(x, y): Point| (x.clamp(within.left, within.right), y.clamp(within.top, within.bottom));
+        let mut fill = |corners: Vec<Point>| {
+            let inside = self.area.clip_polygon(corners);
+            if inside.len() > 2 {
+                figure.polygon(inside, look.ink);
+            }
+        };
         for pair in rows.windows(2) {
             let [a, b] =
                 [pair[0], pair[1]].map(|[x, low, high]| (self.place((x, low)), self.place((x, high))));
@@ -310,11 +313,11 @@ impl Frame {
             if before * after < 0.0 {
                 let share = before / (before - after);
                 let mix = |p: f64, q: f64| p + share * (q - p);
-                let meet = clamped((mix(a.0.0, b.0.0), mix(a.0.1, b.0.1)));
-                figure.polygon(vec![clamped(a.0), meet, clamped(a.1)], look.ink);
-                figure.polygon(vec![clamped(b.0), meet, clamped(b.1)], look.ink);
+                let meet = (mix(a.0.0, b.0.0), mix(a.0.1, b.0.1));
+                fill(vec![a.0, meet, a.1]);
+                fill(vec![b.0, meet, b.1]);
             } else {
-                figure.polygon(vec![clamped(a.0), clamped(b.0), clamped(b.1), clamped(a.1)], look.ink);
+                fill(vec![a.0, b.0, b.1, a.1]);
             }
         }
     }
@@ -335,19 +338,25 @@ impl Frame {
         }
     }
 
+    /// A wall reaches to the edge of the frame where that is near.
     fn wall(&self, figure: &mut Figure, at: f64, side: Side, look: &Look, theme: &Theme) {
         let Area { left, top, right, bottom } = self.area;
+        let thickness = |room: f64| if room < 3.0 * style::WALL { room } else { style::WALL };
         let (solid, line) = match side {
             Side::Left | Side::Right => {
                 let at = self.across(at);
-                let (from, to) =
-                    if side == Side::Left { (at - style::WALL, at) } else { (at, at + style::WALL) };
+                let (from, to) = match side {
+                    Side::Left => (at - thickness(at - left), at),
+                    _ => (at, at + thickness(right - at)),
+                };
                 (Area::new(from, top, to, bottom), [(at, top), (at, bottom)])
             }
             Side::Top | Side::Bottom => {
                 let at = self.down(at);
-                let (from, to) =
-                    if side == Side::Top { (at - style::WALL, at) } else { (at, at + style::WALL) };
+                let (from, to) = match side {
+                    Side::Top => (at - thickness(at - top), at),
+                    _ => (at, at + thickness(bottom - at)),
+                };
                 (Area::new(left, from, right, to), [(left, at), (right, at)])
             }
         };
@@ -380,7 +389,7 @@ impl Frame {
                     }
                     Cell::Missing => {
                         figure.rect(area, theme.paper);
-                        cross(figure, area, theme.soft);
+                        figure.hatch_missing(area, theme.soft);
                     }
                     Cell::Blank => {}
                 }

@@ -47,9 +47,9 @@ pub struct Slot<'a> {
     /// Whether the axes have numbers and a label; else they have those of a neighbour.
     shows_x: bool,
     shows_y: bool,
-    x_label: Vec<String>,
-    y_label: Vec<String>,
-    bar_label: Vec<String>,
+    x_label: Label,
+    y_label: Label,
+    bar_label: Label,
     /// Room for the numbers upward.
     numbers: f64,
     /// How much wider than the column's its frame is, where it has no colour bar.
@@ -110,9 +110,9 @@ impl<'a> Grid<'a> {
                     bar: panel.bar.clone(),
                     shows_x: panels.get(i + 1).filter(shares_x).is_none(),
                     shows_y: left.is_none_or(|left| left.panel.y != panel.y),
-                    x_label: Vec::new(),
-                    y_label: Vec::new(),
-                    bar_label: Vec::new(),
+                    x_label: Label::default(),
+                    y_label: Label::default(),
+                    bar_label: Label::default(),
                     numbers: 0.0,
                     more: 0.0,
                     area: Area::new(0.0, 0.0, 0.0, 0.0),
@@ -160,20 +160,20 @@ impl<'a> Grid<'a> {
 
     /// The rows of a column; where rows are aligned, those of all columns.
     fn rows(&self, column: usize) -> Vec<Row> {
-        let row_of = |stack: &Stack, i: usize| stack.row(i);
         if !self.aligned {
-            return (0..self.stacks[column].slots.len()).map(|i| row_of(&self.stacks[column], i)).collect();
+            let stack = &self.stacks[column];
+            return (0..stack.slots.len()).map(|i| stack.row(i)).collect();
         }
         let count = self.stacks.iter().map(|stack| stack.slots.len()).max().unwrap_or(0);
-        let widest = |i: usize| {
-            let rows = self.stacks.iter().filter(|stack| i < stack.slots.len()).map(|stack| row_of(stack, i));
+        let largest = |i: usize| {
+            let rows = self.stacks.iter().filter(|stack| i < stack.slots.len()).map(|stack| stack.row(i));
             rows.fold(Row::default(), |a, b| Row {
                 over: a.over.max(b.over),
                 height: a.height.max(b.height),
                 under: a.under.max(b.under),
             })
         };
-        (0..count).map(widest).collect()
+        (0..count).map(largest).collect()
     }
 
     /// The slots with their places below `top`.
@@ -200,11 +200,34 @@ fn widest(axis: &PlotAxis) -> f64 {
     axis.ticks.iter().map(|tick| font::width(&tick.1, style::TICK, false)).fold(0.0, f64::max)
 }
 
-/// The lines of a label, which may be empty.
-fn label(axis: &PlotAxis, room: f64) -> Vec<String> {
-    let mut lines = wrapped(&axis.label, style::AXIS, false, room);
-    lines.retain(|line| !line.is_empty());
-    lines
+/// The least size of a label over the usual one at which it stays in one line.
+const ONE_LINE: f64 = 0.85;
+
+/// A label in lines that are no longer than `room`: smaller where it then fits in one line, or where a word of
+/// it is longer.
+#[derive(Default)]
+struct Label {
+    lines: Vec<String>,
+    size: f64,
+}
+
+impl Label {
+    fn new(axis: &PlotAxis, room: f64) -> Self {
+        let fits = |words: &str| (room / font::width(words, style::AXIS, false).max(1.0)).min(1.0);
+        let whole = fits(&axis.label);
+        let share =
+            if whole >= ONE_LINE { whole } else { axis.label.split(' ').map(fits).fold(1.0, f64::min) };
+        let size = share * style::AXIS;
+        // the measured width may be longer than the room by a rounding
+        let mut lines = wrapped(&axis.label, size, false, room + 1e-6);
+        lines.retain(|line| !line.is_empty());
+        Self { lines, size }
+    }
+
+    /// The room that its lines take, each of this `line`.
+    fn across(&self, line: f64) -> f64 {
+        line * self.lines.len() as f64
+    }
 }
 
 impl Stack<'_> {
@@ -224,12 +247,12 @@ impl Stack<'_> {
             let count = (self.width / A_TICK.1).round().clamp(2.0, 9.0) as usize;
             slot.x = slot.panel.x.with_ticks(count);
             let along = height + BETWEEN - 6.0;
-            slot.y_label = if slot.shows_y { label(&slot.y, along) } else { Vec::new() };
-            slot.x_label =
-                if slot.shows_x { label(&slot.x, self.width.max(USUAL) + 10.0) } else { Vec::new() };
+            slot.y_label = if slot.shows_y { Label::new(&slot.y, along) } else { Label::default() };
+            let under = self.width.max(USUAL) + 10.0;
+            slot.x_label = if slot.shows_x { Label::new(&slot.x, under) } else { Label::default() };
             if let Some(axis) = &slot.bar {
-                slot.bar_label = label(axis, along);
-                let label = LABEL_WIDTH * slot.bar_label.len() as f64;
+                slot.bar_label = Label::new(axis, along);
+                let label = slot.bar_label.across(LABEL_WIDTH);
                 let right = BAR.0 + BAR.1 + TO_NUMBERS + widest(axis) + TO_LABEL + label;
                 self.right = self.right.max(right);
             }
@@ -254,7 +277,7 @@ impl Stack<'_> {
             slot.numbers = if slot.shows_y { numbers } else { 0.0 };
             if slot.panel.surface().is_none() {
                 let before = if slot.numbers > 0.0 { TO_NUMBERS + slot.numbers + TO_LABEL } else { 0.0 };
-                self.left = self.left.max(before + LABEL_WIDTH * slot.y_label.len() as f64);
+                self.left = self.left.max(before + slot.y_label.across(LABEL_WIDTH));
             }
         }
     }
@@ -266,7 +289,7 @@ impl Stack<'_> {
         let over = if i == 0 { heading.max(14.0) } else { heading + BETWEEN };
         let axis = match slot.panel.surface() {
             Some(_) => SURFACE,
-            None if slot.shows_x => NUMBERS + LABEL * slot.x_label.len() as f64 + 8.0,
+            None if slot.shows_x => NUMBERS + slot.x_label.across(LABEL) + 8.0,
             None => 0.0,
         };
         Row { over, height: slot.panel.height, under: axis + NOTE * slot.panel.notes.len() as f64 }
@@ -302,7 +325,7 @@ impl Slot<'_> {
             let text = Text::new(&self.panel.heading, (left, top - 14.0), share * style::TICK, theme.ink);
             figure.text(Text { bold: true, ..text });
         }
-        let under = if self.shows_x { NUMBERS + LABEL * self.x_label.len() as f64 + 8.0 } else { 0.0 };
+        let under = if self.shows_x { NUMBERS + self.x_label.across(LABEL) + 8.0 } else { 0.0 };
         for (i, note) in self.panel.notes.iter().enumerate() {
             let y = self.area.bottom + under + NOTE * i as f64;
             let mut x = left;
@@ -330,27 +353,28 @@ impl Slot<'_> {
         layers.iter().filter(|layer| !is_under(layer)).for_each(|layer| frame.layer(figure, layer, theme));
         frame.ticks(figure, theme, self.shows_x, self.shows_y.then_some(self.numbers));
         figure.frames.push(frame);
-        let centred = |words: &str, at: (f64, f64), upright: bool| Text {
+        let centred = |words: &str, at: (f64, f64), size: f64, upright: bool| Text {
             align: Align::Centre,
             upright,
-            ..Text::new(words, at, style::AXIS, theme.ink)
+            ..Text::new(words, at, size, theme.ink)
         };
         let middle = (0.5 * (area.left + area.right), 0.5 * (area.top + area.bottom));
-        for (i, line) in self.x_label.iter().enumerate() {
-            figure.text(centred(line, (middle.0, area.bottom + NUMBERS + LABEL * (i as f64 + 0.8)), false));
+        for (i, line) in self.x_label.lines.iter().enumerate() {
+            let at = (middle.0, area.bottom + NUMBERS + LABEL * (i as f64 + 0.8));
+            figure.text(centred(line, at, self.x_label.size, false));
         }
         let numbers = if self.numbers > 0.0 { TO_NUMBERS + self.numbers + TO_LABEL } else { 0.0 };
-        for (i, line) in self.y_label.iter().enumerate() {
-            let x = area.left - numbers - LABEL_WIDTH * (self.y_label.len() - 1 - i) as f64 - 8.0;
-            figure.text(centred(line, (x, middle.1), true));
+        for (i, line) in self.y_label.lines.iter().enumerate() {
+            let x = area.left - numbers - LABEL_WIDTH * (self.y_label.lines.len() - 1 - i) as f64 - 8.0;
+            figure.text(centred(line, (x, middle.1), self.y_label.size, true));
         }
         if let (Some(axis), Some(colours)) = (&self.bar, self.panel.colours()) {
             let from = area.right + BAR.0;
             let place = Area::new(from, area.top, from + BAR.1, area.bottom);
             colours.bar(figure, place, axis, theme);
-            for (i, line) in self.bar_label.iter().enumerate() {
+            for (i, line) in self.bar_label.lines.iter().enumerate() {
                 let x = place.right + TO_NUMBERS + widest(axis) + TO_LABEL + LABEL_WIDTH * (i as f64 + 0.75);
-                figure.text(centred(line, (x, middle.1), true));
+                figure.text(centred(line, (x, middle.1), self.bar_label.size, true));
             }
         }
     }

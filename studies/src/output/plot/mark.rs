@@ -26,11 +26,12 @@ pub enum Marker {
 }
 
 /// The regimes with a colour of their own, in the order of [`Theme::regimes`], and their markers.
-pub const REGIMES: [(&str, Marker); 4] = [
+pub const REGIMES: [(&str, Marker); 5] = [
     ("rest", Marker::Square),
     ("intrawell", Marker::Disc),
     ("irregular", Marker::Diamond),
     ("interwell", Marker::DoubleArrow),
+    ("crossing", Marker::Triangle),
 ];
 
 /// Draws a marker with an outline of `edge`; `size` is half its height.
@@ -46,7 +47,10 @@ pub fn dot(figure: &mut Figure, marker: Marker, (x, y): Point, size: f64, ink: I
     let polygon = |points: &[Point]| points.iter().map(|(dx, dy)| (x + dx, y + dy)).collect::<Vec<Point>>();
     match marker {
         Marker::Disc => figure.disc((x, y), size, ink),
-        Marker::Square => figure.rect(Area::new(x - flat, y - flat, x + flat, y + flat), ink),
+        // a polygon, since rectangles are of whole pixels
+        Marker::Square => {
+            figure.polygon(polygon(&[(-flat, -flat), (flat, -flat), (flat, flat), (-flat, flat)]), ink);
+        }
         Marker::Diamond => {
             let reach = 1.25 * size;
             figure.polygon(polygon(&[(0.0, -reach), (reach, 0.0), (0.0, reach), (-reach, 0.0)]), ink);
@@ -73,8 +77,8 @@ pub enum Sample {
     Marker(Look),
     /// A filled patch.
     Patch(Look),
-    /// A patch with a cross in it, both in these colours.
-    Crossed(Ink, Ink),
+    /// A patch as that of a missing cell.
+    Missing,
     /// Two short upright lines.
     Ticks(Ink),
 }
@@ -94,9 +98,9 @@ pub fn entry(figure: &mut Figure, theme: &Theme, sample: Sample, area: Area) {
             }
             figure.outline(area, style::GRID, theme.soft);
         }
-        Sample::Crossed(paper, ink) => {
-            figure.rect(area, paper);
-            cross(figure, area, ink);
+        Sample::Missing => {
+            figure.rect(area, theme.paper);
+            figure.hatch_missing(area, theme.soft);
             figure.outline(area, style::GRID, theme.soft);
         }
         Sample::Ticks(ink) => {
@@ -118,13 +122,6 @@ pub fn mark(figure: &mut Figure, look: &Look, at: Point, size: f64, theme: &Them
     if look.hollow {
         dot(figure, look.marker, at, size - 3.0, theme.paper);
     }
-}
-
-/// A cross from corner to corner.
-pub fn cross(figure: &mut Figure, area: Area, ink: Ink) {
-    let Area { left, top, right, bottom } = area;
-    figure.line(&[(left, top), (right, bottom)], style::THIN, ink, area);
-    figure.line(&[(left, bottom), (right, top)], style::THIN, ink, area);
 }
 
 /// What stands over and under a picture.

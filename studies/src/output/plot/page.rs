@@ -22,8 +22,9 @@ const BETWEEN_ENTRIES: f64 = 38.0;
 /// The least height of a panel of height 1: of a page, and of a place of the window.
 const LEAST: f64 = 230.0;
 const LEAST_PANE: f64 = 90.0;
-/// Free space around a place of the window.
+/// Free space around a place of the window, and the height below which it has no subtitle.
 const PANE: f64 = 16.0;
+const LOW_PANE: f64 = 600.0;
 /// Height of the panels on a sheet over its width, where it is not given.
 const PROPORTION: f64 = 0.625;
 
@@ -107,7 +108,7 @@ impl Chart {
         let footer = caption.footer_lines(room);
         let above =
             30.0 + TITLE_LINE * title.lines.len() as f64 + SUBTITLE_LINE * subtitle.lines.len() as f64 + 8.0;
-        let below = 14.0 + style::FOOTER_LINE * footer.len() as f64;
+        let below = 24.0 + style::FOOTER_LINE * footer.len() as f64;
         let named = self.entries(theme);
         let legend = Legend::new(&named, room);
         let mut grid = Grid::new(self, theme.is_narrow());
@@ -131,7 +132,7 @@ impl Chart {
             }
         }
         for (i, line) in footer.iter().enumerate() {
-            let at = (edge, height - below + 18.0 + style::FOOTER_LINE * i as f64);
+            let at = (edge, height - below + 28.0 + style::FOOTER_LINE * i as f64);
             figure.text(Text::new(line, at, style::FOOTER, theme.soft));
         }
         legend.draw(&mut figure, (edge, above), theme);
@@ -140,15 +141,24 @@ impl Chart {
         figure
     }
 
-    /// The chart without captions in this width and height, as for a place of the window.
+    /// The chart in this width and height, as for a place of the window: without captions but the subtitle,
+    /// which a low one has not.
     pub fn pane(&self, (width, height): (f64, f64), theme: &Theme) -> Figure {
         let named = self.entries(theme);
         let legend = Legend::new(&named, width - 2.0 * PANE);
+        let is_low = height < LOW_PANE || self.subtitle.is_empty();
+        let subtitle = if is_low { "" } else { &self.subtitle };
+        let subtitle = wrapped_to(subtitle, style::TICK, false, width - 2.0 * PANE, MOST_LINES);
+        let above = 0.5 * PANE + if is_low { 0.0 } else { SUBTITLE_LINE * subtitle.len() as f64 };
         let mut grid = Grid::new(self, width < style::NARROW);
-        grid.fit((PANE, width - PANE), height - legend.height - PANE, LEAST_PANE);
+        grid.fit((PANE, width - PANE), height - above - legend.height - 0.5 * PANE, LEAST_PANE);
         let mut figure = Figure::new(theme, (width, height), (0.0, height));
-        legend.draw(&mut figure, (PANE, 0.5 * PANE), theme);
-        grid.place(0.5 * PANE + legend.height).for_each(|slot| slot.draw(&mut figure, theme));
+        for (i, line) in subtitle.iter().enumerate() {
+            let at = (PANE, 0.5 * PANE + SUBTITLE_LINE * (i as f64 + 0.75));
+            figure.text(Text::new(line, at, style::TICK, theme.soft));
+        }
+        legend.draw(&mut figure, (PANE, above), theme);
+        grid.place(above + legend.height).for_each(|slot| slot.draw(&mut figure, theme));
         figure
     }
 
@@ -160,11 +170,12 @@ impl Chart {
                 entries.push((sample, name.to_owned()));
             }
         };
-        for layer in self.panels().flat_map(|panel| &panel.layers) {
+        let layers = self.panels().flat_map(|panel| panel.layers.iter().map(move |layer| (panel, layer)));
+        for (panel, layer) in layers.filter(|(panel, layer)| panel.shows(layer)) {
             match &layer.marks {
                 Marks::Regimes(points, _) => {
                     for (place, (name, _)) in super::mark::REGIMES.iter().enumerate() {
-                        if points.iter().any(|point| point.1 == *name) {
+                        if points.iter().any(|point| point.1 == *name && panel.contains(point.0)) {
                             add(Sample::Marker(theme.look(Role::Regime(place))), name);
                         }
                     }
@@ -173,7 +184,7 @@ impl Chart {
                     for (role, name) in cells.entries() {
                         let look = theme.look(role);
                         match role {
-                            Role::Missing => add(Sample::Crossed(theme.paper, theme.soft), &name),
+                            Role::Missing => add(Sample::Missing, &name),
                             _ => add(Sample::Patch(look), &name),
                         }
                     }

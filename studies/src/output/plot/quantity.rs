@@ -1,6 +1,7 @@
 //! Column of a sweep that a picture shows, in units that suit it.
 
 use super::axis::PlotAxis;
+use super::mark::REGIMES;
 use super::role::Role;
 use super::swept::missing_words;
 use crate::study::{Grid, RMS_VELOCITY, SummaryField, Table, Values, label_and_unit};
@@ -11,7 +12,6 @@ pub const RMS: &str = RMS_VELOCITY.name;
 /// The words that the column called `name` can have, in the order of their colours; `None` for numbers.
 pub fn words_of(name: &str) -> Option<&'static [&'static str]> {
     let words: &[&str] = match name {
-        "regime" => &["rest", "intrawell", "irregular", "interwell"],
         "outcome" => &[
             "done",
             "inaccurate",
@@ -73,9 +73,13 @@ impl Quantity {
             }
             Some(Values::Names(_)) | None => Vec::new(),
         };
-        let role = |place| if name == "regime" { Role::Regime(place) } else { Role::Kind(place) };
-        let mut kinds: Option<Vec<(Role, String)>> = words
-            .map(|words| words.iter().enumerate().map(|(i, word)| (role(i), (*word).to_owned())).collect());
+        let role = |place: usize, word: &str| match REGIMES.iter().position(|regime| regime.0 == word) {
+            Some(regime) if name == "regime" => Role::Regime(regime),
+            _ => Role::Kind(place),
+        };
+        let mut kinds: Option<Vec<(Role, String)>> = words.map(|words| {
+            words.iter().enumerate().map(|(i, word)| (role(i, word), (*word).to_owned())).collect()
+        });
         if name == PERIOD {
             kinds = Some(counted(&mut values));
         }

@@ -255,8 +255,8 @@ impl RecordPicture {
         let mut lower = Panel { height: LOWER, ..Panel::new(across, below) };
         match &self.lower {
             Lower::Rest(_, _, points) => {
+                lower.draw(Role::Reference, Marks::Horizontals(vec![0.0]));
                 lower.draw(Role::Measured, Marks::Cloud(points.clone()));
-                lower.draw(Role::Motion, Marks::Horizontals(vec![0.0]));
             }
             Lower::Intervals(_, _, rows, all) => {
                 if let Some(number) = all {

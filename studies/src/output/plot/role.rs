@@ -42,7 +42,7 @@ pub enum Role {
     Around,
     /// What was identified from a record, dashed.
     Envelope,
-    /// A regime by its place: rest, intrawell, irregular, interwell.
+    /// A regime by its place: rest, intrawell, irregular, interwell, crossing.
     Regime(usize),
     /// One of several lines, by its share from 0 to 1 of a colour scale.
     Step(f64),
@@ -132,7 +132,7 @@ impl Theme {
             Role::Impact => Look { width: 2.0, ..marked(self.impact, Marker::Disc) },
             Role::Rest => Look { hatch: Some(self.rest_hatch), ..of(self.rest) },
             Role::Well => dashed(self.stable),
-            Role::Stable => Look { size: style::MARKER + 2.0, ..of(self.ink) },
+            Role::Stable => Look { size: style::MARKER + 2.0, halo: Some(self.paper), ..of(self.ink) },
             Role::Unstable => Look { hollow: true, size: style::MARKER + 2.0, ..of(self.ink) },
             Role::Kink => Look { marker: Marker::Diamond, ..dotted(self.soft) },
             Role::Separatrix => Look { width: style::FINE_LINE, ..dashed(self.soft) },
@@ -142,7 +142,7 @@ impl Theme {
             Role::Interval => Look { size: 7.0, ..of(self.regimes[2]) },
             Role::Around => of(self.ink.over(self.paper, 0.14)),
             Role::Envelope => Look { width: style::FINE_LINE, ..dashed(self.ink) },
-            Role::Regime(place) => marked(self.regimes[place % 4], super::mark::REGIMES[place % 4].1),
+            Role::Regime(place) => marked(self.regimes[place % 5], super::mark::REGIMES[place % 5].1),
             Role::Step(share) => of(self.step(share)),
             Role::Joined => fine(self.soft),
             Role::Down => Look { marker: Marker::Diamond, ..dashed(self.second) },

@@ -189,7 +189,8 @@ impl Seen<'_> {
         ];
         let rests: Vec<(f64, f64)> = {
             let column = |name: &str| trace.rests.numbers(name).unwrap_or_default();
-            column("from_s").iter().copied().zip(column("to_s").iter().copied()).collect()
+            let spans = column("from_s").iter().copied().zip(column("to_s").iter().copied());
+            spans.filter(|(from, to)| *to >= trace.shown_from && *from <= trace.shown_to).collect()
         };
         let build = |(kind, up, values, scale, role, height): (_, PlotAxis, &[f64], f64, _, _)| {
             let mut panel = Panel { height, ..Panel::new(time.clone(), up) };
@@ -213,7 +214,8 @@ impl Seen<'_> {
                 let sides = trace.impacts.words("side");
                 for (word, side) in [("left", Side::Bottom), ("right", Side::Top)] {
                     let of_side = times.iter().zip(sides).filter(|impact| *impact.1 == word);
-                    let at: Vec<f64> = of_side.map(|impact| *impact.0).collect();
+                    let at: Vec<f64> =
+                        of_side.map(|impact| *impact.0).filter(|t| time.contains(*t)).collect();
                     if !at.is_empty() {
                         panel.layer(Role::Impact, "impact", Marks::Ticks(at, side));
                     }
@@ -243,21 +245,12 @@ impl Seen<'_> {
             let part: Vec<_> = part.filter(|point| panel.x.contains(point.0)).collect();
             panel.layer(Role::Separatrix, "separatrix", Marks::Path(part));
         }
-        for (stable, role, name) in
-            [(true, Role::Stable, "stable equilibrium"), (false, Role::Unstable, "unstable equilibrium")]
-        {
-            let equilibria = self.mechanism.landscape.equilibria.iter().filter(|e| e.stable == stable);
-            let points: Vec<_> =
-                equilibria.map(|e| (e.x * 1e3, 0.0)).filter(|point| panel.x.contains(point.0)).collect();
-            if !points.is_empty() {
-                panel.layer(role, name, Marks::Points(points));
-            }
-        }
         let path = x.iter().zip(v).map(|(x, v)| (x * 1e3, v * self.speed.0)).collect();
         panel.draw(Role::Motion, Marks::Path(path));
         if let (Some(x), true, true) = (x.first(), is_still(x), is_still(v)) {
-            panel.draw(Role::Motion, Marks::Points(vec![(x * 1e3, 0.0)]));
+            panel.layer(Role::Drive, "the mass at rest", Marks::Points(vec![(x * 1e3, 0.0)]));
         }
+        panel.equilibria(&self.mechanism.landscape, |_| 0.0);
         panel
     }
 

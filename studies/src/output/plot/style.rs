@@ -81,21 +81,21 @@ pub struct Theme {
     pub sheet: Option<Sheet>,
     /// Behind everything.
     pub paper: Ink,
-    /// Text, frames, and the first line of a panel.
+    /// Text, frames, motion and force.
     pub ink: Ink,
     /// Text of less weight.
     pub soft: Ink,
     /// Grid lines.
     pub grid: Ink,
-    /// Velocity, and potential.
+    /// Velocity, and the way down of a walk.
     pub second: Ink,
     /// The shaking.
     pub shaking: Ink,
     /// Stops.
     pub wall: Ink,
-    /// Stable equilibria.
+    /// Wells, and the best of several.
     pub stable: Ink,
-    /// Unstable equilibria.
+    /// Unstable motions, and thresholds with gaps above.
     pub unstable: Ink,
     /// Impacts.
     pub impact: Ink,
@@ -103,8 +103,8 @@ pub struct Theme {
     pub rest: Ink,
     /// The hatching over cells at rest.
     pub rest_hatch: Ink,
-    /// The regimes `rest`, `intrawell`, `irregular`, `interwell`.
-    pub regimes: [Ink; 4],
+    /// The regimes `rest`, `intrawell`, `irregular`, `interwell`, `crossing`.
+    pub regimes: [Ink; 5],
 }
 
 impl Theme {
@@ -123,7 +123,7 @@ impl Theme {
         impact: VERMILION,
         rest: Ink(0xe4, 0xe4, 0xe4),
         rest_hatch: Ink(0x9a, 0x9a, 0x9a),
-        regimes: [Ink(0x80, 0x80, 0x80), BLUE, PURPLE, VERMILION],
+        regimes: [Ink(0x80, 0x80, 0x80), BLUE, PURPLE, VERMILION, Ink(0xe8, 0x9a, 0x5c)],
     };
 
     /// Light on dark.
@@ -141,7 +141,13 @@ impl Theme {
         impact: Ink(0xf0, 0x78, 0x28),
         rest: Ink(0x3a, 0x3f, 0x47),
         rest_hatch: Ink(0x72, 0x78, 0x82),
-        regimes: [Ink(0x9a, 0x9a, 0x9a), Ink(0x2b, 0x95, 0xd6), PURPLE, Ink(0xf0, 0x73, 0x10)],
+        regimes: [
+            Ink(0x9a, 0x9a, 0x9a),
+            Ink(0x2b, 0x95, 0xd6),
+            PURPLE,
+            Ink(0xf0, 0x73, 0x10),
+            Ink(0xe8, 0x9a, 0x5c),
+        ],
     };
 
     /// The inside of a wall.

@@ -58,19 +58,22 @@ impl View {
         };
         let below = style::TICK * font::CAPITAL + 14.0;
         let mut row = |axis: &PlotAxis, place: &dyn Fn(f64) -> Point, align: Align, out: f64| {
-            let mut last: Option<Point> = None;
-            for (value, words) in &axis.ticks {
-                let at = place(axis.share(*value));
-                figure.line(&[at, (at.0 + 0.6 * out, at.1 + 9.0)], style::FRAME, theme.ink, canvas);
-                // as many numbers as stand apart
-                let apart = last.is_none_or(|last| {
-                    (last.1 - at.1).abs() >= 0.8 * style::TICK || {
-                        (last.0 - at.0).abs() >= font::width(words, style::TICK, false) + 12.0
-                    }
-                });
-                if apart {
+            let places: Vec<Point> = axis.ticks.iter().map(|tick| place(axis.share(tick.0))).collect();
+            let width =
+                axis.ticks.iter().map(|tick| font::width(&tick.1, style::TICK, false)).fold(0.0, f64::max);
+            let apart = |every: &usize| {
+                let kept: Vec<&Point> = places.iter().step_by(*every).collect();
+                kept.windows(2).all(|pair| {
+                    let (across, down) = (pair[1].0 - pair[0].0, pair[1].1 - pair[0].1);
+                    down.abs() >= 0.8 * style::TICK || across.abs() >= width + 12.0
+                })
+            };
+            // as many numbers as stand apart
+            let every = (1..=places.len()).find(apart).unwrap_or(1);
+            for (i, (at, (_, words))) in places.iter().zip(&axis.ticks).enumerate() {
+                figure.line(&[*at, (at.0 + 0.6 * out, at.1 + 9.0)], style::FRAME, theme.ink, canvas);
+                if i % every == 0 {
                     figure.text(text(words, (at.0 + out, at.1 + below), style::TICK, align));
-                    last = Some(at);
                 }
             }
         };
@@ -86,12 +89,16 @@ impl View {
         }
         let (low, high) = (self.place(left), self.place((0.0, 1.0, 1.0)));
         let beside = (low.0 - style::TICK_LENGTH - 25.0 - widest).max(style::AXIS);
+        let fitted =
+            |words: &str, room: f64| style::AXIS * (room / font::width(words, style::AXIS, false)).min(1.0);
+        let size = fitted(&self.z.label, low.1 - high.1 + 40.0);
         let middle = (beside, 0.5 * (low.1 + high.1));
-        figure.text(Text { upright: true, ..text(&self.z.label, middle, style::AXIS, Align::Centre) });
+        figure.text(Text { upright: true, ..text(&self.z.label, middle, size, Align::Centre) });
         let ([near, right, left], under) = ([near, right, left].map(|at| self.place(at)), 70.0);
+        let room = 0.5 * (right.0 - left.0) - 24.0;
         for (label, (from, to)) in [(&self.x.label, (near, right)), (&self.y.label, (left, near))] {
             let at = (0.5 * (from.0 + to.0), self.area.bottom + under);
-            figure.text(text(label, at, style::AXIS, Align::Centre));
+            figure.text(text(label, at, fitted(label, room), Align::Centre));
         }
     }
 }

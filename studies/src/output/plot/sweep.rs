@@ -128,6 +128,11 @@ pub fn sweep_chart(picture: &SweepPicture) -> Result<Chart, NoPicture> {
         (other, None) => return Err(NoPicture::Fields(other.len())),
     };
     chart.subtitle = sweep_about(grid, scene, &walked, until_settled);
+    let quantity = Quantity::of(rows, picture.quantity);
+    if grid.axes().len() > 1 && quantity.kinds.is_some() {
+        // the colours of kinds have no axis that says what they are of
+        chart.subtitle = format!("{}: {}", quantity.label, chart.subtitle);
+    }
     Ok(chart)
 }
 
@@ -209,8 +214,17 @@ fn lines(picture: &SweepPicture, x: &str, series: Option<&str>) -> Chart {
     // One seed has nothing between it and the next, nor has one regime.
     let joined = !(x == "seed" || x.ends_with(".seed") || quantity.kinds.is_some());
     let mut all = Vec::new();
+    let mut panels = Vec::new();
     for line in each_line(rows, series) {
         let order = ascending(places, |row| line.has(row));
+        if series.is_some() && !joined {
+            // marks without lines are told apart by panels
+            let mut panel = Panel { heading: line.name, ..panel.clone() };
+            let marks = marks(&order, places, &quantity.values, regimes);
+            panel.draw(Role::Motion, Marks::Regimes(marks, false));
+            panels.push(panel);
+            continue;
+        }
         let points: Vec<Point> = order.iter().map(|&row| (places[row], quantity.values[row])).collect();
         if joined {
             let role = if series.is_some() { line.role } else { Role::Joined };
@@ -218,8 +232,11 @@ fn lines(picture: &SweepPicture, x: &str, series: Option<&str>) -> Chart {
         }
         all.extend(marks(&order, places, &quantity.values, regimes));
     }
-    panel.draw(Role::Motion, Marks::Regimes(all, joined));
-    Chart::stack(vec![panel], "", drawn(picture, &[(x, ranges.x)]).table())
+    if panels.is_empty() {
+        panel.draw(Role::Motion, Marks::Regimes(all, joined));
+        panels.push(panel);
+    }
+    Chart::stack(panels, "", drawn(picture, &[(x, ranges.x)]).table())
 }
 
 /// One of several lines: its rows, its words and its role.

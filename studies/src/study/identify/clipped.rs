@@ -105,6 +105,10 @@ impl FlatTops {
                 _ => {}
             }
         }
+        // nor is one up to its end, where a mass may have come to rest
+        if values.last() == Some(&limit) {
+            runs.pop_if(|run| run.end + 1 == values.len());
+        }
         let flat = |run: &Range<usize>| {
             let before = (0..run.start).rev().take_while(|i| within(*i, 3.0)).count();
             let after = (run.end..values.len()).take_while(|i| within(*i, 3.0)).count();
