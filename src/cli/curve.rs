@@ -8,7 +8,7 @@ use clap::Args;
 use interwell::dynamics::Model;
 use interwell::mechanics::Mechanism;
 use interwell::mechanics::flexure::State;
-use interwell::output::{contact_chart, curve_chart, landscape, measured_force_chart};
+use interwell::output::{contact_chart, curve_chart, landscape, measured_force_chart, shapes_chart};
 use interwell::scene::Document;
 use interwell::study::{
     CURVE_PICTURE_POINTS, CURVE_POINTS, StatesError, Table, Task, contact, curve, default_positions,
@@ -54,6 +54,11 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
     pub shapes: Option<PathBuf>,
 
+    /// Of flexures: draw their centre lines, at the positions that are named, else at the equilibria; the
+    /// name ends in .png, .svg or .pdf
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true, group = "picture")]
+    pub shapes_plot: Option<PathBuf>,
+
     /// Of a compliant stop: write what one impact on it does over the impact speed as CSV, speed_m_per_s,
     /// restitution, rigid_restitution, contact_time_s, depth_m, peak_force_n, peak_pressure_pa, in closed
     /// form
@@ -87,11 +92,13 @@ const SHAPES: u32 = 21;
 /// Writes the curve as CSV and, if requested, the landscape as JSON and the shapes of the flexures as CSV.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
-    let contact_picture =
-        Picture::of(Output::CONTACT_PLOT, options.contact_plot.as_deref(), &options.chart.plot, common)?;
-    // with two pictures, --plot-data holds the numbers of --plot
-    let contact_picture = contact_picture
-        .map(|contact| if picture.is_none() { contact.with_data(&options.chart.plot) } else { contact });
+    // with several pictures, --plot-data holds the numbers of the first of them
+    let plot = &options.chart.plot;
+    let shapes_picture = Picture::of(Output::SHAPES_PLOT, options.shapes_plot.as_deref(), plot, common)?
+        .map(|shapes| if picture.is_none() { shapes.with_data(plot) } else { shapes });
+    let is_first = picture.is_none() && shapes_picture.is_none();
+    let contact_picture = Picture::of(Output::CONTACT_PLOT, options.contact_plot.as_deref(), plot, common)?
+        .map(|contact| if is_first { contact.with_data(plot) } else { contact });
     let rigid = restitution(&options.rigid)?;
     let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
     let range = |text| range("--range-mm", text, "A:B in mm with A below B, such as -8:8");
@@ -107,7 +114,12 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         None => even(options.points.unwrap_or(points) as usize),
     };
     let table = curve(&mechanism, positions(CURVE_POINTS))?;
-    for (given, option) in [(options.full, "--full"), (options.shapes.is_some(), "--shapes")] {
+    let of_flexures = [
+        (options.full, "--full"),
+        (options.shapes.is_some(), "--shapes"),
+        (shapes_picture.is_some(), "--shapes-plot"),
+    ];
+    for (given, option) in of_flexures {
         if given {
             flexures_at(&mechanism, &[]).map_err(|error| unknown(&document.name, option, error))?;
         }
@@ -126,6 +138,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         .with(Output::SHAPES, options.shapes.as_deref())?
         .with(Output::CONTACT, options.contact.as_deref())?
         .with_picture(picture)?
+        .with_picture(shapes_picture)?
         .with_picture(contact_picture)?
         .with(Output::COMPARISON, options.measured.comparison.as_deref())?;
     let measured = options.measured.compare(&mechanism, common.quiet)?;
@@ -163,6 +176,14 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if outputs.has(Output::SHAPES) {
         let drawn = solved(&mechanism, &positions(SHAPES), &document.name, "--shapes")?;
         outputs.table(Output::SHAPES, &shapes(&drawn))?;
+    }
+    if let Some(picture) = shapes_picture {
+        let is_named = listed.is_some() || options.points.is_some() || range.is_some();
+        let equilibria = || mechanism.landscape.equilibria.iter().map(|equilibrium| equilibrium.x).collect();
+        let at = if is_named { positions(SHAPES) } else { equilibria() };
+        let drawn = solved(&mechanism, &at, &document.name, "--shapes-plot")?;
+        let chart = shapes_chart(&drawn, &mechanism, stop_positions(&document.scene));
+        picture.write(&mut outputs, &chart, &caption(&document))?;
     }
     if let Some((table, model)) = &contacts {
         outputs.table(Output::CONTACT, table)?;

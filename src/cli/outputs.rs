@@ -29,6 +29,7 @@ impl Output {
     pub const ATTRACTORS: Self = Self("--attractors");
     pub const LANDSCAPE: Self = Self("--landscape");
     pub const SHAPES: Self = Self("--shapes");
+    pub const SHAPES_PLOT: Self = Self("--shapes-plot");
     pub const CONTACT: Self = Self("--contact");
     pub const CONTACT_PLOT: Self = Self("--contact-plot");
     pub const LESSON: Self = Self("--new");

@@ -50,7 +50,8 @@ pub struct Arguments {
     pub summary: Option<PathBuf>,
 
     /// With --plot: these panels alone, one under the other: displacement, velocity, acceleration (of the
-    /// base), portrait (velocity over displacement) [default: all, with numbers beside them]
+    /// base), energy (potential and kinetic), portrait (velocity over displacement) [default: all but energy,
+    /// with numbers beside them]
     #[arg(long, value_name = "A,B,..", requires = "plot", conflicts_with = "measured", value_delimiter = ',',
           value_parser = RunPanel::ALL.map(RunPanel::name))]
     pub panels: Vec<String>,
@@ -129,7 +130,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             None => {
                 let named =
                     options.panels.iter().filter_map(|name| RunPanel::named(name)).collect::<Vec<_>>();
-                let panels = if named.is_empty() { RunPanel::ALL.to_vec() } else { named };
+                let panels = if named.is_empty() { RunPanel::USUAL.to_vec() } else { named };
                 run_chart(&trace, &simulation.summary, (mechanism, model.mass()), &panels, axes)
             }
         };

@@ -8,10 +8,12 @@ use egui_kittest::{Harness, kittest::Queryable as _};
 use interwell::app::session::explore::WalkQuantity;
 use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
+use interwell::output::RunPanel;
 use interwell::scene::Layout;
 use interwell::study::Signal;
 use interwell::study::SummaryField;
 
+use crate::measured::{dropped, instrument};
 use crate::shared::axis;
 use crate::support::{PROJECTED, WIDE, command, press, press_with_ctrl, sliced, wait_until, window};
 use crate::written::{arguments, copied};
@@ -118,13 +120,13 @@ fn a_run_is_drawn_over_the_times_that_are_typed_and_is_as_long_as_they_ask() {
     harness.state_mut().figures.panels[0] = true;
     harness.run_steps(1);
     assert!(copy(&mut harness).contains("--panels displacement --panels velocity "));
-    harness.state_mut().figures.panels = [true; 4];
+    harness.state_mut().figures.panels = RunPanel::ALL.map(|panel| RunPanel::USUAL.contains(&panel));
     harness.run_steps(1);
     assert!(!copy(&mut harness).contains("--panels"));
-    harness.state_mut().figures.panels = [false; 4];
+    harness.state_mut().figures.panels = [false; 5];
     harness.run_steps(1);
     harness.get_by_label_contains("at least one is needed");
-    harness.state_mut().figures.panels = [true; 4];
+    harness.state_mut().figures.panels = [true; 5];
     harness.state_mut().figures.times = ["2".to_owned(), "1".to_owned()];
     harness.run_steps(1);
     harness.get_by_label_contains("give two in s, the first one below the second");
@@ -153,6 +155,11 @@ fn of_every_view_of_a_survey_the_copied_command_makes_the_same_bytes() {
     harness.state_mut().session.map.show(column);
     let line = same_bytes(&mut harness, View::Map, "svg");
     assert!(line.contains("--quantity impact_share --surface"), "{line}");
+    harness.get_by_label("From above").click();
+    harness.get_by_label("Cuts").click();
+    harness.run_steps(3);
+    let line = same_bytes(&mut harness, View::Map, "svg");
+    assert!(line.contains("--cut amplitude_g=1 --cut travel_limit_mm=1.5"), "{line}");
     let line = same_bytes(&mut harness, View::UpAndDown, "svg");
     assert!(line.contains("section paper") && line.contains("--carry both"), "{line}");
     harness.state_mut().session.explore.walks.quantity = WalkQuantity::RmsVelocity;
@@ -160,6 +167,34 @@ fn of_every_view_of_a_survey_the_copied_command_makes_the_same_bytes() {
     assert!(line.contains("sweep paper") && line.contains("--carry both"), "{line}");
     let line = same_bytes(&mut harness, View::Spectrum, "pdf");
     assert!(line.contains("--of v"), "{line}");
+}
+
+#[test]
+fn of_the_mechanism_and_its_energy_the_copied_command_makes_the_same_bytes() {
+    let mut harness = window("paper", WIDE);
+    let line = same_bytes(&mut harness, View::Energy, "svg");
+    assert!(line.contains("--panels energy"), "{line}");
+    let line = same_bytes(&mut harness, View::Mechanism, "pdf");
+    assert!(line.contains("curve paper --at-mm ") && line.contains(" --shapes-plot "), "{line}");
+    // a force without flexures has a sketch alone
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window("nominal-cubic", WIDE);
+    open(&mut harness, View::Mechanism, &folder.path().join("a.pdf"));
+    harness.get_by_label_contains("There is no figure of a mechanism that is a force without flexures");
+}
+
+#[test]
+fn of_a_record_the_copied_command_makes_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = dropped(|session| instrument(session, folder.path()), WIDE);
+    harness.get_by_label("Lay it over").click();
+    harness.run_steps(3);
+    let over = harness.state_mut().session.measured.over.as_mut().unwrap();
+    (over.shift, over.offset, over.time_scale) = (-0.25, 1.25e-4, 1.001);
+    let line = same_bytes(&mut harness, View::Measured, "svg");
+    let options = "--shift-s -0.25 --offset-mm 0.125 --time-scale 1.001 --time 'Time [ms]' --time-unit ms \
+                   --column 'Laser A [mm]' --unit mm";
+    assert!(line.contains("simulate paper --measured ") && line.contains(options), "{line}");
 }
 
 #[test]
@@ -178,7 +213,7 @@ fn of_the_basins_the_copied_command_makes_the_same_bytes() {
 fn a_view_without_a_figure_says_so_and_the_keyboard_alone_saves_one() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = window("first-look", WIDE);
-    for view in [View::Mechanism, View::Compare, View::Power, View::Accuracy] {
+    for view in [View::Compare, View::Power, View::Accuracy] {
         open(&mut harness, view, &folder.path().join("a.pdf"));
         harness.get_by_label_contains("There is no figure of");
         press(&mut harness, Key::Escape);

@@ -36,8 +36,9 @@ fn it_fills_and_a_click_is_one_step() {
     assert_eq!(map(harness.state()).len(), 9 * 5);
     fill(&mut harness);
     assert!(map(harness.state()).is_whole() && !harness.state().session.map.is_running());
-    assert!(!map(harness.state()).release.is_empty());
-    assert!(!map(harness.state()).crossing.is_empty());
+    let overlay = &map(harness.state()).overlay;
+    assert!(overlay.release.as_ref().is_some_and(|line| line.rows() > 0));
+    assert!(overlay.first_crossing.as_ref().is_some_and(|line| line.rows() > 0));
     let place = harness.get_by_role_and_label(Role::Image, "map").rect();
     let (before, state) = (harness.state().session.scene().clone(), harness.state().session.player.state());
     // the cell at the middle is 2 mm and 1 g

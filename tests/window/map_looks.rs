@@ -7,9 +7,9 @@ use interwell::app::export::map_command_line;
 use interwell::app::session::map::Map;
 use interwell::app::window::{Command, Window};
 use interwell::app::words::columns::{COLUMNS, ShownColumn};
-use interwell::output::Projection;
+use interwell::output::{Cell as DrawnCell, Cut, Marks, Panel, Projection, Role as Drawn, View};
 use interwell::scene::{Layout, Stops, SweepAxis};
-use interwell::study::{Cell, STANDARD_COLUMNS, SummaryField, line_meets};
+use interwell::study::{Cell, RMS_VELOCITY, STANDARD_COLUMNS, SummaryField};
 
 use crate::shared::axis;
 use crate::support::{
@@ -85,19 +85,22 @@ fn cuts_are_rows_of_the_table_and_lead_to_their_cells() {
     click_on(&mut harness, "Cuts");
     assert!(is_painted(&harness, "at travel limit 1.5 mm") && is_painted(&harness, "at amplitude 1 g"));
     let own = map(harness.state());
-    for (upright, at, count) in [(true, 2, 5), (false, 2, 9)] {
-        let cut = own.cut(upright, at);
-        assert_eq!(cut.iter().map(|own| own.place).collect::<Vec<_>>(), (0..count).collect::<Vec<_>>());
-        for cell in cut {
-            let (column, row) = if upright { (at, cell.place) } else { (cell.place, at) };
-            assert!(cell.is_known && *cell.cell == *own.cell(column, row).unwrap().0);
-        }
-    }
+    let cut = |i: usize, value: f64| Cut { column: own.grid().columns()[i].clone(), value };
+    let view = View::Cuts(vec![cut(1, 1.0), cut(0, 1.5)]);
+    let chart = own.chart(&RMS_VELOCITY, &view).unwrap();
+    let panels: Vec<&Panel> = chart.panels().collect();
+    let path = |panel: usize, role: Drawn| {
+        panels[panel].layers.iter().find(|layer| layer.role == role).map(|layer| layer.marks.clone()).unwrap()
+    };
+    // across at 1 g, upward at 1.5 mm
+    let row = |column: usize| (own.edges[0].values[column], 1e3 * rms(own.cell(column, 2).unwrap().0));
+    let column = |row: usize| (1e3 * rms(own.cell(2, row).unwrap().0), own.edges[1].values[row]);
+    assert_eq!(path(1, Drawn::Joined), Marks::Path((0..9).map(row).collect()));
+    assert_eq!(path(2, Drawn::Joined), Marks::Path((0..5).map(column).collect()));
     // both thresholds of 1.5 mm: release in closed form, and the step from 0.5 to 0.75 g
-    let release = line_meets(&own.release, 1.5, true);
+    let Marks::Horizontals(release) = path(2, Drawn::Release) else { panic!("a line at the release") };
     assert!(release.len() == 1 && (release[0] - 0.688).abs() < 2e-3, "{release:?}");
-    let crossing: Vec<f64> = own.crossing.iter().flat_map(|part| line_meets(part, 1.5, true)).collect();
-    assert_eq!(crossing, [0.625]);
+    assert_eq!(path(2, Drawn::FirstCrossing), Marks::Horizontals(vec![0.625]));
     let place = |harness: &Harness<'static, Window>, name: &str| {
         harness.get_by_role_and_label(Role::Image, name).rect()
     };
@@ -114,9 +117,9 @@ fn cuts_are_rows_of_the_table_and_lead_to_their_cells() {
     assert_eq!((stops_mm(&harness), amplitude_g(&harness)), (2.0, 1.5));
 }
 
-/// A map that was stopped early shows of a line what is known of it, and its nearest neighbours.
+/// A map that was stopped early has cells that stand in for others; its cuts have only those that are known.
 #[test]
-fn a_cut_through_a_coarse_map_says_what_is_its_own() {
+fn a_cut_through_a_coarse_map_has_its_own_cells() {
     let mut session = session("paper", &["run.duration_s=100", "run.recurrence=false"]);
     session.map.choose(Some(axes((0.005, 0.005))));
     session.want_map(0.0);
@@ -129,13 +132,20 @@ fn a_cut_through_a_coarse_map_says_what_is_its_own() {
     assert!(!map.is_whole());
     let [columns, rows] = map.size();
     for column in [0, 1, columns / 2, columns - 1] {
-        let cut = map.cut(true, column);
-        assert!(cut.len() > 3 && cut.len() < rows, "{}", cut.len());
-        assert!(cut.windows(2).all(|pair| pair[0].place < pair[1].place));
-        for own in cut {
-            assert_eq!(map.cell(column, own.place).unwrap().1, own.is_known);
-            assert_eq!(map.cell(column, own.place).unwrap().0, own.cell);
-        }
+        let cut = Cut { column: map.grid().columns()[0].clone(), value: map.edges[0].values[column] };
+        let chart = map.chart(&RMS_VELOCITY, &View::Cuts(vec![cut])).unwrap();
+        let panels: Vec<&Panel> = chart.panels().collect();
+        let known: Vec<f64> = (0..rows)
+            .filter(|row| map.cell(column, *row).unwrap().1)
+            .map(|row| map.edges[1].values[row])
+            .collect();
+        let shown = panels[1].layers.iter().find_map(|layer| match &layer.marks {
+            Marks::Regimes(points, _) => Some(points.iter().map(|point| point.0.1).collect::<Vec<f64>>()),
+            _ => None,
+        });
+        assert!(known.len() < rows && shown.as_ref() == Some(&known), "{column}: {shown:?}");
+        let is_blank = |cell: &DrawnCell| *cell == DrawnCell::Blank;
+        assert!(!panels[0].cells().unwrap().cells.iter().any(is_blank));
     }
 }
 

@@ -26,7 +26,7 @@ fn times(from: f64, step: f64, count: u32) -> Vec<f64> {
 
 /// A record of the displacement as an instrument writes it: in ms of a clock that began 0.25 s before the
 /// run, in mm, with semicolons and decimal commas; the third of its columns is the base's acceleration in g.
-fn instrument(session: &Session, folder: &Path) -> PathBuf {
+pub fn instrument(session: &Session, folder: &Path) -> PathBuf {
     let times = times(0.1, 5e-4, 4000);
     let (x, base) = (column(session, &times, "x_m"), column(session, &times, "base_accel_m_per_s2"));
     let mut text = "# export\nTime [ms];Laser A [mm];Accel (g);Trigger\n".to_owned();
@@ -40,7 +40,7 @@ fn instrument(session: &Session, folder: &Path) -> PathBuf {
 }
 
 /// A window on the prototype, in which a file was dropped and is read.
-fn dropped(path: impl Fn(&Session) -> PathBuf, size: [f32; 2]) -> Harness<'static, Window> {
+pub fn dropped(path: impl Fn(&Session) -> PathBuf, size: [f32; 2]) -> Harness<'static, Window> {
     let mut harness = window("paper", size);
     command(&mut harness, Command::PlayPause);
     let path = path(&harness.state().session);

@@ -8,19 +8,22 @@ use anyhow::{Error, Result, anyhow, ensure};
 
 use crate::app::session::explore::STARTS;
 use crate::app::session::map::over;
+use crate::app::session::measured::Overlay as Laid;
 use crate::app::task::pool;
 use crate::dynamics::Model;
 use crate::mechanics::Mechanism;
+use crate::numeric::extent;
 use crate::output::{
     Caption, Chart, Figure, Overlay, Ranges, RunPanel, SectionPicture, SpectrumQuantity, SweepPicture, Theme,
-    View, basins_chart, can_show, curve_chart, run_chart, section_chart, spectrum_chart, sweep_chart,
+    View, basins_chart, can_show, curve_chart, measured_chart, measured_force_chart, run_chart,
+    section_chart, shapes_chart, spectrum_chart, sweep_chart,
 };
 use crate::scene::{Document, Fault, FieldPath, arguments};
 use crate::study::{
-    Basins, CURVE_PICTURE_POINTS, Carry, EvenRange, Grid, Keep, NoBasins, STANDARD_COLUMNS, Sampling,
-    SectionAt, SectionOptions, Sections, Signal, SpectrumOptions, Starts, SummaryField, Sweep, SweepOptions,
-    Table, Task, curve, default_positions, sample_times, section, simulate_with_trace, spectrum,
-    stop_positions,
+    Basins, CURVE_PICTURE_POINTS, Carry, EvenRange, Grid, Keep, MeasuredMotion, NoBasins, STANDARD_COLUMNS,
+    Sampling, SectionAt, SectionOptions, Sections, Signal, SpectrumOptions, Starts, SummaryField, Sweep,
+    SweepOptions, Table, Task, compare, compare_force, curve, default_positions, even_positions, metres,
+    sample_times, section, simulate_with_trace, spectrum, states, stop_positions,
 };
 use crate::system::threads::Pool;
 
@@ -47,7 +50,9 @@ fn figure(order: &FigureOrder, cancel: &AtomicBool) -> Result<Figure> {
     let chart = match &order.subject {
         Subject::Run(times, panels) => drawing.run(*times, panels),
         Subject::Curve => drawing.curve(),
-        Subject::Sweep(_, quantity, surface) => drawing.sweep(&order.subject, quantity, *surface),
+        Subject::Shapes(mm) => drawing.shapes(*mm),
+        Subject::Measured(over) => drawing.measured(over),
+        Subject::Sweep(_, quantity, view) => drawing.sweep(&order.subject, quantity, view.clone()),
         Subject::Diagram(_) => drawing.diagram(&order.subject),
         Subject::Section => drawing.section(),
         Subject::Basins(x_mm, v) => drawing.basins(*x_mm, *v),
@@ -125,7 +130,32 @@ impl Drawing<'_> {
         Ok(curve_chart(&table, &mechanism, stops, Ranges::default()))
     }
 
-    fn sweep(&self, subject: &Subject, quantity: &str, surface: bool) -> Result<Chart> {
+    fn shapes(&self, mm: f64) -> Result<Chart> {
+        let mechanism = self.mechanism()?;
+        let states = states(&mechanism, &[metres(mm)], &self.task)?;
+        Ok(shapes_chart(&states, &mechanism, stop_positions(&self.document.scene)))
+    }
+
+    fn measured(&self, over: &Laid) -> Result<Chart> {
+        let (scene, model, record) = (&self.document.scene, self.model()?, &over.record);
+        let (across, channel, ranges) = (&record.across.values, &record.values, Ranges::default());
+        if over.is_force() {
+            let positions: Vec<f64> = across.iter().map(|x| x + over.offset).collect();
+            let mechanism = model.mechanism();
+            let found = compare_force(mechanism, &positions, &channel.values)?;
+            let over = even_positions(extent(found.positions.iter().copied()), CURVE_PICTURE_POINTS);
+            return Ok(measured_force_chart(&found, &curve(mechanism, over)?, ranges));
+        }
+        let (offset, time_scale, shift) = (over.added(), over.time_scale, Some(over.shift));
+        let motion = MeasuredMotion { times: across, channel, offset, time_scale, shift };
+        let found = compare(scene, &model, &motion, self.task.cancel)?;
+        let times = sample_times(scene, &model, &Sampling::Default, None)?;
+        let keep = Keep { times, events: false, until_settled: None };
+        let (_, trace) = simulate_with_trace(&model, &keep, None, Some(self.task.cancel));
+        Ok(measured_chart(&trace, (&found, channel.quantity), None, ranges))
+    }
+
+    fn sweep(&self, subject: &Subject, quantity: &str, view: View) -> Result<Chart> {
         let (grid, pool) = (self.grid(subject)?, threads()?);
         let scene = &self.document.scene;
         let carry = subject.is_walked().then_some(Carry::Both);
@@ -133,7 +163,6 @@ impl Drawing<'_> {
         let columns = names.filter_map(SummaryField::find).collect();
         let options = SweepOptions { columns, until_settled: None, carry };
         let sweep = Sweep::new(scene, &self.document.files, grid).with(options);
-        let view = if surface { View::Surface } else { View::Top };
         can_show(sweep.grid(), quantity, &view, &sweep.empty_table())?;
         sweep.validate(&pool, &self.task).map_err(|cell| self.faulty(cell.faults))?;
         let mut rows = Table::new();

@@ -9,9 +9,11 @@ use crate::app::session::Session;
 use crate::app::session::editor::keep_start_inside;
 use crate::app::session::explore::{STARTS, WalkQuantity, longest_wait};
 use crate::app::session::map::{ground, over};
+use crate::app::session::measured::Overlay;
 use crate::numeric::short;
 use crate::output::{
-    Argument, Figure, Format, RMS, RunPanel, Sheet, Sink, header, picture_arguments, rows, words_of,
+    Argument, Cut, Figure, Format, RMS, RunPanel, Sheet, Sink, View, header, picture_arguments, rows,
+    words_of,
 };
 use crate::scene::{FieldPath, Scene, Start, SweepAxis, arguments};
 use crate::study::Signal;
@@ -27,8 +29,12 @@ pub enum Subject {
     Run(Option<(f64, f64)>, Vec<RunPanel>),
     /// Force and potential of the mechanism.
     Curve,
-    /// A quantity over two fields, or over one that is walked up and down; over two, optionally as a surface.
-    Sweep(Vec<SweepAxis>, &'static str, bool),
+    /// Centre lines of the flexures at a displacement in mm.
+    Shapes(f64),
+    /// A record over the run or over the force curve.
+    Measured(Overlay),
+    /// A quantity over two fields, or over one that is walked up and down.
+    Sweep(Vec<SweepAxis>, &'static str, View),
     /// Stroboscopic displacements over a field that is walked up and down.
     Diagram(SweepAxis),
     /// Stroboscopic states of one run.
@@ -78,17 +84,39 @@ impl Subject {
         Ok(match walks.quantity {
             WalkQuantity::Strobes => Self::Diagram(axis),
             WalkQuantity::LoadPower if session.model().has_transducer() => {
-                Self::Sweep(vec![axis], "mean_load_power_w", false)
+                Self::Sweep(vec![axis], "mean_load_power_w", View::Top)
             }
-            WalkQuantity::RmsVelocity | WalkQuantity::LoadPower => Self::Sweep(vec![axis], RMS, false),
+            WalkQuantity::RmsVelocity | WalkQuantity::LoadPower => Self::Sweep(vec![axis], RMS, View::Top),
         })
     }
 
-    pub fn map(session: &Session, surface: bool) -> Result<Self, String> {
+    /// The map as a surface, or with cuts through the scene's place.
+    pub fn map(session: &Session, surface: bool, cuts: bool) -> Result<Self, String> {
         let no_axes = || "This scene has no two fields to make a map over.".to_owned();
+        let axes = session.map_axes().ok_or_else(no_axes)?.to_vec();
         let quantity = session.map.quantity().name;
-        let surface = surface && words_of(quantity).is_none();
-        Ok(Self::Sweep(session.map_axes().ok_or_else(no_axes)?.to_vec(), quantity, surface))
+        let cuts = || session.map.shown().filter(|_| cuts).map(|(map, _)| map.cuts(session.scene()));
+        let view = match surface && words_of(quantity).is_none() {
+            true => View::Surface,
+            false => cuts().map_or(View::Top, View::Cuts),
+        };
+        Ok(Self::Sweep(axes, quantity, view))
+    }
+
+    /// The flexures where the mass is now.
+    pub fn shapes(session: &Session) -> Result<Self, String> {
+        if session.model().mechanism().flexures.is_none() {
+            return Err("There is no figure of a mechanism that is a force without flexures: File, Save a \
+                        picture of the window has its sketch as it stands."
+                .to_owned());
+        }
+        Ok(Self::Shapes((session.player.state().x * 1e7).round() / 1e4))
+    }
+
+    /// The record as it lies over the computed.
+    pub fn measured(session: &Session) -> Result<Self, String> {
+        let none = || "There is no record to lie over the computed: open one first (Ctrl+M).".to_owned();
+        session.measured.over.clone().map(Self::Measured).ok_or_else(none)
     }
 
     /// The basins as the view shows them.
@@ -126,16 +154,31 @@ impl Subject {
         let mut ranges = Vec::new();
         let name = match self {
             Self::Run(times, panels) => {
-                if panels.len() < RunPanel::ALL.len() {
+                if *panels != RunPanel::USUAL {
                     options.extend(panels.iter().map(|panel| Argument::of("panels", panel.name())));
                 }
                 ranges.extend(times.map(|(from, to)| Argument::of("plot-x", format!("{from}:{to}"))));
                 "simulate"
             }
             Self::Curve => "curve",
-            Self::Sweep(_, quantity, surface) => {
+            Self::Shapes(mm) => {
+                options.push(Argument::of("at-mm", mm.to_string()));
+                "curve"
+            }
+            Self::Measured(over) => {
+                options.extend(over.arguments());
+                if over.is_force() { "curve" } else { "simulate" }
+            }
+            Self::Sweep(_, quantity, view) => {
                 options.push(Argument::of("quantity", *quantity));
-                options.extend(surface.then(|| Argument::switch("surface")));
+                match view {
+                    View::Top => {}
+                    View::Surface => options.push(Argument::switch("surface")),
+                    View::Cuts(cuts) => {
+                        let of = |cut: &Cut| Argument::of("cut", format!("{}={}", cut.column, cut.value));
+                        options.extend(cuts.iter().map(of));
+                    }
+                }
                 "sweep"
             }
             Self::Diagram(_) | Self::Section => "section",
@@ -187,7 +230,10 @@ impl FigureOrder {
         if let Some(fault) = session.fault() {
             return Err(fault.to_owned());
         }
-        let read = session.editor.document().named_files();
+        let mut read = session.editor.document().named_files();
+        if let Subject::Measured(over) = &subject {
+            read.push(over.record.path.clone());
+        }
         let is_read = |path: &Path| {
             canonical(path)
                 .is_some_and(|path| read.iter().any(|read| canonical(read).as_ref() == Some(&path)))
@@ -210,7 +256,8 @@ impl FigureOrder {
         let (command, options, ranges) = self.subject.command();
         let mut all = vec![Argument { option: None, value: Some(self.origin.clone()) }];
         all.extend(options);
-        all.push(Argument::of("plot", self.path.to_string_lossy()));
+        let plot = if let Subject::Shapes(_) = self.subject { "shapes-plot" } else { "plot" };
+        all.push(Argument::of(plot, self.path.to_string_lossy()));
         all.extend(self.layout.iter().cloned().chain(ranges));
         all.push(Argument::of("out", if cfg!(windows) { "NUL" } else { "/dev/null" }));
         all.extend(self.settings.iter().map(|setting| Argument::of("set", setting)));

@@ -141,12 +141,6 @@ impl Session {
         });
     }
 
-    /// Position of the scene on the axes of a map; `None` on an axis whose field it lacks, such as the travel
-    /// limit without stops.
-    pub fn place_on_map(&self, question: &Question) -> [Option<f64>; 2] {
-        question.axes.each_ref().map(|axis| FieldPath::new(&axis.field).get(self.scene()))
-    }
-
     /// Why a map of the scene cannot have these axes: the index of the faulty axis, its faulty part, and a
     /// sentence. `None` if it can.
     pub fn map_problem(&self, axes: &[SweepAxis; 2]) -> Option<(usize, &'static str, String)> {

@@ -1,5 +1,6 @@
 //! Measured data over computed results: the record, its placement, and the differences between the two.
 
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -7,13 +8,18 @@ use crate::app::task::{Background, Identity};
 use crate::app::words::capital;
 use crate::dynamics::Model;
 use crate::numeric::{extent, short};
+use crate::output::Argument;
 use crate::scene::{Channel, Measured, MeasuredText, Quantity, Scene, Timing, Unit};
 use crate::study::{Comparison, ForceComparison, MeasuredMotion, NoComparison, compare, compare_force};
 
 /// A measured record with its two chosen columns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasuredRecord {
+    /// Its file, and the name of that.
+    pub path: PathBuf,
     pub name: String,
+    /// The units of its two columns as their files have them.
+    pub units: [&'static str; 2],
     /// Times in s, or positions in m.
     pub across: Channel,
     /// Measured values, SI.
@@ -28,7 +34,7 @@ pub struct MeasuredRecord {
 
 impl MeasuredRecord {
     /// The record of two columns of a text; the error is a sentence.
-    pub fn of(name: &str, text: &MeasuredText, chosen: [(usize, Unit); 2]) -> Result<Self, String> {
+    pub fn of(path: &Path, text: &MeasuredText, chosen: [(usize, Unit); 2]) -> Result<Self, String> {
         let kinds = chosen.map(|(_, unit)| unit.quantity);
         match kinds {
             [Quantity::Time, Quantity::Displacement | Quantity::Velocity | Quantity::Acceleration]
@@ -52,8 +58,9 @@ impl MeasuredRecord {
         })?;
         let Measured { channels: [across, values], decimal_commas } = read;
         let timing = (across.quantity == Quantity::Time).then(|| Timing::of(&across.values));
-        let (name, range) = (name.to_owned(), extent(values.values.iter().copied()));
-        Ok(Self { name, across, values, decimal_commas, timing, range })
+        let range = extent(values.values.iter().copied());
+        let (name, path, units) = (file_name(path), path.to_owned(), chosen.map(|(_, unit)| unit.word()));
+        Ok(Self { path, name, units, across, values, decimal_commas, timing, range })
     }
 
     /// How it was sampled, as a sentence.
@@ -68,6 +75,11 @@ impl MeasuredRecord {
             }
         }
     }
+}
+
+/// The name of a file without its folder.
+pub fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
 /// A record over computed results, and how it is shifted and stretched in time.
@@ -85,6 +97,33 @@ pub struct Overlay {
 }
 
 impl Overlay {
+    /// Whether it is a force over position.
+    pub fn is_force(&self) -> bool {
+        self.record.values.quantity == Quantity::Force
+    }
+
+    /// The options of the command that lays it over a run or a curve in the same way, in the order of
+    /// `--help`.
+    pub fn arguments(&self) -> Vec<Argument> {
+        let MeasuredRecord { path, units, across, values, .. } = &*self.record;
+        let changed =
+            |name: &str, value: f64, usual: f64| (value != usual).then(|| Argument::of(name, short(value)));
+        let mut all = vec![Argument::of("measured", path.to_string_lossy())];
+        let offset = changed("offset-mm", self.offset * 1e3, 0.0);
+        let columns = if self.is_force() { ["position", "position-unit"] } else { ["time", "time-unit"] };
+        if self.is_force() {
+            all.extend(offset);
+        } else {
+            all.extend(changed("shift-s", self.shift, 0.0));
+            all.extend(offset.filter(|_| values.quantity == Quantity::Displacement));
+            all.extend(changed("time-scale", self.time_scale, 1.0));
+        }
+        let columns = columns.into_iter().chain(["column", "unit"]);
+        let words = [across.column.as_str(), units[0], values.column.as_str(), units[1]];
+        all.extend(columns.zip(words).map(|(name, word)| Argument::of(name, word)));
+        all
+    }
+
     /// The time in s at which a measured time is shown.
     pub fn time(&self, t: f64) -> f64 {
         t * self.time_scale + self.shift

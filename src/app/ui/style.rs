@@ -1,15 +1,15 @@
 //! Colours, line widths and text sizes, with what each stands for.
 //!
-//! The hues are those of Okabe and Ito (2008, "Color Universal Design"), each with one meaning. No meaning
-//! depends on a hue alone: every regime has a shape as well. Light, dark and projector modes differ in
-//! background, widths and zoom, not in meanings.
+//! What a picture on paper shows has the colour that its role has there ([`Theme`]). No meaning depends on a
+//! hue alone: every regime has a shape as well. Light, dark and projector modes differ in background, widths
+//! and zoom, not in meanings.
 
 use std::sync::Arc;
 
-use eframe::egui::{self, Color32, FontData, FontDefinitions, FontFamily, FontId, Stroke, TextStyle, Theme};
+use eframe::egui::{self, Color32, FontData, FontDefinitions, FontFamily, FontId, Stroke, TextStyle};
 
 use crate::app::words::kind::Kind;
-use crate::output::{BLACK, Ink, attractor_colour, viridis};
+use crate::output::{Ink, Role, Theme};
 
 /// Zoom of the projector mode.
 pub const PROJECTOR_ZOOM: f32 = 1.5;
@@ -38,12 +38,15 @@ pub const GRAB: f32 = 14.0;
 /// Time in s in which the ring of an impact grows and fades.
 pub const RING_SECONDS: f64 = 0.3;
 
+/// Points of the screen in a unit of a line's width on paper.
+const STROKE: f32 = 2.0 / 3.0;
+
 const ORANGE: Color32 = Color32::from_rgb(230, 159, 0);
-const SKY: Color32 = Color32::from_rgb(86, 180, 233);
-const GREEN: Color32 = Color32::from_rgb(0, 158, 115);
-const BLUE: Color32 = Color32::from_rgb(0, 114, 178);
-const VERMILION: Color32 = Color32::from_rgb(213, 94, 0);
-const PURPLE: Color32 = Color32::from_rgb(204, 121, 167);
+
+/// A colour of a picture on paper.
+pub fn colour(Ink(red, green, blue): Ink) -> Color32 {
+    Color32::from_rgb(red, green, blue)
+}
 
 /// The colours and widths of one appearance.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,21 +59,37 @@ pub struct Style {
 impl Style {
     /// The style of the present theme.
     pub fn of(ctx: &egui::Context, projector: bool) -> Self {
-        Self { dark: ctx.theme() == Theme::Dark, projector }
+        Self { dark: ctx.theme() == egui::Theme::Dark, projector }
     }
 
     fn pick(&self, light: Color32, dark: Color32) -> Color32 {
         if self.dark { dark } else { light }
     }
 
+    /// The colours of pictures in this appearance.
+    pub fn theme(&self) -> Theme {
+        Theme::of(self.dark, None)
+    }
+
+    /// The colour of what stands for `role`.
+    pub fn colour(&self, role: Role) -> Color32 {
+        colour(self.theme().look(role).ink)
+    }
+
+    /// The line of what stands for `role`.
+    pub fn stroke(&self, role: Role) -> Stroke {
+        let look = self.theme().look(role);
+        Stroke::new(self.width(STROKE * look.width as f32), colour(look.ink))
+    }
+
     /// Text and axes.
     pub fn ink(&self) -> Color32 {
-        self.pick(Color32::from_gray(25), Color32::from_gray(230))
+        colour(self.theme().ink)
     }
 
     /// Secondary text and lines: ticks, units, notes.
     pub fn faint(&self) -> Color32 {
-        self.pick(Color32::from_gray(95), Color32::from_gray(165))
+        colour(self.theme().soft)
     }
 
     /// Edges of controls, with a contrast of at least 3:1 to the background.
@@ -79,11 +98,11 @@ impl Style {
     }
 
     pub fn grid(&self) -> Color32 {
-        self.pick(Color32::from_gray(225), Color32::from_gray(52))
+        colour(self.theme().grid)
     }
 
     pub fn ground(&self) -> Color32 {
-        self.pick(Color32::WHITE, Color32::from_gray(22))
+        colour(self.theme().paper)
     }
 
     pub fn mass(&self) -> Color32 {
@@ -105,43 +124,33 @@ impl Style {
     }
 
     pub fn stop(&self) -> Color32 {
-        self.pick(GREEN, Color32::from_rgb(40, 190, 145))
+        self.colour(Role::Stop)
     }
 
     /// The base, its acceleration and its push.
     pub fn base(&self) -> Color32 {
-        self.pick(Color32::from_rgb(30, 125, 180), SKY)
-    }
-
-    /// Force and potential of the mechanism.
-    pub fn curve(&self) -> Color32 {
-        self.ink()
-    }
-
-    /// The motion over time.
-    pub fn motion(&self) -> Color32 {
-        self.ink()
+        self.colour(Role::Drive)
     }
 
     /// Time at rest on a stop.
     pub fn rest_shade(&self) -> Color32 {
-        self.pick(Color32::from_gray(222), Color32::from_gray(58))
+        self.colour(Role::Rest)
     }
 
     pub fn impact(&self) -> Color32 {
-        self.pick(VERMILION, Color32::from_rgb(240, 120, 40))
+        self.colour(Role::Impact)
     }
 
     pub fn kind(&self, kind: Kind) -> Color32 {
         match kind {
-            Kind::Resting | Kind::Other => self.pick(Color32::from_gray(105), Color32::from_gray(170)),
-            Kind::Intrawell => self.pick(BLUE, Color32::from_rgb(60, 160, 225)),
-            Kind::Irregular => self.pick(Color32::from_rgb(176, 84, 136), PURPLE),
+            Kind::Resting | Kind::Other => self.faint(),
+            Kind::Intrawell => self.colour(Role::Regime(1)),
+            Kind::Irregular => self.colour(Role::Second),
             Kind::Interwell | Kind::Crossing | Kind::Fault => self.impact(),
         }
     }
 
-    fn width(&self, points: f32) -> f32 {
+    pub fn width(&self, points: f32) -> f32 {
         // three pixels at the zoom of the projector mode
         if self.projector { points.max(3.0 / PROJECTOR_ZOOM) } else { points }
     }
@@ -157,22 +166,22 @@ impl Style {
 
     /// The potential with the base's push, on which the mass rides.
     pub fn tray_stroke(&self) -> Stroke {
-        Stroke::new(3.0, self.curve())
+        self.stroke(Role::Curve)
     }
 
     /// The potential without the push.
     pub fn ghost_stroke(&self) -> Stroke {
-        Stroke::new(self.width(1.2), self.faint())
+        self.stroke(Role::Reference)
     }
 
     /// The motion over time.
     pub fn motion_stroke(&self) -> Stroke {
-        Stroke::new(self.width(1.6), self.motion())
+        self.stroke(Role::Motion)
     }
 
     /// A pinned motion, over time and in the phase portrait.
     pub fn ghost_motion_stroke(&self) -> Stroke {
-        Stroke::new(self.width(1.6), self.motion().gamma_multiply(0.6))
+        Stroke::new(self.width(1.6), self.ink().gamma_multiply(0.6))
     }
 
     pub fn measured(&self) -> Color32 {
@@ -186,12 +195,12 @@ impl Style {
 
     /// Power of a transducer over time.
     pub fn power_stroke(&self) -> Stroke {
-        Stroke::new(self.width(1.6), self.curve())
+        self.stroke(Role::Motion)
     }
 
     /// Acceleration of the base over time, and its push.
     pub fn base_stroke(&self) -> Stroke {
-        Stroke::new(self.width(1.6), self.base())
+        self.stroke(Role::Drive)
     }
 
     /// The height of the barrier where energies are compared with it.
@@ -201,11 +210,11 @@ impl Style {
 
     /// An impact: a tick on a time axis, a jump of the velocity.
     pub fn impact_stroke(&self) -> Stroke {
-        Stroke::new(self.width(1.5), self.impact())
+        self.stroke(Role::Impact)
     }
 
     pub fn stop_stroke(&self) -> Stroke {
-        Stroke::new(self.width(2.0), self.stop())
+        self.stroke(Role::Stop)
     }
 
     /// Frame of what has the keyboard focus.
@@ -234,18 +243,6 @@ impl Style {
         self.pick(Color32::from_gray(190), Color32::from_gray(85))
     }
 
-    /// Colour of a share from 0 to 1 of the scale of a map.
-    pub fn scale(&self, share: f64) -> Color32 {
-        let Ink(red, green, blue) = viridis(share);
-        Color32::from_rgb(red, green, blue)
-    }
-
-    /// The colour of an attractor, by its index.
-    pub fn attractor(&self, place: usize) -> Color32 {
-        let Ink(red, green, blue) = attractor_colour(place);
-        Color32::from_rgb(red, green, blue)
-    }
-
     /// Background of panels, and cells that are not computed yet.
     pub fn panel(&self) -> Color32 {
         self.pick(Color32::from_gray(246), Color32::from_gray(34))
@@ -254,33 +251,6 @@ impl Style {
     /// Veil over a map that is not that of the scene.
     pub fn veil(&self) -> Color32 {
         self.pick(Color32::from_white_alpha(140), Color32::from_black_alpha(130))
-    }
-
-    /// Symbols over the colour of a kind of motion.
-    pub fn over_kind(&self) -> Color32 {
-        self.pick(Color32::WHITE, Color32::BLACK)
-    }
-
-    /// Hatching of cells at rest.
-    pub fn hatch_stroke(&self) -> Stroke {
-        Stroke::new(1.2, self.pick(Color32::from_gray(140), Color32::from_gray(125)))
-    }
-
-    /// Hatching of cells without a value.
-    pub fn missing_stroke(&self) -> Stroke {
-        Stroke::new(1.2, self.faint())
-    }
-
-    /// The release on a map: outline and line.
-    pub fn release_strokes(&self) -> [Stroke; 2] {
-        let width = self.width(2.4);
-        [Stroke::new(width + 2.4, Color32::BLACK), Stroke::new(width, Color32::WHITE)]
-    }
-
-    /// The first crossing on a map: outline and line.
-    pub fn crossing_strokes(&self) -> [Stroke; 2] {
-        let width = self.width(2.4);
-        [Stroke::new(width + 2.4, Color32::WHITE), Stroke::new(width, VERMILION)]
     }
 
     /// The mark of the scene on a map, in the colour of the mass: outline and mark.
@@ -293,17 +263,6 @@ impl Style {
     pub fn trail_strokes(&self) -> [Stroke; 2] {
         let width = self.width(1.8);
         [Stroke::new(width + 1.8, Color32::BLACK), Stroke::new(width, ORANGE)]
-    }
-
-    /// A line over a map in any theme: the light line, or its dark outline.
-    pub fn over_map(light: bool) -> Color32 {
-        if light { Color32::WHITE } else { Color32::BLACK }
-    }
-
-    /// The edge of a face of a surface, at a share from 0 to 1 of the scale.
-    pub fn scale_edge(share: f64) -> Color32 {
-        let Ink(red, green, blue) = viridis(share).over(BLACK, 0.62);
-        Color32::from_rgb(red, green, blue)
     }
 
     /// Outline of the cell under the pointer.

@@ -7,11 +7,12 @@ use eframe::egui::{Align2, Painter, Pos2, Rect, Stroke, Ui, pos2, vec2};
 
 use crate::app::ui::style::Style;
 use crate::mechanics::Landscape;
+use crate::output::PlotAxis;
 
 use super::ViewContext;
 use super::labels::{haloed, plated};
 use super::legend::{LEGEND, Symbol, legend};
-use super::span::{Span, ticks};
+use super::span::Span;
 
 /// Distance in points outside the picture at which positions are clamped.
 const FAR: f32 = 4000.0;
@@ -77,11 +78,10 @@ impl Chart {
         (0..=count).map(point).collect()
     }
 
-    /// Values of the grid lines in multiples of `unit`, and the decimals to write them with.
-    fn rows(&self, unit: f64) -> (Vec<f64>, usize) {
-        let rows = f64::from((self.rect.height() / 40.0).clamp(2.0, 7.0));
-        let (values, decimals) = ticks(self.low / unit, self.high / unit, rows);
-        (values.iter().map(|value| value * 1e3).collect(), decimals)
+    /// The vertical axis in multiples of `unit`, with the ticks that it has room for.
+    fn axis(&self, name: &str, unit: f64) -> PlotAxis {
+        let rows = (self.rect.height() / 40.0).clamp(2.0, 7.0) as usize;
+        PlotAxis::between(self.low / unit, self.high / unit, name).with_ticks(rows)
     }
 
     /// Draws background, grid and x axis; grid lines lie at round multiples of `unit`.
@@ -92,7 +92,7 @@ impl Chart {
         x_axis(&painter, context, rect);
         let below = pos2(rect.center().x, self.area.bottom() - 3.0);
         painter.text(below, Align2::CENTER_BOTTOM, "displacement (mm)", style.small(), style.faint());
-        for value in self.rows(unit).0 {
+        for (value, _) in self.axis("", unit).ticks {
             let at = self.screen_from_world(self.span.low, value * unit).y;
             let stroke = if value == 0.0 { style.ghost_stroke() } else { style.grid_stroke() };
             painter.hline(rect.x_range(), at, stroke);
@@ -105,16 +105,15 @@ impl Chart {
         let write = |at: Pos2, align: Align2, text: &str| {
             plated(&painter, style, (at, align), text, (style.small(), style.faint()));
         };
-        let (values, decimals) = self.rows(unit);
-        for value in values {
+        let axis = self.axis(name, unit);
+        for (value, text) in axis.ticks {
             let at = self.screen_from_world(self.span.low, value * unit).y;
             if at > self.rect.top() + 26.0 && at < self.rect.bottom() - 8.0 {
-                let text = format!("{:.decimals$}", value + 0.0);
                 // above its grid line, so that the line does not cross it
                 write(pos2(self.rect.left() + 4.0, at - 1.0), Align2::LEFT_BOTTOM, &text);
             }
         }
-        write(self.rect.left_top() + vec2(4.0, 3.0), Align2::LEFT_TOP, name);
+        write(self.rect.left_top() + vec2(4.0, 3.0), Align2::LEFT_TOP, &axis.label);
     }
 
     /// Writes `text` below the picture, about the point under the pointer.
@@ -142,13 +141,13 @@ impl Chart {
 /// Draws the ticks of the x axis, in mm, below `rect`.
 pub fn x_axis(painter: &Painter, context: &ViewContext<'_>, rect: Rect) {
     let style = context.style;
-    let (ticks, decimals) = context.span.ticks(f64::from(rect.width()) / 55.0);
+    let PlotAxis { ticks, label, .. } = context.span.axis().with_ticks((rect.width() / 55.0) as usize);
+    let unit = label.rsplit_once(" (").map_or("", |(_, unit)| unit.trim_end_matches(')'));
     let last = ticks.len().saturating_sub(1);
-    for (i, x) in ticks.iter().enumerate() {
-        let at = context.span.screen_from_world(*x, rect);
+    for (i, (mm, text)) in ticks.into_iter().enumerate() {
+        let at = context.span.screen_from_world(mm / 1e3, rect);
         painter.vline(at, rect.y_range(), style.grid_stroke());
-        let unit = if i == last { " mm" } else { "" };
-        let text = format!("{:.decimals$}{unit}", x * 1e3 + 0.0);
+        let text = if i == last { format!("{text} {unit}") } else { text };
         let galley = painter.layout_no_wrap(text, style.small(), style.faint());
         let half = 0.5 * galley.size().x + 2.0;
         // moved inwards at the edges, so that the number is not cut off

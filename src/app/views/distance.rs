@@ -5,6 +5,7 @@ use egui_plot::{HLine, Line, PlotBounds, PlotPoint, Text, VLine};
 
 use crate::app::session::pins::{Pin, PinKind};
 use crate::app::words::numbers::three;
+use crate::output::PlotAxis;
 use crate::study::distances;
 
 use super::cursors::{cursors_ui, readout_ui};
@@ -12,7 +13,7 @@ use super::ghosts::PINNED;
 use super::hand::axes_input;
 use super::labels::haloed;
 use super::legend::LEGEND;
-use super::plot::{LOW, MARGIN, decades, marks, plot_place, power, still_plot};
+use super::plot::{LOW, MARGIN, even, marks, plot_place, still_plot};
 use super::view::Axis;
 use super::{View, ViewContext, too_small_ui};
 
@@ -73,19 +74,23 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     };
     let readout = readout_ui(ui, context, (area, to - from), at_each, between);
     let is_low = area.height() < LOW;
+    let decades = PlotAxis::powers(low, high, "").with_ticks(rows as usize);
     let (time_label, label) = if is_low { ("", "mm") } else { ("time (s)", "distance (mm)") };
     let plot = area.with_min_y(area.top() + LEGEND + readout).shrink2(vec2(MARGIN, 0.0));
     let mut child = plot_place(ui, &style, plot);
     let shown = still_plot("distance")
-        .x_grid_spacer(|_| marks(from, to - 0.05 * (to - from), columns))
-        .y_grid_spacer(|_| decades(low, high, rows))
+        .x_grid_spacer(|_| marks(&even(from, to - 0.05 * (to - from), columns)))
+        .y_grid_spacer(|_| marks(&decades))
         .x_axis_label(time_label)
         .y_axis_label(label)
-        .y_axis_formatter(|mark, _| power(mark.value))
+        .y_axis_formatter(|mark, _| {
+            let tick = decades.ticks.iter().find(|tick| tick.0 == mark.value);
+            tick.map(|tick| tick.1.clone()).unwrap_or_default()
+        })
         .show(&mut child, |plot| {
             plot.set_plot_bounds(PlotBounds::from_min_max([from, low], [to, high]));
-            for mark in decades(low, high, rows) {
-                plot.hline(HLine::new("", mark.value).stroke(style.grid_stroke()));
+            for (value, _) in &decades.ticks {
+                plot.hline(HLine::new("", *value).stroke(style.grid_stroke()));
             }
             plot.vline(VLine::new("now", now).stroke(style.ghost_stroke()));
             for (place, path) in &lines {

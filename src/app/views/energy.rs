@@ -58,7 +58,7 @@ const LEDGER: [Row; 6] = [
         TRANSDUCER,
         "Taken by the load and the coil of the transducer.",
         |ledger| -(ledger.harvested_j + ledger.coil_j),
-        Style::curve,
+        Style::ink,
     ),
     ("stored", "What that leaves in the mass and its mechanism.", |ledger| ledger.stored_j, Style::ink),
 ];

@@ -104,7 +104,7 @@ pub(super) struct Ring {
     pub size: f64,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MapLook {
     pub surface: bool,
     /// Whether cuts through the map at the scene are drawn beside it.

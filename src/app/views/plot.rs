@@ -4,8 +4,7 @@ use eframe::egui::{AsIdSalt, Rect, TextStyle, Ui, UiBuilder, vec2};
 use egui_plot::{GridMark, Plot};
 
 use crate::app::ui::style::Style;
-
-use super::span::ticks;
+use crate::output::PlotAxis;
 
 /// Margin in points between the edge of a view and the name of the vertical axis.
 pub const MARGIN: f32 = 6.0;
@@ -43,51 +42,19 @@ pub fn still_plot<'a>(name: impl AsIdSalt) -> Plot<'a> {
         .show_crosshair(false)
 }
 
-/// Grid marks at about `count` round numbers.
-pub fn marks(low: f64, high: f64, count: f64) -> Vec<GridMark> {
-    let (mut values, _) = ticks(low, high, count);
-    // at least two, since the axis has no scale with one
-    if values.len() < 2 {
-        (values, _) = ticks(low, high, 2.0 * count);
-    }
-    let step_size = values.windows(2).next().map_or(1.0, |pair| (pair[1] - pair[0]) * 1e3);
-    values.iter().map(|value| GridMark { value: value * 1e3, step_size }).collect()
+/// Grid marks at the ticks of an axis.
+pub fn marks(axis: &PlotAxis) -> Vec<GridMark> {
+    let step_size = axis.ticks.windows(2).next().map_or(1.0, |pair| pair[1].0 - pair[0].0);
+    axis.ticks.iter().map(|tick| GridMark { value: tick.0, step_size }).collect()
+}
+
+/// An axis with about `count` ticks.
+pub fn even(low: f64, high: f64, count: f64) -> PlotAxis {
+    PlotAxis::between(low, high, "").with_ticks(count as usize)
 }
 
 /// Label of a tick, with the decimals that distinguish it from the next one.
 pub fn plain(mark: GridMark) -> String {
     let decimals = (-(mark.step_size * 1.001).log10().floor()).clamp(0.0, 9.0) as usize;
-    format!("{:.decimals$}", mark.value + 0.0)
-}
-
-/// Grid marks at powers of ten, or at every n-th power so that there are about `count`.
-pub fn decades(low: f64, high: f64, count: f64) -> Vec<GridMark> {
-    let every = ((high - low) / count).ceil().max(1.0);
-    let first = (low / every).ceil() as i32;
-    let last = (high / every).floor() as i32;
-    (first..=last).map(|i| GridMark { value: f64::from(i) * every, step_size: every }).collect()
-}
-
-/// Label of the number with this decimal logarithm.
-pub fn power(logarithm: f64) -> String {
-    match logarithm.round() as i32 {
-        power @ 0..=3 => format!("{}", 10_i32.pow(power as u32)),
-        -1 => "0.1".to_owned(),
-        -2 => "0.01".to_owned(),
-        power => format!("1e{power}"),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn decades_are_whole_and_few() {
-        let values =
-            |low, high, count| decades(low, high, count).iter().map(|mark| mark.value).collect::<Vec<_>>();
-        assert_eq!(values(-3.2, 0.4, 7.0), [-3.0, -2.0, -1.0, 0.0]);
-        assert_eq!(values(-5.7, 0.3, 3.0), [-4.0, -2.0, 0.0]);
-        assert_eq!([-3.0, -2.0, 0.0, 2.0].map(power), ["1e-3", "0.01", "1", "100"]);
-    }
+    format!("{:.decimals$}", mark.value + 0.0).replace('-', "\u{2212}")
 }

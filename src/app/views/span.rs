@@ -3,7 +3,7 @@
 use eframe::egui::Rect;
 
 use crate::app::session::Session;
-use crate::numeric::round::{ONE_TWO_FIVE, round_up};
+use crate::output::PlotAxis;
 
 use super::ranges::axis_end;
 
@@ -85,22 +85,10 @@ impl Span {
         f64::from(rect.width()) / (self.high - self.low)
     }
 
-    /// About `count` round displacements in m for ticks, and the decimals to write them with in mm.
-    pub fn ticks(&self, count: f64) -> (Vec<f64>, usize) {
-        ticks(self.low * 1e3, self.high * 1e3, count)
+    /// The axis in mm.
+    pub fn axis(&self) -> PlotAxis {
+        PlotAxis::between(self.low * 1e3, self.high * 1e3, "displacement (mm)")
     }
-}
-
-/// About `count` round numbers from `low` to `high`, divided by 1000 (mm to m), and their decimals in mm.
-pub(super) fn ticks(low: f64, high: f64, count: f64) -> (Vec<f64>, usize) {
-    let step = round_up((high - low) / count.max(1.0), &ONE_TWO_FIVE);
-    if !(step > 0.0 && step.is_finite()) {
-        return (Vec::new(), 0);
-    }
-    let (first, last) = ((low / step).ceil(), (high / step).floor());
-    let number = (last - first).clamp(0.0, 100.0) as u32;
-    let values = (0..=number).map(|i| (first + f64::from(i)) * step / 1e3).collect();
-    (values, (-step.log10().floor()).clamp(0.0, 9.0) as usize)
 }
 
 #[cfg(test)]
@@ -145,7 +133,5 @@ mod tests {
         let rect = Rect::from_min_max(pos2(100.0, 0.0), pos2(500.0, 10.0));
         assert_eq!(span.screen_from_world(0.0, rect), 300.0);
         assert!((span.world_from_screen(400.0, rect) - 4e-3).abs() < 1e-12);
-        let (ticks, decimals) = span.ticks(5.0);
-        assert_eq!((ticks.len(), decimals), (3, 0));
     }
 }

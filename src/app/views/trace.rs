@@ -21,7 +21,7 @@ use super::hand::axes_input;
 use super::labels::haloed;
 use super::legend::{LEGEND, Symbol, legend};
 use super::overlay::{MeasuredTrace, with_room};
-use super::plot::{LOW, MARGIN, marks, plot_place, still_plot};
+use super::plot::{LOW, MARGIN, even, marks, plot_place, still_plot};
 use super::ranges::room_for_push;
 use super::view::Axis;
 use super::{View, ViewContext};
@@ -199,14 +199,14 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
     };
     let mut ui = plot_place(ui, &style, plot);
     let response = still_plot(quantity.name())
-        .x_grid_spacer(|_| marks(from.max(0.0), to - NO_NUMBER * window, columns))
-        .y_grid_spacer(|_| marks(low + edge, high - edge, rows))
+        .x_grid_spacer(|_| marks(&even(from.max(0.0), to - NO_NUMBER * window, columns)))
+        .y_grid_spacer(|_| marks(&even(low + edge, high - edge, rows)))
         .x_axis_label(time_label)
         .y_axis_label(axis)
         .show(&mut ui, |plot| {
             plot.set_plot_bounds(PlotBounds::from_min_max([from, low], [to, high]));
-            for mark in marks(low, high, rows) {
-                plot.hline(HLine::new("", mark.value).stroke(style.grid_stroke()));
+            for (value, _) in even(low, high, rows).ticks {
+                plot.hline(HLine::new("", value).stroke(style.grid_stroke()));
             }
             draw_rests_and_stops(plot, rests, stops, &style);
             plot.vline(VLine::new("now", now).stroke(style.ghost_stroke()));

@@ -216,7 +216,7 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
     }
     let chart = chart(&branches, quantity, per_watt, axes, here);
     let pane = pane_ui(&mut child, context.memory, View::UpAndDown, &style, area, chart);
-    let ball = here.zip(live).and_then(|point| pane.place(point));
+    let ball = here.zip(live).and_then(|point| pane.place(0, point));
     let frame = pane.frame(0).unwrap_or(area);
     if let Some(at) = ball.filter(|at| frame.contains(*at)) {
         child.painter().circle(at, 4.5, style.mass(), egui::Stroke::new(1.5, style.mass_edge()));
@@ -226,7 +226,8 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
     let write = |at: egui::Pos2, align: Align2, text: &str, colour: egui::Color32| {
         haloed(ui.painter(), &style, (at, align), text, (style.small(), colour));
     };
-    if let Some(value) = pane.response.hover_pos().and_then(|at| pane.x_at(at)) {
+    if let Some(value) = pane.response.hover_pos().and_then(|at| pane.values_at(0, at)).map(|values| values.0)
+    {
         let text = reading(&branches, value.clamp(axis.from, axis.to), quantity);
         write(frame.right_top() + vec2(-4.0, 4.0), Align2::RIGHT_TOP, &text, style.ink());
     }
@@ -235,7 +236,7 @@ fn picture_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axis: &SweepAxis, area
         write(area.right_bottom() - vec2(8.0, 3.0), Align2::RIGHT_BOTTOM, text, style.faint());
     }
     if !ui.input(|input| input.modifiers.shift) {
-        drag(session, &pane.response, |at| pane.x_at(at).unwrap_or(axis.from));
+        drag(session, &pane.response, |at| pane.values_at(0, at).map_or(axis.from, |values| values.0));
     }
 }
 

@@ -30,7 +30,7 @@ pub struct Figures {
     /// The times in s of a run; empty for all of it.
     pub times: [String; 2],
     /// The panels of a run, in the order of [`RunPanel::ALL`].
-    pub panels: [bool; 4],
+    pub panels: [bool; RunPanel::ALL.len()],
     /// Why the last figure was not saved.
     pub(super) problem: Option<String>,
     /// Whether the path has had the keyboard focus.
@@ -49,7 +49,7 @@ impl Default for Figures {
             titled: true,
             data: false,
             times: [text(), text()],
-            panels: [false; 4],
+            panels: [false; RunPanel::ALL.len()],
             problem: None,
             had_focus: false,
             job: Background::default(),
@@ -130,8 +130,10 @@ impl Figures {
                 }
             }
             View::Section => Ok(Subject::Section),
+            View::Mechanism => Subject::shapes(session),
+            View::Measured => Subject::measured(session),
             View::Well | View::ForceCurve => Ok(Subject::Curve),
-            View::Map => Subject::map(session, memory.map_look.surface),
+            View::Map => Subject::map(session, memory.map_look.surface, memory.map_look.cuts),
             View::UpAndDown => Subject::walks(session),
             View::Basins => Subject::basins(session),
             View::Spectrum => Ok(Subject::spectrum(session)),
@@ -183,6 +185,8 @@ impl Figures {
             _ if panel(view).is_some() => "The run of the scene from its start.",
             View::Section => "The states of the scene's own run, from its start.",
             View::Well | View::ForceCurve => "Force and potential over displacement.",
+            View::Mechanism => "The centre lines of the flexures where the mass is now.",
+            View::Measured => "The record over the run of the scene from its start, or over its force.",
             View::Map | View::UpAndDown | View::Basins => "Every run is made anew, which may take a while.",
             _ => "",
         }
@@ -200,6 +204,7 @@ pub(super) fn panel(view: View) -> Option<RunPanel> {
         View::Displacement => Some(RunPanel::Displacement),
         View::Velocity => Some(RunPanel::Velocity),
         View::BaseAcceleration => Some(RunPanel::Acceleration),
+        View::Energy => Some(RunPanel::Energy),
         View::PhasePortrait => Some(RunPanel::Portrait),
         _ => None,
     }

@@ -121,7 +121,7 @@ impl Figures {
         if panel(view).is_some() {
             ui.label("Panels");
             ui.horizontal(|ui| {
-                let names = ["displacement", "velocity", "base acceleration", "phase portrait"];
+                let names = ["displacement", "velocity", "base acceleration", "energy", "phase portrait"];
                 for (name, panel) in names.into_iter().zip(&mut self.panels) {
                     ui.checkbox(panel, name);
                 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use eframe::egui::{self, Button, ComboBox, Grid, RichText, Ui};
 
-use crate::app::session::measured::{MeasuredRecord, sentence};
+use crate::app::session::measured::{MeasuredRecord, file_name, sentence};
 use crate::app::task::{Background, Wake};
 use crate::app::ui::widgets::{dialog, dialog_width};
 use crate::scene::{ChosenColumn, MeasuredText, Quantity, Unit};
@@ -55,7 +55,7 @@ pub(super) enum MeasuredAnswer {
 impl MeasuredDialog {
     /// Begins to read the file.
     pub fn new(path: &Path, wake: &Wake) -> Self {
-        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+        let name = file_name(path);
         let mut text = Background::default();
         let file = path.to_owned();
         text.ask((), wake, move |(), _, _| {
@@ -102,9 +102,9 @@ impl MeasuredDialog {
         let Some(wanted) = across.1.zip(values.1).map(|pair| [(across.0, pair.0), (values.0, pair.1)]) else {
             return self.record.clear();
         };
-        let (text, name) = (Arc::clone(text), self.name.clone());
+        let (text, path) = (Arc::clone(text), self.path.clone());
         self.record
-            .want(wanted, true, wake, move |wanted, _, _| Some(MeasuredRecord::of(&name, &text, *wanted)));
+            .want(wanted, true, wake, move |wanted, _, _| Some(MeasuredRecord::of(&path, &text, *wanted)));
     }
 
     /// Draws the dialog. Returns the answer once there is one.

@@ -1,9 +1,8 @@
 //! The columns of a summary on the screen: their groups, titles, units and words.
 
 use crate::app::words::capital;
-use crate::app::words::numbers::power_unit;
-use crate::output::{RMS, speed_unit, words_of};
-use crate::study::{Read, SummaryField, label_and_unit};
+use crate::output::{RMS, words_of};
+use crate::study::{Read, SummaryField};
 
 /// The columns that are offered, in groups.
 #[rustfmt::skip]
@@ -40,9 +39,6 @@ pub trait ShownColumn {
     /// The words that can be its values, in order; `None` for a numeric column.
     fn shown_words(&self) -> Option<&'static [&'static str]>;
 
-    /// The factor from the unit in files to the unit that suits `values`, and the name of that unit.
-    fn unit(&self, values: impl Iterator<Item = f64>) -> (f64, &'static str);
-
     /// Whether its values are whole numbers.
     fn is_count(&self) -> bool;
 }
@@ -54,17 +50,6 @@ impl ShownColumn for SummaryField {
 
     fn shown_words(&self) -> Option<&'static [&'static str]> {
         words_of(self.name)
-    }
-
-    fn unit(&self, values: impl Iterator<Item = f64>) -> (f64, &'static str) {
-        match label_and_unit(self.name).1 {
-            "m" => (1e3, "mm"),
-            "m/s" => speed_unit(values),
-            "J" => (1e3, "mJ"),
-            "Pa" => (1e-6, "MPa"),
-            "W" => power_unit(values.fold(0.0, |largest, value| value.abs().max(largest))),
-            unit => (1.0, unit),
-        }
     }
 
     fn is_count(&self) -> bool {
@@ -105,6 +90,5 @@ mod tests {
         names.dedup();
         assert_eq!(names.len(), all.len());
         assert_eq!(SummaryField::find(RMS).unwrap().title(), "RMS velocity");
-        assert_eq!(SummaryField::find("max_abs_x_m").unwrap().unit([0.02].into_iter()), (1e3, "mm"));
     }
 }

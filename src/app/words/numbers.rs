@@ -1,6 +1,7 @@
 //! Formats of numbers in fields, on axes and in sentences, and round numbers for ranges and steps.
 
 use crate::numeric::{self, round};
+use crate::output::suited_unit;
 
 /// The least round number, of one or two significant digits, that is not below `value`.
 pub fn round_up(value: f64) -> f64 {
@@ -54,12 +55,7 @@ pub fn three(value: f64) -> String {
 
 /// The factor from W to the unit that suits powers up to `largest` in W, and the name of that unit.
 pub fn power_unit(largest: f64) -> (f64, &'static str) {
-    match largest {
-        _ if largest >= 1.0 => (1.0, "W"),
-        _ if largest >= 1e-3 || largest == 0.0 => (1e3, "mW"),
-        _ if largest >= 1e-6 => (1e6, "µW"),
-        _ => (1e9, "nW"),
-    }
+    suited_unit("W", std::iter::once(largest))
 }
 
 /// A power in W as text with a unit.

@@ -15,16 +15,15 @@ pub use json::{identified, landscape, summary};
 pub use manifest::{Made, Provenance, basins_manifest, exponents_manifest, manifest, merged_manifest};
 pub use plan::{plan, plan_checksum, plan_differences};
 pub use plot::{
-    AXIS_EDGES, Area, Argument, BACK_EDGES, BLACK, BoxPlace, Caption, Cell, Cells, Chart, Colours, Column,
-    ComparisonPicture, Cut, ExponentPicture, Face, Figure, Format, Frame, Ink, Layer, Look,
-    MAX_PICTURE_CELLS, Marks, NoPicture, Note, Overlay, PaintError, Panel, PlotAxis, Projection, RMS, Ranges,
-    Role, RunPanel, SIDES, SectionPicture, Shape, Sheet, SheetError, SheetText, Side, SpectrumQuantity,
-    SweepPicture, TICK, Theme, ThresholdPicture, UnknownFormat, View, accuracy_chart, attractor_colour,
-    basins_chart, branch_chart, can_show, can_show_exponents, can_show_starts, can_show_thresholds,
-    comparison_chart, contact_chart, curve_chart, exponents_chart, identified_chart, measured_chart,
-    measured_force_chart, picture_arguments, quantities, run_chart, section_chart, separatrix,
-    spectrum_chart, speed_unit, surface_faces, sweep_about, sweep_chart, threshold_chart, viridis,
-    wall_lines, words_of,
+    Area, Argument, BLACK, Caption, Cell, Cells, Chart, Colours, Column, ComparisonPicture, Cut,
+    ExponentPicture, Figure, Format, Frame, Ink, Layer, Look, MAX_PICTURE_CELLS, Marks, NoPicture, Note,
+    Overlay, PaintError, Panel, PlotAxis, Projection, RMS, Ranges, Role, RunPanel, SectionPicture, Shape,
+    Sheet, SheetError, SheetText, Side, SpectrumQuantity, SurfaceFrame, SweepPicture, TICK, Text, Theme,
+    ThresholdPicture, UnknownFormat, View, accuracy_chart, basins_chart, branch_chart, can_show,
+    can_show_exponents, can_show_starts, can_show_thresholds, comparison_chart, contact_chart, curve_chart,
+    exponents_chart, identified_chart, measured_chart, measured_force_chart, picture_arguments, quantities,
+    run_chart, section_chart, separatrix, shapes_chart, spectrum_chart, suited_unit, sweep_about,
+    sweep_chart, threshold_chart, viridis, words_of,
 };
 pub use text::aligned;
 

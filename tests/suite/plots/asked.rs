@@ -19,7 +19,7 @@ fn the_footer_says_what_arguments_changed() {
 fn any_column_of_numbers_can_be_shown_and_the_regime() {
     says(
         &format!("{SMALL_MAP} --quantity max_abs_x_m"),
-        &["largest |x| (mm)", "travel limit (mm)", "first crossing cell"],
+        &["reach (mm)", "travel limit (mm)", "first crossing cell"],
     );
     let impacts = says(&format!("{SMALL_MAP} --quantity impacts"), &["impacts"]);
     // No velocity, so a mass at rest is a number like any other.

@@ -94,8 +94,12 @@ fn a_width_in_mm_and_a_size_in_points_hold_on_paper() {
 }
 
 #[test]
-fn no_text_lies_on_another_in_one_column_or_two() {
+fn no_text_lies_on_another_at_any_size() {
     let folder = tempfile::tempdir().unwrap();
+    let record = folder.path().join("record.csv");
+    let run = stdout(&format!("simulate paper {SHORT} --dt 0.001"));
+    fs::write(&record, &run).unwrap();
+    let record = record.display();
     let cuts = format!("{SMALL_MAP} --cut travel_limit_mm=2 --cut amplitude_g=1");
     let lines = [
         "curve paper".to_owned(),
@@ -115,9 +119,14 @@ fn no_text_lies_on_another_in_one_column_or_two() {
         "spectrum random-shaking --of accel --quantity psd --rate-hz 50".to_owned(),
         "basins paper --x-mm -1:1:3 --v -0.1:0.1:3".to_owned(),
         "orbit impact-oscillator --branch excitation.amplitude_g=0.05:0.06".to_owned(),
+        format!("simulate paper {SHORT} --panels energy"),
+        format!("simulate paper {SHORT} --measured {record} --inset 1:1.5"),
+        format!("identify {record} --of restitution"),
+        "exponents duffing --over excitation.amplitude_g=0.2:0.4:0.1 --periods 20".to_owned(),
+        "compare paper uneven-stops".to_owned(),
     ];
     for line in &lines {
-        for size in [PAPER, "--plot-width-mm 170 --font-pt 9"] {
+        for size in ["", "--plot-width-mm 60 --font-pt 6", PAPER, "--plot-width-mm 170 --font-pt 9"] {
             let path = plot(&format!("{line} {size}"), folder.path(), "a.svg");
             let svg = fs::read_to_string(path).unwrap();
             let view = svg.split("viewBox=\"").nth(1).unwrap().split('"').next().unwrap();

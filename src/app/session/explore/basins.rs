@@ -7,6 +7,7 @@ use crate::app::session::Session;
 use crate::app::session::map::ground;
 use crate::app::task::{Background, pool};
 use crate::mechanics::Mechanism;
+use crate::output::{Chart, basins_chart, suited_unit};
 use crate::scene::{Scene, Start};
 use crate::study::{Answer, Basins, EvenRange, NoBasins, Starts, Task};
 
@@ -28,10 +29,10 @@ pub struct BasinsQuestion {
 pub struct Level {
     /// The attractors, and the attractor that each start goes to.
     pub answer: Answer,
-    /// For each start the index of the start whose answer is shown: itself or a neighbour.
-    pub shown: Vec<usize>,
-    /// Displacements in mm and velocities in m/s of the starts.
-    pub axes: (Vec<f64>, Vec<f64>),
+    /// Their picture, in which a start that has not been run shows the answer of a neighbour.
+    pub chart: Chart,
+    /// How many units of its velocities are 1 m/s.
+    pub per_speed: f64,
     /// Range of displacements in m that the mass may have.
     pub room: (f64, f64),
 }
@@ -78,20 +79,14 @@ fn find(
         other => other.to_string(),
     };
     let mut basins = Basins::new(&question.scene, mechanism, starts).map_err(message)?;
+    let per_speed = suited_unit("m/s", [question.v.0, question.v.1].into_iter()).0;
     let task = Task { tick: &|| (), cancel };
     let Some(pool) = pool() else { return Ok(()) };
     while !basins.is_whole() {
         let Some(answer) = basins.run_level(&pool, &task).then(|| basins.answer(&task)).flatten() else {
             return Ok(());
         };
-        let (levels, done) = basins.levels();
-        let stand_in = |row: usize| match basins.is_whole() {
-            true => row,
-            false => levels.stand_in(row as u64, done - 1) as usize,
-        };
-        let shown = (0..basins.starts().count()).map(stand_in).collect();
-        let axes = basins.starts().axes().map(|(x, v)| (x.to_vec(), v.to_vec())).unwrap_or_default();
-        each(Level { answer, shown, axes, room: basins.room() });
+        each(Level { chart: basins_chart(&basins, &answer), per_speed, answer, room: basins.room() });
     }
     Ok(())
 }

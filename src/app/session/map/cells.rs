@@ -7,11 +7,11 @@ use crate::app::session::editor::Editor;
 use crate::app::words::fields::in_words;
 use crate::mechanics::Mechanism;
 use crate::numeric::short;
-use crate::output::{header, rows};
-use crate::scene::{Scene, SceneError};
+use crate::output::{Chart, Cut, NoPicture, Overlay, Ranges, SweepPicture, View, header, rows, sweep_chart};
+use crate::scene::{FieldPath, Scene, SceneError};
 use crate::study::{
     Cell, Edges, Grid, Levels, STRIDES, SummaryField, Sweep, SweepOptions, Table, first_crossing,
-    first_crossing_edge, release_line,
+    release_line,
 };
 
 use super::{Question, over};
@@ -25,32 +25,19 @@ pub(in crate::app::session) fn too_many(cells: u64) -> Option<String> {
     (cells > MAX_CELLS).then(problem)
 }
 
-/// A cell on a line through a map.
-pub struct CutCell<'a> {
-    /// Its index along the line.
-    pub place: usize,
-    /// Its result.
-    pub cell: &'a Cell,
-    /// Whether the result is of this cell; if not, it is of the nearest cell that is known so far.
-    pub is_known: bool,
-}
-
 /// A map as far as it is known.
 pub struct Map {
     pub question: Question,
     /// The edges of the cells across and up.
     pub edges: [Edges; 2],
-    /// The least amplitude that releases the mass from a stop, in closed form, where it exists: `x` and `y`
-    /// of its points.
-    pub release: Vec<(f64, f64)>,
-    /// The edge of the first crossing cells, as far as they are known.
-    pub crossing: Vec<Vec<(f64, f64)>>,
+    /// The release in closed form, and the first crossing cells as far as they are known.
+    pub overlay: Overlay,
     pub(in crate::app::session) sweep: Arc<Sweep>,
     levels: Levels,
     cells: Vec<Option<Cell>>,
     known: usize,
-    /// Computing time after which its lines were last drawn.
-    lines_after: Option<Duration>,
+    /// Computing time after which it was last drawn.
+    drawn_after: Option<Duration>,
     /// Computing time so far.
     pub took: Duration,
     /// Computing time after which every cell of its coarsest level was known.
@@ -77,20 +64,21 @@ impl Map {
         let [across, up] = grid.axes() else { return Err("a map has two axes".to_owned()) };
         let edges = [across, up].map(|axis| Edges::new(&axis.values));
         let cells = vec![None; grid.cells() as usize];
-        let (levels, release) = (Levels::of(&grid), release(&question.scene, mechanism, &grid));
+        let release =
+            (!grid.changes_mechanism()).then(|| release_line(&question.scene, mechanism, &grid)).flatten();
+        let (levels, overlay) = (Levels::of(&grid), Overlay { release, first_crossing: None });
         let columns = question.ledger.and_then(SummaryField::find).into_iter().collect();
         let options = SweepOptions { columns, ..SweepOptions::default() };
         let sweep = Arc::new(Sweep::new(&document.scene, &document.files, grid).with(options));
         Ok(Self {
             question: question.clone(),
             edges,
-            release,
-            crossing: Vec::new(),
+            overlay,
             sweep,
             levels,
             cells,
             known: 0,
-            lines_after: None,
+            drawn_after: None,
             took: Duration::ZERO,
             coarse_after: None,
         })
@@ -157,15 +145,25 @@ impl Map {
         self.levels.ends.into_iter().map(level).collect()
     }
 
-    /// Adds cells that have been computed, and updates what is drawn over them.
-    pub(super) fn add(&mut self, cells: Vec<(u64, Cell)>) {
+    /// Adds cells that have been computed. Returns whether its picture is to be drawn anew, which a large map
+    /// is not for every part.
+    pub(super) fn add(&mut self, cells: Vec<(u64, Cell)>) -> bool {
         for (index, cell) in cells {
             self.known += usize::from(self.cells[index as usize].replace(cell).is_none());
         }
-        if self.is_covered() {
-            self.coarse_after.get_or_insert(self.took);
-            self.draw_lines();
+        let is_new = self.is_covered() && self.coarse_after.is_none();
+        if is_new {
+            self.coarse_after = Some(self.took);
         }
+        let every = Duration::from_micros(10 * self.len() as u64);
+        let is_recent = self.drawn_after.is_some_and(|last| self.took < last + every);
+        if is_recent && !is_new && !self.is_whole() {
+            return false;
+        }
+        self.drawn_after = Some(self.took);
+        self.overlay.first_crossing =
+            self.is_covered().then(|| first_crossing(self.grid(), &self.table(true, &[]))).flatten();
+        true
     }
 
     /// Whether it may be shown until every part of another map shows a result: if it has the fields and the
@@ -182,69 +180,86 @@ impl Map {
         short(run.duration_s - run.settle_s.unwrap_or(0.5 * run.duration_s))
     }
 
-    /// The rows of the sweep, with stand-ins for the cells that are not known yet.
-    fn table(&self) -> Table {
+    /// The rows of the sweep with these columns beside the standard ones, with stand-ins for the cells that
+    /// are not known yet or without them.
+    fn table(&self, stands_in: bool, more: &[&str]) -> Table {
         let [columns, rows] = self.size();
-        let cell = |i: usize| self.cell(i / rows, i % rows).map_or(Cell::NotRun, |found| *found.0);
-        self.sweep.table(0, (0..columns * rows).map(cell))
+        let cell = |i: usize| {
+            let found = self.cell(i / rows, i % rows).filter(|found| found.1 || stands_in);
+            found.map_or(Cell::NotRun, |found| *found.0)
+        };
+        let cells: Vec<Cell> = (0..columns * rows).map(cell).collect();
+        let mut table = self.sweep.table(0, cells.iter().copied());
+        for field in more.iter().filter_map(|name| SummaryField::find(name)) {
+            if table.column(field.name).is_none() {
+                table = table.with(field.name, field.column(cells.iter().map(Cell::summary)));
+            }
+        }
+        table
     }
 
-    /// The cells along a line through the map: up a column (`upright`), or across a row. A cell that is not
-    /// known yet has a stand-in from a coarser level, or is left out.
-    pub fn cut(&self, upright: bool, at: usize) -> Vec<CutCell<'_>> {
-        let [columns, rows] = self.size();
-        let index = |place: usize| if upright { at * rows + place } else { place * rows + at };
-        let along = |index: u64| if upright { index as usize % rows } else { index as usize / rows };
-        let cell = |place: usize| {
-            let index = index(place) as u64;
-            if let Some(cell) = self.cells[index as usize].as_ref() {
-                return Some(CutCell { place, cell, is_known: true });
-            }
-            let stand_ins = (0..STRIDES.len() - 1).rev().map(|level| self.levels.stand_in(index, level));
-            let beside = |other: &u64| along(*other) == place;
-            let cell = stand_ins.filter(beside).find_map(|other| self.cells[other as usize].as_ref())?;
-            Some(CutCell { place, cell, is_known: false })
+    /// The cuts along the row and the column of a scene's cell, or of the nearest one.
+    pub fn cuts(&self, scene: &Scene) -> Vec<Cut> {
+        let (column, row) = self.nearest_cell(scene);
+        let names = self.grid().columns();
+        let cut = |i: usize, place: usize| {
+            let edges: &Edges = &self.edges[i];
+            Cut { column: names[i].clone(), value: edges.values[place] }
         };
-        (0..if upright { rows } else { columns }).filter_map(cell).collect()
+        vec![cut(1, row), cut(0, column)]
+    }
+
+    /// The position of a scene on both axes; `None` on an axis whose field it lacks, such as the travel limit
+    /// without stops.
+    pub fn place(&self, scene: &Scene) -> [Option<f64>; 2] {
+        self.question.axes.each_ref().map(|axis| FieldPath::new(&axis.field).get(scene))
+    }
+
+    /// The cell of a scene, or the nearest one at the edge. No stops count as stops far out.
+    pub fn nearest_cell(&self, scene: &Scene) -> (usize, usize) {
+        let place = self.place(scene);
+        let near = |i: usize| {
+            let (edges, value) = (&self.edges[i], place[i].unwrap_or(f64::INFINITY));
+            let outside = if value < edges.ends().0 { 0 } else { edges.values.len() - 1 };
+            edges.cell(value).unwrap_or(outside)
+        };
+        (near(0), near(1))
+    }
+
+    /// Its picture as far as it is known, as a sweep's `--plot` draws it; cuts show the cells that are known
+    /// alone, the map those that stand in for others too.
+    pub fn chart(&self, quantity: &SummaryField, view: &View) -> Result<Chart, NoPicture> {
+        let more = [quantity.name, "settled", "steady"];
+        let drawn = |rows: &Table, view: View| {
+            sweep_chart(&SweepPicture {
+                rows,
+                grid: self.grid(),
+                scene: &self.question.scene,
+                until_settled: None,
+                quantity: quantity.name,
+                overlay: self.overlay.clone(),
+                view,
+                ranges: Ranges::default(),
+            })
+        };
+        let mut chart = drawn(&self.table(true, &more), view.clone())?;
+        if matches!(view, View::Cuts(_)) && !self.is_whole() {
+            let known = drawn(&self.table(false, &more), view.clone())?;
+            let whole = std::mem::replace(&mut chart, known);
+            let map = whole.columns.into_iter().next().and_then(|column| column.panels.into_iter().next());
+            if let (Some(map), Some(panel)) = (map, chart.first_panel()) {
+                *panel = map;
+            }
+        }
+        Ok(chart)
     }
 
     /// The map as the command line writes it, with these columns after those of its axes.
     pub(super) fn csv(&self, columns: &[&str]) -> String {
-        let mut table = self.table();
-        for field in columns.iter().filter_map(|name| SummaryField::find(name)) {
-            if table.column(field.name).is_none() {
-                let summaries = self.cells.iter().map(|cell| cell.as_ref().and_then(Cell::summary));
-                table = table.with(field.name, field.column(summaries));
-            }
-        }
+        let table = self.table(true, columns);
         let axes = self.grid().columns().iter().cloned();
         let names: Vec<String> = axes.chain(columns.iter().map(|name| (*name).to_owned())).collect();
         let table = table.only(&names);
         header(&table) + &rows(&table, 0..usize::MAX)
     }
-
-    /// Updates the line of first crossings, on a large map not for every part.
-    fn draw_lines(&mut self) {
-        let every = Duration::from_micros(10 * self.len() as u64);
-        if !self.is_whole() && self.lines_after.is_some_and(|last| self.took < last + every) {
-            return;
-        }
-        self.lines_after = Some(self.took);
-        let table = self.table();
-        let columns = self.grid().columns();
-        let names = (columns[0].as_str(), columns[1].as_str());
-        self.crossing = first_crossing(self.grid(), &table)
-            .map(|line| first_crossing_edge(&line, names, &self.edges[0], &self.edges[1]))
-            .unwrap_or_default();
-    }
-}
-
-/// The least amplitude that releases the mass from a stop: `x` and `y` of its points. Empty if the mechanism
-/// changes over the map.
-fn release(scene: &Scene, mechanism: &Mechanism, grid: &Grid) -> Vec<(f64, f64)> {
-    let line = || release_line(scene, mechanism, grid);
-    let Some(line) = (!grid.changes_mechanism()).then(line).flatten() else { return Vec::new() };
-    let columns = grid.columns();
-    let (x, y) = (line.numbers(&columns[0]), line.numbers(&columns[1]));
-    x.into_iter().flatten().copied().zip(y.into_iter().flatten().copied()).collect()
 }

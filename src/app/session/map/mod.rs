@@ -14,7 +14,7 @@ use crate::study::{Cell, RMS_VELOCITY, STANDARD_COLUMNS, SummaryField};
 
 pub use crate::numeric::short;
 pub use axes::{ground, label, over, part};
-pub use cells::{CutCell, Map};
+pub use cells::Map;
 
 /// Largest number of scenes that are remembered.
 const MAX_SCENES: usize = 400;
@@ -92,6 +92,7 @@ impl Mapping {
     pub fn stop(&mut self) {
         self.cells.stop();
         self.take();
+        self.version += 1;
     }
 
     /// Continues a stopped map, or begins again if it is complete.
@@ -166,8 +167,7 @@ impl Mapping {
         if cells.is_empty() {
             return;
         }
-        self.version += 1;
-        map.add(cells);
+        self.version += u64::from(map.add(cells));
         if map.is_covered() {
             self.previous = None;
         }

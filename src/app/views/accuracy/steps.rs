@@ -6,12 +6,13 @@ use egui_plot::{HLine, Line, LineStyle, PlotBounds, PlotPoint, PlotPoints, Point
 use crate::app::session::accuracy::Accuracy;
 use crate::app::ui::style::Style;
 use crate::numeric::extent;
+use crate::output::Area;
 use crate::study::accuracy::methods::Scheme;
 use crate::study::accuracy::scene::{StepSize, step_name};
 
 use super::super::ViewContext;
 use super::super::legend::{LEGEND, Symbol, legend};
-use super::super::plot::{marks, plot_place, still_plot};
+use super::super::plot::{even, marks, plot_place, still_plot};
 use super::waiting::waiting_ui;
 
 /// Ends of the slider in s.
@@ -192,48 +193,6 @@ fn parsed(text: &str) -> Option<f64> {
     Some(value * unit).filter(|step| step.is_finite())
 }
 
-/// The pieces of a path within the bounds. egui_plot computes the dashes of a whole path before it clips
-/// them, and a diverging solution or a strong zoom gives more dashes than fit into memory.
-fn pieces_within(path: &[PlotPoint], bounds: &PlotBounds) -> Vec<Vec<PlotPoint>> {
-    let mut pieces: Vec<Vec<PlotPoint>> = Vec::new();
-    let mut ends_inside = false;
-    for pair in path.windows(2) {
-        let Some((from, to)) = share_within(&pair[0], &pair[1], bounds) else {
-            ends_inside = false;
-            continue;
-        };
-        let at = |share: f64| {
-            let [x, y] = [(pair[0].x, pair[1].x), (pair[0].y, pair[1].y)]
-                .map(|(first, last)| first * (1.0 - share) + last * share);
-            PlotPoint::new(x, y)
-        };
-        match pieces.last_mut().filter(|_| ends_inside && from == 0.0) {
-            Some(piece) => piece.push(at(to)),
-            None => pieces.push(vec![at(from), at(to)]),
-        }
-        ends_inside = to == 1.0;
-    }
-    pieces
-}
-
-/// The part of a line within the bounds, as shares of its length (Liang and Barsky 1984).
-fn share_within(a: &PlotPoint, b: &PlotPoint, bounds: &PlotBounds) -> Option<(f64, f64)> {
-    let (mut from, mut to) = (0.0, 1.0);
-    for (start, end, axis) in [(a.x, b.x, 0), (a.y, b.y, 1)] {
-        let (low, high) = (bounds.min()[axis], bounds.max()[axis]);
-        if !(start.is_finite() && end.is_finite()) || start.max(end) < low || start.min(end) > high {
-            return None;
-        }
-        if start == end {
-            continue;
-        }
-        let shares = [low, high].map(|edge| (edge - start) / (end - start));
-        from = shares[0].min(shares[1]).max(from);
-        to = shares[0].max(shares[1]).min(to);
-    }
-    (from <= to).then_some((from, to))
-}
-
 fn plot_ui(ui: &mut Ui, style: &Style, area: Rect, known: &StepSize, stops: [Option<f64>; 2]) {
     let path = |points: &[(f64, f64)]| -> Vec<PlotPoint> {
         points.iter().map(|(t, x)| PlotPoint::new(*t, x * 1e3)).collect()
@@ -264,20 +223,24 @@ fn plot_ui(ui: &mut Ui, style: &Style, area: Rect, known: &StepSize, stops: [Opt
         .x_axis_label(time_label)
         .y_axis_label(axis)
         .y_axis_min_width(AXIS_WIDTH)
-        .x_grid_spacer(|input| marks(input.bounds.0, input.bounds.1, columns))
-        .y_grid_spacer(|_| marks(low + edge, high - edge, rows))
+        .x_grid_spacer(|input| marks(&even(input.bounds.0, input.bounds.1, columns)))
+        .y_grid_spacer(|_| marks(&even(low + edge, high - edge, rows)))
         .show(&mut ui, |plot| {
             let seen = plot.plot_bounds();
             let bounds = PlotBounds::from_min_max([seen.min()[0], low], [seen.max()[0], high]);
             plot.set_plot_bounds(bounds);
-            for mark in marks(low, high, rows) {
-                plot.hline(HLine::new("", mark.value).stroke(style.grid_stroke()));
+            for (value, _) in even(low, high, rows).ticks {
+                plot.hline(HLine::new("", value).stroke(style.grid_stroke()));
             }
             for stop in stops.into_iter().flatten() {
                 plot.hline(HLine::new("", stop).stroke(style.stop_stroke()));
             }
             plot.line(Line::new("true", PlotPoints::Owned(truth)).stroke(style.motion_stroke()));
-            for piece in pieces_within(&ghost, &bounds) {
+            // egui_plot computes the dashes of a whole path before it clips them: a diverging solution or a
+            // strong zoom gives more than fit into memory
+            let shown = Area::new(bounds.min()[0], bounds.min()[1], bounds.max()[0], bounds.max()[1]);
+            for piece in shown.parts(&ghost.iter().map(|point| (point.x, point.y)).collect::<Vec<_>>()) {
+                let piece = piece.into_iter().map(|(x, y)| PlotPoint::new(x, y)).collect();
                 let line = Line::new("ghost", PlotPoints::Owned(piece)).stroke(style.impact_stroke());
                 plot.line(line.style(LineStyle::dashed_dense()));
             }
@@ -300,18 +263,5 @@ mod tests {
         assert_eq!(parsed("fast"), None);
         assert_eq!(rounded(0.01668), 1.0 / 60.0);
         assert_eq!(rounded(0.0012345), 1.2e-3);
-    }
-
-    #[test]
-    fn the_pieces_of_a_path_are_inside_and_join_where_it_stays_inside() {
-        let bounds = PlotBounds::from_min_max([0.0, -1.0], [4.0, 1.0]);
-        let path =
-            [(-1.0, 0.0), (1.0, 0.0), (2.0, 0.5), (3.0, 1e30), (3.0, -1e30), (3.5, f64::NAN), (9.0, 0.0)];
-        let path = path.map(|(x, y)| PlotPoint::new(x, y));
-        let pieces = pieces_within(&path, &bounds);
-        let ends: Vec<(f64, f64, usize)> =
-            pieces.iter().map(|piece| (piece[0].x, piece[piece.len() - 1].x, piece.len())).collect();
-        assert_eq!(ends, [(0.0, 2.0, 4), (3.0, 3.0, 2)]);
-        assert!(pieces.concat().iter().all(|point| point.y.abs() <= 1.0 + 1e-9));
     }
 }

@@ -7,7 +7,8 @@ use crate::app::session::map::Map;
 use crate::app::ui::style::Style;
 
 use super::super::labels::haloed;
-use super::coordinates::Coordinates;
+use super::super::pane::Pane;
+use super::MAP;
 
 /// Half the diagonal of the mark in points.
 const SIZE: f32 = 7.0;
@@ -16,7 +17,7 @@ const SIZE: f32 = 7.0;
 /// map has no axis of the travel limit, or ends before it.
 pub fn draw(
     painter: &Painter,
-    frame: &Coordinates,
+    pane: &Pane,
     map: &Map,
     place: [Option<f64>; 2],
     limit: Option<f64>,
@@ -26,11 +27,8 @@ pub fn draw(
     let (Some(axis), Some(limit)) = (axis, limit) else { return };
     let Some(other) = place[1 - axis] else { return };
     let (x, y) = if axis == 0 { (limit, other) } else { (other, limit) };
-    let inside = (frame.x.low..=frame.x.high).contains(&x) && (frame.y.low..=frame.y.high).contains(&y);
-    if !inside {
-        return;
-    }
-    let at = frame.screen_from_world((x, y));
+    let inside = pane.axes(MAP).is_some_and(|[across, up]| across.contains(x) && up.contains(y));
+    let Some(at) = pane.place(MAP, (x, y)).filter(|_| inside) else { return };
     let corners = [vec2(0.0, -SIZE), vec2(SIZE, 0.0), vec2(0.0, SIZE), vec2(-SIZE, 0.0)];
     for stroke in style.marker_strokes() {
         painter.add(Shape::closed_line(corners.map(|corner| at + corner).to_vec(), stroke));

@@ -1,44 +1,34 @@
 //! View of the map: every combination of two fields, each run from rest.
 
 mod best;
-mod coordinates;
-mod cuts;
-mod picture;
 mod pointer;
-mod quantity;
-mod surface;
 mod tools;
 mod trail;
 
-use std::sync::Arc;
-
-use eframe::egui::{self, Align2, Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
+use eframe::egui::{self, Align2, Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use crate::app::session::map::{Map, short};
 use crate::app::ui::style::Style;
+use crate::app::words::columns::{ShownColumn, said};
 use crate::app::words::kind::Kind;
+use crate::app::words::numbers::three;
 use crate::app::words::status::speed;
 use crate::dynamics::{Regime, Summary};
-use crate::output::{PlotAxis, RMS, sweep_about};
-use crate::study::label_and_unit;
+use crate::output::{Cell as DrawnCell, Chart, Marks, PlotAxis, RMS, View as MapShape, suited_unit};
+use crate::study::{SummaryField, label_and_unit};
 
+use super::pane::{Pane, kept_pane_ui};
 use super::{ViewContext, too_small_ui};
 
-use coordinates::Coordinates;
-use picture::{Picture, bar};
 use pointer::Targets;
-use quantity::ColourScale;
-use surface::Surface;
 
 /// Width and height in points above which there is room for cuts.
 const ROOM_FOR_CUTS: (f32, f32) = (440.0, 170.0);
 
-/// The drawings of a map: seen from above, and as a surface.
-#[derive(Clone)]
-struct Drawings {
-    picture: Picture,
-    surface: Option<Arc<Surface>>,
-}
+/// The panels of the map and of its cuts.
+const MAP: usize = 0;
+const ACROSS: usize = 1;
+const UPWARD: usize = 2;
 
 pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let style = context.style;
@@ -51,7 +41,7 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     if let Some(problem) = context.session.map.problem() {
         ui.label(format!("  No map: {}", problem.lines().next().unwrap_or_default()));
     }
-    let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+    let area = ui.available_rect_before_wrap();
     let look = context.memory.map_look;
     let trail = if look.trail { context.session.map.trail_places() } else { Vec::new() };
     let Some((map, current)) = context.session.map.shown() else { return };
@@ -59,80 +49,135 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         return too_small_ui(ui, &style, area);
     }
     let quantity = context.session.map.quantity();
-    let id = ui.scope_id().with("picture");
-    let old = ui.data(|data| data.get_temp::<Option<Drawings>>(id)).flatten();
-    let key = (context.session.map.version(), quantity.name, style, current);
-    let (old, mut surface) = old.map_or((None, None), |old| (Some(old.picture), old.surface));
-    let mut picture = Picture::of(ui, old, map, quantity, key);
-    surface = surface.filter(|_| !picture.is_new());
-    let scale = Arc::clone(&picture.scale);
+    let (place, scene) = (map.place(context.session.scene()), map.nearest_cell(context.session.scene()));
+    let has_room = area.width() > ROOM_FOR_CUTS.0 && area.height() > ROOM_FOR_CUTS.1;
+    let is_surface = look.surface && quantity.shown_words().is_none();
+    let shape = match (is_surface, look.cuts && has_room) {
+        (true, _) => MapShape::Surface,
+        (false, true) => MapShape::Cuts(map.cuts(context.session.scene())),
+        (false, false) => MapShape::Cuts(Vec::new()),
+    };
+    let key = (context.session.map.version(), quantity.name, look, style, shape.clone());
+    let pane = kept_pane_ui(ui, &style, area, key, || chart(map, quantity, &shape, look.surface));
     let painter = ui.painter().with_clip_rect(area);
-    let about = sweep_about(map.grid(), &map.question.scene, &[], None);
-    let is_surface = look.surface && scale.bar.is_some();
-    let legend = tools::legend(&painter, area, &picture, map, &style, &about, look);
-    let area = area.with_min_y(legend);
-    let place = context.session.place_on_map(&map.question);
-    let scene = nearest_cell(map, place);
-    let spoken = |name: &str, rect: Rect| {
+    let rect = pane.surface().or(pane.frame(MAP)).unwrap_or(area);
+    let names = match pane.surface() {
+        Some(_) => vec![(rect, "map as a surface")],
+        None => [(MAP, "map"), (ACROSS, "cut across"), (UPWARD, "cut upward")]
+            .into_iter()
+            .filter_map(|(panel, name)| Some((pane.frame(panel)?, name)))
+            .collect(),
+    };
+    for (rect, name) in names {
         let spoken = ui.interact(rect, ui.scope_id().with(("cells", name)), Sense::hover());
         spoken.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, name));
+    }
+    let at = match pane.surface() {
+        Some(_) => {
+            if look.cuts {
+                surface_cuts(&painter, &style, &pane, scene);
+            }
+            let ball = [height(&pane, scene).unwrap_or(0.0), 0.0].map(|z| surface_place(&pane, scene, z));
+            if let ([Some(at), Some(floor)], true) = (ball, is_inside(map, place)) {
+                surface_ball(&painter, &style, at, floor);
+            }
+            ball[0].unwrap_or(rect.left_top())
+        }
+        None => {
+            trail::draw(&painter, &pane, &style, &trail);
+            best::draw(&painter, &pane, map, place, context.session.best.limit_mm(), &style);
+            cut_marks(&painter, &style, &pane, scene);
+            marker(&painter, &pane, &style, place)
+        }
     };
-    let pointer_state = &mut context.memory.map_pointer;
+    veil(&painter, rect, &style, current, context.session.map.problem().is_some());
+    let cell_at = |at: Pos2| cell_at(&pane, map, scene, at);
+    hover(&pane, &painter, &style, map, quantity, &cell_at);
+    let places = Targets { cell_at: &cell_at, pane: &pane, rect, scene: (at, scene) };
     let is_enlarged = context.session.map.is_enlarged();
-    let wanted = if is_surface {
-        let at = (area, painter.pixels_per_point());
-        surface = surface.filter(|surface| surface.is_at(at));
-        let drawn = surface.or_else(|| Surface::new(at, map, &scale, &style).map(Arc::new));
-        surface = drawn.clone();
-        let Some(drawn) = drawn else { return };
-        spoken("map as a surface", drawn.rect());
-        drawn.draw(&painter, &style);
-        if look.cuts {
-            drawn.cuts(&painter, map, &scale, scene);
-        }
-        veil(&painter, drawn.rect(), &style, current, context.session.map.problem().is_some());
-        let ball = drawn.place_of(map, &scale, scene);
-        if let Some(ball) = ball.filter(|_| is_inside(map, place)) {
-            drawn.ball(&painter, &style, ball);
-        }
-        let cell_at = |at: Pos2| drawn.cell_at(at);
-        let outline = |(column, row)| {
-            let at = drawn.place_of(map, &scale, (column, row)).map_or(Pos2::ZERO, |ends| ends[0]);
-            Shape::circle_stroke(at, 5.0, style.cell_stroke())
-        };
-        hover(&response, &painter, map, &scale, &cell_at, &outline);
-        let at = ball.map_or(drawn.rect().left_top(), |ends| ends[0]);
-        let places = Targets { cell_at: &cell_at, frame: None, rect: area, scene: (at, scene) };
-        pointer::action_ui(ui, &response, map, pointer_state, is_enlarged, &style, &places)
-    } else {
-        let room = area.width() > ROOM_FOR_CUTS.0 && area.height() > ROOM_FOR_CUTS.1;
-        let frame = Coordinates::new(area, map, scale.bar.is_some(), look.cuts && room);
-        spoken("map", frame.rect);
-        for (rect, name) in frame.strips.iter().flatten().zip(["cut across", "cut upward"]) {
-            spoken(name, *rect);
-        }
-        picture.draw(&painter, &frame, map, &style);
-        cuts::draw(&painter, &frame, map, &scale, scene, &style);
-        trail::draw(&painter, &frame, &style, &trail);
-        best::draw(&painter, &frame, map, place, context.session.best.limit_mm(), &style);
-        frame.axes(&painter, &style, scale.bar.as_ref().map(|bar| bar.label.as_str()));
-        if let Some(rect) = frame.bar {
-            bar(&painter, rect, &scale, &style);
-        }
-        veil(&painter, frame.rect, &style, current, context.session.map.problem().is_some());
-        let at = marker(&painter, &frame, &style, place);
-        let cell_at = |at: Pos2| cell_at(&frame, map, scene, at);
-        let outline = |(column, row)| outline(&frame, map, column, row, &style);
-        hover(&response, &painter, map, &scale, &cell_at, &outline);
-        let places = Targets { cell_at: &cell_at, frame: Some(&frame), rect: frame.rect, scene: (at, scene) };
-        pointer::action_ui(ui, &response, map, pointer_state, is_enlarged, &style, &places)
-    };
-    ui.data_mut(|data| data.insert_temp(id, Some(Drawings { picture, surface })));
+    let wanted = pointer::action_ui(ui, map, &mut context.memory.map_pointer, is_enlarged, &style, &places);
     pointer::perform(context, wanted);
 }
 
+/// The picture of the map; one that cannot be a surface is seen from above.
+fn chart(map: &Map, quantity: &SummaryField, shape: &MapShape, wants_surface: bool) -> Chart {
+    let above = || map.chart(quantity, &MapShape::Cuts(Vec::new()));
+    let mut chart = map.chart(quantity, shape).or_else(|_| above()).unwrap_or_default();
+    if wants_surface && quantity.shown_words().is_some() {
+        chart.subtitle.insert_str(0, "words have no height: seen from above; ");
+    }
+    chart
+}
+
+/// The drawn cell of a surface or a map.
+fn drawn_cell(pane: &Pane, (column, row): (usize, usize)) -> Option<DrawnCell> {
+    let (cells, _) = pane.chart.panels().next()?.surface()?;
+    Some(cells.at(column, row))
+}
+
+/// The height of the surface at a cell, in the unit of its axis.
+fn height(pane: &Pane, cell: (usize, usize)) -> Option<f64> {
+    match drawn_cell(pane, cell)? {
+        DrawnCell::Value(value) => Some(value),
+        DrawnCell::Rest => Some(0.0),
+        DrawnCell::Missing | DrawnCell::Blank => None,
+    }
+}
+
+/// The place on the screen of a cell of the surface at a height.
+fn surface_place(pane: &Pane, (column, row): (usize, usize), z: f64) -> Option<Pos2> {
+    let (cells, _) = pane.chart.panels().next()?.surface()?;
+    pane.place_on_surface((cells.across.values[column], cells.up.values[row], z))
+}
+
+/// Draws the lines of the cuts along a column and along a row of the surface.
+fn surface_cuts(painter: &Painter, style: &Style, pane: &Pane, (column, row): (usize, usize)) {
+    let Some((cells, _)) = pane.chart.panels().next().and_then(|panel| panel.surface()) else { return };
+    let upward = (0..cells.up.values.len()).map(|row| (column, row)).collect::<Vec<_>>();
+    let across = (0..cells.across.values.len()).map(|column| (column, row)).collect();
+    for line in [upward, across] {
+        let places: Vec<Option<Pos2>> =
+            line.into_iter().map(|cell| surface_place(pane, cell, height(pane, cell)?)).collect();
+        for part in places.split(Option::is_none) {
+            let points: Vec<Pos2> = part.iter().flatten().copied().collect();
+            painter.add(Shape::line(points.clone(), Stroke::new(style.width(3.6), Color32::BLACK)));
+            painter.add(Shape::line(points, Stroke::new(style.width(1.6), Color32::WHITE)));
+        }
+    }
+}
+
+/// Draws the scene as a ball on the surface, above its place on the floor.
+fn surface_ball(painter: &Painter, style: &Style, at: Pos2, floor: Pos2) {
+    for stroke in style.marker_strokes() {
+        painter.line_segment([at, floor], Stroke::new(0.6 * stroke.width, stroke.color));
+    }
+    painter.circle(at, 6.5, style.mass(), Stroke::new(1.5, Color32::BLACK));
+}
+
+/// Rings the cell of the scene in each cut.
+fn cut_marks(painter: &Painter, style: &Style, pane: &Pane, scene: (usize, usize)) {
+    let panels: Vec<_> = pane.chart.panels().collect();
+    for panel in [ACROSS, UPWARD] {
+        let Some((cells, cut)) = panels[MAP].cells().zip(panels.get(panel)) else { continue };
+        let (x, y) = (cells.across.values[scene.0], cells.up.values[scene.1]);
+        let is_scene = |point: &&((f64, f64), &str)| match panel {
+            ACROSS => point.0.0 == x,
+            _ => point.0.1 == y,
+        };
+        let points = cut.layers.iter().find_map(|layer| match &layer.marks {
+            Marks::Regimes(points, _) => points.iter().find(is_scene),
+            _ => None,
+        });
+        if let Some(at) = points.and_then(|point| pane.place(panel, point.0)) {
+            for stroke in style.marker_strokes() {
+                painter.circle_stroke(at, 7.0, stroke);
+            }
+        }
+    }
+}
+
 /// Draws a veil over a map that is not that of the scene.
-fn veil(painter: &egui::Painter, rect: Rect, style: &Style, current: bool, has_problem: bool) {
+fn veil(painter: &Painter, rect: Rect, style: &Style, current: bool, has_problem: bool) {
     if current {
         return;
     }
@@ -144,18 +189,24 @@ fn veil(painter: &egui::Painter, rect: Rect, style: &Style, current: bool, has_p
 
 /// Outlines the cell under the pointer and describes it.
 fn hover(
-    response: &Response,
-    painter: &egui::Painter,
+    pane: &Pane,
+    painter: &Painter,
+    style: &Style,
     map: &Map,
-    scale: &ColourScale,
+    quantity: &SummaryField,
     cell_at: &dyn Fn(Pos2) -> Option<(usize, usize)>,
-    outline: &dyn Fn((usize, usize)) -> Shape,
 ) {
-    let cell = response.hover_pos().filter(|_| !response.dragged()).and_then(cell_at);
-    let Some((column, row)) = cell else { return };
-    painter.add(outline((column, row)));
-    let over = response.clone().on_hover_cursor(egui::CursorIcon::PointingHand);
-    over.on_hover_text_at_pointer(reading(map, scale, column, row));
+    let pointer = pane.response.hover_pos().filter(|_| !pane.response.dragged());
+    let Some((column, row)) = pointer.and_then(cell_at) else { return };
+    match height(pane, (column, row)).and_then(|z| surface_place(pane, (column, row), z)) {
+        Some(at) => _ = painter.circle_stroke(at, 5.0, style.cell_stroke()),
+        None => {
+            _ = outline(pane, map, column, row)
+                .map(|rect| painter.rect_stroke(rect, 0.0, style.cell_stroke(), egui::StrokeKind::Outside))
+        }
+    }
+    let over = pane.response.clone().on_hover_cursor(egui::CursorIcon::PointingHand);
+    over.on_hover_text_at_pointer(reading(map, quantity, column, row));
 }
 
 /// Whether a scene lies within the map.
@@ -163,44 +214,48 @@ fn is_inside(map: &Map, place: [Option<f64>; 2]) -> bool {
     place.iter().zip(&map.edges).all(|(value, edges)| value.is_some_and(|value| edges.cell(value).is_some()))
 }
 
-/// The cell of a scene, or the nearest one at the edge. No stops count as stops far out.
-fn nearest_cell(map: &Map, place: [Option<f64>; 2]) -> (usize, usize) {
-    let near = |i: usize| {
-        let (edges, value) = (&map.edges[i], place[i].unwrap_or(f64::INFINITY));
-        let outside = if value < edges.ends().0 { 0 } else { edges.values.len() - 1 };
-        edges.cell(value).unwrap_or(outside)
-    };
-    (near(0), near(1))
-}
-
-/// The cell at a screen position: of the map, or of the cuts through the cell of the `scene`.
-fn cell_at(frame: &Coordinates, map: &Map, scene: (usize, usize), at: Pos2) -> Option<(usize, usize)> {
-    let (x, y) = frame.world_from_screen(at);
+/// The cell at a screen position: of the surface, of the map, or of the cuts through the cell of the `scene`.
+fn cell_at(pane: &Pane, map: &Map, scene: (usize, usize), at: Pos2) -> Option<(usize, usize)> {
+    if pane.surface().is_some() {
+        return pane.surface_cell(at);
+    }
+    let panel = [MAP, ACROSS, UPWARD]
+        .into_iter()
+        .find(|panel| pane.frame(*panel).is_some_and(|frame| frame.contains(at)))?;
+    let (x, y) = pane.values_at(panel, at)?;
     let (column, row) = (map.edges[0].cell(x), map.edges[1].cell(y));
-    match frame.strips {
-        Some([across, _]) if across.contains(at) => {
-            let share = f64::from((at.x - across.left()) / across.width());
-            let x = frame.x.low + share * (frame.x.high - frame.x.low);
-            map.edges[0].cell(x).map(|column| (column, scene.1))
-        }
-        Some([_, beside]) if beside.contains(at) => row.map(|row| (scene.0, row)),
+    match panel {
+        ACROSS => Some((column?, scene.1)),
+        UPWARD => Some((scene.0, row?)),
         _ => column.zip(row),
     }
 }
 
-fn outline(frame: &Coordinates, map: &Map, column: usize, row: usize, style: &Style) -> Shape {
+/// The place of a cell of the map on the screen.
+fn outline(pane: &Pane, map: &Map, column: usize, row: usize) -> Option<Rect> {
     let (x, y) = (&map.edges[0].edges, &map.edges[1].edges);
-    let corners =
-        [(x[column], y[row]), (x[column + 1], y[row + 1])].map(|corner| frame.screen_from_world(corner));
-    let rect = Rect::from_two_pos(corners[0], corners[1]);
-    Shape::rect_stroke(rect, 0.0, style.cell_stroke(), egui::StrokeKind::Outside)
+    let [a, b] = [(x[column], y[row]), (x[column + 1], y[row + 1])].map(|corner| pane.place(MAP, corner));
+    Some(Rect::from_two_pos(a?, b?))
 }
 
 /// The columns that every reading contains.
 const IN_EVERY_READING: [&str; 6] = [RMS, "regime", "max_abs_x_m", "impacts", "crossings", "period"];
 
+/// The value of a column as text: `fastest impact 12.3 mm/s`.
+fn value_text(quantity: &SummaryField, summary: &Summary) -> Option<String> {
+    if let Some(word) = quantity.word(summary) {
+        return Some(said(quantity.name, word));
+    }
+    let value = quantity.number(summary)?;
+    if quantity.is_count() {
+        return Some(format!("{} {value:.0}", quantity.label));
+    }
+    let (factor, unit) = suited_unit(label_and_unit(quantity.name).1, std::iter::once(value));
+    Some(format!("{} {} {unit}", quantity.label, three(value * factor)).trim_end().to_owned())
+}
+
 /// Text on a cell.
-fn reading(map: &Map, scale: &ColourScale, column: usize, row: usize) -> String {
+fn reading(map: &Map, quantity: &SummaryField, column: usize, row: usize) -> String {
     let names = map.grid().columns();
     let place = [map.edges[0].values[column], map.edges[1].values[row]];
     let mut lines: Vec<String> = names.iter().zip(place).map(|(name, value)| named(name, value)).collect();
@@ -241,7 +296,8 @@ fn reading(map: &Map, scale: &ColourScale, column: usize, row: usize) -> String 
                     _ => {}
                 }
             }
-            lines.extend(scale.reading(cell).filter(|_| !IN_EVERY_READING.contains(&scale.column())));
+            let value = cell.summary().and_then(|summary| value_text(quantity, summary));
+            lines.extend(value.filter(|_| !IN_EVERY_READING.contains(&quantity.name)));
             lines.push("click: take the scene there; drag: enlarge".to_owned());
         }
     }
@@ -255,13 +311,13 @@ fn named(column: &str, value: f64) -> String {
 }
 
 /// Marks the scene by a ring, or by an arrow at the edge that it lies beyond. Returns the place.
-fn marker(painter: &egui::Painter, frame: &Coordinates, style: &Style, place: [Option<f64>; 2]) -> Pos2 {
+fn marker(painter: &Painter, pane: &Pane, style: &Style, place: [Option<f64>; 2]) -> Pos2 {
+    let (Some([across, up]), Some(frame)) = (pane.axes(MAP), pane.frame(MAP)) else { return Pos2::ZERO };
     // no stops count as stops far out
     let (x, y) = (place[0].unwrap_or(f64::INFINITY), place[1].unwrap_or(f64::INFINITY));
-    let inside = |axis: &PlotAxis, value: f64| (axis.low..=axis.high).contains(&value);
-    let at =
-        frame.screen_from_world((x.clamp(frame.x.low, frame.x.high), y.clamp(frame.y.low, frame.y.high)));
-    if inside(&frame.x, x) && inside(&frame.y, y) {
+    let nearest = |axis: &PlotAxis, value: f64| value.clamp(axis.low, axis.high);
+    let at = pane.place(MAP, (nearest(across, x), nearest(up, y))).unwrap_or(frame.center());
+    if across.contains(x) && up.contains(y) {
         for stroke in style.marker_strokes() {
             painter.circle_stroke(at, 8.0, stroke);
             for direction in [vec2(1.0, 0.0), vec2(-1.0, 0.0), vec2(0.0, 1.0), vec2(0.0, -1.0)] {
@@ -270,17 +326,17 @@ fn marker(painter: &egui::Painter, frame: &Coordinates, style: &Style, place: [O
         }
         return at;
     }
-    let direction = vec2(
-        if inside(&frame.x, x) { 0.0 } else { (x - frame.x.low).signum() as f32 },
-        if inside(&frame.y, y) { 0.0 } else { -(y - frame.y.low).signum() as f32 },
-    )
-    .normalized();
+    let beyond = |axis: &PlotAxis, value: f64| match axis.contains(value) {
+        true => 0.0,
+        false => (value - axis.low).signum() as f32,
+    };
+    let direction = vec2(beyond(across, x), -beyond(up, y)).normalized();
     let (tip, back, side) = (at - direction * 2.0, at - direction * 16.0, direction.rot90() * 8.0);
     let ([halo, line], points) = (style.marker_strokes(), vec![tip, back + side, back - side]);
     painter.add(Shape::convex_polygon(points, line.color, Stroke::new(1.5, halo.color)));
     let words = if place[0].is_none() { "no stops" } else { "now: further out" };
     let galley = painter.layout_no_wrap(words.to_owned(), style.body(), Color32::PLACEHOLDER);
-    let room = frame.rect.shrink(4.0);
+    let room = frame.shrink(4.0);
     let size = galley.size();
     let wanted = back - direction * (10.0 + 0.5 * size.x) - 0.5 * size;
     let corner = pos2(

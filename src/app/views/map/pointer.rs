@@ -1,6 +1,6 @@
 //! Pointer and keyboard input on the map: choosing a cell, dragging the cross-hair, enlarging a box.
 
-use eframe::egui::{self, CursorIcon, Key, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, Vec2};
+use eframe::egui::{self, CursorIcon, Key, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, Vec2};
 
 use crate::app::session::map::{Map, part};
 use crate::app::ui::style::{GRAB, Style};
@@ -8,7 +8,8 @@ use crate::scene::SweepAxis;
 
 use super::super::ViewContext;
 use super::super::memory::PointerState;
-use super::coordinates::Coordinates;
+use super::super::pane::Pane;
+use super::MAP;
 
 /// Smallest side in points of a box that enlarges the map; a smaller one is an unsteady click.
 const MIN_BOX: f32 = 10.0;
@@ -33,8 +34,7 @@ pub enum MapAction {
 pub struct Targets<'a> {
     /// The cell at a screen position.
     pub cell_at: &'a dyn Fn(Pos2) -> Option<(usize, usize)>,
-    /// The coordinates in which a box can be drawn. `None` for a surface.
-    pub frame: Option<&'a Coordinates>,
+    pub pane: &'a Pane,
     /// Bounds of a drag of the cross-hair.
     pub rect: Rect,
     /// Position of the scene, and its cell or the nearest one.
@@ -44,7 +44,6 @@ pub struct Targets<'a> {
 /// Handles pointer and keyboard. Returns the action, if any.
 pub fn action_ui(
     ui: &Ui,
-    response: &Response,
     map: &Map,
     state: &mut PointerState,
     is_enlarged: bool,
@@ -58,11 +57,13 @@ pub fn action_ui(
         return Some(action);
     }
     let time = ui.input(|input| input.time);
-    if let Some(frame) = targets.frame {
-        let pointer = response.interact_pointer_pos().map(|at| frame.rect.clamp(at));
+    let response = &targets.pane.response;
+    // no box is drawn over a surface
+    if let Some(frame) = targets.pane.frame(MAP) {
+        let pointer = response.interact_pointer_pos().map(|at| frame.clamp(at));
         if response.drag_started() {
             let origin = ui.input(|input| input.pointer.press_origin());
-            state.corner = origin.filter(|at| frame.rect.contains(*at));
+            state.corner = origin.filter(|at| frame.contains(*at));
         }
         if let (Some(corner), Some(pointer)) = (state.corner, pointer) {
             let dragged = Rect::from_two_pos(corner, pointer);
@@ -72,7 +73,7 @@ pub fn action_ui(
             if response.drag_stopped() {
                 state.corner = None;
                 let large = dragged.width() >= MIN_BOX && dragged.height() >= MIN_BOX;
-                return large.then(|| MapAction::Part(axes_of(frame, map, dragged)));
+                return axes_of(targets.pane, map, dragged).filter(|_| large).map(MapAction::Part);
             }
         }
     } else {
@@ -95,11 +96,11 @@ pub fn action_ui(
     Some(MapAction::Cell(column, row))
 }
 
-fn axes_of(frame: &Coordinates, map: &Map, dragged: Rect) -> [SweepAxis; 2] {
-    let (left, low) = frame.world_from_screen(dragged.left_bottom());
-    let (right, high) = frame.world_from_screen(dragged.right_top());
+fn axes_of(pane: &Pane, map: &Map, dragged: Rect) -> Option<[SweepAxis; 2]> {
+    let (left, low) = pane.values_at(MAP, dragged.left_bottom())?;
+    let (right, high) = pane.values_at(MAP, dragged.right_top())?;
     let [across, up] = &map.question.axes;
-    [part(across, left, right), part(up, low, high)]
+    Some([part(across, left, right), part(up, low, high)])
 }
 
 /// Handles the cross-hair: dragging, moving by the arrow keys, and enlarging around it.

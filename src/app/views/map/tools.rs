@@ -1,13 +1,11 @@
 //! Controls over the map, its progress and its legend.
 
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
-use eframe::egui::{self, Align2, ComboBox, Painter, PopupCloseBehavior, Rect, RichText, Ui, pos2, vec2};
+use eframe::egui::{self, ComboBox, PopupCloseBehavior, RichText, Ui};
 
 use crate::app::panels::controls;
-use crate::app::session::map::{Map, Mapping};
+use crate::app::session::map::Mapping;
 use crate::app::ui::knob::refuse;
-use crate::app::ui::style::Style;
-use crate::app::ui::widgets::kind_shapes;
 use crate::app::words::columns::{COLUMNS, ShownColumn};
 use crate::scene::SweepAxis;
 use crate::study::SummaryField;
@@ -15,22 +13,17 @@ use crate::study::SummaryField;
 use super::super::ViewContext;
 use super::super::axes::{field_ui, range_id, range_row_ui};
 use super::super::memory::MapLook;
-use super::picture::{self, Picture, kinds};
-use super::quantity::Look;
 
 /// Width in points below which the choices take two rows.
 const NARROW: f32 = 1080.0;
 
-/// Width in points from which on the legend stands beside the description of the runs.
-const WIDE: f32 = 760.0;
-
-/// Height in points from which on the runs are described.
-const LOW: f32 = 220.0;
+/// Height in points from which on the rows have space between them.
+const LOW: f32 = 320.0;
 
 /// Title, choices, progress.
 pub fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     // less spacing for a low map
-    ui.spacing_mut().item_spacing.y = if ui.available_height() > LOW + 100.0 { 5.0 } else { 1.0 };
+    ui.spacing_mut().item_spacing.y = if ui.available_height() > LOW { 5.0 } else { 1.0 };
     ui.add_space(2.0);
     let narrow = ui.available_width() < NARROW;
     ui.horizontal(|ui| {
@@ -190,105 +183,4 @@ fn progress_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     if ui.button(text).on_hover_text(hover).clicked() {
         mapping.go_on();
     }
-}
-
-/// Describes the runs and the meaning of hatching, lines and symbols. Returns the lower edge.
-pub fn legend(
-    painter: &Painter,
-    area: Rect,
-    picture: &Picture,
-    map: &Map,
-    style: &Style,
-    about: &str,
-    look: MapLook,
-) -> f32 {
-    const ROW: f32 = 18.0;
-    const SAMPLE: f32 = 24.0;
-    let left = area.left() + 12.0;
-    let (mut x, mut y) = (left, area.top() + 0.5 * ROW);
-    let text = |at, words: &str| painter.text(at, Align2::LEFT_CENTER, words, style.small(), style.faint());
-    // left out on a low map
-    if area.height() > LOW {
-        let after = text(pos2(x, y), about).right() + 18.0;
-        if area.width() > WIDE {
-            x = after;
-        } else {
-            y += ROW;
-        }
-    }
-    let mut entry = |words: &str, sample: &dyn Fn(Rect)| {
-        let width = painter.layout_no_wrap(words.to_owned(), style.small(), style.faint()).size().x;
-        if x + SAMPLE + 6.0 + width > area.right() {
-            (x, y) = (left, y + ROW);
-        }
-        sample(Rect::from_min_size(pos2(x, y - 6.0), vec2(SAMPLE, 12.0)));
-        x = text(pos2(x + SAMPLE + 6.0, y), words).right() + 16.0;
-    };
-    let patch = |rect: Rect, ground: egui::Color32, strokes: &[(f32, egui::Stroke)]| {
-        painter.rect_filled(rect, 0.0, ground);
-        let clipped = painter.with_clip_rect(rect);
-        for (slope, stroke) in strokes {
-            for i in 0..6 {
-                let foot = pos2(rect.left() + (i as f32 - 1.0) * 7.0, rect.bottom());
-                let (from, to) = if *slope > 0.0 {
-                    (foot, foot + vec2(12.0, -12.0))
-                } else {
-                    (foot + vec2(0.0, -12.0), foot + vec2(12.0, 0.0))
-                };
-                clipped.line_segment([from, to], *stroke);
-            }
-        }
-        painter.rect_stroke(rect, 0.0, style.ghost_stroke(), egui::StrokeKind::Inside);
-    };
-    let scale = &picture.scale;
-    if look.surface && scale.is_of_words() {
-        entry("words have no height: seen from above", &|_| ());
-    }
-    let surface = look.surface && !scale.is_of_words();
-    if picture.shows(Look::Rest) {
-        let hatching = [(1.0, style.hatch_stroke())];
-        entry("at rest", &|rect| patch(rect, style.rest_shade(), if surface { &[] } else { &hatching }));
-    } else if picture.shows_rest() && !surface {
-        entry("at rest", &|rect| patch(rect, style.ground(), &[(1.0, style.hatch_stroke())]));
-    }
-    for kind in kinds(picture) {
-        entry(kind.name(), &|rect| {
-            painter.rect_filled(rect, 0.0, style.kind(kind));
-            painter.extend(kind_shapes(kind, rect.center(), 4.5, style.over_kind()));
-        });
-    }
-    for place in (0..16).filter(|place| picture.shows(Look::Word(*place))) {
-        entry(&scale.word(place), &|rect| patch(rect, style.attractor(place.into()), &[]));
-    }
-    if picture.shows(Look::None) {
-        let words = scale.without_value();
-        entry(words, &|rect| patch(rect, style.ground(), &[]));
-    }
-    if picture.shows_transient() && !surface {
-        entry("may be a transient", &|rect| _ = painter.add(picture::dot(rect.center(), style)));
-    }
-    if picture.shows(Look::Missing) {
-        entry("ended early", &|rect| {
-            patch(rect, style.ground(), &[(1.0, style.missing_stroke()), (-1.0, style.missing_stroke())])
-        });
-    }
-    if surface {
-        return y + 0.5 * ROW;
-    }
-    let line = |rect: Rect, [halo, stroke]: [egui::Stroke; 2], dashed: bool| {
-        let ends = [rect.left_center(), rect.right_center()];
-        painter.line_segment(ends, halo);
-        if dashed {
-            painter.extend(egui::Shape::dashed_line(&ends, stroke, 6.0, 4.0));
-        } else {
-            painter.line_segment(ends, stroke);
-        }
-    };
-    if !map.release.is_empty() {
-        entry("release: comes off the stop", &|rect| line(rect, style.release_strokes(), true));
-    }
-    if !map.crossing.is_empty() {
-        entry("first crossing", &|rect| line(rect, style.crossing_strokes(), false));
-    }
-    y + 0.5 * ROW
 }

@@ -1,10 +1,11 @@
 //! Trail of the scene over the map: where the live motion has been, fading with age.
 
-use eframe::egui::{Painter, Pos2, Shape, Stroke};
+use eframe::egui::{Painter, Pos2, Rect, Shape, Stroke};
 
 use crate::app::ui::style::Style;
 
-use super::coordinates::Coordinates;
+use super::super::pane::Pane;
+use super::MAP;
 
 /// Distance in points below which two places are merged.
 const NEAR: f32 = 3.0;
@@ -15,9 +16,9 @@ const FADES: usize = 12;
 const FAINTEST: f32 = 0.15;
 
 /// Draws the places, the oldest first; one at which the scene lacked the field of an axis is a gap.
-pub fn draw(painter: &Painter, frame: &Coordinates, style: &Style, places: &[[Option<f64>; 2]]) {
-    let painter = painter.with_clip_rect(frame.rect);
-    for (points, opacity) in parts(places, |at| frame.screen_from_world(at)) {
+pub fn draw(painter: &Painter, pane: &Pane, style: &Style, places: &[[Option<f64>; 2]]) {
+    let painter = painter.with_clip_rect(pane.frame(MAP).unwrap_or(Rect::NOTHING));
+    for (points, opacity) in parts(places, |at| pane.place(MAP, at).unwrap_or(Pos2::ZERO)) {
         for stroke in style.trail_strokes() {
             let stroke = Stroke::new(stroke.width, stroke.color.gamma_multiply(opacity));
             painter.add(Shape::line(points.clone(), stroke));

@@ -26,6 +26,8 @@ enum Scale {
     Linear,
     /// At powers of ten; the ends are logarithms.
     Decades,
+    /// At 1 and 3 times powers of ten of 1 more than the value: room for 0 and for thousands.
+    Counts,
     /// Where they were given.
     Given,
 }
@@ -105,12 +107,26 @@ impl PlotAxis {
         Self { low, high, ticks, label: label.to_owned(), name: label.to_owned(), scale: Scale::Given }
     }
 
+    /// An axis of whole numbers from 0 to `high` on which equal ratios are nearly equal lengths.
+    pub fn counts(high: f64, label: &str) -> Self {
+        let high = high.max(1.0);
+        let powers = (0..9).flat_map(|power| [1, 3].map(|digit| digit * 10_u64.pow(power)));
+        let ticks = std::iter::once(0).chain(powers).map(|n| (n as f64, n.to_string()));
+        let ticks = ticks.filter(|tick| tick.0 <= high).collect();
+        Self { scale: Scale::Counts, ..Self::given(0.0, high, ticks, label) }
+    }
+
     /// The axis with about `count` ticks.
     #[must_use]
     pub fn with_ticks(&self, count: usize) -> Self {
         match self.scale {
             Scale::Linear => Self::linear(self.low, self.high, count, &self.name),
             Scale::Decades => Self::logarithmic(self.low, self.high, count, &self.name),
+            Scale::Counts => {
+                let whole = Self::counts(self.high, &self.name);
+                let every = whole.ticks.len().div_ceil(count + 1).max(1);
+                Self { ticks: whole.ticks.into_iter().step_by(every).collect(), ..self.clone() }
+            }
             Scale::Given => self.clone(),
         }
     }
@@ -160,7 +176,12 @@ impl PlotAxis {
 
     /// Where `value` stands between the ends: 0 at the lower, 1 at the upper.
     pub fn share(&self, value: f64) -> f64 {
-        (value.clamp(-LARGEST, LARGEST) - self.low) / (self.high - self.low)
+        match self.scale {
+            Scale::Counts => (1.0 + value.max(0.0)).ln() / (1.0 + self.high).ln(),
+            Scale::Linear | Scale::Decades | Scale::Given => {
+                (value.clamp(-LARGEST, LARGEST) - self.low) / (self.high - self.low)
+            }
+        }
     }
 }
 

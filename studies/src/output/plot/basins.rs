@@ -5,8 +5,8 @@ use super::cells::{Cell, Cells, Colours};
 use super::chart::{Chart, Marks, Panel};
 use super::drawn::Drawn;
 use super::figure::Point;
+use super::quantity::suited_unit;
 use super::role::Role;
-use super::style::{Ink, KINDS};
 use super::sweep::{MAX_PICTURE_CELLS, NoPicture};
 use crate::numeric::short;
 use crate::study::{Answer, Attractor, Basins, Edges, Starts, Table};
@@ -35,7 +35,9 @@ pub fn basins_chart(basins: &Basins, answer: &Answer) -> Chart {
         }
     };
     let rightward = PlotAxis::between(across.0, across.1, "displacement at the start (mm)");
-    let mut panel = Panel::new(rightward, PlotAxis::between(up.0, up.1, "velocity at the start (m/s)"));
+    let (scale, unit) = suited_unit("m/s", (0..starts.count()).map(|row| starts.at(row).1));
+    let upward = PlotAxis::between(up.0 * scale, up.1 * scale, &format!("velocity at the start ({unit})"));
+    let mut panel = Panel::new(rightward, upward);
     let (room, source) = (basins.room(), source_row(basins));
     let is_outside = |x_mm: f64| x_mm / 1e3 < room.0 || x_mm / 1e3 > room.1;
     let found = |row: usize| answer.rows[source(row)].map(|found| found.0 as usize - 1);
@@ -51,10 +53,10 @@ pub fn basins_chart(basins: &Basins, answer: &Answer) -> Chart {
             };
             let cells = Cells {
                 across: Edges::new(x_mm),
-                up: Edges::new(v),
+                up: Edges::new(&v.iter().map(|v| v * scale).collect::<Vec<f64>>()),
                 cells: (0..starts.count()).map(cell).collect(),
                 colours: Colours::Categories(kinds.collect()),
-                missing,
+                missing: missing.to_owned(),
             };
             panel.draw(Role::Motion, Marks::Cells(cells));
         }
@@ -63,7 +65,7 @@ pub fn basins_chart(basins: &Basins, answer: &Answer) -> Chart {
             for row in 0..starts.count() {
                 let (x_mm, v): Point = starts.at(row);
                 if !is_outside(x_mm) {
-                    clouds[found(row).unwrap_or(names.len())].push((x_mm, v));
+                    clouds[found(row).unwrap_or(names.len())].push((x_mm, v * scale));
                 }
             }
             let roles = (0..names.len()).map(Role::Kind).chain([Role::Missing]);
@@ -82,7 +84,7 @@ pub fn basins_chart(basins: &Basins, answer: &Answer) -> Chart {
     let (left, right) = basins.model().stop_positions();
     panel.upright_stops((left.map_or(f64::NAN, |x| x * 1e3), right.map_or(f64::NAN, |x| x * 1e3)));
     for (place, attractor) in answer.attractors.iter().enumerate() {
-        let states = attractor.states.iter().map(|(x, v)| (1e3 * x, *v)).collect();
+        let states = attractor.states.iter().map(|(x, v)| (1e3 * x, v * scale)).collect();
         panel.draw(Role::Kind(place), Marks::Points(states));
     }
     Chart::stack(vec![panel], about(basins, answer), drawn(basins, answer))
@@ -103,11 +105,6 @@ fn drawn(basins: &Basins, answer: &Answer) -> Table {
         }
     }
     drawn.table()
-}
-
-/// The colour of an attractor by its index; the colours repeat after eight.
-pub fn attractor_colour(place: usize) -> Ink {
-    KINDS[place % KINDS.len()]
 }
 
 /// Maps each row to the row whose answer is shown for it: itself, or the nearest one that has been run.

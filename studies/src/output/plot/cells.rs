@@ -30,8 +30,8 @@ impl Cell {
 /// How values are coloured.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Colours {
-    /// From a least to a greatest value.
-    Scale(f64, f64),
+    /// Along this axis.
+    Scale(PlotAxis),
     /// About 0, up to this to either side.
     Signed(f64),
     /// By whole numbers, each a place among these roles and words.
@@ -42,7 +42,7 @@ impl Colours {
     /// The colour of a value.
     pub fn ink(&self, value: f64, theme: &Theme) -> Ink {
         match self {
-            Self::Scale(low, high) => viridis((value - low) / (high - low)),
+            Self::Scale(axis) => viridis(axis.share(value)),
             Self::Signed(reach) => {
                 let share = (value / reach).clamp(-1.0, 1.0);
                 let ink = if share < 0.0 { theme.regimes[1] } else { theme.regimes[3] };
@@ -61,8 +61,14 @@ impl Colours {
         let height = (bottom - top) / STEPS as f64;
         for i in 0..STEPS {
             let low = bottom - i as f64 * height;
-            let value = axis.low + (i as f64 + 0.5) / STEPS as f64 * (axis.high - axis.low);
-            figure.rect(Area::new(left, low - height, right, low), self.ink(value, theme));
+            let share = (i as f64 + 0.5) / STEPS as f64;
+            let ink = match self {
+                Self::Scale(_) => viridis(share),
+                Self::Signed(_) | Self::Categories(_) => {
+                    self.ink(axis.low + share * (axis.high - axis.low), theme)
+                }
+            };
+            figure.rect(Area::new(left, low - height, right, low), ink);
         }
         figure.outline(area, style::FRAME, theme.ink);
         for (value, words) in &axis.ticks {
@@ -95,7 +101,7 @@ pub struct Cells {
     /// Colours of their values.
     pub colours: Colours,
     /// Why a cell is missing, in the legend.
-    pub missing: &'static str,
+    pub missing: String,
 }
 
 impl Cells {
@@ -116,7 +122,7 @@ impl Cells {
             entries.push((Role::Rest, "at rest".to_owned()));
         }
         if has(Cell::Missing) {
-            entries.push((Role::Missing, self.missing.to_owned()));
+            entries.push((Role::Missing, self.missing.clone()));
         }
         entries
     }

@@ -6,8 +6,8 @@ use super::axis::PlotAxis;
 use super::chart::{Chart, Column, Marks, Panel};
 use super::figure::Point;
 use super::mark::REGIMES;
+use super::quantity::suited_unit;
 use super::role::Role;
-use super::run::speed_unit;
 use crate::numeric::round::decade;
 use crate::numeric::short;
 use crate::study::{Rated, SEARCHED_SPAN, Table, Values};
@@ -170,8 +170,8 @@ fn shown(picture: &ComparisonPicture<'_>) -> Vec<Shown> {
     // without impacts the impact speed is 0
     let impact = |scene: &Rated| speed(scene).map(|_| scene.summary.impact_speed_max.unwrap_or(0.0));
     let power = |scene: &Rated| scene.summary.harvest.and_then(|harvest| harvest.mean_load_power);
-    let (per_speed, speed_name) = speed_unit(rated.iter().filter_map(speed));
-    let (per_impact, impact_name) = speed_unit(rated.iter().filter_map(impact));
+    let (per_speed, speed_name) = suited_unit("m/s", rated.iter().filter_map(speed));
+    let (per_impact, impact_name) = suited_unit("m/s", rated.iter().filter_map(impact));
     let (per_watt, watt) = match rated.iter().filter_map(power).fold(0.0, f64::max) {
         largest if largest >= 1.0 => (1.0, "W"),
         largest if largest >= 1e-3 => (1e3, "mW"),

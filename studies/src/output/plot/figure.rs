@@ -10,6 +10,7 @@ use super::frame::Frame;
 use super::role::Look;
 use super::sheet::Sheet;
 use super::style::{self, Ink, Theme};
+use super::surface::SurfaceFrame;
 use crate::numeric::short;
 use crate::study::Table;
 
@@ -71,6 +72,24 @@ impl Area {
             }
             inside
         })
+    }
+
+    /// The parts of a line that lie inside.
+    pub fn parts(self, points: &[Point]) -> Vec<Vec<Point>> {
+        let mut parts: Vec<Vec<Point>> = Vec::new();
+        let mut end = None;
+        for pair in points.windows(2) {
+            let Some((from, to)) = self.clip(pair[0], pair[1]) else {
+                end = None;
+                continue;
+            };
+            match parts.last_mut().filter(|_| end == Some(from)) {
+                Some(part) => part.push(to),
+                None => parts.push(vec![from, to]),
+            }
+            end = Some(to);
+        }
+        parts
     }
 
     /// The part of the segment from `a` to `b` that lies inside (Liang and Barsky 1984).
@@ -177,6 +196,8 @@ pub struct Figure {
     pub data: Table,
     /// The frames of its panels, without those of surfaces.
     pub frames: Vec<Frame>,
+    /// The frame of a surface.
+    pub surface: Option<SurfaceFrame>,
     /// Upper and lower edge of what stands between the captions.
     body: (f64, f64),
 }
@@ -194,6 +215,7 @@ impl Figure {
             body,
             origin: Map::new(),
             frames: Vec::new(),
+            surface: None,
             data: Table::new(),
         }
     }
@@ -244,14 +266,14 @@ impl Figure {
 
     /// Adds a line; parts outside `within` and points that are not finite are left out.
     pub fn line(&mut self, points: &[Point], width: f64, ink: Ink, within: Area) {
-        for part in clipped(points, within) {
+        for part in within.parts(points) {
             self.shapes.push(Shape::Line(part, width, ink));
         }
     }
 
     /// Adds a broken line with dashes and gaps of the given lengths.
     pub fn dashed(&mut self, points: &[Point], width: f64, ink: Ink, dash: (f64, f64), within: Area) {
-        for part in clipped(points, within) {
+        for part in within.parts(points) {
             for piece in dashes(&part, dash) {
                 self.shapes.push(Shape::Line(piece, width, ink));
             }
@@ -335,24 +357,6 @@ impl Figure {
     }
 }
 
-/// The parts of a line that lie inside.
-fn clipped(points: &[Point], within: Area) -> Vec<Vec<Point>> {
-    let mut parts: Vec<Vec<Point>> = Vec::new();
-    let mut end = None;
-    for pair in points.windows(2) {
-        let Some((from, to)) = within.clip(pair[0], pair[1]) else {
-            end = None;
-            continue;
-        };
-        match parts.last_mut().filter(|_| end == Some(from)) {
-            Some(part) => part.push(to),
-            None => parts.push(vec![from, to]),
-        }
-        end = Some(to);
-    }
-    parts
-}
-
 /// A line cut into dashes.
 fn dashes(points: &[Point], (on, off): (f64, f64)) -> Vec<Vec<Point>> {
     let mut pieces = Vec::new();
@@ -385,4 +389,21 @@ fn dashes(points: &[Point], (on, off): (f64, f64)) -> Vec<Vec<Point>> {
         pieces.push(piece);
     }
     pieces
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_parts_of_a_path_are_inside_and_join_where_it_stays_inside() {
+        let area = Area::new(0.0, -1.0, 4.0, 1.0);
+        let path =
+            [(-1.0, 0.0), (1.0, 0.0), (2.0, 0.5), (3.0, 1e30), (3.0, -1e30), (3.5, f64::NAN), (9.0, 0.0)];
+        let parts = area.parts(&path);
+        let ends: Vec<(f64, f64, usize)> =
+            parts.iter().map(|part| (part[0].0, part[part.len() - 1].0, part.len())).collect();
+        assert_eq!(ends, [(0.0, 2.0, 4), (3.0, 3.0, 2)]);
+        assert!(parts.concat().iter().all(|point| point.1.abs() <= 1.0 + 1e-9));
+    }
 }

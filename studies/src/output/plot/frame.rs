@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use super::axis::PlotAxis;
-use super::cells::{Cell, Cells};
+use super::cells::{Cell, Cells, Colours};
 use super::chart::{Layer, Marks, Side};
 use super::figure::{Align, Area, Figure, Point, Text};
 use super::font;
@@ -22,6 +22,10 @@ const APART: f64 = 4.5;
 
 /// So many times its half height apart, markers on a line are told from each other.
 const MARKER_ROOM: f64 = 5.0;
+
+/// From one symbol over a map to the next, and how far around one the cells are of its kind.
+const SYMBOLS: f64 = 104.0;
+const AROUND: f64 = 20.0;
 
 /// Half the size of a marker where there are many: this share of the width over their number, at least.
 const SIZE_SHARE: f64 = 0.3;
@@ -393,6 +397,29 @@ impl Frame {
                     }
                     Cell::Blank => {}
                 }
+            }
+        }
+        self.symbols(figure, grid, theme);
+    }
+
+    /// Markers of the regimes at intervals, so that colour is not the only sign of them.
+    fn symbols(&self, figure: &mut Figure, grid: &Cells, theme: &Theme) {
+        let Colours::Categories(kinds) = &grid.colours else { return };
+        let Area { left, top, right, bottom } = self.area;
+        let role = |(x, y): Point| {
+            let across = self.x.low + (x - left) / (right - left) * (self.x.high - self.x.low);
+            let up = self.y.low + (bottom - y) / (bottom - top) * (self.y.high - self.y.low);
+            let value = grid.at(grid.across.cell(across)?, grid.up.cell(up)?).value()?;
+            kinds.get(value as usize).map(|kind| kind.0).filter(|role| matches!(role, Role::Regime(_)))
+        };
+        let count = |length: f64| (length / SYMBOLS) as usize;
+        for i in 0..count(right - left) * count(bottom - top) {
+            let (column, row) = (i % count(right - left), i / count(right - left));
+            let at @ (x, y) = (left + (column as f64 + 0.5) * SYMBOLS, top + (row as f64 + 0.5) * SYMBOLS);
+            let Some(of) = role(at) else { continue };
+            let around = [(x - AROUND, y), (x + AROUND, y), (x, y - AROUND), (x, y + AROUND)];
+            if around.into_iter().all(|place| role(place) == Some(of)) {
+                dot(figure, theme.look(of).marker, at, style::MARKER, theme.paper);
             }
         }
     }

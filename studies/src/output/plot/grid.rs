@@ -2,7 +2,7 @@
 //! and below the frames.
 
 use super::axis::PlotAxis;
-use super::cells::{Cells, Colours};
+use super::cells::Cells;
 use super::chart::{Chart, Layer, Marks, Panel};
 use super::figure::{Align, Area, Figure, Text};
 use super::font;
@@ -203,8 +203,8 @@ fn widest(axis: &PlotAxis) -> f64 {
 /// The least size of a label over the usual one at which it stays in one line.
 const ONE_LINE: f64 = 0.85;
 
-/// A label in lines that are no longer than `room`: smaller where it then fits in one line, or where a word of
-/// it is longer.
+/// A label in lines that are no longer than `room`: smaller where it then fits in one line, or where a word
+/// is longer.
 #[derive(Default)]
 struct Label {
     lines: Vec<String>,
@@ -297,16 +297,18 @@ impl Stack<'_> {
 }
 
 impl Panel {
-    fn surface(&self) -> Option<(&Cells, &PlotAxis)> {
+    /// The cells of its surface and the axis of their heights.
+    pub fn surface(&self) -> Option<(&Cells, &PlotAxis)> {
         self.layers.iter().find_map(|layer| match &layer.marks {
             Marks::Surface(cells, axis) => Some((cells, axis)),
             _ => None,
         })
     }
 
-    fn colours(&self) -> Option<&Colours> {
+    /// The cells of its map.
+    pub fn cells(&self) -> Option<&Cells> {
         self.layers.iter().find_map(|layer| match &layer.marks {
-            Marks::Cells(cells) => Some(&cells.colours),
+            Marks::Cells(cells) => Some(cells),
             _ => None,
         })
     }
@@ -347,7 +349,7 @@ impl Slot<'_> {
         };
         let layers = &self.panel.layers;
         layers.iter().filter(is_under).for_each(|layer| frame.layer(figure, layer, theme));
-        if self.panel.colours().is_none() {
+        if self.panel.cells().is_none() {
             frame.grid(figure, theme);
         }
         layers.iter().filter(|layer| !is_under(layer)).for_each(|layer| frame.layer(figure, layer, theme));
@@ -368,7 +370,7 @@ impl Slot<'_> {
             let x = area.left - numbers - LABEL_WIDTH * (self.y_label.lines.len() - 1 - i) as f64 - 8.0;
             figure.text(centred(line, (x, middle.1), self.y_label.size, true));
         }
-        if let (Some(axis), Some(colours)) = (&self.bar, self.panel.colours()) {
+        if let (Some(axis), Some(Cells { colours, .. })) = (&self.bar, self.panel.cells()) {
             let from = area.right + BAR.0;
             let place = Area::new(from, area.top, from + BAR.1, area.bottom);
             colours.bar(figure, place, axis, theme);

@@ -146,15 +146,17 @@ impl Chart {
     pub fn pane(&self, (width, height): (f64, f64), theme: &Theme) -> Figure {
         let named = self.entries(theme);
         let legend = Legend::new(&named, width - 2.0 * PANE);
-        let is_low = height < LOW_PANE || self.subtitle.is_empty();
-        let subtitle = if is_low { "" } else { &self.subtitle };
+        let is_low = height < LOW_PANE;
+        let has_subtitle = !is_low && !self.subtitle.is_empty();
+        let subtitle = if has_subtitle { &self.subtitle } else { "" };
         let subtitle = wrapped_to(subtitle, style::TICK, false, width - 2.0 * PANE, MOST_LINES);
-        let above = 0.5 * PANE + if is_low { 0.0 } else { SUBTITLE_LINE * subtitle.len() as f64 };
+        let edge = if is_low { 0.0 } else { 0.5 * PANE };
+        let above = edge + if has_subtitle { SUBTITLE_LINE * subtitle.len() as f64 } else { 0.0 };
         let mut grid = Grid::new(self, width < style::NARROW);
-        grid.fit((PANE, width - PANE), height - above - legend.height - 0.5 * PANE, LEAST_PANE);
+        grid.fit((PANE, width - PANE), height - above - legend.height - edge, LEAST_PANE);
         let mut figure = Figure::new(theme, (width, height), (0.0, height));
         for (i, line) in subtitle.iter().enumerate() {
-            let at = (PANE, 0.5 * PANE + SUBTITLE_LINE * (i as f64 + 0.75));
+            let at = (PANE, edge + SUBTITLE_LINE * (i as f64 + 0.75));
             figure.text(Text::new(line, at, style::TICK, theme.soft));
         }
         legend.draw(&mut figure, (PANE, above), theme);

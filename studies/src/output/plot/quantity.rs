@@ -3,8 +3,8 @@
 use super::axis::PlotAxis;
 use super::mark::REGIMES;
 use super::role::Role;
-use super::swept::missing_words;
-use crate::study::{Grid, RMS_VELOCITY, SummaryField, Table, Values, label_and_unit};
+use crate::numeric::extent;
+use crate::study::{Grid, RMS_VELOCITY, Read, SummaryField, Table, Values, label_and_unit};
 
 /// The column that is shown where none is named.
 pub const RMS: &str = RMS_VELOCITY.name;
@@ -41,10 +41,10 @@ pub(super) struct Quantity {
     pub unit: String,
     /// The kinds that the values are places of, with their words, where it has kinds.
     pub kinds: Option<Vec<(Role, String)>>,
-    /// Whether a motion at rest is shown as such.
+    /// Whether every motion at rest is shown as such, not only one whose value is 0.
     pub rests: bool,
-    /// Whether it is the velocity.
-    velocity: bool,
+    /// The column.
+    name: String,
 }
 
 /// The columns of `table` that can be shown, which are those of the summary and of thresholds, not the swept
@@ -83,28 +83,39 @@ impl Quantity {
         if name == PERIOD {
             kinds = Some(counted(&mut values));
         }
-        let greatest = values.iter().filter(|v| v.is_finite()).fold(0.0_f64, |a, b| a.max(b.abs()));
-        let (words, unit) =
-            column.map_or_else(|| (name.to_owned(), ""), |column| label_and_unit(&column.name));
-        let words = match name {
-            RMS => "RMS velocity",
-            "max_abs_x_m" => "largest |x|",
-            _ => words.as_str(),
-        };
-        // Small lengths and speeds are short numbers in thousandths.
-        let (scale, unit) = match unit {
-            "m" | "m/s" if greatest < 2.0 => (1e3, format!("m{unit}")),
-            _ => (1.0, unit.to_owned()),
-        };
-        let label = if unit.is_empty() { words.to_owned() } else { format!("{words} ({unit})") };
+        let (words, unit) = label_and_unit(name);
+        let words = SummaryField::find(name).map_or(words, |field| field.label.to_owned());
+        let (scale, unit) = suited_unit(unit, values.iter().copied());
+        let label = if unit.is_empty() { words } else { format!("{words} ({unit})") };
         let values = values.into_iter().map(|value| value * scale).collect();
-        let velocity = name == RMS;
-        Self { values, label, unit, kinds, rests: velocity || name == PERIOD, velocity }
+        let rests = [RMS, PERIOD, "regime"].contains(&name);
+        Self { values, label, unit: unit.to_owned(), kinds, rests, name: name.to_owned() }
     }
 
-    /// What a legend says of cells without a value.
-    pub fn missing(&self, rows: &Table) -> &'static str {
-        if self.velocity { missing_words(rows.words("outcome")) } else { "no value" }
+    /// What a legend says of cells without a value: the reasons that there are.
+    pub fn missing(&self, rows: &Table) -> String {
+        let mut reasons: Vec<&str> = Vec::new();
+        for (outcome, _) in rows.words("outcome").iter().zip(&self.values).filter(|row| !row.1.is_finite()) {
+            let reason = match *outcome {
+                "" => continue,
+                "done" => without_value(&self.name),
+                "not_converged" => "flexures not solved",
+                _ => "ended early",
+            };
+            if !reasons.contains(&reason) {
+                reasons.push(reason);
+            }
+        }
+        if reasons.is_empty() { "no value".to_owned() } else { reasons.join(", or ") }
+    }
+
+    /// The axis of its colours: that of [`axis`](Self::axis), or of counts one with room for small ones.
+    pub fn bar(&self) -> PlotAxis {
+        let field = SummaryField::find(&self.name).filter(|field| matches!(field.read, Read::Count(_)));
+        match field.filter(|_| self.kinds.is_none()) {
+            Some(_) => PlotAxis::counts(extent(self.values.iter().copied()).1, &self.label),
+            None => self.axis(0.0),
+        }
     }
 
     /// Its axis: from 0, or from below where there are negative values, with `margin` of the range as room;
@@ -115,6 +126,41 @@ impl Quantity {
             return PlotAxis::given(-0.5, kinds.len() as f64 - 0.5, ticks, &self.label);
         }
         PlotAxis::around(self.values.iter().copied().chain([0.0]), margin, &self.label)
+    }
+}
+
+/// Why a run that lasted to its end has no value in a column.
+fn without_value(name: &str) -> &'static str {
+    match name {
+        PERIOD | "settles_at_s" => "does not repeat",
+        "first_release_s" | "first_release_g" => "no release, or the shaking does not change",
+        "first_crossing_s" | "first_crossing_g" => "no crossing, or the shaking does not change",
+        "impact_speed_max_m_per_s" => "no impact",
+        "peak_contact_force_n" | "peak_contact_pressure_pa" => "no compliant stop is touched",
+        "ended_at_s" => "lasted to its end",
+        _ => "no value",
+    }
+}
+
+/// The factor from the SI unit called `unit` to the one in which these values are short numbers, and its
+/// name. Lengths and speeds below 2 are in thousandths.
+pub fn suited_unit(unit: &'static str, values: impl Iterator<Item = f64>) -> (f64, &'static str) {
+    let finite = values.filter(|value| value.is_finite());
+    let greatest = finite.fold(0.0_f64, |greatest, value| greatest.max(value.abs()));
+    let prefixed = |units: [(f64, &'static str); 5]| {
+        // nothing is shown in thousandths
+        let size = if greatest > 0.0 { greatest } else { 1e-3 };
+        let fits = units.into_iter().find(|(factor, _)| size * factor >= 1.0);
+        fits.unwrap_or(units[4])
+    };
+    match unit {
+        "m" if greatest < 2.0 => (1e3, "mm"),
+        "m/s" if greatest < 2.0 => (1e3, "mm/s"),
+        "J" => prefixed([(1.0, "J"), (1e3, "mJ"), (1e6, "\u{b5}J"), (1e9, "nJ"), (1e12, "pJ")]),
+        "W" => prefixed([(1.0, "W"), (1e3, "mW"), (1e6, "\u{b5}W"), (1e9, "nW"), (1e12, "pW")]),
+        "Pa" if greatest >= 1e6 => (1e-6, "MPa"),
+        "Pa" if greatest >= 1e3 => (1e-3, "kPa"),
+        unit => (1.0, unit),
     }
 }
 
@@ -136,4 +182,31 @@ fn counted(values: &mut [f64]) -> Vec<(Role, String)> {
         (Role::Kind(i), format!("period {least}{value}"))
     };
     all.iter().enumerate().map(name).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_unit_suits_its_values() {
+        let of = |unit, value: f64| suited_unit(unit, [value, f64::NAN, -0.5 * value].into_iter());
+        assert_eq!([of("m", 0.02), of("m", 3.0), of("m/s", 0.4)], [(1e3, "mm"), (1.0, "m"), (1e3, "mm/s")]);
+        assert_eq!([of("J", -2.0), of("J", 0.0), of("W", 3e-7)], [(1.0, "J"), (1e3, "mJ"), (1e9, "nW")]);
+        assert_eq!([of("W", 1e-15), of("Pa", 2e8), of("", 7.0)], [(1e12, "pW"), (1e-6, "MPa"), (1.0, "")]);
+    }
+
+    #[test]
+    fn a_legend_says_why_a_cell_has_no_value() {
+        let missing = |name: &str, rows: &[(f64, &'static str)]| {
+            let table = Table::new().each(name, rows, |row| row.0).each("outcome", rows, |row| row.1);
+            Quantity::of(&table, name).missing(&table)
+        };
+        let nan = f64::NAN;
+        assert_eq!(missing(RMS, &[(1.0, "done"), (nan, "left_table")]), "ended early");
+        assert_eq!(missing(RMS, &[(nan, "not_converged"), (1.0, "step_budget")]), "flexures not solved");
+        let both = [(nan, "not_converged"), (nan, "step_budget"), (nan, ""), (nan, "not_finite")];
+        assert_eq!(missing(RMS, &both), "flexures not solved, or ended early");
+        assert_eq!(missing("impact_speed_max_m_per_s", &[(nan, "done")]), "no impact");
+    }
 }

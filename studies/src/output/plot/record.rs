@@ -5,8 +5,8 @@ use super::axis::{PlotAxis, Ranges};
 use super::chart::{Chart, Marks, Panel};
 use super::drawn::Drawn;
 use super::figure::Point;
+use super::quantity::suited_unit;
 use super::role::Role;
-use super::run::speed_unit;
 use crate::dynamics::STANDARD_GRAVITY;
 use crate::numeric::{extent, short};
 use crate::scene::{Quantity, Timing};
@@ -197,7 +197,7 @@ pub(super) fn axis_of(quantity: Quantity, values: &[f64]) -> (f64, &'static str,
     let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
     match quantity {
         Quantity::Velocity => {
-            let (scale, unit) = speed_unit(values.iter().copied());
+            let (scale, unit) = suited_unit("m/s", values.iter().copied());
             (scale, "velocity", unit)
         }
         Quantity::Acceleration => (1.0 / STANDARD_GRAVITY, "acceleration", "g"),

@@ -66,6 +66,8 @@ pub enum Role {
     Cut,
     /// No value.
     Missing,
+    /// A motion that may be a transient.
+    Transient,
     /// The best of several.
     Best,
     /// One of several that is not the best.
@@ -163,6 +165,7 @@ impl Theme {
             }
             Role::Cut => Look { halo: Some(style::BLACK), ..dotted(style::WHITE) },
             Role::Missing => dotted(self.soft),
+            Role::Transient => of(self.rest_hatch),
             Role::Best => of(self.stable),
             Role::Other => of(self.soft.over(self.paper, 0.35)),
             Role::Method(place) => {

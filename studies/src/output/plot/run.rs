@@ -5,8 +5,10 @@ use std::ops::Range;
 use super::axis::{PlotAxis, Ranges};
 use super::chart::{Chart, Column, Marks, Note, Panel, Side};
 use super::drawn::Drawn;
+use super::figure::Point;
 use super::mark::REGIMES;
 use super::portrait::separatrix;
+use super::quantity::suited_unit;
 use super::role::Role;
 use crate::dynamics::{Outcome, STANDARD_GRAVITY, Summary};
 use crate::mechanics::Mechanism;
@@ -22,13 +24,19 @@ pub enum RunPanel {
     Velocity,
     /// Acceleration of the base over time.
     Acceleration,
+    /// Potential and kinetic energy over time.
+    Energy,
     /// Velocity over displacement.
     Portrait,
 }
 
 impl RunPanel {
-    /// All of them, in the order in which they stand. All together have numbers beside them.
-    pub const ALL: [Self; 4] = [Self::Displacement, Self::Velocity, Self::Acceleration, Self::Portrait];
+    /// All of them, in the order in which they stand.
+    pub const ALL: [Self; 5] =
+        [Self::Displacement, Self::Velocity, Self::Acceleration, Self::Energy, Self::Portrait];
+
+    /// Those that are shown where none are named. Together they have numbers beside them.
+    pub const USUAL: [Self; 4] = [Self::Displacement, Self::Velocity, Self::Acceleration, Self::Portrait];
 
     /// Its word.
     pub fn name(self) -> &'static str {
@@ -36,6 +44,7 @@ impl RunPanel {
             Self::Displacement => "displacement",
             Self::Velocity => "velocity",
             Self::Acceleration => "acceleration",
+            Self::Energy => "energy",
             Self::Portrait => "portrait",
         }
     }
@@ -66,7 +75,7 @@ pub fn run_chart(
         v: column("v_m_per_s"),
         accel: column("base_accel_m_per_s2"),
         wells: stable.map(|equilibrium| equilibrium.x).collect(),
-        speed: speed_unit(column("v_m_per_s").iter().copied()),
+        speed: suited_unit("m/s", column("v_m_per_s").iter().copied()),
         displacements: ranges.y,
         panels,
         // on a compliant stop it never rests: it trembles
@@ -79,7 +88,7 @@ pub fn run_chart(
     };
     let over_time = seen.over_time();
     let mut portrait = seen.has(RunPanel::Portrait).then(|| seen.portrait());
-    let whole = RunPanel::ALL.iter().all(|panel| seen.has(*panel));
+    let whole = RunPanel::USUAL.iter().all(|panel| seen.has(*panel));
     if let Some(portrait) = portrait.as_mut().filter(|_| whole && judged) {
         portrait.notes = account(summary, trace, seen.speed);
     }
@@ -223,7 +232,46 @@ impl Seen<'_> {
             }
             panel
         };
-        panels.into_iter().filter(|panel| self.has(panel.0)).map(build).collect()
+        let mut panels: Vec<Panel> =
+            panels.into_iter().filter(|panel| self.has(panel.0)).map(build).collect();
+        panels.extend(self.has(RunPanel::Energy).then(|| self.energy(time, &rests)));
+        panels
+    }
+
+    /// Potential energy in J, counted from the bottom of the deeper well or, without wells, from its least
+    /// value.
+    fn potential(&self, x: f64) -> f64 {
+        let curve = &self.mechanism.curve;
+        let of = |places: &[f64]| places.iter().map(|x| curve.potential(*x)).fold(f64::INFINITY, f64::min);
+        curve.potential(x) - if self.wells.is_empty() { of(self.x) } else { of(&self.wells) }
+    }
+
+    /// Potential energy, and the sum with the kinetic one, over time.
+    fn energy(&self, time: PlotAxis, rests: &[(f64, f64)]) -> Panel {
+        let shown = self.rows(self.trace.shown_from);
+        let of = |i: usize, with: f64| {
+            (self.t[i], self.potential(self.x[i]) + with * 0.5 * self.mass * self.v[i] * self.v[i])
+        };
+        let [potential, total] =
+            [0.0, 1.0].map(|with| shown.clone().map(|i| of(i, with)).collect::<Vec<_>>());
+        let barrier = self.mechanism.landscape.barrier.map(|barrier| self.potential(barrier.x));
+        let values = || total.iter().map(|point| point.1).chain(barrier).chain([0.0]);
+        let (scale, unit) = suited_unit("J", values());
+        let up = PlotAxis::around(values().map(|energy| energy * scale), 0.08, &format!("energy ({unit})"));
+        let mut panel = Panel::new(time, up);
+        if !rests.is_empty() {
+            panel.layer(Role::Rest, self.rests, Marks::Spans(rests.to_vec()));
+        }
+        if let Some(barrier) = barrier {
+            panel.layer(Role::Separatrix, "top of the barrier", Marks::Horizontals(vec![barrier * scale]));
+        }
+        let scaled = |points: Vec<Point>| {
+            let points = points.into_iter().map(|(t, energy)| (t, energy * scale));
+            Marks::Trace(points.filter(|point| point.1.is_finite()).collect())
+        };
+        panel.layer(Role::Motion, "potential and kinetic", scaled(total));
+        panel.layer(Role::Second, "potential", scaled(potential));
+        panel
     }
 
     /// Velocity over displacement.
@@ -257,12 +305,19 @@ impl Seen<'_> {
     /// All that is drawn, with this portrait.
     fn drawn(&self, portrait: Option<&Panel>) -> Table {
         let Self { trace, t, x, v, accel, .. } = *self;
-        let mut drawn = Drawn::new(["t_s", "x_m", "v_m_per_s", "base_accel_m_per_s2"], &["side"]);
+        let has_energy = self.has(RunPanel::Energy);
+        let names = ["t_s", "x_m", "v_m_per_s", "base_accel_m_per_s2"].into_iter();
+        let names = names.chain(has_energy.then_some(["potential_j", "kinetic_j"]).into_iter().flatten());
+        let mut drawn = Drawn::new(names, &["side"]);
         let shown =
             [RunPanel::Displacement, RunPanel::Velocity, RunPanel::Acceleration].map(|panel| self.has(panel));
         for i in self.rows(trace.shown_from).filter(|_| self.is_over_time()) {
             let value = |place: usize, of: &[f64]| if shown[place] { of[i] } else { f64::NAN };
-            drawn.put("run", &[t[i], value(0, x), value(1, v), value(2, accel)], &[]);
+            let mut row = vec![t[i], value(0, x), value(1, v), value(2, accel)];
+            if has_energy {
+                row.extend([self.potential(x[i]), 0.5 * self.mass * v[i] * v[i]]);
+            }
+            drawn.put("run", &row, &[]);
         }
         for i in self.rows(trace.portrait_from).filter(|_| self.has(RunPanel::Portrait)) {
             drawn.put("portrait", &[t[i], x[i], v[i]], &[]);
@@ -312,12 +367,6 @@ impl Seen<'_> {
 /// Whether all values are the first one.
 fn is_still(values: &[f64]) -> bool {
     values.iter().all(|value| *value == values[0])
-}
-
-/// The unit in which speeds up to those given are short numbers, with the factor from m/s.
-pub fn speed_unit(values: impl Iterator<Item = f64>) -> (f64, &'static str) {
-    let greatest = values.filter(|value| value.is_finite()).fold(0.0_f64, |a, b| a.max(b.abs()));
-    if greatest < 2.0 { (1e3, "mm/s") } else { (1.0, "m/s") }
 }
 
 fn reason(outcome: Outcome) -> &'static str {

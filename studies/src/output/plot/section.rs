@@ -4,8 +4,8 @@ use super::axis::{PlotAxis, Ranges};
 use super::chart::{Chart, Marks, Panel};
 use super::drawn::Drawn;
 use super::figure::Point;
+use super::quantity::suited_unit;
 use super::role::Role;
-use super::run::speed_unit;
 use super::swept::label;
 use crate::numeric::short;
 use crate::study::{DIRECTION, Direction, IMPACTS, Table, Values};
@@ -114,7 +114,7 @@ fn columns_of(rows: &Table, over: Option<&str>, states: bool) -> (Along, Along) 
         label,
     };
     let speed = |name: &str, words: &str| {
-        let (scale, unit) = speed_unit(rows.numbers(name).unwrap_or_default().iter().copied());
+        let (scale, unit) = suited_unit("m/s", rows.numbers(name).unwrap_or_default().iter().copied());
         scaled(name, scale, format!("{words} ({unit})"))
     };
     let displacement = || scaled("x_m", 1e3, "displacement (mm)".to_owned());

@@ -4,8 +4,8 @@ use super::axis::PlotAxis;
 use super::cells::{Cell, Cells};
 use super::figure::{Align, Area, Figure, Point, Text};
 use super::font;
-use super::projection::{AXIS_EDGES, BACK_EDGES, BoxPlace, Projection, SIDES, faces, wall_lines};
-use super::style::{self, Ink, Theme};
+use super::projection::{AXIS_EDGES, BACK_EDGES, BoxPlace, Face, Projection, SIDES, faces, wall_lines};
+use super::style::{self, Ink, Theme, viridis};
 
 /// The most cells that are drawn as faces.
 pub const MAX_SURFACE_CELLS: u64 = 60_000;
@@ -13,19 +13,69 @@ pub const MAX_SURFACE_CELLS: u64 = 60_000;
 /// Room for the numbers left and right of the box.
 const BESIDE: (f64, f64) = (130.0, 30.0);
 
-/// A box in projection: each axis from 0 to 1.
-struct View {
-    area: Area,
-    x: PlotAxis,
-    y: PlotAxis,
-    z: PlotAxis,
+/// A box in projection with an axis to the right, one to the back and one upward.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SurfaceFrame {
+    /// The rectangle that it fills.
+    pub area: Area,
+    /// The axis to the right.
+    pub x: PlotAxis,
+    /// The axis to the back.
+    pub y: PlotAxis,
+    /// The axis upward.
+    pub z: PlotAxis,
 }
 
-impl View {
-    /// Where a place in the box stands on the canvas.
+impl SurfaceFrame {
+    /// Where a place in the box, each axis from 0 to 1, stands on the canvas.
     fn place(&self, at: BoxPlace) -> Point {
         let Area { left, top, right, bottom } = self.area;
         Projection { left, top, right, bottom }.place(at)
+    }
+
+    /// Where values of the three axes stand on the canvas.
+    pub fn point(&self, (x, y, z): (f64, f64, f64)) -> Point {
+        self.place((self.x.share(x), self.y.share(y), self.z.share(z)))
+    }
+
+    /// The column and row of the cell whose value is nearest to a place on the canvas, of those on the
+    /// frontmost face there.
+    pub fn cell_at(&self, cells: &Cells, at: Point) -> Option<(usize, usize)> {
+        let is_inside = |corners: [Point; 3]| {
+            let side = |i: usize| {
+                let (from, to) = (corners[i], corners[(i + 1) % 3]);
+                (to.0 - from.0) * (at.1 - from.1) - (to.1 - from.1) * (at.0 - from.0)
+            };
+            let sides = [0, 1, 2].map(side);
+            sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0)
+        };
+        self.faces(cells).iter().rev().find_map(|face| {
+            let corners = face.corners.map(|corner| self.place(corner));
+            let under = [[0, 1, 2], [0, 2, 3]].iter().any(|three| is_inside(three.map(|i| corners[i])));
+            let distance = |i: &usize| (corners[*i].0 - at.0).hypot(corners[*i].1 - at.1);
+            let nearest = (0..4).min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+            let step = [(0, 0), (1, 0), (1, 1), (0, 1)][nearest];
+            under.then_some((face.cell.0 + step.0, face.cell.1 + step.1))
+        })
+    }
+
+    /// The faces over the cells that lie within the axes, the farthest first; none where one of the four
+    /// values is missing.
+    fn faces(&self, cells: &Cells) -> Vec<Face> {
+        let shares = |values: &[f64], axis: &PlotAxis| {
+            values.iter().map(|value| axis.share(*value)).collect::<Vec<_>>()
+        };
+        let (across, up) = (shares(&cells.across.values, &self.x), shares(&cells.up.values, &self.y));
+        let inside = |shares: &[f64], i: usize| (-1e-9..=1.0 + 1e-9).contains(&shares[i]);
+        let height = |column: usize, row: usize| {
+            let height = match cells.at(column, row) {
+                Cell::Missing | Cell::Blank => None,
+                Cell::Rest => Some((0.0, true)),
+                Cell::Value(value) => Some((value, false)),
+            };
+            height.filter(|_| inside(&across, column) && inside(&up, row))
+        };
+        faces(&across, &up, height, |value| self.z.share(value))
     }
 
     fn line(&self, figure: &mut Figure, (from, to): (BoxPlace, BoxPlace), width: f64, ink: Ink) {
@@ -112,7 +162,7 @@ pub fn draw(
     theme: &Theme,
 ) {
     let Area { left, top, right, bottom } = area;
-    let view = View {
+    let view = SurfaceFrame {
         area: Area::new(left + BESIDE.0, top, right - BESIDE.1, bottom),
         x: x.with_ticks(6),
         y: y.with_ticks(6),
@@ -121,26 +171,14 @@ pub fn draw(
     view.walls(figure, theme);
     skin(figure, &view, cells, theme);
     view.axes(figure, theme);
+    figure.surface = Some(view);
 }
 
-/// The faces of the surface; none where one of the four values is missing.
-fn skin(figure: &mut Figure, view: &View, cells: &Cells, theme: &Theme) {
-    let height = |column: usize, row: usize| match cells.at(column, row) {
-        Cell::Missing | Cell::Blank => None,
-        Cell::Rest => Some((0.0, true)),
-        Cell::Value(value) => Some((value, false)),
-    };
-    let shares =
-        |values: &[f64], axis: &PlotAxis| values.iter().map(|value| axis.share(*value)).collect::<Vec<_>>();
-    let (across, up) = (shares(&cells.across.values, &view.x), shares(&cells.up.values, &view.y));
-    let inside = |shares: &[f64], i: usize| (-1e-9..=1.0 + 1e-9).contains(&shares[i]);
-    let height = |column: usize, row: usize| {
-        height(column, row).filter(|_| inside(&across, column) && inside(&up, row))
-    };
+/// The faces of the surface with the lines over them.
+fn skin(figure: &mut Figure, view: &SurfaceFrame, cells: &Cells, theme: &Theme) {
     let canvas = figure.canvas;
-    for face in faces(&across, &up, height, |value| view.z.share(value)) {
-        let value = view.z.low + face.share * (view.z.high - view.z.low);
-        let ink = if face.resting { theme.rest } else { cells.colours.ink(value, theme) };
+    for face in view.faces(cells) {
+        let ink = if face.resting { theme.rest } else { viridis(face.share) };
         let mut points: Vec<Point> = face.corners.iter().map(|corner| view.place(*corner)).collect();
         for three in [[0, 1, 2], [0, 2, 3]] {
             figure.polygon(three.map(|i| points[i]).to_vec(), ink);

@@ -3,17 +3,15 @@
 use super::axis::PlotAxis;
 use super::cells::{Cell, Cells, Colours};
 use super::chart::{Chart, Column, Marks, Panel, Side};
-use super::drawn::Drawn;
 use super::figure::Point;
+use super::map::{cells_panel, map, map_with_cuts, surface};
 use super::quantity::{Quantity, quantities, words_of};
 use super::role::Role;
 use super::surface::MAX_SURFACE_CELLS;
-use super::swept::{Cut, SweepPicture, View, ascending, cells, drawn, label, marks, of_each, swept_axis};
+use super::swept::{SweepPicture, View, ascending, cells, drawn, marks, of_each, swept_axis};
 use crate::numeric::short;
 use crate::scene::{Excitation, Scene, Start};
-use crate::study::{
-    DIRECTION, Direction, Grid, SUMMARY_FIELDS, Table, first_crossing_edge, label_and_unit, line_meets,
-};
+use crate::study::{DIRECTION, Direction, Grid, SUMMARY_FIELDS, Table};
 
 /// The most cells that a picture shows: more than it has pixels to tell apart.
 pub const MAX_PICTURE_CELLS: u64 = 500_000;
@@ -105,9 +103,6 @@ const MOST_LINES: usize = 20;
 
 /// The distance between two lines as a share of the axis upward from which on they are seen apart.
 const VISIBLE: f64 = 2e-3;
-
-/// Width of the cuts over that of the map.
-const CUTS: f64 = 0.8;
 
 /// The picture of a sweep: over one field a line, over two a map, or a line for each value of a field that
 /// has few.
@@ -269,148 +264,6 @@ pub(super) fn each_line<'a>(rows: &'a Table, series: Option<&str>) -> Vec<Series
     each.iter().copied().zip(of_each(name, &each)).enumerate().map(line).collect()
 }
 
-/// The lines over a map, in its fields.
-struct Lines {
-    release: Option<Vec<Point>>,
-    /// The edges of the first crossing cells.
-    crossing: Vec<Vec<Point>>,
-}
-
-impl Lines {
-    fn new(picture: &SweepPicture, (x, y): (&str, &str), cells: &Cells) -> Self {
-        let pairs = |table: &Table| -> Option<Vec<Point>> {
-            Some(table.numbers(x)?.iter().copied().zip(table.numbers(y)?.iter().copied()).collect())
-        };
-        let crossing = picture.overlay.first_crossing.as_ref();
-        let edge = |table| first_crossing_edge(table, (x, y), &cells.across, &cells.up);
-        Self {
-            release: picture.overlay.release.as_ref().and_then(pairs),
-            crossing: crossing.map(edge).unwrap_or_default(),
-        }
-    }
-
-    fn draw(&self, panel: &mut Panel) {
-        for part in &self.crossing {
-            panel.layer(Role::FirstCrossing, "first crossing cell", Marks::Path(part.clone()));
-        }
-        if let Some(points) = &self.release {
-            let name = "release in closed form, |F(limit)|/mass";
-            panel.layer(Role::Release, name, Marks::Path(points.clone()));
-        }
-    }
-
-    fn record(&self, drawn: &mut Drawn) {
-        let release = self.release.iter().flatten().map(|point| ("release", point));
-        let crossing = self.crossing.iter().flatten().map(|point| ("first_crossing", point));
-        for (series, (a, b)) in release.chain(crossing) {
-            drawn.put(series, &[*a, *b], &[]);
-        }
-    }
-}
-
-/// A panel of cells, with a colour bar where they have a scale.
-fn cells_panel(picture: &SweepPicture, (x, y): (&str, &str), cells: Cells, bar: PlotAxis) -> Panel {
-    let SweepPicture { rows, ranges, .. } = *picture;
-    let axis = |ends: (f64, f64), given, name: &str| {
-        PlotAxis::between(ends.0, ends.1, &label(rows, name)).or_given(given)
-    };
-    let mut panel = Panel::new(axis(cells.across.ends(), ranges.x, x), axis(cells.up.ends(), ranges.y, y));
-    panel.bar = Some(bar).filter(|_| !matches!(cells.colours, Colours::Categories(_)));
-    panel.draw(Role::Motion, Marks::Cells(cells));
-    panel
-}
-
-/// The map and its lines.
-fn map_panel(picture: &SweepPicture, (x, y): (&str, &str)) -> (Panel, Lines) {
-    let quantity = Quantity::of(picture.rows, picture.quantity);
-    let cells = cells(picture.rows, (x, y), &quantity, |_| true);
-    let lines = Lines::new(picture, (x, y), &cells);
-    let mut panel = cells_panel(picture, (x, y), cells, quantity.axis(0.0));
-    lines.draw(&mut panel);
-    (panel, lines)
-}
-
-/// The quantity as colour over two fields.
-pub(super) fn map(picture: &SweepPicture, (x, y): (&str, &str)) -> Chart {
-    let (panel, lines) = map_panel(picture, (x, y));
-    let mut drawn = drawn(picture, &[(x, picture.ranges.x), (y, picture.ranges.y)]);
-    lines.record(&mut drawn);
-    Chart::stack(vec![panel], "", drawn.table())
-}
-
-/// The quantity as height and colour over two fields.
-fn surface(picture: &SweepPicture, (x, y): (&str, &str)) -> Chart {
-    let SweepPicture { rows, ranges, .. } = *picture;
-    let quantity = Quantity::of(rows, picture.quantity);
-    let within = |name: &str, range: Option<(f64, f64)>| {
-        let values = rows.numbers(name).unwrap_or_default();
-        move |row: usize| range.is_none_or(|(low, high)| (low..=high).contains(&values[row]))
-    };
-    let (in_x, in_y) = (within(x, ranges.x), within(y, ranges.y));
-    let cells = cells(rows, (x, y), &quantity, |row| in_x(row) && in_y(row));
-    let axis = |values: &[f64], range, name: &str| {
-        PlotAxis::around(values.iter().copied(), 0.0, &label(rows, name)).or_given(range)
-    };
-    let across = axis(&cells.across.values, ranges.x, x);
-    let mut panel = Panel::new(across, axis(&cells.up.values, ranges.y, y));
-    let up = quantity.axis(0.0);
-    panel.draw(Role::Motion, Marks::Surface(cells, up));
-    Chart::stack(vec![panel], "", drawn(picture, &[(x, ranges.x), (y, ranges.y)]).table())
-}
-
-/// The map over the fields `x` and `y`, with the quantity along cuts through it beside it.
-fn map_with_cuts(picture: &SweepPicture, (x, y): (&str, &str), cuts: &[Cut]) -> Chart {
-    let SweepPicture { rows, ranges, .. } = *picture;
-    let (mut panel, lines) = map_panel(picture, (x, y));
-    let mut drawn = drawn(picture, &[(x, ranges.x), (y, ranges.y)]);
-    lines.record(&mut drawn);
-    let quantity = Quantity::of(rows, picture.quantity);
-    let mut panels = Vec::new();
-    for Cut { column, value } in cuts {
-        let is_upright = column == x;
-        let (along, range) = if is_upright { (y, ranges.y) } else { (x, ranges.x) };
-        let ends = match is_upright {
-            true => [(*value, panel.y.low), (*value, panel.y.high)],
-            false => [(panel.x.low, *value), (panel.x.high, *value)],
-        };
-        panel.draw(Role::Cut, Marks::Path(ends.into()));
-        let (at, places) =
-            (rows.numbers(column).unwrap_or_default(), rows.numbers(along).unwrap_or_default());
-        let order = ascending(places, |row| at[row] == *value);
-        let mut below = Panel::new(swept_axis(rows, along, range), quantity.axis(0.06));
-        let (name, unit) = label_and_unit(column);
-        below.heading = format!("at {name} {} {unit}", short(*value)).trim_end().to_owned();
-        let meets = |lines: &[Vec<Point>]| {
-            let mut all: Vec<f64> =
-                lines.iter().flat_map(|line| line_meets(line, *value, is_upright)).collect();
-            all.sort_by(f64::total_cmp);
-            all.dedup();
-            all
-        };
-        let thresholds = [
-            (Role::Release, "cut_release", meets(lines.release.as_slice())),
-            (Role::FirstCrossing, "cut_first_crossing", meets(&lines.crossing)),
-        ];
-        for (role, series, at) in thresholds {
-            for at in &at {
-                let (a, b) = if is_upright { (*value, *at) } else { (*at, *value) };
-                drawn.put(series, &[a, b], &[]);
-            }
-            below.draw(role, Marks::Verticals(at));
-        }
-        if quantity.kinds.is_none() {
-            let points = order.iter().map(|&row| (places[row], quantity.values[row])).collect();
-            below.draw(Role::Joined, Marks::Path(points));
-        }
-        let regimes = marks(&order, places, &quantity.values, rows.words("regime"));
-        below.draw(Role::Motion, Marks::Regimes(regimes, quantity.kinds.is_none()));
-        panels.push(below);
-    }
-    let mut chart = Chart::stack(vec![panel], "", drawn.table());
-    chart.columns.push(Column { width: CUTS, panels });
-    chart
-}
-
 /// The quantity over the field `x` on the way up and on the way down, each value marked with its regime: two
 /// lines, or of kinds two panels.
 fn walked_lines(picture: &SweepPicture, x: &str) -> Chart {
@@ -468,7 +321,7 @@ fn walked_maps(picture: &SweepPicture, (x, y): (&str, &str)) -> Chart {
     };
     let difference = Cells { cells: more, colours, ..up.clone() };
     let last = if has_kinds { "where they differ" } else { "down \u{2212} up" };
-    let bar = quantity.axis(0.0);
+    let bar = quantity.bar();
     let columns = [(up, "up", &bar), (down, "down", &bar), (difference, last, &signed)];
     let columns = columns.into_iter().enumerate().map(|(i, (cells, heading, axis))| {
         let mut panel = cells_panel(picture, (x, y), cells, axis.clone());

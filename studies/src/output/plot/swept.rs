@@ -139,21 +139,23 @@ pub(super) fn cells(
         Edges::new(&values)
     };
     let (across, up) = (of(xs), of(ys));
-    let regimes = rows.words("regime");
+    let (regimes, outcomes) = (rows.words("regime"), rows.words("outcome"));
     let mut cells = vec![Cell::Missing; across.values.len() * up.values.len()];
     for row in (0..rows.rows()).filter(|row| shown(*row)) {
         if let (Some(column), Some(level)) = (across.place(xs[row]), up.place(ys[row])) {
-            cells[column * up.values.len() + level] = match regimes.get(row) {
-                Some(&"rest") if quantity.rests => Cell::Rest,
-                _ if !quantity.values[row].is_finite() => Cell::Missing,
-                _ => Cell::Value(quantity.values[row]),
+            let value = quantity.values[row];
+            cells[column * up.values.len() + level] = match (regimes.get(row), outcomes.get(row)) {
+                (_, Some(&"")) => Cell::Blank,
+                (Some(&"rest"), _) if quantity.rests || value == 0.0 => Cell::Rest,
+                _ if !value.is_finite() => Cell::Missing,
+                _ => Cell::Value(value),
             };
         }
     }
-    let bar = quantity.axis(0.0);
+    let bar = quantity.bar();
     let colours = match &quantity.kinds {
         Some(kinds) => Colours::Categories(kinds.clone()),
-        None => Colours::Scale(bar.low, bar.high),
+        None => Colours::Scale(bar),
     };
     Cells { across, up, cells, colours, missing: quantity.missing(rows) }
 }
@@ -167,28 +169,4 @@ pub(super) fn of_each(name: &str, each: &[f64]) -> Vec<String> {
         format!("{words} {unit}").trim_end().to_owned()
     };
     each.iter().enumerate().map(named).collect()
-}
-
-/// What a legend says of cells without a speed, by the outcomes of all cells.
-pub(super) fn missing_words(outcomes: &[&'static str]) -> &'static str {
-    let is = |word: &&&str| **word == "not_converged";
-    let unsolved = outcomes.iter().filter(is).count();
-    let early = outcomes.iter().filter(|word| !is(word) && **word != "done").count();
-    match (unsolved, early) {
-        (0, _) => "ended early",
-        (_, 0) => "flexures not solved",
-        _ => "ended early or not solved",
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_legend_says_why_a_cell_has_no_speed() {
-        assert_eq!(missing_words(&["done", "left_table"]), "ended early");
-        assert_eq!(missing_words(&["done", "not_converged"]), "flexures not solved");
-        assert_eq!(missing_words(&["step_budget", "not_converged"]), "ended early or not solved");
-    }
 }

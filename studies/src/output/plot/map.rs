@@ -1,0 +1,193 @@
+//! Maps of a sweep over two fields: cells with lines over them, cuts through them, surfaces.
+
+use super::axis::PlotAxis;
+use super::cells::{Cells, Colours};
+use super::chart::{Chart, Column, Marks, Panel};
+use super::drawn::Drawn;
+use super::figure::Point;
+use super::quantity::Quantity;
+use super::role::Role;
+use super::swept::{Cut, SweepPicture, ascending, cells, drawn, label, marks};
+use crate::numeric::short;
+use crate::study::{Table, first_crossing_edge, label_and_unit, line_meets};
+
+/// The most columns or rows of a map whose cells have a dot each.
+const MOST_DOTS: usize = 110;
+
+/// Height of a cut to the right, and width of one upward, over those of the map.
+const CUT: f64 = 0.5;
+
+/// The lines over a map, in its fields.
+struct Lines {
+    release: Option<Vec<Point>>,
+    /// The edges of the first crossing cells.
+    crossing: Vec<Vec<Point>>,
+}
+
+impl Lines {
+    fn new(picture: &SweepPicture, (x, y): (&str, &str), cells: &Cells) -> Self {
+        let pairs = |table: &Table| -> Option<Vec<Point>> {
+            Some(table.numbers(x)?.iter().copied().zip(table.numbers(y)?.iter().copied()).collect())
+        };
+        let crossing = picture.overlay.first_crossing.as_ref();
+        let edge = |table| first_crossing_edge(table, (x, y), &cells.across, &cells.up);
+        Self {
+            release: picture.overlay.release.as_ref().and_then(pairs),
+            crossing: crossing.map(edge).unwrap_or_default(),
+        }
+    }
+
+    fn draw(&self, panel: &mut Panel) {
+        for part in &self.crossing {
+            panel.layer(Role::FirstCrossing, "first crossing cell", Marks::Path(part.clone()));
+        }
+        if let Some(points) = &self.release {
+            let name = "release in closed form: comes off the stop";
+            panel.layer(Role::Release, name, Marks::Path(points.clone()));
+        }
+    }
+
+    fn record(&self, drawn: &mut Drawn) {
+        let release = self.release.iter().flatten().map(|point| ("release", point));
+        let crossing = self.crossing.iter().flatten().map(|point| ("first_crossing", point));
+        for (series, (a, b)) in release.chain(crossing) {
+            drawn.put(series, &[*a, *b], &[]);
+        }
+    }
+}
+
+/// A panel of cells, with a colour bar where they have a scale.
+pub(super) fn cells_panel(
+    picture: &SweepPicture,
+    (x, y): (&str, &str),
+    cells: Cells,
+    bar: PlotAxis,
+) -> Panel {
+    let SweepPicture { rows, ranges, .. } = *picture;
+    let axis = |ends: (f64, f64), given, name: &str| {
+        PlotAxis::between(ends.0, ends.1, &label(rows, name)).or_given(given)
+    };
+    let mut panel = Panel::new(axis(cells.across.ends(), ranges.x, x), axis(cells.up.ends(), ranges.y, y));
+    panel.bar = Some(bar).filter(|_| !matches!(cells.colours, Colours::Categories(_)));
+    panel.draw(Role::Motion, Marks::Cells(cells));
+    panel
+}
+
+/// The map and its lines.
+fn map_panel(picture: &SweepPicture, (x, y): (&str, &str)) -> (Panel, Lines) {
+    let quantity = Quantity::of(picture.rows, picture.quantity);
+    let cells = cells(picture.rows, (x, y), &quantity, |_| true);
+    let lines = Lines::new(picture, (x, y), &cells);
+    let transients = transients(picture.rows, (x, y), &cells);
+    let mut panel = cells_panel(picture, (x, y), cells, quantity.bar());
+    if !transients.is_empty() {
+        panel.layer(Role::Transient, "may be a transient", Marks::Cloud(transients));
+    }
+    lines.draw(&mut panel);
+    (panel, lines)
+}
+
+/// The cells whose motion may be a transient, by the columns `settled` and `steady`; none where the rows lack
+/// those, or where cells are too many for a dot each.
+fn transients(rows: &Table, (x, y): (&str, &str), cells: &Cells) -> Vec<Point> {
+    let names = [x, y].map(|name| rows.numbers(name).unwrap_or_default());
+    let words = ["settled", "steady", "regime"].map(|name| rows.words(name));
+    let lengths = [cells.across.values.len(), cells.up.values.len()];
+    if words.iter().any(|words| words.is_empty()) || lengths.iter().any(|length| *length > MOST_DOTS) {
+        return Vec::new();
+    }
+    let [settled, steady, regime] = words;
+    let is_transient = |row: &usize| {
+        // the regime of a motion with one well has no word
+        let is_irregular = ["irregular", ""].contains(&regime[*row]);
+        settled[*row] == "false" && !(is_irregular && steady[*row] == "true")
+    };
+    (0..rows.rows()).filter(is_transient).map(|row| (names[0][row], names[1][row])).collect()
+}
+
+/// The quantity as colour over two fields.
+pub(super) fn map(picture: &SweepPicture, (x, y): (&str, &str)) -> Chart {
+    let (panel, lines) = map_panel(picture, (x, y));
+    let mut drawn = drawn(picture, &[(x, picture.ranges.x), (y, picture.ranges.y)]);
+    lines.record(&mut drawn);
+    Chart::stack(vec![panel], "", drawn.table())
+}
+
+/// The quantity as height and colour over two fields.
+pub(super) fn surface(picture: &SweepPicture, (x, y): (&str, &str)) -> Chart {
+    let SweepPicture { rows, ranges, .. } = *picture;
+    let quantity = Quantity::of(rows, picture.quantity);
+    let within = |name: &str, range: Option<(f64, f64)>| {
+        let values = rows.numbers(name).unwrap_or_default();
+        move |row: usize| range.is_none_or(|(low, high)| (low..=high).contains(&values[row]))
+    };
+    let (in_x, in_y) = (within(x, ranges.x), within(y, ranges.y));
+    let cells = cells(rows, (x, y), &quantity, |row| in_x(row) && in_y(row));
+    let axis = |values: &[f64], range, name: &str| {
+        PlotAxis::around(values.iter().copied(), 0.0, &label(rows, name)).or_given(range)
+    };
+    let across = axis(&cells.across.values, ranges.x, x);
+    let mut panel = Panel::new(across, axis(&cells.up.values, ranges.y, y));
+    panel.draw(Role::Motion, Marks::Surface(cells, quantity.bar()));
+    Chart::stack(vec![panel], "", drawn(picture, &[(x, ranges.x), (y, ranges.y)]).table())
+}
+
+/// The map over the fields `x` and `y`, with the quantity along cuts through it beside it.
+pub(super) fn map_with_cuts(picture: &SweepPicture, (x, y): (&str, &str), cuts: &[Cut]) -> Chart {
+    let SweepPicture { rows, ranges, .. } = *picture;
+    let (mut panel, lines) = map_panel(picture, (x, y));
+    let mut drawn = drawn(picture, &[(x, ranges.x), (y, ranges.y)]);
+    lines.record(&mut drawn);
+    let quantity = Quantity::of(rows, picture.quantity);
+    let (mut below, mut beside) = (Vec::new(), Vec::new());
+    for Cut { column, value } in cuts {
+        let is_upright = column == x;
+        let along = if is_upright { y } else { x };
+        let ends = match is_upright {
+            true => [(*value, panel.y.low), (*value, panel.y.high)],
+            false => [(panel.x.low, *value), (panel.x.high, *value)],
+        };
+        panel.draw(Role::Cut, Marks::Path(ends.into()));
+        let (at, places) =
+            (rows.numbers(column).unwrap_or_default(), rows.numbers(along).unwrap_or_default());
+        let order = ascending(places, |row| at[row] == *value);
+        // in line with the map
+        let turned = |(a, b): Point| if is_upright { (b, a) } else { (a, b) };
+        let axis = quantity.axis(0.06);
+        let mut cut = match is_upright {
+            true => Panel::new(axis, panel.y.clone()),
+            false => Panel { height: CUT, ..Panel::new(panel.x.clone(), axis) },
+        };
+        let (name, unit) = label_and_unit(column);
+        cut.heading = format!("at {name} {} {unit}", short(*value)).trim_end().to_owned();
+        let meets = |lines: &[Vec<Point>]| {
+            let mut all: Vec<f64> =
+                lines.iter().flat_map(|line| line_meets(line, *value, is_upright)).collect();
+            all.sort_by(f64::total_cmp);
+            all.dedup();
+            all
+        };
+        let thresholds = [
+            (Role::Release, "cut_release", meets(lines.release.as_slice())),
+            (Role::FirstCrossing, "cut_first_crossing", meets(&lines.crossing)),
+        ];
+        for (role, series, at) in thresholds {
+            for at in &at {
+                let (a, b) = if is_upright { (*value, *at) } else { (*at, *value) };
+                drawn.put(series, &[a, b], &[]);
+            }
+            cut.draw(role, if is_upright { Marks::Horizontals(at) } else { Marks::Verticals(at) });
+        }
+        if quantity.kinds.is_none() {
+            let points = order.iter().map(|&row| turned((places[row], quantity.values[row]))).collect();
+            cut.draw(Role::Joined, Marks::Path(points));
+        }
+        let regimes = marks(&order, places, &quantity.values, rows.words("regime"));
+        let regimes = regimes.into_iter().map(|(point, word)| (turned(point), word)).collect();
+        cut.draw(Role::Motion, Marks::Regimes(regimes, quantity.kinds.is_none()));
+        if is_upright { beside.push(cut) } else { below.push(cut) }
+    }
+    let mut chart = Chart::stack([vec![panel], below].concat(), "", drawn.table());
+    chart.columns.extend(beside.into_iter().map(|cut| Column { width: CUT, panels: vec![cut] }));
+    chart
+}
