@@ -5,16 +5,10 @@ use interwell::dynamics::Regime;
 use interwell::numeric::short;
 use interwell::output::{ComparisonPicture, comparison_chart};
 use interwell::scene::{Document, Excitation, RunSettings, Stops, Transducer};
-use interwell::study::{Alternative, Rated, Task, alternatives, comparison_parts, comparison_table};
+use interwell::study::{Alternative, Rated, alternatives, comparison_parts, comparison_table};
 
-use super::failure::Failure;
-use super::interrupt;
-use super::options::{Common, PlotOptions};
-use super::outputs::{Output, Outputs};
-use super::picture::{Picture, caption};
-use super::progress::bar;
-use super::say;
 use super::support::{inputs, load, mechanism, model_from_rest, pool, read, until_settled, warn};
+use super::{Common, Failure, Output, Outputs, Picture, PlotOptions, caption, refuse, with_bar};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -51,11 +45,11 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let environment = options.environment.as_deref().or(options.scenes.first().map(String::as_str));
     let environment = read(environment.unwrap_or("paper"), common)?;
     let Excitation::Sine { frequency_hz, amplitude_g, .. } = environment.scene.excitation else {
-        return Err(Failure::argument(format!(
+        refuse!(
             "{}: its excitation is no Sine; amplitude and frequency of one are searched: name a scene \
              with a Sine first, or by --environment",
             environment.name
-        )));
+        );
     };
     let (mut all, mut files, mut replaced, mut until) = (Vec::new(), Vec::new(), Vec::new(), None);
     for spec in &options.scenes {
@@ -80,32 +74,25 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         let Document { scene, files, .. } = document;
         all.push(Alternative { name: plain(spec), scene, files, mechanism });
     }
-    if !common.quiet {
-        if let [only] = &options.scenes[..] {
-            say(&format!("{only}: the only scene; name others to set beside it"));
-        }
-        grouped(replaced).iter().for_each(|line| say(line));
+    if let [only] = &options.scenes[..] {
+        common.say(&format!("{only}: the only scene; name others to set beside it"));
     }
+    grouped(replaced).iter().for_each(|line| common.say(line));
     let pool = pool(common)?;
     let mut outputs = Outputs::new(&files).with(Output::DATA, Some(common.out()))?.with_picture(picture)?;
-    let bar = bar(comparison_parts(&all), "parts", common.quiet, common.out());
-    let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
-    let rated = alternatives(&all, until, &pool, &task);
-    drop(bar);
-    let rated = rated.ok_or_else(Failure::interrupted)?;
+    let rated = with_bar(comparison_parts(&all), "parts", common, |task| {
+        alternatives(&all, until, &pool, task).ok_or_else(Failure::interrupted)
+    })?;
     outputs.table(Output::DATA, &comparison_table(&rated))?;
-    if !common.quiet {
-        let remarks = all.iter().zip(&rated).flat_map(|(scene, rated)| {
-            let remarks = remarks(scene, rated, amplitude_g).into_iter();
-            remarks.map(|words| (rated.name.clone(), words))
-        });
-        grouped(remarks.collect()).iter().for_each(|line| say(line));
-    }
+    let remarks = all.iter().zip(&rated).flat_map(|(scene, rated)| {
+        let remarks = remarks(scene, rated, amplitude_g).into_iter();
+        remarks.map(|words| (rated.name.clone(), words))
+    });
+    grouped(remarks.collect()).iter().for_each(|line| common.say(line));
     if let Some(picture) = picture {
         let mut caption = caption(&environment);
-        let count = rated.len();
-        let (shaking, at) = (short(amplitude_g), short(frequency_hz));
-        caption.title = format!("{count} scenes under a sine of {shaking} g at {at} Hz");
+        let (count, amplitude, frequency) = (rated.len(), short(amplitude_g), short(frequency_hz));
+        caption.title = format!("{count} scenes under a sine of {amplitude} g at {frequency} Hz");
         let shown = ComparisonPicture { rated: &rated, frequency_hz };
         picture.write(&mut outputs, &comparison_chart(&shown), &caption)?;
     }

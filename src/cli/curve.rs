@@ -1,7 +1,6 @@
 //! `curve`: force, potential and stiffness of the mechanism, and the state and shape of its flexures.
 
 use std::path::PathBuf;
-
 use std::sync::Arc;
 
 use clap::Args;
@@ -11,17 +10,13 @@ use interwell::mechanics::flexure::State;
 use interwell::output::{contact_chart, curve_chart, landscape, measured_force_chart};
 use interwell::scene::Document;
 use interwell::study::{
-    CURVE_PICTURE_POINTS, CURVE_POINTS, StatesError, Table, Task, contact, curve, default_positions,
+    CURVE_PICTURE_POINTS, CURVE_POINTS, StatesError, Table, contact, curve, default_positions,
     even_positions, flexures_at, full_curve, metres, shapes, states, stop_positions, stress_warning,
 };
 
-use super::failure::Failure;
-use super::measured_force::MeasuredForceOptions;
-use super::options::{ChartOptions, Common, whole};
-use super::outputs::{Output, Outputs};
-use super::picture::{Picture, caption};
+use super::measured::MeasuredForceOptions;
 use super::support::{inputs, load_with_mechanism, number, numbers, range};
-use super::{interrupt, say};
+use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, caption, interrupt, refuse, whole};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -92,7 +87,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     // with two pictures, --plot-data holds the numbers of --plot
     let contact_picture = contact_picture
         .map(|contact| if picture.is_none() { contact.with_data(&options.chart.plot) } else { contact });
-    let rigid = restitution(&options.rigid)?;
+    let remedy = "give a coefficient of restitution, 0 to 1, such as 0.36";
+    let rigid = number("--rigid", &options.rigid, |value: &f64| (0.0..=1.0).contains(value), remedy)?;
     let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
     let range = |text| range("--range-mm", text, "A:B in mm with A below B, such as -8:8");
     let range = options.range_mm.as_deref().map(range).transpose()?;
@@ -128,15 +124,15 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         .with_picture(picture)?
         .with_picture(contact_picture)?
         .with(Output::COMPARISON, options.measured.comparison.as_deref())?;
-    let measured = options.measured.compare(&mechanism, common.quiet)?;
+    let measured = options.measured.compare(&mechanism, common)?;
     if let Some(found) = &measured {
         outputs.table(Output::COMPARISON, &found.table)?;
     }
     let table = if options.full {
         let rows = solved(&mechanism, &positions(CURVE_POINTS), &document.name, "--full")?;
         let warning = mechanism.flexures.as_ref().and_then(|flexures| stress_warning(flexures, &rows));
-        if let Some(warning) = warning.filter(|_| !common.quiet) {
-            say(&format!("warning: {}: {warning}", document.name));
+        if let Some(warning) = warning {
+            common.say(&format!("warning: {}: {warning}", document.name));
         }
         full_curve(&mechanism, &rows)?
     } else {
@@ -185,18 +181,12 @@ fn contact_table(
         Model::build(&document.scene, Arc::clone(mechanism)).map_err(|faults| document.error_from(faults))?;
     match contact(&model, rigid) {
         Some(table) => Ok((table, model)),
-        None => Err(Failure::argument(format!(
+        None => refuse!(
             "{option}: the stops of {} are not compliant; give it some, such as --set \
              'stops=Hertz(travel_limit_mm: 1.5, radius_mm: 5, young_gpa: 69, loss_s_per_m: 10.4)'",
             document.name
-        ))),
+        ),
     }
-}
-
-/// The restitution of a rigid stop as given to `--rigid`.
-fn restitution(text: &str) -> Result<f64, Failure> {
-    let fits = |value: &f64| (0.0..=1.0).contains(value);
-    number("--rigid", text, fits, "give a coefficient of restitution, 0 to 1, such as 0.36")
 }
 
 /// Solves the flexures at these positions in m; stops at Ctrl-C. An error names `scene` and `option`.
@@ -206,8 +196,7 @@ fn solved(
     scene: &str,
     option: &str,
 ) -> Result<Vec<State>, Failure> {
-    let task = Task { tick: &|| (), cancel: interrupt::listen() };
-    states(mechanism, positions, &task).map_err(|error| unknown(scene, option, error))
+    states(mechanism, positions, &interrupt::silent_task()).map_err(|error| unknown(scene, option, error))
 }
 
 /// The error for flexures whose state is not known.
@@ -215,7 +204,7 @@ fn unknown(scene: &str, option: &str, error: StatesError) -> Failure {
     match error {
         StatesError::NoFlexures => Failure::argument(format!("{option}: {scene}: {error}")),
         StatesError::Outside(error) => error.into(),
-        StatesError::Unsolved(_) => Failure::Failed(anyhow::anyhow!("{scene}: {error}")),
+        StatesError::Unsolved(_) => Failure::failed(format!("{scene}: {error}")),
         StatesError::Cancelled => Failure::interrupted(),
     }
 }

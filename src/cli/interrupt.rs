@@ -2,6 +2,8 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use interwell::study::Task;
+
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 /// Makes Ctrl-C (or a request to terminate) set the returned flag, which runs and writers check. A second
@@ -14,6 +16,11 @@ pub fn listen() -> &'static AtomicBool {
         }
     });
     &INTERRUPTED
+}
+
+/// A task without progress that Ctrl-C ends.
+pub fn silent_task() -> Task<'static> {
+    Task { tick: &|| (), cancel: listen() }
 }
 
 /// Whether Ctrl-C was pressed.

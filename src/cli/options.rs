@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args, CommandFactory, Parser, Subcommand};
 
-use super::Failure;
+use super::{Failure, say};
 
 const USAGE: &str = "interwell [SCENE]
        interwell --headless COMMAND [SCENE] [OPTIONS]";
@@ -97,8 +97,9 @@ macro_rules! commands {
 
             /// The common options that it refuses.
             pub fn refused(&self) -> &'static [&'static str] {
-                let place = COMMANDS.iter().position(|word| *word == self.name());
-                place.map_or(&[], |place| UNUSED[place].0)
+                match self {
+                    $(Self::$variant { .. } => &[$($($refused),+)?],)*
+                }
             }
 
             /// Its common options.
@@ -212,6 +213,13 @@ impl Common {
     /// Where the data goes.
     pub fn out(&self) -> &Path {
         self.out.as_deref().unwrap_or(Path::new("-"))
+    }
+
+    /// Prints a line on standard error, unless `--quiet` is given.
+    pub fn say(&self, line: &str) {
+        if !self.quiet {
+            say(line);
+        }
     }
 
     /// Adds the options given `before` the command to those given after it. The error is the name of an

@@ -12,10 +12,7 @@ use interwell::study::{CellFaults, ELECTRICAL_STATE};
 use interwell::system::clock::{ProcessClock, WallClock};
 use interwell::system::threads::{Pool, processors};
 
-use super::failure::Failure;
-use super::options::Common;
-use super::outputs::{Output, Outputs};
-use super::say;
+use super::{Common, Failure, Output, Outputs};
 
 /// Wall-clock and CPU time since a command began its work.
 #[derive(Debug, Clone, Copy)]
@@ -147,7 +144,7 @@ pub fn drive_alone(document: &Document, scene: Scene) -> Result<Model, Failure> 
 pub fn unbuilt(document: &Document, error: BuildError) -> Failure {
     match error {
         BuildError::Wrong(fault) => document.error_from(vec![fault]).into(),
-        BuildError::Unsolved(error) => Failure::Failed(anyhow::anyhow!("{}: {error}", document.name)),
+        BuildError::Unsolved(error) => Failure::failed(format!("{}: {error}", document.name)),
     }
 }
 
@@ -168,12 +165,9 @@ pub fn load_model(spec: &str, common: &Common) -> Result<(Document, Model), Fail
 
 /// Prints the warnings of a scene and of its mechanism, unless `--quiet` is given.
 pub fn warn(document: &Document, common: &Common, warnings: &[String], mechanism: Option<&Mechanism>) {
-    if common.quiet {
-        return;
-    }
-    warnings.iter().for_each(|warning| say(&format!("warning: {warning}")));
+    warnings.iter().for_each(|warning| common.say(&format!("warning: {warning}")));
     let of_tables = mechanism.into_iter().flat_map(Mechanism::warnings);
-    of_tables.for_each(|warning| say(&format!("warning: {}: {warning}", document.name)));
+    of_tables.for_each(|warning| common.say(&format!("warning: {}: {warning}", document.name)));
 }
 
 /// The numbers of `A,B,C` as given to `option`. NaN and infinities are accepted; the caller must check them.

@@ -3,15 +3,10 @@
 use clap::Args;
 use interwell::output::{ThresholdPicture, can_show_thresholds, threshold_chart};
 use interwell::scene::{Axis, Document, is_whole};
-use interwell::study::{CellFaults, Grid, NoThresholds, Onset, Scan, Table, Task, threshold_table};
+use interwell::study::{CellFaults, Grid, NoThresholds, Onset, Scan, Table, threshold_table};
 
-use super::failure::Failure;
-use super::options::{ChartOptions, Common};
-use super::outputs::Output;
-use super::picture::{Picture, caption};
-use super::progress::bar;
 use super::support::{drive_alone, load, located, mechanism, number, outputs, pool, until_settled, warn};
-use super::{interrupt, say};
+use super::{ChartOptions, Common, Failure, Output, Picture, caption, refuse, with_bar};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -84,11 +79,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         None => Grid::of_one(),
         Some(over) => Grid::new(document.axes(over)?)?,
     };
-    if let Some(axis) = grid.axes().iter().find(|axis| axis.field == scan.field) {
-        let field = &axis.field;
-        return Err(Failure::argument(format!(
-            "--over {field}: the threshold is over it; sweep another field"
-        )));
+    if grid.axes().iter().any(|axis| axis.field == scan.field) {
+        refuse!("--over {}: the threshold is over it; sweep another field", scan.field);
     }
     let onset = Onset::ALL.into_iter().find(|onset| onset.name() == options.of).unwrap_or(Onset::Crossing);
     if picture.is_some() {
@@ -103,21 +95,20 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     }
     let pool = pool(common)?;
     let mut outputs = outputs(&options.scene, &document, common)?.with_picture(picture)?;
-    let bar = bar(grid.cells() * scan.values.len() as u64, "values", common.quiet, common.out());
-    let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
-    let found = threshold_table(&document.scene, &document.files, &grid, &scan, onset, &pool, &task);
-    drop(bar);
+    let Document { scene, files, name, .. } = &document;
+    let values = grid.cells() * scan.values.len() as u64;
+    let found = with_bar(values, "values", common, |task| {
+        threshold_table(scene, files, &grid, &scan, onset, &pool, task)
+    });
     let table = found.map_err(|end| match end {
         NoThresholds::Cancelled => Failure::interrupted(),
         NoThresholds::Wrong(cells) => wrong(&document, cells),
     })?;
     outputs.table(Output::DATA, &table)?;
-    if !common.quiet {
-        let remarks = [missing(&table, &scan, onset, &grid), undecided(&table)];
-        remarks.iter().flatten().for_each(|words| say(&format!("{}: {words}", document.name)));
-    }
+    let remarks = [missing(&table, &scan, onset, &grid), undecided(&table)];
+    remarks.iter().flatten().for_each(|words| common.say(&format!("{name}: {words}")));
     if let Some(picture) = picture {
-        let (rows, grid, scene, field) = (&table, &grid, &document.scene, &*scan.field);
+        let (rows, grid, field) = (&table, &grid, &*scan.field);
         let shown = ThresholdPicture { rows, grid, scene, field, onset, ranges: picture.ranges };
         picture.write(&mut outputs, &threshold_chart(&shown)?, &caption(&document))?;
     }

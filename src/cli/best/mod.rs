@@ -12,12 +12,8 @@ mod words;
 
 use words::{names, place, quantity, words};
 
-use super::failure::Failure;
-use super::options::Common;
-use super::outputs::Output;
-use super::progress::bar;
 use super::support::{drive_alone, load, outputs, pool, until_settled, warn};
-use super::{interrupt, say};
+use super::{Common, Failure, Output, bar, interrupt, refuse, say};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -93,7 +89,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     warn(&document, common, &warnings, None);
     let pool = pool(common)?;
     let mut outputs = outputs(&options.scene, &document, common)?;
-    let bar = bar(scan_runs(&question), "runs", common.quiet, common.out());
+    let bar = bar(scan_runs(&question), 0, "runs", common);
     // the number of runs after the scan is not known in advance
     let tick = || bar.inc_beyond();
     let task = Task { tick: &tick, cancel: interrupt::listen() };
@@ -108,9 +104,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     }
     let design = found.map_err(|why| failure(why, options, &question, &document))?;
     outputs.table(Output::DATA, &design.table(&question))?;
-    if !common.quiet {
-        words(&design, &question).iter().for_each(|line| say(&format!("{}: {line}", document.name)));
-    }
+    words(&design, &question).iter().for_each(|line| common.say(&format!("{}: {line}", document.name)));
     outputs.finish()
 }
 
@@ -121,10 +115,10 @@ fn has_fields(question: &BestQuestion) -> Result<(), Failure> {
     for (option, field) in over.chain(vary) {
         let missing = |environment: &&Environment| FieldPath::new(field).get(&environment.scene).is_none();
         if let Some(environment) = question.environments.iter().find(missing) {
-            return Err(Failure::argument(format!(
+            refuse!(
                 "{option} {field}: the environment {} has no such number; change a field that all have",
                 environment.name
-            )));
+            );
         }
     }
     Ok(())
@@ -171,9 +165,7 @@ fn failure(why: NoBest, options: &Arguments, question: &BestQuestion, document: 
 fn ranges(over: &[String], document: &Document) -> Result<Vec<DesignRange>, Failure> {
     let mut ranges: Vec<DesignRange> = Vec::new();
     if over.is_empty() {
-        return Err(Failure::argument(
-            "--over is missing: name a field of the design, such as --over stops.travel_limit_mm=0.5:7",
-        ));
+        refuse!("--over is missing: name a field of the design, such as --over stops.travel_limit_mm=0.5:7");
     }
     for text in over {
         let wrong = |problem: String| Failure::argument(format!("--over {text}: {problem}"));
@@ -214,10 +206,7 @@ fn ranges(over: &[String], document: &Document) -> Result<Vec<DesignRange>, Fail
         ranges.push(DesignRange::new(axis.field, (low, high), intervals));
     }
     if ranges.len() > MOST_FIELDS {
-        return Err(Failure::argument(format!(
-            "--over: {} fields; at most {MOST_FIELDS} are searched together",
-            ranges.len()
-        )));
+        refuse!("--over: {} fields; at most {MOST_FIELDS} are searched together", ranges.len());
     }
     Ok(ranges)
 }
@@ -342,10 +331,8 @@ fn environments(given: &[String], document: &Document) -> Result<Vec<Environment
             all.push(of(name.to_owned(), weight, &changed));
         }
     }
-    match all.len() {
-        0..=MAX_ENVIRONMENTS => Ok(all),
-        n => {
-            Err(Failure::argument(format!("--environment: {n} of them; at most {MAX_ENVIRONMENTS} are run")))
-        }
+    if all.len() > MAX_ENVIRONMENTS {
+        refuse!("--environment: {} of them; at most {MAX_ENVIRONMENTS} are run", all.len());
     }
+    Ok(all)
 }

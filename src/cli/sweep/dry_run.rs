@@ -8,7 +8,7 @@ use interwell::study::{Shard, Sweep, Task};
 use interwell::system::clock::WallClock;
 use interwell::system::threads::{Pool, within};
 
-use super::super::failure::Failure;
+use super::super::Failure;
 use super::super::progress::duration;
 use super::super::shard::{command, value};
 use super::super::support::located;

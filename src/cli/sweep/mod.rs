@@ -9,13 +9,9 @@ use interwell::scene::Document;
 use interwell::study::{SweepOptions, Table, Tally};
 use serde_json::Value;
 
-use super::failure::Failure;
 use super::grid_job::GridJob;
-use super::options::Common;
-use super::outputs::{Output, Outputs};
-use super::picture::Picture;
-use super::say;
 use super::support::{file_name, inputs, manifest_path, pool};
+use super::{Common, Failure, Output, Outputs, Picture, refuse};
 pub use prepared::Arguments;
 use prepared::Prepared;
 use rows::{Compared, RowFile, Rows};
@@ -32,10 +28,10 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let in_blocks = manifest_out.is_some();
     let outputs = Outputs::new(&inputs(&options.scene, document))
         .with(Output::DATA, Some(&**out).filter(|_| !options.check))?;
-    let mut job = GridJob::open(document, common, outputs, out, *picture, manifest_out, pool)?;
+    let mut job = GridJob::open(document, common, outputs, *picture, manifest_out, pool)?;
     let plan = prepared.plan();
     let opened = prepared.open_rows(&mut job.outputs, in_blocks, &plan)?;
-    let Some((mut rows_out, mut all)) = opened else { return prepared.has_all_rows(common.quiet) };
+    let Some((mut rows_out, mut all)) = opened else { return prepared.has_all_rows(common) };
     let from = all.cells;
     if let (Rows::Blocks(blocks), Some(_), 1..) = (&rows_out, picture, from) {
         job.shown = blocks.table(&sweep.empty_table())?;
@@ -50,9 +46,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     all.add(&tally);
     if let Rows::Compared(file) = &mut rows_out {
         file.end()?;
-        if !common.quiet {
-            say(&format!("{}: all {} rows are the same", prepared.data.display(), all.cells));
-        }
+        common.say(&format!("{}: all {} rows are the same", prepared.data.display(), all.cells));
     }
     let chart = |rows: &Table, picture: &Picture| prepared.chart(rows, picture);
     let wall_s = job.finish(chart, |origin| {
@@ -62,11 +56,14 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     })?;
     // The rows get their name last: until then --resume can continue them.
     rows_out.finish()?;
-    report(common.quiet, document, &tally, slice.rows() - from, wall_s);
+    // With fewer cells the reader of a pipe has gone, which is not worth a message.
+    if tally.cells == slice.rows() - from {
+        report(common, document, &tally, wall_s);
+    }
     let early = all.ended_early + all.not_converged;
     if options.strict && early > 0 {
         let cells = format!("{early} of {} cells did not come to their end", all.cells);
-        return Err(Failure::Failed(anyhow::anyhow!("{}: {cells} (see the column outcome)", document.name)));
+        return Err(Failure::failed(format!("{}: {cells} (see the column outcome)", document.name)));
     }
     Ok(())
 }
@@ -96,16 +93,14 @@ impl Prepared<'_> {
     }
 
     /// Says that nothing is left to do; an error if a picture was requested.
-    fn has_all_rows(&self, quiet: bool) -> Result<(), Failure> {
+    fn has_all_rows(&self, common: &Common) -> Result<(), Failure> {
         let (out, rows) = (self.out.display(), self.slice.rows());
         if self.picture.is_some() {
-            return Err(Failure::argument(format!(
+            refuse!(
                 "--resume: {out} has all its rows already: leave --resume out to compute them for a picture"
-            )));
+            );
         }
-        if !quiet {
-            say(&format!("{out} has all {rows} rows already"));
-        }
+        common.say(&format!("{out} has all {rows} rows already"));
         Ok(())
     }
 
@@ -123,12 +118,8 @@ impl Prepared<'_> {
     }
 }
 
-/// Prints a summary of the `rows` that were computed now.
-fn report(quiet: bool, document: &Document, tally: &Tally, rows: u64, wall_s: f64) {
-    // With fewer cells the reader of a pipe has gone, which is not worth a message.
-    if quiet || tally.cells != rows {
-        return;
-    }
+/// Prints a summary of the rows that were computed now.
+fn report(common: &Common, document: &Document, tally: &Tally, wall_s: f64) {
     let cells = if tally.cells == 1 { "1 cell".to_owned() } else { format!("{} cells", tally.cells) };
     let early = match (tally.ended_early, tally.not_converged) {
         (0, 0) => String::new(),
@@ -138,9 +129,9 @@ fn report(quiet: bool, document: &Document, tally: &Tally, rows: u64, wall_s: f6
             format!(", {n} ended early and {m} without a solution of the flexures (see the column outcome)")
         }
     };
-    say(&format!("{cells} in {wall_s:.2} s{early}"));
+    common.say(&format!("{cells} in {wall_s:.2} s{early}"));
     if tally.yielding > 0 {
-        say(&format!(
+        common.say(&format!(
             "warning: {}: in {} of them the contact with a stop yields, which the model does not follow",
             document.name, tally.yielding
         ));

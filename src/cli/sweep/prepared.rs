@@ -8,17 +8,13 @@ use interwell::mechanics::{BuildError, Mechanism};
 use interwell::output::{Cut, View, can_show, plan};
 use interwell::scene::{Document, is_manifest};
 use interwell::study::{
-    Carry, DIRECTION, Grid, STANDARD_COLUMNS, SUMMARY_FIELDS, Shard, Slice, SummaryField, Sweep,
-    SweepOptions, Task,
+    Carry, DIRECTION, Grid, STANDARD_COLUMNS, SUMMARY_FIELDS, Shard, Slice, SummaryField, Sweep, SweepOptions,
 };
 use serde_json::{Value, json};
 
-use super::super::failure::Failure;
-use super::super::interrupt;
-use super::super::options::{ChartOptions, Common};
-use super::super::picture::Picture;
 use super::super::shard::{placed, shard};
 use super::super::support::{load, refuse_electrical_state, unbuilt, until_settled, warn};
+use super::super::{ChartOptions, Common, Failure, Picture, interrupt, refuse};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -110,10 +106,10 @@ impl<'a> Prepared<'a> {
     /// is given as the scene.
     pub fn new(options: &'a Arguments, common: &Common) -> Result<Self, Failure> {
         if options.check && !is_manifest(options.scene.as_ref()) {
-            return Err(Failure::argument(format!(
+            refuse!(
                 "--check {}: give the manifest of a sweep, such as map.csv.json, as the scene",
                 options.scene
-            )));
+            );
         }
         let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
         let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
@@ -133,7 +129,7 @@ impl<'a> Prepared<'a> {
         let chosen = if options.columns.is_empty() { &swept.columns } else { &options.columns };
         let columns = columns(chosen, sweep.grid(), carry)?;
         // a fault of the first cell is reported when the cells are checked, with its place
-        let first = sweep.first_model(&Task { tick: &|| (), cancel: interrupt::listen() });
+        let first = sweep.first_model(&interrupt::silent_task());
         let until = options.until_settled.clone().or(swept.until_settled.map(|limit| limit.to_string()));
         let until = first.map(|model| until_settled(until.as_deref(), &document, &model)).transpose()?;
         // the quantity of the picture is computed even if its column is not written
@@ -175,13 +171,10 @@ fn columns(chosen: &[String], grid: &Grid, carry: Option<Carry>) -> Result<Vec<S
             for name in list.iter().map(|name| name.trim()) {
                 let Some(field) = SummaryField::find(name) else {
                     let known: Vec<&str> = SUMMARY_FIELDS.iter().map(|field| field.name).collect();
-                    return Err(Failure::argument(format!(
-                        "--columns {name}: no such column; there are all, {}",
-                        known.join(", ")
-                    )));
+                    refuse!("--columns {name}: no such column; there are all, {}", known.join(", "));
                 };
                 if names.iter().any(|known| known == field.name) {
-                    return Err(Failure::argument(format!("--columns {name}: named twice; name it once")));
+                    refuse!("--columns {name}: named twice; name it once");
                 }
                 names.push(field.name.to_owned());
             }
@@ -205,11 +198,8 @@ fn view(options: &Arguments, grid: &Grid) -> Result<View, Failure> {
         let form = || wrong(format!("write FIELD=VALUE with a field of the sweep: {}", known()));
         let (field, value) = text.split_once('=').ok_or_else(form)?;
         let field = field.trim();
-        let place = grid
-            .axes()
-            .iter()
-            .zip(grid.columns())
-            .position(|(axis, column)| axis.field == field || column == field);
+        let mut fields = grid.axes().iter().zip(grid.columns());
+        let place = fields.position(|(axis, column)| axis.field == field || column == field);
         let place = place.ok_or_else(|| wrong(format!("no field of the sweep; these are: {}", known())))?;
         let value: f64 = value.trim().parse().map_err(|_| form())?;
         let column = grid.columns()[place].clone();

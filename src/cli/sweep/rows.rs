@@ -10,9 +10,8 @@ use interwell::system::clock::WallClock;
 use interwell::system::{Opened, Part, PartError, files};
 use serde_json::{Value, json};
 
-use super::super::failure::Failure;
-use super::super::outputs::{Output, Outputs};
 use super::super::support::manifest_path;
+use super::super::{Failure, Output, Outputs, refuse};
 use super::prepared::Prepared;
 
 /// Rows after which a block ends; a walk that is longer stays in one block.
@@ -62,7 +61,7 @@ impl Rows {
         let Self::Blocks(blocks) = self else { return Ok(()) };
         let part = blocks.part;
         let name = part.path().display().to_string();
-        part.finish().map_err(|error| Failure::writing(&name, error))
+        part.finish().map_err(|error| Failure::writing(name, error))
     }
 }
 
@@ -107,7 +106,7 @@ impl RowFile<'_> {
             && let Some(existing) = self.existing_head().filter(|existing| *existing != head)
         {
             opened.leave();
-            return Err(Failure::argument(is_of_another(out.display().to_string(), &existing, "made")));
+            refuse!("{}", is_of_another(out.display().to_string(), &existing, "made"));
         }
         if !opened.has_rows() || (force && !resume) {
             let part = opened.begin(&head.to_string(), self.header).map_err(refused)?;
@@ -205,7 +204,7 @@ fn refused(error: PartError) -> Failure {
              starts anew"
         ),
     };
-    Failure::Failed(anyhow::anyhow!("{error}; nothing was changed: {remedy}"))
+    Failure::failed(format!("{error}; nothing was changed: {remedy}"))
 }
 
 impl Blocks {
@@ -227,7 +226,7 @@ impl Blocks {
 
     /// The failure for rows that cannot be written.
     fn failed(&self, error: &std::io::Error) -> Failure {
-        Failure::Failed(anyhow::anyhow!(
+        Failure::failed(format!(
             "cannot write {}: {error}; {} of {} rows are kept there: once there is room, the same command \
              with --resume goes on",
             self.part.path().display(),
@@ -247,7 +246,7 @@ impl Blocks {
         let failure = match closed {
             Err(error) => self.failed(&error),
             Ok(_) if kept == 0 => Failure::interrupted(),
-            Ok(_) => Failure::Failed(anyhow::anyhow!(
+            Ok(_) => Failure::failed(format!(
                 "interrupted: {part} has {kept} of {} rows; the same command with --resume goes on",
                 self.rows
             )),
@@ -266,9 +265,9 @@ impl Blocks {
         let path = self.part.path();
         let text =
             files::bytes(path).and_then(|bytes| String::from_utf8(bytes).map_err(std::io::Error::other));
-        let failed = |error| Failure::Failed(anyhow::anyhow!("cannot read {}: {error}", path.display()));
+        let failed = |error| Failure::failed(format!("cannot read {}: {error}", path.display()));
         csv_table(&text.map_err(failed)?, empty)
-            .map_err(|problem| Failure::Failed(anyhow::anyhow!("the rows that are there: {problem}")))
+            .map_err(|problem| Failure::failed(format!("the rows that are there: {problem}")))
     }
 }
 
@@ -293,7 +292,7 @@ impl Compared {
     pub fn put(&mut self, text: &str) -> Result<(), Failure> {
         let mut expected = Vec::new();
         let read = (&mut self.file).take(text.len() as u64).read_to_end(&mut expected);
-        read.map_err(|error| Failure::Failed(anyhow::anyhow!("cannot read {}: {error}", self.name)))?;
+        read.map_err(|error| Failure::failed(format!("cannot read {}: {error}", self.name)))?;
         if expected == text.as_bytes() {
             self.line += text.matches('\n').count() as u64;
             return Ok(());
@@ -307,7 +306,7 @@ impl Compared {
     }
 
     fn differs(&self, how: String) -> Failure {
-        Failure::Failed(anyhow::anyhow!("{} differs: {how}", self.name))
+        Failure::failed(format!("{} differs: {how}", self.name))
     }
 
     /// Checks that the file ends here.
