@@ -10,7 +10,7 @@ use interwell::study::{Answer, Basins, EvenRange, NoBasins, Starts, StartsError}
 use interwell::system::threads::Pool;
 
 use super::progress::duration;
-use super::support::{Watch, file_name, load_held, mechanism, number, numbers, outputs, pool, warn};
+use super::support::{Watch, counted, file_name, load_held, mechanism, number, numbers, outputs, pool, warn};
 use super::{
     Common, Failure, Output, Outputs, Picture, PlotOptions, caption, interrupt, refuse, say, with_bar,
 };
@@ -108,7 +108,7 @@ fn answer(basins: &mut Basins, pool: &Pool, common: &Common) -> Option<Answer> {
     whole.then_some(answer)
 }
 
-/// Steps of one start above which a forecast is printed; about half a second of a core.
+/// A forecast is printed if one start may take more steps than this, about half a second of a core.
 const MANY_STEPS: f64 = 1e6;
 
 /// The possible cost of a start in words, or `None` if it is small.
@@ -148,12 +148,8 @@ fn write_rows(outputs: &mut Outputs, basins: &Basins, answer: &Answer, pool: &Po
 
 /// Sums up the answer in one line.
 fn outcome(answer: &Answer, count: u64, seconds: f64) -> String {
-    let number = |count: u64, one: &str| match count {
-        1 => format!("1 {one}"),
-        n => format!("{n} {one}s"),
-    };
-    let mut text = number(count, "start");
-    text += &format!(" in {seconds:.2} s, {}", number(answer.attractors.len() as u64, "attractor"));
+    let attractors = counted(answer.attractors.len() as u64, "attractor");
+    let mut text = format!("{} in {seconds:.2} s, {attractors}", counted(count, "start"));
     let undecided = format!("not settled after {} periods", Basins::PATIENCE);
     for (count, what) in [
         (answer.unsure(), "not sure"),

@@ -64,7 +64,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         replaced.extend(how.map(|how| (plain(spec), format!("{how} {}", environment.name))));
         document.scene.excitation = environment.scene.excitation.clone();
         document.scene.run = environment.scene.run;
-        document.scene.sweep.clear(); // its fields may not be those of another excitation
+        document.scene.sweep.clear(); // the other excitation may not have its fields
         document.check()?;
         let mechanism = mechanism(&document)?;
         let model = model_from_rest(&document, &mechanism)?;

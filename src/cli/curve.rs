@@ -108,10 +108,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             flexures_at(&mechanism, &[]).map_err(|error| unknown(&document.name, option, error))?;
         }
     }
-    let contact_output = match options.contact {
-        Some(_) => Some(Output::CONTACT),
-        None => contact_picture.map(|picture| picture.output),
-    };
+    let contact_output = options.contact.as_ref().map(|_| Output::CONTACT);
+    let contact_output = contact_output.or(contact_picture.map(|picture| picture.output));
     let contact_table = |output: Output| contact_table(&document, &mechanism, output.option(), rigid);
     let contacts = contact_output.map(contact_table).transpose()?;
     let mut read = inputs(&options.scene, &document);

@@ -11,7 +11,8 @@ use interwell::study::{
 
 use super::grid_job::GridJob;
 use super::support::{
-    file_name, load_held, load_model, located, outputs, pool, refuse_electrical_state, until_settled, warn,
+    counted, file_name, load_held, load_model, located, outputs, pool, refuse_electrical_state,
+    until_settled, warn,
 };
 use super::{ChartOptions, Common, Failure, Output, Picture, interrupt, whole};
 
@@ -145,8 +146,7 @@ fn over(options: &Arguments, common: &Common, picture: Option<Picture>) -> Resul
 
 /// Sums up the cells in one line.
 fn summary(tally: &Tally, seconds: f64) -> String {
-    let cells = if tally.cells == 1 { "1 cell".to_owned() } else { format!("{} cells", tally.cells) };
-    let mut text = format!("{cells} in {seconds:.2} s");
+    let mut text = format!("{} in {seconds:.2} s", counted(tally.cells, "cell"));
     if tally.resting > 0 {
         text += &format!(", {} with a rest on a stop, so that both exponents are -inf", tally.resting);
     }

@@ -34,15 +34,15 @@ impl<'a> GridJob<'a> {
         pool: Pool,
     ) -> Result<Self, Failure> {
         let mut outputs = outputs.with_picture(picture)?.with(Output::MANIFEST, manifest.as_deref())?;
-        // It is opened again when it is written: a killed process would leave its unfinished file.
+        // It is opened again to be written, since a killed process would leave an unfinished file behind.
         outputs.leave(Output::MANIFEST);
         let (shown, watch) = (Table::new(), Watch::start());
         Ok(Self { outputs, shown, document, common, picture, manifest, pool, watch })
     }
 
     /// Checks and runs the rows of a slice from `from` on, each called `unit`, and hands them to `write`,
-    /// which answers whether more are wanted. A picture needs all of them, even if the reader of a pipe has
-    /// gone.
+    /// which returns whether more rows are needed. With a picture all rows are run, even after the reader of
+    /// a pipe has gone.
     pub fn run<Q: Question>(
         &mut self,
         study: &GridStudy<Q>,

@@ -8,7 +8,7 @@ use interwell::scene::lesson::{LESSONS, LessonDocument, LessonError, Step, TEMPL
 use interwell::study::{LessonFinding, LessonReport, Unjudged, check_lesson, result_fields};
 use interwell::system::files;
 
-use super::support::pool;
+use super::support::{counted, pool};
 use super::{Common, Failure, Output, Outputs, interrupt, refuse, write_alone};
 
 const EXAMPLES: &str = "\
@@ -114,9 +114,9 @@ fn checked(options: &Arguments, common: &Common) -> Result<(String, Option<Failu
     for (document, report) in documents.iter().zip(&reports) {
         let LessonReport { predictions, tasks, .. } = report;
         let verdict = if report.wrong.is_empty() { "holds" } else { "is wrong" };
-        let many = |count: usize| if count == 1 { "" } else { "s" };
-        let (name, s, t) = (&document.name, many(*predictions), many(*tasks));
-        text += &format!("{name}: {verdict} ({predictions} prediction{s}, {tasks} task{t})\n");
+        let predictions = counted(*predictions as u64, "prediction");
+        let tasks = counted(*tasks as u64, "task");
+        text += &format!("{}: {verdict} ({predictions}, {tasks})\n", document.name);
         lines(document, &report.warnings).for_each(|line| common.say(&format!("warning: {line}")));
         wrong.extend(lines(document, &report.wrong));
     }

@@ -14,7 +14,7 @@ use interwell::study::{
     Comparison, ForceComparison, MeasuredMotion, NoComparison, compare, compare_force, metres,
 };
 
-use super::support::{number, numbers};
+use super::support::{finite, numbers};
 use super::{Common, Failure, refuse, say};
 
 /// Columns of time and of what was measured.
@@ -83,10 +83,6 @@ fn no_record<T>(chosen: &[(&str, &Option<String>)]) -> Result<Option<T>, Failure
         None => Ok(None),
         Some((option, _)) => refuse!("{option} is of a record: name that by --measured FILE"),
     }
-}
-
-fn finite(option: &str, text: &str, remedy: &str) -> Result<f64, Failure> {
-    number(option, text, |value: &f64| value.is_finite(), remedy)
 }
 
 /// The offset in m that `--offset-mm` gives.

@@ -63,7 +63,7 @@ pub fn parse() -> Result<Options, ExitCode> {
             ExitCode::from(2)
         }
         _ => {
-            // The first lines name argument, value and remedy; usage and hints would bury them.
+            // Usage and hints would bury the lines that name argument, value and remedy.
             let text = error.render().to_string();
             let parts = text.split("\n\n").filter(|part| !part.trim_start().starts_with("Usage:"));
             let lines = parts.flat_map(str::lines).map(str::trim);

@@ -9,7 +9,7 @@ use interwell::scene::{Axis, Document, is_whole};
 use interwell::study::{Branch, BranchEnd, Family, NoOrbit, Table, Task, branch, orbit, orbit_table};
 
 use super::progress::bar_on_terminal;
-use super::support::{check, mechanism, number, outputs, read, refuse_electrical_state, warn};
+use super::support::{check, finite, mechanism, outputs, read, refuse_electrical_state, warn};
 use super::{ChartOptions, Common, Failure, Output, Picture, caption, interrupt, refuse, whole};
 
 const EXAMPLES: &str = "\
@@ -51,8 +51,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if picture.is_some() && options.branch.is_none() {
         refuse!("--plot shows a branch; add --branch FIELD=A:B, or leave it out");
     }
-    let remedy = "give a phase in degrees, such as 90";
-    let phase_deg = number("--phase-deg", &options.phase_deg, |degrees: &f64| degrees.is_finite(), remedy)?;
+    let phase_deg = finite("--phase-deg", &options.phase_deg, "give a phase in degrees, such as 90")?;
     let mut document = read(&options.scene, common)?;
     let mut branch_range = None;
     if let Some(text) = &options.branch {
@@ -88,7 +87,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         }
         Some((field, from, to)) => {
             let family = Family::new(&document.scene, &document.files, &mechanism, &field);
-            // how many motions there will be is not known
+            // the number of motions is not known beforehand
             let bar = bar_on_terminal(None, "{human_pos} motions", common.quiet);
             let task = Task { tick: &|| bar.inc(1), cancel };
             let found = branch(&family, &field, (from, to), phase, options.period, &task);
@@ -137,15 +136,15 @@ fn range(text: &str, document: &Document) -> Result<(String, f64, f64), Failure>
     let axis = Axis::parse(&format!("{}={},{}", field.trim(), from.trim(), to.trim()), &document.scene);
     let axis = axis.map_err(wrong)?;
     if is_whole(&document.scene, &axis.field) {
-        return Err(wrong(format!(
-            "{} holds whole numbers, and a branch takes all values between A and B; follow the motion with \
-             `sweep --carry` over it",
+        refuse!(
+            "--branch {text}: {} holds whole numbers, and a branch takes all values between A and B; follow \
+             the motion with `sweep --carry` over it",
             axis.field
-        )));
+        );
     }
     match axis.values[..] {
         [from, to] if from != to => Ok((axis.field, from, to)),
-        [from, _] => Err(wrong(format!("A and B are both {from}; give a range, such as 0.5:2"))),
+        [from, _] => refuse!("--branch {text}: A and B are both {from}; give a range, such as 0.5:2"),
         _ => Err(form()),
     }
 }

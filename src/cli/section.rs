@@ -8,7 +8,8 @@ use interwell::study::{
 
 use super::grid_job::GridJob;
 use super::support::{
-    file_name, load_held, load_model, number, outputs, pool, refuse_electrical_state, until_settled, warn,
+    counted, file_name, finite, load_held, load_model, outputs, pool, refuse_electrical_state, until_settled,
+    warn,
 };
 use super::{ChartOptions, Common, Failure, Output, Picture, caption, interrupt, refuse, say, whole};
 
@@ -70,8 +71,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         }
         (_, None) => SectionAt::Phase(0.0),
         (_, Some(text)) => {
-            let remedy = "give an angle in degrees, such as 90";
-            SectionAt::Phase(number("--phase-deg", text, |degrees: &f64| degrees.is_finite(), remedy)?)
+            SectionAt::Phase(finite("--phase-deg", text, "give an angle in degrees, such as 90")?)
         }
     };
     let settings = SectionOptions {
@@ -160,7 +160,7 @@ fn diagram(options: &Arguments, common: &Common, settings: SectionOptions) -> Re
 
 /// The number of runs in words, and the number of those that ended early.
 fn runs(tally: &Tally) -> String {
-    let cells = if tally.cells == 1 { "1 run".to_owned() } else { format!("{} runs", tally.cells) };
+    let cells = counted(tally.cells, "run");
     match (tally.ended_early, tally.not_converged) {
         (0, 0) => cells,
         (n, 0) => format!("{cells}, {n} of which ended early,"),

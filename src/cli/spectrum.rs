@@ -5,7 +5,7 @@ use interwell::numeric::Taper;
 use interwell::output::{SpectrumQuantity, spectrum_chart};
 use interwell::study::{NoSpectrum, Signal, SpectrumOptions, spectrum};
 
-use super::support::{load_model, number, outputs, until_settled};
+use super::support::{is_positive, load_model, number, outputs, until_settled};
 use super::{ChartOptions, Common, Failure, Output, Picture, caption, interrupt, refuse};
 
 const EXAMPLES: &str = "\
@@ -99,6 +99,5 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
 }
 
 fn rate(text: &str) -> Result<f64, Failure> {
-    let fits = |value: &f64| *value > 0.0 && value.is_finite();
-    number("--rate-hz", text, fits, "give a number of samples a second above 0, such as 2048")
+    number("--rate-hz", text, is_positive, "give a number of samples a second above 0, such as 2048")
 }

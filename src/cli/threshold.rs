@@ -5,7 +5,9 @@ use interwell::output::{ThresholdPicture, can_show_thresholds, threshold_chart};
 use interwell::scene::{Axis, Document, is_whole};
 use interwell::study::{CellFaults, Grid, NoThresholds, Onset, Scan, Table, threshold_table};
 
-use super::support::{drive_alone, load, located, mechanism, number, outputs, pool, until_settled, warn};
+use super::support::{
+    drive_alone, is_positive, load, located, mechanism, number, outputs, pool, until_settled, warn,
+};
 use super::{ChartOptions, Common, Failure, Output, Picture, caption, refuse, with_bar};
 
 const EXAMPLES: &str = "\
@@ -175,28 +177,29 @@ fn wrong(document: &Document, cells: Vec<CellFaults>) -> Failure {
 fn scan(options: &Arguments, document: &Document) -> Result<Scan, Failure> {
     let argument = options.field.trim();
     let default = if argument == AMPLITUDES { " (the default; give another)" } else { "" };
-    let wrong = |problem: String| Failure::argument(format!("--field {argument}{default}: {problem}"));
+    let option = format!("--field {argument}{default}");
     let parsed = |text: &str| -> Result<Axis, Failure> {
-        let axis = Axis::parse(text, &document.scene).map_err(wrong)?;
-        match axis.values.iter().all(|value| value.is_finite()) {
-            true => Ok(axis),
-            false => Err(wrong("the ends of the range must be finite".into())),
+        let axis = Axis::parse(text, &document.scene);
+        let axis = axis.map_err(|problem| Failure::argument(format!("{option}: {problem}")))?;
+        if !axis.values.iter().all(|value| value.is_finite()) {
+            refuse!("{option}: the ends of the range must be finite");
         }
+        Ok(axis)
     };
     let (mut full, mut end) = (argument.to_owned(), None);
     if let Some((from, to)) = argument.split_once(':').filter(|(_, to)| !to.contains(':')) {
         // parsed as a list, so that the message names a wrong end
         let ends = parsed(&format!("{from},{to}"))?;
         let [low, high] = ends.values[..] else {
-            return Err(wrong(
-                "write FIELD=FROM:TO or FIELD=FROM:TO:STEP, such as excitation.amplitude_g=0:2".into(),
-            ));
+            refuse!(
+                "{option}: write FIELD=FROM:TO or FIELD=FROM:TO:STEP, such as excitation.amplitude_g=0:2"
+            );
         };
         if low == high {
-            return Err(wrong(format!("FROM and TO are both {low}; give a range, such as 0:2")));
+            refuse!("{option}: FROM and TO are both {low}; give a range, such as 0:2");
         }
         if low > high {
-            return Err(wrong(format!("TO must be above FROM; write {high}:{low}")));
+            refuse!("{option}: TO must be above FROM; write {high}:{low}");
         }
         let step = (high - low) / STEPS;
         let step = if is_whole(&document.scene, &ends.field) { step.ceil() } else { step };
@@ -207,12 +210,9 @@ fn scan(options: &Arguments, document: &Document) -> Result<Scan, Failure> {
     values.sort_by(f64::total_cmp);
     values.dedup();
     if values.len() < 2 {
-        return Err(wrong(
-            "it is a single value; give a range of which STEP is a part, such as 0:2:0.1".into(),
-        ));
+        refuse!("{option}: it is a single value; give a range of which STEP is a part, such as 0:2:0.1");
     }
-    let span = values.last().copied().unwrap_or(0.0) - values.first().copied().unwrap_or(0.0);
-    let step = span / (values.len() - 1) as f64;
+    let step = (values[values.len() - 1] - values[0]) / (values.len() - 1) as f64;
     if let Some(high) = end {
         // the range may be no whole number of steps, and rounding may place the last one just below its end
         values.retain(|value| *value < high - 1e-6 * step);
@@ -223,7 +223,7 @@ fn scan(options: &Arguments, document: &Document) -> Result<Scan, Failure> {
         None if whole => 1.0,
         None => 1e-3 * step,
         Some(text) => {
-            let fits = |value: &f64| *value > 0.0 && value.is_finite() && (!whole || value.fract() == 0.0);
+            let fits = |value: &f64| is_positive(value) && (!whole || value.fract() == 0.0);
             let kind = if whole { "whole number" } else { "number" };
             number("--resolution", text, fits, &format!("give a {kind} above 0, in the unit of the field"))?
         }

@@ -97,6 +97,8 @@ pub struct Prepared<'a> {
     pub mechanism: Option<Arc<Mechanism>>,
     /// The columns that are written.
     pub columns: Vec<String>,
+    /// All that decides the bytes of the rows.
+    pub plan: Value,
     pub picture: Option<Picture<'a>>,
     pub view: View,
 }
@@ -143,16 +145,10 @@ impl<'a> Prepared<'a> {
             can_show(sweep.grid(), &options.quantity, &view, &sweep.empty_table())?;
         }
         let data = Path::new(&options.scene).with_file_name(swept.data);
-        Ok(Self { options, document, out, data, sweep, slice, mechanism, columns, picture, view })
-    }
-
-    /// All that decides the bytes of the rows.
-    pub fn plan(&self) -> Value {
-        let fixed = self.sweep.grid().columns().len() + usize::from(self.sweep.options().carry.is_some());
-        let version = env!("CARGO_PKG_VERSION");
-        let mut plan = plan(&self.document, &self.sweep, &self.columns[fixed..], version);
-        (plan["rows"], plan["unit"]) = (json!(self.sweep.rows()), json!(self.slice.unit()));
-        plan
+        let fixed = sweep.grid().columns().len() + usize::from(carry.is_some());
+        let mut plan = plan(&document, &sweep, &columns[fixed..], env!("CARGO_PKG_VERSION"));
+        (plan["rows"], plan["unit"]) = (json!(sweep.rows()), json!(slice.unit()));
+        Ok(Self { options, document, out, data, sweep, slice, mechanism, columns, plan, picture, view })
     }
 }
 
@@ -222,8 +218,8 @@ fn view(options: &Arguments, grid: &Grid) -> Result<View, Failure> {
     Ok(if cuts.is_empty() { View::Top } else { View::Cuts(cuts) })
 }
 
-/// The mechanism of the sweep's first cell. If its flexures have no solution, this is `None` if the mechanism
-/// is swept, because it is then an outcome of the cell, and an error if all cells have this mechanism.
+/// The mechanism of the first cell. Flexures without a solution are an error if all cells have them; if the
+/// mechanism is swept, they are an outcome of the cell, and this is `None`.
 fn first_mechanism(document: &Document, sweep: &Sweep) -> Result<Option<Arc<Mechanism>>, Failure> {
     match sweep.first_mechanism() {
         Ok(mechanism) => Ok(Some(mechanism)),

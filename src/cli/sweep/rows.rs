@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 
 use super::super::support::manifest_path;
 use super::super::{Failure, Output, Outputs, refuse};
-use super::prepared::Prepared;
+use super::prepared::{Arguments, Prepared};
 
 /// Rows after which a block ends; a walk that is longer stays in one block.
 const MAX_BLOCK_ROWS: u64 = 4096;
@@ -74,18 +74,12 @@ pub struct Blocks {
     clock: WallClock,
 }
 
-/// The file of a sweep, with the plan of the sweep and the first line of the file.
-pub struct RowFile<'a> {
-    pub sweep: &'a Prepared<'a>,
-    pub plan: &'a Value,
-    pub header: &'a str,
-}
-
-impl RowFile<'_> {
-    /// Begins the file or continues it. Returns it with the tally of its rows, or `None` if it is complete.
-    pub fn open(&self) -> Result<Option<(Blocks, Tally)>, Failure> {
-        let Prepared { options, out, slice, .. } = self.sweep;
-        let (resume, force) = (options.resume, options.force);
+impl Prepared<'_> {
+    /// Begins the file of the rows, whose first line is `header`, or continues it. Returns it with the tally
+    /// of its rows, or `None` if it is complete.
+    pub fn open_blocks(&self, header: &str) -> Result<Option<(Blocks, Tally)>, Failure> {
+        let Self { out, slice, .. } = self;
+        let &Arguments { resume, force, .. } = self.options;
         let opened = Opened::new(out).map_err(refused)?;
         let part = opened.part().display().to_string();
         let head = json!({ "plan": self.plan, "shard": slice.shard().to_string() });
@@ -109,7 +103,7 @@ impl RowFile<'_> {
             refuse!("{}", is_of_another(out.display().to_string(), &existing, "made"));
         }
         if !opened.has_rows() || (force && !resume) {
-            let part = opened.begin(&head.to_string(), self.header).map_err(refused)?;
+            let part = opened.begin(&head.to_string(), header).map_err(refused)?;
             return Ok(Some((self.blocks(part), Tally::default())));
         }
         let existing: Option<Value> = opened.head().and_then(|text| serde_json::from_str(text).ok());
@@ -141,23 +135,22 @@ impl RowFile<'_> {
     }
 
     fn blocks(&self, part: Part) -> Blocks {
-        let (rows, unit) = (self.sweep.slice.rows(), self.sweep.slice.unit());
+        let (rows, unit) = (self.slice.rows(), self.slice.unit());
         Blocks { part, rows, unit, block: Tally::default(), clock: WallClock::start() }
     }
 
     /// A column that a picture needs and the rows do not have.
     fn lacking_column(&self) -> Option<String> {
-        let Prepared { options, sweep, columns, picture, .. } = self.sweep;
-        let table = sweep.empty_table();
+        self.picture?;
+        let table = self.sweep.empty_table();
         let needed = table.columns().iter().map(|column| &column.name);
-        let mut needed = std::iter::once(&options.quantity).chain(needed).filter(|_| picture.is_some());
-        needed.find(|name| !columns.contains(name)).cloned()
+        let mut needed = std::iter::once(&self.options.quantity).chain(needed);
+        needed.find(|name| !self.columns.contains(name)).cloned()
     }
 
     /// The manifest of the file, if both exist.
     fn manifest(&self) -> Option<Value> {
-        let out = &self.sweep.out;
-        let text = files::bytes(&manifest_path(out)?).ok().filter(|_| files::exists(out));
+        let text = files::bytes(&manifest_path(&self.out)?).ok().filter(|_| files::exists(&self.out));
         text.and_then(|text| serde_json::from_slice::<Value>(&text).ok())
     }
 
@@ -170,9 +163,9 @@ impl RowFile<'_> {
     /// Whether the file has all rows of this sweep, according to its manifest and checksum.
     fn is_whole(&self) -> bool {
         self.manifest().is_some_and(|manifest| {
-            manifest["plan"] == *self.plan
-                && manifest["shard"].as_str() == Some(&self.sweep.slice.shard().to_string())
-                && manifest["sha256"].as_str() == file_checksum(&self.sweep.out).as_deref()
+            manifest["plan"] == self.plan
+                && manifest["shard"].as_str() == Some(&self.slice.shard().to_string())
+                && manifest["sha256"].as_str() == file_checksum(&self.out).as_deref()
         })
     }
 }

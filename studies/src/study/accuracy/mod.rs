@@ -25,10 +25,8 @@ use super::Task;
 
 /// A name that cannot be selected.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("there is no case `{name}`; the cases are {}", names().collect::<Vec<_>>().join(", "))]
-pub struct UnknownCase {
-    name: String,
-}
+#[error("there is no case `{0}`; the cases are {cases}", cases = names().collect::<Vec<_>>().join(", "))]
+pub struct UnknownCase(String);
 
 /// Names of all parts of the study: the problems, then the hard cases.
 pub fn names() -> impl Iterator<Item = &'static str> {
@@ -58,9 +56,8 @@ impl Selection {
 
     /// The parts with these names, in the study's own order.
     pub fn of(wanted: &[String]) -> Result<Self, UnknownCase> {
-        let unknown = wanted.iter().find(|wanted| !names().any(|name| name == wanted.as_str()));
-        if let Some(name) = unknown {
-            return Err(UnknownCase { name: name.clone() });
+        if let Some(unknown) = wanted.iter().find(|wanted| !names().any(|name| name == wanted.as_str())) {
+            return Err(UnknownCase(unknown.clone()));
         }
         let has = |name: &str| wanted.iter().any(|wanted| wanted == name);
         Ok(Self {

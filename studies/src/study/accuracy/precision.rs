@@ -1,4 +1,4 @@
-//! Work against precision: three problems, and what each method pays for its digits.
+//! Work against precision: three problems, each run by every method at several settings.
 
 use super::Stopped;
 use super::measure::REFERENCE_TOLERANCE;

@@ -5,12 +5,12 @@ use crate::dynamics::{Event, EventKind, Model};
 /// Impacts slower than this share of the scene's speed are no arrivals but come from chatter or hops.
 const SLOWEST: f64 = 0.01;
 
-/// An impact on the same stop as the one before is an arrival if it is faster than the rebound of that one by
-/// this factor: the drive or the mechanism has pushed, and it is no chatter.
+/// An impact on the same stop as the previous one is an arrival, not chatter, if it is faster than the
+/// previous rebound by this factor.
 const FASTER: f64 = 1.2;
 
-/// An impact of the other run is the same arrival if it has at least this share of the speed: hops of a mass
-/// that should rest are slower.
+/// An impact of the other run matches an arrival if it has at least this share of its speed; the hops of a
+/// mass that should rest are slower.
 const LEAST_SPEED: f64 = 0.5;
 
 /// How late arrivals are, in s; early ones are below 0.
@@ -61,8 +61,8 @@ pub(super) fn lateness(model: &Model, compared: &[Event], exact: &[Event]) -> Op
     Some(Lateness { median, earliest, latest, matched: late.len(), early, of: arrivals.len() })
 }
 
-/// How many impacts of a run fall into the times in which the mass of the other one rests on a stop: hops of
-/// a mass that is pressed there. `exact` are all events of that one, in order of time.
+/// The number of impacts while the mass of the exact run rests on a stop: hops of a mass that is pressed
+/// there. `exact` are all events of that run, in order of time.
 pub(super) fn hops(impacts: &[Event], exact: &[Event]) -> u64 {
     let is_turn = |event: &&Event| matches!(event.kind, EventKind::Rest | EventKind::Release);
     let turns: Vec<&Event> = exact.iter().filter(is_turn).collect();

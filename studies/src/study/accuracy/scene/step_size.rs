@@ -3,9 +3,8 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::arrivals::{Lateness, hops, lateness};
-use super::beside::{Beside, times};
-use super::trust::finished;
-use crate::dynamics::{Event, Model, Outcome, Request, Sample, Side};
+use super::trust::{Beside, finished, times};
+use crate::dynamics::{Event, Model, Request, Sample, Side};
 use crate::study::accuracy::methods::{MethodRun, Scheme, Statistics, fixed_step};
 use crate::study::accuracy::precision::{MEASURED_FOR, median};
 
@@ -20,7 +19,7 @@ const MOST_POINTS: usize = 4_000;
 
 /// The most steps of a run, a few seconds of one core.
 const MOST_STEPS: f64 = 2e7;
-/// Number of sines in the drive that take as long as the rest of a step, since they are evaluated one by one.
+/// Number of sines in the drive whose evaluation takes as long as the rest of a step.
 const SINES: f64 = 16.0;
 
 /// Why a scene has no such run.
@@ -65,8 +64,6 @@ pub struct StepSize {
     pub exact: Statistics,
     /// The numbers of the run in fixed steps.
     pub stepped: Statistics,
-    /// How the true run ended.
-    pub outcome: Outcome,
 }
 
 impl StepSize {
@@ -104,7 +101,7 @@ pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) 
     if stepped.statistics.cpu_s <= MEASURED_FOR {
         stepped.statistics.cpu_s = median(|| fixed_step(model, scheme, step, &bare).statistics.cpu_s);
     }
-    let (hops, outcome) = (hops(&stepped.impacts, &run.events), run.summary.outcome);
+    let hops = hops(&stepped.impacts, &run.events);
     let mut exact = MethodRun::from(run);
     exact.statistics.cpu_s = median(|| model.run(&bare).summary.cpu_s);
     if cancel.load(Ordering::Relaxed) {
@@ -124,7 +121,6 @@ pub fn step_size(model: &Model, scheme: Scheme, step: f64, cancel: &AtomicBool) 
         trusted: beside.parted(),
         exact: exact.statistics,
         stepped: stepped.statistics,
-        outcome,
     })
 }
 
