@@ -53,7 +53,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         refuse!("--{option} needs a SCENE, such as interwell --headless accuracy paper --{option} ..");
     }
     let picture = Picture::new(&options.plot, common)?;
-    let selection = if options.case.is_empty() { Selection::all() } else { Selection::of(&options.case)? };
+    let selection = Selection::of(&options.case)?;
     if options.list {
         return write_alone(Output::DATA, Path::new("-"), &list(&options.case));
     }

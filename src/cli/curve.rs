@@ -15,7 +15,7 @@ use interwell::study::{
 };
 
 use super::measured::MeasuredForceOptions;
-use super::support::{inputs, load_with_mechanism, number, numbers, range};
+use super::support::{inputs, load_with_mechanism, model, number, numbers, range};
 use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, caption, interrupt, refuse, whole};
 
 #[derive(Debug, Args)]
@@ -175,8 +175,7 @@ fn contact_table(
     option: &str,
     rigid: f64,
 ) -> Result<(Table, Model), Failure> {
-    let model =
-        Model::build(&document.scene, Arc::clone(mechanism)).map_err(|faults| document.error_from(faults))?;
+    let model = model(document, mechanism)?;
     match contact(&model, rigid) {
         Some(table) => Ok((table, model)),
         None => refuse!(

@@ -95,15 +95,14 @@ fn about(found: &Exponents, forced: bool) -> String {
         true => ("forcing period", "forcing periods"),
         false => ("period of small oscillations", "periods of small oscillations"),
     };
+    let multipliers = "the exponents are those of its multipliers";
     let over = format!("averages over {} {units}", found.span.0);
     match found.period {
         _ if found.rests() => "the mass rests on a stop, after which nothing is left of a change: both \
                                exponents are minus infinity, written -inf"
             .to_owned(),
-        Some(1) => format!("the motion repeats in every {unit}; the exponents are those of its multipliers"),
-        Some(n) => {
-            format!("the motion repeats after {n} {units}; the exponents are those of its multipliers")
-        }
+        Some(1) => format!("the motion repeats in every {unit}; {multipliers}"),
+        Some(n) => format!("the motion repeats after {n} {units}; {multipliers}"),
         None if found.is_irregular() => {
             format!("{over}, in which the motion is irregular: the first exponent is clearly above 0")
         }

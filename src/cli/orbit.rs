@@ -1,15 +1,12 @@
 //! `orbit`: the periodic motion near the settled motion of a run, or a branch of them over a field.
 
-use std::sync::Arc;
-
 use clap::Args;
-use interwell::dynamics::Model;
 use interwell::output::branch_chart;
 use interwell::scene::{Axis, Document, is_whole};
 use interwell::study::{Branch, BranchEnd, Family, NoOrbit, Table, Task, branch, orbit, orbit_table};
 
 use super::progress::bar_on_terminal;
-use super::support::{check, finite, mechanism, outputs, read, refuse_electrical_state, warn};
+use super::support::{check, finite, mechanism, model, outputs, read, refuse_electrical_state, warn};
 use super::{ChartOptions, Common, Failure, Output, Picture, caption, interrupt, refuse, whole};
 
 const EXAMPLES: &str = "\
@@ -63,8 +60,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let warnings = check(&mut document, None)?;
     let mechanism = mechanism(&document)?;
     warn(&document, common, &warnings, Some(&mechanism));
-    let model = Model::build(&document.scene, Arc::clone(&mechanism))
-        .map_err(|faults| Failure::from(document.error_from(faults)))?;
+    let model = model(&document, &mechanism)?;
     if !model.repeats() || !model.is_shaken() {
         refuse!(
             "{}: excitation: a periodic motion needs a drive that repeats and is not 0; take a Sine, or a \

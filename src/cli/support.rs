@@ -36,15 +36,17 @@ impl Watch {
     pub fn origin(&self, jobs: usize) -> Provenance {
         Provenance {
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            arguments: std::env::args_os()
-                .skip(1)
-                .map(|argument| argument.to_string_lossy().into_owned())
-                .collect(),
+            arguments: arguments(),
             wall_s: self.wall_s(),
             cpu_s: self.cpu.seconds(),
             jobs,
         }
     }
+}
+
+/// The arguments of this call of the program.
+pub fn arguments() -> Vec<String> {
+    std::env::args_os().skip(1).map(|argument| argument.to_string_lossy().into_owned()).collect()
 }
 
 /// Longest `--until-settled` in s, which is the longest duration of a run.
@@ -118,6 +120,12 @@ pub fn mechanism(document: &Document) -> Result<Arc<Mechanism>, Failure> {
     built.map(Arc::new).map_err(|error| unbuilt(document, error))
 }
 
+/// The model of a scene with its mechanism.
+pub fn model(document: &Document, mechanism: &Arc<Mechanism>) -> Result<Model, Failure> {
+    let model = Model::build(&document.scene, Arc::clone(mechanism));
+    model.map_err(|faults| document.error_from(faults).into())
+}
+
 /// The model of a scene from rest, whatever its start is.
 pub fn model_from_rest(document: &Document, mechanism: &Arc<Mechanism>) -> Result<Model, Failure> {
     let trial = Scene { start: Start::Rest, ..document.scene.clone() };
@@ -159,7 +167,7 @@ pub fn load_with_mechanism(spec: &str, common: &Common) -> Result<(Document, Arc
 /// Loads the scene and builds its model; prints the warnings of both.
 pub fn load_model(spec: &str, common: &Common) -> Result<(Document, Model), Failure> {
     let (document, mechanism) = load_with_mechanism(spec, common)?;
-    let model = Model::build(&document.scene, mechanism).map_err(|faults| document.error_from(faults))?;
+    let model = model(&document, &mechanism)?;
     Ok((document, model))
 }
 

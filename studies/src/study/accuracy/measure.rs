@@ -301,9 +301,8 @@ fn changed(setup: &Setup, change: f64) -> Vec<Setup> {
     let fields = numeric_fields(&setup.scene);
     let with = |(begin, ends, by): (&str, &[&str], f64)| {
         let mut changed = setup.clone();
-        let is_meant =
-            |field: &&String| field.starts_with(begin) && ends.iter().any(|end| field.ends_with(end));
-        for field in fields.iter().filter(is_meant).map(|field| FieldPath::new(field)) {
+        let datum = |field: &&String| field.starts_with(begin) && ends.iter().any(|end| field.ends_with(end));
+        for field in fields.iter().filter(datum).map(|field| FieldPath::new(field)) {
             // a restitution of 1 stays elastic
             if let Some(value) = field.get(&setup.scene).filter(|value| by > 1.0 || *value < 1.0) {
                 let _ = field.set(&mut changed.scene, value * by);

@@ -148,8 +148,8 @@ impl Lateness {
         };
         // the largest lateness of the majority, and of the minority with the other sign
         let (way, other_way) = if is_late { ("late", "early") } else { ("early", "late") };
-        let (worst, other) =
-            if is_late { (self.latest, self.earliest) } else { (self.earliest, self.latest) };
+        let (latest, earliest) = (self.latest, self.earliest);
+        let (worst, other) = if is_late { (latest, earliest) } else { (earliest, latest) };
         let [median, worst, other] = [self.median, worst, other].map(|time| duration(time.abs()));
         let is_alone = self.matched == 1 || worst == median;
         let worst = if is_alone { String::new() } else { format!(" (worst {worst})") };
