@@ -76,9 +76,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         Stopped::Cancelled => Failure::interrupted(),
         Stopped::Scene(_) => Failure::Failed(stopped.into()),
     })?;
-    if interrupt::came() {
-        return Err(Failure::interrupted());
-    }
+    interrupt::check()?;
     outputs.table(Output::DATA, &report.table())?;
     if let Some(picture) = picture {
         let (chart, caption) = accuracy_chart(&report.work_table(), env!("CARGO_PKG_VERSION"));
@@ -129,7 +127,6 @@ fn list(wanted: &[String]) -> String {
     names().filter(is_shown).map(description).collect()
 }
 
-/// Analyses the run of the scene called `spec`.
 fn of_scene(spec: &str, options: &Arguments, common: &Common) -> Result<(), Failure> {
     let steps = options.step_s.as_deref().map_or_else(|| Ok(Vec::new()), steps)?;
     let (document, model) = load_model(spec, common)?;

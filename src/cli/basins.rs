@@ -132,9 +132,7 @@ fn write_rows(outputs: &mut Outputs, basins: &Basins, answer: &Answer, pool: &Po
     outputs.table(Output::DATA, &answer.table(basins, 0, 0))?;
     let begins: Vec<usize> = (0..answer.rows.len()).step_by(ROWS).collect();
     for begins in begins.chunks(pool.count()) {
-        if interrupt::came() {
-            return Err(Failure::interrupted());
-        }
+        interrupt::check()?;
         let text = |(): &mut (), part: usize| -> Result<String, Infallible> {
             Ok(rows(&answer.table(basins, begins[part], begins[part] + ROWS), 0..ROWS))
         };
@@ -146,7 +144,6 @@ fn write_rows(outputs: &mut Outputs, basins: &Basins, answer: &Answer, pool: &Po
     Ok(())
 }
 
-/// Sums up the answer in one line.
 fn outcome(answer: &Answer, count: u64, seconds: f64) -> String {
     let attractors = counted(answer.attractors.len() as u64, "attractor");
     let mut text = format!("{} in {seconds:.2} s, {attractors}", counted(count, "start"));
@@ -168,7 +165,6 @@ fn outcome(answer: &Answer, count: u64, seconds: f64) -> String {
 /// The form of a range of values, for error messages.
 const AS_EVEN: &str = "write A:B:N, the first value, the last and how many, such as -5:5:101";
 
-/// The starts that the options ask for.
 fn starts(options: &Arguments) -> Result<Starts, Failure> {
     let given = |option: &'static str, text: &Option<String>| {
         let missing = || Failure::argument(format!("{option} is missing: {AS_EVEN}"));
@@ -202,11 +198,9 @@ fn wrong(option: &str, text: &str, problem: &StartsError) -> Failure {
 /// The values `A:B:N` as given to `option`.
 fn even(option: &str, text: &str) -> Result<EvenRange, Failure> {
     let parts: Vec<&str> = text.split(':').map(str::trim).collect();
-    let [_, _, count] = parts[..] else {
-        refuse!("{option} {text}: {AS_EVEN}");
-    };
+    let [_, _, count] = parts[..] else { refuse!("{option} {text}: {AS_EVEN}") };
     let Ok(count) = count.parse::<u64>() else {
-        refuse!("{option} {text}: N is not a whole number; {AS_EVEN}");
+        refuse!("{option} {text}: N is not a whole number; {AS_EVEN}")
     };
     let ends = numbers(option, text, ':')?;
     let range = EvenRange { from: ends[0], to: ends[1], count };

@@ -154,7 +154,6 @@ fn remarks(scene: &Alternative, rated: &Rated, amplitude_g: f64) -> Vec<String> 
     all
 }
 
-/// The reason why the cell of a column is empty.
 fn why_empty(column: &str, scene: &Alternative, rated: &Rated, given: &str) -> String {
     let (summary, crossing) = (&rated.summary, rated.crossing_g());
     let transducer = scene.scene.transducer != Transducer::None;

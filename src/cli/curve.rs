@@ -196,7 +196,6 @@ fn solved(
     states(mechanism, positions, &interrupt::silent_task()).map_err(|error| unknown(scene, option, error))
 }
 
-/// The error for flexures whose state is not known.
 fn unknown(scene: &str, option: &str, error: StatesError) -> Failure {
     match error {
         StatesError::NoFlexures => Failure::argument(format!("{option}: {scene}: {error}")),

@@ -143,7 +143,6 @@ fn over(options: &Arguments, common: &Common, picture: Option<Picture>) -> Resul
     Ok(())
 }
 
-/// Sums up the cells in one line.
 fn summary(tally: &Tally, seconds: f64) -> String {
     let mut text = format!("{} in {seconds:.2} s", counted(tally.cells, "cell"));
     if tally.resting > 0 {

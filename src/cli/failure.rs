@@ -47,7 +47,6 @@ impl Failure {
         Self::failed(format!("cannot write {name}: {error}"))
     }
 
-    /// The exit status.
     pub fn exit_code(&self) -> ExitCode {
         match self {
             Self::Wrong(_) => ExitCode::from(2),

@@ -83,7 +83,6 @@ pub struct Arguments {
     pub chart: ChartOptions,
 }
 
-/// What is identified from which record.
 struct Identification<'a> {
     options: &'a Arguments,
     common: &'a Common,
@@ -194,7 +193,6 @@ struct Answer {
 }
 
 impl Identification<'_> {
-    /// Reads the record and identifies the quantity.
     fn answer(&self) -> Result<Answer, Failure> {
         let options = self.options;
         let (times, of_values) = (options.columns.times(), |asked: &[_]| options.columns.values(asked));
@@ -259,7 +257,6 @@ impl Identification<'_> {
         Ok(record)
     }
 
-    /// An error about the record.
     fn about(&self, problem: impl Display) -> Failure {
         Failure::argument(format!("{}: {problem}", self.file.display()))
     }

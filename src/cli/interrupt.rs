@@ -4,6 +4,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use interwell::study::Task;
 
+use super::Failure;
+
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 /// Makes Ctrl-C (or a request to terminate) set the returned flag, which runs and writers check. A second
@@ -23,7 +25,7 @@ pub fn silent_task() -> Task<'static> {
     Task { tick: &|| (), cancel: listen() }
 }
 
-/// Whether Ctrl-C was pressed.
-pub fn came() -> bool {
-    INTERRUPTED.load(Ordering::Relaxed)
+/// The failure of an interrupted command if Ctrl-C was pressed.
+pub fn check() -> Result<(), Failure> {
+    if INTERRUPTED.load(Ordering::Relaxed) { Err(Failure::interrupted()) } else { Ok(()) }
 }

@@ -60,7 +60,6 @@ fn load(spec: &str) -> Result<LessonDocument, LessonError> {
     LessonDocument::load(spec, &result_fields())
 }
 
-/// The list of the lessons, one line each.
 fn list() -> Result<String, Failure> {
     let width = LESSONS.iter().map(|lesson| lesson.name.len()).max().unwrap_or(0);
     let line = |name: &str| {

@@ -31,7 +31,6 @@ struct Part {
     read: Checksum,
 }
 
-/// Joins the shards.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let watch = Watch::start();
     let mut parts = all(&options.parts)?;
@@ -52,9 +51,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let headers: Vec<Vec<u8>> = parts.iter_mut().map(|part| part.lines(1)).collect::<Result<_, _>>()?;
     put(&headers[0])?;
     for (number, rows) in slice.dealt() {
-        if interrupt::came() {
-            return Err(Failure::interrupted());
-        }
+        interrupt::check()?;
         put(&parts[number as usize - 1].lines(rows)?)?;
     }
     for part in &parts {
@@ -148,12 +145,11 @@ impl Part {
         let shard = manifest["shard"].as_str().and_then(|text| Shard::parse(text).ok());
         let Some(shard) = shard.filter(|_| manifest["program"] == PROGRAM && manifest["plan"].is_object())
         else {
-            refuse!("{name}: {beside_name} is no manifest of a sweep or of a shard of one");
+            refuse!("{name}: {beside_name} is no manifest of a sweep or of a shard of one")
         };
         Ok(Some(Self { path, manifest, shard, offset: 0, read: Checksum::default() }))
     }
 
-    /// Reads the next `count` lines.
     fn lines(&mut self, count: u64) -> Result<Vec<u8>, Failure> {
         let failed = |error| Failure::failed(format!("cannot read {}: {error}", self.path.display()));
         let mut file = BufReader::new(files::open_at(&self.path, self.offset).map_err(failed)?);
@@ -200,5 +196,4 @@ impl Part {
     }
 }
 
-/// The longest line that is read.
 const LONGEST_LINE: u64 = 1 << 20;

@@ -83,9 +83,7 @@ pub fn run(
     let Options { headless, common, scene, command } = options;
     let commands = command_names();
     match (command, headless, scene) {
-        (Some(_), _, Some(scene)) => {
-            refuse!("`{scene}` stands before the command: put the scene after it")
-        }
+        (Some(_), _, Some(scene)) => refuse!("`{scene}` stands before the command: put the scene after it"),
         (Some(command), false, None) => {
             let name = command.name();
             refuse!("`{name}` works without a window: write interwell --headless {name}")

@@ -81,14 +81,12 @@ macro_rules! commands {
             )*
         }
 
-        /// The names of the commands.
         pub const COMMANDS: &[&str] = &[$(stringify!($word)),*];
 
         /// For each command the common options that it refuses, and those that it ignores.
         const UNUSED: &[(&[&str], &[&str])] = &[$((&[$($($refused),+)?], &[$($($ignored),+)?])),*];
 
         impl Command {
-            /// Its name on the command line.
             pub fn name(&self) -> &'static str {
                 match self {
                     $(Self::$variant { .. } => stringify!($word),)*
@@ -102,14 +100,12 @@ macro_rules! commands {
                 }
             }
 
-            /// Its common options.
             pub fn common(&mut self) -> &mut Common {
                 match self {
                     $(Self::$variant { common, .. } => common,)*
                 }
             }
 
-            /// Runs the command.
             pub fn run(&self) -> Result<(), Failure> {
                 match self {
                     $(Self::$variant { arguments, common } => super::$word::run(arguments, common),)*
@@ -210,7 +206,6 @@ pub struct Common {
 }
 
 impl Common {
-    /// Where the data goes.
     pub fn out(&self) -> &Path {
         self.out.as_deref().unwrap_or(Path::new("-"))
     }

@@ -103,15 +103,12 @@ impl Outputs {
         }
         self.write(output, header(table))?;
         for begin in (0..table.rows()).step_by(ROWS) {
-            if interrupt::came() {
-                return Err(Failure::interrupted());
-            }
+            interrupt::check()?;
             self.write(output, rows(table, begin..begin + ROWS))?;
         }
         Ok(())
     }
 
-    /// Writes text or bytes.
     pub fn write(&mut self, output: Output, text: impl AsRef<[u8]>) -> Result<(), Failure> {
         let Some(sink) = self.sink(output) else { return Ok(()) };
         sink.put_bytes(text.as_ref()).map_err(|error| Failure::writing(sink.name(), error))

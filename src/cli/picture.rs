@@ -133,7 +133,6 @@ fn arguments() -> Vec<String> {
     picture_arguments(word, all)
 }
 
-/// The sheet of paper that `options` ask for.
 fn sheet(options: &PlotOptions, format: Format) -> Result<Option<Sheet>, Failure> {
     let Some(width_mm) = &options.plot_width_mm else { return Ok(None) };
     let text = SheetText {
@@ -151,7 +150,6 @@ pub fn caption(document: &Document) -> Caption {
     Caption::new(document, env!("CARGO_PKG_VERSION"))
 }
 
-/// A size `WxH` in pixels.
 fn size(text: &str) -> Result<(u32, u32), Failure> {
     let side = |text: &str| text.trim().parse::<u32>().ok().filter(|pixels| (200..=4000).contains(pixels));
     let sides = text.split_once(['x', 'X']).and_then(|(width, height)| side(width).zip(side(height)));

@@ -19,7 +19,6 @@ pub struct Progress {
     lines: Option<Lines>,
 }
 
-/// Progress in lines, one every minute.
 struct Lines {
     parts: u64,
     unit: String,

@@ -83,7 +83,6 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if options.over.is_empty() { one(options, common, settings) } else { diagram(options, common, settings) }
 }
 
-/// The section of one run.
 fn one(options: &Arguments, common: &Common, mut settings: SectionOptions) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     let (document, model) = load_model(&options.scene, common)?;
@@ -92,9 +91,7 @@ fn one(options: &Arguments, common: &Common, mut settings: SectionOptions) -> Re
     let mut outputs = outputs(&options.scene, &document, common)?.with_picture(picture)?;
     let found = section(&model, &document.scene, &settings, interrupt::listen());
     let (table, summary) = found.map_err(|fault| document.error_from(vec![fault]))?;
-    if interrupt::came() {
-        return Err(Failure::interrupted());
-    }
+    interrupt::check()?;
     let names: Vec<String> = settings.columns().iter().map(|name| (*name).to_owned()).collect();
     outputs.table(Output::DATA, &table.only(&names))?;
     if let Some(picture) = picture {

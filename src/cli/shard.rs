@@ -64,7 +64,6 @@ pub fn placed(out: &Path, argument: Option<&str>, shard: Shard) -> Result<PathBu
     Ok(out.to_owned())
 }
 
-/// The shard in the name of a file.
 fn named(shard: Shard) -> String {
     format!("{}-of-{}", shard.number(), shard.count())
 }

@@ -102,9 +102,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             (simulation, Some(trace))
         }
     };
-    if interrupt::came() {
-        return Err(Failure::interrupted());
-    }
+    interrupt::check()?;
     let compared =
         record.as_ref().map(|measured| measured.compare(&document.scene, &model, cancel)).transpose()?;
     outputs.table(Output::DATA, &simulation.samples)?;

@@ -22,12 +22,10 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Starts both clocks.
     pub fn start() -> Self {
         Self { wall: WallClock::start(), cpu: ProcessClock::start() }
     }
 
-    /// Wall-clock time since the start, in s.
     pub fn wall_s(&self) -> f64 {
         self.wall.seconds()
     }

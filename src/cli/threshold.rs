@@ -61,13 +61,10 @@ pub struct Arguments {
     pub chart: ChartOptions,
 }
 
-/// The default field and range of a scan.
 const AMPLITUDES: &str = "excitation.amplitude_g=0:2";
 
-/// Steps of a scan if no step is given.
 const STEPS: f64 = 200.0;
 
-/// Largest number of wrong cells that are named.
 const MAX_NAMED: usize = 8;
 
 /// Searches and writes the table.
@@ -162,7 +159,6 @@ fn missing(table: &Table, scan: &Scan, onset: Onset, grid: &Grid) -> Option<Stri
     ))
 }
 
-/// An error that names the wrong cells.
 fn wrong(document: &Document, cells: Vec<CellFaults>) -> Failure {
     let more = cells.len().saturating_sub(MAX_NAMED);
     let mut text: Vec<String> =
@@ -173,7 +169,6 @@ fn wrong(document: &Document, cells: Vec<CellFaults>) -> Failure {
     Failure::argument(text.join("\n"))
 }
 
-/// The field, values and resolution of the search.
 fn scan(options: &Arguments, document: &Document) -> Result<Scan, Failure> {
     let argument = options.field.trim();
     let default = if argument == AMPLITUDES { " (the default; give another)" } else { "" };

@@ -110,7 +110,6 @@ impl Prepared<'_> {
     }
 }
 
-/// Prints a summary of the rows that were computed now.
 fn report(common: &Common, document: &Document, tally: &Tally, wall_s: f64) {
     let cells = counted(tally.cells, "cell");
     let early = match (tally.ended_early, tally.not_converged) {

@@ -179,7 +179,6 @@ fn columns(chosen: &[String], grid: &Grid, carry: Option<Carry>) -> Result<Vec<S
     Ok(names)
 }
 
-/// Largest number of cuts beside a map.
 const MAX_CUTS: usize = 2;
 
 /// How the picture shows a sweep of this grid.

@@ -16,7 +16,6 @@ use super::prepared::{Arguments, Prepared};
 
 /// Rows after which a block ends; a walk that is longer stays in one block.
 const MAX_BLOCK_ROWS: u64 = 4096;
-/// Time in s after which a block ends.
 const MAX_BLOCK_S: f64 = 5.0;
 
 /// The destination of the rows.
@@ -217,7 +216,6 @@ impl Blocks {
         self.part.end_block(block.cells, serde_json::to_string(&block)?)
     }
 
-    /// The failure for rows that cannot be written.
     fn failed(&self, error: &std::io::Error) -> Failure {
         Failure::failed(format!(
             "cannot write {}: {error}; {} of {} rows are kept there: once there is room, the same command \
@@ -264,7 +262,6 @@ impl Blocks {
     }
 }
 
-/// A file that rows are compared with.
 pub struct Compared {
     name: String,
     file: Box<dyn Read>,
@@ -272,7 +269,6 @@ pub struct Compared {
 }
 
 impl Compared {
-    /// Opens the file.
     pub fn new(path: &Path) -> Result<Self, Failure> {
         let name = path.display().to_string();
         let file = files::open(path);
@@ -281,7 +277,6 @@ impl Compared {
         Ok(Self { name, file: Box::new(BufReader::new(file)), line: 1 })
     }
 
-    /// Compares lines with the next ones of the file.
     pub fn put(&mut self, text: &str) -> Result<(), Failure> {
         let mut expected = Vec::new();
         let read = (&mut self.file).take(text.len() as u64).read_to_end(&mut expected);
@@ -302,7 +297,6 @@ impl Compared {
         Failure::failed(format!("{} differs: {how}", self.name))
     }
 
-    /// Checks that the file ends here.
     pub fn end(&mut self) -> Result<(), Failure> {
         let mut more = [0];
         match self.file.read(&mut more) {

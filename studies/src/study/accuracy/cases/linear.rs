@@ -23,7 +23,6 @@ fn sprung(c: f64, drive: Excitation, duration: f64) -> Setup {
     setup
 }
 
-/// Evenly spaced times within a run.
 fn even(duration: f64, count: usize) -> Vec<f64> {
     (1..=count).map(|i| duration * i as f64 / (count as f64 + 0.5)).collect()
 }
@@ -40,7 +39,6 @@ fn tones(model: &Model) -> Vec<Forcing> {
     model.excitation().tones.iter().map(tone).collect()
 }
 
-/// The start of a model in double-doubles.
 fn start(model: &Model) -> State {
     (dd(model.start().0), dd(model.start().1))
 }

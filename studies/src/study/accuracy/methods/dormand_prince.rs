@@ -166,7 +166,6 @@ fn sign(side: Side) -> f64 {
     if side == Side::Left { -1.0 } else { 1.0 }
 }
 
-/// A run under way.
 struct March<'a> {
     problem: Problem<'a>,
     tolerance: f64,

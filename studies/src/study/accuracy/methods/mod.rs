@@ -82,7 +82,6 @@ pub struct MethodRun {
 }
 
 impl From<&Summary> for Statistics {
-    /// The numbers of a run of the program.
     fn from(summary: &Summary) -> Self {
         Self {
             final_x: summary.final_x,
@@ -98,7 +97,6 @@ impl From<&Summary> for Statistics {
 }
 
 impl From<Run> for MethodRun {
-    /// A run of the program in the same terms.
     fn from(run: Run) -> Self {
         Self {
             statistics: Statistics::from(&run.summary),
