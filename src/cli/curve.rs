@@ -7,6 +7,7 @@ use clap::Args;
 use interwell::dynamics::Model;
 use interwell::mechanics::Mechanism;
 use interwell::mechanics::flexure::State;
+use interwell::numeric::extent;
 use interwell::output::{contact_chart, curve_chart, landscape, measured_force_chart};
 use interwell::scene::Document;
 use interwell::study::{
@@ -82,11 +83,12 @@ const SHAPES: u32 = 21;
 /// Writes the curve as CSV and, if requested, the landscape as JSON and the shapes of the flexures as CSV.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
-    let contact_picture =
+    let mut contact_picture =
         Picture::of(Output::CONTACT_PLOT, options.contact_plot.as_deref(), &options.chart.plot, common)?;
-    // with two pictures, --plot-data holds the numbers of --plot
-    let contact_picture = contact_picture
-        .map(|contact| if picture.is_none() { contact.with_data(&options.chart.plot) } else { contact });
+    if let (Some(contact), Some(_)) = (&mut contact_picture, picture) {
+        // --plot-data holds the numbers of --plot
+        contact.data = None;
+    }
     let remedy = "give a coefficient of restitution, 0 to 1, such as 0.36";
     let rigid = number("--rigid", &options.rigid, |value: &f64| (0.0..=1.0).contains(value), remedy)?;
     let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
@@ -142,8 +144,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         // The picture shows the whole curve, even if few positions were requested.
         let chart = match &measured {
             Some(found) => {
-                let ends = |fold: fn(f64, f64) -> f64| found.positions.iter().copied().fold(f64::NAN, fold);
-                let over = even_positions((ends(f64::min), ends(f64::max)), CURVE_PICTURE_POINTS);
+                let over = even_positions(extent(found.positions.iter().copied()), CURVE_PICTURE_POINTS);
                 measured_force_chart(found, &curve(&mechanism, over)?, picture.ranges)
             }
             None => {

@@ -33,8 +33,7 @@ pub struct Picture<'a> {
 impl<'a> Picture<'a> {
     /// The picture that `options` ask for; an error if its name does not end like one.
     pub fn new(options: &'a PlotOptions, common: &Common) -> Result<Option<Self>, Failure> {
-        let picture = Self::of(Output::PLOT, options.plot.as_deref(), options, common)?;
-        Ok(picture.map(|picture| picture.with_data(options)))
+        Self::of(Output::PLOT, options.plot.as_deref(), options, common)
     }
 
     /// The same, with the ranges of its axes; errors name the horizontal one `across`.
@@ -52,16 +51,11 @@ impl<'a> Picture<'a> {
         Ok(picture.map(|picture| Self { ranges, ..picture }))
     }
 
-    /// The same, with the path of `--plot-data`.
-    pub fn with_data(self, options: &'a PlotOptions) -> Self {
-        Self { data: options.plot_data.as_deref(), ..self }
-    }
-
     /// The picture at the `path` of an output, laid out as `options` say.
     pub fn of(
         output: Output,
         path: Option<&'a Path>,
-        options: &PlotOptions,
+        options: &'a PlotOptions,
         common: &Common,
     ) -> Result<Option<Self>, Failure> {
         let (Some(path), option) = (path, output.option()) else { return Ok(None) };
@@ -74,7 +68,7 @@ impl<'a> Picture<'a> {
         Ok(Some(Self {
             output,
             path,
-            data: None,
+            data: options.plot_data.as_deref(),
             theme: Theme::of(options.dark, sheet(options, format)?),
             ranges: Ranges::default(),
             format,

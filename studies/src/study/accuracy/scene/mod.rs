@@ -5,13 +5,11 @@
 //! or a small applet would take ([`step_size`]). Nothing here needs an exact answer: the error is the
 //! difference from a far more accurate run.
 
-mod arrivals;
 mod step_size;
 mod trust;
 mod words;
 
-pub use arrivals::Lateness;
-pub use step_size::{StepSize, TRUE_TOLERANCE, Unfit, step_size};
+pub use step_size::{Lateness, StepSize, TRUE_TOLERANCE, Unfit, step_size};
 pub use trust::{
     AtTolerance, Course, TOLERANCES, TRUSTED_SHARE, Tolerances, Trust, lasting, tolerances, trust,
 };
