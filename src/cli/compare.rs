@@ -77,7 +77,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if let [only] = &options.scenes[..] {
         common.say(&format!("{only}: the only scene; name others to set beside it"));
     }
-    grouped(replaced).iter().for_each(|line| common.say(line));
+    grouped(replaced).iter().for_each(|(names, how)| common.say(&format!("{names}: {how}")));
     let pool = pool(common)?;
     let mut outputs = Outputs::new(&files).with(Output::DATA, Some(common.out()))?.with_picture(picture)?;
     let rated = with_bar(comparison_parts(&all), "parts", common, |task| {
@@ -88,7 +88,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         let remarks = remarks(scene, rated, amplitude_g).into_iter();
         remarks.map(|words| (rated.name.clone(), words))
     });
-    grouped(remarks.collect()).iter().for_each(|line| common.say(line));
+    grouped(remarks).iter().for_each(|(names, words)| common.say(&format!("{names}: {words}")));
     if let Some(picture) = picture {
         let mut caption = caption(&environment);
         let (count, amplitude, frequency) = (rated.len(), short(amplitude_g), short(frequency_hz));
@@ -104,16 +104,16 @@ fn window(run: &RunSettings) -> [f64; 3] {
     [run.duration_s, run.settle_s.unwrap_or(0.5 * run.duration_s), run.tolerance]
 }
 
-/// One line for each distinct remark, with the names of all scenes to which it applies.
-fn grouped(remarks: Vec<(String, String)>) -> Vec<String> {
-    let mut lines: Vec<(Vec<String>, String)> = Vec::new();
+/// Each distinct remark after the names of all to which it applies.
+fn grouped(remarks: impl IntoIterator<Item = (String, String)>) -> Vec<(String, String)> {
+    let mut groups: Vec<(String, String)> = Vec::new();
     for (name, words) in remarks {
-        match lines.iter_mut().find(|line| line.1 == words) {
-            Some((names, _)) => names.push(name),
-            None => lines.push((vec![name], words)),
+        match groups.iter_mut().find(|group| group.1 == words) {
+            Some((names, _)) => *names += &format!(", {name}"),
+            None => groups.push((name, words)),
         }
     }
-    lines.into_iter().map(|(names, words)| format!("{}: {words}", names.join(", "))).collect()
+    groups
 }
 
 /// Explains the empty and infinite cells of a row, an early end, rest, and an undecided threshold.
@@ -142,15 +142,9 @@ fn remarks(scene: &Alternative, rated: &Rated, amplitude_g: f64) -> Vec<String> 
         all.push(format!("with {size} changed by 1 % nothing is left to cross, or nothing crosses"));
     }
     let table = comparison_table(std::slice::from_ref(rated));
-    let mut empty: Vec<(String, Vec<&str>)> = Vec::new();
-    for column in table.columns().iter().filter(|column| column.values.is_missing(0)) {
-        let why = why_empty(&column.name, scene, rated, &given);
-        match empty.iter_mut().find(|(other, _)| *other == why) {
-            Some((_, names)) => names.push(&column.name),
-            None => empty.push((why, vec![&column.name])),
-        }
-    }
-    all.extend(empty.into_iter().map(|(why, names)| format!("no {}: {why}", names.join(", "))));
+    let empty = table.columns().iter().filter(|column| column.values.is_missing(0));
+    let empty = empty.map(|column| (column.name.clone(), why_empty(&column.name, scene, rated, &given)));
+    all.extend(grouped(empty).iter().map(|(names, why)| format!("no {names}: {why}")));
     all
 }
 

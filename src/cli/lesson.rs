@@ -116,7 +116,7 @@ fn checked(options: &Arguments, common: &Common) -> Result<(String, Option<Failu
         let predictions = counted(*predictions as u64, "prediction");
         let tasks = counted(*tasks as u64, "task");
         text += &format!("{}: {verdict} ({predictions}, {tasks})\n", document.name);
-        lines(document, &report.warnings).for_each(|line| common.say(&format!("warning: {line}")));
+        lines(document, &report.warnings).iter().for_each(|line| common.say(&format!("warning: {line}")));
         wrong.extend(lines(document, &report.wrong));
     }
     let wrong = (!wrong.is_empty()).then(|| Failure::failed(wrong.join("\n")));
@@ -124,15 +124,17 @@ fn checked(options: &Arguments, common: &Common) -> Result<(String, Option<Failu
 }
 
 /// Findings with their places, one line each.
-fn lines(document: &LessonDocument, findings: &[LessonFinding]) -> impl Iterator<Item = String> {
+fn lines(document: &LessonDocument, findings: &[LessonFinding]) -> Vec<String> {
+    if findings.is_empty() {
+        return Vec::new();
+    }
     let fault = |finding: &LessonFinding| Fault {
         field: finding.field.clone(),
         value: String::new(),
         problem: finding.problem.clone(),
     };
-    let error = (!findings.is_empty()).then(|| document.error_from(findings.iter().map(fault).collect()));
-    let text = error.map(|error| error.to_string()).unwrap_or_default();
-    text.lines().map(str::to_owned).collect::<Vec<_>>().into_iter()
+    let error = document.error_from(findings.iter().map(fault).collect());
+    error.to_string().lines().map(str::to_owned).collect()
 }
 
 /// Writes the template; an error if the file exists.

@@ -222,19 +222,22 @@ impl Common {
     ///
     /// clap's global arguments would drop a `--set` before the command if another one follows the command.
     pub fn put_before(&mut self, before: Self) -> Result<(), &'static str> {
-        let twice = [
-            ("--out", self.out.is_some() && before.out.is_some()),
-            ("--tolerance", self.tolerance.is_some() && before.tolerance.is_some()),
-            ("--jobs", self.jobs.is_some() && before.jobs.is_some()),
-        ];
-        if let Some((option, _)) = twice.into_iter().find(|(_, twice)| *twice) {
-            return Err(option);
+        fn put<T>(
+            option: &'static str,
+            value: &mut Option<T>,
+            before: Option<T>,
+        ) -> Result<(), &'static str> {
+            if value.is_some() && before.is_some() {
+                return Err(option);
+            }
+            *value = value.take().or(before);
+            Ok(())
         }
+        put("--out", &mut self.out, before.out)?;
+        put("--tolerance", &mut self.tolerance, before.tolerance)?;
+        put("--jobs", &mut self.jobs, before.jobs)?;
         self.set.splice(0..0, before.set);
         self.quiet |= before.quiet;
-        self.out = self.out.take().or(before.out);
-        self.tolerance = self.tolerance.take().or(before.tolerance);
-        self.jobs = self.jobs.or(before.jobs);
         Ok(())
     }
 

@@ -1,6 +1,7 @@
 //! `threshold`: thresholds of a field, a row for each cell of a grid.
 
 use clap::Args;
+use interwell::numeric::extent;
 use interwell::output::{ThresholdPicture, can_show_thresholds, threshold_chart};
 use interwell::scene::{Axis, Document, is_whole};
 use interwell::study::{CellFaults, Grid, NoThresholds, Onset, Scan, Table, threshold_table};
@@ -146,8 +147,7 @@ fn missing(table: &Table, scan: &Scan, onset: Onset, grid: &Grid) -> Option<Stri
         Onset::Crossing => "makes the settled motion cross",
         Onset::Interwell => "makes the settled motion interwell",
     };
-    let ends = scan.values.first().zip(scan.values.last());
-    let (low, high) = ends.map_or((f64::NAN, f64::NAN), |(low, high)| (*low, *high));
+    let (low, high) = extent(scan.values.iter().copied());
     let unsolved = match grid.changes_mechanism() || scan.field.starts_with("mechanism") {
         true => ", or the flexures are not solved",
         false => "",

@@ -85,14 +85,16 @@ impl Report {
     /// Each variant of a case that falls short: case, variant, quantity.
     pub fn shortfalls(&self) -> Vec<(&'static str, &'static str, &'static str)> {
         let mut short = Vec::new();
-        for (case, variants) in &self.cases {
-            for variant in variants {
-                for (quantity, _) in variant.checks.iter().filter(|(_, check)| !check.passes()) {
-                    short.push((*case, variant.name, *quantity));
-                }
-            }
+        for (case, variant) in self.variants() {
+            let failed = variant.checks.iter().filter(|(_, check)| !check.passes());
+            short.extend(failed.map(|(quantity, _)| (case, variant.name, *quantity)));
         }
         short
+    }
+
+    /// The variants of all cases, each with the name of its case.
+    fn variants(&self) -> impl Iterator<Item = (&'static str, &Variant)> {
+        self.cases.iter().flat_map(|(case, variants)| variants.iter().map(|variant| (*case, variant)))
     }
 }
 
