@@ -1,21 +1,18 @@
-//! `accuracy`: speed against error, and the hard cases.
-
-use std::io::IsTerminal;
+//! `accuracy`: speed against error, and the hard cases. With a scene the error of its run, its cost over the
+//! tolerance, and its error in fixed steps.
 
 use std::path::Path;
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 use interwell::output::{accuracy_chart, aligned};
 use interwell::study::Task;
+use interwell::study::accuracy::methods::Scheme;
+use interwell::study::accuracy::scene::{Unfit, scene_table, step_name, step_size, tolerances, trust};
 use interwell::study::accuracy::{PROBLEMS, Report, Selection, Stopped, accuracy, description, names};
 
-use super::failure::Failure;
-use super::options::{Common, PlotOptions};
-use super::outputs::{Output, Outputs, write_alone};
-use super::picture::Picture;
-use super::support::Watch;
-use super::{interrupt, say, scene_accuracy};
+use super::progress::bar_on_terminal;
+use super::support::{Watch, inputs, load_model};
+use super::{Common, Failure, Output, Outputs, Picture, PlotOptions, interrupt, refuse, write_alone};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -30,7 +27,7 @@ pub struct Arguments {
 
     /// With --step-s: the method, euler (semi-implicit), verlet or rk4 (repeatable) [default: all]
     #[arg(long, value_name = "NAME", requires = "step_s",
-          value_parser = ["euler", "verlet", "rk4"])]
+          value_parser = SCHEMES.map(|(word, _)| word))]
     pub method: Vec<String>,
 
     /// Run this case alone (repeatable): p1, p2 or flexures for speed against error, or a hard case
@@ -50,28 +47,27 @@ pub struct Arguments {
 /// case falls short.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if let Some(scene) = &options.scene {
-        return scene_accuracy::run(scene, options, common);
+        return of_scene(scene, options, common);
     }
     if let Some(option) = common.given(&["set", "tolerance"]) {
-        return Err(Failure::argument(format!(
-            "--{option} needs a SCENE, such as interwell --headless accuracy paper --{option} .."
-        )));
+        refuse!("--{option} needs a SCENE, such as interwell --headless accuracy paper --{option} ..");
     }
     let picture = Picture::new(&options.plot, common)?;
-    let selection = if options.case.is_empty() { Selection::all() } else { Selection::of(&options.case)? };
+    let selection = Selection::of(&options.case)?;
     if options.list {
         return write_alone(Output::DATA, Path::new("-"), &list(&options.case));
     }
     if picture.is_some() && !selection.has_problems() {
         let names: Vec<&str> = PROBLEMS.iter().map(|problem| problem.name).collect();
-        return Err(Failure::argument(format!(
+        refuse!(
             "--plot shows speed against error, and --case leaves none: add --case {}, or leave --plot out",
             names.join(" or ")
-        )));
+        );
     }
     let mut outputs = Outputs::new(&[]).with(Output::DATA, common.out.as_deref())?.with_picture(picture)?;
 
-    let bar = bar(selection.parts(), common.quiet);
+    let template = "{wide_bar} {pos}/{len} parts  {eta} left";
+    let bar = bar_on_terminal(Some(selection.parts()), template, common.quiet);
     let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
     let watch = Watch::start();
     let result = accuracy(&selection, &task);
@@ -80,45 +76,34 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         Stopped::Cancelled => Failure::interrupted(),
         Stopped::Scene(_) => Failure::Failed(stopped.into()),
     })?;
-    if interrupt::came() {
-        return Err(Failure::interrupted());
-    }
-    if outputs.has(Output::DATA) {
-        outputs.table(Output::DATA, &report.table())?;
-    }
+    interrupt::check()?;
+    outputs.table(Output::DATA, &report.table())?;
     if let Some(picture) = picture {
         let (chart, caption) = accuracy_chart(&report.work_table(), env!("CARGO_PKG_VERSION"));
         picture.write(&mut outputs, &chart, &caption)?;
     }
-    let to_stdout = outputs.is_stdout(Output::DATA);
-    outputs.finish()?;
-    show(&shown(&report), to_stdout, common.quiet)?;
-    if !common.quiet {
-        say(&format!("{:.1} s", watch.wall_s()));
+    let mut tables = Vec::new();
+    if !report.points.is_empty() {
+        tables.push(aligned(&report.cost_table()));
     }
+    if !report.cases.is_empty() {
+        tables.push(aligned(&report.case_table()));
+    }
+    finish(outputs, &tables.join("\n"), common)?;
+    common.say(&format!("{:.1} s", watch.wall_s()));
     verdict(&report)
 }
 
-/// Writes a text to standard output, or to standard error if standard output has the data.
-pub(super) fn show(text: &str, data_on_stdout: bool, quiet: bool) -> Result<(), Failure> {
+/// Finishes the outputs and writes a text to standard output, or to standard error if standard output has the
+/// data.
+fn finish(mut outputs: Outputs, text: &str, common: &Common) -> Result<(), Failure> {
+    let data_on_stdout = outputs.is_stdout(Output::DATA);
+    outputs.finish()?;
     if !data_on_stdout {
-        write_alone(Output::DATA, Path::new("-"), text)?;
-    } else if !quiet {
-        say(text.trim_end());
+        return write_alone(Output::DATA, Path::new("-"), text);
     }
+    common.say(text.trim_end());
     Ok(())
-}
-
-/// Formats the tables of a report as text.
-fn shown(report: &Report) -> String {
-    let mut parts = Vec::new();
-    if !report.points.is_empty() {
-        parts.push(aligned(&report.cost_table()));
-    }
-    if !report.cases.is_empty() {
-        parts.push(aligned(&report.case_table()));
-    }
-    parts.join("\n")
 }
 
 /// Returns an error that names the checks that fall short.
@@ -126,13 +111,13 @@ fn verdict(report: &Report) -> Result<(), Failure> {
     let short = report.shortfalls();
     let named: Vec<String> =
         short.iter().map(|(case, variant, quantity)| format!("{case} ({variant}): {quantity}")).collect();
-    match named.len() {
-        0 => Ok(()),
-        1 => Err(Failure::Failed(anyhow::anyhow!("a hard case falls short: {}", named[0]))),
-        n => Err(Failure::Failed(anyhow::anyhow!(
-            "{n} of the hard cases' checks fall short: {}",
-            named.join("; ")
-        ))),
+    match &named[..] {
+        [] => Ok(()),
+        [one] => Err(Failure::failed(format!("a hard case falls short: {one}"))),
+        all => {
+            let n = all.len();
+            Err(Failure::failed(format!("{n} of the hard cases' checks fall short: {}", all.join("; "))))
+        }
     }
 }
 
@@ -142,13 +127,62 @@ fn list(wanted: &[String]) -> String {
     names().filter(is_shown).map(description).collect()
 }
 
-/// A progress bar, hidden unless standard error is a terminal.
-fn bar(parts: u64, quiet: bool) -> ProgressBar {
-    if quiet || !std::io::stderr().is_terminal() {
-        return ProgressBar::hidden();
+fn of_scene(spec: &str, options: &Arguments, common: &Common) -> Result<(), Failure> {
+    let steps = options.step_s.as_deref().map_or_else(|| Ok(Vec::new()), steps)?;
+    let (document, model) = load_model(spec, common)?;
+    let mut outputs = Outputs::new(&inputs(spec, &document)).with(Output::DATA, common.out.as_deref())?;
+    let cancel = interrupt::listen();
+
+    let trusted = trust(&model, cancel).ok_or_else(Failure::interrupted)?;
+    let mut text = match trusted.short(0.0) {
+        Some(short) => format!("{short}. {}\n", trusted.long(0.0)),
+        None => format!("The run ends early ({}), after {} s.\n", trusted.outcome.name(), trusted.span),
+    };
+    let cost = tolerances(&model, cancel).ok_or_else(Failure::interrupted)?;
+    let mut stepped = Vec::new();
+    for (word, scheme) in SCHEMES {
+        if !options.method.is_empty() && !options.method.iter().any(|chosen| chosen == word) {
+            continue;
+        }
+        for step in &steps {
+            let run = step_size(&model, scheme, *step, cancel).map_err(|unfit| match unfit {
+                Unfit::Cancelled => Failure::interrupted(),
+                Unfit::Compliant | Unfit::ElectricalState => Failure::argument(format!("--step-s: {unfit}")),
+            })?;
+            let (name, step, effects) = (scheme.name(), step_name(*step), run.sentences().join(" "));
+            text += &format!("{name} in steps of {step}: {effects}\n");
+            stepped.push(run);
+        }
     }
-    let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} parts  {eta} left");
-    ProgressBar::new(parts).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+    let table = scene_table(&cost, &stepped);
+    outputs.table(Output::DATA, &table)?;
+    finish(outputs, &format!("{text}\n{}", aligned(&table)), common)
+}
+
+/// The words of `--method`, in the order in which the methods are shown.
+const SCHEMES: [(&str, Scheme); 3] =
+    [("euler", Scheme::SemiImplicitEuler), ("verlet", Scheme::VelocityVerlet), ("rk4", Scheme::RungeKutta4)];
+
+/// The shortest and the longest step in s that a run is made with.
+const STEPS: (f64, f64) = (1e-6, 1.0);
+
+/// Steps in s, each a number or a fraction.
+fn steps(text: &str) -> Result<Vec<f64>, Failure> {
+    let number = |text: &str| text.trim().parse::<f64>().ok();
+    let step = |part: &str| {
+        let value = match part.split_once('/') {
+            Some((above, below)) => number(above).zip(number(below)).map(|(above, below)| above / below),
+            None => number(part),
+        };
+        let (least, most) = STEPS;
+        value.filter(|step| (least..=most).contains(step)).ok_or_else(|| {
+            Failure::argument(format!(
+                "--step-s {text}: `{part}` is no step; give seconds from {least:e} to {most}, such as 0.001 \
+                 or 1/60"
+            ))
+        })
+    };
+    text.split(',').map(step).collect()
 }
 
 #[cfg(test)]

@@ -6,16 +6,14 @@ use std::path::PathBuf;
 use clap::Args;
 use interwell::numeric::short;
 use interwell::output::{basins_chart, basins_manifest, can_show_starts, rows};
-use interwell::study::{Answer, Basins, EvenRange, NoBasins, Starts, StartsError, Task};
+use interwell::study::{Answer, Basins, EvenRange, NoBasins, Starts, StartsError};
 use interwell::system::threads::Pool;
 
-use super::failure::Failure;
-use super::options::{Common, PlotOptions};
-use super::outputs::{Output, Outputs};
-use super::picture::{Picture, caption};
-use super::progress::{bar, duration};
-use super::support::{Watch, file_name, load_held, mechanism, outputs, pool, warn};
-use super::{interrupt, say};
+use super::progress::duration;
+use super::support::{Watch, counted, file_name, load_held, mechanism, number, numbers, outputs, pool, warn};
+use super::{
+    Common, Failure, Output, Outputs, Picture, PlotOptions, caption, interrupt, refuse, say, with_bar,
+};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -92,31 +90,25 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     }
     if beside.is_some() {
         let (origin, data) = (watch.origin(pool.count()), file_name(common.out()));
-        let text = basins_manifest(&document, &basins, &answer, &origin, &data);
-        outputs.write(Output::MANIFEST, &text)?;
+        outputs.write(Output::MANIFEST, basins_manifest(&document, &basins, &answer, &origin, &data))?;
     }
     outputs.finish()?;
-    if !common.quiet {
-        say(&outcome(&answer, count, watch.wall_s()));
-    }
+    common.say(&outcome(&answer, count, watch.wall_s()));
     Ok(())
 }
 
 /// Follows the starts, then repeats those whose answer may be uncertain. Returns `None` if cancelled.
 fn answer(basins: &mut Basins, pool: &Pool, common: &Common) -> Option<Answer> {
-    let shown = |parts: usize, unit: &str| bar(parts as u64, unit, common.quiet, common.out());
-    let cancel = interrupt::listen();
-    let bar = shown(basins.starts().count(), "starts");
-    let task = Task { tick: &|| bar.inc(1), cancel };
-    while !basins.is_whole() && basins.run_level(pool, &task) {}
-    let mut answer = basins.answer(&task).filter(|_| basins.is_whole())?;
-    drop(bar);
-    let bar = shown(basins.rows_to_check(&answer).len(), "starts once more");
-    let whole = basins.check(&mut answer, pool, &Task { tick: &|| bar.inc(1), cancel });
+    let mut answer = with_bar(basins.starts().count() as u64, "starts", common, |task| {
+        while !basins.is_whole() && basins.run_level(pool, task) {}
+        basins.answer(task).filter(|_| basins.is_whole())
+    })?;
+    let uncertain = basins.rows_to_check(&answer).len() as u64;
+    let whole = with_bar(uncertain, "starts once more", common, |task| basins.check(&mut answer, pool, task));
     whole.then_some(answer)
 }
 
-/// Steps of one start above which a forecast is printed; about half a second of a core.
+/// A forecast is printed if one start may take more steps than this, about half a second of a core.
 const MANY_STEPS: f64 = 1e6;
 
 /// The possible cost of a start in words, or `None` if it is small.
@@ -140,9 +132,7 @@ fn write_rows(outputs: &mut Outputs, basins: &Basins, answer: &Answer, pool: &Po
     outputs.table(Output::DATA, &answer.table(basins, 0, 0))?;
     let begins: Vec<usize> = (0..answer.rows.len()).step_by(ROWS).collect();
     for begins in begins.chunks(pool.count()) {
-        if interrupt::came() {
-            return Err(Failure::interrupted());
-        }
+        interrupt::check()?;
         let text = |(): &mut (), part: usize| -> Result<String, Infallible> {
             Ok(rows(&answer.table(basins, begins[part], begins[part] + ROWS), 0..ROWS))
         };
@@ -154,14 +144,9 @@ fn write_rows(outputs: &mut Outputs, basins: &Basins, answer: &Answer, pool: &Po
     Ok(())
 }
 
-/// Sums up the answer in one line.
 fn outcome(answer: &Answer, count: u64, seconds: f64) -> String {
-    let number = |count: u64, one: &str| match count {
-        1 => format!("1 {one}"),
-        n => format!("{n} {one}s"),
-    };
-    let mut text = number(count, "start");
-    text += &format!(" in {seconds:.2} s, {}", number(answer.attractors.len() as u64, "attractor"));
+    let attractors = counted(answer.attractors.len() as u64, "attractor");
+    let mut text = format!("{} in {seconds:.2} s, {attractors}", counted(count, "start"));
     let undecided = format!("not settled after {} periods", Basins::PATIENCE);
     for (count, what) in [
         (answer.unsure(), "not sure"),
@@ -180,7 +165,6 @@ fn outcome(answer: &Answer, count: u64, seconds: f64) -> String {
 /// The form of a range of values, for error messages.
 const AS_EVEN: &str = "write A:B:N, the first value, the last and how many, such as -5:5:101";
 
-/// The starts that the options ask for.
 fn starts(options: &Arguments) -> Result<Starts, Failure> {
     let given = |option: &'static str, text: &Option<String>| {
         let missing = || Failure::argument(format!("{option} is missing: {AS_EVEN}"));
@@ -192,18 +176,14 @@ fn starts(options: &Arguments) -> Result<Starts, Failure> {
         let (x_mm, v) = (x_mm?, v?);
         return Starts::grid(&x_mm, &v).map_err(|problem| wrong("--x-mm and --v", "", &problem));
     };
-    let whole = |option: &str, text: &str| {
-        text.trim()
-            .parse::<u64>()
-            .map_err(|_| Failure::argument(format!("{option} {text}: give a whole number, such as 1000")))
-    };
+    let whole =
+        |option: &str, text: &str| number(option, text, |_: &u64| true, "give a whole number, such as 1000");
     let count = whole("--random", text)?;
     let seed = options.seed.as_deref().map_or(Ok(0), |text| whole("--seed", text))?;
     let [x_mm, v] = texts.map(|(option, text)| {
-        let ends = numbers(option, &text)?;
-        let [from, to] = ends[..] else {
+        let [from, to] = numbers(option, &text, ':')?[..] else {
             let message = "with --random write A:B; --random says how many";
-            return Err(Failure::argument(format!("{option} {text}: {message}")));
+            refuse!("{option} {text}: {message}");
         };
         Starts::random((from, to), (0.0, 0.0), 1, 0).map_err(|problem| wrong(option, &text, &problem))?;
         Ok((from, to))
@@ -215,20 +195,14 @@ fn wrong(option: &str, text: &str, problem: &StartsError) -> Failure {
     Failure::argument(format!("{}: {problem}", format!("{option} {text}").trim_end()))
 }
 
-fn numbers(option: &str, text: &str) -> Result<Vec<f64>, Failure> {
-    super::support::numbers(option, text, ':')
-}
-
 /// The values `A:B:N` as given to `option`.
 fn even(option: &str, text: &str) -> Result<EvenRange, Failure> {
     let parts: Vec<&str> = text.split(':').map(str::trim).collect();
-    let [_, _, count] = parts[..] else {
-        return Err(Failure::argument(format!("{option} {text}: {AS_EVEN}")));
-    };
+    let [_, _, count] = parts[..] else { refuse!("{option} {text}: {AS_EVEN}") };
     let Ok(count) = count.parse::<u64>() else {
-        return Err(Failure::argument(format!("{option} {text}: N is not a whole number; {AS_EVEN}")));
+        refuse!("{option} {text}: N is not a whole number; {AS_EVEN}")
     };
-    let ends = numbers(option, text)?;
+    let ends = numbers(option, text, ':')?;
     let range = EvenRange { from: ends[0], to: ends[1], count };
     range.check().map_err(|problem| wrong(option, text, &problem))?;
     Ok(range)

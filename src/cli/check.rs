@@ -6,12 +6,9 @@ use clap::Args;
 use interwell::scene::Excitation;
 use interwell::study::inspect;
 
-use super::failure::Failure;
-use super::options::Common;
-use super::outputs::{Output, Outputs};
-use super::say;
 use super::shard::line;
 use super::support::{load, mechanism};
+use super::{Common, Failure, Output, Outputs, say};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -34,19 +31,15 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         }
     }
     outputs.finish()?;
-    match wrong.pop() {
-        None => Ok(()),
-        // The last error is returned, and its caller prints it.
-        Some(last) => {
-            wrong.iter().for_each(|error| say(&format!("error: {error}")));
-            // One wrong scene among the failed ones is enough for the exit status of wrong arguments.
-            let any_wrong = wrong.iter().any(|error| matches!(error, Failure::Wrong(_)));
-            Err(match last {
-                Failure::Failed(error) if any_wrong => Failure::Wrong(error),
-                last => last,
-            })
-        }
-    }
+    // The last error is returned, and its caller prints it.
+    let Some(last) = wrong.pop() else { return Ok(()) };
+    wrong.iter().for_each(|error| say(&format!("error: {error}")));
+    // One wrong scene among the failed ones is enough for the exit status of wrong arguments.
+    let any_wrong = wrong.iter().any(|error| matches!(error, Failure::Wrong(_)));
+    Err(match last {
+        Failure::Failed(error) if any_wrong => Failure::Wrong(error),
+        last => last,
+    })
 }
 
 fn report(spec: &str, common: &Common) -> Result<String, Failure> {

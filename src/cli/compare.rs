@@ -5,16 +5,10 @@ use interwell::dynamics::Regime;
 use interwell::numeric::short;
 use interwell::output::{ComparisonPicture, comparison_chart};
 use interwell::scene::{Document, Excitation, RunSettings, Stops, Transducer};
-use interwell::study::{Alternative, Rated, Task, alternatives, comparison_parts, comparison_table};
+use interwell::study::{Alternative, Rated, alternatives, comparison_parts, comparison_table};
 
-use super::failure::Failure;
-use super::interrupt;
-use super::options::{Common, PlotOptions};
-use super::outputs::{Output, Outputs};
-use super::picture::{Picture, caption};
-use super::progress::bar;
-use super::say;
 use super::support::{inputs, load, mechanism, model_from_rest, pool, read, until_settled, warn};
+use super::{Common, Failure, Output, Outputs, Picture, PlotOptions, caption, refuse, with_bar};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -51,11 +45,11 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let environment = options.environment.as_deref().or(options.scenes.first().map(String::as_str));
     let environment = read(environment.unwrap_or("paper"), common)?;
     let Excitation::Sine { frequency_hz, amplitude_g, .. } = environment.scene.excitation else {
-        return Err(Failure::argument(format!(
+        refuse!(
             "{}: its excitation is no Sine; amplitude and frequency of one are searched: name a scene \
              with a Sine first, or by --environment",
             environment.name
-        )));
+        );
     };
     let (mut all, mut files, mut replaced, mut until) = (Vec::new(), Vec::new(), Vec::new(), None);
     for spec in &options.scenes {
@@ -70,7 +64,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         replaced.extend(how.map(|how| (plain(spec), format!("{how} {}", environment.name))));
         document.scene.excitation = environment.scene.excitation.clone();
         document.scene.run = environment.scene.run;
-        document.scene.sweep.clear(); // its fields may not be those of another excitation
+        document.scene.sweep.clear(); // the other excitation may not have its fields
         document.check()?;
         let mechanism = mechanism(&document)?;
         let model = model_from_rest(&document, &mechanism)?;
@@ -80,32 +74,25 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         let Document { scene, files, .. } = document;
         all.push(Alternative { name: plain(spec), scene, files, mechanism });
     }
-    if !common.quiet {
-        if let [only] = &options.scenes[..] {
-            say(&format!("{only}: the only scene; name others to set beside it"));
-        }
-        grouped(replaced).iter().for_each(|line| say(line));
+    if let [only] = &options.scenes[..] {
+        common.say(&format!("{only}: the only scene; name others to set beside it"));
     }
+    grouped(replaced).iter().for_each(|(names, how)| common.say(&format!("{names}: {how}")));
     let pool = pool(common)?;
     let mut outputs = Outputs::new(&files).with(Output::DATA, Some(common.out()))?.with_picture(picture)?;
-    let bar = bar(comparison_parts(&all), "parts", common.quiet, common.out());
-    let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
-    let rated = alternatives(&all, until, &pool, &task);
-    drop(bar);
-    let rated = rated.ok_or_else(Failure::interrupted)?;
+    let rated = with_bar(comparison_parts(&all), "parts", common, |task| {
+        alternatives(&all, until, &pool, task).ok_or_else(Failure::interrupted)
+    })?;
     outputs.table(Output::DATA, &comparison_table(&rated))?;
-    if !common.quiet {
-        let remarks = all.iter().zip(&rated).flat_map(|(scene, rated)| {
-            let remarks = remarks(scene, rated, amplitude_g).into_iter();
-            remarks.map(|words| (rated.name.clone(), words))
-        });
-        grouped(remarks.collect()).iter().for_each(|line| say(line));
-    }
+    let remarks = all.iter().zip(&rated).flat_map(|(scene, rated)| {
+        let remarks = remarks(scene, rated, amplitude_g).into_iter();
+        remarks.map(|words| (rated.name.clone(), words))
+    });
+    grouped(remarks).iter().for_each(|(names, words)| common.say(&format!("{names}: {words}")));
     if let Some(picture) = picture {
         let mut caption = caption(&environment);
-        let count = rated.len();
-        let (shaking, at) = (short(amplitude_g), short(frequency_hz));
-        caption.title = format!("{count} scenes under a sine of {shaking} g at {at} Hz");
+        let (count, amplitude, frequency) = (rated.len(), short(amplitude_g), short(frequency_hz));
+        caption.title = format!("{count} scenes under a sine of {amplitude} g at {frequency} Hz");
         let shown = ComparisonPicture { rated: &rated, frequency_hz };
         picture.write(&mut outputs, &comparison_chart(&shown), &caption)?;
     }
@@ -117,16 +104,16 @@ fn window(run: &RunSettings) -> [f64; 3] {
     [run.duration_s, run.settle_s.unwrap_or(0.5 * run.duration_s), run.tolerance]
 }
 
-/// One line for each distinct remark, with the names of all scenes to which it applies.
-fn grouped(remarks: Vec<(String, String)>) -> Vec<String> {
-    let mut lines: Vec<(Vec<String>, String)> = Vec::new();
+/// Each distinct remark after the names of all to which it applies.
+fn grouped(remarks: impl IntoIterator<Item = (String, String)>) -> Vec<(String, String)> {
+    let mut groups: Vec<(String, String)> = Vec::new();
     for (name, words) in remarks {
-        match lines.iter_mut().find(|line| line.1 == words) {
-            Some((names, _)) => names.push(name),
-            None => lines.push((vec![name], words)),
+        match groups.iter_mut().find(|group| group.1 == words) {
+            Some((names, _)) => *names += &format!(", {name}"),
+            None => groups.push((name, words)),
         }
     }
-    lines.into_iter().map(|(names, words)| format!("{}: {words}", names.join(", "))).collect()
+    groups
 }
 
 /// Explains the empty and infinite cells of a row, an early end, rest, and an undecided threshold.
@@ -155,19 +142,12 @@ fn remarks(scene: &Alternative, rated: &Rated, amplitude_g: f64) -> Vec<String> 
         all.push(format!("with {size} changed by 1 % nothing is left to cross, or nothing crosses"));
     }
     let table = comparison_table(std::slice::from_ref(rated));
-    let mut empty: Vec<(String, Vec<&str>)> = Vec::new();
-    for column in table.columns().iter().filter(|column| column.values.is_missing(0)) {
-        let why = why_empty(&column.name, scene, rated, &given);
-        match empty.iter_mut().find(|(other, _)| *other == why) {
-            Some((_, names)) => names.push(&column.name),
-            None => empty.push((why, vec![&column.name])),
-        }
-    }
-    all.extend(empty.into_iter().map(|(why, names)| format!("no {}: {why}", names.join(", "))));
+    let empty = table.columns().iter().filter(|column| column.values.is_missing(0));
+    let empty = empty.map(|column| (column.name.clone(), why_empty(&column.name, scene, rated, &given)));
+    all.extend(grouped(empty).iter().map(|(names, why)| format!("no {names}: {why}")));
     all
 }
 
-/// The reason why the cell of a column is empty.
 fn why_empty(column: &str, scene: &Alternative, rated: &Rated, given: &str) -> String {
     let (summary, crossing) = (&rated.summary, rated.crossing_g());
     let transducer = scene.scene.transducer != Transducer::None;

@@ -1,27 +1,23 @@
 //! `curve`: force, potential and stiffness of the mechanism, and the state and shape of its flexures.
 
 use std::path::PathBuf;
-
 use std::sync::Arc;
 
 use clap::Args;
 use interwell::dynamics::Model;
 use interwell::mechanics::Mechanism;
 use interwell::mechanics::flexure::State;
+use interwell::numeric::extent;
 use interwell::output::{contact_chart, curve_chart, landscape, measured_force_chart, shapes_chart};
 use interwell::scene::Document;
 use interwell::study::{
-    CURVE_PICTURE_POINTS, CURVE_POINTS, StatesError, Table, Task, contact, curve, default_positions,
+    CURVE_PICTURE_POINTS, CURVE_POINTS, StatesError, Table, contact, curve, default_positions,
     even_positions, flexures_at, full_curve, metres, shapes, states, stop_positions, stress_warning,
 };
 
-use super::failure::Failure;
-use super::measured_force::MeasuredForceOptions;
-use super::options::{ChartOptions, Common, whole};
-use super::outputs::{Output, Outputs};
-use super::picture::{Picture, caption};
-use super::support::{inputs, load_with_mechanism, number, numbers, range};
-use super::{interrupt, say};
+use super::measured::MeasuredForceOptions;
+use super::support::{inputs, load_with_mechanism, model, number, numbers, range};
+use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, caption, interrupt, refuse, whole};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -92,14 +88,18 @@ const SHAPES: u32 = 21;
 /// Writes the curve as CSV and, if requested, the landscape as JSON and the shapes of the flexures as CSV.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
-    // with several pictures, --plot-data holds the numbers of the first of them
     let plot = &options.chart.plot;
-    let shapes_picture = Picture::of(Output::SHAPES_PLOT, options.shapes_plot.as_deref(), plot, common)?
-        .map(|shapes| if picture.is_none() { shapes.with_data(plot) } else { shapes });
-    let is_first = picture.is_none() && shapes_picture.is_none();
-    let contact_picture = Picture::of(Output::CONTACT_PLOT, options.contact_plot.as_deref(), plot, common)?
-        .map(|contact| if is_first { contact.with_data(plot) } else { contact });
-    let rigid = restitution(&options.rigid)?;
+    let mut shapes_picture = Picture::of(Output::SHAPES_PLOT, options.shapes_plot.as_deref(), plot, common)?;
+    let mut contact_picture =
+        Picture::of(Output::CONTACT_PLOT, options.contact_plot.as_deref(), plot, common)?;
+    // with several pictures, --plot-data holds the numbers of the first of them
+    let mut has_data = picture.is_some();
+    for another in [&mut shapes_picture, &mut contact_picture].into_iter().flatten() {
+        another.data = another.data.filter(|_| !has_data);
+        has_data = true;
+    }
+    let remedy = "give a coefficient of restitution, 0 to 1, such as 0.36";
+    let rigid = number("--rigid", &options.rigid, |value: &f64| (0.0..=1.0).contains(value), remedy)?;
     let (document, mechanism) = load_with_mechanism(&options.scene, common)?;
     let range = |text| range("--range-mm", text, "A:B in mm with A below B, such as -8:8");
     let range = options.range_mm.as_deref().map(range).transpose()?;
@@ -124,10 +124,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             flexures_at(&mechanism, &[]).map_err(|error| unknown(&document.name, option, error))?;
         }
     }
-    let contact_output = match options.contact {
-        Some(_) => Some(Output::CONTACT),
-        None => contact_picture.map(|picture| picture.output),
-    };
+    let contact_output = options.contact.as_ref().map(|_| Output::CONTACT);
+    let contact_output = contact_output.or(contact_picture.map(|picture| picture.output));
     let contact_table = |output: Output| contact_table(&document, &mechanism, output.option(), rigid);
     let contacts = contact_output.map(contact_table).transpose()?;
     let mut read = inputs(&options.scene, &document);
@@ -141,15 +139,15 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         .with_picture(shapes_picture)?
         .with_picture(contact_picture)?
         .with(Output::COMPARISON, options.measured.comparison.as_deref())?;
-    let measured = options.measured.compare(&mechanism, common.quiet)?;
+    let measured = options.measured.compare(&mechanism, common)?;
     if let Some(found) = &measured {
         outputs.table(Output::COMPARISON, &found.table)?;
     }
     let table = if options.full {
         let rows = solved(&mechanism, &positions(CURVE_POINTS), &document.name, "--full")?;
         let warning = mechanism.flexures.as_ref().and_then(|flexures| stress_warning(flexures, &rows));
-        if let Some(warning) = warning.filter(|_| !common.quiet) {
-            say(&format!("warning: {}: {warning}", document.name));
+        if let Some(warning) = warning {
+            common.say(&format!("warning: {}: {warning}", document.name));
         }
         full_curve(&mechanism, &rows)?
     } else {
@@ -161,8 +159,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         // The picture shows the whole curve, even if few positions were requested.
         let chart = match &measured {
             Some(found) => {
-                let ends = |fold: fn(f64, f64) -> f64| found.positions.iter().copied().fold(f64::NAN, fold);
-                let over = even_positions((ends(f64::min), ends(f64::max)), CURVE_PICTURE_POINTS);
+                let over = even_positions(extent(found.positions.iter().copied()), CURVE_PICTURE_POINTS);
                 measured_force_chart(found, &curve(&mechanism, over)?, picture.ranges)
             }
             None => {
@@ -202,22 +199,15 @@ fn contact_table(
     option: &str,
     rigid: f64,
 ) -> Result<(Table, Model), Failure> {
-    let model =
-        Model::build(&document.scene, Arc::clone(mechanism)).map_err(|faults| document.error_from(faults))?;
+    let model = model(document, mechanism)?;
     match contact(&model, rigid) {
         Some(table) => Ok((table, model)),
-        None => Err(Failure::argument(format!(
+        None => refuse!(
             "{option}: the stops of {} are not compliant; give it some, such as --set \
              'stops=Hertz(travel_limit_mm: 1.5, radius_mm: 5, young_gpa: 69, loss_s_per_m: 10.4)'",
             document.name
-        ))),
+        ),
     }
-}
-
-/// The restitution of a rigid stop as given to `--rigid`.
-fn restitution(text: &str) -> Result<f64, Failure> {
-    let fits = |value: &f64| (0.0..=1.0).contains(value);
-    number("--rigid", text, fits, "give a coefficient of restitution, 0 to 1, such as 0.36")
 }
 
 /// Solves the flexures at these positions in m; stops at Ctrl-C. An error names `scene` and `option`.
@@ -227,16 +217,14 @@ fn solved(
     scene: &str,
     option: &str,
 ) -> Result<Vec<State>, Failure> {
-    let task = Task { tick: &|| (), cancel: interrupt::listen() };
-    states(mechanism, positions, &task).map_err(|error| unknown(scene, option, error))
+    states(mechanism, positions, &interrupt::silent_task()).map_err(|error| unknown(scene, option, error))
 }
 
-/// The error for flexures whose state is not known.
 fn unknown(scene: &str, option: &str, error: StatesError) -> Failure {
     match error {
         StatesError::NoFlexures => Failure::argument(format!("{option}: {scene}: {error}")),
         StatesError::Outside(error) => error.into(),
-        StatesError::Unsolved(_) => Failure::Failed(anyhow::anyhow!("{scene}: {error}")),
+        StatesError::Unsolved(_) => Failure::failed(format!("{scene}: {error}")),
         StatesError::Cancelled => Failure::interrupted(),
     }
 }

@@ -5,19 +5,16 @@ use interwell::dynamics::Model;
 use interwell::output::{ExponentPicture, can_show_exponents, exponents_chart, exponents_manifest};
 use interwell::scene::Document;
 use interwell::study::{
-    ExponentCells, ExponentOptions, Exponents, Grid, NoExponents, Table, Tally, Task, drive_fault, exponents,
+    ExponentCells, ExponentOptions, Exponents, Grid, NoExponents, Table, Tally, drive_fault, exponents,
     exponents_row,
 };
 
-use super::failure::Failure;
 use super::grid_job::GridJob;
-use super::options::{ChartOptions, Common, whole};
-use super::outputs::Output;
-use super::picture::Picture;
 use super::support::{
-    file_name, load_held, load_model, located, outputs, pool, refuse_electrical_state, until_settled, warn,
+    counted, file_name, load_held, load_model, located, outputs, pool, refuse_electrical_state,
+    until_settled, warn,
 };
-use super::{interrupt, say};
+use super::{ChartOptions, Common, Failure, Output, Picture, interrupt, whole};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -73,13 +70,11 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let mut outputs = outputs(&options.scene, &document, common)?;
     let found = exponents(&model, &settings, interrupt::listen()).map_err(|problem| match problem {
         NoExponents::Cancelled => Failure::interrupted(),
-        _ => Failure::Failed(anyhow::anyhow!("{}: {problem}", document.name)),
+        _ => Failure::failed(format!("{}: {problem}", document.name)),
     })?;
     outputs.table(Output::DATA, &exponents_row(&found))?;
     outputs.finish()?;
-    if !common.quiet {
-        say(&format!("{}: {}", document.name, about(&found, model.repeats())));
-    }
+    common.say(&format!("{}: {}", document.name, about(&found, model.repeats())));
     Ok(())
 }
 
@@ -96,17 +91,18 @@ fn settings(
 
 /// Explains the exponents of one motion in a sentence.
 fn about(found: &Exponents, forced: bool) -> String {
-    let unit = if forced { "forcing period" } else { "period of small oscillations" };
-    let units = if forced { "forcing periods" } else { "periods of small oscillations" };
+    let (unit, units) = match forced {
+        true => ("forcing period", "forcing periods"),
+        false => ("period of small oscillations", "periods of small oscillations"),
+    };
+    let multipliers = "the exponents are those of its multipliers";
     let over = format!("averages over {} {units}", found.span.0);
     match found.period {
         _ if found.rests() => "the mass rests on a stop, after which nothing is left of a change: both \
                                exponents are minus infinity, written -inf"
             .to_owned(),
-        Some(1) => format!("the motion repeats in every {unit}; the exponents are those of its multipliers"),
-        Some(n) => {
-            format!("the motion repeats after {n} {units}; the exponents are those of its multipliers")
-        }
+        Some(1) => format!("the motion repeats in every {unit}; {multipliers}"),
+        Some(n) => format!("the motion repeats after {n} {units}; {multipliers}"),
         None if found.is_irregular() => {
             format!("{over}, in which the motion is irregular: the first exponent is clearly above 0")
         }
@@ -123,7 +119,7 @@ fn over(options: &Arguments, common: &Common, picture: Option<Picture>) -> Resul
         can_show_exponents(&grid)?;
     }
     let cells = ExponentCells::new(&document.scene, &document.files, grid);
-    let task = Task { tick: &|| (), cancel: interrupt::listen() };
+    let task = interrupt::silent_task();
     let pool = pool(common)?;
     cells.validate(&pool, &task).map_err(|cell| located(&document, cell))?;
     let settings = settings(options, &document, cells.first_model(&task).as_ref())?;
@@ -131,7 +127,7 @@ fn over(options: &Arguments, common: &Common, picture: Option<Picture>) -> Resul
     warn(&document, common, &warnings, cells.first_mechanism().ok().as_deref());
     let outputs = outputs(&options.scene, &document, common)?;
     let grid = cells.grid();
-    let mut job = GridJob::open(&document, common, outputs, common.out(), picture, manifest_out, pool)?;
+    let mut job = GridJob::open(&document, common, outputs, picture, manifest_out, pool)?;
     let columns: Vec<String> = cells.empty_table().columns().iter().map(|c| c.name.clone()).collect();
     let (tally, _) = job.stream(&cells, "cells", &columns)?;
     let chart = |rows: &Table, picture: &Picture| {
@@ -141,16 +137,14 @@ fn over(options: &Arguments, common: &Common, picture: Option<Picture>) -> Resul
     let wall_s = job.finish(chart, |origin| {
         Ok(exponents_manifest(&document, grid, &tally, origin, &file_name(common.out())))
     })?;
-    if !common.quiet && tally.cells == grid.cells() {
-        say(&summary(&tally, wall_s));
+    if tally.cells == grid.cells() {
+        common.say(&summary(&tally, wall_s));
     }
     Ok(())
 }
 
-/// Sums up the cells in one line.
 fn summary(tally: &Tally, seconds: f64) -> String {
-    let cells = if tally.cells == 1 { "1 cell".to_owned() } else { format!("{} cells", tally.cells) };
-    let mut text = format!("{cells} in {seconds:.2} s");
+    let mut text = format!("{} in {seconds:.2} s", counted(tally.cells, "cell"));
     if tally.resting > 0 {
         text += &format!(", {} with a rest on a stop, so that both exponents are -inf", tally.resting);
     }

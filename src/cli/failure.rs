@@ -9,6 +9,14 @@ use interwell::scene::{ArgumentError, SceneError};
 use interwell::study::accuracy::UnknownCase;
 use interwell::study::{GridError, OutsideCurve, SweepEnd, TimesError};
 
+/// Returns from the function with a wrong argument, whose message is formatted like that of `format!`.
+macro_rules! refuse {
+    ($($message:tt)*) => {
+        return Err($crate::cli::Failure::argument(format_args!($($message)*)))
+    };
+}
+pub(super) use refuse;
+
 /// An error of a command, by its exit status.
 #[derive(Debug)]
 pub enum Failure {
@@ -24,17 +32,21 @@ impl Failure {
         Self::Wrong(anyhow::anyhow!("{message}"))
     }
 
+    /// A failed run; the message says why.
+    pub fn failed(message: impl fmt::Display) -> Self {
+        Self::Failed(anyhow::anyhow!("{message}"))
+    }
+
     /// The command was ended by Ctrl-C or another request to end.
     pub fn interrupted() -> Self {
-        Self::Failed(anyhow::anyhow!("interrupted: no output file was made or changed"))
+        Self::failed("interrupted: no output file was made or changed")
     }
 
     /// `name` could not be written.
-    pub fn writing(name: &str, error: std::io::Error) -> Self {
-        Self::Failed(anyhow::anyhow!("cannot write {name}: {error}"))
+    pub fn writing(name: impl fmt::Display, error: std::io::Error) -> Self {
+        Self::failed(format!("cannot write {name}: {error}"))
     }
 
-    /// The exit status.
     pub fn exit_code(&self) -> ExitCode {
         match self {
             Self::Wrong(_) => ExitCode::from(2),

@@ -1,19 +1,14 @@
 //! Run of a study over a grid by a command: its outputs, progress, rows, picture and manifest.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use interwell::output::{Chart, Provenance, header, rows};
 use interwell::scene::Document;
 use interwell::study::{GridStudy, Question, Shard, Slice, SweepEnd, Table, Tally, Task};
 use interwell::system::threads::Pool;
 
-use super::failure::Failure;
-use super::interrupt;
-use super::options::Common;
-use super::outputs::{Output, Outputs};
-use super::picture::{Picture, caption};
-use super::progress::bar;
 use super::support::{Watch, located};
+use super::{Common, Failure, Output, Outputs, Picture, bar, caption, interrupt};
 
 /// A study of a grid whose outputs are open.
 pub struct GridJob<'a> {
@@ -22,8 +17,6 @@ pub struct GridJob<'a> {
     pub shown: Table,
     document: &'a Document,
     common: &'a Common,
-    /// Where the rows go.
-    out: &'a Path,
     picture: Option<Picture<'a>>,
     manifest: Option<PathBuf>,
     pool: Pool,
@@ -31,26 +24,25 @@ pub struct GridJob<'a> {
 }
 
 impl<'a> GridJob<'a> {
-    /// Opens picture and manifest beside `outputs`, among which are the rows that go to `out`.
+    /// Opens picture and manifest beside `outputs`, among which are the rows.
     pub fn open(
         document: &'a Document,
         common: &'a Common,
         outputs: Outputs,
-        out: &'a Path,
         picture: Option<Picture<'a>>,
         manifest: Option<PathBuf>,
         pool: Pool,
     ) -> Result<Self, Failure> {
         let mut outputs = outputs.with_picture(picture)?.with(Output::MANIFEST, manifest.as_deref())?;
-        // It is opened again when it is written: a killed process would leave its unfinished file.
+        // It is opened again to be written, since a killed process would leave an unfinished file behind.
         outputs.leave(Output::MANIFEST);
         let (shown, watch) = (Table::new(), Watch::start());
-        Ok(Self { outputs, shown, document, common, out, picture, manifest, pool, watch })
+        Ok(Self { outputs, shown, document, common, picture, manifest, pool, watch })
     }
 
     /// Checks and runs the rows of a slice from `from` on, each called `unit`, and hands them to `write`,
-    /// which answers whether more are wanted. A picture needs all of them, even if the reader of a pipe has
-    /// gone.
+    /// which returns whether more rows are needed. With a picture all rows are run, even after the reader of
+    /// a pipe has gone.
     pub fn run<Q: Question>(
         &mut self,
         study: &GridStudy<Q>,
@@ -60,8 +52,7 @@ impl<'a> GridJob<'a> {
         mut write: impl FnMut(&mut Outputs, &Table, &Tally) -> Result<bool, Failure>,
     ) -> Result<Tally, SweepEnd<Failure>> {
         self.watch = Watch::start();
-        let progress = bar(slice.rows(), unit, self.common.quiet, self.out);
-        progress.begin_at(from);
+        let progress = bar(slice.rows(), from, unit, self.common);
         let task = Task { tick: &|| progress.inc(1), cancel: interrupt::listen() };
         let valid = study.validate_rows(slice, from, &self.pool, &task);
         valid.map_err(|cell| SweepEnd::Write(located(self.document, cell)))?;

@@ -1,21 +1,18 @@
 //! `identify`: damping, restitution or force curve from a measured record.
 
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use interwell::output::{Caption, identified, identified_chart};
 use interwell::scene::{Ask, Channel, Measured, Quantity, Timing, read_measured};
 use interwell::study::{
-    FORCE_POINTS, Identified, Unidentified, damping, force, restitution, restitution_of_times,
+    FORCE_POINTS, Identified, Identity, Unidentified, damping, force, restitution, restitution_of_times,
 };
 
-use super::columns::{ColumnOptions, PositionOptions};
-use super::failure::Failure;
-use super::options::{ChartOptions, Common};
-use super::outputs::{Output, Outputs};
-use super::picture::Picture;
-use super::say;
+use super::measured::{ColumnOptions, PositionOptions, columns_read};
 use super::support::Watch;
+use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, refuse};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -86,118 +83,102 @@ pub struct Arguments {
     pub chart: ChartOptions,
 }
 
-impl Arguments {
-    fn file(&self) -> &Path {
-        self.file.as_deref().unwrap_or(Path::new(""))
-    }
-
-    fn of(&self) -> &str {
-        self.of.as_deref().unwrap_or_default()
-    }
-
-    /// The request to the record for the base's acceleration.
-    fn base(&self) -> Ask {
-        Ask::by_options(&[Quantity::Acceleration], &self.base, &self.base_unit, ["--base", "--base-unit"])
-    }
+struct Identification<'a> {
+    options: &'a Arguments,
+    common: &'a Common,
+    file: &'a Path,
+    of: &'a str,
 }
 
 /// Reads the record, identifies the quantity, and writes rows and summary.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
-    fits(options)?;
+    let (Some(file), Some(of)) = (options.file.as_deref(), options.of.as_deref()) else {
+        refuse!(
+            "identify needs a record and what to identify: identify FILE --of damping, restitution or force"
+        );
+    };
+    fits(options, of)?;
     let watch = Watch::start();
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
-    let mut outputs = Outputs::new(&[options.file().to_path_buf()])
+    let mut outputs = Outputs::new(&[file.to_path_buf()])
         .with(Output::DATA, Some(common.out()))?
         .with(Output::SUMMARY, options.summary.as_deref())?
         .with_picture(picture)?;
-    let Answer { timing, found, across, values } = answer(options, common.quiet)?;
-    let found = found.map_err(|problem| about(options.file(), problem))?;
+    let identification = Identification { options, common, file, of };
+    let Answer { timing, found, across, values } = identification.answer()?;
+    let found = found.map_err(|problem| identification.about(problem))?;
     outputs.table(Output::DATA, &found.rows)?;
-    let summary = identified(options.of(), &found, timing.as_ref(), &watch.origin(1));
-    outputs.write(Output::SUMMARY, &summary)?;
+    outputs.write(Output::SUMMARY, identified(of, &found, timing.as_ref(), &watch.origin(1)))?;
     if let Some(picture) = picture {
-        let name = options.file().file_name().unwrap_or_default().to_string_lossy();
-        let caption = Caption::of_record(&name, options.of(), env!("CARGO_PKG_VERSION"));
+        let name = file.file_name().unwrap_or_default().to_string_lossy();
+        let caption = Caption::of_record(&name, of, env!("CARGO_PKG_VERSION"));
         let record = (&across[..], &values.values[..]);
-        let chart = identified_chart(options.of(), &found, record, values.quantity, picture.ranges);
+        let chart = identified_chart(of, &found, record, values.quantity, picture.ranges);
         picture.write(&mut outputs, &chart, &caption)?;
     }
     outputs.finish()?;
-    if !common.quiet {
-        let name = options.file().display();
-        if let Some(timing) = timing {
-            say(&format!("{name}: {}", timing.describe()));
-        }
-        found.summary.iter().for_each(|number| say(&format!("{name}: {}", number.describe())));
-        found.remarks.iter().for_each(|remark| say(&format!("{name}: {remark}")));
-    }
+    let sampling = timing.iter().map(Timing::describe);
+    let lines = sampling.chain(found.summary.iter().map(Identity::describe)).chain(found.remarks);
+    lines.for_each(|line| common.say(&format!("{}: {line}", file.display())));
     Ok(())
 }
 
 /// Refuses options that do not belong to what is identified.
-fn fits(options: &Arguments) -> Result<(), Failure> {
-    if options.file.is_none() || options.of.is_none() {
-        return Err(Failure::argument(
-            "identify needs a record and what to identify: identify FILE --of damping, restitution or force",
-        ));
+fn fits(options: &Arguments, of: &str) -> Result<(), Failure> {
+    for (option, given, only) in [
+        ("--impact-times", options.impact_times, "restitution"),
+        ("--base", options.base.is_some(), "restitution"),
+        ("--base-unit", options.base_unit.is_some(), "restitution"),
+        ("--left-mm", options.left_mm.is_some(), "restitution"),
+        ("--right-mm", options.right_mm.is_some(), "restitution"),
+        ("--points", options.points.is_some(), "force"),
+        ("--position", options.positions.position.is_some(), "force"),
+        ("--position-unit", options.positions.position_unit.is_some(), "force"),
+    ] {
+        if given && of != only {
+            refuse!("{option} belongs to --of {only}, not to --of {of}");
+        }
     }
-    let of = options.of();
-    let given = |option: &'static str, given: bool, only: &'static str| {
-        (given && of != only).then_some((option, only))
-    };
-    let wrong = [
-        given("--impact-times", options.impact_times, "restitution"),
-        given("--base", options.base.is_some(), "restitution"),
-        given("--base-unit", options.base_unit.is_some(), "restitution"),
-        given("--left-mm", options.left_mm.is_some(), "restitution"),
-        given("--right-mm", options.right_mm.is_some(), "restitution"),
-        given("--points", options.points.is_some(), "force"),
-        given("--position", options.positions.position.is_some(), "force"),
-        given("--position-unit", options.positions.position_unit.is_some(), "force"),
-    ];
-    if let Some((option, only)) = wrong.into_iter().flatten().next() {
-        return Err(Failure::argument(format!("{option} belongs to --of {only}, not to --of {of}")));
-    }
-    let timed = [("--from", options.from.is_some()), ("--to", options.to.is_some())];
-    if let Some((option, _)) = timed.into_iter().find(|option| option.1 && of == "force") {
-        return Err(Failure::argument(format!("{option} cuts a record over time; --of force has none")));
+    for (option, given) in [("--from", options.from.is_some()), ("--to", options.to.is_some())] {
+        if given && of == "force" {
+            refuse!("{option} cuts a record over time; --of force has none");
+        }
     }
     if let (Some(from), Some(to)) = (options.from, options.to)
         && !(from < to)
     {
-        return Err(Failure::argument(format!("--from {from} --to {to}: give a time before and one after")));
+        refuse!("--from {from} --to {to}: give a time before and one after");
     }
     of_record(options)
 }
 
 /// Refuses impossible positions of stops, and options that do not go with impact times.
 fn of_record(options: &Arguments) -> Result<(), Failure> {
-    let places = [("--left-mm", options.left_mm), ("--right-mm", options.right_mm)];
-    let endless = |(option, place): &(&'static str, Option<f64>)| {
-        place.filter(|place| !place.is_finite()).map(|place| (*option, place))
-    };
-    if let Some((option, place)) = places.iter().find_map(endless) {
-        return Err(Failure::argument(format!("{option} {place}: give the place of the stop in mm")));
+    for (option, place) in [("--left-mm", options.left_mm), ("--right-mm", options.right_mm)] {
+        if let Some(place) = place.filter(|place| !place.is_finite()) {
+            refuse!("{option} {place}: give the place of the stop in mm");
+        }
     }
     if let (Some(left), Some(right)) = (options.left_mm, options.right_mm)
         && !(left < right)
     {
         let message = "the left stop is the one at the lesser displacement; exchange them";
-        return Err(Failure::argument(format!("--left-mm {left} --right-mm {right}: {message}")));
+        refuse!("--left-mm {left} --right-mm {right}: {message}");
     }
     if options.base.is_none() && options.base_unit.is_some() {
-        return Err(Failure::argument("--base-unit is the unit of a column: name the column by --base"));
+        refuse!("--base-unit is the unit of a column: name the column by --base");
     }
-    let given = [places[0].1.map(|_| "--left-mm"), places[1].1.map(|_| "--right-mm")];
-    let beside =
-        options.base.as_ref().map(|_| "--base").into_iter().chain(given.into_iter().flatten()).next();
-    match beside.filter(|_| options.impact_times) {
-        Some(option) => {
+    for (option, given) in [
+        ("--base", options.base.is_some()),
+        ("--left-mm", options.left_mm.is_some()),
+        ("--right-mm", options.right_mm.is_some()),
+    ] {
+        if options.impact_times && given {
             let message = "a record of impact times has no displacement; leave one of them out";
-            Err(Failure::argument(format!("{option} with --impact-times: {message}")))
+            refuse!("{option} with --impact-times: {message}");
         }
-        None => Ok(()),
     }
+    Ok(())
 }
 
 /// The identified quantity, and the record that it is identified from.
@@ -211,79 +192,72 @@ struct Answer {
     values: Channel,
 }
 
-/// Reads the record and identifies the quantity.
-fn answer(options: &Arguments, quiet: bool) -> Result<Answer, Failure> {
-    let times = options.columns.times();
-    match options.of() {
-        "force" => {
-            let asks = [options.positions.positions(), options.columns.values(&[Quantity::Force])];
-            let [x, values] = read(options, quiet, &asks)?.channels;
+impl Identification<'_> {
+    fn answer(&self) -> Result<Answer, Failure> {
+        let options = self.options;
+        let (times, of_values) = (options.columns.times(), |asked: &[_]| options.columns.values(asked));
+        if self.of == "force" {
+            let asks = [options.positions.positions(), of_values(&[Quantity::Force])];
+            let [x, values] = self.read(&asks)?.channels;
             let points = options.points.map_or(FORCE_POINTS, |points| points as usize);
             let found = force(&x.values, &values.values, points);
-            Ok(Answer { timing: None, found, across: x.values, values })
+            return Ok(Answer { timing: None, found, across: x.values, values });
         }
-        "restitution" if options.impact_times => {
-            let [times] = cut(options, read(options, quiet, &[times])?)?.channels;
+        if self.of == "damping" {
+            let any = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
+            let [times, values] = self.cut(self.read(&[times, of_values(&any)])?)?.channels;
+            let found = damping(&times.values, &values);
+            return Ok(Answer {
+                timing: Some(Timing::of(&times.values)),
+                found,
+                across: times.values,
+                values,
+            });
+        }
+        if options.impact_times {
+            let [times] = self.cut(self.read(&[times])?)?.channels;
             let found = restitution_of_times(&times.values);
             let values = Channel { quantity: Quantity::Displacement, values: Vec::new(), ..times };
-            Ok(Answer { timing: None, found, across: Vec::new(), values })
+            return Ok(Answer { timing: None, found, across: Vec::new(), values });
         }
-        "restitution" => {
-            let asks = [times, options.columns.values(&[Quantity::Displacement])];
-            let (channels, base) = match &options.base {
-                None => (cut(options, read(options, quiet, &asks)?)?.channels, None),
-                Some(_) => {
-                    let [times, values] = asks;
-                    let record = read(options, quiet, &[times, values, options.base()])?;
-                    let [times, values, base] = cut(options, record)?.channels;
-                    ([times, values], Some(base.values))
-                }
-            };
-            let [times, values] = channels;
-            let (timing, times) = (Some(Timing::of(&times.values)), times.values);
-            let given = [options.left_mm, options.right_mm].map(|place| place.map(|mm| mm * 1e-3));
-            let found = restitution(&times, &values.values, base.as_deref(), given);
-            Ok(Answer { timing, found, across: times, values })
+        let values = of_values(&[Quantity::Displacement]);
+        let ([times, values], base) = if options.base.is_some() {
+            let names = ["--base", "--base-unit"];
+            let base = Ask::by_options(&[Quantity::Acceleration], &options.base, &options.base_unit, names);
+            let [times, values, base] = self.cut(self.read(&[times, values, base])?)?.channels;
+            ([times, values], Some(base.values))
+        } else {
+            (self.cut(self.read(&[times, values])?)?.channels, None)
+        };
+        let places = [options.left_mm, options.right_mm].map(|place| place.map(|mm| mm * 1e-3));
+        let found = restitution(&times.values, &values.values, base.as_deref(), places);
+        Ok(Answer { timing: Some(Timing::of(&times.values)), found, across: times.values, values })
+    }
+
+    fn read<const N: usize>(&self, asks: &[Ask; N]) -> Result<Measured<N>, Failure> {
+        let record = read_measured(self.file, asks).map_err(|problem| self.about(problem))?;
+        self.common.say(&format!("{}: {}", self.file.display(), columns_read(&record)));
+        Ok(record)
+    }
+
+    /// Keeps only the rows from `--from` to `--to`; the first channel is the time.
+    fn cut<const N: usize>(&self, mut record: Measured<N>) -> Result<Measured<N>, Failure> {
+        let times = &record.channels[0].values;
+        let from = times.partition_point(|t| *t < self.options.from.unwrap_or(f64::NEG_INFINITY));
+        let to = times.partition_point(|t| *t <= self.options.to.unwrap_or(f64::INFINITY));
+        if to < from + 2 {
+            let (first, last) = (times[0], times[times.len() - 1]);
+            return Err(self.about(format!(
+                "less than 2 samples from --from to --to; the record goes from {first} to {last} s"
+            )));
         }
-        _ => {
-            let any = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
-            let record = read(options, quiet, &[times, options.columns.values(&any)])?;
-            let [times, values] = cut(options, record)?.channels;
-            let (timing, times) = (Some(Timing::of(&times.values)), times.values);
-            Ok(Answer { timing, found: damping(&times, &values), across: times, values })
+        for channel in &mut record.channels {
+            channel.values = channel.values[from..to].to_vec();
         }
+        Ok(record)
     }
-}
 
-fn read<const N: usize>(options: &Arguments, quiet: bool, asks: &[Ask; N]) -> Result<Measured<N>, Failure> {
-    let record = read_measured(options.file(), asks).map_err(|problem| about(options.file(), problem))?;
-    if !quiet {
-        let from = |channel: &Channel| format!("{} from `{}`", channel.quantity.name(), channel.column);
-        let read = record.channels.iter().map(from);
-        let commas = if record.decimal_commas { ", with decimal commas" } else { "" };
-        say(&format!("{}: {}{commas}", options.file().display(), read.collect::<Vec<_>>().join(", ")));
+    fn about(&self, problem: impl Display) -> Failure {
+        Failure::argument(format!("{}: {problem}", self.file.display()))
     }
-    Ok(record)
-}
-
-/// Keeps only the rows from `--from` to `--to`; the first channel is the time.
-fn cut<const N: usize>(options: &Arguments, mut record: Measured<N>) -> Result<Measured<N>, Failure> {
-    let times = &record.channels[0].values;
-    let from = times.partition_point(|t| *t < options.from.unwrap_or(f64::NEG_INFINITY));
-    let to = times.partition_point(|t| *t <= options.to.unwrap_or(f64::INFINITY));
-    if to < from + 2 {
-        let (first, last) = (times[0], times[times.len() - 1]);
-        let message =
-            format!("less than 2 samples from --from to --to; the record goes from {first} to {last} s");
-        return Err(about(options.file(), message));
-    }
-    for channel in &mut record.channels {
-        channel.values = channel.values[from..to].to_vec();
-    }
-    Ok(record)
-}
-
-/// An error about the record.
-fn about(file: &Path, problem: impl std::fmt::Display) -> Failure {
-    Failure::argument(format!("{}: {problem}", file.display()))
 }

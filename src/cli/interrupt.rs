@@ -2,6 +2,10 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use interwell::study::Task;
+
+use super::Failure;
+
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 /// Makes Ctrl-C (or a request to terminate) set the returned flag, which runs and writers check. A second
@@ -16,7 +20,12 @@ pub fn listen() -> &'static AtomicBool {
     &INTERRUPTED
 }
 
-/// Whether Ctrl-C was pressed.
-pub fn came() -> bool {
-    INTERRUPTED.load(Ordering::Relaxed)
+/// A task without progress that Ctrl-C ends.
+pub fn silent_task() -> Task<'static> {
+    Task { tick: &|| (), cancel: listen() }
+}
+
+/// The failure of an interrupted command if Ctrl-C was pressed.
+pub fn check() -> Result<(), Failure> {
+    if INTERRUPTED.load(Ordering::Relaxed) { Err(Failure::interrupted()) } else { Ok(()) }
 }

@@ -5,14 +5,11 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use interwell::scene::Fault;
 use interwell::scene::lesson::{LESSONS, LessonDocument, LessonError, Step, TEMPLATE};
-use interwell::study::{LessonFinding, LessonReport, Task, Unjudged, check_lesson, result_fields};
+use interwell::study::{LessonFinding, LessonReport, Unjudged, check_lesson, result_fields};
 use interwell::system::files;
 
-use super::failure::Failure;
-use super::options::Common;
-use super::outputs::{Output, Outputs, write_alone};
-use super::support::pool;
-use super::{interrupt, say};
+use super::support::{counted, pool};
+use super::{Common, Failure, Output, Outputs, interrupt, refuse, write_alone};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -42,7 +39,7 @@ pub struct Arguments {
 /// Lists, prints or checks lessons, or writes the template of a new one.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if common.jobs.is_some() && !options.check {
-        return Err(Failure::argument("--jobs: nothing runs without --check; leave it out"));
+        refuse!("--jobs: nothing runs without --check; leave it out");
     }
     if let Some(path) = &options.new {
         return begin(path);
@@ -63,7 +60,6 @@ fn load(spec: &str) -> Result<LessonDocument, LessonError> {
     LessonDocument::load(spec, &result_fields())
 }
 
-/// The list of the lessons, one line each.
 fn list() -> Result<String, Failure> {
     let width = LESSONS.iter().map(|lesson| lesson.name.len()).max().unwrap_or(0);
     let line = |name: &str| {
@@ -105,51 +101,47 @@ fn checked(options: &Arguments, common: &Common) -> Result<(String, Option<Failu
         None => LESSONS.iter().map(|lesson| lesson.name).collect(),
     };
     let documents = specs.iter().map(|spec| load(spec)).collect::<Result<Vec<_>, _>>()?;
-    let task = Task { tick: &|| (), cancel: interrupt::listen() };
+    let task = interrupt::silent_task();
     let pool = pool(common)?;
     let check = |_: &mut (), number: usize| check_lesson(&documents[number], Some(&pool), &task);
     let reports = pool.map(documents.len(), || (), check).map_err(|error| match error {
         Unjudged::Cancelled => Failure::interrupted(),
-        Unjudged::Scene { .. } => Failure::Failed(anyhow::anyhow!("a scene of the lesson: {error}")),
+        Unjudged::Scene { .. } => Failure::failed(format!("a scene of the lesson: {error}")),
     })?;
     let mut text = String::new();
     let mut wrong: Vec<String> = Vec::new();
     for (document, report) in documents.iter().zip(&reports) {
         let LessonReport { predictions, tasks, .. } = report;
         let verdict = if report.wrong.is_empty() { "holds" } else { "is wrong" };
-        let many = |count: usize| if count == 1 { "" } else { "s" };
-        text += &format!(
-            "{}: {verdict} ({predictions} prediction{}, {tasks} task{})\n",
-            document.name,
-            many(*predictions),
-            many(*tasks)
-        );
-        if !common.quiet {
-            lines(document, &report.warnings).for_each(|line| say(&format!("warning: {line}")));
-        }
+        let predictions = counted(*predictions as u64, "prediction");
+        let tasks = counted(*tasks as u64, "task");
+        text += &format!("{}: {verdict} ({predictions}, {tasks})\n", document.name);
+        lines(document, &report.warnings).iter().for_each(|line| common.say(&format!("warning: {line}")));
         wrong.extend(lines(document, &report.wrong));
     }
-    let wrong = (!wrong.is_empty()).then(|| Failure::Failed(anyhow::anyhow!("{}", wrong.join("\n"))));
+    let wrong = (!wrong.is_empty()).then(|| Failure::failed(wrong.join("\n")));
     Ok((text, wrong))
 }
 
 /// Findings with their places, one line each.
-fn lines(document: &LessonDocument, findings: &[LessonFinding]) -> impl Iterator<Item = String> {
+fn lines(document: &LessonDocument, findings: &[LessonFinding]) -> Vec<String> {
+    if findings.is_empty() {
+        return Vec::new();
+    }
     let fault = |finding: &LessonFinding| Fault {
         field: finding.field.clone(),
         value: String::new(),
         problem: finding.problem.clone(),
     };
-    let error = (!findings.is_empty()).then(|| document.error_from(findings.iter().map(fault).collect()));
-    let text = error.map(|error| error.to_string()).unwrap_or_default();
-    text.lines().map(str::to_owned).collect::<Vec<_>>().into_iter()
+    let error = document.error_from(findings.iter().map(fault).collect());
+    error.to_string().lines().map(str::to_owned).collect()
 }
 
 /// Writes the template; an error if the file exists.
 fn begin(path: &Path) -> Result<(), Failure> {
     let shown = path.display();
     if files::exists(path) {
-        return Err(Failure::argument(format!("--new {shown}: the file is there already; name another")));
+        refuse!("--new {shown}: the file is there already; name another");
     }
     write_alone(Output::LESSON, path, TEMPLATE)
 }

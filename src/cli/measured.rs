@@ -1,19 +1,94 @@
-//! Options of `simulate` that lay a measured motion over the computed one.
+//! Measured records: the options that choose their columns, and those of `simulate` and `curve` that lay a
+//! record over what is computed.
 
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 use clap::Args;
 use interwell::dynamics::Model;
+use interwell::mechanics::Mechanism;
 use interwell::numeric::short;
 use interwell::output::aligned;
-use interwell::scene::{Measured, Quantity, Scene, read_measured};
-use interwell::study::{Comparison, MeasuredMotion, NoComparison, compare, metres};
+use interwell::scene::{Ask, Channel, Measured, Quantity, Scene, read_measured};
+use interwell::study::{
+    Comparison, ForceComparison, MeasuredMotion, NoComparison, compare, compare_force, metres,
+};
 
-use super::columns::ColumnOptions;
-use super::failure::Failure;
-use super::say;
-use super::support::{number, numbers};
+use super::support::{finite, numbers};
+use super::{Common, Failure, refuse, say};
+
+/// Columns of time and of what was measured.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Columns of the record")]
+pub struct ColumnOptions {
+    /// Column of the times [default: the one whose name ends with a unit of time, as t_s or `time (ms)`]
+    #[arg(long, value_name = "COLUMN")]
+    pub time: Option<String>,
+
+    /// Unit of the times: s, ms or us [default: as the column's name ends]
+    #[arg(long, value_name = "UNIT")]
+    pub time_unit: Option<String>,
+
+    /// Column of the values [default: the one whose name ends with such a unit, as x_mm, a_g, force_n]
+    #[arg(long, value_name = "COLUMN")]
+    pub column: Option<String>,
+
+    /// Unit of the values, such as mm, m/s, g or N [default: as the column's name ends]
+    #[arg(long, value_name = "UNIT")]
+    pub unit: Option<String>,
+}
+
+impl ColumnOptions {
+    /// The request to the record for the times.
+    pub fn times(&self) -> Ask {
+        Ask::by_options(&[Quantity::Time], &self.time, &self.time_unit, ["--time", "--time-unit"])
+    }
+
+    /// The request to the record for values of the first of these quantities that it has.
+    pub fn values(&self, quantities: &[Quantity]) -> Ask {
+        Ask::by_options(quantities, &self.column, &self.unit, ["--column", "--unit"])
+    }
+}
+
+/// The column of positions, of a force over them.
+#[derive(Debug, Args)]
+pub struct PositionOptions {
+    /// Of force: column of the positions [default: the one whose name ends with a unit of length]
+    #[arg(long, value_name = "COLUMN")]
+    pub position: Option<String>,
+
+    /// Of force: unit of the positions: m, cm, mm or um [default: as the column's name ends]
+    #[arg(long, value_name = "UNIT")]
+    pub position_unit: Option<String>,
+}
+
+impl PositionOptions {
+    /// The request to the record for the positions.
+    pub fn positions(&self) -> Ask {
+        let names = ["--position", "--position-unit"];
+        Ask::by_options(&[Quantity::Displacement], &self.position, &self.position_unit, names)
+    }
+}
+
+/// The columns that a record was read from, in words.
+pub fn columns_read<const N: usize>(record: &Measured<N>) -> String {
+    let from = |channel: &Channel| format!("{} from `{}`", channel.quantity.name(), channel.column);
+    let commas = if record.decimal_commas { ", with decimal commas" } else { "" };
+    format!("{}{commas}", record.channels.each_ref().map(from).join(", "))
+}
+
+/// The answer without `--measured`: nothing to compare, an error if a column of the record is `chosen`.
+fn no_record<T>(chosen: &[(&str, &Option<String>)]) -> Result<Option<T>, Failure> {
+    match chosen.iter().find(|(_, name)| name.is_some()) {
+        None => Ok(None),
+        Some((option, _)) => refuse!("{option} is of a record: name that by --measured FILE"),
+    }
+}
+
+/// The offset in m that `--offset-mm` gives.
+fn offset(text: Option<&str>) -> Result<f64, Failure> {
+    text.map_or(Ok(0.0), |text| finite("--offset-mm", text, "give mm, such as -35.2").map(metres))
+}
 
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Comparison with a measured motion")]
@@ -48,16 +123,6 @@ pub struct MeasuredOptions {
     pub columns: ColumnOptions,
 }
 
-/// The offset in m that `--offset-mm` gives.
-pub fn offset(text: Option<&str>) -> Result<f64, Failure> {
-    let Some(text) = text else { return Ok(0.0) };
-    finite("--offset-mm", text, "give mm, such as -35.2").map(metres)
-}
-
-fn finite(option: &str, text: &str, right: &str) -> Result<f64, Failure> {
-    number(option, text, |value: &f64| value.is_finite(), right)
-}
-
 /// A measured record, and how its times and values are shifted and scaled for the comparison with a run.
 pub struct MeasuredRecord {
     /// Times and values.
@@ -72,16 +137,15 @@ pub struct MeasuredRecord {
 
 impl MeasuredOptions {
     /// Reads the record, if one is given.
-    pub fn read(&self, quiet: bool) -> Result<Option<MeasuredRecord>, Failure> {
+    pub fn read(&self, common: &Common) -> Result<Option<MeasuredRecord>, Failure> {
         let ColumnOptions { time, time_unit, column, unit } = &self.columns;
-        let chosen = [("--time", time), ("--time-unit", time_unit), ("--column", column), ("--unit", unit)];
         let Some(path) = &self.measured else {
-            return match chosen.into_iter().find(|option| option.1.is_some()) {
-                None => Ok(None),
-                Some((option, _)) => {
-                    Err(Failure::argument(format!("{option} is of a record: name that by --measured FILE")))
-                }
-            };
+            return no_record(&[
+                ("--time", time),
+                ("--time-unit", time_unit),
+                ("--column", column),
+                ("--unit", unit),
+            ]);
         };
         let offset = offset(self.offset_mm.as_deref())?;
         let shift = match self.shift_s.as_deref() {
@@ -90,38 +154,25 @@ impl MeasuredOptions {
             Some(text) => Some(finite("--shift-s", text, "give seconds, such as -0.25, or auto")?),
         };
         let above = "give a number above 0, such as 0.001 for times that are milliseconds";
-        let time_scale = match self.time_scale.as_deref() {
-            None => 1.0,
-            Some(text) => finite("--time-scale", text, above)?,
-        };
+        let time_scale = self.time_scale.as_deref();
+        let time_scale = time_scale.map_or(Ok(1.0), |text| finite("--time-scale", text, above))?;
         if !(time_scale > 0.0) {
-            return Err(Failure::argument(format!("--time-scale {time_scale}: {above}")));
+            refuse!("--time-scale {time_scale}: {above}");
         }
-        let inset = match self.inset.as_deref() {
-            None => None,
-            Some(text) => match numbers("--inset", text, ':')?[..] {
-                [from, to] if 0.0 <= from && from < to && to.is_finite() => Some((from, to)),
-                _ => {
-                    let message =
-                        format!("--inset {text}: write A:B with times of the run, A below B, such as 29:31");
-                    return Err(Failure::argument(message));
-                }
-            },
+        let inset = |text| match numbers("--inset", text, ':')?[..] {
+            [from, to] if 0.0 <= from && from < to && to.is_finite() => Ok((from, to)),
+            _ => refuse!("--inset {text}: write A:B with times of the run, A below B, such as 29:31"),
         };
+        let inset = self.inset.as_deref().map(inset).transpose()?;
         let name = path.display().to_string();
         let any = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
         let record = read_measured(path, &[self.columns.times(), self.columns.values(&any)])
             .map_err(|problem| Failure::argument(format!("--measured {name}: {problem}")))?;
-        if self.offset_mm.is_some() && record.channels[1].quantity != Quantity::Displacement {
-            let what = record.channels[1].quantity.name();
-            return Err(Failure::argument(format!("--offset-mm: {name} has a {what}, no displacement")));
+        let quantity = record.channels[1].quantity;
+        if self.offset_mm.is_some() && quantity != Quantity::Displacement {
+            refuse!("--offset-mm: {name} has a {}, no displacement", quantity.name());
         }
-        if !quiet {
-            let [times, values] = &record.channels;
-            let commas = if record.decimal_commas { ", with decimal commas" } else { "" };
-            let what = values.quantity.name();
-            say(&format!("{name}: time from `{}`, {what} from `{}`{commas}", times.column, values.column));
-        }
+        common.say(&format!("{name}: {}", columns_read(&record)));
         Ok(Some(MeasuredRecord { record, inset, name, offset, time_scale, shift }))
     }
 }
@@ -145,5 +196,62 @@ impl MeasuredRecord {
         let how = if self.shift.is_none() { " (found by least squares)" } else { "" };
         say(&format!("{name}: shifted by {} s{how}", short(found.shift)));
         say(aligned(&found.table).trim_end());
+    }
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Comparison with a measured force")]
+pub struct MeasuredForceOptions {
+    /// Compare with this record, CSV with a header: force over position of a slow pull. With --plot both are
+    /// drawn over each other, and below them the difference
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
+    pub measured: Option<PathBuf>,
+
+    /// With --measured: write the numbers in which the two differ as CSV [default: on standard error]
+    #[arg(long, value_name = "FILE", allow_hyphen_values = true, requires = "measured")]
+    pub comparison: Option<PathBuf>,
+
+    /// With --measured: mm added to the positions, where the sensor has another zero [default: 0]
+    #[arg(long, value_name = "MM", allow_hyphen_values = true, requires = "measured")]
+    pub offset_mm: Option<String>,
+
+    #[command(flatten)]
+    pub positions: PositionOptions,
+
+    /// Column of the force [default: the one whose name ends with a unit of force, as force_n or `F [mN]`]
+    #[arg(long, value_name = "COLUMN", requires = "measured")]
+    pub column: Option<String>,
+
+    /// Unit of the force: N, mN, uN or kN [default: as the column's name ends]
+    #[arg(long, value_name = "UNIT", requires = "measured")]
+    pub unit: Option<String>,
+}
+
+impl MeasuredForceOptions {
+    /// Compares the record, if one is given, with the curve of a mechanism.
+    pub fn compare(
+        &self,
+        mechanism: &Mechanism,
+        common: &Common,
+    ) -> Result<Option<ForceComparison>, Failure> {
+        let PositionOptions { position, position_unit } = &self.positions;
+        let Some(path) = &self.measured else {
+            return no_record(&[("--position", position), ("--position-unit", position_unit)]);
+        };
+        let offset = offset(self.offset_mm.as_deref())?;
+        let name = path.display();
+        let force = Ask::by_options(&[Quantity::Force], &self.column, &self.unit, ["--column", "--unit"]);
+        let about =
+            |problem: &dyn std::fmt::Display| Failure::argument(format!("--measured {name}: {problem}"));
+        let record =
+            read_measured(path, &[self.positions.positions(), force]).map_err(|problem| about(&problem))?;
+        let commas = if record.decimal_commas { ", with decimal commas" } else { "" };
+        let [x, force] = &record.channels;
+        let positions: Vec<f64> = x.values.iter().map(|x| x + offset).collect();
+        let found = compare_force(mechanism, &positions, &force.values).map_err(|problem| about(&problem))?;
+        common.say(&format!("{name}: position from `{}`, force from `{}`{commas}", x.column, force.column));
+        found.remarks.iter().for_each(|remark| common.say(&format!("{name}: {remark}")));
+        common.say(aligned(&found.table).trim_end());
+        Ok(Some(found))
     }
 }

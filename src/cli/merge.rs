@@ -11,12 +11,9 @@ use interwell::system::checksum::Checksum;
 use interwell::system::files;
 use serde_json::Value;
 
-use super::failure::Failure;
-use super::options::Common;
-use super::outputs::{Output, Outputs};
 use super::shard::{PLACE, command, other_name, value};
 use super::support::{Watch, file_name, manifest_path};
-use super::{interrupt, say};
+use super::{Common, Failure, Output, Outputs, interrupt, refuse};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -34,15 +31,11 @@ struct Part {
     read: Checksum,
 }
 
-/// Joins the shards.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let watch = Watch::start();
     let mut parts = all(&options.parts)?;
-    let inputs: Vec<PathBuf> = parts
-        .iter()
-        .flat_map(|part| [Some(part.path.clone()), manifest_path(&part.path)])
-        .flatten()
-        .collect();
+    let read = parts.iter().flat_map(|part| [Some(part.path.clone()), manifest_path(&part.path)]);
+    let inputs: Vec<PathBuf> = read.flatten().collect();
     let mut outputs = Outputs::new(&inputs)
         .with(Output::DATA, Some(common.out()))?
         .with(Output::MANIFEST, manifest_path(common.out()).as_deref())?;
@@ -58,9 +51,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let headers: Vec<Vec<u8>> = parts.iter_mut().map(|part| part.lines(1)).collect::<Result<_, _>>()?;
     put(&headers[0])?;
     for (number, rows) in slice.dealt() {
-        if interrupt::came() {
-            return Err(Failure::interrupted());
-        }
+        interrupt::check()?;
         put(&parts[number as usize - 1].lines(rows)?)?;
     }
     for part in &parts {
@@ -72,9 +63,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let text = merged_manifest(&manifests, &file_name(common.out()), &sum, &origin.arguments);
     outputs.write(Output::MANIFEST, &text)?;
     outputs.finish()?;
-    if !common.quiet {
-        say(&format!("{rows} rows of {} shards in {:.2} s", manifests.len(), watch.wall_s()));
-    }
+    common.say(&format!("{rows} rows of {} shards in {:.2} s", manifests.len(), watch.wall_s()));
     Ok(())
 }
 
@@ -91,12 +80,12 @@ fn all(paths: &[PathBuf]) -> Result<Vec<Part>, Failure> {
     let Some(first) = parts.first() else {
         if paths.is_empty() {
             let example = "such as merge map-*-of-5.csv --out map.csv";
-            return Err(Failure::argument(format!("merge: name the files of all shards, {example}")));
+            refuse!("merge: name the files of all shards, {example}");
         }
-        return Err(Failure::argument(format!(
+        refuse!(
             "{}; name the rows of every shard, beside which a manifest stands when it is whole",
             unfinished.join(", ")
-        )));
+        );
     };
     for part in &parts[1..] {
         let (path, other) = (part.path.display(), first.path.display());
@@ -105,15 +94,15 @@ fn all(paths: &[PathBuf]) -> Result<Vec<Part>, Failure> {
         if !differences.is_empty() {
             // in the differences, "there" is `path` and "here" is `other`
             return Err(wrong(differences));
-        } else if part.shard.count() != first.shard.count() {
+        }
+        if part.shard.count() != first.shard.count() {
             return Err(wrong(format!("it is the shard {}, that one {}", part.shard, first.shard)));
         }
     }
     parts.sort_by_key(|part| part.shard.number());
     if let Some(same) = parts.windows(2).find(|pair| pair[0].shard == pair[1].shard) {
         let (a, b) = (same[0].path.display(), same[1].path.display());
-        let both = format!("{a} and {b} are both the shard {}; name each shard once", same[0].shard);
-        return Err(Failure::argument(both));
+        refuse!("{a} and {b} are both the shard {}; name each shard once", same[0].shard);
     }
     let count = parts[0].shard.count();
     let has = |number: u64| parts.iter().any(|part| part.shard.number() == number);
@@ -124,11 +113,8 @@ fn all(paths: &[PathBuf]) -> Result<Vec<Part>, Failure> {
         return Ok(parts);
     }
     let not = if unfinished.is_empty() { String::new() } else { format!("{}; ", unfinished.join(", ")) };
-    Err(Failure::argument(format!(
-        "{not}{} of {count} shards are missing; these commands compute them:\n{}",
-        missing.len(),
-        missing.join("\n")
-    )))
+    let (number, commands) = (missing.len(), missing.join("\n"));
+    refuse!("{not}{number} of {count} shards are missing; these commands compute them:\n{commands}")
 }
 
 /// The reason why the file at `path` is not a shard.
@@ -159,17 +145,13 @@ impl Part {
         let shard = manifest["shard"].as_str().and_then(|text| Shard::parse(text).ok());
         let Some(shard) = shard.filter(|_| manifest["program"] == PROGRAM && manifest["plan"].is_object())
         else {
-            return Err(Failure::argument(format!(
-                "{name}: {beside_name} is no manifest of a sweep or of a shard of one"
-            )));
+            refuse!("{name}: {beside_name} is no manifest of a sweep or of a shard of one")
         };
-        let (path, read) = (path.clone(), Checksum::default());
-        Ok(Some(Self { path, manifest, shard, offset: 0, read }))
+        Ok(Some(Self { path, manifest, shard, offset: 0, read: Checksum::default() }))
     }
 
-    /// Reads the next `count` lines.
     fn lines(&mut self, count: u64) -> Result<Vec<u8>, Failure> {
-        let failed = |error| Failure::Failed(anyhow::anyhow!("cannot read {}: {error}", self.path.display()));
+        let failed = |error| Failure::failed(format!("cannot read {}: {error}", self.path.display()));
         let mut file = BufReader::new(files::open_at(&self.path, self.offset).map_err(failed)?);
         let mut bytes = Vec::new();
         for _ in 0..count {
@@ -203,12 +185,8 @@ impl Part {
 
     /// The command that computes another shard of the same sweep.
     fn command_of(&self, shard: Shard) -> String {
-        let arguments = self.manifest["arguments"].as_array();
-        let arguments: Vec<String> = arguments
-            .into_iter()
-            .flatten()
-            .filter_map(|argument| argument.as_str().map(str::to_owned))
-            .collect();
+        let arguments = self.manifest["arguments"].as_array().into_iter().flatten();
+        let arguments: Vec<String> = arguments.filter_map(Value::as_str).map(str::to_owned).collect();
         let name = self.path.to_string_lossy();
         let out = match value(&arguments, "--out") {
             Some(out) if out.contains(PLACE) => out.to_owned(),
@@ -218,5 +196,4 @@ impl Part {
     }
 }
 
-/// The longest line that is read.
 const LONGEST_LINE: u64 = 1 << 20;

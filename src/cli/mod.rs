@@ -4,7 +4,6 @@ mod accuracy;
 mod basins;
 mod best;
 mod check;
-mod columns;
 mod compare;
 mod curve;
 mod exponents;
@@ -14,7 +13,6 @@ mod identify;
 mod interrupt;
 mod lesson;
 mod measured;
-mod measured_force;
 mod merge;
 mod options;
 mod orbit;
@@ -22,7 +20,6 @@ mod outputs;
 mod picture;
 mod presets;
 mod progress;
-mod scene_accuracy;
 mod section;
 mod shard;
 mod simulate;
@@ -39,6 +36,13 @@ use clap::error::ErrorKind;
 
 pub use failure::Failure;
 pub use options::{Options, command_names};
+
+// what most commands use
+use failure::refuse;
+use options::{ChartOptions, Common, PlotOptions, whole};
+use outputs::{Output, Outputs, write_alone};
+use picture::{Picture, caption};
+use progress::{bar, with_bar};
 
 /// Reads the arguments; an `Err` is the exit status after help or an error has been printed.
 pub fn parse() -> Result<Options, ExitCode> {
@@ -59,7 +63,7 @@ pub fn parse() -> Result<Options, ExitCode> {
             ExitCode::from(2)
         }
         _ => {
-            // The first lines name argument, value and remedy; usage and hints would bury them.
+            // Usage and hints would bury the lines that name argument, value and remedy.
             let text = error.render().to_string();
             let parts = text.split("\n\n").filter(|part| !part.trim_start().starts_with("Usage:"));
             let lines = parts.flat_map(str::lines).map(str::trim);
@@ -79,38 +83,33 @@ pub fn run(
     let Options { headless, common, scene, command } = options;
     let commands = command_names();
     match (command, headless, scene) {
-        (Some(_), _, Some(scene)) => {
-            Err(Failure::argument(format!("`{scene}` stands before the command: put the scene after it")))
-        }
+        (Some(_), _, Some(scene)) => refuse!("`{scene}` stands before the command: put the scene after it"),
         (Some(command), false, None) => {
             let name = command.name();
-            let remedy = format!("`{name}` works without a window: write interwell --headless {name}");
-            Err(Failure::argument(remedy))
+            refuse!("`{name}` works without a window: write interwell --headless {name}")
         }
         (Some(mut command), true, None) => {
-            command.common().put_before(common).map_err(|option| {
-                Failure::argument(format!("{option} is given before and after the command: give it once"))
-            })?;
-            let (name, refused) = (command.name(), command.refused());
-            match command.common().given(refused) {
-                Some(option) => Err(Failure::argument(format!(
-                    "--{option} changes a scene or its run, and `{name}` takes no scene: leave it out"
-                ))),
-                None => command.run(),
+            if let Err(option) = command.common().put_before(common) {
+                refuse!("{option} is given before and after the command: give it once");
             }
+            let (name, refused) = (command.name(), command.refused());
+            if let Some(option) = command.common().given(refused) {
+                refuse!("--{option} changes a scene or its run, and `{name}` takes no scene: leave it out");
+            }
+            command.run()
         }
-        (None, true, None) => Err(Failure::argument(format!(
+        (None, true, None) => refuse!(
             "--headless needs a command: {commands}, such as interwell --headless simulate paper; see \
              interwell --help"
-        ))),
-        (None, true, Some(word)) => Err(Failure::argument(format!(
-            "--headless needs a command before `{word}`: {commands}; see interwell --help"
-        ))),
+        ),
+        (None, true, Some(word)) => {
+            refuse!("--headless needs a command before `{word}`: {commands}; see interwell --help")
+        }
         (None, false, scene) => match common.given(&["set", "tolerance", "jobs", "out", "quiet"]) {
-            Some(option) => Err(Failure::argument(format!(
+            Some(option) => refuse!(
                 "--{option} belongs to a command: {commands}, such as interwell --headless simulate; the \
                  window takes a scene alone"
-            ))),
+            ),
             None => window(scene.as_deref()),
         },
     }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args, CommandFactory, Parser, Subcommand};
 
-use super::Failure;
+use super::{Failure, say};
 
 const USAGE: &str = "interwell [SCENE]
        interwell --headless COMMAND [SCENE] [OPTIONS]";
@@ -81,14 +81,12 @@ macro_rules! commands {
             )*
         }
 
-        /// The names of the commands.
         pub const COMMANDS: &[&str] = &[$(stringify!($word)),*];
 
         /// For each command the common options that it refuses, and those that it ignores.
         const UNUSED: &[(&[&str], &[&str])] = &[$((&[$($($refused),+)?], &[$($($ignored),+)?])),*];
 
         impl Command {
-            /// Its name on the command line.
             pub fn name(&self) -> &'static str {
                 match self {
                     $(Self::$variant { .. } => stringify!($word),)*
@@ -97,18 +95,17 @@ macro_rules! commands {
 
             /// The common options that it refuses.
             pub fn refused(&self) -> &'static [&'static str] {
-                let place = COMMANDS.iter().position(|word| *word == self.name());
-                place.map_or(&[], |place| UNUSED[place].0)
+                match self {
+                    $(Self::$variant { .. } => &[$($($refused),+)?],)*
+                }
             }
 
-            /// Its common options.
             pub fn common(&mut self) -> &mut Common {
                 match self {
                     $(Self::$variant { common, .. } => common,)*
                 }
             }
 
-            /// Runs the command.
             pub fn run(&self) -> Result<(), Failure> {
                 match self {
                     $(Self::$variant { arguments, common } => super::$word::run(arguments, common),)*
@@ -209,9 +206,15 @@ pub struct Common {
 }
 
 impl Common {
-    /// Where the data goes.
     pub fn out(&self) -> &Path {
         self.out.as_deref().unwrap_or(Path::new("-"))
+    }
+
+    /// Prints a line on standard error, unless `--quiet` is given.
+    pub fn say(&self, line: &str) {
+        if !self.quiet {
+            say(line);
+        }
     }
 
     /// Adds the options given `before` the command to those given after it. The error is the name of an
@@ -219,19 +222,22 @@ impl Common {
     ///
     /// clap's global arguments would drop a `--set` before the command if another one follows the command.
     pub fn put_before(&mut self, before: Self) -> Result<(), &'static str> {
-        let twice = [
-            ("--out", self.out.is_some() && before.out.is_some()),
-            ("--tolerance", self.tolerance.is_some() && before.tolerance.is_some()),
-            ("--jobs", self.jobs.is_some() && before.jobs.is_some()),
-        ];
-        if let Some((option, _)) = twice.into_iter().find(|(_, twice)| *twice) {
-            return Err(option);
+        fn put<T>(
+            option: &'static str,
+            value: &mut Option<T>,
+            before: Option<T>,
+        ) -> Result<(), &'static str> {
+            if value.is_some() && before.is_some() {
+                return Err(option);
+            }
+            *value = value.take().or(before);
+            Ok(())
         }
+        put("--out", &mut self.out, before.out)?;
+        put("--tolerance", &mut self.tolerance, before.tolerance)?;
+        put("--jobs", &mut self.jobs, before.jobs)?;
         self.set.splice(0..0, before.set);
         self.quiet |= before.quiet;
-        self.out = self.out.take().or(before.out);
-        self.tolerance = self.tolerance.take().or(before.tolerance);
-        self.jobs = self.jobs.or(before.jobs);
         Ok(())
     }
 

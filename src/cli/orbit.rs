@@ -1,21 +1,13 @@
 //! `orbit`: the periodic motion near the settled motion of a run, or a branch of them over a field.
 
-use std::io::IsTerminal;
-use std::sync::Arc;
-
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
-use interwell::dynamics::Model;
 use interwell::output::branch_chart;
 use interwell::scene::{Axis, Document, is_whole};
 use interwell::study::{Branch, BranchEnd, Family, NoOrbit, Table, Task, branch, orbit, orbit_table};
 
-use super::failure::Failure;
-use super::options::{ChartOptions, Common, whole};
-use super::outputs::Output;
-use super::picture::{Picture, caption};
-use super::support::{check, mechanism, number, outputs, read, refuse_electrical_state, warn};
-use super::{interrupt, say};
+use super::progress::bar_on_terminal;
+use super::support::{check, finite, mechanism, model, outputs, read, refuse_electrical_state, warn};
+use super::{ChartOptions, Common, Failure, Output, Picture, caption, interrupt, refuse, whole};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -54,30 +46,27 @@ pub struct Arguments {
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     if picture.is_some() && options.branch.is_none() {
-        return Err(Failure::argument("--plot shows a branch; add --branch FIELD=A:B, or leave it out"));
+        refuse!("--plot shows a branch; add --branch FIELD=A:B, or leave it out");
     }
-    let phase_deg = phase(&options.phase_deg)?;
+    let phase_deg = finite("--phase-deg", &options.phase_deg, "give a phase in degrees, such as 90")?;
     let mut document = read(&options.scene, common)?;
-    let branch_range = options.branch.as_deref().map(|text| range(text, &document)).transpose()?;
-    if let Some((field, from, _)) = &branch_range {
+    let mut branch_range = None;
+    if let Some(text) = &options.branch {
+        let (field, from, to) = range(text, &document)?;
         // the branch begins at this value; the value in the scene is never run
-        document.assign(
-            field,
-            &from.to_string(),
-            &format!("--branch {}", options.branch.as_deref().unwrap_or_default()),
-        )?;
+        document.assign(&field, &from.to_string(), &format!("--branch {text}"))?;
+        branch_range = Some((field, from, to));
     }
     let warnings = check(&mut document, None)?;
     let mechanism = mechanism(&document)?;
     warn(&document, common, &warnings, Some(&mechanism));
-    let model = Model::build(&document.scene, Arc::clone(&mechanism))
-        .map_err(|faults| Failure::from(document.error_from(faults)))?;
+    let model = model(&document, &mechanism)?;
     if !model.repeats() || !model.is_shaken() {
-        return Err(Failure::argument(format!(
+        refuse!(
             "{}: excitation: a periodic motion needs a drive that repeats and is not 0; take a Sine, or a \
              Sum of sines whose frequencies have a common period",
             document.name
-        )));
+        );
     }
     refuse_electrical_state(&document, &[], "orbit")?;
     let cancel = interrupt::listen();
@@ -85,7 +74,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let phase = phase_deg / 360.0;
     let failed = |error: NoOrbit, at: &str| match error {
         NoOrbit::Cancelled => Failure::interrupted(),
-        _ => Failure::Failed(anyhow::anyhow!("{}: {at}{error}", document.name)),
+        _ => Failure::failed(format!("{}: {at}{error}", document.name)),
     };
     let table: Table = match branch_range {
         None => {
@@ -94,7 +83,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         }
         Some((field, from, to)) => {
             let family = Family::new(&document.scene, &document.files, &mechanism, &field);
-            let bar = count(common.quiet);
+            // the number of motions is not known beforehand
+            let bar = bar_on_terminal(None, "{human_pos} motions", common.quiet);
             let task = Task { tick: &|| bar.inc(1), cancel };
             let found = branch(&family, &field, (from, to), phase, options.period, &task);
             bar.finish_and_clear();
@@ -103,9 +93,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
                 let chart = branch_chart(&found, phase_deg, picture.ranges);
                 picture.write(&mut outputs, &chart, &caption(&document))?;
             }
-            if !common.quiet {
-                remarks(&found, (from, to)).iter().for_each(|line| say(line));
-            }
+            remarks(&found, (from, to)).iter().for_each(|line| common.say(line));
             found.table()
         }
     };
@@ -113,29 +101,17 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     outputs.finish()
 }
 
-/// A counter of motions on a terminal; their final number is not known.
-fn count(quiet: bool) -> ProgressBar {
-    if quiet || !std::io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let style = ProgressStyle::with_template("{human_pos} motions");
-    ProgressBar::no_length().with_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()))
-}
-
 /// Remarks that the table of a branch cannot hold: events that were not located, and where and why the branch
 /// ended, unless it reached the end of its range.
 fn remarks(branch: &Branch, (from, to): (f64, f64)) -> Vec<String> {
     let field = &branch.field;
-    let mut lines: Vec<String> = branch
-        .unlocated
-        .iter()
-        .map(|(before, after)| {
-            format!(
-                "between {field} = {before} and {after} the motion changes how it touches the stops, or its \
-                 stability; no event was located there, and the table has none"
-            )
-        })
-        .collect();
+    let unlocated = |(before, after): &(f64, f64)| {
+        format!(
+            "between {field} = {before} and {after} the motion changes how it touches the stops, or its \
+             stability; no event was located there, and the table has none"
+        )
+    };
+    let mut lines: Vec<String> = branch.unlocated.iter().map(unlocated).collect();
     let at = branch.values.last().copied().unwrap_or(f64::NAN);
     let why = match branch.end {
         BranchEnd::Range if (at - to).abs() < (at - from).abs() => return lines,
@@ -144,10 +120,6 @@ fn remarks(branch: &Branch, (from, to): (f64, f64)) -> Vec<String> {
     };
     lines.push(format!("the branch ends at {field} = {at}: {why}"));
     lines
-}
-
-fn phase(text: &str) -> Result<f64, Failure> {
-    number("--phase-deg", text, |degrees: &f64| degrees.is_finite(), "give a phase in degrees, such as 90")
 }
 
 /// The field of `--branch FIELD=A:B` and the ends of its range.
@@ -160,15 +132,15 @@ fn range(text: &str, document: &Document) -> Result<(String, f64, f64), Failure>
     let axis = Axis::parse(&format!("{}={},{}", field.trim(), from.trim(), to.trim()), &document.scene);
     let axis = axis.map_err(wrong)?;
     if is_whole(&document.scene, &axis.field) {
-        return Err(wrong(format!(
-            "{} holds whole numbers, and a branch takes all values between A and B; follow the motion with \
-             `sweep --carry` over it",
+        refuse!(
+            "--branch {text}: {} holds whole numbers, and a branch takes all values between A and B; follow \
+             the motion with `sweep --carry` over it",
             axis.field
-        )));
+        );
     }
     match axis.values[..] {
         [from, to] if from != to => Ok((axis.field, from, to)),
-        [from, _] => Err(wrong(format!("A and B are both {from}; give a range, such as 0.5:2"))),
+        [from, _] => refuse!("--branch {text}: A and B are both {from}; give a range, such as 0.5:2"),
         _ => Err(form()),
     }
 }

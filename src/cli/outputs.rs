@@ -7,8 +7,7 @@ use interwell::scene::{is_manifest, is_scene_file};
 use interwell::study::Table;
 use interwell::system::files::{canonical, is_file};
 
-use super::failure::Failure;
-use super::interrupt;
+use super::{Failure, interrupt, refuse};
 
 /// Rows that are formatted at a time.
 const ROWS: usize = 1 << 15;
@@ -61,7 +60,7 @@ impl Outputs {
         let (Some(path), option) = (path, output.option()) else { return Ok(self) };
         let would_overwrite = |what: &str| {
             let path = path.display();
-            Err(Failure::argument(format!("{option} {path} would overwrite {what}: name another file")))
+            refuse!("{option} {path} would overwrite {what}: name another file")
         };
         if canonical(path).is_some_and(|path| is_file(&path) && self.inputs.contains(&path)) {
             return would_overwrite("the scene or a file that it reads");
@@ -73,8 +72,7 @@ impl Outputs {
         let sink = Sink::open(path)?;
         if let Some((first, _)) = self.sinks.iter().find(|(_, earlier)| same_target(earlier, &sink)) {
             let (first, name) = (first.option(), sink.name());
-            let message = format!("{first} and {option} both go to {name}: give each a place of its own");
-            return Err(Failure::argument(message));
+            refuse!("{first} and {option} both go to {name}: give each a place of its own");
         }
         self.sinks.push((output, sink));
         Ok(self)
@@ -106,15 +104,12 @@ impl Outputs {
         }
         self.write(output, header(table))?;
         for begin in (0..table.rows()).step_by(ROWS) {
-            if interrupt::came() {
-                return Err(Failure::interrupted());
-            }
+            interrupt::check()?;
             self.write(output, rows(table, begin..begin + ROWS))?;
         }
         Ok(())
     }
 
-    /// Writes text or bytes.
     pub fn write(&mut self, output: Output, text: impl AsRef<[u8]>) -> Result<(), Failure> {
         let Some(sink) = self.sink(output) else { return Ok(()) };
         sink.put_bytes(text.as_ref()).map_err(|error| Failure::writing(sink.name(), error))
@@ -136,7 +131,7 @@ impl Outputs {
         }
         for (_, sink) in self.sinks {
             let name = sink.name().to_owned();
-            sink.finish().map_err(|error| Failure::writing(&name, error))?;
+            sink.finish().map_err(|error| Failure::writing(name, error))?;
         }
         Ok(())
     }

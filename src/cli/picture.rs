@@ -9,11 +9,8 @@ use interwell::output::{
 };
 use interwell::scene::Document;
 
-use super::failure::Failure;
-use super::options::{ChartOptions, Common, Options, PlotOptions};
-use super::outputs::{Output, Outputs};
-use super::say;
 use super::support::range;
+use super::{ChartOptions, Common, Failure, Options, Output, Outputs, PlotOptions, refuse, say};
 
 /// A requested picture.
 #[derive(Debug, Clone, Copy)]
@@ -36,8 +33,7 @@ pub struct Picture<'a> {
 impl<'a> Picture<'a> {
     /// The picture that `options` ask for; an error if its name does not end like one.
     pub fn new(options: &'a PlotOptions, common: &Common) -> Result<Option<Self>, Failure> {
-        let picture = Self::of(Output::PLOT, options.plot.as_deref(), options, common)?;
-        Ok(picture.map(|picture| picture.with_data(options)))
+        Self::of(Output::PLOT, options.plot.as_deref(), options, common)
     }
 
     /// The same, with the ranges of its axes; errors name the horizontal one `across`.
@@ -55,16 +51,11 @@ impl<'a> Picture<'a> {
         Ok(picture.map(|picture| Self { ranges, ..picture }))
     }
 
-    /// The same, with the path of `--plot-data`.
-    pub fn with_data(self, options: &'a PlotOptions) -> Self {
-        Self { data: options.plot_data.as_deref(), ..self }
-    }
-
     /// The picture at the `path` of an output, laid out as `options` say.
     pub fn of(
         output: Output,
         path: Option<&'a Path>,
-        options: &PlotOptions,
+        options: &'a PlotOptions,
         common: &Common,
     ) -> Result<Option<Self>, Failure> {
         let (Some(path), option) = (path, output.option()) else { return Ok(None) };
@@ -72,13 +63,12 @@ impl<'a> Picture<'a> {
             .map_err(|problem| Failure::argument(format!("{option} {}: {problem}", path.display())))?;
         if let Some(dpi) = options.dpi.as_deref().filter(|_| format != Format::Png) {
             let name = path.display();
-            let message = format!("--dpi {dpi}: {option} {name} has no pixels; name a .png, or leave it out");
-            return Err(Failure::argument(message));
+            refuse!("--dpi {dpi}: {option} {name} has no pixels; name a .png, or leave it out");
         }
         Ok(Some(Self {
             output,
             path,
-            data: None,
+            data: options.plot_data.as_deref(),
             theme: Theme::of(options.dark, sheet(options, format)?),
             ranges: Ranges::default(),
             format,
@@ -119,30 +109,24 @@ fn arguments() -> Vec<String> {
     let Ok(matches) = program.clone().try_get_matches_from(std::env::args_os()) else { return Vec::new() };
     let Some((word, command)) = matches.subcommand() else { return Vec::new() };
     let mut all = Vec::new();
-    for argument in program.find_subcommand(word).iter().flat_map(|command| command.get_arguments()) {
+    let arguments = program.find_subcommand(word).into_iter().flat_map(|command| command.get_arguments());
+    for argument in arguments.filter(|argument| argument.get_id() != "headless") {
         let id = argument.get_id().as_str();
-        // common options may also stand before the command
-        let given = |matches: &ArgMatches| -> Vec<String> {
-            let known = matches.try_contains_id(id).is_ok();
-            if !known || matches.value_source(id) != Some(ValueSource::CommandLine) {
-                return Vec::new();
-            }
-            let values = matches.get_raw(id).into_iter().flatten();
-            values.map(|value| value.to_string_lossy().into_owned()).collect()
+        let is_given = |matches: &&ArgMatches| {
+            matches.try_contains_id(id).is_ok() && matches.value_source(id) == Some(ValueSource::CommandLine)
         };
-        if id == "headless" {
-            continue;
-        }
+        // common options may also stand before the command
+        let given = [&matches, command].into_iter().filter(is_given);
         let is_flag = matches!(argument.get_action(), ArgAction::SetTrue);
-        let option = argument.get_long().map(str::to_owned);
-        let values =
-            given(&matches).into_iter().chain(given(command)).map(|value| Some(value).filter(|_| !is_flag));
-        all.extend(values.map(|value| Argument { option: option.clone(), value }));
+        for value in given.filter_map(|matches| matches.get_raw(id)).flatten() {
+            let option = argument.get_long().map(str::to_owned);
+            let value = (!is_flag).then(|| value.to_string_lossy().into_owned());
+            all.push(Argument { option, value });
+        }
     }
     picture_arguments(word, all)
 }
 
-/// The sheet of paper that `options` ask for.
 fn sheet(options: &PlotOptions, format: Format) -> Result<Option<Sheet>, Failure> {
     let Some(width_mm) = &options.plot_width_mm else { return Ok(None) };
     let text = SheetText {
@@ -160,7 +144,6 @@ pub fn caption(document: &Document) -> Caption {
     Caption::new(document, env!("CARGO_PKG_VERSION"))
 }
 
-/// A size `WxH` in pixels.
 fn size(text: &str) -> Result<(u32, u32), Failure> {
     let side = |text: &str| text.trim().parse::<u32>().ok().filter(|pixels| (200..=4000).contains(pixels));
     let sides = text.split_once(['x', 'X']).and_then(|(width, height)| side(width).zip(side(height)));

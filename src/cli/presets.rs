@@ -7,9 +7,7 @@ use interwell::output::Sink;
 use interwell::scene::{PRESETS, export};
 use interwell::system::files;
 
-use super::failure::Failure;
-use super::options::Common;
-use super::outputs::{Output, Outputs};
+use super::{Common, Failure, Output, Outputs, refuse};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -40,26 +38,23 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
 fn write(folder: &Path, force: bool) -> Result<String, Failure> {
     if !files::is_folder(folder) {
         let folder = folder.display();
-        return Err(Failure::argument(format!("--write {folder}: there is no such folder; make it first")));
+        refuse!("--write {folder}: there is no such folder; make it first");
     }
     let all = export();
     let differs = |name: &str, text: &str| {
         let path = folder.join(name);
         files::exists(&path) && files::bytes(&path).ok().as_deref() != Some(text.as_bytes())
     };
-    let differing: Vec<&str> =
-        all.iter().filter(|(name, text)| differs(name, text)).map(|(name, _)| name.as_str()).collect();
+    let differing = all.iter().filter(|(name, text)| differs(name, text)).map(|(name, _)| name.as_str());
+    let differing: Vec<&str> = differing.collect();
     if !differing.is_empty() && !force {
-        let message = format!(
-            "--write {}: {} there and not as built in; nothing was written: choose another folder, or \
+        let are = if differing.len() == 1 { "is" } else { "are" };
+        refuse!(
+            "--write {}: {} {are} there and not as built in; nothing was written: choose another folder, or \
              replace with --force",
             folder.display(),
-            match differing[..] {
-                [one] => format!("{one} is"),
-                _ => format!("{} are", differing.join(", ")),
-            }
+            differing.join(", ")
         );
-        return Err(Failure::argument(message));
     }
     let mut written = String::new();
     for (name, text) in &all {
@@ -67,7 +62,7 @@ fn write(folder: &Path, force: bool) -> Result<String, Failure> {
         let mut sink = Sink::open(&path)?;
         sink.put(text)
             .and_then(|()| sink.finish())
-            .map_err(|e| Failure::writing(&path.display().to_string(), e))?;
+            .map_err(|error| Failure::writing(path.display(), error))?;
         written += &format!("{}\n", path.display());
     }
     Ok(written)

@@ -5,9 +5,10 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use indicatif::{HumanCount, HumanDuration, ProgressBar, ProgressState, ProgressStyle};
+use interwell::study::Task;
 use interwell::system::clock::WallClock;
 
-use super::say;
+use super::{Common, interrupt, say};
 
 /// Time between two lines in s.
 const INTERVAL: f64 = 60.0;
@@ -18,54 +19,57 @@ pub struct Progress {
     lines: Option<Lines>,
 }
 
-/// Progress in lines, one every minute.
 struct Lines {
     parts: u64,
     unit: String,
     clock: WallClock,
     /// Parts done before the clock was started.
-    before: AtomicU64,
-    /// Parts done.
+    before: u64,
     done: AtomicU64,
     /// Number of the interval in which the last line was printed.
     printed: AtomicU64,
 }
 
-/// Progress over a number of parts, called `unit`: a bar with rate and time left on a terminal, unless the
-/// rows go there too; lines if standard error is no terminal.
-pub fn bar(parts: u64, unit: &str, quiet: bool, out: &Path) -> Progress {
-    let rows_on_terminal = out == Path::new("-") && std::io::stdout().is_terminal();
-    let terminal = std::io::stderr().is_terminal();
-    let lines = (!quiet && !terminal).then(|| Lines {
+/// Runs `work` with a task that Ctrl-C ends and whose parts, called `unit`, are counted by a [`bar`].
+pub fn with_bar<T>(parts: u64, unit: &str, common: &Common, work: impl FnOnce(&Task) -> T) -> T {
+    let bar = bar(parts, 0, unit, common);
+    work(&Task { tick: &|| bar.inc(1), cancel: interrupt::listen() })
+}
+
+/// Progress over a number of parts, called `unit`, of which the first `before` are done already: a bar with
+/// rate and time left on a terminal, unless the rows go there too; lines if standard error is no terminal.
+pub fn bar(parts: u64, before: u64, unit: &str, common: &Common) -> Progress {
+    let rows_on_terminal = common.out() == Path::new("-") && std::io::stdout().is_terminal();
+    let (done, printed) = (AtomicU64::new(before), AtomicU64::new(0));
+    let lines = (!common.quiet && !std::io::stderr().is_terminal()).then(|| Lines {
         parts,
         unit: unit.to_owned(),
         clock: WallClock::start(),
-        before: AtomicU64::new(0),
-        done: AtomicU64::new(0),
-        printed: AtomicU64::new(0),
+        before,
+        done,
+        printed,
     });
-    if quiet || rows_on_terminal || !terminal {
-        return Progress { bar: ProgressBar::hidden(), lines };
-    }
     let template = format!("{{wide_bar}} {{human_pos}}/{{human_len}} {unit}  {{rate}}  {{eta}} left");
-    let style = ProgressStyle::with_template(&template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    let bar = bar_on_terminal(Some(parts), &template, common.quiet || rows_on_terminal);
+    bar.set_position(before);
+    bar.reset_eta();
+    Progress { bar, lines }
+}
+
+/// A bar in the style of `template`, without a length if the number of `parts` is not known; hidden as well
+/// where standard error is no terminal.
+pub fn bar_on_terminal(parts: Option<u64>, template: &str, hidden: bool) -> ProgressBar {
+    if hidden || !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
     let rate = |state: &ProgressState, text: &mut dyn std::fmt::Write| {
         let _ = write!(text, "{:.0}/s", state.per_sec());
     };
-    Progress { bar: ProgressBar::new(parts).with_style(style.with_key("rate", rate)), lines }
+    parts.map_or_else(ProgressBar::no_length, ProgressBar::new).with_style(style.with_key("rate", rate))
 }
 
 impl Progress {
-    /// Counts `parts` as done before the command began.
-    pub fn begin_at(&self, parts: u64) {
-        self.bar.set_position(parts);
-        self.bar.reset_eta();
-        if let Some(lines) = &self.lines {
-            lines.before.store(parts, Ordering::Relaxed);
-            lines.done.store(parts, Ordering::Relaxed);
-        }
-    }
-
     /// Counts `parts` more as done. May be called from any thread.
     pub fn inc(&self, parts: u64) {
         match &self.lines {
@@ -101,7 +105,7 @@ impl Lines {
     }
 
     fn line(&self, done: u64, seconds: f64) -> String {
-        let rate = (done - self.before.load(Ordering::Relaxed)) as f64 / seconds;
+        let rate = (done - self.before) as f64 / seconds;
         let left = self.parts.saturating_sub(done) as f64 / rate;
         let (done, parts) = (HumanCount(done), HumanCount(self.parts.max(done)));
         format!("{done} of {parts} {}, {rate:.1}/s, {} left", self.unit, duration(left))
@@ -127,7 +131,7 @@ mod tests {
             parts: 10_000,
             unit: "cells".into(),
             clock: WallClock::start(),
-            before: AtomicU64::new(1000),
+            before: 1000,
             done: AtomicU64::new(1000),
             printed: AtomicU64::new(0),
         };

@@ -3,18 +3,15 @@
 use clap::Args;
 use interwell::output::{SectionPicture, manifest, section_chart};
 use interwell::study::{
-    Carry, DIRECTION, Grid, MAX_SECTION, SectionAt, SectionOptions, Sections, Table, Tally, Task, section,
+    Carry, DIRECTION, Grid, MAX_SECTION, SectionAt, SectionOptions, Sections, Table, Tally, section,
 };
 
-use super::failure::Failure;
 use super::grid_job::GridJob;
-use super::options::{ChartOptions, Common, whole};
-use super::outputs::Output;
-use super::picture::{Picture, caption};
 use super::support::{
-    file_name, load_held, load_model, number, outputs, pool, refuse_electrical_state, until_settled, warn,
+    counted, file_name, finite, load_held, load_model, outputs, pool, refuse_electrical_state, until_settled,
+    warn,
 };
-use super::{interrupt, say};
+use super::{ChartOptions, Common, Failure, Output, Picture, caption, interrupt, refuse, say, whole};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -67,8 +64,18 @@ pub struct Arguments {
 
 /// Takes the section, or one for each cell, and writes the rows.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
+    let at = match (&*options.at, options.phase_deg.as_deref()) {
+        ("impacts", None) => SectionAt::Impacts,
+        ("impacts", Some(_)) => {
+            refuse!("--phase-deg belongs to states once a period: leave it out, or leave out --at impacts")
+        }
+        (_, None) => SectionAt::Phase(0.0),
+        (_, Some(text)) => {
+            SectionAt::Phase(finite("--phase-deg", text, "give an angle in degrees, such as 90")?)
+        }
+    };
     let settings = SectionOptions {
-        at: section_at(options)?,
+        at,
         periods: options.skip.zip(options.keep),
         until_settled: None,
         carry: options.carry.as_deref().and_then(Carry::named),
@@ -76,22 +83,6 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if options.over.is_empty() { one(options, common, settings) } else { diagram(options, common, settings) }
 }
 
-fn section_at(options: &Arguments) -> Result<SectionAt, Failure> {
-    let phase = options.phase_deg.as_deref();
-    if options.at == "impacts" {
-        return match phase {
-            Some(_) => Err(Failure::argument(
-                "--phase-deg belongs to states once a period: leave it out, or leave out --at impacts",
-            )),
-            None => Ok(SectionAt::Impacts),
-        };
-    }
-    let finite = |value: &f64| value.is_finite();
-    let angle = |text| number("--phase-deg", text, finite, "give an angle in degrees, such as 90");
-    Ok(SectionAt::Phase(phase.map_or(Ok(0.0), angle)?))
-}
-
-/// The section of one run.
 fn one(options: &Arguments, common: &Common, mut settings: SectionOptions) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     let (document, model) = load_model(&options.scene, common)?;
@@ -100,20 +91,12 @@ fn one(options: &Arguments, common: &Common, mut settings: SectionOptions) -> Re
     let mut outputs = outputs(&options.scene, &document, common)?.with_picture(picture)?;
     let found = section(&model, &document.scene, &settings, interrupt::listen());
     let (table, summary) = found.map_err(|fault| document.error_from(vec![fault]))?;
-    if interrupt::came() {
-        return Err(Failure::interrupted());
-    }
+    interrupt::check()?;
     let names: Vec<String> = settings.columns().iter().map(|name| (*name).to_owned()).collect();
     outputs.table(Output::DATA, &table.only(&names))?;
     if let Some(picture) = picture {
-        let stops = model.stop_positions();
-        let shown = SectionPicture {
-            rows: &table,
-            over: None,
-            phase_deg: phase(&settings),
-            stops,
-            ranges: picture.ranges,
-        };
+        let (stops, ranges) = (model.stop_positions(), picture.ranges);
+        let shown = SectionPicture { rows: &table, over: None, phase_deg: phase(&settings), stops, ranges };
         picture.write(&mut outputs, &section_chart(&shown), &caption(&document))?;
     }
     outputs.finish()?;
@@ -136,14 +119,14 @@ fn diagram(options: &Arguments, common: &Common, settings: SectionOptions) -> Re
     if settings.carry.is_some() {
         refuse_electrical_state(&document, grid.axes(), "--carry")?;
     }
-    if picture.is_some() && grid.axes().len() > 1 {
-        let fields = grid.axes().len();
-        return Err(Failure::argument(format!(
+    let fields = grid.axes().len();
+    if picture.is_some() && fields > 1 {
+        refuse!(
             "--plot shows a diagram over one field, not over {fields}: take the others out, or draw nothing"
-        )));
+        );
     }
     let sections = Sections::new(&document.scene, &document.files, grid).with(settings);
-    let first = sections.first_model(&Task { tick: &|| (), cancel: interrupt::listen() });
+    let first = sections.first_model(&interrupt::silent_task());
     // a fault of the first cell is reported below, with its place
     let until = first.as_ref().map(|model| until_settled(options.until_settled.as_deref(), &document, model));
     let until_settled = until.transpose()?.flatten();
@@ -151,7 +134,7 @@ fn diagram(options: &Arguments, common: &Common, settings: SectionOptions) -> Re
     warn(&document, common, &warnings, first.as_ref().map(|model| &**model.mechanism()));
     let pool = pool(common)?;
     let outputs = outputs(&options.scene, &document, common)?;
-    let mut job = GridJob::open(&document, common, outputs, common.out(), picture, manifest_out, pool)?;
+    let mut job = GridJob::open(&document, common, outputs, picture, manifest_out, pool)?;
     let mut names = sections.grid().columns().to_vec();
     names.extend(settings.carry.map(|_| DIRECTION.to_owned()));
     names.extend(settings.columns().iter().map(|name| (*name).to_owned()));
@@ -166,15 +149,15 @@ fn diagram(options: &Arguments, common: &Common, settings: SectionOptions) -> Re
         let data = file_name(common.out());
         Ok(manifest("section", &document, sections.grid(), &tally, None, origin, &data))
     })?;
-    if !common.quiet && tally.cells == sections.rows() {
-        say(&format!("{count} rows of {} in {wall_s:.2} s", runs(&tally)));
+    if tally.cells == sections.rows() {
+        common.say(&format!("{count} rows of {} in {wall_s:.2} s", runs(&tally)));
     }
     Ok(())
 }
 
 /// The number of runs in words, and the number of those that ended early.
 fn runs(tally: &Tally) -> String {
-    let cells = if tally.cells == 1 { "1 run".to_owned() } else { format!("{} runs", tally.cells) };
+    let cells = counted(tally.cells, "run");
     match (tally.ended_early, tally.not_converged) {
         (0, 0) => cells,
         (n, 0) => format!("{cells}, {n} of which ended early,"),

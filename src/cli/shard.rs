@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use interwell::output::is_regular;
 use interwell::study::Shard;
 
-use super::failure::Failure;
+use super::{Failure, refuse};
 
 /// Placeholder for the shard in the name of a file.
 pub const PLACE: &str = "{shard}";
@@ -18,16 +18,19 @@ pub fn shard(text: &str, variable: impl Fn(&str) -> Option<String>) -> Result<Sh
     let Some(rest) = text.trim().strip_prefix("auto") else { return Shard::parse(text).map_err(wrong) };
     let number = |name: &str| {
         let Some(value) = variable(name) else { return Ok(None) };
-        let not = || wrong(format!("the environment's {name} is `{value}`, which is no whole number"));
-        value.trim().parse::<u64>().map(Some).map_err(|_| not())
+        match value.trim().parse::<u64>() {
+            Ok(number) => Ok(Some(number)),
+            Err(_) => {
+                refuse!("--shard {text}: the environment's {name} is `{value}`, which is no whole number")
+            }
+        }
     };
     let slurm = number("SLURM_ARRAY_TASK_ID")?;
     let Some(task) = slurm.map_or_else(|| number("HQ_TASK_ID"), |number| Ok(Some(number)))? else {
-        return Err(wrong(
-            "the environment has neither SLURM_ARRAY_TASK_ID nor HQ_TASK_ID, as within an array job; give \
-             I/N, such as 2/5"
-                .to_owned(),
-        ));
+        refuse!(
+            "--shard {text}: the environment has neither SLURM_ARRAY_TASK_ID nor HQ_TASK_ID, as within an \
+             array job; give I/N, such as 2/5"
+        );
     };
     if !rest.is_empty() {
         return Shard::parse(&format!("{task}{rest}")).map_err(wrong);
@@ -39,7 +42,7 @@ pub fn shard(text: &str, variable: impl Fn(&str) -> Option<String>) -> Result<Sh
             let number = task.checked_sub(least).map_or(0, |beyond| beyond / step + 1);
             Shard::new(number, count).map_err(wrong)
         }
-        None => Err(wrong("the environment does not say how many tasks there are; give auto/N".to_owned())),
+        None => refuse!("--shard {text}: the environment does not say how many tasks there are; give auto/N"),
     }
 }
 
@@ -54,13 +57,13 @@ pub fn placed(out: &Path, argument: Option<&str>, shard: Shard) -> Result<PathBu
     if argument.trim().starts_with("auto") && shard.count() > 1 && is_regular(out) {
         let (out, stem) = (out.display(), out.with_extension(""));
         let example = format!("{}-{PLACE}.csv", stem.display());
-        let problem = format!("all shards would go to {out}: put {PLACE} into --out, such as {example}");
-        return Err(Failure::argument(format!("--shard {argument}: {problem}")));
+        refuse!(
+            "--shard {argument}: all shards would go to {out}: put {PLACE} into --out, such as {example}"
+        );
     }
     Ok(out.to_owned())
 }
 
-/// The shard in the name of a file.
 fn named(shard: Shard) -> String {
     format!("{}-of-{}", shard.number(), shard.count())
 }

@@ -10,13 +10,9 @@ use interwell::study::{
     Keep, Sampling, ended_remedy, sample_times, simulate, simulate_with_trace, yield_warning,
 };
 
-use super::failure::Failure;
 use super::measured::MeasuredOptions;
-use super::options::{ChartOptions, Common};
-use super::outputs::{Output, Outputs};
-use super::picture::{Picture, caption};
 use super::support::{Watch, inputs, load_model, number, numbers, until_settled};
-use super::{interrupt, say};
+use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, caption, interrupt, refuse, say};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -81,15 +77,12 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let window = axes.x.or_else(|| span(&sampling));
     let longest = until_settled.unwrap_or(model.duration());
     if let Some((from, to)) = window.filter(|(from, to)| *from < 0.0 || *to > longest) {
-        let message = format!("--plot-time {from}:{to}: the run lasts from 0 to {longest} s");
-        return Err(Failure::argument(message));
+        refuse!("--plot-time {from}:{to}: the run lasts from 0 to {longest} s");
     }
-    let record = options.measured.read(common.quiet)?;
-    if let Some((from, to)) =
-        record.as_ref().and_then(|measured| measured.inset).filter(|(_, to)| *to > longest)
-    {
-        let message = format!("--inset {from}:{to}: the run lasts from 0 to {longest} s");
-        return Err(Failure::argument(message));
+    let record = options.measured.read(common)?;
+    let inset = record.as_ref().and_then(|measured| measured.inset);
+    if let Some((from, to)) = inset.filter(|(_, to)| *to > longest) {
+        refuse!("--inset {from}:{to}: the run lasts from 0 to {longest} s");
     }
     let mut read = inputs(&options.scene, &document);
     read.extend(options.measured.measured.clone());
@@ -106,30 +99,25 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let (simulation, trace) = match picture {
         None => (simulate(&model, &keep, Some(cancel)), None),
         Some(_) => {
-            let close = record.as_ref().and_then(|measured| measured.inset).or(window);
-            let (simulation, trace) = simulate_with_trace(&model, &keep, close, Some(cancel));
+            let (simulation, trace) = simulate_with_trace(&model, &keep, inset.or(window), Some(cancel));
             (simulation, Some(trace))
         }
     };
-    if interrupt::came() {
-        return Err(Failure::interrupted());
-    }
+    interrupt::check()?;
     let compared =
         record.as_ref().map(|measured| measured.compare(&document.scene, &model, cancel)).transpose()?;
     outputs.table(Output::DATA, &simulation.samples)?;
     outputs.table(Output::EVENTS, &simulation.events)?;
-    let about = summary(&simulation.summary, &document.scene, &watch.origin(1));
-    outputs.write(Output::SUMMARY, &about)?;
+    outputs.write(Output::SUMMARY, summary(&simulation.summary, &document.scene, &watch.origin(1)))?;
     if let Some((picture, trace)) = picture.zip(trace) {
         let mechanism = model.mechanism();
         let chart = match record.as_ref().zip(compared.as_ref()) {
             Some((measured, found)) => {
                 let quantity = measured.record.channels[1].quantity;
-                measured_chart(&trace, (found, quantity), measured.inset, axes)
+                measured_chart(&trace, (found, quantity), inset, axes)
             }
             None => {
-                let named =
-                    options.panels.iter().filter_map(|name| RunPanel::named(name)).collect::<Vec<_>>();
+                let named: Vec<_> = options.panels.iter().filter_map(|name| RunPanel::named(name)).collect();
                 let panels = if named.is_empty() { RunPanel::USUAL.to_vec() } else { named };
                 run_chart(&trace, &simulation.summary, (mechanism, model.mass()), &panels, axes)
             }
@@ -143,13 +131,13 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if let Some((measured, found)) = record.as_ref().zip(compared.as_ref()).filter(|_| !common.quiet) {
         measured.report(found);
     }
-    if let Some(warning) = yield_warning(&model, &simulation.summary).filter(|_| !common.quiet) {
-        say(&format!("warning: {}: {warning}", document.name));
+    if let Some(warning) = yield_warning(&model, &simulation.summary) {
+        common.say(&format!("warning: {}: {warning}", document.name));
     }
     if let Some(reason) = remark(&model, simulation.summary.outcome) {
         let reason = format!("{}: {reason}", document.name);
         if options.strict {
-            return Err(Failure::Failed(anyhow::anyhow!("{reason}")));
+            return Err(Failure::failed(reason));
         }
         say(&reason);
     }

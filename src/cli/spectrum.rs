@@ -3,14 +3,10 @@
 use clap::Args;
 use interwell::numeric::Taper;
 use interwell::output::{SpectrumQuantity, spectrum_chart};
-use interwell::study::{NoSpectrum, Signal, SpectrumOptions, Task, spectrum};
+use interwell::study::{NoSpectrum, Signal, SpectrumOptions, spectrum};
 
-use super::failure::Failure;
-use super::options::{ChartOptions, Common};
-use super::outputs::Output;
-use super::picture::{Picture, caption};
-use super::support::{load_model, number, outputs, until_settled};
-use super::{interrupt, say};
+use super::support::{is_positive, load_model, number, outputs, until_settled};
+use super::{ChartOptions, Common, Failure, Output, Picture, caption, interrupt, refuse};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -61,17 +57,15 @@ pub struct Arguments {
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     if let Some((low, high)) = picture.and_then(|picture| picture.ranges.y).filter(|(low, _)| !(*low > 0.0)) {
-        return Err(Failure::argument(format!(
+        refuse!(
             "--plot-y {low}:{high}: the axis is logarithmic; give two numbers above 0, such as 1e-9:1e-2"
-        )));
+        );
     }
     let (document, model) = load_model(&options.scene, common)?;
     let until_settled = until_settled(options.until_settled.as_deref(), &document, &model)?;
+    let signal = Signal::ALL.into_iter().find(|signal| signal.name() == options.of);
     let settings = SpectrumOptions {
-        signal: Signal::ALL
-            .into_iter()
-            .find(|signal| signal.name() == options.of)
-            .unwrap_or(Signal::Displacement),
+        signal: signal.unwrap_or(Signal::Displacement),
         taper: match options.taper.as_str() {
             "hann" => Some(Taper::Hann),
             "none" => Some(Taper::None),
@@ -81,10 +75,9 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         until_settled,
     };
     let mut outputs = outputs(&options.scene, &document, common)?.with_picture(picture)?;
-    let task = Task { tick: &|| (), cancel: interrupt::listen() };
-    let found = spectrum(&model, &settings, &task).map_err(|problem| match problem {
+    let found = spectrum(&model, &settings, &interrupt::silent_task()).map_err(|problem| match problem {
         NoSpectrum::Cancelled => Failure::interrupted(),
-        NoSpectrum::EndedEarly { .. } => Failure::Failed(anyhow::anyhow!("{}: {problem}", document.name)),
+        NoSpectrum::EndedEarly { .. } => Failure::failed(format!("{}: {problem}", document.name)),
         NoSpectrum::NoWindow(..) => Failure::argument(format!("{}: {problem}", document.name)),
         NoSpectrum::Rate { .. } => {
             let given = options.rate_hz.as_deref().unwrap_or("(default)");
@@ -101,13 +94,10 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         picture.write(&mut outputs, &chart, &caption(&document))?;
     }
     outputs.finish()?;
-    if !common.quiet {
-        say(&format!("{}: {}", document.name, found.describe()));
-    }
+    common.say(&format!("{}: {}", document.name, found.describe()));
     Ok(())
 }
 
 fn rate(text: &str) -> Result<f64, Failure> {
-    let fits = |value: &f64| *value > 0.0 && value.is_finite();
-    number("--rate-hz", text, fits, "give a number of samples a second above 0, such as 2048")
+    number("--rate-hz", text, is_positive, "give a number of samples a second above 0, such as 2048")
 }

@@ -12,10 +12,7 @@ use interwell::study::{CellFaults, ELECTRICAL_STATE};
 use interwell::system::clock::{ProcessClock, WallClock};
 use interwell::system::threads::{Pool, processors};
 
-use super::failure::Failure;
-use super::options::Common;
-use super::outputs::{Output, Outputs};
-use super::say;
+use super::{Common, Failure, Output, Outputs, refuse};
 
 /// Wall-clock and CPU time since a command began its work.
 #[derive(Debug, Clone, Copy)]
@@ -25,12 +22,10 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Starts both clocks.
     pub fn start() -> Self {
         Self { wall: WallClock::start(), cpu: ProcessClock::start() }
     }
 
-    /// Wall-clock time since the start, in s.
     pub fn wall_s(&self) -> f64 {
         self.wall.seconds()
     }
@@ -39,10 +34,7 @@ impl Watch {
     pub fn origin(&self, jobs: usize) -> Provenance {
         Provenance {
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            arguments: std::env::args_os()
-                .skip(1)
-                .map(|argument| argument.to_string_lossy().into_owned())
-                .collect(),
+            arguments: arguments(),
             wall_s: self.wall_s(),
             cpu_s: self.cpu.seconds(),
             jobs,
@@ -50,12 +42,17 @@ impl Watch {
     }
 }
 
+/// The arguments of this call of the program.
+pub fn arguments() -> Vec<String> {
+    std::env::args_os().skip(1).map(|argument| argument.to_string_lossy().into_owned()).collect()
+}
+
 /// Longest `--until-settled` in s, which is the longest duration of a run.
 const LONGEST_WAIT: f64 = 1e9;
 
 /// Loads the scene called `spec`, applies `--set` and `--tolerance`, checks it, and returns it with its
-/// warnings. For a sweep, `over` holds the arguments of `--over`, and the first cell is checked instead: the
-/// values that the scene has for the swept fields are never run.
+/// warnings. With the arguments of `--over` its first cell is checked, since the scene's own values of the
+/// swept fields are never run.
 pub fn load(
     spec: &str,
     common: &Common,
@@ -121,14 +118,20 @@ pub fn mechanism(document: &Document) -> Result<Arc<Mechanism>, Failure> {
     built.map(Arc::new).map_err(|error| unbuilt(document, error))
 }
 
+/// The model of a scene with its mechanism.
+pub fn model(document: &Document, mechanism: &Arc<Mechanism>) -> Result<Model, Failure> {
+    let model = Model::build(&document.scene, Arc::clone(mechanism));
+    model.map_err(|faults| document.error_from(faults).into())
+}
+
 /// The model of a scene from rest, whatever its start is.
 pub fn model_from_rest(document: &Document, mechanism: &Arc<Mechanism>) -> Result<Model, Failure> {
     let trial = Scene { start: Start::Rest, ..document.scene.clone() };
     Model::build(&trial, Arc::clone(mechanism)).map_err(|faults| document.error_from(faults).into())
 }
 
-/// The model of a mass on a linear spring with the drive and the run of `scene`. The check of
-/// `--until-settled` depends on these alone, and the grid or the design may replace the mechanism.
+/// A model for the check of `--until-settled`: a mass on a linear spring with the drive and the run of
+/// `scene`, on which alone the check depends. The scene's mechanism may be replaced by a grid or a design.
 pub fn drive_alone(document: &Document, scene: Scene) -> Result<Model, Failure> {
     let mut alone = document.clone();
     alone.scene = Scene {
@@ -147,7 +150,7 @@ pub fn drive_alone(document: &Document, scene: Scene) -> Result<Model, Failure> 
 pub fn unbuilt(document: &Document, error: BuildError) -> Failure {
     match error {
         BuildError::Wrong(fault) => document.error_from(vec![fault]).into(),
-        BuildError::Unsolved(error) => Failure::Failed(anyhow::anyhow!("{}: {error}", document.name)),
+        BuildError::Unsolved(error) => Failure::failed(format!("{}: {error}", document.name)),
     }
 }
 
@@ -162,18 +165,15 @@ pub fn load_with_mechanism(spec: &str, common: &Common) -> Result<(Document, Arc
 /// Loads the scene and builds its model; prints the warnings of both.
 pub fn load_model(spec: &str, common: &Common) -> Result<(Document, Model), Failure> {
     let (document, mechanism) = load_with_mechanism(spec, common)?;
-    let model = Model::build(&document.scene, mechanism).map_err(|faults| document.error_from(faults))?;
+    let model = model(&document, &mechanism)?;
     Ok((document, model))
 }
 
 /// Prints the warnings of a scene and of its mechanism, unless `--quiet` is given.
 pub fn warn(document: &Document, common: &Common, warnings: &[String], mechanism: Option<&Mechanism>) {
-    if common.quiet {
-        return;
-    }
-    warnings.iter().for_each(|warning| say(&format!("warning: {warning}")));
+    warnings.iter().for_each(|warning| common.say(&format!("warning: {warning}")));
     let of_tables = mechanism.into_iter().flat_map(Mechanism::warnings);
-    of_tables.for_each(|warning| say(&format!("warning: {}: {warning}", document.name)));
+    of_tables.for_each(|warning| common.say(&format!("warning: {}: {warning}", document.name)));
 }
 
 /// The numbers of `A,B,C` as given to `option`. NaN and infinities are accepted; the caller must check them.
@@ -196,43 +196,55 @@ pub fn number<T: FromStr>(
     number.ok_or_else(|| Failure::argument(format!("{option} {text}: {remedy}")))
 }
 
+/// The finite number in `text`, as given to `option`.
+pub fn finite(option: &str, text: &str, remedy: &str) -> Result<f64, Failure> {
+    number(option, text, |value: &f64| value.is_finite(), remedy)
+}
+
+/// Whether a value is finite and above 0.
+pub fn is_positive(value: &f64) -> bool {
+    *value > 0.0 && value.is_finite()
+}
+
+/// A number of things, such as `1 cell` or `2 cells`.
+pub fn counted(count: u64, name: &str) -> String {
+    format!("{count} {name}{}", if count == 1 { "" } else { "s" })
+}
+
 /// The range `A:B` as given to `option`; an error that says what to write if it is none.
 pub fn range(option: &str, text: &str, form: &str) -> Result<(f64, f64), Failure> {
     match numbers(option, text, ':')?[..] {
         [from, to] if from < to && from.is_finite() && to.is_finite() => Ok((from, to)),
-        _ => Err(Failure::argument(format!("{option} {text}: write {form}"))),
+        _ => refuse!("{option} {text}: write {form}"),
     }
 }
 
 /// The time in s of `--until-settled`, if given; an error if runs of `model` cannot go on to that time.
 pub fn until_settled(text: Option<&str>, document: &Document, model: &Model) -> Result<Option<f64>, Failure> {
     let Some(text) = text else { return Ok(None) };
-    let wrong = |problem: String| Err(Failure::argument(format!("--until-settled {text}: {problem}")));
-    let Some(until) = text.trim().parse().ok().filter(|until: &f64| until.is_finite()) else {
-        return wrong("not a time; give seconds, such as 300".into());
-    };
-    let scene = &document.name;
+    let until: f64 = finite("--until-settled", text, "not a time; give seconds, such as 300")?;
+    let (option, scene, duration) = (format!("--until-settled {text}"), &document.name, model.duration());
     if !model.can_settle() {
-        return match model.forcing_period() {
-            Some(period) if model.repeats() => wrong(format!(
-                "{scene}: its settled window of {} s holds less than two forcing periods of {period} s, too \
-                 few to tell whether the motion repeats; lengthen run.duration_s",
-                model.duration() - model.settle()
-            )),
-            _ => wrong(format!(
-                "{scene}: its excitation does not repeat, so the motion has no period to wait for; take a \
-                 Sine, or a Sum of sines whose frequencies have a common period"
-            )),
-        };
+        match model.forcing_period() {
+            Some(period) if model.repeats() => refuse!(
+                "{option}: {scene}: its settled window of {} s holds less than two forcing periods of \
+                 {period} s, too few to tell whether the motion repeats; lengthen run.duration_s",
+                duration - model.settle()
+            ),
+            _ => refuse!(
+                "{option}: {scene}: its excitation does not repeat, so the motion has no period to wait \
+                 for; take a Sine, or a Sum of sines whose frequencies have a common period"
+            ),
+        }
     }
-    if until < model.duration() {
-        return wrong(format!(
-            "{scene}: its run already lasts {} s; give at least that, or shorten run.duration_s",
-            model.duration()
-        ));
+    if until < duration {
+        refuse!(
+            "{option}: {scene}: its run already lasts {duration} s; give at least that, or shorten \
+             run.duration_s"
+        );
     }
     if until > LONGEST_WAIT {
-        return wrong(format!("at most {LONGEST_WAIT:e} s"));
+        refuse!("{option}: at most {LONGEST_WAIT:e} s");
     }
     Ok(Some(until))
 }
@@ -248,10 +260,10 @@ pub fn refuse_electrical_state(document: &Document, axes: &[Axis], what: &str) -
         }
         Transducer::Piezoelectric { .. } => swept("load_kohm"),
     };
-    match may_have || document.scene.transducer.has_state() {
-        true => Err(Failure::argument(format!("{}: {what}: {ELECTRICAL_STATE}", document.name))),
-        false => Ok(()),
+    if may_have || document.scene.transducer.has_state() {
+        refuse!("{}: {what}: {ELECTRICAL_STATE}", document.name);
     }
+    Ok(())
 }
 
 /// The path of the manifest beside the rows at `out`. Returns `None` if `out` is no regular file.

@@ -1,17 +1,15 @@
 //! `threshold`: thresholds of a field, a row for each cell of a grid.
 
 use clap::Args;
+use interwell::numeric::extent;
 use interwell::output::{ThresholdPicture, can_show_thresholds, threshold_chart};
 use interwell::scene::{Axis, Document, is_whole};
-use interwell::study::{CellFaults, Grid, NoThresholds, Onset, Scan, Table, Task, threshold_table};
+use interwell::study::{CellFaults, Grid, NoThresholds, Onset, Scan, Table, threshold_table};
 
-use super::failure::Failure;
-use super::options::{ChartOptions, Common};
-use super::outputs::Output;
-use super::picture::{Picture, caption};
-use super::progress::bar;
-use super::support::{drive_alone, load, located, mechanism, number, outputs, pool, until_settled, warn};
-use super::{interrupt, say};
+use super::support::{
+    drive_alone, is_positive, load, located, mechanism, number, outputs, pool, until_settled, warn,
+};
+use super::{ChartOptions, Common, Failure, Output, Picture, caption, refuse, with_bar};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -64,13 +62,10 @@ pub struct Arguments {
     pub chart: ChartOptions,
 }
 
-/// The default field and range of a scan.
 const AMPLITUDES: &str = "excitation.amplitude_g=0:2";
 
-/// Steps of a scan if no step is given.
 const STEPS: f64 = 200.0;
 
-/// Largest number of wrong cells that are named.
 const MAX_NAMED: usize = 8;
 
 /// Searches and writes the table.
@@ -84,11 +79,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         None => Grid::of_one(),
         Some(over) => Grid::new(document.axes(over)?)?,
     };
-    if let Some(axis) = grid.axes().iter().find(|axis| axis.field == scan.field) {
-        let field = &axis.field;
-        return Err(Failure::argument(format!(
-            "--over {field}: the threshold is over it; sweep another field"
-        )));
+    if grid.axes().iter().any(|axis| axis.field == scan.field) {
+        refuse!("--over {}: the threshold is over it; sweep another field", scan.field);
     }
     let onset = Onset::ALL.into_iter().find(|onset| onset.name() == options.of).unwrap_or(Onset::Crossing);
     if picture.is_some() {
@@ -103,21 +95,20 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     }
     let pool = pool(common)?;
     let mut outputs = outputs(&options.scene, &document, common)?.with_picture(picture)?;
-    let bar = bar(grid.cells() * scan.values.len() as u64, "values", common.quiet, common.out());
-    let task = Task { tick: &|| bar.inc(1), cancel: interrupt::listen() };
-    let found = threshold_table(&document.scene, &document.files, &grid, &scan, onset, &pool, &task);
-    drop(bar);
+    let Document { scene, files, name, .. } = &document;
+    let values = grid.cells() * scan.values.len() as u64;
+    let found = with_bar(values, "values", common, |task| {
+        threshold_table(scene, files, &grid, &scan, onset, &pool, task)
+    });
     let table = found.map_err(|end| match end {
         NoThresholds::Cancelled => Failure::interrupted(),
         NoThresholds::Wrong(cells) => wrong(&document, cells),
     })?;
     outputs.table(Output::DATA, &table)?;
-    if !common.quiet {
-        let remarks = [missing(&table, &scan, onset, &grid), undecided(&table)];
-        remarks.iter().flatten().for_each(|words| say(&format!("{}: {words}", document.name)));
-    }
+    let remarks = [missing(&table, &scan, onset, &grid), undecided(&table)];
+    remarks.iter().flatten().for_each(|words| common.say(&format!("{name}: {words}")));
     if let Some(picture) = picture {
-        let (rows, grid, scene, field) = (&table, &grid, &document.scene, &*scan.field);
+        let (rows, grid, field) = (&table, &grid, &*scan.field);
         let shown = ThresholdPicture { rows, grid, scene, field, onset, ranges: picture.ranges };
         picture.write(&mut outputs, &threshold_chart(&shown)?, &caption(&document))?;
     }
@@ -156,8 +147,7 @@ fn missing(table: &Table, scan: &Scan, onset: Onset, grid: &Grid) -> Option<Stri
         Onset::Crossing => "makes the settled motion cross",
         Onset::Interwell => "makes the settled motion interwell",
     };
-    let ends = scan.values.first().zip(scan.values.last());
-    let (low, high) = ends.map_or((f64::NAN, f64::NAN), |(low, high)| (*low, *high));
+    let (low, high) = extent(scan.values.iter().copied());
     let unsolved = match grid.changes_mechanism() || scan.field.starts_with("mechanism") {
         true => ", or the flexures are not solved",
         false => "",
@@ -169,7 +159,6 @@ fn missing(table: &Table, scan: &Scan, onset: Onset, grid: &Grid) -> Option<Stri
     ))
 }
 
-/// An error that names the wrong cells.
 fn wrong(document: &Document, cells: Vec<CellFaults>) -> Failure {
     let more = cells.len().saturating_sub(MAX_NAMED);
     let mut text: Vec<String> =
@@ -180,32 +169,32 @@ fn wrong(document: &Document, cells: Vec<CellFaults>) -> Failure {
     Failure::argument(text.join("\n"))
 }
 
-/// The field, values and resolution of the search.
 fn scan(options: &Arguments, document: &Document) -> Result<Scan, Failure> {
     let argument = options.field.trim();
     let default = if argument == AMPLITUDES { " (the default; give another)" } else { "" };
-    let wrong = |problem: String| Failure::argument(format!("--field {argument}{default}: {problem}"));
+    let option = format!("--field {argument}{default}");
     let parsed = |text: &str| -> Result<Axis, Failure> {
-        let axis = Axis::parse(text, &document.scene).map_err(wrong)?;
-        match axis.values.iter().all(|value| value.is_finite()) {
-            true => Ok(axis),
-            false => Err(wrong("the ends of the range must be finite".into())),
+        let axis = Axis::parse(text, &document.scene);
+        let axis = axis.map_err(|problem| Failure::argument(format!("{option}: {problem}")))?;
+        if !axis.values.iter().all(|value| value.is_finite()) {
+            refuse!("{option}: the ends of the range must be finite");
         }
+        Ok(axis)
     };
     let (mut full, mut end) = (argument.to_owned(), None);
     if let Some((from, to)) = argument.split_once(':').filter(|(_, to)| !to.contains(':')) {
         // parsed as a list, so that the message names a wrong end
         let ends = parsed(&format!("{from},{to}"))?;
         let [low, high] = ends.values[..] else {
-            return Err(wrong(
-                "write FIELD=FROM:TO or FIELD=FROM:TO:STEP, such as excitation.amplitude_g=0:2".into(),
-            ));
+            refuse!(
+                "{option}: write FIELD=FROM:TO or FIELD=FROM:TO:STEP, such as excitation.amplitude_g=0:2"
+            );
         };
         if low == high {
-            return Err(wrong(format!("FROM and TO are both {low}; give a range, such as 0:2")));
+            refuse!("{option}: FROM and TO are both {low}; give a range, such as 0:2");
         }
         if low > high {
-            return Err(wrong(format!("TO must be above FROM; write {high}:{low}")));
+            refuse!("{option}: TO must be above FROM; write {high}:{low}");
         }
         let step = (high - low) / STEPS;
         let step = if is_whole(&document.scene, &ends.field) { step.ceil() } else { step };
@@ -216,12 +205,9 @@ fn scan(options: &Arguments, document: &Document) -> Result<Scan, Failure> {
     values.sort_by(f64::total_cmp);
     values.dedup();
     if values.len() < 2 {
-        return Err(wrong(
-            "it is a single value; give a range of which STEP is a part, such as 0:2:0.1".into(),
-        ));
+        refuse!("{option}: it is a single value; give a range of which STEP is a part, such as 0:2:0.1");
     }
-    let span = values.last().copied().unwrap_or(0.0) - values.first().copied().unwrap_or(0.0);
-    let step = span / (values.len() - 1) as f64;
+    let step = (values[values.len() - 1] - values[0]) / (values.len() - 1) as f64;
     if let Some(high) = end {
         // the range may be no whole number of steps, and rounding may place the last one just below its end
         values.retain(|value| *value < high - 1e-6 * step);
@@ -232,7 +218,7 @@ fn scan(options: &Arguments, document: &Document) -> Result<Scan, Failure> {
         None if whole => 1.0,
         None => 1e-3 * step,
         Some(text) => {
-            let fits = |value: &f64| *value > 0.0 && value.is_finite() && (!whole || value.fract() == 0.0);
+            let fits = |value: &f64| is_positive(value) && (!whole || value.fract() == 0.0);
             let kind = if whole { "whole number" } else { "number" };
             number("--resolution", text, fits, &format!("give a {kind} above 0, in the unit of the field"))?
         }

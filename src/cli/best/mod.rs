@@ -12,12 +12,8 @@ mod words;
 
 use words::{names, place, quantity, words};
 
-use super::failure::Failure;
-use super::options::Common;
-use super::outputs::Output;
-use super::progress::bar;
-use super::support::{drive_alone, load, outputs, pool, until_settled, warn};
-use super::{interrupt, say};
+use super::support::{drive_alone, is_positive, load, outputs, pool, until_settled, warn};
+use super::{Common, Failure, Output, bar, interrupt, refuse, say};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -93,7 +89,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     warn(&document, common, &warnings, None);
     let pool = pool(common)?;
     let mut outputs = outputs(&options.scene, &document, common)?;
-    let bar = bar(scan_runs(&question), "runs", common.quiet, common.out());
+    let bar = bar(scan_runs(&question), 0, "runs", common);
     // the number of runs after the scan is not known in advance
     let tick = || bar.inc_beyond();
     let task = Task { tick: &tick, cancel: interrupt::listen() };
@@ -108,9 +104,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     }
     let design = found.map_err(|why| failure(why, options, &question, &document))?;
     outputs.table(Output::DATA, &design.table(&question))?;
-    if !common.quiet {
-        words(&design, &question).iter().for_each(|line| say(&format!("{}: {line}", document.name)));
-    }
+    words(&design, &question).iter().for_each(|line| common.say(&format!("{}: {line}", document.name)));
     outputs.finish()
 }
 
@@ -121,10 +115,10 @@ fn has_fields(question: &BestQuestion) -> Result<(), Failure> {
     for (option, field) in over.chain(vary) {
         let missing = |environment: &&Environment| FieldPath::new(field).get(&environment.scene).is_none();
         if let Some(environment) = question.environments.iter().find(missing) {
-            return Err(Failure::argument(format!(
+            refuse!(
                 "{option} {field}: the environment {} has no such number; change a field that all have",
                 environment.name
-            )));
+            );
         }
     }
     Ok(())
@@ -171,10 +165,9 @@ fn failure(why: NoBest, options: &Arguments, question: &BestQuestion, document: 
 fn ranges(over: &[String], document: &Document) -> Result<Vec<DesignRange>, Failure> {
     let mut ranges: Vec<DesignRange> = Vec::new();
     if over.is_empty() {
-        return Err(Failure::argument(
-            "--over is missing: name a field of the design, such as --over stops.travel_limit_mm=0.5:7",
-        ));
+        refuse!("--over is missing: name a field of the design, such as --over stops.travel_limit_mm=0.5:7");
     }
+    let intervals = INTERVALS[over.len().min(MOST_FIELDS) - 1];
     for text in over {
         let wrong = |problem: String| Failure::argument(format!("--over {text}: {problem}"));
         let form = || wrong("write FIELD=A:B, such as stops.travel_limit_mm=0.5:7".into());
@@ -187,37 +180,34 @@ fn ranges(over: &[String], document: &Document) -> Result<Vec<DesignRange>, Fail
         let axis = Axis::parse(&ends, &document.scene).map_err(wrong)?;
         let (low, high) = (axis.values[0], axis.values[1]);
         if !(low.is_finite() && high.is_finite()) {
-            return Err(wrong("the ends of the range must be finite".into()));
+            refuse!("--over {text}: the ends of the range must be finite");
         }
         if low >= high {
-            return Err(wrong(format!("the range must go upward: {low} is not below {high}")));
+            refuse!("--over {text}: the range must go upward: {low} is not below {high}");
         }
         let whole = is_whole(&document.scene, &axis.field);
         let intervals = match parts.get(2) {
-            None if whole => INTERVALS[over.len().min(MOST_FIELDS) - 1].min((high - low) as usize),
-            None => INTERVALS[over.len().min(MOST_FIELDS) - 1],
+            None if whole => intervals.min((high - low) as usize),
+            None => intervals,
             Some(step) => {
-                let fits = |step: &f64| *step > 0.0 && step.is_finite() && (!whole || step.fract() == 0.0);
+                let fits = |step: &f64| is_positive(step) && (!whole || step.fract() == 0.0);
                 let kind = if whole { "whole number" } else { "number" };
                 let step = step.trim().parse().ok().filter(fits);
                 let step = step.ok_or_else(|| wrong(format!("the step must be a {kind} above 0")))?;
                 let intervals = ((high - low) / step).round();
                 if !(1.0..=1e5).contains(&intervals) {
-                    return Err(wrong(format!("takes {intervals} steps; give one with 1 to 100000")));
+                    refuse!("--over {text}: takes {intervals} steps; give one with 1 to 100000");
                 }
                 intervals as usize
             }
         };
         if ranges.iter().any(|range| range.field == axis.field) {
-            return Err(wrong("is given twice; give each field one range".into()));
+            refuse!("--over {text}: is given twice; give each field one range");
         }
         ranges.push(DesignRange::new(axis.field, (low, high), intervals));
     }
     if ranges.len() > MOST_FIELDS {
-        return Err(Failure::argument(format!(
-            "--over: {} fields; at most {MOST_FIELDS} are searched together",
-            ranges.len()
-        )));
+        refuse!("--over: {} fields; at most {MOST_FIELDS} are searched together", ranges.len());
     }
     Ok(ranges)
 }
@@ -258,25 +248,22 @@ fn variation(text: &str, document: &Document) -> Result<Variation, Failure> {
     let form = "write FIELD=+-1% or FIELD=+-0.05, such as stops.travel_limit_mm=+-1%";
     let (field, by) = text.split_once('=').ok_or_else(|| wrong(form))?;
     let field = field.trim();
-    let value = FieldPath::new(field).get(&document.scene);
-    let value = match value {
-        Some(value) => value,
-        // says which there are
-        None => Axis::parse(&format!("{field}=1"), &document.scene)
-            .map_err(|problem| wrong(&problem))
-            .and_then(|_| Err(wrong("the scene leaves this field out; give it a value with --set")))?,
+    let Some(value) = FieldPath::new(field).get(&document.scene) else {
+        // this error lists the fields
+        Axis::parse(&format!("{field}=1"), &document.scene).map_err(|problem| wrong(&problem))?;
+        refuse!("--vary {text}: the scene leaves this field out; give it a value with --set");
     };
     if is_whole(&document.scene, field) {
-        return Err(wrong(
-            "holds whole numbers, which do not come out a little otherwise; vary another field",
-        ));
+        refuse!(
+            "--vary {text}: holds whole numbers, which do not come out a little otherwise; vary another field"
+        );
     }
     let by = by.trim().trim_start_matches("+-").trim_start_matches('\u{b1}');
     let (number, relative) = by.strip_suffix('%').map_or((by, false), |share| (share, true));
     let number = number.trim().parse().ok().filter(|number: &f64| *number >= 0.0 && number.is_finite());
     let number = number.ok_or_else(|| wrong(form))?;
     if relative && value == 0.0 {
-        return Err(wrong("a share of 0 is nothing; give the tolerance in the unit of the field"));
+        refuse!("--vary {text}: a share of 0 is nothing; give the tolerance in the unit of the field");
     }
     let by = if relative { number / 100.0 } else { number };
     Ok(Variation { field: field.to_owned(), by, relative })
@@ -285,7 +272,7 @@ fn variation(text: &str, document: &Document) -> Result<Variation, Failure> {
 /// Splits a text from the weight after its last `*`, which is 1 if left out.
 fn weighted<'a>(text: &'a str, option: &str) -> Result<(&'a str, f64), Failure> {
     let Some((text, weight)) = text.rsplit_once('*') else { return Ok((text.trim(), 1.0)) };
-    let weight = weight.trim().parse().ok().filter(|weight: &f64| *weight > 0.0 && weight.is_finite());
+    let weight = weight.trim().parse().ok().filter(is_positive);
     let wrong = || Failure::argument(format!("{option}: the weight after * must be a number above 0"));
     Ok((text.trim(), weight.ok_or_else(wrong)?))
 }
@@ -307,7 +294,7 @@ fn environments(given: &[String], document: &Document) -> Result<Vec<Environment
     for text in given {
         let option = format!("--environment {text}");
         let mut changed = document.clone();
-        changed.scene.sweep.clear(); // its fields may not be those of another excitation
+        changed.scene.sweep.clear(); // the other excitation may not have its fields
         if let Some((field, values)) = text.split_once('=').filter(|_| !is_file(text.as_ref())) {
             for value in values.split(',') {
                 let (value, weight) = weighted(value, &option)?;
@@ -342,10 +329,8 @@ fn environments(given: &[String], document: &Document) -> Result<Vec<Environment
             all.push(of(name.to_owned(), weight, &changed));
         }
     }
-    match all.len() {
-        0..=MAX_ENVIRONMENTS => Ok(all),
-        n => {
-            Err(Failure::argument(format!("--environment: {n} of them; at most {MAX_ENVIRONMENTS} are run")))
-        }
+    if all.len() > MAX_ENVIRONMENTS {
+        refuse!("--environment: {} of them; at most {MAX_ENVIRONMENTS} are run", all.len());
     }
+    Ok(all)
 }

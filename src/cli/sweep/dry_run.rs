@@ -8,10 +8,10 @@ use interwell::study::{Shard, Sweep, Task};
 use interwell::system::clock::WallClock;
 use interwell::system::threads::{Pool, within};
 
-use super::super::failure::Failure;
+use super::super::Failure;
 use super::super::progress::duration;
 use super::super::shard::{command, value};
-use super::super::support::located;
+use super::super::support::{arguments, located};
 use super::prepared::Prepared;
 
 /// Cells of the first sample for each thread.
@@ -62,8 +62,8 @@ pub fn print(prepared: &Prepared, pool: &Pool) -> Result<(), Failure> {
 
     let axes = sweep.grid().axes().iter().zip(sweep.grid().columns());
     let axes: Vec<String> = axes.map(|(axis, name)| format!("{} {name}", axis.values.len())).collect();
-    let of =
-        if sharded { format!(" of the shard {}, of {}", slice.shard(), sweep.rows()) } else { String::new() };
+    let (shard, all) = (slice.shard(), sweep.rows());
+    let of = if sharded { format!(" of the shard {shard}, of {all}") } else { String::new() };
     println!("{count} rows{of}: {}; {} columns", axes.join(" x "), columns.len());
     let about = duration(seconds);
     match run {
@@ -80,8 +80,7 @@ pub fn print(prepared: &Prepared, pool: &Pool) -> Result<(), Failure> {
     let kept = if picture { ", with the table that the picture needs" } else { "" };
     println!("at most about {} MB of memory{kept}", memory.div_ceil(1_000_000));
 
-    let arguments: Vec<String> =
-        std::env::args_os().skip(1).map(|argument| argument.to_string_lossy().into()).collect();
+    let arguments = arguments();
     let out = value(&arguments, "--out").unwrap_or("map.csv");
     if sharded {
         let shard = slice.shard().to_string();

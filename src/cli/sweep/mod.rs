@@ -7,18 +7,13 @@ mod rows;
 use interwell::output::{Chart, Made, Overlay, SweepPicture, header, manifest, rows, sweep_chart};
 use interwell::scene::Document;
 use interwell::study::{SweepOptions, Table, Tally};
-use serde_json::Value;
 
-use super::failure::Failure;
 use super::grid_job::GridJob;
-use super::options::Common;
-use super::outputs::{Output, Outputs};
-use super::picture::Picture;
-use super::say;
-use super::support::{file_name, inputs, manifest_path, pool};
+use super::support::{counted, file_name, inputs, manifest_path, pool};
+use super::{Common, Failure, Output, Outputs, Picture, refuse};
 pub use prepared::Arguments;
 use prepared::Prepared;
-use rows::{Compared, RowFile, Rows};
+use rows::{Compared, Rows};
 
 /// Runs the grid and writes one row for each cell.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
@@ -27,15 +22,14 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if options.dry_run {
         return dry_run::print(&prepared, &pool);
     }
-    let Prepared { document, out, sweep, slice, picture, .. } = &prepared;
+    let Prepared { document, out, sweep, slice, picture, plan, .. } = &prepared;
     let manifest_out = manifest_path(out).filter(|_| !options.check);
     let in_blocks = manifest_out.is_some();
     let outputs = Outputs::new(&inputs(&options.scene, document))
         .with(Output::DATA, Some(&**out).filter(|_| !options.check))?;
-    let mut job = GridJob::open(document, common, outputs, out, *picture, manifest_out, pool)?;
-    let plan = prepared.plan();
-    let opened = prepared.open_rows(&mut job.outputs, in_blocks, &plan)?;
-    let Some((mut rows_out, mut all)) = opened else { return prepared.has_all_rows(common.quiet) };
+    let mut job = GridJob::open(document, common, outputs, *picture, manifest_out, pool)?;
+    let opened = prepared.open_rows(&mut job.outputs, in_blocks)?;
+    let Some((mut rows_out, mut all)) = opened else { return prepared.has_all_rows(common) };
     let from = all.cells;
     if let (Rows::Blocks(blocks), Some(_), 1..) = (&rows_out, picture, from) {
         job.shown = blocks.table(&sweep.empty_table())?;
@@ -50,23 +44,24 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     all.add(&tally);
     if let Rows::Compared(file) = &mut rows_out {
         file.end()?;
-        if !common.quiet {
-            say(&format!("{}: all {} rows are the same", prepared.data.display(), all.cells));
-        }
+        common.say(&format!("{}: all {} rows are the same", prepared.data.display(), all.cells));
     }
     let chart = |rows: &Table, picture: &Picture| prepared.chart(rows, picture);
     let wall_s = job.finish(chart, |origin| {
         let sha256 = rows_out.close()?;
-        let made = Made { plan: &plan, shard: slice.shard(), sha256: &sha256 };
+        let made = Made { plan, shard: slice.shard(), sha256: &sha256 };
         Ok(manifest("sweep", document, sweep.grid(), &all, Some(made), origin, &file_name(out)))
     })?;
     // The rows get their name last: until then --resume can continue them.
     rows_out.finish()?;
-    report(common.quiet, document, &tally, slice.rows() - from, wall_s);
+    // If there are fewer, the reader of a pipe has gone.
+    if tally.cells == slice.rows() - from {
+        report(common, document, &tally, wall_s);
+    }
     let early = all.ended_early + all.not_converged;
     if options.strict && early > 0 {
         let cells = format!("{early} of {} cells did not come to their end", all.cells);
-        return Err(Failure::Failed(anyhow::anyhow!("{}: {cells} (see the column outcome)", document.name)));
+        return Err(Failure::failed(format!("{}: {cells} (see the column outcome)", document.name)));
     }
     Ok(())
 }
@@ -74,12 +69,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
 impl Prepared<'_> {
     /// Opens the rows, `in_blocks` if they go to a regular file. Returns the tally of those that an earlier
     /// process left; `None` if there are all of them.
-    fn open_rows(
-        &self,
-        outputs: &mut Outputs,
-        in_blocks: bool,
-        plan: &Value,
-    ) -> Result<Option<(Rows, Tally)>, Failure> {
+    fn open_rows(&self, outputs: &mut Outputs, in_blocks: bool) -> Result<Option<(Rows, Tally)>, Failure> {
         let header = header(&self.sweep.empty_table().only(&self.columns));
         if self.options.check {
             let mut file = Compared::new(&self.data)?;
@@ -91,21 +81,18 @@ impl Prepared<'_> {
             return Ok(Some((Rows::Stream, Tally::default())));
         }
         outputs.leave(Output::DATA);
-        let file = RowFile { sweep: self, plan, header: &header };
-        Ok(file.open()?.map(|(blocks, tally)| (Rows::Blocks(Box::new(blocks)), tally)))
+        Ok(self.open_blocks(&header)?.map(|(blocks, tally)| (Rows::Blocks(Box::new(blocks)), tally)))
     }
 
     /// Says that nothing is left to do; an error if a picture was requested.
-    fn has_all_rows(&self, quiet: bool) -> Result<(), Failure> {
+    fn has_all_rows(&self, common: &Common) -> Result<(), Failure> {
         let (out, rows) = (self.out.display(), self.slice.rows());
         if self.picture.is_some() {
-            return Err(Failure::argument(format!(
+            refuse!(
                 "--resume: {out} has all its rows already: leave --resume out to compute them for a picture"
-            )));
+            );
         }
-        if !quiet {
-            say(&format!("{out} has all {rows} rows already"));
-        }
+        common.say(&format!("{out} has all {rows} rows already"));
         Ok(())
     }
 
@@ -123,13 +110,8 @@ impl Prepared<'_> {
     }
 }
 
-/// Prints a summary of the `rows` that were computed now.
-fn report(quiet: bool, document: &Document, tally: &Tally, rows: u64, wall_s: f64) {
-    // With fewer cells the reader of a pipe has gone, which is not worth a message.
-    if quiet || tally.cells != rows {
-        return;
-    }
-    let cells = if tally.cells == 1 { "1 cell".to_owned() } else { format!("{} cells", tally.cells) };
+fn report(common: &Common, document: &Document, tally: &Tally, wall_s: f64) {
+    let cells = counted(tally.cells, "cell");
     let early = match (tally.ended_early, tally.not_converged) {
         (0, 0) => String::new(),
         (n, 0) => format!(", {n} ended early (see the column outcome)"),
@@ -138,9 +120,9 @@ fn report(quiet: bool, document: &Document, tally: &Tally, rows: u64, wall_s: f6
             format!(", {n} ended early and {m} without a solution of the flexures (see the column outcome)")
         }
     };
-    say(&format!("{cells} in {wall_s:.2} s{early}"));
+    common.say(&format!("{cells} in {wall_s:.2} s{early}"));
     if tally.yielding > 0 {
-        say(&format!(
+        common.say(&format!(
             "warning: {}: in {} of them the contact with a stop yields, which the model does not follow",
             document.name, tally.yielding
         ));

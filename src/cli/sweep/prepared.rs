@@ -8,17 +8,13 @@ use interwell::mechanics::{BuildError, Mechanism};
 use interwell::output::{Cut, View, can_show, plan};
 use interwell::scene::{Document, is_manifest};
 use interwell::study::{
-    Carry, DIRECTION, Grid, STANDARD_COLUMNS, SUMMARY_FIELDS, Shard, Slice, SummaryField, Sweep,
-    SweepOptions, Task,
+    Carry, DIRECTION, Grid, STANDARD_COLUMNS, SUMMARY_FIELDS, Shard, Slice, SummaryField, Sweep, SweepOptions,
 };
 use serde_json::{Value, json};
 
-use super::super::failure::Failure;
-use super::super::interrupt;
-use super::super::options::{ChartOptions, Common};
-use super::super::picture::Picture;
 use super::super::shard::{placed, shard};
 use super::super::support::{load, refuse_electrical_state, unbuilt, until_settled, warn};
+use super::super::{ChartOptions, Common, Failure, Picture, interrupt, refuse};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -101,6 +97,8 @@ pub struct Prepared<'a> {
     pub mechanism: Option<Arc<Mechanism>>,
     /// The columns that are written.
     pub columns: Vec<String>,
+    /// All that decides the bytes of the rows.
+    pub plan: Value,
     pub picture: Option<Picture<'a>>,
     pub view: View,
 }
@@ -110,10 +108,10 @@ impl<'a> Prepared<'a> {
     /// is given as the scene.
     pub fn new(options: &'a Arguments, common: &Common) -> Result<Self, Failure> {
         if options.check && !is_manifest(options.scene.as_ref()) {
-            return Err(Failure::argument(format!(
+            refuse!(
                 "--check {}: give the manifest of a sweep, such as map.csv.json, as the scene",
                 options.scene
-            )));
+            );
         }
         let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
         let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
@@ -133,7 +131,7 @@ impl<'a> Prepared<'a> {
         let chosen = if options.columns.is_empty() { &swept.columns } else { &options.columns };
         let columns = columns(chosen, sweep.grid(), carry)?;
         // a fault of the first cell is reported when the cells are checked, with its place
-        let first = sweep.first_model(&Task { tick: &|| (), cancel: interrupt::listen() });
+        let first = sweep.first_model(&interrupt::silent_task());
         let until = options.until_settled.clone().or(swept.until_settled.map(|limit| limit.to_string()));
         let until = first.map(|model| until_settled(until.as_deref(), &document, &model)).transpose()?;
         // the quantity of the picture is computed even if its column is not written
@@ -147,16 +145,10 @@ impl<'a> Prepared<'a> {
             can_show(sweep.grid(), &options.quantity, &view, &sweep.empty_table())?;
         }
         let data = Path::new(&options.scene).with_file_name(swept.data);
-        Ok(Self { options, document, out, data, sweep, slice, mechanism, columns, picture, view })
-    }
-
-    /// All that decides the bytes of the rows.
-    pub fn plan(&self) -> Value {
-        let fixed = self.sweep.grid().columns().len() + usize::from(self.sweep.options().carry.is_some());
-        let version = env!("CARGO_PKG_VERSION");
-        let mut plan = plan(&self.document, &self.sweep, &self.columns[fixed..], version);
-        (plan["rows"], plan["unit"]) = (json!(self.sweep.rows()), json!(self.slice.unit()));
-        plan
+        let fixed = sweep.grid().columns().len() + usize::from(carry.is_some());
+        let mut plan = plan(&document, &sweep, &columns[fixed..], env!("CARGO_PKG_VERSION"));
+        (plan["rows"], plan["unit"]) = (json!(sweep.rows()), json!(slice.unit()));
+        Ok(Self { options, document, out, data, sweep, slice, mechanism, columns, plan, picture, view })
     }
 }
 
@@ -175,13 +167,10 @@ fn columns(chosen: &[String], grid: &Grid, carry: Option<Carry>) -> Result<Vec<S
             for name in list.iter().map(|name| name.trim()) {
                 let Some(field) = SummaryField::find(name) else {
                     let known: Vec<&str> = SUMMARY_FIELDS.iter().map(|field| field.name).collect();
-                    return Err(Failure::argument(format!(
-                        "--columns {name}: no such column; there are all, {}",
-                        known.join(", ")
-                    )));
+                    refuse!("--columns {name}: no such column; there are all, {}", known.join(", "));
                 };
                 if names.iter().any(|known| known == field.name) {
-                    return Err(Failure::argument(format!("--columns {name}: named twice; name it once")));
+                    refuse!("--columns {name}: named twice; name it once");
                 }
                 names.push(field.name.to_owned());
             }
@@ -190,7 +179,6 @@ fn columns(chosen: &[String], grid: &Grid, carry: Option<Carry>) -> Result<Vec<S
     Ok(names)
 }
 
-/// Largest number of cuts beside a map.
 const MAX_CUTS: usize = 2;
 
 /// How the picture shows a sweep of this grid.
@@ -205,11 +193,8 @@ fn view(options: &Arguments, grid: &Grid) -> Result<View, Failure> {
         let form = || wrong(format!("write FIELD=VALUE with a field of the sweep: {}", known()));
         let (field, value) = text.split_once('=').ok_or_else(form)?;
         let field = field.trim();
-        let place = grid
-            .axes()
-            .iter()
-            .zip(grid.columns())
-            .position(|(axis, column)| axis.field == field || column == field);
+        let mut fields = grid.axes().iter().zip(grid.columns());
+        let place = fields.position(|(axis, column)| axis.field == field || column == field);
         let place = place.ok_or_else(|| wrong(format!("no field of the sweep; these are: {}", known())))?;
         let value: f64 = value.trim().parse().map_err(|_| form())?;
         let column = grid.columns()[place].clone();
@@ -232,8 +217,8 @@ fn view(options: &Arguments, grid: &Grid) -> Result<View, Failure> {
     Ok(if cuts.is_empty() { View::Top } else { View::Cuts(cuts) })
 }
 
-/// The mechanism of the sweep's first cell. If its flexures have no solution, this is `None` if the mechanism
-/// is swept, because it is then an outcome of the cell, and an error if all cells have this mechanism.
+/// The mechanism of the first cell. Flexures without a solution are an error if all cells have them; if the
+/// mechanism is swept, they are an outcome of the cell, and this is `None`.
 fn first_mechanism(document: &Document, sweep: &Sweep) -> Result<Option<Arc<Mechanism>>, Failure> {
     match sweep.first_mechanism() {
         Ok(mechanism) => Ok(Some(mechanism)),

@@ -10,14 +10,12 @@ use interwell::system::clock::WallClock;
 use interwell::system::{Opened, Part, PartError, files};
 use serde_json::{Value, json};
 
-use super::super::failure::Failure;
-use super::super::outputs::{Output, Outputs};
 use super::super::support::manifest_path;
-use super::prepared::Prepared;
+use super::super::{Failure, Output, Outputs, refuse};
+use super::prepared::{Arguments, Prepared};
 
 /// Rows after which a block ends; a walk that is longer stays in one block.
 const MAX_BLOCK_ROWS: u64 = 4096;
-/// Time in s after which a block ends.
 const MAX_BLOCK_S: f64 = 5.0;
 
 /// The destination of the rows.
@@ -62,7 +60,7 @@ impl Rows {
         let Self::Blocks(blocks) = self else { return Ok(()) };
         let part = blocks.part;
         let name = part.path().display().to_string();
-        part.finish().map_err(|error| Failure::writing(&name, error))
+        part.finish().map_err(|error| Failure::writing(name, error))
     }
 }
 
@@ -75,18 +73,12 @@ pub struct Blocks {
     clock: WallClock,
 }
 
-/// The file of a sweep, with the plan of the sweep and the first line of the file.
-pub struct RowFile<'a> {
-    pub sweep: &'a Prepared<'a>,
-    pub plan: &'a Value,
-    pub header: &'a str,
-}
-
-impl RowFile<'_> {
-    /// Begins the file or continues it. Returns it with the tally of its rows, or `None` if it is complete.
-    pub fn open(&self) -> Result<Option<(Blocks, Tally)>, Failure> {
-        let Prepared { options, out, slice, .. } = self.sweep;
-        let (resume, force) = (options.resume, options.force);
+impl Prepared<'_> {
+    /// Begins the file of the rows, whose first line is `header`, or continues it. Returns it with the tally
+    /// of its rows, or `None` if it is complete.
+    pub fn open_blocks(&self, header: &str) -> Result<Option<(Blocks, Tally)>, Failure> {
+        let Self { out, slice, .. } = self;
+        let &Arguments { resume, force, .. } = self.options;
         let opened = Opened::new(out).map_err(refused)?;
         let part = opened.part().display().to_string();
         let head = json!({ "plan": self.plan, "shard": slice.shard().to_string() });
@@ -107,10 +99,10 @@ impl RowFile<'_> {
             && let Some(existing) = self.existing_head().filter(|existing| *existing != head)
         {
             opened.leave();
-            return Err(Failure::argument(is_of_another(out.display().to_string(), &existing, "made")));
+            refuse!("{}", is_of_another(out.display().to_string(), &existing, "made"));
         }
         if !opened.has_rows() || (force && !resume) {
-            let part = opened.begin(&head.to_string(), self.header).map_err(refused)?;
+            let part = opened.begin(&head.to_string(), header).map_err(refused)?;
             return Ok(Some((self.blocks(part), Tally::default())));
         }
         let existing: Option<Value> = opened.head().and_then(|text| serde_json::from_str(text).ok());
@@ -142,23 +134,22 @@ impl RowFile<'_> {
     }
 
     fn blocks(&self, part: Part) -> Blocks {
-        let (rows, unit) = (self.sweep.slice.rows(), self.sweep.slice.unit());
+        let (rows, unit) = (self.slice.rows(), self.slice.unit());
         Blocks { part, rows, unit, block: Tally::default(), clock: WallClock::start() }
     }
 
     /// A column that a picture needs and the rows do not have.
     fn lacking_column(&self) -> Option<String> {
-        let Prepared { options, sweep, columns, picture, .. } = self.sweep;
-        let table = sweep.empty_table();
+        self.picture?;
+        let table = self.sweep.empty_table();
         let needed = table.columns().iter().map(|column| &column.name);
-        let mut needed = std::iter::once(&options.quantity).chain(needed).filter(|_| picture.is_some());
-        needed.find(|name| !columns.contains(name)).cloned()
+        let mut needed = std::iter::once(&self.options.quantity).chain(needed);
+        needed.find(|name| !self.columns.contains(name)).cloned()
     }
 
     /// The manifest of the file, if both exist.
     fn manifest(&self) -> Option<Value> {
-        let out = &self.sweep.out;
-        let text = files::bytes(&manifest_path(out)?).ok().filter(|_| files::exists(out));
+        let text = files::bytes(&manifest_path(&self.out)?).ok().filter(|_| files::exists(&self.out));
         text.and_then(|text| serde_json::from_slice::<Value>(&text).ok())
     }
 
@@ -171,9 +162,9 @@ impl RowFile<'_> {
     /// Whether the file has all rows of this sweep, according to its manifest and checksum.
     fn is_whole(&self) -> bool {
         self.manifest().is_some_and(|manifest| {
-            manifest["plan"] == *self.plan
-                && manifest["shard"].as_str() == Some(&self.sweep.slice.shard().to_string())
-                && manifest["sha256"].as_str() == file_checksum(&self.sweep.out).as_deref()
+            manifest["plan"] == self.plan
+                && manifest["shard"].as_str() == Some(&self.slice.shard().to_string())
+                && manifest["sha256"].as_str() == file_checksum(&self.out).as_deref()
         })
     }
 }
@@ -205,7 +196,7 @@ fn refused(error: PartError) -> Failure {
              starts anew"
         ),
     };
-    Failure::Failed(anyhow::anyhow!("{error}; nothing was changed: {remedy}"))
+    Failure::failed(format!("{error}; nothing was changed: {remedy}"))
 }
 
 impl Blocks {
@@ -225,9 +216,8 @@ impl Blocks {
         self.part.end_block(block.cells, serde_json::to_string(&block)?)
     }
 
-    /// The failure for rows that cannot be written.
     fn failed(&self, error: &std::io::Error) -> Failure {
-        Failure::Failed(anyhow::anyhow!(
+        Failure::failed(format!(
             "cannot write {}: {error}; {} of {} rows are kept there: once there is room, the same command \
              with --resume goes on",
             self.part.path().display(),
@@ -247,7 +237,7 @@ impl Blocks {
         let failure = match closed {
             Err(error) => self.failed(&error),
             Ok(_) if kept == 0 => Failure::interrupted(),
-            Ok(_) => Failure::Failed(anyhow::anyhow!(
+            Ok(_) => Failure::failed(format!(
                 "interrupted: {part} has {kept} of {} rows; the same command with --resume goes on",
                 self.rows
             )),
@@ -266,13 +256,12 @@ impl Blocks {
         let path = self.part.path();
         let text =
             files::bytes(path).and_then(|bytes| String::from_utf8(bytes).map_err(std::io::Error::other));
-        let failed = |error| Failure::Failed(anyhow::anyhow!("cannot read {}: {error}", path.display()));
+        let failed = |error| Failure::failed(format!("cannot read {}: {error}", path.display()));
         csv_table(&text.map_err(failed)?, empty)
-            .map_err(|problem| Failure::Failed(anyhow::anyhow!("the rows that are there: {problem}")))
+            .map_err(|problem| Failure::failed(format!("the rows that are there: {problem}")))
     }
 }
 
-/// A file that rows are compared with.
 pub struct Compared {
     name: String,
     file: Box<dyn Read>,
@@ -280,7 +269,6 @@ pub struct Compared {
 }
 
 impl Compared {
-    /// Opens the file.
     pub fn new(path: &Path) -> Result<Self, Failure> {
         let name = path.display().to_string();
         let file = files::open(path);
@@ -289,11 +277,10 @@ impl Compared {
         Ok(Self { name, file: Box::new(BufReader::new(file)), line: 1 })
     }
 
-    /// Compares lines with the next ones of the file.
     pub fn put(&mut self, text: &str) -> Result<(), Failure> {
         let mut expected = Vec::new();
         let read = (&mut self.file).take(text.len() as u64).read_to_end(&mut expected);
-        read.map_err(|error| Failure::Failed(anyhow::anyhow!("cannot read {}: {error}", self.name)))?;
+        read.map_err(|error| Failure::failed(format!("cannot read {}: {error}", self.name)))?;
         if expected == text.as_bytes() {
             self.line += text.matches('\n').count() as u64;
             return Ok(());
@@ -307,10 +294,9 @@ impl Compared {
     }
 
     fn differs(&self, how: String) -> Failure {
-        Failure::Failed(anyhow::anyhow!("{} differs: {how}", self.name))
+        Failure::failed(format!("{} differs: {how}", self.name))
     }
 
-    /// Checks that the file ends here.
     pub fn end(&mut self) -> Result<(), Failure> {
         let mut more = [0];
         match self.file.read(&mut more) {

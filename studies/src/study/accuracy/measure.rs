@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 
 use super::Stopped;
 use super::setup::Setup;
-use crate::dynamics::{Event, EventKind, Model, Outcome, Request, Run, Sample};
+use crate::dynamics::{Event, EventKind, Model, Outcome, Request, Run, Sample, Summary};
 use crate::scene::{FieldPath, numeric_fields};
 use crate::study::Task;
 
@@ -61,18 +61,12 @@ impl Check {
 
     /// Decimal digits allowed, 0 to 16; `None` for a fact.
     pub fn digits_allowed(self) -> Option<f64> {
-        match self {
-            Self::Error { allowed, .. } => Some(digits(allowed)),
-            Self::Fact(_) => None,
-        }
+        if let Self::Error { allowed, .. } = self { Some(digits(allowed)) } else { None }
     }
 
     /// Decimal digits reached, 0 to 16; `None` for a fact.
     pub fn digits_reached(self) -> Option<f64> {
-        match self {
-            Self::Error { error, .. } => Some(digits(error)),
-            Self::Fact(_) => None,
-        }
+        if let Self::Error { error, .. } = self { Some(digits(error)) } else { None }
     }
 
     /// The error as a share of the error allowed; a fact comes before all numbers if it fails, after them if
@@ -116,27 +110,15 @@ impl Variant {
 
 /// A run of a case, and the checks of it so far.
 pub(super) struct Trial {
-    name: &'static str,
+    pub variant: Variant,
     pub model: Model,
     pub run: Run,
-    checks: Vec<(&'static str, Check)>,
 }
 
 /// The runs of a case with their checks.
 pub(super) type Trials = Result<Vec<Trial>, Stopped>;
 
 impl Trial {
-    pub fn into_variant(self) -> Variant {
-        let summary = &self.run.summary;
-        Variant {
-            name: self.name,
-            steps: summary.steps,
-            evaluations: summary.evaluations,
-            cpu_s: summary.cpu_s,
-            checks: self.checks,
-        }
-    }
-
     /// The sum of the errors of all steps, as it is where no error grows.
     pub fn added(&self) -> f64 {
         self.run.summary.steps as f64 * STEP_ERROR
@@ -153,18 +135,18 @@ impl Trial {
 
     /// Adds a number's error and the allowed error.
     pub fn number(&mut self, quantity: &'static str, error: f64, allowed: f64) {
-        self.checks.push((quantity, Check::number(error, allowed)));
+        self.variant.checks.push((quantity, Check::number(error, allowed)));
     }
 
     pub fn fact(&mut self, quantity: &'static str, holds: bool) {
-        self.checks.push((quantity, Check::Fact(holds)));
+        self.variant.checks.push((quantity, Check::Fact(holds)));
     }
 
     /// Adds the pair of error and allowed error with the largest ratio; a failed fact if there is no pair.
     pub fn worst(&mut self, quantity: &'static str, pairs: Vec<(f64, f64)>) {
         let checks = pairs.into_iter().map(|(error, allowed)| Check::number(error, allowed));
         let worst = checks.max_by(|a, b| a.share().total_cmp(&b.share()));
-        self.checks.push((quantity, worst.unwrap_or(Check::Fact(false))));
+        self.variant.checks.push((quantity, worst.unwrap_or(Check::Fact(false))));
     }
 
     /// Adds the time of the first event of a kind; the error allowed is relative to `exact` in s.
@@ -243,13 +225,8 @@ pub(super) struct Bench<'a> {
 
 impl Bench<'_> {
     fn request<'b>(&'b self, times: &'b [f64]) -> Request<'b> {
-        Request {
-            sample_times: times,
-            events: true,
-            ledger: true,
-            cancel: Some(self.task.cancel),
-            ..Request::default()
-        }
+        let cancel = Some(self.task.cancel);
+        Request { sample_times: times, events: true, ledger: true, cancel, ..Request::default() }
     }
 
     /// A run with events, ledger and samples at `times`, ascending.
@@ -265,7 +242,8 @@ impl Bench<'_> {
     fn run_as(&self, name: &'static str, setup: &Setup, request: &Request) -> Result<Trial, Stopped> {
         let model = setup.model()?;
         let run = self.unless_cancelled(model.run(request))?;
-        Ok(Trial { name, model, run, checks: Vec::new() })
+        let Summary { steps, evaluations, cpu_s, .. } = run.summary;
+        Ok(Trial { variant: Variant { name, steps, evaluations, cpu_s, checks: Vec::new() }, model, run })
     }
 
     /// A run in double-double arithmetic.
@@ -323,9 +301,8 @@ fn changed(setup: &Setup, change: f64) -> Vec<Setup> {
     let fields = numeric_fields(&setup.scene);
     let with = |(begin, ends, by): (&str, &[&str], f64)| {
         let mut changed = setup.clone();
-        let is_meant =
-            |field: &&String| field.starts_with(begin) && ends.iter().any(|end| field.ends_with(end));
-        for field in fields.iter().filter(is_meant).map(|field| FieldPath::new(field)) {
+        let datum = |field: &&String| field.starts_with(begin) && ends.iter().any(|end| field.ends_with(end));
+        for field in fields.iter().filter(datum).map(|field| FieldPath::new(field)) {
             // a restitution of 1 stays elastic
             if let Some(value) = field.get(&setup.scene).filter(|value| by > 1.0 || *value < 1.0) {
                 let _ = field.set(&mut changed.scene, value * by);
@@ -341,10 +318,15 @@ pub(super) fn times(run: &Run, kind: EventKind) -> Vec<f64> {
     run.events.iter().filter(|event| event.kind == kind).map(|event| event.t).collect()
 }
 
+/// Times in s of the impacts faster than `least` in m/s.
+pub(super) fn impacts_above(least: f64, run: &Run) -> Vec<f64> {
+    let is_hard = |event: &&Event| event.kind == EventKind::Impact && event.v_in.abs() > least;
+    run.events.iter().filter(is_hard).map(|event| event.t).collect()
+}
+
 /// Times in s of the impacts above 1 cm/s.
 pub(super) fn hard_impacts(run: &Run) -> Vec<f64> {
-    let hard = |event: &&Event| event.kind == EventKind::Impact && event.v_in.abs() > 1e-2;
-    run.events.iter().filter(hard).map(|event| event.t).collect()
+    impacts_above(1e-2, run)
 }
 
 /// |value - exact| relative to `scale`.

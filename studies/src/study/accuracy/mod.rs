@@ -25,10 +25,8 @@ use super::Task;
 
 /// A name that cannot be selected.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("there is no case `{name}`; the cases are {}", names().collect::<Vec<_>>().join(", "))]
-pub struct UnknownCase {
-    name: String,
-}
+#[error("there is no case `{0}`; the cases are {cases}", cases = names().collect::<Vec<_>>().join(", "))]
+pub struct UnknownCase(String);
 
 /// Names of all parts of the study: the problems, then the hard cases.
 pub fn names() -> impl Iterator<Item = &'static str> {
@@ -44,25 +42,19 @@ pub fn description(name: &str) -> String {
 }
 
 /// Parts of the study to run.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct Selection {
     problems: Vec<&'static Problem>,
     cases: Vec<&'static HardCase>,
 }
 
 impl Selection {
-    /// Everything.
-    pub fn all() -> Self {
-        Self { problems: PROBLEMS.iter().collect(), cases: HARD_CASES.iter().collect() }
-    }
-
-    /// The parts with these names, in the study's own order.
+    /// The parts with these names, in the study's own order; all parts without names.
     pub fn of(wanted: &[String]) -> Result<Self, UnknownCase> {
-        let unknown = wanted.iter().find(|wanted| !names().any(|name| name == wanted.as_str()));
-        if let Some(name) = unknown {
-            return Err(UnknownCase { name: name.clone() });
+        if let Some(unknown) = wanted.iter().find(|wanted| !names().any(|name| name == wanted.as_str())) {
+            return Err(UnknownCase(unknown.clone()));
         }
-        let has = |name: &str| wanted.iter().any(|wanted| wanted == name);
+        let has = |name: &str| wanted.is_empty() || wanted.iter().any(|wanted| wanted == name);
         Ok(Self {
             problems: PROBLEMS.iter().filter(|problem| has(problem.name)).collect(),
             cases: HARD_CASES.iter().filter(|case| has(case.name)).collect(),
@@ -93,14 +85,16 @@ impl Report {
     /// Each variant of a case that falls short: case, variant, quantity.
     pub fn shortfalls(&self) -> Vec<(&'static str, &'static str, &'static str)> {
         let mut short = Vec::new();
-        for (case, variants) in &self.cases {
-            for variant in variants {
-                for (quantity, _) in variant.checks.iter().filter(|(_, check)| !check.passes()) {
-                    short.push((*case, variant.name, *quantity));
-                }
-            }
+        for (case, variant) in self.variants() {
+            let failed = variant.checks.iter().filter(|(_, check)| !check.passes());
+            short.extend(failed.map(|(quantity, _)| (case, variant.name, *quantity)));
         }
         short
+    }
+
+    /// The variants of all cases, each with the name of its case.
+    fn variants(&self) -> impl Iterator<Item = (&'static str, &Variant)> {
+        self.cases.iter().flat_map(|(case, variants)| variants.iter().map(|variant| (*case, variant)))
     }
 }
 

@@ -1,4 +1,4 @@
-//! Work against precision: three problems, and what each method pays for its digits.
+//! Work against precision: three problems, each run by every method at several settings.
 
 use super::Stopped;
 use super::measure::REFERENCE_TOLERANCE;
@@ -15,7 +15,6 @@ const HARD: f64 = 1e-2;
 
 /// Time in s for which a run is repeated to measure its CPU time.
 pub(super) const MEASURED_FOR: f64 = 0.02;
-/// Most repetitions of such a run.
 const MOST_REPEATS: usize = 25;
 
 /// Progress reports of a problem: the reference, the program's method, Dormand-Prince and each scheme.

@@ -78,10 +78,8 @@ impl Report {
     /// The hard cases, a row for each check that `choose` takes from a variant.
     fn check_table(&self, choose: impl Fn(&Variant) -> Vec<(&'static str, Check)>) -> Table {
         let mut rows = Vec::new();
-        for (case, variants) in &self.cases {
-            for variant in variants {
-                rows.extend(choose(variant).into_iter().map(|check| (*case, variant, check.0, check.1)));
-            }
+        for (case, variant) in self.variants() {
+            rows.extend(choose(variant).into_iter().map(|check| (case, variant, check.0, check.1)));
         }
         let numbers = |check: Check| match check {
             Check::Error { error, allowed } => (error, allowed),

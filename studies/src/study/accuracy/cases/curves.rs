@@ -74,12 +74,9 @@ fn flexures(bench: &Bench) -> Result<Trial, Stopped> {
 
 pub(super) fn stop_on_break(bench: &Bench) -> Trials {
     let b = 300.0 / 1e3;
-    let setup =
-        |v: f64| {
-            Setup::new(polynomial(&[0.0]), (b, v), 2.0)
-                .on(Corner { at: b, outer: 1e6 }.curve())
-                .stops(stops_at(None, Some(300.0), 0.5))
-        };
+    let curve = Corner { at: b, outer: 1e6 }.curve();
+    let stops = stops_at(None, Some(300.0), 0.5);
+    let setup = |v: f64| Setup::new(polynomial(&[0.0]), (b, v), 2.0).on(curve.clone()).stops(stops);
     let mut impact = bench.run("impact", &setup(0.5), &[])?;
     let exact = b.hypot(0.25) * (2.0 + 0.25_f64.atan2(b)).cos();
     impact.final_x("displacement at 2 s", exact, impact.model.scales().length, impact.added());

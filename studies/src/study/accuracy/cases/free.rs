@@ -99,8 +99,8 @@ fn ball(bench: &Bench, name: &'static str, e: f64) -> Result<Trial, Stopped> {
     let first = first_hit(1.0, 9.81);
     let speed = (2.0 * 9.81_f64).sqrt();
     let rest = rest_time(first, e).to_f64();
-    let setup =
-        Setup::new(polynomial(&[9.81]), (0.0, 0.0), 1.1 * rest).stops(stops_at(Some(1000.0), None, e));
+    let floor = stops_at(Some(1000.0), None, e);
+    let setup = Setup::new(polynomial(&[9.81]), (0.0, 0.0), 1.1 * rest).stops(floor);
     let mut trial = bench.run(name, &setup, &[])?;
     let reach = 1.0 / (1.0 - e);
     let (mut late, mut slow) = (Vec::new(), Vec::new());

@@ -5,10 +5,10 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use crate::dynamics::{Model, STANDARD_GRAVITY, TonePart};
-use crate::numeric::{DoubleDouble, Scalar};
+use crate::numeric::Scalar;
 use crate::scene::{Excitation, Record, Transducer};
 use crate::study::accuracy::Stopped;
-use crate::study::accuracy::exact::{Coupled, Forcing, Oscillator, dd};
+use crate::study::accuracy::exact::{Coupled, Forcing, Oscillator, State, dd};
 use crate::study::accuracy::measure::{Bench, Trial, Trials, off};
 use crate::study::accuracy::setup::{Setup, coil, layer, polynomial, sine};
 
@@ -23,7 +23,6 @@ fn sprung(c: f64, drive: Excitation, duration: f64) -> Setup {
     setup
 }
 
-/// Evenly spaced times within a run.
 fn even(duration: f64, count: usize) -> Vec<f64> {
     (1..=count).map(|i| duration * i as f64 / (count as f64 + 0.5)).collect()
 }
@@ -40,18 +39,12 @@ fn tones(model: &Model) -> Vec<Forcing> {
     model.excitation().tones.iter().map(tone).collect()
 }
 
-/// The start of a model in double-doubles.
-fn start(model: &Model) -> (DoubleDouble, DoubleDouble) {
+fn start(model: &Model) -> State {
     (dd(model.start().0), dd(model.start().1))
 }
 
 /// 97 samples of a run beside displacement and velocity at a time in s.
-fn sampled(
-    bench: &Bench,
-    name: &'static str,
-    setup: &Setup,
-    exact: impl Fn(&Model, f64) -> (DoubleDouble, DoubleDouble),
-) -> Trials {
+fn sampled(bench: &Bench, name: &'static str, setup: &Setup, exact: impl Fn(&Model, f64) -> State) -> Trials {
     let mut trial = bench.run(name, setup, &even(setup.scene.run.duration_s, 97))?;
     let model = trial.model.clone();
     let fastest = model.excitation().fastest().unwrap_or(0.0);

@@ -1,9 +1,9 @@
 //! Chaos, and one problem in several systems of units.
 
-use crate::dynamics::{Event, EventKind, Run};
+use crate::dynamics::{Run, Sample};
 use crate::scene::{Excitation, Mechanism, Start};
 use crate::study::accuracy::Stopped;
-use crate::study::accuracy::measure::{Bench, CHANGE, SMALL_CHANGE, Trial, Trials, off};
+use crate::study::accuracy::measure::{Bench, CHANGE, SMALL_CHANGE, Trial, Trials, impacts_above, off};
 use crate::study::accuracy::setup::{Setup, rigid};
 
 pub(super) fn chaos(bench: &Bench) -> Trials {
@@ -39,12 +39,9 @@ fn averages(bench: &Bench, setup: &Setup) -> Result<(Trial, Vec<f64>), Stopped> 
     let times: Vec<f64> =
         (0..BATCHES * PER_BATCH).map(|i| model.settle() + (i as f64 + 0.5) * step).collect();
     let trial = bench.run("averages", setup, &times)?;
-    let batches = trial
-        .run
-        .samples
-        .chunks(PER_BATCH)
-        .map(|batch| batch.iter().map(|sample| sample.v * sample.v).sum::<f64>() / batch.len() as f64)
-        .collect();
+    let square =
+        |batch: &[Sample]| batch.iter().map(|sample| sample.v * sample.v).sum::<f64>() / batch.len() as f64;
+    let batches = trial.run.samples.chunks(PER_BATCH).map(square).collect();
     Ok((trial, batches))
 }
 
@@ -87,9 +84,8 @@ impl Units {
 
     /// Times in periods of the impacts that are faster than 1 cm/s in SI.
     fn hard_impacts(self, run: &Run) -> Vec<f64> {
-        let least = 1e-2 * self.length / self.time;
-        let hard = |event: &&Event| event.kind == EventKind::Impact && event.v_in.abs() > least;
-        run.events.iter().filter(hard).map(|event| 3.0 * event.t / self.time).collect()
+        let times = impacts_above(1e-2 * self.length / self.time, run);
+        times.into_iter().map(|t| 3.0 * t / self.time).collect()
     }
 }
 

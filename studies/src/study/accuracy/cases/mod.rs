@@ -4,8 +4,7 @@
 //! What a case runs, where its answer comes from and the bound of its error stand in `../list.txt`, as
 //! `accuracy --list` shows them. Throughout, d is the error that one step may make
 //! ([`STEP_ERROR`](super::STEP_ERROR)), relative to the scene's length L and speed V, and n the number of
-//! steps. All run at the tolerance 1e-14; at 1e-9 some sixty of their checks fail, so the bounds are tight
-//! enough to matter.
+//! steps. All run at the tolerance 1e-14; at 1e-9 some sixty of their checks fail, so the bounds are tight.
 
 mod circuit;
 mod curves;
@@ -15,7 +14,7 @@ mod long;
 mod pressed;
 
 use super::Stopped;
-use super::measure::{Bench, Trial, Trials, Variant};
+use super::measure::{Bench, Trials, Variant};
 use crate::study::Task;
 
 /// A problem whose answer is known.
@@ -33,7 +32,7 @@ impl HardCase {
 
     /// Runs the case. Reports no progress within the case; stops soon after cancellation.
     pub fn find(&self, task: &Task) -> Result<Vec<Variant>, Stopped> {
-        Ok((self.trials)(&Bench { task })?.into_iter().map(Trial::into_variant).collect())
+        Ok((self.trials)(&Bench { task })?.into_iter().map(|trial| trial.variant).collect())
     }
 }
 

@@ -6,7 +6,7 @@ use crate::dynamics::{EventKind, Run};
 use crate::numeric::{DoubleDouble, Scalar, bisect};
 use crate::scene::{Damping, Excitation};
 use crate::study::accuracy::Stopped;
-use crate::study::accuracy::exact::{dd, sine_turns, turns};
+use crate::study::accuracy::exact::{State, dd, sine_turns, turns};
 use crate::study::accuracy::measure::{Bench, CHANGE, STEP_ERROR, Trials, off, times};
 use crate::study::accuracy::setup::{Setup, constant, polynomial, sine, stops_at};
 
@@ -30,12 +30,7 @@ impl ClosedForm {
     }
 
     /// Gap in m and its rate at `t` after gap and rate `start` at `from`, both in s, in free flight.
-    fn flight(
-        &self,
-        start: (f64, DoubleDouble),
-        from: DoubleDouble,
-        t: DoubleDouble,
-    ) -> (DoubleDouble, DoubleDouble) {
+    fn flight(&self, start: (f64, DoubleDouble), from: DoubleDouble, t: DoubleDouble) -> State {
         let w = DoubleDouble::tau();
         let gain = dd(self.amplitude) / w;
         let ((s0, c0), (s, c)) = (turns(from), turns(t));

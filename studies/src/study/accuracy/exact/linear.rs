@@ -41,7 +41,7 @@ pub enum Forcing {
 type Complex = (DoubleDouble, DoubleDouble);
 
 /// Displacement and velocity in m and m/s.
-type State = (DoubleDouble, DoubleDouble);
+pub type State = (DoubleDouble, DoubleDouble);
 
 impl Oscillator {
     /// `mass` in kg, `damping` c in N s/m, `stiffness` in N/m above 0.

@@ -8,7 +8,7 @@ mod linear;
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-pub use linear::{Coupled, Forcing, Oscillator};
+pub use linear::{Coupled, Forcing, Oscillator, State};
 
 use crate::mechanics::{ForceCurve, Piece};
 use crate::numeric::{DoubleDouble, Number, Scalar};

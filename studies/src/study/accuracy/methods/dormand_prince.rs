@@ -6,13 +6,12 @@
 //! a step, and its root on the continuous extension is bisected to rounding: an excursion inside a step is
 //! not seen.
 
-use super::tally::{Problem, Tally, TimedState};
-use super::{MethodRun, is_cancelled};
+use super::{MethodRun, Problem, Tally, TimedState, is_cancelled};
 use crate::dynamics::{Model, Phase, Request, Side};
 use crate::numeric::bisect;
 
-/// A pressed rebound slower than this share of the scene's speed is a rest, as a user of such a solver would
-/// define it, which does not sum chatter.
+/// A pressed rebound slower than this share of the scene's speed counts as a rest: a solver that does not sum
+/// chatter needs such a limit.
 const REST_SPEED: f64 = 1e-6;
 
 /// Most attempted steps of one run, rejected ones included.
@@ -167,7 +166,6 @@ fn sign(side: Side) -> f64 {
     if side == Side::Left { -1.0 } else { 1.0 }
 }
 
-/// A run under way.
 struct March<'a> {
     problem: Problem<'a>,
     tolerance: f64,

@@ -1,7 +1,6 @@
 //! Fixed steps with clamp and bounce.
 
-use super::tally::{Problem, Tally, TimedState};
-use super::{MethodRun, Scheme, is_cancelled};
+use super::{MethodRun, Problem, Scheme, Tally, TimedState, is_cancelled};
 use crate::dynamics::{Model, Phase, Request, Side};
 
 /// Steps between checks of the cancel flag.

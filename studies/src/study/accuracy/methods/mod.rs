@@ -1,20 +1,21 @@
 //! Four common methods, on any scene, for comparison with the program's own.
 //!
-//! They serve this comparison alone. Of a request they take sample times, events, of which they keep impacts,
-//! and cancellation. Fixed steps *clamp and bounce*, as in games and small teaching applets:
-//! a step that ends beyond a stop is put onto it and its velocity reversed. Contact is then seen up to a step
-//! late, so that the times of impacts are first order in the step whatever the scheme.
+//! Of a request they use the sample times, the events (they keep impacts) and the cancellation. Fixed steps
+//! *clamp and bounce*, as in games and small teaching applets: a step that ends beyond a stop is put onto it
+//! and its velocity reversed. A contact is then found up to a step late, so that the times of impacts are of
+//! first order in the step with every scheme.
 
 mod dormand_prince;
 mod fixed;
-mod tally;
 
+use std::f64::consts::TAU;
 use std::sync::atomic::Ordering;
 
 pub use dormand_prince::dormand_prince;
 pub use fixed::fixed_step;
 
-use crate::dynamics::{Event, EventKind, Request, Run, Sample, Summary};
+use crate::dynamics::{Event, EventKind, Model, Phase, Request, Run, Sample, Side, StopAt, Summary};
+use crate::system::clock::ThreadClock;
 
 /// A scheme of fixed step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,7 +82,6 @@ pub struct MethodRun {
 }
 
 impl From<&Summary> for Statistics {
-    /// The numbers of a run of the program.
     fn from(summary: &Summary) -> Self {
         Self {
             final_x: summary.final_x,
@@ -97,12 +97,183 @@ impl From<&Summary> for Statistics {
 }
 
 impl From<Run> for MethodRun {
-    /// A run of the program in the same terms.
     fn from(run: Run) -> Self {
         Self {
             statistics: Statistics::from(&run.summary),
             samples: run.samples,
             impacts: run.events.into_iter().filter(|event| event.kind == EventKind::Impact).collect(),
         }
+    }
+}
+
+/// The equation of motion of a model, evaluated directly: library sines, force curve, no series.
+#[derive(Clone, Copy)]
+struct Problem<'a> {
+    pub model: &'a Model,
+    /// Left and right stop: position in m and restitution; at infinity if there is none.
+    pub stops: [(f64, f64); 2],
+    pub start: TimedState,
+    domain: (f64, f64),
+    single: Option<&'a [f64]>,
+}
+
+impl<'a> Problem<'a> {
+    pub fn new(model: &'a Model) -> Self {
+        let stops = model.stops();
+        let at =
+            |stop: Option<StopAt>, open: f64| stop.map_or((open, 1.0), |stop| (stop.x, stop.restitution));
+        let (x, v) = model.start();
+        let curve = &model.mechanism().curve;
+        Self {
+            model,
+            stops: [
+                at(stops.and_then(|pair| pair.left), f64::NEG_INFINITY),
+                at(stops.and_then(|pair| pair.right), f64::INFINITY),
+            ],
+            start: TimedState { t: 0.0, x, v },
+            domain: curve.domain(),
+            single: match curve.pieces() {
+                [piece] if piece.origin == 0.0 => Some(&piece.coefficients),
+                _ => None,
+            },
+        }
+    }
+
+    /// Position in m and restitution of a stop; at infinity if there is none.
+    pub fn stop(&self, side: Side) -> (f64, f64) {
+        self.stops[usize::from(side == Side::Right)]
+    }
+
+    /// Base acceleration in m/s^2 at `t` in s.
+    pub fn base(&self, t: f64) -> f64 {
+        let drive = &self.model.excitation();
+        let mut sum = drive.constant;
+        for tone in &drive.tones {
+            let turns = tone.frequency * t + tone.phase;
+            let amplitude = match tone.ramp {
+                Some((from, over)) if t < over => from + (tone.amplitude - from) * t / over,
+                _ => tone.amplitude,
+            };
+            let angle = TAU * turns;
+            sum += amplitude * if tone.quarter { angle.cos() } else { angle.sin() };
+        }
+        for chirp in &drive.chirps {
+            let turns = if t < chirp.over {
+                chirp.from * t + (chirp.to - chirp.from) * t * t / (2.0 * chirp.over)
+            } else {
+                0.5 * (chirp.from + chirp.to) * chirp.over + chirp.to * (t - chirp.over)
+            };
+            sum += chirp.amplitude * (TAU * turns).sin();
+        }
+        for record in &drive.records {
+            let after = record.times.partition_point(|at| *at <= t);
+            if after > 0 && after < record.times.len() {
+                let (t0, t1) = (record.times[after - 1], record.times[after]);
+                let (a0, a1) = (record.accelerations[after - 1], record.accelerations[after]);
+                sum += a0 + (a1 - a0) * (t - t0) / (t1 - t0);
+            }
+        }
+        sum
+    }
+
+    /// Acceleration in m/s^2 at t, x, v in SI.
+    pub fn acceleration(&self, t: f64, x: f64, v: f64) -> f64 {
+        let force = match self.single {
+            Some(coefficients) => coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c),
+            // a stage may lie beyond the end of the curve, where a run ends
+            None => self.model.mechanism().curve.force(x.clamp(self.domain.0, self.domain.1)),
+        };
+        -(force + self.model.total_damping() * v) / self.model.mass() - self.base(t)
+    }
+
+    /// Whether the run may go on from here.
+    pub fn is_inside(&self, x: f64, v: f64) -> bool {
+        x >= self.domain.0 && x <= self.domain.1 && v.is_finite()
+    }
+}
+
+/// Time, displacement and velocity in SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct TimedState {
+    pub t: f64,
+    pub x: f64,
+    pub v: f64,
+}
+
+/// Collects samples, impacts and sums from one step to the next.
+struct Tally<'a> {
+    problem: Problem<'a>,
+    request: &'a Request<'a>,
+    watch: ThreadClock,
+    run: MethodRun,
+    next: usize,
+    squares: f64,
+    is_beyond_barrier: bool,
+}
+
+impl<'a> Tally<'a> {
+    pub fn new(problem: Problem<'a>, request: &'a Request<'a>) -> Self {
+        let barrier = problem.model.crossing_level();
+        Self {
+            problem,
+            request,
+            watch: ThreadClock::start(),
+            run: MethodRun::default(),
+            next: 0,
+            squares: 0.0,
+            is_beyond_barrier: barrier.is_some_and(|top| problem.start.x > top),
+        }
+    }
+
+    /// Records a step from `a` to `b`; `phase` is that of the mass in it, `squares` the integral of v^2
+    /// over it.
+    pub fn step(&mut self, a: TimedState, b: TimedState, phase: Phase, squares: f64) {
+        let h = b.t - a.t;
+        while let Some(t) = self.request.sample_times.get(self.next).copied().filter(|t| *t < b.t) {
+            let share = if h > 0.0 { (t - a.t) / h } else { 0.0 };
+            self.sample(t, a.x + share * (b.x - a.x), a.v + share * (b.v - a.v), phase);
+        }
+        let inside = (b.t - self.problem.model.settle().max(a.t)).max(0.0);
+        if inside > 0.0 {
+            // a step across the begin of the window counts in part
+            self.squares += squares * if inside < h { inside / h } else { 1.0 };
+        }
+        if let Some(top) = self.problem.model.crossing_level()
+            && (b.x > top) != self.is_beyond_barrier
+            && b.x != top
+        {
+            self.is_beyond_barrier = !self.is_beyond_barrier;
+            self.run.statistics.crossings += 1;
+        }
+    }
+
+    fn sample(&mut self, t: f64, x: f64, v: f64, phase: Phase) {
+        let base_accel = self.problem.base(t);
+        self.run.samples.push(Sample { t, x, v, base_accel, phase, electrical: 0.0 });
+        self.next += 1;
+    }
+
+    /// Records an impact on the stop of `side`.
+    pub fn impact(&mut self, t: f64, side: Side, v_in: f64, v_out: f64) {
+        self.run.statistics.impacts += u64::from(v_in.abs() > self.problem.model.least_impact_speed());
+        if self.request.events {
+            self.run.impacts.push(Event { t, kind: EventKind::Impact, side, v_in, v_out });
+        }
+    }
+
+    /// The finished run, which ends in the state `last`.
+    pub fn finish(mut self, last: TimedState, phase: Phase, steps: u64, evaluations: u64) -> MethodRun {
+        while let Some(t) = self.request.sample_times.get(self.next).copied().filter(|t| *t <= last.t) {
+            self.sample(t, last.x, last.v, phase);
+        }
+        let model = self.problem.model;
+        let window = last.t - model.settle();
+        let statistics = &mut self.run.statistics;
+        statistics.final_x = last.x;
+        (statistics.steps, statistics.evaluations) = (steps, evaluations);
+        statistics.ended_at = (last.t < model.duration()).then_some(last.t);
+        statistics.rms_velocity = (window > 0.0).then(|| (self.squares / window).sqrt());
+        statistics.cpu_s = self.watch.seconds();
+        self.run
     }
 }

@@ -5,18 +5,14 @@
 //! or a small applet would take ([`step_size`]). Nothing here needs an exact answer: the error is the
 //! difference from a far more accurate run.
 
-mod arrivals;
-mod beside;
 mod step_size;
-mod tolerances;
 mod trust;
 mod words;
 
-pub use arrivals::Lateness;
-pub use beside::TRUSTED_SHARE;
-pub use step_size::{StepSize, TRUE_TOLERANCE, Unfit, step_size};
-pub use tolerances::{AtTolerance, TOLERANCES, Tolerances, tolerances};
-pub use trust::{Course, Trust, lasting, trust};
+pub use step_size::{Lateness, StepSize, TRUE_TOLERANCE, Unfit, step_size};
+pub use trust::{
+    AtTolerance, Course, TOLERANCES, TRUSTED_SHARE, Tolerances, Trust, lasting, tolerances, trust,
+};
 pub use words::{duration, length_mm, moment, small_length, step_name};
 
 use super::OWN;

@@ -91,11 +91,8 @@ impl Trust {
         let again =
             format!("Computed once more with the tolerance {finer:.0e} in place of {loose:.0e}, the path");
         let leaves = |until: f64| {
-            let share = TRUSTED_SHARE * 100.0;
-            format!(
-                "{again} is another one from {} on (off by {share} % of the travel)",
-                moment(from + until)
-            )
+            let (share, until) = (TRUSTED_SHARE * 100.0, moment(from + until));
+            format!("{again} is another one from {until} on (off by {share} % of the travel)")
         };
         match self.course {
             Course::Kept => {
@@ -132,7 +129,7 @@ impl Lateness {
         let then = if is_whole { "" } else { "; then it takes another course" };
         let (late, early) = (self.matched - self.early, self.early);
         let fewer = if is_late { early } else { late };
-        // where many go each way, a median would hide the others
+        // if many are late and many early, a median would hide one group
         if fewer * 5 > self.matched {
             let of = match is_whole {
                 true => format!("{} impacts", self.of),
@@ -149,16 +146,13 @@ impl Lateness {
             (false, 1) => "The first impact arrives".to_owned(),
             (false, n) => format!("The first {n} impacts after a flight arrive"),
         };
-        // the furthest of most, and of the few that go the other way
+        // the largest lateness of the majority, and of the minority with the other sign
         let (way, other_way) = if is_late { ("late", "early") } else { ("early", "late") };
-        let (worst, other) =
-            if is_late { (self.latest, self.earliest) } else { (self.earliest, self.latest) };
+        let (latest, earliest) = (self.latest, self.earliest);
+        let (worst, other) = if is_late { (latest, earliest) } else { (earliest, latest) };
         let [median, worst, other] = [self.median, worst, other].map(|time| duration(time.abs()));
-        let worst = match self.matched {
-            1 => String::new(),
-            _ if worst == median => String::new(),
-            _ => format!(" (worst {worst})"),
-        };
+        let is_alone = self.matched == 1 || worst == median;
+        let worst = if is_alone { String::new() } else { format!(" (worst {worst})") };
         let minority = match fewer {
             0 => String::new(),
             n => format!(", {n} of {} up to {other} {other_way}", self.matched),
