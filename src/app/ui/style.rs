@@ -38,12 +38,12 @@ pub const GRAB: f32 = 14.0;
 /// Time in s in which the ring of an impact grows and fades.
 pub const RING_SECONDS: f64 = 0.3;
 
-const ORANGE: Color32 = Color32::from_rgb(230, 159, 0);
-const SKY: Color32 = Color32::from_rgb(86, 180, 233);
-const GREEN: Color32 = Color32::from_rgb(0, 158, 115);
-const BLUE: Color32 = Color32::from_rgb(0, 114, 178);
-const VERMILION: Color32 = Color32::from_rgb(213, 94, 0);
-const PURPLE: Color32 = Color32::from_rgb(204, 121, 167);
+const ORANGE: Color32 = rgb(230, 159, 0);
+const SKY: Color32 = rgb(86, 180, 233);
+const GREEN: Color32 = rgb(0, 158, 115);
+const BLUE: Color32 = rgb(0, 114, 178);
+const VERMILION: Color32 = rgb(213, 94, 0);
+const PURPLE: Color32 = rgb(204, 121, 167);
 
 /// The colours and widths of one appearance.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,54 +63,8 @@ impl Style {
         if self.dark { dark } else { light }
     }
 
-    /// Text and axes.
-    pub fn ink(&self) -> Color32 {
-        self.pick(Color32::from_gray(25), Color32::from_gray(230))
-    }
-
-    /// Secondary text and lines: ticks, units, notes.
-    pub fn faint(&self) -> Color32 {
-        self.pick(Color32::from_gray(95), Color32::from_gray(165))
-    }
-
-    /// Edges of controls, with a contrast of at least 3:1 to the background.
-    pub fn edge(&self) -> Color32 {
-        self.pick(Color32::from_gray(135), Color32::from_gray(118))
-    }
-
-    pub fn grid(&self) -> Color32 {
-        self.pick(Color32::from_gray(225), Color32::from_gray(52))
-    }
-
-    pub fn ground(&self) -> Color32 {
-        self.pick(Color32::WHITE, Color32::from_gray(22))
-    }
-
     pub fn mass(&self) -> Color32 {
         ORANGE
-    }
-
-    /// The outline of a pinned motion's mass.
-    pub fn ghost_mass_stroke(&self) -> Stroke {
-        Stroke::new(self.width(1.8), self.mass_ink())
-    }
-
-    /// Text about the proof mass.
-    pub fn mass_ink(&self) -> Color32 {
-        self.pick(Color32::from_rgb(140, 92, 0), ORANGE)
-    }
-
-    pub fn mass_edge(&self) -> Color32 {
-        self.pick(Color32::from_rgb(122, 84, 0), Color32::from_rgb(255, 214, 128))
-    }
-
-    pub fn stop(&self) -> Color32 {
-        self.pick(GREEN, Color32::from_rgb(40, 190, 145))
-    }
-
-    /// The base, its acceleration and its push.
-    pub fn base(&self) -> Color32 {
-        self.pick(Color32::from_rgb(30, 125, 180), SKY)
     }
 
     /// Force and potential of the mechanism.
@@ -123,22 +77,17 @@ impl Style {
         self.ink()
     }
 
-    /// Time at rest on a stop.
-    pub fn rest_shade(&self) -> Color32 {
-        self.pick(Color32::from_gray(222), Color32::from_gray(58))
-    }
-
-    pub fn impact(&self) -> Color32 {
-        self.pick(VERMILION, Color32::from_rgb(240, 120, 40))
-    }
-
     pub fn kind(&self, kind: Kind) -> Color32 {
         match kind {
-            Kind::Resting | Kind::Other => self.pick(Color32::from_gray(105), Color32::from_gray(170)),
-            Kind::Intrawell => self.pick(BLUE, Color32::from_rgb(60, 160, 225)),
-            Kind::Irregular => self.pick(Color32::from_rgb(176, 84, 136), PURPLE),
+            Kind::Resting | Kind::Other => self.pick(gray(105), gray(170)),
+            Kind::Intrawell => self.pick(BLUE, rgb(60, 160, 225)),
+            Kind::Irregular => self.pick(rgb(176, 84, 136), PURPLE),
             Kind::Interwell | Kind::Crossing | Kind::Fault => self.impact(),
         }
+    }
+
+    pub fn measured(&self) -> Color32 {
+        self.kind(Kind::Irregular)
     }
 
     fn width(&self, points: f32) -> f32 {
@@ -155,28 +104,9 @@ impl Style {
         Stroke::new(self.width(1.3), self.kind(Kind::Irregular))
     }
 
-    /// The potential with the base's push, on which the mass rides.
-    pub fn tray_stroke(&self) -> Stroke {
-        Stroke::new(3.0, self.curve())
-    }
-
-    /// The potential without the push.
-    pub fn ghost_stroke(&self) -> Stroke {
-        Stroke::new(self.width(1.2), self.faint())
-    }
-
-    /// The motion over time.
-    pub fn motion_stroke(&self) -> Stroke {
-        Stroke::new(self.width(1.6), self.motion())
-    }
-
     /// A pinned motion, over time and in the phase portrait.
     pub fn ghost_motion_stroke(&self) -> Stroke {
         Stroke::new(self.width(1.6), self.motion().gamma_multiply(0.6))
-    }
-
-    pub fn measured(&self) -> Color32 {
-        self.kind(Kind::Irregular)
     }
 
     /// Many measured samples, below the computed line.
@@ -184,86 +114,13 @@ impl Style {
         Stroke::new(self.width(4.5), self.measured().lerp_to_gamma(self.ground(), 0.25))
     }
 
-    /// Power of a transducer over time.
-    pub fn power_stroke(&self) -> Stroke {
-        Stroke::new(self.width(1.6), self.curve())
-    }
-
-    /// Acceleration of the base over time, and its push.
-    pub fn base_stroke(&self) -> Stroke {
-        Stroke::new(self.width(1.6), self.base())
-    }
-
-    /// The height of the barrier where energies are compared with it.
-    pub fn barrier_stroke(&self) -> Stroke {
-        Stroke::new(self.width(2.0), self.ink())
-    }
-
-    /// An impact: a tick on a time axis, a jump of the velocity.
-    pub fn impact_stroke(&self) -> Stroke {
-        Stroke::new(self.width(1.5), self.impact())
-    }
-
-    pub fn stop_stroke(&self) -> Stroke {
-        Stroke::new(self.width(2.0), self.stop())
-    }
-
-    /// Frame of what has the keyboard focus.
-    pub fn focus_stroke(&self) -> Stroke {
-        Stroke::new(self.width(2.0), self.base())
-    }
-
-    /// Frame of what a lesson points at.
-    pub fn pointing_stroke(&self) -> Stroke {
-        Stroke::new(3.0, self.mass_ink())
-    }
-
-    pub fn arrow_stroke(&self) -> Stroke {
-        Stroke::new(3.0, self.base())
-    }
-
-    pub fn flexure_stroke(&self) -> Stroke {
-        Stroke::new(self.width(2.0), self.ink())
-    }
-
     pub fn grid_stroke(&self) -> Stroke {
         Stroke::new(1.0, self.grid())
     }
 
-    pub fn frame_colour(&self) -> Color32 {
-        self.pick(Color32::from_gray(190), Color32::from_gray(85))
-    }
-
-    /// Colour of a share from 0 to 1 of the scale of a map.
-    pub fn scale(&self, share: f64) -> Color32 {
-        let Ink(red, green, blue) = viridis(share);
-        Color32::from_rgb(red, green, blue)
-    }
-
-    /// The colour of an attractor, by its index.
-    pub fn attractor(&self, place: usize) -> Color32 {
-        let Ink(red, green, blue) = attractor_colour(place);
-        Color32::from_rgb(red, green, blue)
-    }
-
-    /// Background of panels, and cells that are not computed yet.
-    pub fn panel(&self) -> Color32 {
-        self.pick(Color32::from_gray(246), Color32::from_gray(34))
-    }
-
-    /// Veil over a map that is not that of the scene.
-    pub fn veil(&self) -> Color32 {
-        self.pick(Color32::from_white_alpha(140), Color32::from_black_alpha(130))
-    }
-
-    /// Symbols over the colour of a kind of motion.
-    pub fn over_kind(&self) -> Color32 {
-        self.pick(Color32::WHITE, Color32::BLACK)
-    }
-
     /// Hatching of cells at rest.
     pub fn hatch_stroke(&self) -> Stroke {
-        Stroke::new(1.2, self.pick(Color32::from_gray(140), Color32::from_gray(125)))
+        Stroke::new(1.2, self.pick(gray(140), gray(125)))
     }
 
     /// Hatching of cells without a value.
@@ -300,15 +157,19 @@ impl Style {
         if light { Color32::WHITE } else { Color32::BLACK }
     }
 
-    /// The edge of a face of a surface, at a share from 0 to 1 of the scale.
-    pub fn scale_edge(share: f64) -> Color32 {
-        let Ink(red, green, blue) = viridis(share).over(BLACK, 0.62);
-        Color32::from_rgb(red, green, blue)
+    /// Colour of a share from 0 to 1 of the scale of a map.
+    pub fn scale(&self, share: f64) -> Color32 {
+        of_ink(viridis(share))
     }
 
-    /// Outline of the cell under the pointer.
-    pub fn cell_stroke(&self) -> Stroke {
-        Stroke::new(self.width(2.0), self.ink())
+    /// The edge of a face of a surface, at a share from 0 to 1 of the scale.
+    pub fn scale_edge(share: f64) -> Color32 {
+        of_ink(viridis(share).over(BLACK, 0.62))
+    }
+
+    /// The colour of an attractor, by its index.
+    pub fn attractor(&self, place: usize) -> Color32 {
+        of_ink(attractor_colour(place))
     }
 
     /// Small text in a picture.
@@ -320,6 +181,98 @@ impl Style {
     pub fn body(&self) -> FontId {
         FontId::proportional(BODY)
     }
+}
+
+/// Methods of [`Style`] that return a colour: its name, the colour in light mode and that in dark mode.
+macro_rules! colours {
+    ($($(#[$doc:meta])* $name:ident: $light:expr, $dark:expr;)+) => {
+        impl Style {
+            $($(#[$doc])*
+            pub fn $name(&self) -> Color32 {
+                self.pick($light, $dark)
+            })+
+        }
+    };
+}
+
+colours! {
+    /// Text and axes.
+    ink: gray(25), gray(230);
+    /// Secondary text and lines: ticks, units, notes.
+    faint: gray(95), gray(165);
+    /// Edges of controls, with a contrast of at least 3:1 to the background.
+    edge: gray(135), gray(118);
+    grid: gray(225), gray(52);
+    ground: Color32::WHITE, gray(22);
+    /// Text about the proof mass.
+    mass_ink: rgb(140, 92, 0), ORANGE;
+    mass_edge: rgb(122, 84, 0), rgb(255, 214, 128);
+    stop: GREEN, rgb(40, 190, 145);
+    /// The base, its acceleration and its push.
+    base: rgb(30, 125, 180), SKY;
+    /// Time at rest on a stop.
+    rest_shade: gray(222), gray(58);
+    impact: VERMILION, rgb(240, 120, 40);
+    frame_colour: gray(190), gray(85);
+    /// Background of panels, and cells that are not computed yet.
+    panel: gray(246), gray(34);
+    /// Veil over a map that is not that of the scene.
+    veil: Color32::from_white_alpha(140), Color32::from_black_alpha(130);
+    /// Symbols over the colour of a kind of motion.
+    over_kind: Color32::WHITE, Color32::BLACK;
+}
+
+/// Methods of [`Style`] that return a stroke: its name, its width in points and its colour. In projector mode
+/// it is thicker.
+macro_rules! strokes {
+    ($($(#[$doc:meta])* $name:ident: $points:expr, $colour:ident;)+) => {
+        impl Style {
+            $($(#[$doc])*
+            pub fn $name(&self) -> Stroke {
+                Stroke::new(self.width($points), self.$colour())
+            })+
+        }
+    };
+}
+
+strokes! {
+    /// The outline of a pinned motion's mass.
+    ghost_mass_stroke: 1.8, mass_ink;
+    /// The potential with the base's push, on which the mass rides.
+    tray_stroke: 3.0, curve;
+    /// The potential without the push.
+    ghost_stroke: 1.2, faint;
+    /// The motion over time.
+    motion_stroke: 1.6, motion;
+    /// Power of a transducer over time.
+    power_stroke: 1.6, curve;
+    /// Acceleration of the base over time, and its push.
+    base_stroke: 1.6, base;
+    /// The height of the barrier where energies are compared with it.
+    barrier_stroke: 2.0, ink;
+    /// An impact: a tick on a time axis, a jump of the velocity.
+    impact_stroke: 1.5, impact;
+    stop_stroke: 2.0, stop;
+    /// Frame of what has the keyboard focus.
+    focus_stroke: 2.0, base;
+    /// Frame of what a lesson points at.
+    pointing_stroke: 3.0, mass_ink;
+    arrow_stroke: 3.0, base;
+    flexure_stroke: 2.0, ink;
+    /// Outline of the cell under the pointer.
+    cell_stroke: 2.0, ink;
+}
+
+const fn gray(level: u8) -> Color32 {
+    Color32::from_gray(level)
+}
+
+const fn rgb(red: u8, green: u8, blue: u8) -> Color32 {
+    Color32::from_rgb(red, green, blue)
+}
+
+fn of_ink(Ink(red, green, blue): Ink) -> Color32 {
+    rgb(red, green, blue)
 }
 
 /// Installs fonts, text sizes and spacing of the window; to be called once.
