@@ -20,21 +20,26 @@ pub enum CannotRun {
     Unsolved(#[from] FlexureError),
 }
 
-pub(super) fn build_error(document: &Document, error: BuildError) -> CannotRun {
-    match error {
+/// Builds the mechanism of a scene.
+pub(super) fn mechanism(document: &Document, tolerance: f64) -> Result<Arc<Mechanism>, CannotRun> {
+    let built = Mechanism::build_with(&document.scene.mechanism, &document.files, tolerance);
+    built.map(Arc::new).map_err(|error| match error {
         BuildError::Wrong(fault) => document.error_from(vec![fault]).into(),
         BuildError::Unsolved(error) => error.into(),
-    }
+    })
+}
+
+/// The model of a scene that has been checked, with its mechanism.
+pub(super) fn model(document: &Document, mechanism: &Arc<Mechanism>) -> Result<Model, CannotRun> {
+    let model = Model::build(&document.scene, Arc::clone(mechanism));
+    Ok(model.map_err(|faults| document.error_from(faults))?)
 }
 
 /// Builds the mechanism and the model of a scene.
 pub(super) fn solve(document: &Document, tolerance: f64) -> Result<(Arc<Mechanism>, Model), CannotRun> {
     document.check()?;
-    let scene = &document.scene;
-    let mechanism = Mechanism::build_with(&scene.mechanism, &document.files, tolerance)
-        .map_err(|error| build_error(document, error))?;
-    let mechanism = Arc::new(mechanism);
-    let model = Model::build(scene, Arc::clone(&mechanism)).map_err(|faults| document.error_from(faults))?;
+    let mechanism = mechanism(document, tolerance)?;
+    let model = model(document, &mechanism)?;
     Ok((mechanism, model))
 }
 
@@ -69,7 +74,7 @@ pub(super) fn first_stops(scene: &Scene, model: &Model) -> Stops {
 }
 
 /// Travel limit in mm that suits a well at this distance: the same share of it as in the prototype.
-pub fn suiting_limit(well_mm: Option<f64>) -> f64 {
+fn suiting_limit(well_mm: Option<f64>) -> f64 {
     match well_mm.filter(|mm| *mm > 0.0 && mm.is_finite()) {
         Some(mm) => format!("{:.1e}", 0.215 * mm).parse().unwrap_or(mm),
         None => 1.5,

@@ -10,7 +10,7 @@ use crate::scene::{Excitation, FieldPath, Mechanism, Scene, Stops, check};
 use super::Session;
 use super::build::{fault_message, first_stops, solve};
 use super::editor::Editor;
-use super::player::fitting_speed;
+use super::player::opening_speed;
 
 /// Error of the force of flexures during a gesture: the curve is solved within a frame, and its error is too
 /// small to see. At the end of the gesture the flexures are solved with [`FLEXURE_TOLERANCE`].
@@ -212,8 +212,7 @@ impl Session {
         self.before = None;
         self.remembered_stops = first_stops(self.scene(), &self.model);
         self.restart();
-        let hinted = self.scene().app.as_ref().and_then(|hints| hints.speed);
-        self.player.speed = hinted.unwrap_or_else(|| fitting_speed(self.model.characteristic_time()));
+        self.player.speed = opening_speed(self.scene(), &self.model);
         self.player.set_playing(true);
     }
 }

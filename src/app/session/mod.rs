@@ -4,10 +4,8 @@
 
 pub mod accuracy;
 mod ask;
-mod beside;
 pub mod best;
 mod build;
-mod companions;
 mod edit;
 pub mod editor;
 pub mod explore;
@@ -24,19 +22,19 @@ use std::time::Duration;
 
 use crate::app::task::{Background, Wake};
 use crate::dynamics::Model;
-use crate::mechanics::{FLEXURE_TOLERANCE, Mechanism};
+use crate::mechanics::FLEXURE_TOLERANCE;
 use crate::study;
 
 use accuracy::Accuracy;
 use best::BestStops;
 pub use build::CannotRun;
-use build::{build_error, fault_message, first_stops, solve};
+use build::{fault_message, first_stops, solve};
 use editor::Editor;
 use explore::Explore;
 use map::Mapping;
 use measured::MeasuredData;
 use pins::Pins;
-use player::{Player, fitting_speed};
+use player::{Player, opening_speed};
 pub use state::{Card, OpenedScales, Session};
 
 /// Time after which the user is offered to stop a background computation.
@@ -54,16 +52,10 @@ impl Session {
         let document = editor.document();
         let (mechanism, model) = solve(document, FLEXURE_TOLERANCE)?;
         let scene = editor.scene().clone();
-        let hints = scene.app.clone().unwrap_or_default();
-        let speed = hints.speed.unwrap_or_else(|| fitting_speed(model.characteristic_time()));
-        let player = Player::new(&model, speed);
-        let remembered_stops = first_stops(&scene, &model);
-        let opened = OpenedScales::of(&model);
         let mut session = Self {
             editor,
-            model: Arc::new(model),
             fault: None,
-            player,
+            player: Player::new(&model, opening_speed(&scene, &model)),
             settled: Background::default(),
             thresholds: Background::default(),
             stops_that_cross: Background::default(),
@@ -76,17 +68,18 @@ impl Session {
             mechanism_of: scene.mechanism.clone(),
             is_coarse: false,
             refused: None,
-            built: scene,
             mechanism,
             changed_at: 0.0,
             by_hand: false,
             moved_to_stop: false,
-            opened,
+            opened: OpenedScales::of(&model),
             continued: false,
-            remembered_stops,
+            remembered_stops: first_stops(&scene, &model),
+            model: Arc::new(model),
             presses: None,
             keeps_remedy: false,
             best: BestStops::default(),
+            built: scene,
             wake,
         };
         session.map.trail.note(&session.built);
@@ -202,17 +195,14 @@ impl Session {
     }
 
     /// Builds the model of the present scene.
-    pub(super) fn build(&mut self) -> Result<Model, CannotRun> {
+    fn build(&mut self) -> Result<Model, CannotRun> {
         let document = &self.editor.runnable();
         document.check()?;
-        let scene = &document.scene;
-        if scene.mechanism != self.mechanism_of {
-            let built = Mechanism::build(&scene.mechanism, &document.files)
-                .map_err(|error| build_error(document, error))?;
-            self.mechanism = Arc::new(built);
-            self.mechanism_of = scene.mechanism.clone();
+        if document.scene.mechanism != self.mechanism_of {
+            self.mechanism = build::mechanism(document, FLEXURE_TOLERANCE)?;
+            self.mechanism_of = document.scene.mechanism.clone();
         }
-        Ok(Model::build(scene, Arc::clone(&self.mechanism)).map_err(|faults| document.error_from(faults))?)
+        build::model(document, &self.mechanism)
     }
 
     /// Waits at most `timeout` until it is known what the motion settles to.

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use crate::app::task::{Background, Wake};
-use crate::app::words::kind::Kind;
 use crate::app::words::status::{self, DrivenMotion, Sentence};
 use crate::dynamics::{Model, Outcome, Summary};
 use crate::mechanics::Mechanism;
@@ -65,7 +64,6 @@ pub struct Session {
     pub map: Mapping,
     /// The studies that the views of the layout Explore show.
     pub explore: Explore,
-    /// The pinned motions.
     pub pins: Pins,
     /// The measured data that are shown over the computed results.
     pub measured: MeasuredData,
@@ -100,12 +98,10 @@ pub struct Session {
 }
 
 impl Session {
-    /// The present scene.
     pub fn scene(&self) -> &Scene {
         self.editor.scene()
     }
 
-    /// The model that moves.
     pub fn model(&self) -> &Model {
         &self.model
     }
@@ -120,17 +116,14 @@ impl Session {
         self.fault.as_deref()
     }
 
-    /// The callback for new background results.
     pub fn wake(&self) -> &Wake {
         &self.wake
     }
 
-    /// Whether the last change was a move of the mass by hand.
     pub fn is_by_hand(&self) -> bool {
         self.by_hand
     }
 
-    /// The scales of the scene as it was opened.
     pub fn opened(&self) -> OpenedScales {
         self.opened
     }
@@ -172,7 +165,6 @@ impl Session {
         self.model.duration() + if begins_here { self.changed_at } else { 0.0 }
     }
 
-    /// Whether the motion was changed after its start, so that it is no run of the scene from its start.
     pub fn is_continued(&self) -> bool {
         self.continued
     }
@@ -209,7 +201,7 @@ impl Session {
             Some(facts) if self.keeps_remedy => Sentence { remedy: String::new(), ..status::driven(&facts) },
             Some(facts) => status::driven(&facts),
             None if self.settled.is_running() => Sentence::waiting(),
-            None => stopped(),
+            None => Sentence::stopped(),
         }
     }
 
@@ -225,10 +217,4 @@ impl Session {
             now: self.player.watch().time(),
         })
     }
-}
-
-/// The sentence after the user has stopped the computation of what the motion settles to.
-fn stopped() -> Sentence {
-    let text = "Stopped before it was known what this settles to: a shorter run length is known sooner.";
-    Sentence { kind: Kind::Other, text: text.to_owned(), remedy: String::new() }
 }

@@ -20,7 +20,7 @@ use super::{Question, over};
 const MAX_CELLS: u64 = 200_000;
 
 /// Why a map of so many cells is not made; `None` if it is.
-pub(in crate::app::session) fn too_many(cells: u64) -> Option<String> {
+pub(super) fn too_many(cells: u64) -> Option<String> {
     let problem = || format!("{cells} cells are more than the window makes ({MAX_CELLS}): take longer steps");
     (cells > MAX_CELLS).then(problem)
 }
@@ -45,7 +45,7 @@ pub struct Map {
     pub release: Vec<(f64, f64)>,
     /// The edge of the first crossing cells, as far as they are known.
     pub crossing: Vec<Vec<(f64, f64)>>,
-    pub(in crate::app::session) sweep: Arc<Sweep>,
+    pub(super) sweep: Arc<Sweep>,
     levels: Levels,
     cells: Vec<Option<Cell>>,
     known: usize,
@@ -59,11 +59,7 @@ pub struct Map {
 
 impl Map {
     /// The map of a question before its first cell, or why there is none. `mechanism` is that of the session.
-    pub(in crate::app::session) fn new(
-        question: &Question,
-        editor: &Editor,
-        mechanism: &Mechanism,
-    ) -> Result<Self, String> {
+    pub(super) fn new(question: &Question, editor: &Editor, mechanism: &Mechanism) -> Result<Self, String> {
         let mut document = editor.document().clone();
         document.scene = question.scene.clone();
         let message = |error: SceneError| in_words(&error.to_string(), &question.scene);
@@ -96,7 +92,6 @@ impl Map {
         })
     }
 
-    /// Number of cells.
     pub fn len(&self) -> usize {
         self.cells.len()
     }
@@ -124,30 +119,33 @@ impl Map {
         self.sweep.grid()
     }
 
-    /// Number of columns and rows.
+    /// Number of columns and of rows.
     pub fn size(&self) -> [usize; 2] {
         [self.edges[0].values.len(), self.edges[1].values.len()]
     }
 
     /// The cell in a column and row, or its stand-in until it is known, and whether it is the cell itself.
     pub fn cell(&self, column: usize, row: usize) -> Option<(&Cell, bool)> {
-        let index = (column * self.size()[1] + row) as u64;
-        let known = self.cells.get(index as usize)?.as_ref();
-        if let Some(cell) = known {
-            return Some((cell, true));
-        }
-        let levels = (0..STRIDES.len() - 1).rev();
-        let stand_in = |level| self.cells[self.levels.stand_in(index, level) as usize].as_ref();
-        levels.filter_map(stand_in).next().map(|cell| (cell, false))
+        self.cell_or_stand_in(column * self.size()[1] + row, |_| true)
     }
 
-    /// The cells that have been run.
+    /// The cell of an index or, until it is known, its stand-in on the finest level where that is known and
+    /// its index `fits`; and whether it is the cell itself.
+    fn cell_or_stand_in(&self, index: usize, fits: impl Fn(usize) -> bool) -> Option<(&Cell, bool)> {
+        if let Some(cell) = self.cells.get(index)? {
+            return Some((cell, true));
+        }
+        let stand_in = |level| self.levels.stand_in(index as u64, level) as usize;
+        let mut stand_ins = (0..STRIDES.len() - 1).rev().map(stand_in).filter(|other| fits(*other));
+        stand_ins.find_map(|other| self.cells[other].as_ref()).map(|cell| (cell, false))
+    }
+
     pub fn known_cells(&self) -> impl Iterator<Item = &Cell> {
         self.cells.iter().flatten()
     }
 
     /// The indices of the cells that are not known, level by level.
-    pub(in crate::app::session) fn missing(&self) -> Vec<Vec<u64>> {
+    pub(super) fn missing(&self) -> Vec<Vec<u64>> {
         let mut begin = 0;
         let level = |end: usize| {
             let cells = &self.levels.order[begin..end];
@@ -170,7 +168,7 @@ impl Map {
 
     /// Whether it may be shown until every part of another map shows a result: if it has the fields and the
     /// columns of that map.
-    pub(in crate::app::session) fn stands_in_for(&self, other: &Self) -> bool {
+    pub(super) fn stands_in_for(&self, other: &Self) -> bool {
         let fields = |map: &Self| map.question.axes.clone().map(|axis| axis.field);
         let has_columns = self.question.ledger.is_some() || other.question.ledger.is_none();
         fields(self) == fields(other) && has_columns
@@ -194,16 +192,10 @@ impl Map {
     pub fn cut(&self, upright: bool, at: usize) -> Vec<CutCell<'_>> {
         let [columns, rows] = self.size();
         let index = |place: usize| if upright { at * rows + place } else { place * rows + at };
-        let along = |index: u64| if upright { index as usize % rows } else { index as usize / rows };
+        let along = |index: usize| if upright { index % rows } else { index / rows };
         let cell = |place: usize| {
-            let index = index(place) as u64;
-            if let Some(cell) = self.cells[index as usize].as_ref() {
-                return Some(CutCell { place, cell, is_known: true });
-            }
-            let stand_ins = (0..STRIDES.len() - 1).rev().map(|level| self.levels.stand_in(index, level));
-            let beside = |other: &u64| along(*other) == place;
-            let cell = stand_ins.filter(beside).find_map(|other| self.cells[other as usize].as_ref())?;
-            Some(CutCell { place, cell, is_known: false })
+            let (cell, is_known) = self.cell_or_stand_in(index(place), |other| along(other) == place)?;
+            Some(CutCell { place, cell, is_known })
         };
         (0..if upright { rows } else { columns }).filter_map(cell).collect()
     }

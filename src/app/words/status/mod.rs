@@ -42,6 +42,12 @@ impl Sentence {
         Self::new(Kind::Other, "Working out what this settles to.")
     }
 
+    /// The sentence after the user has stopped the computation of what the motion settles to.
+    pub fn stopped() -> Self {
+        let text = "Stopped before it was known what this settles to: a shorter run length is known sooner.";
+        Self::new(Kind::Other, text)
+    }
+
     pub fn whole(&self) -> String {
         if self.remedy.is_empty() { self.text.clone() } else { format!("{} {}", self.text, self.remedy) }
     }
