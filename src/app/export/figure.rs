@@ -200,7 +200,7 @@ impl FigureOrder {
         let mut layout = vec![Argument::of("plot-width-mm", sheet.width_mm.to_string())];
         layout.push(Argument::of("font-pt", sheet.font_pt.to_string()));
         layout.extend(data.as_ref().map(|data| Argument::of("plot-data", data.to_string_lossy())));
-        layout.extend((!sheet.titled).then(|| Argument { option: Some("no-title".to_owned()), value: None }));
+        layout.extend((!sheet.titled).then(|| Argument::switch("no-title")));
         let settings = arguments(&from, &scene);
         Ok(Self { origin, settings, scene, subject, sheet, format, layout, path, data })
     }

@@ -140,11 +140,6 @@ pub fn named_ui(ui: &mut Ui, session: &mut Session, controls: &[String]) -> Vec<
     places
 }
 
-/// The controls under More, as a column beside the views.
-pub fn more_column_ui(ui: &mut Ui, session: &mut Session) {
-    egui::ScrollArea::vertical().show(ui, |ui| more_ui(ui, session, 150.0));
-}
-
 fn heading_ui(ui: &mut Ui, text: &str) {
     ui.label(RichText::new(text).heading());
 }
@@ -189,11 +184,14 @@ fn limit_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     fields_ui(ui, session, &["stops.travel_limit_mm", "stops.left_mm", "stops.right_mm"], width)
 }
 
-fn more_ui(ui: &mut Ui, session: &mut Session, width: f32) {
+/// The controls under More.
+pub fn more_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     fields_ui(ui, session, &LOAD, width);
     restitution_ui(ui, session, width);
     preload_ui(ui, session, width);
-    balancing_ui(ui, session, width);
+    for path in sliders(session).into_iter().filter(|path| is_balancing(path)) {
+        field_ui(ui, session, &path, width);
+    }
     if matches!(session.scene().excitation, Excitation::Sine { .. }) {
         field_ui(ui, session, "excitation.frequency_hz", width);
     }
@@ -293,11 +291,6 @@ fn preload_ui(ui: &mut Ui, session: &mut Session, width: f32) {
 /// Whether a field belongs to springs or magnets, which lower the barrier as stops do.
 fn is_balancing(path: &str) -> bool {
     [".n_per_m", ".strength_n_mm4", ".gap_mm"].iter().any(|end| path.ends_with(end))
-}
-
-fn balancing_ui(ui: &mut Ui, session: &mut Session, width: f32) {
-    let balancing = sliders(session).into_iter().filter(|path| is_balancing(path));
-    balancing.for_each(|path| field_ui(ui, session, &path, width));
 }
 
 /// The sliders of the mechanism's other fields, the sizes of its flexures.

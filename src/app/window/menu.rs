@@ -11,7 +11,7 @@ use crate::app::session::player::SPEEDS;
 use crate::app::ui::settings::{Setting, Settings};
 use crate::app::views::View;
 use crate::app::words::lesson::numbered;
-use crate::scene::lesson::{BuiltInLesson, LESSONS, LessonDocument};
+use crate::scene::lesson::{LESSONS, Lesson, LessonDocument};
 use crate::scene::{Document, PRESETS};
 use crate::study::result_fields;
 
@@ -194,17 +194,17 @@ impl Menus<'_> {
     /// The built-in lessons in order; those that are done have a mark, and the open one is selected.
     fn lessons_ui(&mut self, ui: &mut Ui) {
         let open = self.lessons.open.as_ref().map(OpenLesson::key);
-        for (lesson, about) in LESSONS.iter().zip(ABOUT_LESSONS.iter()) {
-            let is_open = open.as_deref() == Some(lesson.name);
+        for (name, lesson) in BUILT_IN.iter() {
+            let is_open = open.as_deref() == Some(*name);
             let done = match (is_open, &self.lessons.open) {
                 (true, Some(open)) => open.progress().done,
-                _ => self.lessons.records.get(lesson.name).is_some_and(|record| record.done),
+                _ => self.lessons.records.get(*name).is_some_and(|record| record.done),
             };
             let mark = if done { "done" } else { "" };
-            let name = format!("{}  {} ({} min)", numbered(lesson.name), about.title, about.minutes);
-            let button = Button::selectable(is_open, name).right_text(mark);
-            let item = ui.add(button).on_hover_text(&about.goal);
-            self.choose(ui, &item, || Command::OpenLesson(lesson.name));
+            let text = format!("{}  {} ({} min)", numbered(name), lesson.title, lesson.minutes);
+            let button = Button::selectable(is_open, text).right_text(mark);
+            let item = ui.add(button).on_hover_text(&lesson.goal);
+            self.choose(ui, &item, || Command::OpenLesson(name));
         }
     }
 }
@@ -219,24 +219,13 @@ fn scroll_ui(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
     egui::ScrollArea::vertical().max_height(room).show(ui, contents);
 }
 
-/// The facts about a lesson that its menu item shows.
-struct LessonFacts {
-    title: String,
-    minutes: u32,
-    goal: String,
-}
-
-/// The facts about all built-in lessons.
-static ABOUT_LESSONS: LazyLock<Vec<LessonFacts>> = LazyLock::new(|| {
-    let facts = |built_in: &BuiltInLesson| match LessonDocument::load(built_in.name, &result_fields()) {
-        Ok(LessonDocument { lesson, .. }) => {
-            LessonFacts { title: lesson.title, minutes: lesson.minutes, goal: lesson.goal }
-        }
-        Err(error) => LessonFacts { title: built_in.name.to_owned(), minutes: 0, goal: error.to_string() },
-    };
-    LESSONS.iter().map(facts).collect()
+/// The built-in lessons, each with its name.
+static BUILT_IN: LazyLock<Vec<(&str, Lesson)>> = LazyLock::new(|| {
+    let load = |name| Some((name, LessonDocument::load(name, &result_fields()).ok()?.lesson));
+    LESSONS.iter().filter_map(|lesson| load(lesson.name)).collect()
 });
 
+/// The titles of the presets.
 static TITLES: LazyLock<Vec<String>> = LazyLock::new(|| {
     let title = |name: &str| Document::load(name).map_or_else(|_| name.to_owned(), |found| found.scene.title);
     PRESETS.iter().map(|preset| title(preset.name)).collect()

@@ -7,6 +7,7 @@ use eframe::egui::{self, CentralPanel, Panel, RichText, Ui};
 use crate::app::panels::status_line::{self, covered_ui, status_ui};
 use crate::app::panels::{controls, notes, transport};
 use crate::app::session::lesson::Records;
+use crate::app::ui::settings::Settings;
 use crate::app::ui::style::{self, PROJECTOR_ZOOM, Style};
 use crate::app::ui::widgets::{Icon, icon_button_ui, panel_frame};
 use crate::app::views::{self, Drawn, ViewContext};
@@ -28,7 +29,6 @@ const HINT_ROW: f32 = 32.0;
 mod command;
 mod deferred;
 mod figure;
-mod figure_dialog;
 mod files;
 mod kept;
 mod keys;
@@ -39,7 +39,6 @@ mod measured_dialog;
 mod menu;
 mod messages;
 mod perform;
-mod size;
 mod state;
 mod wanted;
 mod writing;
@@ -53,18 +52,16 @@ pub use wanted::Wanted;
 impl Window {
     /// Updates the state before a frame is drawn: settings, input, results of the background, the motion.
     pub fn logic(&mut self, ctx: &egui::Context) {
+        let Settings { dark, projector, .. } = self.settings;
+        let zoom = if projector { PROJECTOR_ZOOM } else { 1.0 };
         if self.applied != Some(self.settings) {
-            let dark = self.settings.dark && !self.settings.projector;
-            ctx.set_theme(if dark { egui::Theme::Dark } else { egui::Theme::Light });
-            let zoom = if self.settings.projector { PROJECTOR_ZOOM } else { 1.0 };
-            if self.applied.is_some_and(|applied| applied.projector != self.settings.projector)
-                || self.settings.projector
-            {
+            ctx.set_theme(if dark && !projector { egui::Theme::Dark } else { egui::Theme::Light });
+            if projector || self.applied.is_some_and(|applied| applied.projector) {
                 ctx.set_zoom_factor(zoom);
             }
             self.applied = Some(self.settings);
         }
-        self.window_size.follow(ctx, if self.settings.projector { PROJECTOR_ZOOM } else { 1.0 });
+        self.window_size.follow(ctx, zoom);
         self.take_choice(ctx);
         self.take_input(ctx);
         // a view that is no longer shown cannot release the mass itself
@@ -161,7 +158,8 @@ impl Window {
             });
             if self.more {
                 Panel::right("more").frame(line).resizable(false).exact_size(MORE).show(ui, |ui| {
-                    controls::more_column_ui(ui, &mut self.session);
+                    let session = &mut self.session;
+                    egui::ScrollArea::vertical().show(ui, |ui| controls::more_ui(ui, session, 150.0));
                 });
             }
             return None;

@@ -18,13 +18,13 @@ use crate::system::files;
 
 use super::deferred::DeferredInput;
 use super::figure::Figures;
+use super::kept::WindowSize;
 use super::layouts::{Arrangement, Room, Tiling};
 use super::leave::Next;
 use super::lessons::CANNOT_OPEN_LESSON;
 use super::lessons::{self, Lessons};
 use super::measured_dialog::{MeasuredDialog, is_measured};
 use super::messages::{CANNOT_OPEN, Messages, WriteResult};
-use super::size::WindowSize;
 use super::wanted::{Chosen, PathDialog};
 
 /// Number of recently opened files that are remembered.

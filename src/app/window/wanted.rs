@@ -69,6 +69,20 @@ pub(super) enum Chosen {
     NoDialog(Wanted, PathBuf),
 }
 
+/// Beginning of a remark where a path has to be typed.
+pub(super) const NO_DIALOG: &str =
+    "This desktop has no file dialog to offer (xdg-desktop-portal or zenity would be one)";
+
+/// Why no file can be written to a path; `None` if one can.
+pub(super) fn path_fault(path: &Path) -> Option<&'static str> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    if files::is_folder(path) {
+        Some("This is a folder: add the name of a file.")
+    } else {
+        folder.is_some_and(|folder| !files::is_folder(folder)).then_some("There is no such folder.")
+    }
+}
+
 /// A path that is being typed, and its purpose.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PathDialog {
@@ -93,20 +107,13 @@ impl PathDialog {
     /// Whether the path can be chosen, and a remark: why not, or what happens to the file.
     fn remark(&self) -> (bool, Option<&'static str>) {
         let path = Path::new(self.path.trim());
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-        if self.path.trim().is_empty() {
-            (false, Some("A path is needed."))
-        } else if files::is_folder(path) {
-            (false, Some("This is a folder: add the name of a file."))
-        } else if self.wanted.is_read() {
-            if files::is_file(path) { (true, None) } else { (false, Some("There is no such file.")) }
-        } else if folder.is_some_and(|folder| !files::is_folder(folder)) {
-            (false, Some("There is no such folder."))
-        } else if files::exists(path) {
-            (true, Some("This file exists and will be replaced."))
-        } else {
-            (true, None)
-        }
+        let fault = match self.wanted.is_read() {
+            _ if self.path.trim().is_empty() => Some("A path is needed."),
+            true if !files::is_folder(path) => (!files::is_file(path)).then_some("There is no such file."),
+            _ => path_fault(path),
+        };
+        let replaces = !self.wanted.is_read() && files::exists(path);
+        (fault.is_none(), fault.or(replaces.then_some("This file exists and will be replaced.")))
     }
 
     /// Draws the dialog. Returns the answer once there is one.
@@ -115,7 +122,7 @@ impl PathDialog {
             ui.set_width(dialog_width(ui, 520.0));
             let (question, ..) = self.wanted.words();
             ui.heading(question);
-            ui.label("This desktop has no file dialog to offer (xdg-desktop-portal or zenity would be one).");
+            ui.label(format!("{NO_DIALOG}."));
             ui.add_space(4.0);
             let name = ui.label("path of the file");
             let field = TextEdit::singleline(&mut self.path).desired_width(f32::INFINITY);
