@@ -57,7 +57,6 @@ struct Job<P> {
     parts: Receiver<P>,
     cancel: Arc<AtomicBool>,
     begun: WallClock,
-    /// Whether a part has come.
     has_parts: bool,
 }
 
@@ -128,7 +127,6 @@ pub struct Background<Q, P> {
     question: Option<Q>,
     /// The newest parts: those of the question once the first of them has come, until then the previous ones.
     parts: Vec<P>,
-    /// Whether the parts answer the question.
     is_current: bool,
     work: Work<P>,
     /// Computing time of the earlier jobs on the question.
@@ -241,7 +239,6 @@ impl<Q: PartialEq, P: Send + 'static> Background<Q, P> {
         self.answer().is_some()
     }
 
-    /// Notes that a view of this frame shows the answer.
     pub fn mark_wanted(&mut self) {
         self.is_wanted = true;
     }

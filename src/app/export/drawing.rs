@@ -26,10 +26,8 @@ use crate::system::threads::Pool;
 
 use super::figure::{FigureOrder, Subject};
 
-/// Message if the system cannot start threads.
 const NO_THREADS: &str = "The system has no threads to give: close something, and save again.";
 
-/// Message if the file of the scene has changed since it was opened.
 const CHANGED: &str = "The file of this scene is no longer what was opened, and the figure's command begins \
                        with it: save the scene first (Ctrl+S), or open it anew.";
 
@@ -83,7 +81,6 @@ fn cancelled() -> Error {
     anyhow!("cancelled")
 }
 
-/// What all figures need.
 struct Drawing<'a> {
     document: Document,
     task: Task<'a>,
@@ -195,7 +192,6 @@ impl Drawing<'_> {
     }
 }
 
-/// Options for the states once a forcing period.
 fn strobe_options(carry: Option<Carry>) -> SectionOptions {
     SectionOptions { at: SectionAt::Phase(0.0), periods: None, until_settled: None, carry }
 }

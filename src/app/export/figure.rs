@@ -66,11 +66,9 @@ pub struct Place {
     pub data: Option<PathBuf>,
 }
 
-/// Message if the view has not been shown, so that its ranges are unknown.
 const NOT_SEEN: &str = "Show this view first: the figure has its ranges.";
 
 impl Subject {
-    /// The walks over a field as the view shows them.
     pub fn walks(session: &Session) -> Result<Self, String> {
         let walks = &session.explore.walks;
         let problem = || walks.problem.clone().unwrap_or_else(|| NOT_SEEN.to_owned());
@@ -91,18 +89,15 @@ impl Subject {
         Ok(Self::Sweep(session.map_axes().ok_or_else(no_axes)?.to_vec(), quantity, surface))
     }
 
-    /// The basins as the view shows them.
     pub fn basins(session: &Session) -> Result<Self, String> {
         let question = session.explore.basins.question().ok_or_else(|| NOT_SEEN.to_owned())?;
         Ok(Self::Basins(question.x_mm, question.v))
     }
 
-    /// The spectrum of the signal that the view shows.
     pub fn spectrum(session: &Session) -> Self {
         Self::Spectrum(session.explore.spectra.signal, longest_wait(session.model()))
     }
 
-    /// The swept fields.
     pub(super) fn axes(&self) -> &[SweepAxis] {
         match self {
             Self::Sweep(axes, ..) => axes,

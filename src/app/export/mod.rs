@@ -56,7 +56,6 @@ fn csv(table: &Table) -> String {
     header(table) + &rows(table, 0..table.rows())
 }
 
-/// Encodes a picture as PNG.
 pub fn png(image: &ColorImage) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     let pixels: Vec<u8> = image.pixels.iter().flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b()]).collect();

@@ -157,7 +157,6 @@ fn other_kind(stops: Stops) -> Stops {
     }
 }
 
-/// Tolerances that can be chosen, with their names.
 const TOLERANCES: [(f64, &str); 4] = [(1e-6, "1e-6"), (1e-9, "1e-9"), (1e-12, "1e-12"), (1e-14, "1e-14")];
 
 fn run_ui(ui: &mut Ui, session: &mut Session, width: f32) {

@@ -26,16 +26,12 @@ const SWITCH: &str = "stops";
 const SWITCH_WIDTH: f32 = 90.0;
 /// Width in points of a slider's control apart from the slider and its name.
 const BESIDE_SLIDER: f32 = 130.0;
-/// Least width in points of a slider.
 const LEAST_SLIDER: f32 = 60.0;
-/// Greatest width in points of a slider.
 const WIDEST_SLIDER: f32 = 280.0;
 
-/// Hover text of More.
 const MORE_HOVER: &str = "Restitution, preload, frequency, damping and mass; spring, magnets and \
                           transducer, where there are such.";
 
-/// Hover text of the button that searches for the best stops.
 const SEARCH_HOVER: &str = "Looks for the distance of the stops with which the scene as it stands, from \
                             rest, moves fastest, or where there is a transducer gives most power, and how \
                             far that is from where it is lost (B).";
@@ -184,7 +180,6 @@ fn limit_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     fields_ui(ui, session, &["stops.travel_limit_mm", "stops.left_mm", "stops.right_mm"], width)
 }
 
-/// The controls under More.
 pub fn more_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     fields_ui(ui, session, &LOAD, width);
     restitution_ui(ui, session, width);
@@ -344,7 +339,6 @@ fn around(session: &Session, path: &str, value: f64) -> Reach {
     Reach::even(if opened < 0.0 { -high } else { 0.0 }, high, below(high / 200.0))
 }
 
-/// The controls of several fields, one below another.
 pub(super) fn fields_ui(ui: &mut Ui, session: &mut Session, paths: &[&str], width: f32) {
     paths.iter().for_each(|path| field_ui(ui, session, path, width));
 }

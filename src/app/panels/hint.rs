@@ -27,7 +27,6 @@ enum Stage {
     },
     /// The stops have been moved: explain what that showed.
     Answer,
-    /// The line is no longer shown.
     Done,
 }
 

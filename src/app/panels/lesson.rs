@@ -20,17 +20,12 @@ const LARGE: f32 = 16.0;
 const NAVIGATION: f32 = 158.0;
 /// Width in points of that column in the last step, where it also leads to the next lesson.
 const LAST_NAVIGATION: f32 = 190.0;
-/// Height in points of the navigation buttons.
 const BUTTON_HEIGHT: f32 = 24.0;
-/// Radius in points of the dot of a step.
 const DOT: f32 = 4.5;
-/// Distance in points between the dots.
 const DOT_SPACING: f32 = 15.0;
 /// Greatest number of characters of the reason that a student gives.
 const MAX_REASON: usize = 60;
-/// Width in points of the field for the reason.
 const REASON: f32 = 150.0;
-/// Greatest width in points of the meaning of a word.
 const MEANING: f32 = 320.0;
 /// Greatest number of options side by side.
 const SIDE_BY_SIDE: usize = 3;
@@ -106,7 +101,6 @@ fn spoken(lesson: &OpenLesson, session: &Session) -> String {
     format!("Step {number} of {count}. {}{}{options}{hint}", heading(step), plain(step.text()))
 }
 
-/// The prediction and its outcome, in words.
 fn verdict(lesson: &OpenLesson) -> String {
     let outcome = match lesson.outcome() {
         Outcome::Holds(option) => Some(lesson.options()[option].text.as_str()),

@@ -8,7 +8,6 @@ use crate::app::ui::widgets::kind_shapes;
 use crate::app::words::announce::Announcer;
 use crate::app::words::meanings::meaning;
 
-/// Explanation of "to spare" in the sentence.
 const SPARE: &str =
     "\n\nTo spare: how much weaker the shaking may become before, from rest, it no longer crosses.";
 
@@ -20,7 +19,6 @@ const LINE: f32 = 17.0;
 const SMALL_LINE: f32 = 13.0;
 /// Width in points of a window below which hover text replaces that column.
 const NARROW: f32 = 640.0;
-/// Least height in points of the status line.
 const LEAST: f32 = 44.0;
 /// Height in points that the status line leaves around its text.
 const MARGIN: f32 = 10.0;

@@ -17,23 +17,19 @@ use crate::dynamics::{Event, EventKind};
 /// Time in s of the motion within which the next event is searched.
 pub const EVENT_AHEAD: f64 = 5.0;
 
-/// Size of a button in points.
 const BUTTON: f32 = 32.0;
 
 /// Greatest width in points of the time, with its event and the button that leads back to the present.
 const TIME: f32 = 250.0;
 /// Greatest share of the width that the time takes in a narrow window.
 const TIME_SHARE: f32 = 0.65;
-/// Least width in points of the time.
 const LEAST_TIME: f32 = 150.0;
-/// Height in points of the time alone.
 const ONE_LINE: f32 = 20.0;
 /// Height in points of the time with a note below it.
 const TWO_LINES: f32 = 36.0;
 /// Width in points that the button back to the present takes with its full text.
 const BACK: f32 = 130.0;
 
-/// Height in points of the legend below the bar.
 const LEGEND: f32 = 15.0;
 /// Height in points of a transport bar that has room for the legend.
 const HIGH: f32 = 46.0;
@@ -226,7 +222,6 @@ fn time_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) {
     }
 }
 
-/// An event in words: kind, side and speed.
 fn event_words(event: &Event) -> String {
     let side = event.side.name();
     let speed = |v: f64| speed(v.abs());

@@ -28,7 +28,6 @@ pub(super) struct LiveRun {
     pub from: f64,
 }
 
-/// Accuracy of the motion, as far as it is known.
 pub struct Accuracy {
     /// The run that moves; `None` if its error cannot be known.
     run: Option<LiveRun>,
@@ -177,7 +176,6 @@ impl Accuracy {
         self.stepped.end_frame();
     }
 
-    /// Waits for each computation, at most `timeout`.
     pub(super) fn wait(&mut self, timeout: Duration) {
         self.trust.wait(timeout);
         self.tolerances.wait(timeout);
@@ -198,7 +196,6 @@ impl Accuracy {
         Some((self.stepped.newest()?, same && self.stepped.answer().is_some()))
     }
 
-    /// Whether a computation is running.
     pub fn is_running(&self) -> bool {
         self.working().is_some()
     }

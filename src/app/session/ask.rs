@@ -114,7 +114,6 @@ impl Session {
         self.accuracy.descriptions().filter(|_| moves)
     }
 
-    /// Whether a search for what it would take to cross the barrier is possible.
     fn can_search(&self) -> bool {
         self.fault.is_none()
             && matches!(self.built.excitation, Excitation::Sine { .. })

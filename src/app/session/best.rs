@@ -17,7 +17,6 @@ use super::Session;
 use super::map::ground;
 use super::sliders::reach;
 
-/// The field whose best value is searched for.
 pub const LIMIT: &str = "stops.travel_limit_mm";
 
 /// A part of the answer of a search.
@@ -51,12 +50,10 @@ pub struct BestStops {
 }
 
 impl BestStops {
-    /// Whether there is anything to say.
     pub fn is_shown(&self) -> bool {
         self.search.question().is_some() || self.refusal.is_some()
     }
 
-    /// Whether the search is running.
     pub fn is_running(&self) -> bool {
         self.search.is_running()
     }
@@ -164,7 +161,6 @@ impl Session {
         }
     }
 
-    /// Whether the stops stand at the best travel limit known.
     pub fn is_at_best_stops(&self) -> bool {
         let limit = self.best.limit_mm();
         limit.is_some() && limit == FieldPath::new(LIMIT).get(self.scene())

@@ -20,7 +20,6 @@ pub enum CannotRun {
     Unsolved(#[from] FlexureError),
 }
 
-/// Builds the mechanism of a scene.
 pub(super) fn mechanism(document: &Document, tolerance: f64) -> Result<Arc<Mechanism>, CannotRun> {
     let built = Mechanism::build_with(&document.scene.mechanism, &document.files, tolerance);
     built.map(Arc::new).map_err(|error| match error {
@@ -35,7 +34,6 @@ pub(super) fn model(document: &Document, mechanism: &Arc<Mechanism>) -> Result<M
     Ok(model.map_err(|faults| document.error_from(faults))?)
 }
 
-/// Builds the mechanism and the model of a scene.
 pub(super) fn solve(document: &Document, tolerance: f64) -> Result<(Arc<Mechanism>, Model), CannotRun> {
     document.check()?;
     let mechanism = mechanism(document, tolerance)?;

@@ -52,7 +52,6 @@ impl Session {
         }
     }
 
-    /// Why the last change of the mechanism was refused.
     pub fn refused(&self) -> Option<&str> {
         self.refused.as_deref()
     }
@@ -86,12 +85,10 @@ impl Session {
         changed
     }
 
-    /// Undoes one step. Returns whether there was one.
     pub fn undo(&mut self) -> bool {
         self.move_in_history(Editor::undo)
     }
 
-    /// Redoes one step. Returns whether there was one.
     pub fn redo(&mut self) -> bool {
         self.move_in_history(Editor::redo)
     }
@@ -201,7 +198,6 @@ impl Session {
         self.edit_once(|scene| scene.stops = stops);
     }
 
-    /// The stops that the scene gets when they are switched on.
     pub fn remembered_stops(&self) -> Stops {
         self.remembered_stops
     }

@@ -11,7 +11,6 @@ use crate::scene::{
 };
 use crate::system;
 
-/// Largest number of undo steps that are kept.
 const MAX_STEPS: usize = 500;
 
 /// Name in messages of a scene that was given as text.
@@ -76,7 +75,6 @@ impl Editor {
         runnable(&self.document)
     }
 
-    /// The scene as text.
     pub fn text(&self) -> Result<String, String> {
         text_of(&self.runnable().scene)
     }
@@ -118,7 +116,6 @@ impl Editor {
         self.document.scene != self.saved
     }
 
-    /// Whether a gesture is under way.
     pub fn in_gesture(&self) -> bool {
         self.gesture.is_some()
     }
@@ -154,12 +151,10 @@ impl Editor {
         changed
     }
 
-    /// Whether there is a step to undo.
     pub fn can_undo(&self) -> bool {
         !self.undo.is_empty() || self.gesture.is_some()
     }
 
-    /// Whether there is a step to redo.
     pub fn can_redo(&self) -> bool {
         !self.redo.is_empty()
     }
@@ -207,7 +202,6 @@ impl Editor {
     }
 }
 
-/// See [`Editor::runnable`].
 fn runnable(document: &Document) -> Document {
     let mut document = document.clone();
     let fields = numeric_fields(&document.scene);
@@ -215,7 +209,6 @@ fn runnable(document: &Document) -> Document {
     document
 }
 
-/// A scene as text that reads back.
 fn text_of(scene: &Scene) -> Result<String, String> {
     write(scene).map_err(|error| format!("the scene cannot be written as text: {error}"))
 }

@@ -59,7 +59,6 @@ impl MeasuredRecord {
         Ok(Self { name, across, values, decimal_commas, timing, range })
     }
 
-    /// How it was sampled, as a sentence.
     pub fn describe(&self) -> String {
         let commas = if self.decimal_commas { ", with decimal commas" } else { "" };
         match &self.timing {
@@ -79,7 +78,6 @@ pub struct Overlay {
     pub record: Identity<MeasuredRecord>,
     /// Offset in m that is added to displacements or positions.
     pub offset: f64,
-    /// Factor of the times.
     pub time_scale: f64,
     /// Shift in s that is added to the scaled times.
     pub shift: f64,
@@ -145,7 +143,6 @@ pub struct MeasuredData {
     pub found: Background<MeasuredQuestion, Result<Differences, String>>,
     /// The shift in s that fits best, or why there is none.
     fit: Background<MeasuredQuestion, Result<f64, String>>,
-    /// Why no shift was found.
     pub no_fit: Option<String>,
 }
 
@@ -167,7 +164,6 @@ impl MeasuredData {
         }
     }
 
-    /// Whether the shift that fits best is being looked for.
     pub fn is_fitting(&self) -> bool {
         self.fit.is_running()
     }

@@ -110,7 +110,6 @@ impl Session {
         self.player.end_frame();
     }
 
-    /// Restarts the motion.
     pub fn restart(&mut self) {
         self.player.restart(&self.model);
         self.pins.restart(&self.wake);
@@ -194,7 +193,6 @@ impl Session {
         (elapsed < whole).then_some((elapsed, whole))
     }
 
-    /// Builds the model of the present scene.
     fn build(&mut self) -> Result<Model, CannotRun> {
         let document = &self.editor.runnable();
         document.check()?;

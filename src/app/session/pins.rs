@@ -132,7 +132,6 @@ impl Pins {
         self.free_letter().is_none()
     }
 
-    /// Whether a pin has not reached the live time `t` in s yet.
     pub fn are_behind(&self, t: f64) -> bool {
         self.all.iter().any(|pin| pin.is_behind(t))
     }
@@ -164,7 +163,6 @@ impl Pins {
         self.all.iter().filter_map(|pin| pin.settled.running_for()).max()
     }
 
-    /// Stops the computations of what the pins settle to.
     pub(super) fn stop_working(&mut self) {
         self.all.iter_mut().for_each(|pin| pin.settled.pause());
     }

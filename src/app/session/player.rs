@@ -71,7 +71,6 @@ pub enum Reached {
     Event(Event),
     /// No event of this kind came up to the time of the goal.
     Nothing(EventKind),
-    /// The run ended before the goal.
     Ended,
 }
 
@@ -85,7 +84,6 @@ pub struct Player {
     past: Option<f64>,
     /// Whether the mass is held by hand, which stops the clock.
     held: bool,
-    /// The goal of the current fast forward.
     goal: Option<Goal>,
     /// How the last fast forward ended, until it is reported.
     reached: Option<Reached>,
@@ -161,7 +159,6 @@ impl Player {
         self.watch.keep_ledgers(std::mem::take(&mut self.wants_ledgers));
     }
 
-    /// Continues the motion with another model.
     pub fn change(&mut self, model: &Model) {
         (self.past, self.goal) = (None, None);
         self.watch.change(model);
@@ -183,7 +180,6 @@ impl Player {
         self.held = false;
     }
 
-    /// Whether the mass is held by hand.
     pub fn is_held(&self) -> bool {
         self.held
     }
@@ -239,7 +235,6 @@ impl Player {
         self.past.unwrap_or(self.watch.time())
     }
 
-    /// Goes back to the present.
     pub fn to_present(&mut self) {
         self.past = None;
     }
@@ -285,7 +280,6 @@ impl Player {
         self.goal = Some(goal);
     }
 
-    /// The goal of the current fast forward.
     pub fn goal(&self) -> Option<Goal> {
         self.goal
     }

@@ -48,7 +48,6 @@ pub struct Card {
 }
 
 pub struct Session {
-    /// The scene and its undo stack.
     pub editor: Editor,
     /// The model that moves: that of the scene, or of its last version that could be run.
     pub(super) model: Arc<Model>,
@@ -62,10 +61,8 @@ pub struct Session {
     pub(super) stops_that_cross: Background<Scene, Option<f64>>,
     pub accuracy: Accuracy,
     pub map: Mapping,
-    /// The studies that the views of the layout Explore show.
     pub explore: Explore,
     pub pins: Pins,
-    /// The measured data that are shown over the computed results.
     pub measured: MeasuredData,
     pub(super) before: Option<Card>,
     /// The scene that the model was built from.
@@ -144,7 +141,6 @@ impl Session {
         self.settled.newest()
     }
 
-    /// The present scene, for the card.
     pub fn now_card(&self) -> Card {
         Card {
             scene: self.scene().clone(),
@@ -182,7 +178,6 @@ impl Session {
         }
     }
 
-    /// What the status line says.
     pub fn sentence(&self) -> Sentence {
         if let Some(fault) = &self.fault {
             return Sentence::fault(fault);

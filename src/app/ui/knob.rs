@@ -61,7 +61,6 @@ pub struct Turn {
 }
 
 impl Knob<'_> {
-    /// Draws the knob and returns the input on it.
     pub fn ui(&self, ui: &mut Ui, value: f64) -> Turn {
         let decimals = decimals(self.reach.step);
         // read first, since the widgets consume the arrow keys
@@ -228,7 +227,6 @@ fn logarithmic_ui(ui: &mut Ui, value: &mut f64, (low, high): (f64, f64)) -> Resp
     slider
 }
 
-/// Rounds to three significant digits.
 fn three_digits(value: f64) -> f64 {
     format!("{value:.2e}").parse().unwrap_or(value)
 }
@@ -250,7 +248,6 @@ fn clipped(text: &str) -> String {
 /// An input that was refused.
 #[derive(Debug, Clone)]
 struct Refused {
-    /// The control.
     id: egui::Id,
     why: String,
     /// Time in s of the input.

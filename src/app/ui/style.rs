@@ -11,7 +11,6 @@ use eframe::egui::{self, Color32, FontData, FontDefinitions, FontFamily, FontId,
 use crate::app::words::kind::Kind;
 use crate::output::{BLACK, Ink, attractor_colour, viridis};
 
-/// Zoom of the projector mode.
 pub const PROJECTOR_ZOOM: f32 = 1.5;
 
 /// Width in points below which the window is laid out for a projector: two controls in a row, two views.
@@ -20,9 +19,7 @@ pub const COMPACT_BELOW: f32 = 1000.0;
 /// Size in points of a window above which there is room for one more tile.
 pub const LARGE_FROM: egui::Vec2 = egui::Vec2::new(1600.0, 880.0);
 
-/// Size of small text in points.
 pub const SMALL: f32 = 11.5;
-/// Size of body text and buttons in points.
 pub const BODY: f32 = 14.0;
 pub const STATUS: f32 = 18.0;
 /// Size of the status sentence in points where room is short.
@@ -54,7 +51,6 @@ pub struct Style {
 }
 
 impl Style {
-    /// The style of the present theme.
     pub fn of(ctx: &egui::Context, projector: bool) -> Self {
         Self { dark: ctx.theme() == Theme::Dark, projector }
     }
@@ -167,17 +163,14 @@ impl Style {
         of_ink(viridis(share).over(BLACK, 0.62))
     }
 
-    /// The colour of an attractor, by its index.
     pub fn attractor(&self, place: usize) -> Color32 {
         of_ink(attractor_colour(place))
     }
 
-    /// Small text in a picture.
     pub fn small(&self) -> FontId {
         FontId::proportional(SMALL)
     }
 
-    /// Body text in a picture.
     pub fn body(&self) -> FontId {
         FontId::proportional(BODY)
     }

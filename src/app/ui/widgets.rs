@@ -6,7 +6,6 @@ use crate::app::words::kind::Kind;
 
 use super::style::COMPACT_BELOW;
 
-/// A modal dialog.
 pub fn dialog(ctx: &egui::Context, id: &str) -> egui::Modal {
     let frame = egui::Frame::popup(&ctx.global_style()).inner_margin(16.0);
     egui::Modal::new(egui::Id::unique(id)).frame(frame)
@@ -68,9 +67,7 @@ pub fn arrows(ui: &Ui, id: egui::Id) -> f64 {
 /// The icon of a button.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Icon {
-    /// A triangle.
     Play,
-    /// Two bars.
     Pause,
     /// A bar and a triangle to the left.
     Restart,
@@ -84,9 +81,7 @@ pub enum Icon {
     Restore,
     /// Two axes and a line: a figure of a view.
     Figure,
-    /// A closed lock.
     Held,
-    /// An open lock.
     Free,
 }
 

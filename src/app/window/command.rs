@@ -20,7 +20,6 @@ pub enum Command {
     RemoveMeasured,
     Save,
     SaveAs(Wanted),
-    /// A figure of a view; `None` for the one under the pointer.
     Figure(Option<View>),
     CopyScene,
     PasteScene,
@@ -37,7 +36,6 @@ pub enum Command {
     NextRelease,
     NextCrossing,
     RunToEnd,
-    /// One of the speeds.
     Speed(usize),
     Arrange(Layout),
     ArrangeOwn,
@@ -47,7 +45,6 @@ pub enum Command {
     /// Fill the window with one view, or show all again.
     Fill,
     Cover,
-    /// Two cursors over time.
     Cursors,
     /// Hold the axes of the active view, or release them.
     HoldAxes,
@@ -63,7 +60,6 @@ pub enum Command {
     Pin(PinKind),
     Ways,
     BestStops,
-    /// A built-in lesson.
     OpenLesson(&'static str),
     OpenLessonFile,
     LeaveLesson,
@@ -287,7 +283,6 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
     ]),
 ];
 
-/// The parts of all menus.
 pub(super) fn parts() -> impl Iterator<Item = &'static Part> {
     MENUS.iter().flat_map(|menu| menu.1).flat_map(|part| match part {
         Part::Menu(_, parts) => parts.iter(),

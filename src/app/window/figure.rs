@@ -198,10 +198,8 @@ fn times(session: &Session, memory: &Memory) -> Option<(f64, f64)> {
     (!session.is_continued() && now - from > LEAST_SHARE * window).then(|| round_times((from, now))).flatten()
 }
 
-/// What the user chooses in the dialog.
 enum Action {
     Save,
-    /// Copy the command that makes the figure.
     Copy,
     /// Choose the file in the desktop's dialog.
     Browse,

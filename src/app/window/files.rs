@@ -123,7 +123,6 @@ impl Window {
         }
     }
 
-    /// Receives the answer of a file dialog.
     pub(super) fn take_choice(&mut self, ctx: &egui::Context) {
         if let Some(chosen) = self.file_dialog.take() {
             match chosen {
@@ -263,7 +262,6 @@ impl Window {
         self.path_dialog = Some(PathDialog::new(wanted, Path::new("")));
     }
 
-    /// Opens a file dialog in the background.
     pub(super) fn choose(&mut self, wanted: Wanted) {
         if !self.opens_dialogs {
             return;
@@ -298,7 +296,6 @@ impl Window {
         });
     }
 
-    /// Opens the dialog for the columns of a file of measured data.
     pub fn open_measured(&mut self, path: &Path) {
         self.columns = Some(MeasuredDialog::new(path, &self.wake));
     }

@@ -9,13 +9,10 @@ use eframe::{Storage, get_value, set_value};
 
 use super::Window;
 
-/// Key of the recently opened files.
 const RECENT: &str = "recent";
 /// Key of the window's size in points at zoom 1.
 const SIZE: &str = "size";
-/// Key of the custom arrangement.
 const CUSTOM: &str = "arrangement";
-/// Key of the progress in lessons.
 const LESSONS: &str = "lessons";
 
 impl Window {

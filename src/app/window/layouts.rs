@@ -12,11 +12,9 @@ use trees::{compact_lesson_tree, compact_tree, lesson_tree, tabs_tree, views_of,
 
 mod trees;
 
-/// Space in points beside a title.
 const TITLE_MARGIN: f32 = 6.0;
 /// Width in points of the buttons beside the titles.
 const BUTTONS: f32 = 58.0;
-/// Least text size in points of a title.
 const LEAST_TITLE: f32 = 9.5;
 
 /// Size class of the window.
@@ -67,7 +65,6 @@ impl Tiling {
         Self { tree, room }
     }
 
-    /// The tiles of a lesson with these views.
     pub fn of_lesson(views: &[View], room: Room) -> Self {
         let tree = if room == Room::Compact { compact_lesson_tree(views) } else { lesson_tree(views) };
         Self { tree, room }

@@ -9,7 +9,6 @@ use crate::app::ui::widgets::{dialog, dialog_width};
 pub enum Next {
     /// A scene file or a built-in scene.
     Open(String),
-    /// A scene as text.
     Text(String),
     /// A file that the user has yet to choose.
     Choose,

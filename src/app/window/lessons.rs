@@ -25,7 +25,6 @@ use crate::system::files;
 use super::Window;
 use super::layouts::{Arrangement, Tiling};
 
-/// Title of the alert about a lesson that cannot be opened.
 pub(super) const CANNOT_OPEN_LESSON: &str = "This lesson cannot be opened";
 
 /// Distance in points between a control and the outline around it.
@@ -34,11 +33,8 @@ const OUTLINE_DISTANCE: f32 = 2.0;
 #[derive(Default)]
 pub(super) struct Lessons {
     pub open: Option<OpenLesson>,
-    /// The state of the window before the lesson.
     suspended: Option<Suspended>,
-    /// The progress in all lessons.
     pub records: Records,
-    /// Whether the lecturer's notes are shown.
     pub notes: bool,
     /// Rectangles of the controls in this frame.
     controls: Vec<(String, Rect)>,
@@ -197,7 +193,6 @@ impl Window {
         matches!(self.cover(), Cover::Future | Cover::All)
     }
 
-    /// Whether a prediction covers the motion.
     pub(super) fn lesson_covers(&self) -> bool {
         self.lessons.open.as_ref().is_some_and(OpenLesson::is_covering)
     }
@@ -226,7 +221,6 @@ impl Window {
         self.take_turn(turn);
     }
 
-    /// Restarts the open lesson from its first step, without answers.
     pub(super) fn begin_lesson_anew(&mut self) {
         let turn = self.lessons.open.as_mut().map(OpenLesson::begin_anew);
         turn.into_iter().for_each(|turn| self.take_turn(turn));
@@ -250,7 +244,6 @@ impl Window {
         }
     }
 
-    /// Carries out the pressed keys of the open lesson.
     pub(super) fn lesson_keys(&mut self, ctx: &egui::Context) {
         let Some(lesson) = self.lessons.open.as_ref().filter(|_| !ctx.text_edit_focused()) else { return };
         let mut keys = vec![(Key::PageDown, LessonAction::Next), (Key::PageUp, LessonAction::Back)];

@@ -19,7 +19,6 @@ const ROWS: [(&str, &[Quantity]); 2] = [
     ("values", &[Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration, Quantity::Force]),
 ];
 
-/// Width in points of the dialog.
 const WIDTH: f32 = 560.0;
 /// Width in points of the choice of a column.
 const COLUMN: f32 = 190.0;
@@ -40,20 +39,16 @@ pub struct MeasuredDialog {
     chosen: Option<[ChosenColumn; 2]>,
     /// The record of two columns, each with its unit.
     record: Background<[(usize, Unit); 2], Result<MeasuredRecord, String>>,
-    /// Why the base cannot be shaken with the record.
     refused: Option<String>,
 }
 
 pub(super) enum MeasuredAnswer {
-    /// Draw the record over the computed motion or curve.
     Overlay(Box<MeasuredRecord>),
-    /// Shake the base with the record of the file.
     Shake(PathBuf, Box<MeasuredRecord>),
     Cancelled,
 }
 
 impl MeasuredDialog {
-    /// Begins to read the file.
     pub fn new(path: &Path, wake: &Wake) -> Self {
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
         let mut text = Background::default();
@@ -66,7 +61,6 @@ impl MeasuredDialog {
         Self { path: path.to_owned(), name, text, chosen: None, record, refused: None }
     }
 
-    /// Says why the base cannot be shaken with the record.
     pub fn refuse(&mut self, why: String) {
         self.refused = Some(why);
     }
@@ -107,7 +101,6 @@ impl MeasuredDialog {
             .want(wanted, true, wake, move |wanted, _, _| Some(MeasuredRecord::of(&name, &text, *wanted)));
     }
 
-    /// Draws the dialog. Returns the answer once there is one.
     pub(super) fn ui(&mut self, ui: &Ui, wake: &Wake) -> Option<MeasuredAnswer> {
         self.poll(wake);
         let answer = dialog(ui.ctx(), "measured").show(ui.ctx(), |ui| {

@@ -32,7 +32,6 @@ pub(super) struct Menus<'a> {
 }
 
 impl Menus<'_> {
-    /// Draws the bar. Returns the commands that were chosen.
     pub fn ui(mut self, ui: &mut Ui) -> Vec<Command> {
         egui::MenuBar::new().ui(ui, |ui| {
             for (name, parts) in &MENUS {
@@ -100,7 +99,6 @@ impl Menus<'_> {
         }
     }
 
-    /// Whether a command can be chosen in a menu.
     fn is_enabled(&self, command: &Command) -> bool {
         let Self { session, tiling, lessons, .. } = self;
         let model = session.model();
@@ -225,7 +223,6 @@ static BUILT_IN: LazyLock<Vec<(&str, Lesson)>> = LazyLock::new(|| {
     LESSONS.iter().filter_map(|lesson| load(lesson.name)).collect()
 });
 
-/// The titles of the presets.
 static TITLES: LazyLock<Vec<String>> = LazyLock::new(|| {
     let title = |name: &str| Document::load(name).map_or_else(|_| name.to_owned(), |found| found.scene.title);
     PRESETS.iter().map(|preset| title(preset.name)).collect()

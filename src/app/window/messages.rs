@@ -5,7 +5,6 @@ use eframe::egui::{self, Align2, Area, Id, Order, Ui, accesskit::Live, vec2};
 use crate::app::session::player::Reached;
 use crate::app::ui::widgets::{close_ui, dialog, dialog_width};
 
-/// Title of the alert about a scene that cannot be opened.
 pub(super) const CANNOT_OPEN: &str = "This scene cannot be opened";
 
 /// Time in s for which a notice is shown.
@@ -25,7 +24,6 @@ struct Notice {
 
 #[derive(Debug, Default)]
 pub(super) struct Messages {
-    /// Title and text of the alert.
     alert: Option<(String, String)>,
     notice: Option<Notice>,
 }
@@ -39,7 +37,6 @@ impl Messages {
         self.notice = Some(Notice { text: text.into(), since: None });
     }
 
-    /// Reports what was written, or why it was not.
     pub fn report_written(&mut self, result: WriteResult) {
         match result {
             Ok(text) => self.notify(text),

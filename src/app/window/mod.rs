@@ -16,14 +16,12 @@ use crate::scene::lesson::LESSONS;
 
 use layouts::{Arrangement, Room};
 
-/// Height in points of the row of controls.
 const ROW: f32 = 28.0;
 /// Width in points of the column of controls that opens beside the views.
 const MORE: f32 = 276.0;
 
 /// Height in points of a window up to which the hint line is shown only with a hint.
 const LOW: f32 = 440.0;
-/// Least height in points of the hint line.
 const HINT_ROW: f32 = 32.0;
 
 mod command;

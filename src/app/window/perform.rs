@@ -213,7 +213,6 @@ impl Window {
         self.filled.or(self.memory.hovered).unwrap_or(View::Displacement)
     }
 
-    /// Pins a motion, and shows how it compares.
     fn pin(&mut self, kind: PinKind) {
         match self.session.pin(kind) {
             Ok(letter) => {

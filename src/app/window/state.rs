@@ -27,7 +27,6 @@ use super::measured_dialog::{MeasuredDialog, is_measured};
 use super::messages::{CANNOT_OPEN, Messages, WriteResult};
 use super::wanted::{Chosen, PathDialog};
 
-/// Number of recently opened files that are remembered.
 const MOST_RECENT: usize = 8;
 
 pub struct Window {
@@ -65,15 +64,12 @@ pub struct Window {
     pub(super) window_size: WindowSize,
     pub(super) shown_title: String,
     pub(super) file_dialog: Background<(), Chosen>,
-    /// Whether file dialogs are opened.
     pub(super) opens_dialogs: bool,
     /// The dialog in which a path is typed, if the desktop has no file dialog.
     pub(super) path_dialog: Option<PathDialog>,
     /// The requested figure, and the layout of figures.
     pub figures: Figures,
-    /// The dialog in which the columns of measured data are chosen.
     pub columns: Option<MeasuredDialog>,
-    /// Input that is deferred to the next frame.
     pub(super) deferred: DeferredInput,
     pub(super) hint: hint::Hint,
     /// Whether the hint line has been shown.
@@ -163,7 +159,6 @@ impl Window {
         }
     }
 
-    /// Puts a file first among the recent ones.
     pub(super) fn remember(&mut self, path: &Path) {
         let full = files::canonical(path).unwrap_or_else(|| path.to_owned()).to_string_lossy().into_owned();
         self.recent.retain(|recent| *recent != full);
@@ -171,12 +166,10 @@ impl Window {
         self.recent.truncate(MOST_RECENT);
     }
 
-    /// The text of the alert that is shown.
     pub fn message(&self) -> Option<&str> {
         self.messages.alert_text()
     }
 
-    /// The text of the notice that is shown.
     pub fn notice(&self) -> Option<&str> {
         self.messages.notice_text()
     }

@@ -14,19 +14,12 @@ pub enum Wanted {
     Lesson,
     /// Measured data, to be drawn over the computed motion or curve.
     Measured,
-    /// The scene.
     Save,
-    /// The motion that was seen, as CSV.
     Motion,
-    /// The whole run of the scene, as CSV.
     Run,
-    /// The events, as CSV.
     Events,
-    /// The force curve, as CSV.
     Curve,
-    /// The map, as CSV.
     Map,
-    /// The window, as PNG.
     Picture,
     Figure,
 }
@@ -49,12 +42,10 @@ impl Wanted {
         }
     }
 
-    /// Label of the button that confirms the choice.
     fn verb(self) -> &'static str {
         if self.is_read() { "Open" } else { "Save" }
     }
 
-    /// Whether the file is read, not written.
     pub(super) fn is_read(self) -> bool {
         matches!(self, Self::Open | Self::Lesson | Self::Measured)
     }
@@ -63,7 +54,6 @@ impl Wanted {
 /// The answer of a file dialog.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Chosen {
-    /// The chosen file.
     File(Wanted, PathBuf),
     /// The desktop has no dialog; the path that it would have suggested.
     NoDialog(Wanted, PathBuf),
@@ -99,7 +89,6 @@ pub(super) enum PathAnswer {
 }
 
 impl PathDialog {
-    /// A dialog with a suggested path.
     pub fn new(wanted: Wanted, path: &Path) -> Self {
         Self { wanted, path: path.to_string_lossy().into_owned(), had_focus: false }
     }
@@ -116,7 +105,6 @@ impl PathDialog {
         (fault.is_none(), fault.or(replaces.then_some("This file exists and will be replaced.")))
     }
 
-    /// Draws the dialog. Returns the answer once there is one.
     pub fn ui(&mut self, ui: &Ui) -> Option<PathAnswer> {
         let answer = dialog(ui.ctx(), "path").show(ui.ctx(), |ui| {
             ui.set_width(dialog_width(ui, 520.0));

@@ -55,7 +55,6 @@ impl Window {
         self.messages.report_written(write_text(path, text));
     }
 
-    /// Writes the recorded motion as CSV.
     pub fn write_motion(&mut self, path: &Path) {
         self.write(path, &export::motion_csv(&self.session.player));
     }
@@ -73,18 +72,15 @@ impl Window {
         self.messages.notify("Computing the run");
     }
 
-    /// Waits until a run is written, at most `timeout`.
     pub fn wait_for_run(&mut self, timeout: std::time::Duration) {
         self.run.wait(timeout);
         self.report_written();
     }
 
-    /// Writes the recorded events as CSV.
     pub fn write_events(&mut self, path: &Path) {
         self.write(path, &export::events_csv(&self.session.player));
     }
 
-    /// Writes the force curve as CSV.
     pub fn write_curve(&mut self, path: &Path) {
         let text = export::curve_csv(&self.session).map_err(|error| error.to_string());
         self.messages.report_written(text.and_then(|text| write_text(path, &text)));

@@ -32,7 +32,6 @@ pub const COLUMNS: [(&str, &[&str]); 7] = [
     ]),
 ];
 
-/// A column as the screen shows it.
 pub trait ShownColumn {
     /// Its label with an initial capital, for a heading.
     fn title(&self) -> String;
@@ -43,7 +42,6 @@ pub trait ShownColumn {
     /// The factor from the unit in files to the unit that suits `values`, and the name of that unit.
     fn unit(&self, values: impl Iterator<Item = f64>) -> (f64, &'static str);
 
-    /// Whether its values are whole numbers.
     fn is_count(&self) -> bool;
 }
 

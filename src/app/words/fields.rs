@@ -14,7 +14,6 @@ pub struct Reach {
 }
 
 impl Reach {
-    /// The range of a linear slider.
     pub const fn even(low: f64, high: f64, step: f64) -> Self {
         Self { low, high, step, ratios: false }
     }
@@ -33,7 +32,6 @@ pub fn mechanism_name(mechanism: &Mechanism) -> String {
     }
 }
 
-/// The control of a field; `None` if it has none.
 pub fn info(path: &str) -> Option<&'static Control> {
     field_info(path)?.control.as_ref()
 }

@@ -11,7 +11,6 @@ pub mod numbers;
 pub mod status;
 pub mod wells;
 
-/// The text with an initial capital.
 pub fn capital(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())

@@ -10,7 +10,6 @@ use crate::mechanics::Mechanism;
 use crate::scene::{Scene, Start};
 use crate::study::{Answer, Basins, EvenRange, NoBasins, Starts, Task};
 
-/// Number of starts along each axis.
 pub const STARTS: u64 = 81;
 
 /// A scene, apart from its start, and the ranges of the starts.

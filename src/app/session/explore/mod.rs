@@ -19,7 +19,6 @@ pub use walks::{WalkQuantity, WalkQuestion, Walks};
 pub struct Explore {
     pub walks: Walks,
     pub basins: BasinsFound,
-    /// The spectrum of the settled motion.
     pub spectra: Spectra,
 }
 

@@ -27,7 +27,6 @@ pub enum WalkQuantity {
 pub struct WalkQuestion {
     /// The scene, from rest, with the first value of the axis.
     pub scene: Scene,
-    /// The field and its values.
     pub axis: SweepAxis,
 }
 
@@ -38,7 +37,6 @@ pub struct Walks {
     pub quantity: WalkQuantity,
     /// The runs as they come, each with the stride of its walk; the coarse walks come first.
     pub found: Background<WalkQuestion, (usize, Visit)>,
-    /// Why there are no walks.
     pub problem: Option<String>,
 }
 

@@ -52,9 +52,7 @@ pub enum TaskState {
 /// Which option of a prediction holds.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Outcome {
-    /// The verdict is still being computed.
     Unknown,
-    /// This one.
     Holds(usize),
     /// No option or several, which is a fault of the lesson.
     Unclear,
@@ -111,12 +109,10 @@ impl OpenLesson {
         }
     }
 
-    /// The name or the path under which its progress is kept.
     pub fn key(&self) -> String {
         Self::key_of(&self.document)
     }
 
-    /// What the student has done so far.
     pub fn progress(&self) -> &Progress {
         &self.progress
     }
@@ -138,7 +134,6 @@ impl OpenLesson {
         &mut self.progress.answers[self.progress.step]
     }
 
-    /// The student's reason for a prediction.
     pub fn why_mut(&mut self) -> &mut String {
         &mut self.answer_mut().why
     }
@@ -172,7 +167,6 @@ impl OpenLesson {
         }
     }
 
-    /// Whether the student may go on to the next step.
     pub fn may_go_on(&self) -> bool {
         self.is_settled(self.progress.step)
     }
@@ -186,7 +180,6 @@ impl OpenLesson {
         self.progress.step + 1 == self.lesson().steps.len()
     }
 
-    /// The name of the built-in lesson that comes after this one.
     pub fn following(&self) -> Option<&'static str> {
         let Source::BuiltIn(name) = self.document.source else { return None };
         let number = LESSONS.iter().position(|lesson| lesson.name == name)?;
@@ -232,7 +225,6 @@ impl OpenLesson {
         self.enter_from_elsewhere(self.progress.step)
     }
 
-    /// Begins again with the first step, without answers.
     pub fn begin_anew(&mut self) -> Turn {
         let done = self.progress.done;
         self.progress = Progress { done, ..Progress::of(self.lesson(), None) };
@@ -369,7 +361,6 @@ impl OpenLesson {
         }
     }
 
-    /// Which option of the prediction holds.
     pub fn outcome(&self) -> Outcome {
         self.options.answer().cloned().unwrap_or(Outcome::Unknown)
     }
@@ -379,7 +370,6 @@ impl OpenLesson {
         self.offered_hint().filter(|_| self.hinted)
     }
 
-    /// The hint of a task, shown or not.
     pub fn offered_hint(&self) -> Option<&str> {
         match self.step() {
             Step::Do { hint, .. } => hint.as_deref(),

@@ -16,7 +16,6 @@ use crate::study::{
 
 use super::{Question, over};
 
-/// Largest number of cells of a map in the window.
 const MAX_CELLS: u64 = 200_000;
 
 /// Why a map of so many cells is not made; `None` if it is.
@@ -29,13 +28,11 @@ pub(super) fn too_many(cells: u64) -> Option<String> {
 pub struct CutCell<'a> {
     /// Its index along the line.
     pub place: usize,
-    /// Its result.
     pub cell: &'a Cell,
     /// Whether the result is of this cell; if not, it is of the nearest cell that is known so far.
     pub is_known: bool,
 }
 
-/// A map as far as it is known.
 pub struct Map {
     pub question: Question,
     /// The edges of the cells across and up.
@@ -51,7 +48,6 @@ pub struct Map {
     known: usize,
     /// Computing time after which its lines were last drawn.
     lines_after: Option<Duration>,
-    /// Computing time so far.
     pub took: Duration,
     /// Computing time after which every cell of its coarsest level was known.
     pub coarse_after: Option<Duration>,
@@ -105,7 +101,6 @@ impl Map {
         self.known
     }
 
-    /// Whether every cell is known.
     pub fn is_whole(&self) -> bool {
         self.known == self.cells.len()
     }

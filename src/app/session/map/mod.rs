@@ -23,7 +23,6 @@ pub use cells::{CutCell, Map};
 /// Time in s without a change after which a map is begun in the middle of a gesture.
 const STILL: f64 = 0.25;
 
-/// Largest number of scenes that are remembered.
 const MAX_SCENES: usize = 400;
 
 /// The question that a map answers: a scene, apart from the fields of the axes, and the axes.
@@ -41,7 +40,6 @@ pub struct Question {
 pub struct Mapping {
     /// The quantity that the map shows; `None` for the RMS velocity.
     quantity: Option<&'static SummaryField>,
-    /// The earlier positions of the scene.
     pub trail: Trail,
     /// The axes that the user has chosen; `None` for the default axes.
     chosen: Option<[SweepAxis; 2]>,
@@ -54,11 +52,9 @@ pub struct Mapping {
     previous: Option<Map>,
     /// The cells of the map that have come and are not in it yet.
     cells: Background<Question, (u64, Cell)>,
-    /// Number of changes of the picture.
     version: u64,
     /// A question that waits for a pause in the gesture, and the time in s since which it has not changed.
     waiting: Option<(Question, f64)>,
-    /// Why there is no map.
     problem: Option<String>,
 }
 
@@ -81,17 +77,14 @@ impl Mapping {
         self.map.as_ref()
     }
 
-    /// Number of changes of the picture.
     pub fn version(&self) -> u64 {
         self.version
     }
 
-    /// Whether cells are being run.
     pub fn is_running(&self) -> bool {
         self.cells.is_running()
     }
 
-    /// Why there is no map.
     pub fn problem(&self) -> Option<&str> {
         self.problem.as_deref()
     }
@@ -145,7 +138,6 @@ impl Mapping {
         self.enlarged.push(axes);
     }
 
-    /// Whether a part of the map is enlarged.
     pub fn is_enlarged(&self) -> bool {
         !self.enlarged.is_empty()
     }
@@ -155,7 +147,6 @@ impl Mapping {
         self.enlarged.pop();
     }
 
-    /// Goes back to the whole map.
     pub fn show_whole(&mut self) {
         self.enlarged.clear();
     }
@@ -165,7 +156,6 @@ impl Mapping {
         self.enlarged.last().or(self.chosen.as_ref())
     }
 
-    /// Receives the cells that have been computed.
     pub fn take(&mut self) {
         let cells = self.cells.take_parts();
         let Some(map) = &mut self.map else { return };
@@ -203,12 +193,10 @@ impl Session {
         axes.iter().all(|axis| FieldPath::new(&axis.field).get(&ground).is_some())
     }
 
-    /// The fields of this scene that a map can have as axes.
     pub fn map_fields(&self) -> Vec<String> {
         axes::fields(self.scene(), self.remembered_stops())
     }
 
-    /// An axis over a field, around its present value.
     pub fn map_axis(&self, field: &str) -> SweepAxis {
         axes::axis(field, self.scene(), self.remembered_stops(), self.well_mm())
     }

@@ -10,7 +10,6 @@ use crate::scene::Layout;
 const LEFT_SHARE: f32 = 590.0 / 1030.0;
 /// Share of the height that the displacement has in the right column: 340 of 584 points.
 const DISPLACEMENT_SHARE: f32 = 340.0 / 584.0;
-/// Share of the width that the map has in the layout Map.
 const MAP_SHARE: f32 = 640.0 / 1030.0;
 /// Share of the height that the mechanism has above the well.
 const MECHANISM_SHARE: f32 = 0.4;
@@ -20,7 +19,6 @@ const STUDY_COLUMN: f32 = 0.34;
 const MUCH: f32 = 0.62;
 const HALF: f32 = 0.5;
 
-/// A part of a tree of tiles.
 enum Part {
     Pane(View),
     /// Views that share a place.

@@ -19,15 +19,12 @@ const AT_ONCE: f64 = 5.0;
 #[derive(Debug, Clone, Copy)]
 pub struct DrivenMotion<'a> {
     pub scene: &'a Scene,
-    /// The model that moves.
     pub model: &'a Model,
-    /// What its motion settles to.
     pub summary: &'a Summary,
     /// Its thresholds; `None` until they are known.
     pub thresholds: Option<&'a Thresholds>,
     /// Live time in s at which the run of the summary began.
     pub origin: f64,
-    /// The present live time in s.
     pub now: f64,
 }
 
@@ -168,7 +165,6 @@ pub fn driven(facts: &DrivenMotion) -> Sentence {
     sentence
 }
 
-/// The sentence about a motion that crosses and repeats.
 fn interwell(facts: &DrivenMotion, crosses: &str, rms: &str, range: &str) -> String {
     let DrivenMotion { model, summary, .. } = *facts;
     let rate = summary.crossings as f64 / summary.periods.max(1) as f64;

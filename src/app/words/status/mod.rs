@@ -63,7 +63,6 @@ const STILL_PULL: f64 = 1e-3;
 /// Share of the mechanism's largest force below which it is said not to pull.
 const NO_PULL: f64 = 2e-3;
 
-/// The sentence while the mass is held by hand.
 pub fn held(model: &Model, state: &Sample) -> Sentence {
     let force = model.mechanism().curve.force(state.x);
     let middle = model.mechanism().landscape.barrier.map_or(0.0, |barrier| barrier.x);
@@ -80,7 +79,6 @@ pub fn held(model: &Model, state: &Sample) -> Sentence {
     Sentence::new(Kind::Other, text)
 }
 
-/// The sentence about a run that has ended early.
 pub fn ended(model: &Model, outcome: Outcome) -> Sentence {
     let at = outcome.ended_at().unwrap_or(0.0);
     let domain = model.mechanism().curve.domain();
@@ -115,7 +113,6 @@ pub fn ended(model: &Model, outcome: Outcome) -> Sentence {
     Sentence::new(Kind::Fault, format!("The run ended at {at:.2} s: {why}"))
 }
 
-/// The sentence while nothing shakes the base.
 pub fn unshaken(model: &Model, state: &Sample) -> Sentence {
     let base = model.base_acceleration(state.t);
     let pull = model.acceleration(state.x, state.v, base).abs() * model.scales().time / model.scales().speed;
