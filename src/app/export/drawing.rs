@@ -51,7 +51,7 @@ fn figure(order: &FigureOrder, cancel: &AtomicBool) -> Result<Figure> {
         Subject::Basins(x_mm, v) => drawing.basins(*x_mm, *v),
         Subject::Spectrum(signal, until) => drawing.spectrum(*signal, *until),
     };
-    Ok(chart?.figure(&caption, &Theme::of(false, Some(order.sheet))))
+    Ok(chart?.figure(&caption, &Theme::of(false, Some(order.place.sheet))))
 }
 
 /// Reads the document as the command line does; an error if it differs from the scene of the window.

@@ -48,12 +48,7 @@ pub struct FigureOrder {
     /// The changed scene, with the first value of each swept field.
     pub(super) scene: Scene,
     pub(super) subject: Subject,
-    pub(super) sheet: Sheet,
-    format: Format,
-    /// The sheet as command-line options.
-    layout: Vec<Argument>,
-    path: PathBuf,
-    data: Option<PathBuf>,
+    pub(super) place: Place,
 }
 
 /// Output files and layout of a figure, already checked.
@@ -191,13 +186,7 @@ impl FigureOrder {
             return Err(format!("{} is read by this scene: give the figure another name.", path.display()));
         }
         let (from, scene) = subject.scenes(session);
-        let Place { path, format, sheet, data } = place;
-        let mut layout = vec![Argument::of("plot-width-mm", sheet.width_mm.to_string())];
-        layout.push(Argument::of("font-pt", sheet.font_pt.to_string()));
-        layout.extend(data.as_ref().map(|data| Argument::of("plot-data", data.to_string_lossy())));
-        layout.extend((!sheet.titled).then(|| Argument::switch("no-title")));
-        let settings = arguments(&from, &scene);
-        Ok(Self { origin, settings, scene, subject, sheet, format, layout, path, data })
+        Ok(Self { origin, settings: arguments(&from, &scene), scene, subject, place })
     }
 
     /// The command and all its arguments, in the order of `--help`.
@@ -205,8 +194,13 @@ impl FigureOrder {
         let (command, options, ranges) = self.subject.command();
         let mut all = vec![Argument { option: None, value: Some(self.origin.clone()) }];
         all.extend(options);
-        all.push(Argument::of("plot", self.path.to_string_lossy()));
-        all.extend(self.layout.iter().cloned().chain(ranges));
+        let Place { path, sheet, data, .. } = &self.place;
+        all.push(Argument::of("plot", path.to_string_lossy()));
+        all.push(Argument::of("plot-width-mm", sheet.width_mm.to_string()));
+        all.push(Argument::of("font-pt", sheet.font_pt.to_string()));
+        all.extend(data.as_ref().map(|data| Argument::of("plot-data", data.to_string_lossy())));
+        all.extend((!sheet.titled).then(|| Argument::switch("no-title")));
+        all.extend(ranges);
         all.push(Argument::of("out", if cfg!(windows) { "NUL" } else { "/dev/null" }));
         all.extend(self.settings.iter().map(|setting| Argument::of("set", setting)));
         (command, all)
@@ -223,18 +217,18 @@ impl FigureOrder {
     /// if cancelled.
     pub fn save(&self, cancel: &AtomicBool) -> Result<Option<String>> {
         // open the files first: a path that cannot be written to is reported before the work
-        let plot = Sink::open(&self.path)?;
-        let data = self.data.as_deref().map(Sink::open).transpose()?;
+        let plot = Sink::open(&self.place.path)?;
+        let data = self.place.data.as_deref().map(Sink::open).transpose()?;
         draw(self, cancel)?.map(|figure| self.write(figure, plot, data)).transpose()
     }
 
     fn write(&self, mut figure: Figure, plot: Sink, data: Option<Sink>) -> Result<String> {
-        if !self.sheet.titled {
+        if !self.place.sheet.titled {
             figure = figure.without_title();
         }
         let (command, all) = self.command_with_arguments();
         figure.origin.insert("arguments".into(), picture_arguments(command, all).into());
-        let bytes = self.format.bytes(&figure)?;
+        let bytes = self.place.format.bytes(&figure)?;
         let failure = |name: &str, error: std::io::Error| anyhow!("cannot write {name}: {error}");
         let mut sinks = vec![plot];
         sinks[0].put_bytes(&bytes).map_err(|error| failure(sinks[0].name(), error))?;

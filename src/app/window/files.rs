@@ -20,7 +20,7 @@ use super::Window;
 use super::leave::{self, Answer, Next};
 use super::lessons;
 use super::measured_dialog::{ENDINGS, MeasuredAnswer, MeasuredDialog, is_measured};
-use super::messages::CANNOT_OPEN;
+use super::messages::{CANNOT_OPEN, Messages};
 use super::wanted::{Chosen, PathAnswer, PathDialog, Wanted};
 
 /// Time in ms below which a dialog that is closed again has not been visible.
@@ -53,7 +53,7 @@ impl Window {
                     figures: std::mem::take(&mut self.figures),
                     covered: self.covered,
                     lessons: std::mem::take(&mut self.lessons),
-                    messages: self.messages.take_notice(),
+                    messages: Messages { alert: None, notice: self.messages.notice.take() },
                     applied: self.applied,
                     memory: self.memory.for_another_scene(),
                     ..window

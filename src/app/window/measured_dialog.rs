@@ -10,6 +10,8 @@ use crate::app::task::{Background, Wake};
 use crate::app::ui::widgets::{dialog, dialog_width};
 use crate::scene::{ChosenColumn, MeasuredText, Quantity, Unit};
 
+use super::writing::file_name;
+
 /// Extensions of the files that are taken for measured data.
 pub(super) const ENDINGS: [&str; 4] = ["csv", "txt", "tsv", "dat"];
 
@@ -50,7 +52,7 @@ pub(super) enum MeasuredAnswer {
 
 impl MeasuredDialog {
     pub fn new(path: &Path, wake: &Wake) -> Self {
-        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+        let name = file_name(path);
         let mut text = Background::default();
         let file = path.to_owned();
         text.ask((), wake, move |(), _, _| {
@@ -181,45 +183,32 @@ impl MeasuredDialog {
         match self.known() {
             None => _ = ui.label("Reading the file."),
             Some(Err(problem)) => _ = ui.label(RichText::new(problem).heading()),
-            Some(Ok(record)) => {
-                ui.label(record.describe());
-            }
+            Some(Ok(record)) => _ = ui.label(record.describe()),
         }
         if let Some(why) = &self.refused {
             ui.label(RichText::new(format!("The base is not shaken with it. {why}")).heading());
         }
     }
 
-    fn buttons_ui(&mut self, ui: &mut Ui) -> Option<MeasuredAnswer> {
-        let ready = matches!(self.known(), Some(Ok(_)));
-        let record = |dialog: &mut Self| dialog.record.take().and_then(Result::ok).map(Box::new);
+    fn buttons_ui(&self, ui: &mut Ui) -> Option<MeasuredAnswer> {
+        let record = self.known().and_then(Result::ok);
         ui.horizontal(|ui| {
-            let lay = ui.add_enabled(ready, Button::new("Lay it over"));
-            if ready && ui.memory(|memory| memory.focused().is_none()) {
+            let lay = ui.add_enabled(record.is_some(), Button::new("Lay it over"));
+            if record.is_some() && ui.memory(|memory| memory.focused().is_none()) {
                 lay.request_focus();
             }
-            let accelerates =
-                matches!(self.known(), Some(Ok(record)) if record.values.quantity == Quantity::Acceleration);
-            let shaken = accelerates
-                && ui
-                    .button("Shake the base with it")
-                    .on_hover_text(
-                        "The excitation of the scene becomes this record, linear between its samples, from \
-                         its time 0 on. A step that can be undone.",
-                    )
-                    .clicked();
+            let accelerates = record.is_some_and(|record| record.values.quantity == Quantity::Acceleration);
+            let hover = "The excitation of the scene becomes this record, linear between its samples, from \
+                         its time 0 on. A step that can be undone.";
+            let shaken = accelerates && ui.button("Shake the base with it").on_hover_text(hover).clicked();
             let cancelled = ui.button("Cancel").clicked();
-            if lay.clicked() {
-                return record(self).map(MeasuredAnswer::Overlay);
+            match record {
+                Some(record) if lay.clicked() => Some(MeasuredAnswer::Overlay(Box::new(record.clone()))),
+                Some(record) if shaken => {
+                    Some(MeasuredAnswer::Shake(self.path.clone(), Box::new(record.clone())))
+                }
+                _ => cancelled.then_some(MeasuredAnswer::Cancelled),
             }
-            if shaken {
-                return self
-                    .record
-                    .answer()
-                    .and_then(|record| record.clone().ok())
-                    .map(|record| MeasuredAnswer::Shake(self.path.clone(), Box::new(record)));
-            }
-            cancelled.then_some(MeasuredAnswer::Cancelled)
         })
         .inner
     }

@@ -17,15 +17,15 @@ pub(super) type WriteResult = Result<String, String>;
 
 /// A notice, and the time in s since which it has been shown.
 #[derive(Debug)]
-struct Notice {
-    text: String,
+pub(super) struct Notice {
+    pub text: String,
     since: Option<f64>,
 }
 
 #[derive(Debug, Default)]
 pub(super) struct Messages {
-    alert: Option<(String, String)>,
-    notice: Option<Notice>,
+    pub alert: Option<(String, String)>,
+    pub notice: Option<Notice>,
 }
 
 impl Messages {
@@ -53,23 +53,6 @@ impl Messages {
             Reached::Nothing(kind) => self.notify(format!("No {} up to {time:.2} s", kind.name())),
             Reached::Ended => self.notify(format!("The run ended at {time:.3} s")),
         }
-    }
-
-    pub fn alert_text(&self) -> Option<&str> {
-        self.alert.as_ref().map(|alert| alert.1.as_str())
-    }
-
-    pub fn notice_text(&self) -> Option<&str> {
-        self.notice.as_ref().map(|notice| notice.text.as_str())
-    }
-
-    pub fn drop_notice(&mut self) {
-        self.notice = None;
-    }
-
-    /// Takes the notice along to another scene, without the alert.
-    pub fn take_notice(&mut self) -> Self {
-        Self { alert: None, notice: self.notice.take() }
     }
 
     pub fn ui(&mut self, ui: &Ui) {

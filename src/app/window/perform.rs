@@ -51,14 +51,17 @@ impl Window {
             return self.messages.notify("First choose what you expect");
         }
         match command {
-            // a lesson has fixed views
-            Command::Arrange(_) | Command::ArrangeOwn | Command::KeepOwn if self.lesson().is_some() => {}
+            // a lesson has fixed views, and a pinned motion may be the answer to its question
+            Command::Arrange(_) | Command::ArrangeOwn | Command::KeepOwn | Command::Pin(_)
+                if self.lesson().is_some() => {}
             Command::OpenPreset(name) => self.leave_for(ctx, Next::Open(name.to_owned())),
             Command::OpenRecent(path) => self.leave_for(ctx, Next::Open(path)),
             Command::Open => self.leave_for(ctx, Next::Choose),
-            Command::OpenMeasured if self.lesson().is_none() => self.choose(Wanted::Measured),
+            Command::OpenMeasured | Command::BestStops if self.lesson().is_some() => {
+                self.messages.notify("Leave the lesson first");
+            }
+            Command::OpenMeasured => self.choose(Wanted::Measured),
             Command::RemoveMeasured => self.session.measured = MeasuredData::default(),
-            Command::OpenMeasured => self.messages.notify("Leave the lesson first"),
             Command::Save => self.save(ctx),
             Command::SaveAs(wanted) => self.choose(wanted),
             Command::Figure(view) => self.open_figure_dialog(view),
@@ -122,12 +125,9 @@ impl Window {
                 *value = !*value;
             }
             Command::Grab => self.memory.grab = true,
-            // a pinned motion may be the answer to a lesson's question
-            Command::Pin(_) if self.lesson().is_some() => {}
             Command::Pin(kind) => self.pin(kind),
             // in a lesson this would be the answer
             Command::Ways => self.ways = !self.ways && self.lesson().is_none(),
-            Command::BestStops if self.lesson().is_some() => self.messages.notify("Leave the lesson first"),
             Command::BestStops => self.session.find_best_stops(),
             Command::OpenLesson(name) => self.open_lesson(name),
             Command::OpenLessonFile => self.choose(Wanted::Lesson),

@@ -167,11 +167,11 @@ impl Window {
     }
 
     pub fn message(&self) -> Option<&str> {
-        self.messages.alert_text()
+        self.messages.alert.as_ref().map(|(_, text)| text.as_str())
     }
 
     pub fn notice(&self) -> Option<&str> {
-        self.messages.notice_text()
+        self.messages.notice.as_ref().map(|notice| notice.text.as_str())
     }
 
     /// Whether a dialog is open, so that keys do not act on the window behind it.

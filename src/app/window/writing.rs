@@ -96,7 +96,7 @@ impl Window {
     pub(super) fn write_picture(&mut self, ctx: &egui::Context, path: PathBuf) {
         let (written, wake) = (self.written.0.clone(), Arc::clone(&self.wake));
         // the picture shows no notice
-        self.messages.drop_notice();
+        self.messages.notice = None;
         ctx.request_screenshot(move |image| {
             let bytes = export::png(&image);
             let saved = bytes.and_then(|bytes| write_file(&path, &bytes));
@@ -111,6 +111,6 @@ fn write_text(path: &Path, text: &str) -> WriteResult {
     write_file(path, text.as_bytes()).map(|()| format!("Saved {}", file_name(path)))
 }
 
-fn file_name(path: &Path) -> String {
+pub(super) fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }

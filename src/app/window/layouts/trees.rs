@@ -86,14 +86,8 @@ pub(super) fn views_of(layout: Layout) -> Vec<View> {
         Layout::Look => look.to_vec(),
         Layout::Map => vec![View::Map, View::Well, View::BeforeNow],
         Layout::Explore => {
-            vec![
-                View::UpAndDown,
-                View::Basins,
-                View::Spectrum,
-                View::Well,
-                View::PhasePortrait,
-                View::Displacement,
-            ]
+            let motion = [View::Well, View::PhasePortrait, View::Displacement];
+            [View::UpAndDown, View::Basins, View::Spectrum].into_iter().chain(motion).collect()
         }
         Layout::Study => look.into_iter().chain(study).collect(),
     }
