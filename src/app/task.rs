@@ -12,8 +12,7 @@ use std::time::Duration;
 use crate::system::clock::WallClock;
 use crate::system::threads::{Pool, processors, sleep, spawn};
 
-/// A pool of threads for all cores but one, which is left to the window. Returns `None` if the system cannot
-/// start threads.
+/// A pool of threads for all cores but one; `None` if the system cannot start threads.
 pub fn pool() -> Option<Pool> {
     Pool::new(processors().saturating_sub(1).max(1)).ok()
 }

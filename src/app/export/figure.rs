@@ -213,8 +213,7 @@ impl FigureOrder {
         format!("interwell --headless {command} {}", words.join(" "))
     }
 
-    /// Draws the figure and writes its files, both or neither. Returns a message with their names, or `None`
-    /// if cancelled.
+    /// Draws the figure and writes its files. Returns a message with their names, or `None` if cancelled.
     pub fn save(&self, cancel: &AtomicBool) -> Result<Option<String>> {
         // open the files first: a path that cannot be written to is reported before the work
         let plot = Sink::open(&self.place.path)?;

@@ -44,8 +44,7 @@ pub fn events_seen_csv(player: &Player) -> String {
     csv(&watched_events(player.watch(), 0..usize::MAX))
 }
 
-/// Force, potential and stiffness of the mechanism, in the columns and at the positions of the command
-/// `curve` without options.
+/// Force, potential and stiffness of the mechanism, as the command `curve` writes them without options.
 pub fn curve_csv(session: &Session) -> Result<String, OutsideCurve> {
     let mechanism = &session.model().mechanism();
     let table = curve(mechanism, default_positions(session.scene(), mechanism, CURVE_POINTS as usize))?;
@@ -75,8 +74,7 @@ pub enum Runs {
     Whole,
     /// The motion on the screen, from its present state on.
     FromNow,
-    /// The scene from its start, because the motion on the screen was changed on the way and no scene
-    /// describes its continuation.
+    /// The scene from its start: the motion was changed on the way, and no scene continues it.
     Another,
 }
 

@@ -34,8 +34,7 @@ fn kind_name(excitation: &Excitation) -> &'static str {
     }
 }
 
-/// Shaking of each kind that can be chosen, with the amplitude and frequency of the present shaking, or with
-/// those of `suiting` if it has none.
+/// Shaking of each kind, with the amplitude and frequency of `from`, or of `suiting` if it has none.
 fn choices(from: &Excitation, suiting: &Excitation) -> [Excitation; 6] {
     let (suiting_f, suiting_g) = match suiting {
         Excitation::Sine { frequency_hz, amplitude_g, .. } => (*frequency_hz, *amplitude_g),

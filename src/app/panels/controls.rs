@@ -1,5 +1,4 @@
-//! Controls of the scene: shaking, stops with the search for the best ones and, under More, fields that are
-//! changed less often.
+//! Controls of the scene: shaking, stops with the search for the best ones and, under More, rarer fields.
 
 use eframe::egui::{self, Color32, Label, Rect, RichText, Ui};
 

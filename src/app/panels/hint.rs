@@ -176,8 +176,7 @@ fn answer(session: &Session) -> String {
     text
 }
 
-/// Distance in mm from the middle at which the mechanism presses the mass outwards hardest; `None` unless it
-/// is the same on both sides.
+/// Distance in mm from the middle where the force outwards is largest; `None` if the two sides differ.
 fn hardest_mm(session: &Session) -> Option<f64> {
     let landscape = &session.model().mechanism().landscape;
     let barrier = landscape.barrier?;

@@ -41,8 +41,7 @@ pub(super) fn solve(document: &Document, tolerance: f64) -> Result<(Arc<Mechanis
     Ok((mechanism, model))
 }
 
-/// The first fault, with the field names of the screen and without the position in the file, which is of no
-/// use at a slider.
+/// The first fault, with the field names of the screen and without its position in the file.
 pub(super) fn fault_message(error: &CannotRun, scene: &Scene) -> String {
     match error {
         CannotRun::Wrong(SceneError::Faults { faults, .. }) => faults.first().map_or_else(

@@ -150,8 +150,7 @@ impl Session {
         scene
     }
 
-    /// Notes a key press on a field at the time `now` in s. Presses on one field that follow each other
-    /// within a second are one gesture.
+    /// Notes a key press on a field at `now` in s; presses within a second on one field are one gesture.
     pub fn press(&mut self, field: &str, now: f64) {
         if self.presses.as_ref().is_none_or(|(pressed, last)| pressed != field || now - last > PRESS_GAP) {
             self.end_gesture();
@@ -166,8 +165,7 @@ impl Session {
         }
     }
 
-    /// Ends a series of key presses after a second without one. Returns the time in s, from `now`, that is
-    /// left for another press.
+    /// Ends a series of key presses after a second without one. Returns the time in s left for another one.
     pub fn follow_presses(&mut self, now: f64) -> Option<f64> {
         let last = self.presses.as_ref()?.1;
         let left = last + PRESS_GAP - now;

@@ -59,8 +59,7 @@ impl Editor {
         Document::from_text(PASTED, text, Files::default()).map(Self::new)
     }
 
-    /// The name on the command line of the scene as it was opened or last saved; `None` for a scene that was
-    /// given as text.
+    /// The scene's name on the command line; `None` for a scene that was given as text.
     pub fn origin(&self) -> Option<String> {
         match &self.document.source {
             Source::File(path) => Some(path.to_string_lossy().into_owned()),

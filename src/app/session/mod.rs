@@ -156,8 +156,7 @@ impl Session {
         self.forget_ways();
     }
 
-    /// Continues the motion from its present state with the new model. A motion that has ended and cannot
-    /// continue from there is restarted.
+    /// Continues the motion with the new model; a motion that has ended and cannot continue is restarted.
     fn continue_motion(&mut self) {
         let (ended, before) = (self.player.ended().is_some(), self.player.watch().now().x);
         self.player.change(&self.model);
@@ -184,8 +183,7 @@ impl Session {
         self.moved_to_stop && (self.settling().is_some() || elapsed < self.model.characteristic_time())
     }
 
-    /// Progress of the motion, after a change, towards the settled motion that the sentence describes: the
-    /// elapsed time and the whole time in s.
+    /// Progress after a change towards the settled motion: the elapsed and the whole time in s.
     pub fn settling(&self) -> Option<(f64, f64)> {
         let moves = self.model.is_shaken() && self.player.ended().is_none();
         let facts = self.sentence_facts().filter(|_| moves && self.changed_at > 0.0)?;

@@ -207,15 +207,13 @@ impl Session {
         Ok(letter)
     }
 
-    /// Replaces the scene by that of a pin, as one undo step; the motion goes on from its present state.
-    /// Returns whether the scene changed.
+    /// Replaces the scene by that of a pin, as one undo step. Returns whether the scene changed.
     pub fn take_back(&mut self, letter: char) -> bool {
         let Some(scene) = self.pins.get(letter).map(|pin| pin.scene().clone()) else { return false };
         self.edit_once(|edited| *edited = scene)
     }
 
-    /// Continues the pinned motions to the live time of the motion, in phase with its drive; to be called
-    /// after the motion has been advanced.
+    /// Continues the pinned motions to the live time; to be called after the motion has been advanced.
     pub fn follow_pins(&mut self) {
         let watch = self.player.watch();
         for pin in &mut self.pins.all {

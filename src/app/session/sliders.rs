@@ -7,8 +7,7 @@ use crate::scene::{Control, FieldPath, Mechanism, Scale, Stops};
 
 use super::Session;
 
-/// The range of a control's slider in a scene: that for the prototype if it suits the scales of the scene,
-/// else one that is derived from them.
+/// The range of a control's slider: that for the prototype, or one derived from the scales of the scene.
 pub fn reach(control: &Control, session: &Session) -> Reach {
     let (low, high, step) = control.slider;
     let saved = FieldPath::new(control.path).get(session.editor.saved());

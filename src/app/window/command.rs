@@ -73,8 +73,7 @@ pub enum Command {
 }
 
 impl Command {
-    /// Whether it changes the motion or the scene, or reveals results; such a command is blocked while a
-    /// prediction covers the motion.
+    /// Whether it changes or reveals the motion; it is then blocked while a prediction covers the motion.
     pub(super) fn reveals_motion(&self) -> bool {
         use Wanted::{Events, Map, Motion, Run};
         matches!(

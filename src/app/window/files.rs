@@ -1,5 +1,4 @@
-//! Opening of scenes and measured data, and choice of files: dialogs, dropped files, the clipboard, questions
-//! to the user.
+//! Opening of scenes and measured data, choice of files, and questions to the user.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -107,8 +107,7 @@ impl Tiling {
         self.tree.tiles.find_pane(&view).is_some_and(|id| self.tree.is_visible(id))
     }
 
-    /// Shows or hides a view. A view without a tile joins those of its kind: below them, or in a compact
-    /// window as a tab.
+    /// Shows or hides a view. A view without a tile joins those of its kind, in a compact window as a tab.
     pub fn show(&mut self, view: View, shown: bool) {
         match self.tree.tiles.find_pane(&view) {
             Some(id) => self.tree.set_visible(id, shown),

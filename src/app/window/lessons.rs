@@ -70,8 +70,7 @@ pub(super) fn read(spec: &str) -> Result<LessonDocument, CannotRun> {
     })
 }
 
-/// Whether what is to be opened is a lesson: a lesson's file or, where no file is called so, the name, number
-/// or words of a built-in lesson.
+/// Whether `spec` is a lesson: a file or, if there is none, the name, number or words of a built-in one.
 pub(super) fn is_lesson(spec: &str) -> bool {
     let path = Path::new(spec);
     let built_in = || !files::exists(path) && BuiltInLesson::find(spec).is_some();
@@ -79,8 +78,7 @@ pub(super) fn is_lesson(spec: &str) -> bool {
 }
 
 impl Window {
-    /// Opens a lesson: a built-in one by its name or number, or a file. If that fails, the window stays as it
-    /// is, and an alert says why.
+    /// Opens a built-in lesson by its name or number, or a file. If that fails, an alert says why.
     pub fn open_lesson(&mut self, spec: &str) {
         match read(spec).and_then(|document| self.begin_lesson(document)) {
             Ok(()) => {}
@@ -273,8 +271,7 @@ impl Window {
         self.session.keeps_remedy = !lesson.tells_remedy();
     }
 
-    /// The strip of the open lesson, and the controls that it names; they are disabled while a prediction
-    /// covers the motion.
+    /// The strip of the open lesson, and its controls; they are disabled while the motion is covered.
     pub(super) fn lesson_panels_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) {
         let Some(lesson) = &mut self.lessons.open else { return };
         // not a panel, whose height would follow its contents one frame late

@@ -145,8 +145,7 @@ impl Window {
         bar.inner
     }
 
-    /// The controls of the scene: in a compact window a row, else a column with the notes below. Returns the
-    /// command that shows all of the notes, if it was chosen.
+    /// The controls: in a compact window a row, else a column with the notes. Returns the chosen command.
     fn controls_ui(&mut self, ui: &mut Ui, compact: bool) -> Option<Command> {
         if compact {
             let line = panel_frame(ui, 12, 4);
@@ -177,8 +176,7 @@ impl Window {
         column.inner.then_some(Command::Notes)
     }
 
-    /// The row with the hint of the first minute, or with what it would take to cross. Returns the command
-    /// that was chosen.
+    /// The row with the hint of the first minute or the ways to cross. Returns the chosen command.
     fn hint_row_ui(&mut self, ui: &mut Ui, style: &Style) -> Option<Command> {
         let hinted = self.hint.is_shown(&self.session);
         self.hint_row |= hinted;

@@ -207,8 +207,7 @@ impl Window {
         }
     }
 
-    /// The view that keys act on: the one that fills the window, or the one under the pointer or with the
-    /// keyboard focus.
+    /// The view that keys act on: it fills the window, is under the pointer or has the focus.
     fn active_view(&self) -> View {
         self.filled.or(self.memory.hovered).unwrap_or(View::Displacement)
     }

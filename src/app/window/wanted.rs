@@ -1,5 +1,4 @@
-//! Files that the user chooses: their purposes, the answers of the file dialog, and the dialog in which a
-//! path is typed, for a desktop without a file dialog.
+//! Files that the user chooses: their purposes, the answers, and the dialog in which a path is typed.
 
 use std::path::{Path, PathBuf};
 

@@ -37,8 +37,7 @@ pub struct Map {
     pub question: Question,
     /// The edges of the cells across and up.
     pub edges: [Edges; 2],
-    /// The least amplitude that releases the mass from a stop, in closed form, where it exists: `x` and `y`
-    /// of its points.
+    /// Least amplitude that releases the mass from a stop, in closed form where it exists: its points.
     pub release: Vec<(f64, f64)>,
     /// The edge of the first crossing cells, as far as they are known.
     pub crossing: Vec<Vec<(f64, f64)>>,
@@ -161,8 +160,7 @@ impl Map {
         }
     }
 
-    /// Whether it may be shown until every part of another map shows a result: if it has the fields and the
-    /// columns of that map.
+    /// Whether it may be shown until the other map is covered: it has the fields and columns of that map.
     pub(super) fn stands_in_for(&self, other: &Self) -> bool {
         let fields = |map: &Self| map.question.axes.clone().map(|axis| axis.field);
         let has_columns = self.question.ledger.is_some() || other.question.ledger.is_none();
@@ -226,8 +224,7 @@ impl Map {
     }
 }
 
-/// The least amplitude that releases the mass from a stop: `x` and `y` of its points. Empty if the mechanism
-/// changes over the map.
+/// Points of the least amplitude that releases the mass; none if the mechanism changes over the map.
 fn release(scene: &Scene, mechanism: &Mechanism, grid: &Grid) -> Vec<(f64, f64)> {
     let line = || release_line(scene, mechanism, grid);
     let Some(line) = (!grid.changes_mechanism()).then(line).flatten() else { return Vec::new() };

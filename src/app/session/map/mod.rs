@@ -205,8 +205,7 @@ impl Session {
         self.model().mechanism().landscape.right_stable().map(|well| well.x * 1e3)
     }
 
-    /// Asks for the map of the present scene, in the frame at `time` in s. Returns whether the map waits for
-    /// a pause in the gesture.
+    /// Asks for the map of the scene at `time` in s. Returns whether it waits for a pause in the gesture.
     pub fn want_map(&mut self, time: f64) -> bool {
         let Some(axes) = self.map_axes() else {
             self.map.problem = Some("This scene has no two fields to make a map over.".to_owned());
@@ -286,14 +285,12 @@ impl Session {
         });
     }
 
-    /// Position of the scene on the axes of a map; `None` on an axis whose field it lacks, such as the travel
-    /// limit without stops.
+    /// Position of the scene on the axes of a map; `None` on an axis whose field the scene lacks.
     pub fn place_on_map(&self, question: &Question) -> [Option<f64>; 2] {
         question.axes.each_ref().map(|axis| FieldPath::new(&axis.field).get(self.scene()))
     }
 
-    /// Why a map of the scene cannot have these axes: the index of the faulty axis, its faulty part, and a
-    /// sentence. `None` if it can.
+    /// Why a map cannot have these axes: the index of the faulty axis, its faulty part, and a sentence.
     pub fn map_problem(&self, axes: &[SweepAxis; 2]) -> Option<(usize, &'static str, String)> {
         let ground = ground(self.scene(), self.remembered_stops(), axes);
         let mut cells = 1;

@@ -127,8 +127,7 @@ pub(super) fn wide_tree(layout: Layout, large: bool) -> Tree<View> {
     }
 }
 
-/// Two groups of tabs: the views along the displacement except the mechanism, and the mechanism with the
-/// other views.
+/// Two groups of tabs: the views along the displacement, and the mechanism with all others.
 pub(super) fn compact_tree(views: &[View]) -> Tree<View> {
     let is_first = |view: &&View| view.is_along_x() && **view != View::Mechanism;
     let (along, others): (Vec<View>, Vec<View>) = views.iter().partition(is_first);

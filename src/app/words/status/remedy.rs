@@ -65,10 +65,7 @@ pub(super) fn remedy(scene: &Scene, summary: &Summary, found: &Thresholds) -> St
     capital(&text)
 }
 
-/// What it would take to cross, or to cross every period: more shaking or stops, where they were searched
-/// for.
-///
-/// `stops_mm` is the travel limit that [`study::stops_that_cross`](crate::study::stops_that_cross) found.
+/// What it would take to cross in every period: more shaking, or stops with the travel limit `stops_mm`.
 pub fn ways(scene: &Scene, settled: &Summary, thresholds: &Thresholds, stops_mm: Option<f64>) -> String {
     let Some(g) = amplitude(scene) else { return String::new() };
     let stops = stops_mm.map(|limit| format!("with stops at ±{} mm", at_least_one_decimal(limit)));
