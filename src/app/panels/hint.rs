@@ -58,7 +58,7 @@ impl Hint {
         let since = session.changed_at();
         let mut last = session.player.watch().events().iter().rev().take(50);
         let crossed = since > 0.0
-            && !session.is_by_hand()
+            && !session.by_hand
             && last.any(|event| event.kind == EventKind::Crossing && event.t >= since);
         let limit_mm = limit_mm(session);
         let as_opened = self.is_as_opened(session);

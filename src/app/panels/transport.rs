@@ -3,13 +3,13 @@
 use std::collections::VecDeque;
 
 use eframe::egui::{
-    self, Align2, Color32, ComboBox, Painter, Pos2, Rect, RichText, Sense, Shape, Stroke, Ui, pos2, vec2,
+    self, Align2, ComboBox, Painter, Pos2, Rect, RichText, Sense, Shape, Stroke, Ui, pos2, vec2,
 };
 
 use crate::app::session::Session;
 use crate::app::session::player::{Goal, SPEEDS};
 use crate::app::ui::style::Style;
-use crate::app::ui::widgets::{Icon, arrows, icon_button_ui};
+use crate::app::ui::widgets::{Icon, arrows, icon_button_ui, polygon};
 use crate::app::words::meanings::explained;
 use crate::app::words::status::{Kind, speed};
 use crate::dynamics::{Event, EventKind};
@@ -103,9 +103,9 @@ fn row(kind: EventKind) -> usize {
 /// of two that is not below `least`, and they begin at its multiples, so that signs do not change with time.
 fn ticks(events: &VecDeque<Event>, begin: f64, end: f64, least: f64) -> Vec<Event> {
     let interval = least.max(f64::MIN_POSITIVE).log2().ceil().exp2();
-    let mut last = [f64::NAN; 3];
+    let mut last = [None; 3];
     let is_first = |event: &&Event| {
-        let number = (event.t / interval).floor();
+        let number = Some((event.t / interval).floor());
         number != std::mem::replace(&mut last[row(event.kind)], number)
     };
     // in the row of impacts a rest would look like an impact, even of a mass that rests from the start
@@ -116,16 +116,12 @@ fn ticks(events: &VecDeque<Event>, begin: f64, end: f64, least: f64) -> Vec<Even
 
 /// The sign of an event at `at`: a line for an impact, a triangle for a release, a diamond for a crossing.
 fn sign(kind: EventKind, at: Pos2, style: &Style) -> Shape {
-    let convex = |points: &[(f32, f32)], color: Color32| {
-        let points = points.iter().map(|(x, y)| at + vec2(*x, *y)).collect();
-        Shape::convex_polygon(points, color, Stroke::NONE)
-    };
     match row(kind) {
         0 => {
-            let color = style.kind(Kind::Interwell);
-            convex(&[(0.0, -4.0), (3.5, 0.0), (0.0, 4.0), (-3.5, 0.0)], color)
+            let corners = [(0.0, -4.0), (3.5, 0.0), (0.0, 4.0), (-3.5, 0.0)];
+            polygon(at, 1.0, &corners, style.kind(Kind::Interwell))
         }
-        1 => convex(&[(0.0, -3.5), (3.5, 3.0), (-3.5, 3.0)], style.stop()),
+        1 => polygon(at, 1.0, &[(0.0, -3.5), (3.5, 3.0), (-3.5, 3.0)], style.stop()),
         _ => Shape::line_segment([at - vec2(0.0, 3.5), at + vec2(0.0, 3.5)], style.impact_stroke()),
     }
 }

@@ -142,14 +142,6 @@ impl Editor {
         self.undo.drain(..excess);
     }
 
-    /// Changes the scene in a gesture of its own. Returns whether the scene changed.
-    pub fn edit_once(&mut self, change: impl FnOnce(&mut Scene)) -> bool {
-        self.end_gesture();
-        let changed = self.edit(change);
-        self.end_gesture();
-        changed
-    }
-
     pub fn can_undo(&self) -> bool {
         !self.undo.is_empty() || self.gesture.is_some()
     }
@@ -176,8 +168,11 @@ impl Editor {
 
     /// Goes back to the scene as it was opened or last saved, as one undo step. Returns whether it changed.
     pub fn back_to_start(&mut self) -> bool {
+        self.end_gesture();
         let saved = self.saved.clone();
-        self.edit_once(|scene| *scene = saved)
+        let changed = self.edit(|scene| *scene = saved);
+        self.end_gesture();
+        changed
     }
 
     /// Writes the scene to a file, which becomes the scene's file, and copies the files that it names beside

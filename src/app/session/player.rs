@@ -3,7 +3,6 @@
 //! The motion is live: playing advances it, and a change acts from its present state. Its past is remembered
 //! and can be shown; playing from a time in the past repeats it up to the present, and then goes on.
 
-use std::sync::Arc;
 use std::time::Duration;
 
 use crate::dynamics::{Event, EventKind, Model, Outcome, Sample};
@@ -239,11 +238,6 @@ impl Player {
         self.past = None;
     }
 
-    /// The model that held at the time that is shown.
-    pub fn shown_model(&self) -> &Arc<Model> {
-        self.watch.model_at(self.time())
-    }
-
     pub fn is_past(&self) -> bool {
         self.past.is_some()
     }
@@ -262,9 +256,8 @@ impl Player {
     }
 }
 
-/// Fast forward to the end of the run or to the next release or crossing. It may take many frames. In each, the
-/// motion is advanced in short stretches until the frame's share of computing time is used up, so that the
-/// window stays responsive.
+/// Fast forward to the end of the run or to the next release or crossing. It may take many frames: each one
+/// advances the motion in short stretches until its share of computing time is used up.
 impl Player {
     /// Starts towards a goal from the time that is shown; an event in the remembered past is reached at once.
     pub fn go_to(&mut self, goal: Goal) {

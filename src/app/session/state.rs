@@ -77,7 +77,7 @@ pub struct Session {
     /// Live time in s of the last change.
     pub(super) changed_at: f64,
     /// Whether the last change was a move of the mass by hand.
-    pub(super) by_hand: bool,
+    pub by_hand: bool,
     /// Whether the last change moved the mass to a stop.
     pub(super) moved_to_stop: bool,
     /// The scales of the scene as it was opened.
@@ -105,7 +105,8 @@ impl Session {
 
     /// The model at the time that is shown, which may be in the past.
     pub fn shown(&self) -> &Model {
-        if self.player.is_past() { self.player.shown_model() } else { &self.model }
+        let player = &self.player;
+        if player.is_past() { player.watch().model_at(player.time()) } else { &self.model }
     }
 
     /// Why the present scene cannot be run; the motion is then that of its last version that could.
@@ -115,14 +116,6 @@ impl Session {
 
     pub fn wake(&self) -> &Wake {
         &self.wake
-    }
-
-    pub fn is_by_hand(&self) -> bool {
-        self.by_hand
-    }
-
-    pub fn opened(&self) -> OpenedScales {
-        self.opened
     }
 
     /// Whether the settled motion crosses the barrier; `None` until it is known.

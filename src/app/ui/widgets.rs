@@ -114,11 +114,7 @@ fn icon_shapes(icon: Icon, rect: Rect, color: Color32) -> Vec<Shape> {
         let x = |share: f32| rect.left() + share * rect.width();
         Rect::from_min_max(pos2(x(from), rect.top()), pos2(x(to), rect.bottom()))
     };
-    let diamond = |x: f32| {
-        let (c, r) = (pos2(x, rect.center().y), rect.width() * 0.22);
-        let points = vec![c - vec2(0.0, r), c + vec2(r, 0.0), c + vec2(0.0, r), c - vec2(r, 0.0)];
-        Shape::convex_polygon(points, color, Stroke::NONE)
-    };
+    let diamond = |x: f32| polygon(pos2(x, rect.center().y), rect.width() * 0.22, &DIAMOND, color);
     match icon {
         Icon::Play => vec![triangle(rect, true)],
         Icon::Pause => {
@@ -169,34 +165,29 @@ fn icon_shapes(icon: Icon, rect: Rect, color: Color32) -> Vec<Shape> {
 /// The shape of a kind of motion: square, circle, diamond, double arrow; a ring where it has no name.
 pub fn kind_shapes(kind: Kind, center: Pos2, radius: f32, color: Color32) -> Vec<Shape> {
     let r = radius;
-    let polygon = |points: Vec<Pos2>| Shape::convex_polygon(points, color, Stroke::NONE);
     match kind {
         Kind::Other => vec![Shape::circle_stroke(center, 0.8 * r, Stroke::new(0.35 * r, color))],
         Kind::Resting => {
             vec![Shape::rect_filled(Rect::from_center_size(center, Vec2::splat(1.7 * r)), 0.0, color)]
         }
         Kind::Intrawell => vec![Shape::circle_filled(center, r, color)],
-        Kind::Irregular => vec![polygon(vec![
-            center + vec2(0.0, -1.2 * r),
-            center + vec2(1.2 * r, 0.0),
-            center + vec2(0.0, 1.2 * r),
-            center + vec2(-1.2 * r, 0.0),
-        ])],
+        Kind::Irregular => vec![polygon(center, 1.2 * r, &DIAMOND, color)],
         Kind::Interwell | Kind::Crossing => {
             let head = |side: f32| {
-                polygon(vec![
-                    center + vec2(side * 1.4 * r, 0.0),
-                    center + vec2(side * 0.4 * r, -0.9 * r),
-                    center + vec2(side * 0.4 * r, 0.9 * r),
-                ])
+                let points = [(side * 1.4, 0.0), (side * 0.4, -0.9), (side * 0.4, 0.9)];
+                polygon(center, r, &points, color)
             };
             let shaft = [center - vec2(0.6 * r, 0.0), center + vec2(0.6 * r, 0.0)];
             vec![head(-1.0), head(1.0), Shape::line_segment(shaft, Stroke::new(0.4 * r, color))]
         }
-        Kind::Fault => vec![polygon(vec![
-            center + vec2(0.0, -r),
-            center + vec2(1.1 * r, 0.9 * r),
-            center + vec2(-1.1 * r, 0.9 * r),
-        ])],
+        Kind::Fault => vec![polygon(center, r, &[(0.0, -1.0), (1.1, 0.9), (-1.1, 0.9)], color)],
     }
+}
+
+pub const DIAMOND: [(f32, f32); 4] = [(0.0, -1.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0)];
+
+/// A convex polygon: its corners, each from the centre in units of `scale` points.
+pub fn polygon(center: Pos2, scale: f32, corners: &[(f32, f32)], color: Color32) -> Shape {
+    let points = corners.iter().map(|(x, y)| center + scale * vec2(*x, *y)).collect();
+    Shape::convex_polygon(points, color, Stroke::NONE)
 }

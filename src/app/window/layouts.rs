@@ -214,8 +214,7 @@ struct Behavior<'a, 'b> {
 
 /// The button that holds the axes of a view; `None` if it has no axes.
 pub(super) fn hold_ui(ui: &mut Ui, view: View, memory: &mut Memory) -> Option<egui::Response> {
-    let held = memory.are_axes_held(view)?;
-    let (icon, name, hover) = match held {
+    let (icon, name, hover) = match memory.are_axes_held(view)? {
         true => (Icon::Held, "let go of the axes of", "The axes are held. A click lets go of them (L)."),
         false => (Icon::Free, "hold the axes of", "Hold the axes as they are, whatever comes (L)."),
     };

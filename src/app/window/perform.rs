@@ -201,8 +201,10 @@ impl Window {
     fn hold_axes(&mut self) {
         let view = self.active_view();
         if view.has_axes() {
-            let held = self.memory.hold_axes(view);
-            let what = if held { "held: L again lets go of them" } else { "by themselves again" };
+            let what = match self.memory.hold_axes(view) {
+                true => "held: L again lets go of them",
+                false => "by themselves again",
+            };
             self.messages.notify(format!("{}: its axes are {what}", view.name()));
         }
     }
