@@ -23,7 +23,7 @@ pub type Wake = Arc<dyn Fn() + Send + Sync>;
 /// Shortest interval between two wakes of the window while a job runs.
 const WAKE_INTERVAL: Duration = Duration::from_millis(40);
 
-/// A shared value that equals itself alone, whatever it contains: a question about it is compared by address.
+/// A shared value that is compared by its address, not by its content.
 #[derive(Debug)]
 pub struct Identity<T>(pub Arc<T>);
 

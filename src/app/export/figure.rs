@@ -251,7 +251,7 @@ impl FigureOrder {
     }
 }
 
-/// A range of times to suggest, rounded to a thousandth of its length or finer; `None` if it is empty.
+/// A suggested range of times, rounded to a thousandth of its length or finer; `None` if it is empty.
 pub fn round_times((from, to): (f64, f64)) -> Option<(f64, f64)> {
     let digit = 10_f64.powf((to - from).log10().floor() - 3.0);
     let round = |t: f64| short((t / digit).round() * digit).parse::<f64>().unwrap_or(t);

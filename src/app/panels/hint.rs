@@ -10,7 +10,7 @@ use crate::scene::Excitation;
 /// Distance in mm by which the stops have to be moved before the trade-off counts as tried.
 const TRIED_MM: f64 = 0.3;
 
-/// What stops between any two wells do.
+/// How stops between two wells act.
 const MIDDLE: &str = "a stop near the middle holds the mass high on the barrier, so that a weaker push \
                       carries it over; but the mass travels less. Further out the mechanism presses the mass \
                       harder against the stop";
@@ -163,7 +163,7 @@ impl Hint {
     }
 }
 
-/// What stops between these wells do, for any travel limit.
+/// How stops between these wells act, for any travel limit.
 fn answer(session: &Session) -> String {
     let mut text = MIDDLE.to_owned();
     text += &match hardest_mm(session) {

@@ -46,7 +46,7 @@ pub fn notes_ui(ui: &mut Ui, scene: &Scene, is_changed: bool, bottom: f32) -> bo
         ui.label(notes);
         return false;
     }
-    // as many whole sentences as fit
+    // the whole sentences that fit
     let ends = notes.match_indices('.').map(|(at, _)| at + 1);
     let ends: Vec<usize> = ends.filter(|at| notes[*at..].starts_with(char::is_whitespace)).collect();
     let count = ends.partition_point(|end| height(&notes[..*end]) <= room - HEADING - MORE);

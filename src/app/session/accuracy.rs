@@ -17,7 +17,7 @@ use crate::study::accuracy::scene::{
 /// Initial fixed step in s: a frame of a screen, the usual choice of games.
 const FRAME: f64 = 1.0 / 60.0;
 
-/// Time for which the error is computed again, as a multiple of the time that the motion has gone on.
+/// Length of the next comparison, as a multiple of the time since the run began.
 const SPAN_FACTOR: f64 = 2.0;
 
 /// A run of the motion, from a live time on.
@@ -68,7 +68,7 @@ fn short(trust: &Trust, from: f64) -> String {
     }
 }
 
-/// What that means, how it is known, and whether the regime in the sentence beside it depends on it.
+/// The same in full: how it was determined, and whether the regime depends on it.
 fn long(trust: &Trust, from: f64) -> String {
     let regime = match (trust.course, trust.same_regime) {
         (Course::Kept, _) => "",

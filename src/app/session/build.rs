@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::app::words::fields::{in_words, name_and_unit};
+use crate::app::words::numbers::rounded;
 use crate::dynamics::Model;
 use crate::mechanics::{BuildError, FlexureError, Mechanism};
 use crate::scene::{Document, Fault, Scene, SceneError, Stops};
@@ -73,7 +74,7 @@ pub(super) fn first_stops(scene: &Scene, model: &Model) -> Stops {
 /// Travel limit in mm that suits a well at this distance: the same share of it as in the prototype.
 fn suiting_limit(well_mm: Option<f64>) -> f64 {
     match well_mm.filter(|mm| *mm > 0.0 && mm.is_finite()) {
-        Some(mm) => format!("{:.1e}", 0.215 * mm).parse().unwrap_or(mm),
+        Some(mm) => rounded(0.215 * mm, 2),
         None => 1.5,
     }
 }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::app::words::fields::{in_words, name_and_unit};
+use crate::app::words::numbers::rounded;
 use crate::dynamics::STANDARD_GRAVITY;
 use crate::mechanics::FLEXURE_TOLERANCE;
 use crate::scene::{Excitation, FieldPath, Mechanism, Scene, Stops, check};
@@ -179,7 +180,7 @@ impl Session {
     pub fn suiting_sine(&self) -> Excitation {
         let scales = &self.model().scales();
         let one_digit = |value: f64, otherwise: f64| match value > 0.0 && value.is_finite() {
-            true => format!("{value:.0e}").parse().unwrap_or(otherwise),
+            true => rounded(value, 1),
             false => otherwise,
         };
         let frequency_hz = one_digit(0.2 / (std::f64::consts::TAU * scales.time), 3.0);

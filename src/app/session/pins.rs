@@ -16,7 +16,7 @@ use super::editor::keep_start_inside;
 /// Distance in mm of the twin's start from that of the mass.
 const TWIN_OFFSET_MM: f64 = 1e-3;
 
-/// Names of the pinned motions; as many can be pinned at a time.
+/// Names of the pinned motions, one for each that can be pinned at a time.
 const LETTERS: [char; 3] = ['A', 'B', 'C'];
 
 /// Computing time that one frame spends to bring a pinned motion up to the present.

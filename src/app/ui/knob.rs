@@ -8,7 +8,7 @@ use std::cell::RefCell;
 use eframe::egui::{self, Color32, DragValue, Key, Response, RichText, Slider, Ui, pos2};
 
 use crate::app::words::fields::Reach;
-use crate::app::words::numbers::{decimal, decimals, exact, shown};
+use crate::app::words::numbers::{decimal, decimals, exact, rounded, shown};
 
 use super::style::{COMPACT_BELOW, Style};
 use super::widgets::hover_beside;
@@ -223,12 +223,8 @@ fn logarithmic_ui(ui: &mut Ui, value: &mut f64, (low, high): (f64, f64)) -> Resp
         let from = present.clamp(low, high);
         *value = from * (*value / from).powi(10);
     }
-    *value = three_digits(value.clamp(low, high));
+    *value = rounded(value.clamp(low, high), 3);
     slider
-}
-
-fn three_digits(value: f64) -> f64 {
-    format!("{value:.2e}").parse().unwrap_or(value)
 }
 
 /// Replaces a decimal comma by a point; `1,234` stays, since its comma may separate thousands.

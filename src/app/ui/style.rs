@@ -25,8 +25,8 @@ pub const STATUS: f32 = 18.0;
 /// Size of the status sentence in points where room is short.
 pub const STATUS_COMPACT: f32 = 16.0;
 
-/// Radius in points of the proof mass where it rides on a curve; stops are drawn as far outside their limit,
-/// so that the mass touches them at the limit.
+/// Radius in points of the proof mass where it rides on a curve; stops are drawn this far outside their
+/// limit, so that the mass touches them at the limit.
 pub const BALL: f32 = 9.0;
 
 /// Distance in points within which something can be grabbed.

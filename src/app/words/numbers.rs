@@ -13,9 +13,14 @@ pub fn below(value: f64) -> f64 {
     round::round_down(value, &round::ONE_TWO_FIVE)
 }
 
+/// The value rounded to this many significant digits.
+pub fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
+}
+
 /// The value rounded to seven significant digits, which removes the rounding errors of products.
 pub fn decimal(value: f64) -> f64 {
-    format!("{value:.6e}").parse().unwrap_or(value)
+    rounded(value, 7)
 }
 
 /// Number of decimals that distinguishes multiples of a step.
@@ -78,14 +83,13 @@ fn significant(value: f64, digits: i32) -> String {
     if !(size > 0.0) || !size.is_finite() {
         return format!("{}", value + 0.0);
     }
-    let place = digits - 1 - size.log10().floor() as i32;
-    let rounded: f64 = format!("{value:.0$e}", digits as usize - 1).parse().unwrap_or(value);
-    if !(1e-6..1e7).contains(&size) {
-        return format!("{rounded:e}");
+    // rounding may reach the next power of ten
+    let rounded = rounded(value, digits as usize);
+    if (1e-6..1e7).contains(&size) {
+        format!("{rounded:.*}", numeric::decimals(rounded, digits))
+    } else {
+        format!("{rounded:e}")
     }
-    // rounding may have reached the next power of ten
-    let place = if rounded.abs().log10().floor() > size.log10().floor() { place - 1 } else { place };
-    format!("{rounded:.*}", place.max(0) as usize)
 }
 
 /// An amplitude or a threshold in g: three significant digits.

@@ -158,7 +158,7 @@ impl OpenLesson {
         first.is_some_and(|number| !self.is_settled(number))
     }
 
-    /// Whether a step has been answered or done; always so for a step that only tells or explains something.
+    /// Whether a step has been answered or done. A step that only tells or explains something always is.
     pub fn is_settled(&self, number: usize) -> bool {
         match (&self.lesson().steps[number], &self.progress.answers[number]) {
             (Step::Say(_) | Step::Explain(_), _) => true,
@@ -171,7 +171,7 @@ impl OpenLesson {
         self.is_settled(self.progress.step)
     }
 
-    /// Whether it may be said what it would take to cross the barrier: once all steps are settled.
+    /// Whether the window may say what it would take to cross the barrier: after all steps are settled.
     pub fn tells_remedy(&self) -> bool {
         (0..self.lesson().steps.len()).all(|number| self.is_settled(number))
     }

@@ -182,20 +182,15 @@ fn interwell(facts: &DrivenMotion, crosses: &str, rms: &str, range: &str) -> Str
     let equal = left.zip(right).filter(|(left, right)| *left == -*right);
     let share = summary.impact_share.filter(|_| summary.impacts > 0).map(|share| share * 100.0);
     let from = facts.settling_time();
-    match (equal, share) {
-        (Some((_, limit)), Some(share)) => format!(
-            "Interwell{from}: {how}, from stop to stop at ±{} mm; {rms}, impacts take {share:.0} % of the \
-             work.",
-            limit_mm(limit * 1e3)
-        ),
-        (None, Some(share)) => {
-            format!("Interwell{from}: {how}, {range}; {rms}, impacts take {share:.0} % of the work.")
+    let place = match (equal, share) {
+        (Some((_, limit)), Some(_)) => format!("from stop to stop at ±{} mm", limit_mm(limit * 1e3)),
+        (None, Some(_)) => range.to_owned(),
+        (_, None) => {
+            format!("reaching {} mm", mm_beside(summary.max_abs_x.unwrap_or(0.0), (left, right)))
         }
-        _ => format!(
-            "Interwell{from}: {how}, reaching {} mm; {rms}.",
-            mm_beside(summary.max_abs_x.unwrap_or(0.0), (left, right))
-        ),
-    }
+    };
+    let impacts = share.map_or_else(String::new, |share| format!(", impacts take {share:.0} % of the work"));
+    format!("Interwell{from}: {how}, {place}; {rms}{impacts}.")
 }
 
 /// The sentence about a motion under a drive without a period: what it does in the settled window.
@@ -254,10 +249,9 @@ fn ramped(facts: &DrivenMotion, firsts: &Firsts) -> Sentence {
         }
         (None, _) => parts.push("never crosses".to_owned()),
     }
-    let until = if firsts.crossing_in_every_period.is_some() {
-        String::new()
-    } else {
-        format!(" up to {}", seconds(end))
+    let until = match firsts.crossing_in_every_period {
+        Some(_) => String::new(),
+        None => format!(" up to {}", seconds(end)),
     };
     Sentence::new(kind, format!("Growing shaking: {}{until}.", parts.join("; ")))
 }

@@ -1,8 +1,8 @@
 //! Sentence about what the mass does.
 //!
 //! Its form is: name of the motion: what the mass does; a number; what it would take to cross. Every number
-//! comes from a run. Motion that has not been on the screen yet is described in the future tense, and what is
-//! not known is said to be unknown.
+//! comes from a run. Motion that has not been on the screen yet is described in the future tense, and a fact
+//! that is not known is called unknown.
 
 mod driven;
 mod remedy;

@@ -27,7 +27,7 @@ fn gaps(found: &Thresholds, from: f64) -> String {
     }
 }
 
-/// What stands before a threshold beside which a motion may be a transient.
+/// The word before a threshold near which a motion may be a transient.
 fn about(found: &Thresholds) -> &'static str {
     if found.crossing.undecided { "about " } else { "" }
 }
