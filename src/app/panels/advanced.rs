@@ -141,8 +141,8 @@ fn uneven_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     fields_ui(ui, session, &["stops.restitution_left", "stops.restitution_right"], width);
 }
 
-/// Converts equal stops to stops that may differ, or back: then both take the numbers of the right stop, or of
-/// the left one if the right side is open.
+/// Converts equal stops to stops that may differ, or back: then both take the numbers of the right stop, or
+/// of the left one if the right side is open.
 fn other_kind(stops: Stops) -> Stops {
     let ([left_mm, right_mm], [restitution_left, restitution_right]) =
         (stops.limits_mm(), stops.restitutions());

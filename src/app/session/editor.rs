@@ -142,6 +142,14 @@ impl Editor {
         self.undo.drain(..excess);
     }
 
+    /// Changes the scene as one undo step. Returns whether it changed.
+    pub fn edit_once(&mut self, change: impl FnOnce(&mut Scene)) -> bool {
+        self.end_gesture();
+        let changed = self.edit(change);
+        self.end_gesture();
+        changed
+    }
+
     pub fn can_undo(&self) -> bool {
         !self.undo.is_empty() || self.gesture.is_some()
     }
@@ -168,11 +176,8 @@ impl Editor {
 
     /// Goes back to the scene as it was opened or last saved, as one undo step. Returns whether it changed.
     pub fn back_to_start(&mut self) -> bool {
-        self.end_gesture();
         let saved = self.saved.clone();
-        let changed = self.edit(|scene| *scene = saved);
-        self.end_gesture();
-        changed
+        self.edit_once(|scene| *scene = saved)
     }
 
     /// Writes the scene to a file, which becomes the scene's file, and copies the files that it names beside
