@@ -9,10 +9,11 @@ use eframe::egui::{
 use crate::app::session::Session;
 use crate::app::session::lesson::{OpenLesson, Outcome, TaskState};
 use crate::app::ui::style::{BODY, Style, strong_family};
-use crate::app::words::announce::spoken_ui;
 use crate::app::words::lesson::{expected, judged_by, not_yet, numbered, pieces, plain};
 use crate::app::words::meanings::{meaning, terms};
 use crate::scene::lesson::Step;
+
+use super::status_line::spoken_ui;
 
 /// Text size in points, unless the window is compact.
 const LARGE: f32 = 16.0;
@@ -145,11 +146,12 @@ fn text_ui(ui: &mut Ui, style: &Style, heading: &str, text: &str, size: f32) {
         Some(format!("{word}: {}", meaning(word).unwrap_or_default()))
     };
     // a click shows the meaning at once and keeps it open
-    let clicked = response.interact_pointer_pos().filter(|_| response.clicked()).map(word_at);
-    if let Some(Some(text)) = &clicked {
-        ui.data_mut(|data| data.insert_temp(response.id, text.clone()));
+    let clicked = response.interact_pointer_pos().filter(|_| response.clicked());
+    let word = clicked.and_then(word_at);
+    let open = clicked.map(|_| SetOpenCommand::Bool(word.is_some()));
+    if let Some(text) = word {
+        ui.data_mut(|data| data.insert_temp(response.id, text));
     }
-    let open = clicked.map(|word| SetOpenCommand::Bool(word.is_some()));
     let popup = Popup::from_response(&response).open_memory(open).at_pointer_fixed();
     popup.show(|ui| {
         ui.set_max_width(MEANING);
@@ -215,7 +217,6 @@ fn below_ui(
     action
 }
 
-/// Field in which a student may give a reason.
 fn reason_ui(ui: &mut Ui, lesson: &mut OpenLesson, style: &Style, size: f32) {
     let text = "Why, in one word?";
     let galley = ui.painter().layout_no_wrap(text.to_owned(), FontId::proportional(size), style.faint());

@@ -170,7 +170,6 @@ impl Accuracy {
         });
     }
 
-    /// Stops the computations that no view has asked for in this frame; to be called once a frame.
     pub fn end_frame(&mut self) {
         self.tolerances.end_frame();
         self.stepped.end_frame();

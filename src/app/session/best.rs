@@ -19,7 +19,6 @@ use super::sliders::reach;
 
 pub const LIMIT: &str = "stops.travel_limit_mm";
 
-/// A part of the answer of a search.
 enum Part {
     /// The optimum of the coarse scan.
     Preview(Optimum),
@@ -128,7 +127,6 @@ impl Session {
         self.best.start(search, files, &self.wake);
     }
 
-    /// The search for the present scene, or why there can be none.
     fn best_search(&self) -> Result<Search, &'static str> {
         if self.fault().is_some() {
             return Err("The best stops are searched for once the scene can be run.");

@@ -18,11 +18,9 @@ const PASTED: &str = "the pasted scene";
 
 #[derive(Debug, Clone)]
 pub struct Editor {
-    /// The document with the edited scene.
     document: Document,
     /// The scene as it was opened or last saved.
     saved: Scene,
-    /// The scene that its origin names.
     named: Scene,
     undo: Vec<Scene>,
     redo: Vec<Scene>,
@@ -87,7 +85,6 @@ impl Editor {
         &self.document.scene
     }
 
-    /// The scene as it was opened or last saved, as in its file.
     pub fn saved(&self) -> &Scene {
         &self.saved
     }
@@ -110,7 +107,6 @@ impl Editor {
         }
     }
 
-    /// Whether there is something to save.
     pub fn is_dirty(&self) -> bool {
         self.document.scene != self.saved
     }

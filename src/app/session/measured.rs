@@ -178,12 +178,10 @@ impl MeasuredData {
     }
 }
 
-/// A clause as a sentence.
 pub fn sentence(clause: &str) -> String {
     format!("{}{}", capital(clause), if clause.ends_with('.') { "" } else { "." })
 }
 
-/// Comparison with measured data, and the use of a measured acceleration as the drive.
 impl Session {
     /// Asks for the differences of the record from the present scene; called in every frame that shows them.
     pub fn want_differences(&mut self) {

@@ -150,7 +150,6 @@ impl Pins {
         }
     }
 
-    /// Restarts all pins, each from its own start.
     pub(super) fn restart(&mut self, wake: &Wake) {
         for pin in &mut self.all {
             (pin.watch, pin.since) = (Watch::new(&pin.model), 0.0);

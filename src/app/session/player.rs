@@ -91,7 +91,6 @@ pub struct Player {
 }
 
 impl Player {
-    /// A player at the start of the model, playing.
     pub fn new(model: &Model, speed: f64) -> Self {
         Self {
             watch: Watch::new(model),
@@ -277,12 +276,10 @@ impl Player {
         self.goal
     }
 
-    /// Gives up the goal, and stays at the time reached.
     pub fn give_up(&mut self) {
         self.goal = None;
     }
 
-    /// How the way to the last goal ended; reported once.
     pub fn take_reached(&mut self) -> Option<Reached> {
         self.reached.take()
     }
@@ -294,7 +291,6 @@ impl Player {
         events.range(begin..).find(|event| is_kind(event, kind)).copied()
     }
 
-    /// Advances the motion towards a goal for one frame.
     fn follow(&mut self, goal: Goal) {
         let (begun, until) = (WallClock::start(), goal.until());
         let stretch = CHECK_INTERVAL * self.watch.model_at(self.watch.time()).characteristic_time();

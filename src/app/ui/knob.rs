@@ -170,7 +170,6 @@ impl Knob<'_> {
         format!("{space}{}", self.unit)
     }
 
-    /// The number of a typed text, or a message why it is not accepted.
     fn parsed(&self, text: &str, present: f64) -> Result<f64, String> {
         let unit = self.suffix();
         let number = text.strip_suffix(self.unit).unwrap_or(text).trim().replace('−', "-");

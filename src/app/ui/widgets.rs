@@ -25,12 +25,11 @@ pub fn dialog_width(ui: &Ui, wanted: f32) -> f32 {
 /// the next one. After an input on the widget it stays hidden until the pointer has left and come back.
 pub fn hover_beside(response: Response, text: &str) -> Response {
     let hidden = egui::Id::unique("hidden hover text");
-    let id = Some(response.id);
-    let is_hidden = || response.ctx.data(|data| data.get_temp::<Option<egui::Id>>(hidden)).flatten() == id;
+    let is_hidden = || response.ctx.data(|data| data.get_temp(hidden)) == Some(response.id);
     if response.changed() || response.dragged() || response.is_pointer_button_down_on() {
-        response.ctx.data_mut(|data| data.insert_temp(hidden, id));
+        response.ctx.data_mut(|data| data.insert_temp(hidden, response.id));
     } else if is_hidden() && !response.contains_pointer() {
-        response.ctx.data_mut(|data| data.insert_temp::<Option<egui::Id>>(hidden, None));
+        response.ctx.data_mut(|data| data.remove::<egui::Id>(hidden));
     }
     if is_hidden() {
         return response;

@@ -109,9 +109,7 @@ pub(super) enum Part {
     Presets,
     /// The scene files opened last.
     Recent,
-    /// The settings as checkboxes.
     Settings,
-    /// The views as checkboxes.
     Views,
     /// The speeds, with the keys 1 to 7.
     Speeds,

@@ -218,7 +218,6 @@ impl Figures {
         answer.inner.or(closed)
     }
 
-    /// The fields, the remark and the buttons.
     fn contents_ui(&mut self, ui: &mut Ui, view: View, session: &Session, memory: &Memory) -> Option<Action> {
         let mut action = None;
         let entered = Grid::new("figure").num_columns(2).spacing([12.0, 6.0]).show(ui, |ui| {

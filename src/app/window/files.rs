@@ -196,7 +196,6 @@ impl Window {
         }
     }
 
-    /// Takes a file that was dropped on the window: measured data, a scene or a lesson.
     pub fn take_dropped(&mut self, ctx: &egui::Context, path: &Path) {
         match is_measured(path) {
             true if self.waits_for_answer() && self.columns.is_none() => {}
@@ -314,7 +313,6 @@ impl Window {
         self.tiling.show(view, true);
     }
 
-    /// Draws the dialog for the columns, and carries out its answer.
     pub(super) fn measured_ui(&mut self, ui: &Ui) {
         let Some(answer) = self.columns.as_mut().and_then(|dialog| dialog.ui(ui, &self.wake)) else { return };
         match answer {

@@ -60,7 +60,6 @@ struct Suspended {
     ways: bool,
 }
 
-/// Reads a lesson: a built-in one or a file.
 pub(super) fn read(spec: &str) -> Result<LessonDocument, CannotRun> {
     LessonDocument::load(spec, &result_fields()).map_err(|error| match error {
         LessonError::Wrong(error) => error.into(),

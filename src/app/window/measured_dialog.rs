@@ -177,7 +177,6 @@ impl MeasuredDialog {
         });
     }
 
-    /// The record that was read, or why it cannot be read.
     fn known_ui(&self, ui: &mut Ui) {
         ui.add_space(4.0);
         match self.known() {

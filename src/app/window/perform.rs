@@ -166,7 +166,6 @@ impl Window {
         }
     }
 
-    /// Goes back to the scene as it was opened or last saved, with its views.
     fn back_to_start(&mut self, ctx: &egui::Context) {
         let changed = self.session.editor.is_dirty();
         self.session.back_to_start();

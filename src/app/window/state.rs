@@ -7,12 +7,12 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use egui_tiles::Tree;
 
 use crate::app::panels::hint;
+use crate::app::panels::status_line::Announcer;
 use crate::app::session::editor::Editor;
 use crate::app::session::{CannotRun, Session};
 use crate::app::task::{Background, Wake};
 use crate::app::ui::settings::Settings;
 use crate::app::views::{Memory, View};
-use crate::app::words::announce::Announcer;
 use crate::scene::{Layout, PRESETS};
 use crate::system::files;
 

@@ -43,7 +43,6 @@ impl Window {
         }
     }
 
-    /// Reports what other threads have written.
     pub(super) fn report_written(&mut self) {
         let run = self.run.take();
         for result in run.into_iter().chain(self.written.1.try_iter()) {
@@ -86,7 +85,6 @@ impl Window {
         self.messages.report_written(text.and_then(|text| write_text(path, &text)));
     }
 
-    /// Writes the map as the rows of a sweep.
     pub(super) fn write_map(&mut self, path: &Path) {
         let Some(text) = self.session.map.csv() else { return };
         self.write(path, &text);
@@ -106,7 +104,6 @@ impl Window {
     }
 }
 
-/// Writes a text. Returns the notice about it.
 fn write_text(path: &Path, text: &str) -> WriteResult {
     write_file(path, text.as_bytes()).map(|()| format!("Saved {}", file_name(path)))
 }

@@ -1,6 +1,5 @@
 //! Text of the window: names of the fields, explanations of terms, the sentence that describes the motion.
 
-pub(super) mod announce;
 pub mod best_stops;
 pub mod columns;
 pub mod fields;

@@ -186,7 +186,6 @@ impl OpenLesson {
         LESSONS.get(number + 1).map(|lesson| lesson.name)
     }
 
-    /// Chooses an option of a covered prediction.
     pub fn choose(&mut self, option: usize) -> Turn {
         let Some(choice) = self.options().get(option) else { return Turn::Stay };
         let text = choice.text.clone();
@@ -396,7 +395,6 @@ impl OpenLesson {
     }
 }
 
-/// The outcome of a prediction, from whether each of its options holds.
 fn single_option(options: &[bool]) -> Outcome {
     let mut right = options.iter().enumerate().filter(|(_, holds)| **holds).map(|(number, _)| number);
     match (right.next(), right.next()) {

@@ -149,7 +149,6 @@ impl Map {
         self.levels.ends.into_iter().map(level).collect()
     }
 
-    /// Adds cells that have been computed, and updates what is drawn over them.
     pub(super) fn add(&mut self, cells: Vec<(u64, Cell)>) {
         for (index, cell) in cells {
             self.known += usize::from(self.cells[index as usize].replace(cell).is_none());

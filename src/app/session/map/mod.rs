@@ -133,7 +133,6 @@ impl Mapping {
         (self.chosen, self.enlarged) = (axes, Vec::new());
     }
 
-    /// Enlarges the part of the map that these axes span.
     pub fn enlarge(&mut self, axes: [SweepAxis; 2]) {
         self.enlarged.push(axes);
     }
@@ -170,13 +169,11 @@ impl Mapping {
         }
     }
 
-    /// Pauses the map if no view has asked for it in this frame; to be called once a frame.
     pub fn end_frame(&mut self) {
         self.cells.end_frame();
     }
 }
 
-/// The map: its axes, the position of the scene on it, and moves of the scene to a cell.
 impl Session {
     /// The axes of the map; `None` if the scene has fewer than two fields for them.
     pub fn map_axes(&self) -> Option<[SweepAxis; 2]> {
@@ -313,7 +310,6 @@ impl Session {
         self.end_gesture();
     }
 
-    /// Moves the scene to a cell of its map, as part of a gesture.
     pub fn drag_to_cell(&mut self, column: usize, row: usize) {
         let Some((map, _)) = self.map.shown() else { return };
         let (Some(x), Some(y)) = (map.edges[0].values.get(column), map.edges[1].values.get(row)) else {

@@ -76,7 +76,6 @@ impl DrivenMotion<'_> {
     }
 }
 
-/// The sentence about a driven motion, by what it settles to.
 pub fn driven(facts: &DrivenMotion) -> Sentence {
     let DrivenMotion { scene, model, summary, .. } = *facts;
     if summary.outcome != Outcome::Done {
