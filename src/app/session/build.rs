@@ -44,18 +44,15 @@ pub(super) fn solve(document: &Document, tolerance: f64) -> Result<(Arc<Mechanis
 
 /// The first fault, with the field names of the screen and without its position in the file.
 pub(super) fn fault_message(error: &CannotRun, scene: &Scene) -> String {
-    match error {
-        CannotRun::Wrong(SceneError::Faults { faults, .. }) => faults.first().map_or_else(
-            || error.to_string(),
-            |placed| {
-                let Fault { field, value, problem } = &placed.fault;
-                let (name, unit) = name_and_unit(field);
-                let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
-                in_words(&format!("{name} = {value}{unit}: {problem}"), scene)
-            },
-        ),
-        _ => error.to_string(),
+    if let CannotRun::Wrong(SceneError::Faults { faults, .. }) = error
+        && let Some(placed) = faults.first()
+    {
+        let Fault { field, value, problem } = &placed.fault;
+        let (name, unit) = name_and_unit(field);
+        let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+        return in_words(&format!("{name} = {value}{unit}: {problem}"), scene);
     }
+    error.to_string()
 }
 
 /// The stops that the scene gets when they are first switched on.
