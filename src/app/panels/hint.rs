@@ -60,9 +60,8 @@ impl Hint {
         let crossed = since > 0.0
             && !session.by_hand
             && last.any(|event| event.kind == EventKind::Crossing && event.t >= since);
-        let limit_mm = limit_mm(session);
         let as_opened = self.is_as_opened(session);
-        self.stage = match (self.stage, limit_mm) {
+        self.stage = match (self.stage, session.scene().stops.travel_limit_mm()) {
             (Stage::Cross | Stage::Compare, Some(from_mm)) if crossed && as_opened => Stage::Move { from_mm },
             (Stage::Cross, _) if crossed => Stage::Compare,
             (Stage::Move { .. }, None) => Stage::Compare,
@@ -88,7 +87,8 @@ impl Hint {
         let (as_opened, fair) = (self.is_as_opened(session), self.is_fair_comparison(session));
         let wait = "Wait for it, or press X to go there.";
         let outward = "Then move the stops outward: how far does that help?";
-        let (first, then): (_, &str) = match (self.stage, limit_mm(session).is_some(), as_opened, crosses) {
+        let has_limit = session.scene().stops.travel_limit_mm().is_some();
+        let (first, then): (_, &str) = match (self.stage, has_limit, as_opened, crosses) {
             (Stage::Cross, _, _, Some(true)) => ("Now it will cross.", wait),
             (Stage::Cross, ..) => (
                 "Make it cross to the other side.",
@@ -187,9 +187,4 @@ fn hardest_mm(session: &Session) -> Option<f64> {
     };
     let (left, right) = (side(barrier.left_well, barrier.x)?, side(barrier.x, barrier.right_well)?);
     ((left - right).abs() < 0.01 * right).then_some(right)
-}
-
-/// Travel limit in mm of stops that are equal on both sides.
-fn limit_mm(session: &Session) -> Option<f64> {
-    session.scene().stops.travel_limit_mm()
 }

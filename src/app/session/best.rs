@@ -7,10 +7,10 @@ use std::time::Duration;
 use crate::app::task::{Background, Wake, pool};
 use crate::app::words::best_stops::{looking, sentence};
 use crate::app::words::fields::info;
-use crate::dynamics::Model;
 use crate::scene::{FieldPath, Files, Scene, Stops, SweepAxis};
 use crate::study::{
-    BestDesign, BestQuestion, DesignRange, Environment, INTERVALS, NoBest, Optimum, SummaryField, Task, best,
+    BestDesign, BestQuestion, DesignRange, Environment, INTERVALS, NoBest, Optimum, RMS_VELOCITY,
+    SummaryField, Task, best,
 };
 
 use super::Session;
@@ -144,7 +144,8 @@ impl Session {
         }
         let range = DesignRange::new(LIMIT, (reach.low, reach.high), INTERVALS[0]);
         let duration_s = (!self.model().repeats()).then_some(scene.run.duration_s);
-        Ok(Search { scene, range, column: maximised_column(self.model()), duration_s })
+        let column = if self.model().has_transducer() { "mean_load_power_w" } else { RMS_VELOCITY.name };
+        Ok(Search { scene, range, column, duration_s })
     }
 
     /// Receives results, and drops them once the scene has changed; to be called once a frame.
@@ -184,9 +185,4 @@ impl Session {
         self.best.search.wait(timeout);
         matches!(self.best.search.answer(), Some(Part::Whole(_)))
     }
-}
-
-/// The column to maximise: the mean power into the load if there is a transducer, else the RMS velocity.
-fn maximised_column(model: &Model) -> &'static str {
-    if model.has_transducer() { "mean_load_power_w" } else { "rms_velocity_m_per_s" }
 }

@@ -14,7 +14,7 @@ use crate::system::files;
 
 use super::Window;
 use super::messages::WriteResult;
-use super::wanted::{NO_DIALOG, Wanted, path_fault};
+use super::wanted::{Wanted, path_fault};
 
 /// Share of the traces' time window below which the whole run is offered instead.
 const LEAST_SHARE: f64 = 0.05;
@@ -37,7 +37,7 @@ pub struct Figures {
     /// The panels of a run, in the order of [`RunPanel::ALL`].
     pub panels: [bool; 4],
     /// Why the last figure was not saved.
-    problem: Option<String>,
+    pub(super) problem: Option<String>,
     /// Whether the path has had the keyboard focus.
     had_focus: bool,
     job: Background<(), WriteResult>,
@@ -68,11 +68,6 @@ impl Figures {
 
     pub(super) fn choose(&mut self, path: &Path) {
         self.path = path.to_string_lossy().into_owned();
-    }
-
-    /// Reports that the desktop has no file dialog, so that the path has to be typed.
-    pub(super) fn report_no_dialog(&mut self) {
-        self.problem = Some(format!("{NO_DIALOG}: type the path."));
     }
 
     pub fn problem(&self) -> Option<&str> {

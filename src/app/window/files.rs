@@ -20,7 +20,7 @@ use super::leave::{self, Answer, Next};
 use super::lessons;
 use super::measured_dialog::{ENDINGS, MeasuredAnswer, MeasuredDialog, is_measured};
 use super::messages::{CANNOT_OPEN, Messages};
-use super::wanted::{Chosen, PathAnswer, PathDialog, Wanted};
+use super::wanted::{Chosen, NO_DIALOG, PathAnswer, PathDialog, Wanted};
 
 /// Time in ms below which a dialog that is closed again has not been visible.
 const UNSEEN: u128 = 300;
@@ -126,7 +126,9 @@ impl Window {
         if let Some(chosen) = self.file_dialog.take() {
             match chosen {
                 Chosen::File(wanted, path) => self.take_file(ctx, wanted, path),
-                Chosen::NoDialog(Wanted::Figure, _) => self.figures.report_no_dialog(),
+                Chosen::NoDialog(Wanted::Figure, _) => {
+                    self.figures.problem = Some(format!("{NO_DIALOG}: type the path."));
+                }
                 Chosen::NoDialog(wanted, path) => self.path_dialog = Some(PathDialog::new(wanted, &path)),
             }
         } else if !self.file_dialog.is_running() && self.over_comments.is_none() && self.path_dialog.is_none()

@@ -189,7 +189,12 @@ impl Window {
         let panel = Panel::top("hint").frame(panel_frame(ui, 12, 4)).min_size(HINT_ROW);
         let row = panel.show(ui, |ui| {
             if shows_ways {
-                ways_ui(ui, &self.session.ways(), hinted, style);
+                ui.horizontal_wrapped(|ui| {
+                    ui.label(self.session.ways());
+                    if hinted {
+                        ui.label(RichText::new("H: back to the lesson").color(style.faint()));
+                    }
+                });
                 return None;
             }
             if hinted && !self.covered {
@@ -265,16 +270,6 @@ fn next_lesson(records: &Records) -> Option<&'static str> {
     let is_open = |name: &str| !records.get(name).is_some_and(|record| record.done);
     let mut names = LESSONS.iter().map(|lesson| lesson.name);
     names.clone().find(|name| is_open(name)).or_else(|| names.next())
-}
-
-/// What it would take to cross, and how to get back to the hint that this line replaces.
-fn ways_ui(ui: &mut Ui, ways: &str, hinted: bool, style: &Style) {
-    ui.horizontal_wrapped(|ui| {
-        ui.label(ways);
-        if hinted {
-            ui.label(RichText::new("H: back to the lesson").color(style.faint()));
-        }
-    });
 }
 
 /// A ring around the widget that has the keyboard focus, so that the focus can always be seen.
