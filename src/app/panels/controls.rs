@@ -35,6 +35,9 @@ const SEARCH_HOVER: &str = "Looks for the distance of the stops with which the s
                             rest, moves fastest, or where there is a transducer gives most power, and how \
                             far that is from where it is lost (B).";
 
+/// The travel limit of the stops, or of each stop. While the stops are off their control shows the limit that
+/// they will have, and moving it switches them on.
+const LIMITS: [&str; 3] = ["stops.travel_limit_mm", "stops.left_mm", "stops.right_mm"];
 /// Fields of a transducer at the top of More.
 const LOAD: [&str; 4] = [
     "transducer.load_ohm",
@@ -51,7 +54,7 @@ pub fn column_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
     shaking_ui(ui, session, width);
     ui.add_space(14.0);
     stops_switch_ui(ui, session);
-    limit_ui(ui, session, width);
+    fields_ui(ui, session, &LIMITS, width);
     best_stops_ui(ui, session, "Find the best stops");
     ui.add_space(14.0);
     let name = RichText::new(if *more { "Less" } else { "More" }).strong();
@@ -88,7 +91,7 @@ pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
             shaking_ui(ui, session, width);
             ui.separator();
             stops_switch_ui(ui, session);
-            limit_ui(ui, session, width);
+            fields_ui(ui, session, &LIMITS, width);
             if has_search {
                 best_stops_ui(ui, session, "Best stops");
             }
@@ -171,12 +174,6 @@ fn stops_switch_ui(ui: &mut Ui, session: &mut Session) {
     if hover_beside(ui.checkbox(&mut on, text), hover).changed() {
         session.switch_stops(on);
     }
-}
-
-/// The travel limit of the stops, or of each stop. While the stops are off it shows the limit that they will
-/// have, and moving it switches them on.
-fn limit_ui(ui: &mut Ui, session: &mut Session, width: f32) {
-    fields_ui(ui, session, &["stops.travel_limit_mm", "stops.left_mm", "stops.right_mm"], width)
 }
 
 pub fn more_ui(ui: &mut Ui, session: &mut Session, width: f32) {

@@ -3,7 +3,7 @@
 //! Undo is a stack of scenes: a scene is plain, comparable data of a few hundred bytes, and one gesture (a
 //! drag, a click, a number typed) is one step.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::output::write_file;
 use crate::scene::{
@@ -226,7 +226,8 @@ pub(in crate::app) fn keep_start_inside(scene: &mut Scene) {
 /// names of the files written; the error says why one could not be.
 fn copy_files(scene: &mut Scene, files: &Files, target: &Path) -> Result<Vec<String>, String> {
     let mut written = Vec::new();
-    if files.folder.as_deref().is_some_and(|folder| is_same(folder, folder_of(target))) {
+    let target_folder = target.parent().unwrap_or(Path::new(""));
+    if files.folder.as_deref().is_some_and(|folder| is_same(folder, target_folder)) {
         return Ok(written);
     }
     for path in named_paths(scene) {
@@ -284,14 +285,10 @@ fn free_name(path: &str, text: &str, target: &Path) -> Result<String, String> {
         .ok_or_else(|| format!("no name is free for `{path}` beside {}", target.display()))
 }
 
-fn folder_of(file: &Path) -> PathBuf {
-    file.parent().map_or_else(PathBuf::new, Path::to_path_buf)
-}
-
-fn is_same(a: &Path, b: PathBuf) -> bool {
+fn is_same(a: &Path, b: &Path) -> bool {
     let whole = |path: &Path| {
         let path = if path.as_os_str().is_empty() { Path::new(".") } else { path };
         system::files::canonical(path)
     };
-    whole(a).is_some_and(|a| whole(&b) == Some(a))
+    whole(a).is_some_and(|a| whole(b) == Some(a))
 }

@@ -75,7 +75,7 @@ impl Figures {
     }
 
     /// Opens the dialog for a figure of `view`, with a suggested file.
-    fn open(&mut self, view: View, session: &Session, memory: &Memory) {
+    pub(super) fn open(&mut self, view: View, session: &Session, memory: &Memory) {
         let ending = Path::new(&self.path).extension().filter(|_| Format::of(Path::new(&self.path)).is_ok());
         let ending = ending.map_or("pdf".to_owned(), |ending| ending.to_string_lossy().into_owned());
         let origin = session.editor.origin().unwrap_or_else(|| "scene".to_owned());
@@ -332,12 +332,6 @@ impl Figures {
 }
 
 impl Window {
-    /// Opens the dialog for a figure of a view, or of the view under the pointer.
-    pub(super) fn open_figure_dialog(&mut self, view: Option<View>) {
-        let view = view.or(self.filled).or(self.memory.hovered).unwrap_or(View::Displacement);
-        self.figures.open(view, &self.session, &self.memory);
-    }
-
     pub(super) fn figure_ui(&mut self, ui: &Ui) {
         let Some(view) = self.figures.view else { return };
         let Some(action) = self.figures.ui(ui, view, &self.session, &self.memory) else { return };

@@ -64,7 +64,10 @@ impl Window {
             Command::RemoveMeasured => self.session.measured = MeasuredData::default(),
             Command::Save => self.save(ctx),
             Command::SaveAs(wanted) => self.choose(wanted),
-            Command::Figure(view) => self.open_figure_dialog(view),
+            Command::Figure(view) => {
+                let view = view.unwrap_or_else(|| self.active_view());
+                self.figures.open(view, &self.session, &self.memory);
+            }
             Command::CopyScene => self.copy_scene(ctx),
             Command::PasteScene => ctx.send_viewport_cmd(egui::ViewportCommand::RequestPaste),
             Command::CopyCommand => self.copy_command(ctx),
