@@ -70,7 +70,7 @@ impl Menus<'_> {
     fn parts_ui(&mut self, ui: &mut Ui, parts: &[Part]) {
         for part in parts {
             match part {
-                Part::Item("", ..) | Part::Row(..) => {}
+                Part::Hidden(..) | Part::Row(..) => {}
                 Part::Item(name, key, command, _) => {
                     let mut button = Button::new(*name);
                     if let Some(key) = key {
