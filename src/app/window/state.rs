@@ -16,7 +16,7 @@ use crate::app::views::{Memory, View};
 use crate::scene::{Layout, PRESETS};
 use crate::system::files;
 
-use super::deferred::DeferredInput;
+use super::DeferredInput;
 use super::figure::Figures;
 use super::kept::WindowSize;
 use super::layouts::{Arrangement, Room, Tiling};
