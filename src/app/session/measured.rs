@@ -113,10 +113,8 @@ impl MeasuredQuestion {
         if channel.quantity == Quantity::Force {
             let positions: Vec<f64> = across.iter().map(|x| x + over.offset).collect();
             let found = compare_force(model.mechanism(), &positions, &channel.values);
-            return Some(match found {
-                Ok(found) => Ok(Differences::Force(Box::new(found))),
-                Err(problem) => Err(sentence(&problem.to_string())),
-            });
+            let found = found.map(|found| Differences::Force(Box::new(found)));
+            return Some(found.map_err(|problem| sentence(&problem.to_string())));
         }
         let (offset, time_scale) = (over.added(), over.time_scale);
         let motion = MeasuredMotion { times: across, channel, offset, time_scale, shift };

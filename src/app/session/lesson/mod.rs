@@ -259,9 +259,8 @@ impl OpenLesson {
                     false => Turn::Show(Box::new(begin.clone()), false),
                 }
             }
-            Step::Do { .. } => Turn::Show(Box::new(begin.clone()), true),
-            Step::Say(_) | Step::Explain(_) if number == 0 => Turn::Show(Box::new(begin.clone()), true),
-            Step::Say(_) | Step::Explain(_) => Turn::Same,
+            Step::Say(_) | Step::Explain(_) if number > 0 => Turn::Same,
+            Step::Do { .. } | Step::Say(_) | Step::Explain(_) => Turn::Show(Box::new(begin.clone()), true),
         }
     }
 
@@ -416,8 +415,7 @@ fn judge<T>(
     let before = Subject::new(&begin.scene, &begin.files, lesson, &task);
     let subject = Subject::new(&judged.scene, &judged.files, lesson, &task);
     match verdict(&lesson.steps[number], subject, &before) {
-        Ok(verdict) => Some(Ok(verdict)),
         Err(Unjudged::Cancelled) => None,
-        Err(error) => Some(Err(error.to_string())),
+        verdict => Some(verdict.map_err(|error| error.to_string())),
     }
 }
