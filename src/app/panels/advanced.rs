@@ -156,16 +156,14 @@ fn other_kind(stops: Stops) -> Stops {
     }
 }
 
-const TOLERANCES: [(f64, &str); 4] = [(1e-6, "1e-6"), (1e-9, "1e-9"), (1e-12, "1e-12"), (1e-14, "1e-14")];
-
 fn run_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     field_ui(ui, session, "run.duration_s", width);
     let present = session.scene().run.tolerance;
     let mut wanted = present;
     let name = ui.label("tolerance");
     let combo = ComboBox::from_id_salt("tolerance").selected_text(format!("{present:e}")).show_ui(ui, |ui| {
-        for (value, name) in TOLERANCES {
-            ui.selectable_value(&mut wanted, value, name);
+        for value in [1e-6, 1e-9, 1e-12, 1e-14] {
+            ui.selectable_value(&mut wanted, value, format!("{value:e}"));
         }
     });
     let hover = "Error allowed in a step. Smaller: a little slower; a motion without rhythm takes another \

@@ -2,7 +2,7 @@
 
 use eframe::egui;
 
-use crate::app::export::{self, Runs};
+use crate::app::export;
 use crate::app::panels::hint;
 use crate::app::panels::transport::EVENT_AHEAD;
 use crate::app::session::measured::MeasuredData;
@@ -148,14 +148,7 @@ impl Window {
     fn copy_command(&mut self, ctx: &egui::Context) {
         let Some((line, runs)) = export::command_line(&self.session) else { return self.alert_unnamed() };
         ctx.copy_text(line);
-        self.messages.notify(match runs {
-            Runs::Whole => "Copied: the command line of this motion, from its start",
-            Runs::FromNow => "Copied: the command line of this motion, from its present state on",
-            Runs::Another => {
-                "Copied: the command line of the scene from its start. This motion was changed on its way \
-                 and is another"
-            }
-        });
+        self.messages.notify(format!("Copied: the command line of {runs}"));
     }
 
     fn copy_map_command(&mut self, ctx: &egui::Context) {
