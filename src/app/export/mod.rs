@@ -67,8 +67,8 @@ pub fn png(image: &ColorImage) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// The command that runs the motion on the screen without a window, and what it runs, in words. Returns `None`
-/// for a scene that is not built in and has not been saved to a file.
+/// The command that runs the motion on the screen without a window, and what it runs, in words. `None` for a
+/// scene that is not built in and has not been saved to a file.
 pub fn command_line(session: &Session) -> Option<(String, &'static str)> {
     let editor = &session.editor;
     let mut line = format!("interwell --headless simulate {}", quoted(&editor.origin()?));

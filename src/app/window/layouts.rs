@@ -1,7 +1,7 @@
 //! Tiles of the views in each arrangement.
 
-use eframe::egui::{self, Ui, Vec2, WidgetText};
-use egui_tiles::{Container, SimplificationOptions, Tile, TileId, Tiles, Tree, UiResponse};
+use eframe::egui::{self, Response, Ui, Vec2, WidgetText};
+use egui_tiles::{Container, SimplificationOptions, Tabs, Tile, TileId, Tiles, Tree, UiResponse};
 
 use crate::app::ui::style::{BODY, COMPACT_BELOW, LARGE_FROM};
 use crate::app::ui::widgets::{Icon, icon_button_ui};
@@ -213,7 +213,7 @@ struct Behavior<'a, 'b> {
 }
 
 /// The button that holds the axes of a view; `None` if it has no axes.
-pub(super) fn hold_ui(ui: &mut Ui, view: View, memory: &mut Memory) -> Option<egui::Response> {
+pub(super) fn hold_ui(ui: &mut Ui, view: View, memory: &mut Memory) -> Option<Response> {
     let (icon, name, hover) = match memory.are_axes_held(view)? {
         true => (Icon::Held, "let go of the axes of", "The axes are held. A click lets go of them (L)."),
         false => (Icon::Free, "hold the axes of", "Hold the axes as they are, whatever comes (L)."),
@@ -243,26 +243,14 @@ impl egui_tiles::Behavior<View> for Behavior<'_, '_> {
         26.0
     }
 
-    fn on_tab_button(
-        &mut self,
-        tiles: &mut Tiles<View>,
-        id: TileId,
-        button: egui::Response,
-    ) -> egui::Response {
+    fn on_tab_button(&mut self, tiles: &mut Tiles<View>, id: TileId, button: Response) -> Response {
         match tiles.get_pane(&id) {
             Some(view) => button.on_hover_text(view.about()),
             None => button,
         }
     }
 
-    fn top_bar_right_ui(
-        &mut self,
-        tiles: &Tiles<View>,
-        ui: &mut Ui,
-        _: TileId,
-        tabs: &egui_tiles::Tabs,
-        _: &mut f32,
-    ) {
+    fn top_bar_right_ui(&mut self, tiles: &Tiles<View>, ui: &mut Ui, _: TileId, tabs: &Tabs, _: &mut f32) {
         let Some(view) = tabs.active.and_then(|id| tiles.get_pane(&id)) else { return };
         let name = format!("fill the window with {}", view.name());
         let hover = "This view over the whole window (Z)";

@@ -96,7 +96,7 @@ impl Window {
         };
         let key = OpenLesson::key_of(&document);
         let (lesson, scene) = OpenLesson::open(document, self.lessons.records.get(&key), wake);
-        let session = self.lesson_session(&lesson, *scene, !lesson.is_covering())?;
+        let session = self.session_on(&lesson, *scene, !lesson.is_covering())?;
         let before = std::mem::replace(&mut self.session, session);
         if self.lessons.suspended.is_none() {
             self.lessons.suspended = Some(Suspended {
@@ -121,12 +121,7 @@ impl Window {
     }
 
     /// A session on a scene of a lesson, at the lesson's speed.
-    fn lesson_session(
-        &self,
-        lesson: &OpenLesson,
-        scene: Document,
-        plays: bool,
-    ) -> Result<Session, CannotRun> {
+    fn session_on(&self, lesson: &OpenLesson, scene: Document, plays: bool) -> Result<Session, CannotRun> {
         let mut session = Session::new(Editor::in_lesson(scene), Arc::clone(&self.wake))?;
         session.player.speed = lesson.lesson().speed.unwrap_or(session.player.speed);
         session.player.set_playing(plays);
@@ -227,7 +222,7 @@ impl Window {
         let Some(lesson) = &self.lessons.open else { return };
         match turn {
             Turn::Stay | Turn::Same => {}
-            Turn::Show(scene, plays) => match self.lesson_session(lesson, *scene, plays) {
+            Turn::Show(scene, plays) => match self.session_on(lesson, *scene, plays) {
                 Ok(session) => {
                     self.session = session;
                     self.memory = Memory::default();
