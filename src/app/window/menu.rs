@@ -35,9 +35,10 @@ impl Menus<'_> {
     pub fn ui(mut self, ui: &mut Ui) -> Vec<Command> {
         egui::MenuBar::new().ui(ui, |ui| {
             for (name, parts) in &MENUS {
-                ui.menu_button(*name, |ui| match *name {
-                    "View" | "Lessons" => scroll_ui(ui, |ui| self.parts_ui(ui, parts)),
-                    _ => self.parts_ui(ui, parts),
+                let is_long = parts.iter().any(|part| matches!(part, Part::Views | Part::Lessons));
+                ui.menu_button(*name, |ui| match is_long {
+                    true => scroll_ui(ui, |ui| self.parts_ui(ui, parts)),
+                    false => self.parts_ui(ui, parts),
                 });
             }
             ui.add_space(16.0);
