@@ -137,7 +137,7 @@ impl Session {
         }
         let Some(field) = info(LIMIT) else { return Err("") };
         let reach = reach(field, self);
-        let axis = SweepAxis { field: LIMIT.to_owned(), step: reach.step, ..SweepAxis::default() };
+        let axis = SweepAxis { field: LIMIT.to_owned(), ..SweepAxis::default() };
         let mut scene = ground(self.scene(), self.remembered_stops(), std::slice::from_ref(&axis));
         if !FieldPath::new(LIMIT).set(&mut scene, reach.low) {
             return Err("The stops that would come do not stand equally far out.");
