@@ -4,18 +4,9 @@
 //! to background questions, and works without a window; the other modules draw it. A view is a function of
 //! a [`views::ViewContext`].
 //!
-//! Each module uses only those above it in this table, which `tests/suite/layers.rs` checks.
-//!
-//! | module | holds |
-//! | --- | --- |
-//! | [`task`] | background questions as values |
-//! | [`words`] | names and units of fields, number formats, explanations, the sentence about the motion |
-//! | [`session`] | the open scene with undo and files, the player, the map, the accuracy, without a window |
-//! | [`export`] | files and command lines that leave the window |
-//! | [`ui`] | colours and widths, widgets, settings |
-//! | [`panels`] | controls, status line, transport, hints |
-//! | [`views`] | the plots and drawings, a file or folder each |
-//! | [`window`] | layouts, menus, keys, files, dialogs: the `eframe::App` |
+//! `docs/architecture.md` says what each module holds. They come in an order, `task`, `words`, `session`,
+//! `export`, `ui`, `panels`, `views`, `window`, and each uses only those before it, which
+//! `tests/suite/layers.rs` checks.
 
 pub mod export;
 pub mod panels;

@@ -12,8 +12,7 @@ use std::time::Duration;
 use crate::system::clock::WallClock;
 use crate::system::threads::{Pool, processors, sleep, spawn};
 
-/// A pool of threads for all cores but one, which is left to the window. Returns `None` if the system cannot
-/// start threads.
+/// A pool of threads for all cores but one; `None` if the system cannot start threads.
 pub fn pool() -> Option<Pool> {
     Pool::new(processors().saturating_sub(1).max(1)).ok()
 }
@@ -24,7 +23,7 @@ pub type Wake = Arc<dyn Fn() + Send + Sync>;
 /// Shortest interval between two wakes of the window while a job runs.
 const WAKE_INTERVAL: Duration = Duration::from_millis(40);
 
-/// A shared value that equals itself alone, whatever it contains: a question about it is compared by address.
+/// A shared value that is compared by its address, not by its content.
 #[derive(Debug)]
 pub struct Identity<T>(pub Arc<T>);
 
@@ -57,7 +56,6 @@ struct Job<P> {
     parts: Receiver<P>,
     cancel: Arc<AtomicBool>,
     begun: WallClock,
-    /// Whether a part has come.
     has_parts: bool,
 }
 
@@ -128,7 +126,6 @@ pub struct Background<Q, P> {
     question: Option<Q>,
     /// The newest parts: those of the question once the first of them has come, until then the previous ones.
     parts: Vec<P>,
-    /// Whether the parts answer the question.
     is_current: bool,
     work: Work<P>,
     /// Computing time of the earlier jobs on the question.
@@ -241,7 +238,6 @@ impl<Q: PartialEq, P: Send + 'static> Background<Q, P> {
         self.answer().is_some()
     }
 
-    /// Notes that a view of this frame shows the answer.
     pub fn mark_wanted(&mut self) {
         self.is_wanted = true;
     }

@@ -155,9 +155,10 @@ fn of_every_view_of_a_survey_the_copied_command_makes_the_same_bytes() {
     harness.state_mut().session.map.show(column);
     let line = same_bytes(&mut harness, View::Map, "svg");
     assert!(line.contains("--quantity impact_share --surface"), "{line}");
-    harness.get_by_label("From above").click();
-    harness.get_by_label("Cuts").click();
-    harness.run_steps(3);
+    for label in ["From above", "Cuts"] {
+        harness.get_by_label(label).click();
+        harness.run_steps(3);
+    }
     let line = same_bytes(&mut harness, View::Map, "svg");
     assert!(line.contains("--cut amplitude_g=1 --cut travel_limit_mm=1.5"), "{line}");
     let line = same_bytes(&mut harness, View::UpAndDown, "svg");

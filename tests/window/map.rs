@@ -8,6 +8,7 @@ use interwell::scene::{Layout, Start, Stops, SweepAxis};
 
 use crate::shared::axis;
 use crate::support::{LONG, WIDE, press, press_with_ctrl, session, wait_for_threads, wait_until, window};
+use crate::written::arguments;
 
 /// A small map, so that a test takes no longer than it must.
 fn axes(steps: (f64, f64)) -> [SweepAxis; 2] {
@@ -153,27 +154,12 @@ fn it_is_the_sweep_of_the_command_line() {
         session.want_map(0.0);
         assert!(session.wait_for_map(LONG));
         let command = interwell::app::export::map_command_line(&session).unwrap();
-        let words: Vec<String> = words(&command);
-        assert_eq!(words[0], "interwell");
-        let output = assert_cmd::Command::cargo_bin("interwell").unwrap().args(&words[1..]).output().unwrap();
+        let output =
+            assert_cmd::Command::cargo_bin("interwell").unwrap().args(arguments(&command)).output().unwrap();
         assert!(output.status.success(), "{command}: {}", String::from_utf8_lossy(&output.stderr));
         let own = session.map.csv().unwrap();
         assert_eq!(own, String::from_utf8(output.stdout).unwrap(), "{command}");
     }
-}
-
-/// The words of a command as a shell reads them.
-fn words(command: &str) -> Vec<String> {
-    let mut all = vec![String::new()];
-    let mut quoted = false;
-    for c in command.chars() {
-        match c {
-            '\'' => quoted = !quoted,
-            ' ' if !quoted => all.push(String::new()),
-            c => all.last_mut().unwrap().push(c),
-        }
-    }
-    all
 }
 
 #[test]

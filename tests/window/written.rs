@@ -49,8 +49,16 @@ fn the_command_line_says_what_is_shown() {
 
 /// The words of a copied command as its arguments.
 pub fn arguments(line: &str) -> Vec<String> {
-    let words = line.strip_prefix("interwell ").unwrap().split(' ');
-    words.map(|word| word.trim_matches('\'').to_owned()).collect()
+    let mut words = vec![String::new()];
+    let mut is_quoted = false;
+    for c in line.strip_prefix("interwell ").unwrap().chars() {
+        match c {
+            '\'' => is_quoted = !is_quoted,
+            ' ' if !is_quoted => words.push(String::new()),
+            c => words.last_mut().unwrap().push(c),
+        }
+    }
+    words
 }
 
 #[test]

@@ -29,10 +29,8 @@ use crate::system::threads::Pool;
 
 use super::figure::{FigureOrder, Subject};
 
-/// Message if the system cannot start threads.
 const NO_THREADS: &str = "The system has no threads to give: close something, and save again.";
 
-/// Message if the file of the scene has changed since it was opened.
 const CHANGED: &str = "The file of this scene is no longer what was opened, and the figure's command begins \
                        with it: save the scene first (Ctrl+S), or open it anew.";
 
@@ -58,7 +56,7 @@ fn figure(order: &FigureOrder, cancel: &AtomicBool) -> Result<Figure> {
         Subject::Basins(x_mm, v) => drawing.basins(*x_mm, *v),
         Subject::Spectrum(signal, until) => drawing.spectrum(*signal, *until),
     };
-    Ok(chart?.figure(&caption, &Theme::of(false, Some(order.sheet))))
+    Ok(chart?.figure(&caption, &Theme::of(false, Some(order.place.sheet))))
 }
 
 /// Reads the document as the command line does; an error if it differs from the scene of the window.
@@ -88,7 +86,6 @@ fn cancelled() -> Error {
     anyhow!("cancelled")
 }
 
-/// What all figures need.
 struct Drawing<'a> {
     document: Document,
     task: Task<'a>,
@@ -224,7 +221,6 @@ impl Drawing<'_> {
     }
 }
 
-/// Options for the states once a forcing period.
 fn strobe_options(carry: Option<Carry>) -> SectionOptions {
     SectionOptions { at: SectionAt::Phase(0.0), periods: None, until_settled: None, carry }
 }

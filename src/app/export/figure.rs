@@ -54,12 +54,7 @@ pub struct FigureOrder {
     /// The changed scene, with the first value of each swept field.
     pub(super) scene: Scene,
     pub(super) subject: Subject,
-    pub(super) sheet: Sheet,
-    format: Format,
-    /// The sheet as command-line options.
-    layout: Vec<Argument>,
-    path: PathBuf,
-    data: Option<PathBuf>,
+    pub(super) place: Place,
 }
 
 /// Output files and layout of a figure, already checked.
@@ -72,11 +67,9 @@ pub struct Place {
     pub data: Option<PathBuf>,
 }
 
-/// Message if the view has not been shown, so that its ranges are unknown.
 const NOT_SEEN: &str = "Show this view first: the figure has its ranges.";
 
 impl Subject {
-    /// The walks over a field as the view shows them.
     pub fn walks(session: &Session) -> Result<Self, String> {
         let walks = &session.explore.walks;
         let problem = || walks.problem.clone().unwrap_or_else(|| NOT_SEEN.to_owned());
@@ -119,18 +112,15 @@ impl Subject {
         session.measured.over.clone().map(Self::Measured).ok_or_else(none)
     }
 
-    /// The basins as the view shows them.
     pub fn basins(session: &Session) -> Result<Self, String> {
         let question = session.explore.basins.question().ok_or_else(|| NOT_SEEN.to_owned())?;
         Ok(Self::Basins(question.x_mm, question.v))
     }
 
-    /// The spectrum of the signal that the view shows.
     pub fn spectrum(session: &Session) -> Self {
         Self::Spectrum(session.explore.spectra.signal, longest_wait(session.model()))
     }
 
-    /// The swept fields.
     pub(super) fn axes(&self) -> &[SweepAxis] {
         match self {
             Self::Sweep(axes, ..) => axes,
@@ -242,13 +232,7 @@ impl FigureOrder {
             return Err(format!("{} is read by this scene: give the figure another name.", path.display()));
         }
         let (from, scene) = subject.scenes(session);
-        let Place { path, format, sheet, data } = place;
-        let mut layout = vec![Argument::of("plot-width-mm", sheet.width_mm.to_string())];
-        layout.push(Argument::of("font-pt", sheet.font_pt.to_string()));
-        layout.extend(data.as_ref().map(|data| Argument::of("plot-data", data.to_string_lossy())));
-        layout.extend((!sheet.titled).then(|| Argument { option: Some("no-title".to_owned()), value: None }));
-        let settings = arguments(&from, &scene);
-        Ok(Self { origin, settings, scene, subject, sheet, format, layout, path, data })
+        Ok(Self { origin, settings: arguments(&from, &scene), scene, subject, place })
     }
 
     /// The command and all its arguments, in the order of `--help`.
@@ -256,9 +240,14 @@ impl FigureOrder {
         let (command, options, ranges) = self.subject.command();
         let mut all = vec![Argument { option: None, value: Some(self.origin.clone()) }];
         all.extend(options);
+        let Place { path, sheet, data, .. } = &self.place;
         let plot = if let Subject::Shapes(_) = self.subject { "shapes-plot" } else { "plot" };
-        all.push(Argument::of(plot, self.path.to_string_lossy()));
-        all.extend(self.layout.iter().cloned().chain(ranges));
+        all.push(Argument::of(plot, path.to_string_lossy()));
+        all.push(Argument::of("plot-width-mm", sheet.width_mm.to_string()));
+        all.push(Argument::of("font-pt", sheet.font_pt.to_string()));
+        all.extend(data.as_ref().map(|data| Argument::of("plot-data", data.to_string_lossy())));
+        all.extend((!sheet.titled).then(|| Argument::switch("no-title")));
+        all.extend(ranges);
         all.push(Argument::of("out", if cfg!(windows) { "NUL" } else { "/dev/null" }));
         all.extend(self.settings.iter().map(|setting| Argument::of("set", setting)));
         (command, all)
@@ -271,22 +260,21 @@ impl FigureOrder {
         format!("interwell --headless {command} {}", words.join(" "))
     }
 
-    /// Draws the figure and writes its files, both or neither. Returns a message with their names, or `None`
-    /// if cancelled.
+    /// Draws the figure and writes its files. Returns a message with their names, or `None` if cancelled.
     pub fn save(&self, cancel: &AtomicBool) -> Result<Option<String>> {
         // open the files first: a path that cannot be written to is reported before the work
-        let plot = Sink::open(&self.path)?;
-        let data = self.data.as_deref().map(Sink::open).transpose()?;
+        let plot = Sink::open(&self.place.path)?;
+        let data = self.place.data.as_deref().map(Sink::open).transpose()?;
         draw(self, cancel)?.map(|figure| self.write(figure, plot, data)).transpose()
     }
 
     fn write(&self, mut figure: Figure, plot: Sink, data: Option<Sink>) -> Result<String> {
-        if !self.sheet.titled {
+        if !self.place.sheet.titled {
             figure = figure.without_title();
         }
         let (command, all) = self.command_with_arguments();
         figure.origin.insert("arguments".into(), picture_arguments(command, all).into());
-        let bytes = self.format.bytes(&figure)?;
+        let bytes = self.place.format.bytes(&figure)?;
         let failure = |name: &str, error: std::io::Error| anyhow!("cannot write {name}: {error}");
         let mut sinks = vec![plot];
         sinks[0].put_bytes(&bytes).map_err(|error| failure(sinks[0].name(), error))?;
@@ -310,7 +298,7 @@ impl FigureOrder {
     }
 }
 
-/// A range of times to suggest, rounded to a thousandth of its length or finer; `None` if it is empty.
+/// A suggested range of times, rounded to a thousandth of its length or finer; `None` if it is empty.
 pub fn round_times((from, to): (f64, f64)) -> Option<(f64, f64)> {
     let digit = 10_f64.powf((to - from).log10().floor() - 3.0);
     let round = |t: f64| short((t / digit).round() * digit).parse::<f64>().unwrap_or(t);

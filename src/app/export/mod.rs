@@ -44,8 +44,7 @@ pub fn events_seen_csv(player: &Player) -> String {
     csv(&watched_events(player.watch(), 0..usize::MAX))
 }
 
-/// Force, potential and stiffness of the mechanism, in the columns and at the positions of the command
-/// `curve` without options.
+/// Force, potential and stiffness of the mechanism, as the command `curve` writes them without options.
 pub fn curve_csv(session: &Session) -> Result<String, OutsideCurve> {
     let mechanism = &session.model().mechanism();
     let table = curve(mechanism, default_positions(session.scene(), mechanism, CURVE_POINTS as usize))?;
@@ -56,7 +55,6 @@ fn csv(table: &Table) -> String {
     header(table) + &rows(table, 0..table.rows())
 }
 
-/// Encodes a picture as PNG.
 pub fn png(image: &ColorImage) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     let pixels: Vec<u8> = image.pixels.iter().flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b()]).collect();
@@ -69,29 +67,20 @@ pub fn png(image: &ColorImage) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// What a copied command runs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Runs {
-    /// The motion on the screen, from its start.
-    Whole,
-    /// The motion on the screen, from its present state on.
-    FromNow,
-    /// The scene from its start, because the motion on the screen was changed on the way and no scene
-    /// describes its continuation.
-    Another,
-}
-
-/// The command that runs the motion on the screen without a window, and what it runs. Returns `None` for a
+/// The command that runs the motion on the screen without a window, and what it runs, in words. `None` for a
 /// scene that is not built in and has not been saved to a file.
-pub fn command_line(session: &Session) -> Option<(String, Runs)> {
+pub fn command_line(session: &Session) -> Option<(String, &'static str)> {
     let editor = &session.editor;
     let mut line = format!("interwell --headless simulate {}", quoted(&editor.origin()?));
     let here = || continued_scene(editor.scene(), &session.player.watch().from_here()?);
-    let (mut scene, runs) = match (session.is_continued(), session.fault()) {
-        (true, None) => {
-            here().map_or((editor.scene().clone(), Runs::Another), |scene| (scene, Runs::FromNow))
-        }
-        _ => (editor.scene().clone(), Runs::Whole),
+    let is_continued = session.is_continued() && session.fault().is_none();
+    let from_start = match is_continued {
+        true => "the scene from its start. This motion was changed on its way and is another",
+        false => "this motion, from its start",
+    };
+    let (mut scene, runs) = match here().filter(|_| is_continued) {
+        Some(scene) => (scene, "this motion, from its present state on"),
+        None => (editor.scene().clone(), from_start),
     };
     keep_start_inside(&mut scene);
     line += &settings(editor.named(), &scene);
@@ -143,14 +132,15 @@ mod tests {
     fn the_command_says_what_was_changed() {
         let editor = Editor::open("first-look").unwrap();
         let mut session = Session::new(editor, std::sync::Arc::new(|| ())).unwrap();
-        let (line, runs) = command_line(&session).unwrap();
-        assert_eq!((line.as_str(), runs), ("interwell --headless simulate first-look", Runs::Whole));
+        let from_start = "this motion, from its start";
+        let expected = "interwell --headless simulate first-look";
+        assert_eq!(command_line(&session).unwrap(), (expected.to_owned(), from_start));
         session.edit_once(|scene| scene.stops = scene.app.as_ref().unwrap().stops_when_on.unwrap());
         session.poll();
         session.restart();
         let expected = "interwell --headless simulate first-look --set \
                    'stops=Rigid(travel_limit_mm:1.5,restitution:0.36)'";
-        assert_eq!(command_line(&session).unwrap(), (expected.to_owned(), Runs::Whole));
+        assert_eq!(command_line(&session).unwrap(), (expected.to_owned(), from_start));
         assert_eq!(quoted("it's"), r"'it'\''s'");
         assert_eq!(quoted("excitation.amplitude_g=0:2:0.02"), "excitation.amplitude_g=0:2:0.02");
     }

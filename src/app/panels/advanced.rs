@@ -2,6 +2,8 @@
 //!
 //! An impossible choice is left out, or greyed out with the reason.
 
+use std::mem::discriminant;
+
 use eframe::egui::{self, ComboBox, Ui};
 
 use crate::app::session::Session;
@@ -18,53 +20,22 @@ pub fn advanced_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     run_ui(ui, session, width);
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
-    None,
-    Constant,
-    Sine,
-    AmplitudeRamp,
-    Chirp,
-    Noise,
-    Recorded,
-    Sum,
-}
-
-impl Kind {
-    /// The kinds of shaking that can be chosen.
-    const CHOICES: [Self; 6] =
-        [Self::None, Self::Constant, Self::Sine, Self::AmplitudeRamp, Self::Chirp, Self::Noise];
-
-    fn of(excitation: &Excitation) -> Self {
-        match excitation {
-            Excitation::None => Self::None,
-            Excitation::Constant { .. } => Self::Constant,
-            Excitation::Sine { .. } => Self::Sine,
-            Excitation::AmplitudeRamp { .. } => Self::AmplitudeRamp,
-            Excitation::Chirp { .. } => Self::Chirp,
-            Excitation::Noise { .. } => Self::Noise,
-            Excitation::Recorded { .. } => Self::Recorded,
-            Excitation::Sum(_) => Self::Sum,
-        }
-    }
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::Constant => "constant",
-            Self::Sine => "sine",
-            Self::AmplitudeRamp => "amplitude ramp",
-            Self::Chirp => "chirp",
-            Self::Noise => "noise",
-            Self::Recorded => "recorded",
-            Self::Sum => "sum",
-        }
+/// Name of the kind of shaking.
+fn kind_name(excitation: &Excitation) -> &'static str {
+    match excitation {
+        Excitation::None => "none",
+        Excitation::Constant { .. } => "constant",
+        Excitation::Sine { .. } => "sine",
+        Excitation::AmplitudeRamp { .. } => "amplitude ramp",
+        Excitation::Chirp { .. } => "chirp",
+        Excitation::Noise { .. } => "noise",
+        Excitation::Recorded { .. } => "recorded",
+        Excitation::Sum(_) => "sum",
     }
 }
 
-/// Shaking of another kind, with the amplitude and frequency of the present shaking, or with those of
-/// `suiting` if it has none.
-fn of_kind(kind: Kind, from: &Excitation, suiting: &Excitation) -> Excitation {
+/// Shaking of each kind, with the amplitude and frequency of `from`, or of `suiting` if it has none.
+fn choices(from: &Excitation, suiting: &Excitation) -> [Excitation; 6] {
     let (suiting_f, suiting_g) = match suiting {
         Excitation::Sine { frequency_hz, amplitude_g, .. } => (*frequency_hz, *amplitude_g),
         _ => (3.0, 0.5),
@@ -77,44 +48,47 @@ fn of_kind(kind: Kind, from: &Excitation, suiting: &Excitation) -> Excitation {
         Excitation::Constant { accel_g } => (suiting_f, *accel_g),
         _ => (suiting_f, suiting_g),
     };
-    match kind {
-        Kind::Constant => Excitation::Constant { accel_g: g },
-        Kind::Sine => Excitation::Sine { frequency_hz: f, amplitude_g: g, phase_deg: 0.0 },
-        Kind::AmplitudeRamp => {
-            Excitation::AmplitudeRamp { frequency_hz: f, from_g: 0.0, to_g: g, over_s: 60.0 }
-        }
-        Kind::Chirp => Excitation::Chirp { from_hz: 0.5 * f, to_hz: 2.0 * f, over_s: 60.0, amplitude_g: g },
-        Kind::Noise => {
-            Excitation::Noise { rms_g: g.abs(), low_hz: 0.5 * f, high_hz: 2.0 * f, seed: 1, lines: 256 }
-        }
-        Kind::None | Kind::Recorded | Kind::Sum => Excitation::None,
-    }
+    [
+        Excitation::None,
+        Excitation::Constant { accel_g: g },
+        Excitation::Sine { frequency_hz: f, amplitude_g: g, phase_deg: 0.0 },
+        Excitation::AmplitudeRamp { frequency_hz: f, from_g: 0.0, to_g: g, over_s: 60.0 },
+        Excitation::Chirp { from_hz: 0.5 * f, to_hz: 2.0 * f, over_s: 60.0, amplitude_g: g },
+        Excitation::Noise { rms_g: g.abs(), low_hz: 0.5 * f, high_hz: 2.0 * f, seed: 1, lines: 256 },
+    ]
 }
 
 fn kind_ui(ui: &mut Ui, session: &mut Session) {
-    let present = Kind::of(&session.scene().excitation);
-    let mut wanted = present;
+    let present = &session.scene().excitation;
+    let mut wanted = None;
     let name = ui.label("kind of shaking");
-    let combo = ComboBox::from_id_salt("kind of shaking").selected_text(present.name()).show_ui(ui, |ui| {
-        for kind in Kind::CHOICES {
-            ui.selectable_value(&mut wanted, kind, kind.name());
+    let combo = ComboBox::from_id_salt("kind of shaking").selected_text(kind_name(present));
+    let combo = combo.show_ui(ui, |ui| {
+        for choice in choices(present, &session.suiting_sine()) {
+            let is_present = discriminant(&choice) == discriminant(present);
+            if ui.selectable_label(is_present, kind_name(&choice)).clicked() && !is_present {
+                wanted = Some(choice);
+            }
         }
-        for (kind, why) in [
+        for (is_present, name, why) in [
             (
-                Kind::Recorded,
+                matches!(present, Excitation::Recorded { .. }),
+                "recorded",
                 "Open measured data with an acceleration (File menu), or name a record in the scene file: \
                  excitation: Recorded(path: ..).",
             ),
-            (Kind::Sum, "A sum of several is written in the scene file: excitation: Sum([..])."),
+            (
+                matches!(present, Excitation::Sum(_)),
+                "sum",
+                "A sum of several is written in the scene file: excitation: Sum([..]).",
+            ),
         ] {
-            ui.add_enabled(false, egui::Button::selectable(kind == present, kind.name()))
-                .on_disabled_hover_text(why);
+            ui.add_enabled(false, egui::Button::selectable(is_present, name)).on_disabled_hover_text(why);
         }
     });
     combo.response.labelled_by(name.id).on_hover_text("What moves the base.");
-    if wanted != present {
-        let suiting = session.suiting_sine();
-        session.edit_once(|scene| scene.excitation = of_kind(wanted, &scene.excitation, &suiting));
+    if let Some(wanted) = wanted {
+        session.edit_once(|scene| scene.excitation = wanted);
     }
 }
 
@@ -137,9 +111,8 @@ fn uneven_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     let mut uneven = matches!(stops, Stops::Uneven { .. });
     let tick = egui::Checkbox::new(&mut uneven, "different stops left and right");
     let rigid = matches!(stops, Stops::Rigid { .. } | Stops::Uneven { .. });
-    let response = ui.add_enabled(rigid, tick);
-    let response =
-        response.on_hover_text("Each side has a distance and a restitution of its own, or is open.");
+    let hover = "Each side has a distance and a restitution of its own, or is open.";
+    let response = ui.add_enabled(rigid, tick).on_hover_text(hover);
     let why = match stops {
         Stops::None => "There are no stops: switch them on first.",
         _ => "These stops are compliant, and compliant stops are equal.",
@@ -168,8 +141,8 @@ fn uneven_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     fields_ui(ui, session, &["stops.restitution_left", "stops.restitution_right"], width);
 }
 
-/// Equal stops as stops that may differ, or the reverse. In reverse, both become like the right one, or like
-/// the left one if the right side is open.
+/// Converts equal stops to stops that may differ, or back: then both take the numbers of the right stop, or
+/// of the left one if the right side is open.
 fn other_kind(stops: Stops) -> Stops {
     let ([left_mm, right_mm], [restitution_left, restitution_right]) =
         (stops.limits_mm(), stops.restitutions());
@@ -183,17 +156,14 @@ fn other_kind(stops: Stops) -> Stops {
     }
 }
 
-/// Tolerances that can be chosen, with their names.
-const TOLERANCES: [(f64, &str); 4] = [(1e-6, "1e-6"), (1e-9, "1e-9"), (1e-12, "1e-12"), (1e-14, "1e-14")];
-
 fn run_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     field_ui(ui, session, "run.duration_s", width);
     let present = session.scene().run.tolerance;
     let mut wanted = present;
     let name = ui.label("tolerance");
     let combo = ComboBox::from_id_salt("tolerance").selected_text(format!("{present:e}")).show_ui(ui, |ui| {
-        for (value, name) in TOLERANCES {
-            ui.selectable_value(&mut wanted, value, name);
+        for value in [1e-6, 1e-9, 1e-12, 1e-14] {
+            ui.selectable_value(&mut wanted, value, format!("{value:e}"));
         }
     });
     let hover = "Error allowed in a step. Smaller: a little slower; a motion without rhythm takes another \
@@ -213,12 +183,11 @@ mod tests {
     fn every_kind_of_every_preset_can_be_run() {
         for preset in crate::scene::PRESETS {
             let scene = Document::load(preset.name).unwrap().scene;
-            for kind in Kind::CHOICES {
-                let sine = Excitation::Sine { frequency_hz: 3.0, amplitude_g: 0.5, phase_deg: 0.0 };
-                let excitation = of_kind(kind, &scene.excitation, &sine);
-                assert_eq!(Kind::of(&excitation), kind);
+            let sine = Excitation::Sine { frequency_hz: 3.0, amplitude_g: 0.5, phase_deg: 0.0 };
+            for excitation in choices(&scene.excitation, &sine) {
+                let kind = kind_name(&excitation);
                 let changed = Scene { excitation, sweep: Vec::new(), ..scene.clone() };
-                assert!(check(&changed).faults.is_empty(), "{} {kind:?}", preset.name);
+                assert!(check(&changed).faults.is_empty(), "{} {kind}", preset.name);
             }
         }
     }

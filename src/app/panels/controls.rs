@@ -1,5 +1,4 @@
-//! Controls of the scene: shaking, stops with the search for the best ones and, under More, fields that are
-//! changed less often.
+//! Controls of the scene: shaking, stops with the search for the best ones and, under More, rarer fields.
 
 use eframe::egui::{self, Color32, Label, Rect, RichText, Ui};
 
@@ -26,20 +25,19 @@ const SWITCH: &str = "stops";
 const SWITCH_WIDTH: f32 = 90.0;
 /// Width in points of a slider's control apart from the slider and its name.
 const BESIDE_SLIDER: f32 = 130.0;
-/// Least width in points of a slider.
 const LEAST_SLIDER: f32 = 60.0;
-/// Greatest width in points of a slider.
 const WIDEST_SLIDER: f32 = 280.0;
 
-/// Hover text of More.
 const MORE_HOVER: &str = "Restitution, preload, frequency, damping and mass; spring, magnets and \
                           transducer, where there are such.";
 
-/// Hover text of the button that searches for the best stops.
 const SEARCH_HOVER: &str = "Looks for the distance of the stops with which the scene as it stands, from \
                             rest, moves fastest, or where there is a transducer gives most power, and how \
                             far that is from where it is lost (B).";
 
+/// The travel limit of the stops, or of each stop. While the stops are off their control shows the limit that
+/// they will have, and moving it switches them on.
+const LIMITS: [&str; 3] = ["stops.travel_limit_mm", "stops.left_mm", "stops.right_mm"];
 /// Fields of a transducer at the top of More.
 const LOAD: [&str; 4] = [
     "transducer.load_ohm",
@@ -56,7 +54,7 @@ pub fn column_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
     shaking_ui(ui, session, width);
     ui.add_space(14.0);
     stops_switch_ui(ui, session);
-    limit_ui(ui, session, width);
+    fields_ui(ui, session, &LIMITS, width);
     best_stops_ui(ui, session, "Find the best stops");
     ui.add_space(14.0);
     let name = RichText::new(if *more { "Less" } else { "More" }).strong();
@@ -93,7 +91,7 @@ pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
             shaking_ui(ui, session, width);
             ui.separator();
             stops_switch_ui(ui, session);
-            limit_ui(ui, session, width);
+            fields_ui(ui, session, &LIMITS, width);
             if has_search {
                 best_stops_ui(ui, session, "Best stops");
             }
@@ -140,11 +138,6 @@ pub fn named_ui(ui: &mut Ui, session: &mut Session, controls: &[String]) -> Vec<
     places
 }
 
-/// The controls under More, as a column beside the views.
-pub fn more_column_ui(ui: &mut Ui, session: &mut Session) {
-    egui::ScrollArea::vertical().show(ui, |ui| more_ui(ui, session, 150.0));
-}
-
 fn heading_ui(ui: &mut Ui, text: &str) {
     ui.label(RichText::new(text).heading());
 }
@@ -183,17 +176,13 @@ fn stops_switch_ui(ui: &mut Ui, session: &mut Session) {
     }
 }
 
-/// The travel limit of the stops, or of each stop. While the stops are off it shows the limit that they will
-/// have, and moving it switches them on.
-fn limit_ui(ui: &mut Ui, session: &mut Session, width: f32) {
-    fields_ui(ui, session, &["stops.travel_limit_mm", "stops.left_mm", "stops.right_mm"], width)
-}
-
-fn more_ui(ui: &mut Ui, session: &mut Session, width: f32) {
+pub fn more_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     fields_ui(ui, session, &LOAD, width);
     restitution_ui(ui, session, width);
     preload_ui(ui, session, width);
-    balancing_ui(ui, session, width);
+    for path in sliders(session).into_iter().filter(|path| is_balancing(path)) {
+        field_ui(ui, session, &path, width);
+    }
     if matches!(session.scene().excitation, Excitation::Sine { .. }) {
         field_ui(ui, session, "excitation.frequency_hz", width);
     }
@@ -295,11 +284,6 @@ fn is_balancing(path: &str) -> bool {
     [".n_per_m", ".strength_n_mm4", ".gap_mm"].iter().any(|end| path.ends_with(end))
 }
 
-fn balancing_ui(ui: &mut Ui, session: &mut Session, width: f32) {
-    let balancing = sliders(session).into_iter().filter(|path| is_balancing(path));
-    balancing.for_each(|path| field_ui(ui, session, &path, width));
-}
-
 /// The sliders of the mechanism's other fields, the sizes of its flexures.
 fn sizes_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     let mut sizes = sliders(session);
@@ -351,7 +335,6 @@ fn around(session: &Session, path: &str, value: f64) -> Reach {
     Reach::even(if opened < 0.0 { -high } else { 0.0 }, high, below(high / 200.0))
 }
 
-/// The controls of several fields, one below another.
 pub(super) fn fields_ui(ui: &mut Ui, session: &mut Session, paths: &[&str], width: f32) {
     paths.iter().for_each(|path| field_ui(ui, session, path, width));
 }

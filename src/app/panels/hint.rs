@@ -10,7 +10,7 @@ use crate::scene::Excitation;
 /// Distance in mm by which the stops have to be moved before the trade-off counts as tried.
 const TRIED_MM: f64 = 0.3;
 
-/// What stops between any two wells do.
+/// How stops between two wells act.
 const MIDDLE: &str = "a stop near the middle holds the mass high on the barrier, so that a weaker push \
                       carries it over; but the mass travels less. Further out the mechanism presses the mass \
                       harder against the stop";
@@ -27,7 +27,6 @@ enum Stage {
     },
     /// The stops have been moved: explain what that showed.
     Answer,
-    /// The line is no longer shown.
     Done,
 }
 
@@ -59,11 +58,10 @@ impl Hint {
         let since = session.changed_at();
         let mut last = session.player.watch().events().iter().rev().take(50);
         let crossed = since > 0.0
-            && !session.is_by_hand()
+            && !session.by_hand
             && last.any(|event| event.kind == EventKind::Crossing && event.t >= since);
-        let limit_mm = limit_mm(session);
         let as_opened = self.is_as_opened(session);
-        self.stage = match (self.stage, limit_mm) {
+        self.stage = match (self.stage, session.scene().stops.travel_limit_mm()) {
             (Stage::Cross | Stage::Compare, Some(from_mm)) if crossed && as_opened => Stage::Move { from_mm },
             (Stage::Cross, _) if crossed => Stage::Compare,
             (Stage::Move { .. }, None) => Stage::Compare,
@@ -89,7 +87,8 @@ impl Hint {
         let (as_opened, fair) = (self.is_as_opened(session), self.is_fair_comparison(session));
         let wait = "Wait for it, or press X to go there.";
         let outward = "Then move the stops outward: how far does that help?";
-        let (first, then): (_, &str) = match (self.stage, limit_mm(session).is_some(), as_opened, crosses) {
+        let has_limit = session.scene().stops.travel_limit_mm().is_some();
+        let (first, then): (_, &str) = match (self.stage, has_limit, as_opened, crosses) {
             (Stage::Cross, _, _, Some(true)) => ("Now it will cross.", wait),
             (Stage::Cross, ..) => (
                 "Make it cross to the other side.",
@@ -164,7 +163,7 @@ impl Hint {
     }
 }
 
-/// What stops between these wells do, for any travel limit.
+/// How stops between these wells act, for any travel limit.
 fn answer(session: &Session) -> String {
     let mut text = MIDDLE.to_owned();
     text += &match hardest_mm(session) {
@@ -177,8 +176,7 @@ fn answer(session: &Session) -> String {
     text
 }
 
-/// Distance in mm from the middle at which the mechanism presses the mass outwards hardest; `None` unless it
-/// is the same on both sides.
+/// Distance in mm from the middle where the force outwards is largest; `None` if the two sides differ.
 fn hardest_mm(session: &Session) -> Option<f64> {
     let landscape = &session.model().mechanism().landscape;
     let barrier = landscape.barrier?;
@@ -189,9 +187,4 @@ fn hardest_mm(session: &Session) -> Option<f64> {
     };
     let (left, right) = (side(barrier.left_well, barrier.x)?, side(barrier.x, barrier.right_well)?);
     ((left - right).abs() < 0.01 * right).then_some(right)
-}
-
-/// Travel limit in mm of stops that are equal on both sides.
-fn limit_mm(session: &Session) -> Option<f64> {
-    session.scene().stops.travel_limit_mm()
 }

@@ -9,10 +9,11 @@ use eframe::egui::{
 use crate::app::session::Session;
 use crate::app::session::lesson::{OpenLesson, Outcome, TaskState};
 use crate::app::ui::style::{BODY, Style, strong_family};
-use crate::app::words::announce::spoken_ui;
 use crate::app::words::lesson::{expected, judged_by, not_yet, numbered, pieces, plain};
 use crate::app::words::meanings::{meaning, terms};
 use crate::scene::lesson::Step;
+
+use super::status_line::spoken_ui;
 
 /// Text size in points, unless the window is compact.
 const LARGE: f32 = 16.0;
@@ -20,17 +21,12 @@ const LARGE: f32 = 16.0;
 const NAVIGATION: f32 = 158.0;
 /// Width in points of that column in the last step, where it also leads to the next lesson.
 const LAST_NAVIGATION: f32 = 190.0;
-/// Height in points of the navigation buttons.
 const BUTTON_HEIGHT: f32 = 24.0;
-/// Radius in points of the dot of a step.
 const DOT: f32 = 4.5;
-/// Distance in points between the dots.
 const DOT_SPACING: f32 = 15.0;
 /// Greatest number of characters of the reason that a student gives.
 const MAX_REASON: usize = 60;
-/// Width in points of the field for the reason.
 const REASON: f32 = 150.0;
-/// Greatest width in points of the meaning of a word.
 const MEANING: f32 = 320.0;
 /// Greatest number of options side by side.
 const SIDE_BY_SIDE: usize = 3;
@@ -106,7 +102,6 @@ fn spoken(lesson: &OpenLesson, session: &Session) -> String {
     format!("Step {number} of {count}. {}{}{options}{hint}", heading(step), plain(step.text()))
 }
 
-/// The prediction and its outcome, in words.
 fn verdict(lesson: &OpenLesson) -> String {
     let outcome = match lesson.outcome() {
         Outcome::Holds(option) => Some(lesson.options()[option].text.as_str()),
@@ -151,11 +146,12 @@ fn text_ui(ui: &mut Ui, style: &Style, heading: &str, text: &str, size: f32) {
         Some(format!("{word}: {}", meaning(word).unwrap_or_default()))
     };
     // a click shows the meaning at once and keeps it open
-    let clicked = response.interact_pointer_pos().filter(|_| response.clicked()).map(word_at);
-    if let Some(Some(text)) = &clicked {
-        ui.data_mut(|data| data.insert_temp(response.id, text.clone()));
+    let clicked = response.interact_pointer_pos().filter(|_| response.clicked());
+    let word = clicked.and_then(word_at);
+    let open = clicked.map(|_| SetOpenCommand::Bool(word.is_some()));
+    if let Some(text) = word {
+        ui.data_mut(|data| data.insert_temp(response.id, text));
     }
-    let open = clicked.map(|word| SetOpenCommand::Bool(word.is_some()));
     let popup = Popup::from_response(&response).open_memory(open).at_pointer_fixed();
     popup.show(|ui| {
         ui.set_max_width(MEANING);
@@ -221,7 +217,6 @@ fn below_ui(
     action
 }
 
-/// Field in which a student may give a reason.
 fn reason_ui(ui: &mut Ui, lesson: &mut OpenLesson, style: &Style, size: f32) {
     let text = "Why, in one word?";
     let galley = ui.painter().layout_no_wrap(text.to_owned(), FontId::proportional(size), style.faint());

@@ -46,7 +46,7 @@ pub fn notes_ui(ui: &mut Ui, scene: &Scene, is_changed: bool, bottom: f32) -> bo
         ui.label(notes);
         return false;
     }
-    // as many whole sentences as fit
+    // the whole sentences that fit
     let ends = notes.match_indices('.').map(|(at, _)| at + 1);
     let ends: Vec<usize> = ends.filter(|at| notes[*at..].starts_with(char::is_whitespace)).collect();
     let count = ends.partition_point(|end| height(&notes[..*end]) <= room - HEADING - MORE);
@@ -76,8 +76,7 @@ pub fn glossary_ui(ui: &Ui) -> bool {
     !(answer.inner || answer.should_close() || toggled)
 }
 
-/// Shows the lecturer's notes of the open lesson in a separate window. Returns the action that was chosen
-/// there, and whether to close the notes.
+/// Shows the lecturer's notes in a separate window. Returns the chosen action, and whether to close them.
 pub fn lecturer_ui(ctx: &egui::Context, lesson: &OpenLesson) -> (Option<LessonAction>, bool) {
     let builder =
         ViewportBuilder::default().with_title("Lecturer's notes - interwell").with_inner_size([520.0, 420.0]);

@@ -1,14 +1,14 @@
-//! Status line under the menu: what the mass does, with accuracy and settling beside it.
+//! Status line under the menu: what the mass does, with accuracy and settling beside it; its announcements.
 
-use eframe::egui::{self, RichText, Sense, Ui, Vec2};
+use eframe::egui::{self, Id, RichText, Role, Sense, Ui, Vec2, accesskit::Live};
 
 use crate::app::session::{OFFER_TO_STOP, Session};
 use crate::app::ui::style::{BODY, STATUS, STATUS_COMPACT, Style};
 use crate::app::ui::widgets::kind_shapes;
-use crate::app::words::announce::Announcer;
+use crate::app::words::kind::Kind;
 use crate::app::words::meanings::meaning;
+use crate::app::words::status::Sentence;
 
-/// Explanation of "to spare" in the sentence.
 const SPARE: &str =
     "\n\nTo spare: how much weaker the shaking may become before, from rest, it no longer crosses.";
 
@@ -20,7 +20,6 @@ const LINE: f32 = 17.0;
 const SMALL_LINE: f32 = 13.0;
 /// Width in points of a window below which hover text replaces that column.
 const NARROW: f32 = 640.0;
-/// Least height in points of the status line.
 const LEAST: f32 = 44.0;
 /// Height in points that the status line leaves around its text.
 const MARGIN: f32 = 10.0;
@@ -142,4 +141,99 @@ fn fitted(ui: &Ui, text: &str, size: f32) -> f32 {
     let galley = ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::PLACEHOLDER);
     let share = ui.available_width() / galley.size().x.max(1.0);
     (size * share.min(1.0) - 0.05).clamp(BODY.min(size), size)
+}
+
+/// Time in s for which a sentence has to stay unchanged before it is spoken.
+const STILL: f64 = 0.5;
+
+/// Announcements of the motion for screen readers.
+///
+/// The sentence itself can always be read. It is spoken when the kind of motion changes, and otherwise once
+/// it has not changed for a while: a slider that moves would make a screen reader speak without end.
+#[derive(Debug, Default)]
+pub struct Announcer {
+    spoken: Option<(Kind, String)>,
+    /// The newest sentence, and the time in s since which it has not changed.
+    waiting: Option<(String, f64)>,
+    count: u64,
+}
+
+impl Announcer {
+    /// Receives the sentence of the frame at `now` in s. Returns the time in s until it is spoken.
+    pub fn take(&mut self, sentence: &Sentence, now: f64) -> Option<f64> {
+        let text = sentence.whole();
+        let Some((kind, spoken)) = &self.spoken else {
+            self.speak(sentence.kind, text);
+            return None;
+        };
+        if *spoken == text {
+            self.waiting = None;
+            return None;
+        }
+        let since = match &self.waiting {
+            Some((waiting, since)) if *waiting == text => *since,
+            _ => now,
+        };
+        if *kind != sentence.kind || now - since >= STILL {
+            self.speak(sentence.kind, text);
+            return None;
+        }
+        self.waiting = Some((text, since));
+        Some(since + STILL - now)
+    }
+
+    fn speak(&mut self, kind: Kind, text: String) {
+        (self.spoken, self.waiting) = (Some((kind, text)), None);
+        self.count += 1;
+    }
+
+    /// The sentence that was spoken last, with its sequence number.
+    pub fn spoken(&self) -> Option<(u64, &str)> {
+        self.spoken.as_ref().map(|(_, text)| (self.count, text.as_str()))
+    }
+
+    /// Adds the sentence that was spoken last to the accessibility tree.
+    pub fn ui(&self, ui: &mut Ui) {
+        let Some((count, text)) = self.spoken() else { return };
+        spoken_ui(ui, Id::unique(("announcement", count)), text);
+    }
+}
+
+/// Adds a text to the accessibility tree, as a new node for each text: screen readers on Linux speak when a
+/// live node enters the tree, not when its text changes.
+pub fn spoken_ui(ui: &mut Ui, id: Id, text: &str) {
+    let empty = egui::Rect::from_min_size(ui.min_rect().left_top(), egui::Vec2::ZERO);
+    ui.interact(empty, id, egui::Sense::hover());
+    ui.ctx().accesskit_node_builder(id, |node| {
+        node.set_role(Role::Status);
+        node.set_live(Live::Polite);
+        node.set_label(text);
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sentence(kind: Kind, text: &str) -> Sentence {
+        Sentence { kind, text: text.to_owned(), remedy: String::new() }
+    }
+
+    #[test]
+    fn another_motion_is_spoken_at_once_and_another_number_when_it_stays() {
+        let mut announcer = Announcer::default();
+        assert_eq!(announcer.take(&sentence(Kind::Intrawell, "17"), 0.0), None);
+        assert_eq!(announcer.spoken(), Some((1, "17")));
+        // while a slider moves
+        for i in 0..100 {
+            let wait = announcer.take(&sentence(Kind::Intrawell, &i.to_string()), 1.0 + 0.1 * f64::from(i));
+            assert_eq!(wait.map(|wait| (wait - STILL).abs() < 1e-9), (i != 17).then_some(true));
+        }
+        assert_eq!(announcer.spoken(), Some((1, "17")));
+        assert!(announcer.take(&sentence(Kind::Intrawell, "99"), 11.2).is_some());
+        assert_eq!(announcer.take(&sentence(Kind::Intrawell, "99"), 11.5), None);
+        assert_eq!(announcer.spoken(), Some((2, "99")));
+        assert_eq!(announcer.take(&sentence(Kind::Interwell, "crosses"), 11.6), None);
+        assert_eq!(announcer.spoken(), Some((3, "crosses")));
+    }
 }

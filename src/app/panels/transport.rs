@@ -3,13 +3,13 @@
 use std::collections::VecDeque;
 
 use eframe::egui::{
-    self, Align2, Color32, ComboBox, Painter, Pos2, Rect, RichText, Sense, Shape, Stroke, Ui, pos2, vec2,
+    self, Align2, ComboBox, Painter, Pos2, Rect, RichText, Sense, Shape, Stroke, Ui, pos2, vec2,
 };
 
 use crate::app::session::Session;
 use crate::app::session::player::{Goal, SPEEDS};
 use crate::app::ui::style::Style;
-use crate::app::ui::widgets::{Icon, arrows, icon_button_ui};
+use crate::app::ui::widgets::{Icon, arrows, icon_button_ui, polygon};
 use crate::app::words::meanings::explained;
 use crate::app::words::status::{Kind, speed};
 use crate::dynamics::{Event, EventKind};
@@ -17,23 +17,19 @@ use crate::dynamics::{Event, EventKind};
 /// Time in s of the motion within which the next event is searched.
 pub const EVENT_AHEAD: f64 = 5.0;
 
-/// Size of a button in points.
 const BUTTON: f32 = 32.0;
 
 /// Greatest width in points of the time, with its event and the button that leads back to the present.
 const TIME: f32 = 250.0;
 /// Greatest share of the width that the time takes in a narrow window.
 const TIME_SHARE: f32 = 0.65;
-/// Least width in points of the time.
 const LEAST_TIME: f32 = 150.0;
-/// Height in points of the time alone.
 const ONE_LINE: f32 = 20.0;
 /// Height in points of the time with a note below it.
 const TWO_LINES: f32 = 36.0;
 /// Width in points that the button back to the present takes with its full text.
 const BACK: f32 = 130.0;
 
-/// Height in points of the legend below the bar.
 const LEGEND: f32 = 15.0;
 /// Height in points of a transport bar that has room for the legend.
 const HIGH: f32 = 46.0;
@@ -107,9 +103,9 @@ fn row(kind: EventKind) -> usize {
 /// of two that is not below `least`, and they begin at its multiples, so that signs do not change with time.
 fn ticks(events: &VecDeque<Event>, begin: f64, end: f64, least: f64) -> Vec<Event> {
     let interval = least.max(f64::MIN_POSITIVE).log2().ceil().exp2();
-    let mut last = [f64::NAN; 3];
+    let mut last = [None; 3];
     let is_first = |event: &&Event| {
-        let number = (event.t / interval).floor();
+        let number = Some((event.t / interval).floor());
         number != std::mem::replace(&mut last[row(event.kind)], number)
     };
     // in the row of impacts a rest would look like an impact, even of a mass that rests from the start
@@ -120,16 +116,12 @@ fn ticks(events: &VecDeque<Event>, begin: f64, end: f64, least: f64) -> Vec<Even
 
 /// The sign of an event at `at`: a line for an impact, a triangle for a release, a diamond for a crossing.
 fn sign(kind: EventKind, at: Pos2, style: &Style) -> Shape {
-    let convex = |points: &[(f32, f32)], color: Color32| {
-        let points = points.iter().map(|(x, y)| at + vec2(*x, *y)).collect();
-        Shape::convex_polygon(points, color, Stroke::NONE)
-    };
     match row(kind) {
         0 => {
-            let color = style.kind(Kind::Interwell);
-            convex(&[(0.0, -4.0), (3.5, 0.0), (0.0, 4.0), (-3.5, 0.0)], color)
+            let corners = [(0.0, -4.0), (3.5, 0.0), (0.0, 4.0), (-3.5, 0.0)];
+            polygon(at, 1.0, &corners, style.kind(Kind::Interwell))
         }
-        1 => convex(&[(0.0, -3.5), (3.5, 3.0), (-3.5, 3.0)], style.stop()),
+        1 => polygon(at, 1.0, &[(0.0, -3.5), (3.5, 3.0), (-3.5, 3.0)], style.stop()),
         _ => Shape::line_segment([at - vec2(0.0, 3.5), at + vec2(0.0, 3.5)], style.impact_stroke()),
     }
 }
@@ -226,7 +218,6 @@ fn time_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) {
     }
 }
 
-/// An event in words: kind, side and speed.
 fn event_words(event: &Event) -> String {
     let side = event.side.name();
     let speed = |v: f64| speed(v.abs());

@@ -17,7 +17,7 @@ use crate::study::accuracy::scene::{
 /// Initial fixed step in s: a frame of a screen, the usual choice of games.
 const FRAME: f64 = 1.0 / 60.0;
 
-/// Time for which the error is computed again, as a multiple of the time that the motion has gone on.
+/// Length of the next comparison, as a multiple of the time since the run began.
 const SPAN_FACTOR: f64 = 2.0;
 
 /// A run of the motion, from a live time on.
@@ -28,7 +28,6 @@ pub(super) struct LiveRun {
     pub from: f64,
 }
 
-/// Accuracy of the motion, as far as it is known.
 pub struct Accuracy {
     /// The run that moves; `None` if its error cannot be known.
     run: Option<LiveRun>,
@@ -69,7 +68,7 @@ fn short(trust: &Trust, from: f64) -> String {
     }
 }
 
-/// What that means, how it is known, and whether the regime in the sentence beside it depends on it.
+/// The same in full: how it was determined, and whether the regime depends on it.
 fn long(trust: &Trust, from: f64) -> String {
     let regime = match (trust.course, trust.same_regime) {
         (Course::Kept, _) => "",
@@ -171,13 +170,11 @@ impl Accuracy {
         });
     }
 
-    /// Stops the computations that no view has asked for in this frame; to be called once a frame.
     pub fn end_frame(&mut self) {
         self.tolerances.end_frame();
         self.stepped.end_frame();
     }
 
-    /// Waits for each computation, at most `timeout`.
     pub(super) fn wait(&mut self, timeout: Duration) {
         self.trust.wait(timeout);
         self.tolerances.wait(timeout);
@@ -198,7 +195,6 @@ impl Accuracy {
         Some((self.stepped.newest()?, same && self.stepped.answer().is_some()))
     }
 
-    /// Whether a computation is running.
     pub fn is_running(&self) -> bool {
         self.working().is_some()
     }

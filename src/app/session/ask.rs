@@ -33,8 +33,7 @@ impl Session {
         });
     }
 
-    /// Drops the answers about what it would take to cross the barrier, after a change of the scene. The
-    /// thresholds stay if only the amplitude was changed.
+    /// Drops what it would take to cross. The thresholds stay if only the amplitude was changed.
     pub(super) fn forget_ways(&mut self) {
         if self.fault.is_some() || self.thresholds.question() != Some(&unshaken(&self.built)) {
             self.thresholds.clear();
@@ -114,7 +113,6 @@ impl Session {
         self.accuracy.descriptions().filter(|_| moves)
     }
 
-    /// Whether a search for what it would take to cross the barrier is possible.
     fn can_search(&self) -> bool {
         self.fault.is_none()
             && matches!(self.built.excitation, Excitation::Sine { .. })

@@ -2,19 +2,24 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
 
 use crate::app::task::{Background, Wake, pool};
-use crate::app::words::best_stops::{Found, sentence};
-use crate::scene::{Files, Scene};
+use crate::app::words::best_stops::{looking, sentence};
+use crate::app::words::fields::info;
+use crate::scene::{FieldPath, Files, Scene, Stops, SweepAxis};
 use crate::study::{
-    BestDesign, BestQuestion, DesignRange, Environment, NoBest, Optimum, SummaryField, Task, best,
+    BestDesign, BestQuestion, DesignRange, Environment, INTERVALS, NoBest, Optimum, RMS_VELOCITY,
+    SummaryField, Task, best,
 };
 
-/// The field whose best value is searched for.
+use super::Session;
+use super::map::ground;
+use super::sliders::reach;
+
 pub const LIMIT: &str = "stops.travel_limit_mm";
 
-/// A part of the answer of a search.
-pub(super) enum Part {
+enum Part {
     /// The optimum of the coarse scan.
     Preview(Optimum),
     /// The answer, or why there is none.
@@ -23,33 +28,31 @@ pub(super) enum Part {
 
 /// A search: the scene, from rest with its least travel limit, and the range of travel limits.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Search {
-    pub scene: Scene,
-    pub range: DesignRange,
-    pub column: &'static str,
+struct Search {
+    scene: Scene,
+    range: DesignRange,
+    column: &'static str,
     /// Length of a run in s under a drive that does not repeat.
-    pub duration_s: Option<f64>,
+    duration_s: Option<f64>,
 }
 
 /// The search for the best stops, and its result. Both are dropped when the scene changes.
 #[derive(Default)]
 pub struct BestStops {
-    pub(super) search: Background<Search, Part>,
+    search: Background<Search, Part>,
     /// Number of runs that the search has made.
     runs: Arc<AtomicU64>,
     /// Why there can be no search.
-    pub(super) refusal: Option<&'static str>,
+    refusal: Option<&'static str>,
     /// Whether the search is not offered, as its result may be the answer of a lesson.
     pub is_off: bool,
 }
 
 impl BestStops {
-    /// Whether there is anything to say.
     pub fn is_shown(&self) -> bool {
         self.search.question().is_some() || self.refusal.is_some()
     }
 
-    /// Whether the search is running.
     pub fn is_running(&self) -> bool {
         self.search.is_running()
     }
@@ -75,16 +78,15 @@ impl BestStops {
         }
         let Some(search) = self.search.question() else { return String::new() };
         let runs = self.runs.load(Ordering::Relaxed);
-        let found = match self.search.answer() {
-            Some(Part::Whole(answer)) => Found::Whole(answer),
-            _ if !self.is_running() => Found::Nothing,
-            Some(Part::Preview(optimum)) => Found::Searching(runs, Some(optimum)),
-            None => Found::Searching(runs, None),
-        };
-        sentence(&found, search.column, &search.range, search.duration_s)
+        match self.search.answer() {
+            Some(Part::Whole(answer)) => sentence(answer, search.column, &search.range, search.duration_s),
+            _ if !self.is_running() => "The search for the best stops ended without an answer.".to_owned(),
+            Some(Part::Preview(best)) => looking(runs, Some(best), search.column),
+            None => looking(runs, None, search.column),
+        }
     }
 
-    pub(super) fn start(&mut self, search: Search, files: Files, wake: &Wake) {
+    fn start(&mut self, search: Search, files: Files, wake: &Wake) {
         let runs = Arc::clone(&self.runs);
         self.search.ask(search, wake, move |Search { scene, range, column, .. }, cancel, each| {
             let environment = Environment { name: String::new(), weight: 1.0, scene: scene.clone(), files };
@@ -106,5 +108,81 @@ impl BestStops {
                 found => Some(Part::Whole(found)),
             }
         });
+    }
+}
+
+impl Session {
+    /// Searches for the best travel limit of the present scene, started from rest.
+    pub fn find_best_stops(&mut self) {
+        if self.best.is_off {
+            return;
+        }
+        self.end_gesture();
+        self.best.close();
+        let search = match self.best_search() {
+            Ok(search) => search,
+            Err(why) => return self.best.refusal = Some(why),
+        };
+        let files = self.editor.document().files.clone();
+        self.best.start(search, files, &self.wake);
+    }
+
+    fn best_search(&self) -> Result<Search, &'static str> {
+        if self.fault().is_some() {
+            return Err("The best stops are searched for once the scene can be run.");
+        }
+        if matches!(self.scene().stops, Stops::Uneven { .. }) {
+            return Err("The best stops are searched for where both stand equally far out: switch off \
+                        “different stops left and right” under Advanced first.");
+        }
+        let Some(field) = info(LIMIT) else { return Err("") };
+        let reach = reach(field, self);
+        let axis = SweepAxis { field: LIMIT.to_owned(), ..SweepAxis::default() };
+        let mut scene = ground(self.scene(), self.remembered_stops(), std::slice::from_ref(&axis));
+        if !FieldPath::new(LIMIT).set(&mut scene, reach.low) {
+            return Err("The stops that would come do not stand equally far out.");
+        }
+        let range = DesignRange::new(LIMIT, (reach.low, reach.high), INTERVALS[0]);
+        let duration_s = (!self.model().repeats()).then_some(scene.run.duration_s);
+        let column = if self.model().has_transducer() { "mean_load_power_w" } else { RMS_VELOCITY.name };
+        Ok(Search { scene, range, column, duration_s })
+    }
+
+    /// Receives results, and drops them once the scene has changed; to be called once a frame.
+    pub fn follow_best(&mut self) {
+        self.best.search.poll();
+        let is_stale = match self.best.search.question() {
+            Some(search) => self.best_search().as_ref() != Ok(search),
+            None => self.best.refusal.is_some_and(|why| self.best_search() != Err(why)),
+        };
+        if is_stale {
+            self.best.close();
+        }
+    }
+
+    pub fn is_at_best_stops(&self) -> bool {
+        let limit = self.best.limit_mm();
+        limit.is_some() && limit == FieldPath::new(LIMIT).get(self.scene())
+    }
+
+    /// Moves the stops to the best travel limit known, as one gesture.
+    pub fn go_to_best_stops(&mut self) {
+        let (Some(limit), Some(search)) = (self.best.limit_mm(), self.best.search.question()) else {
+            return;
+        };
+        let stops = search.scene.stops;
+        self.edit_once(|scene| {
+            if scene.stops == Stops::None {
+                scene.stops = stops;
+            }
+            let is_set = FieldPath::new(LIMIT).set(scene, limit);
+            debug_assert!(is_set, "the stops of the search have a travel limit");
+        });
+    }
+
+    /// Waits at most `timeout` for the answer. Returns whether it has come.
+    pub fn wait_for_best_stops(&mut self, timeout: Duration) -> bool {
+        self.best.search.wait(timeout);
+        matches!(self.best.search.answer(), Some(Part::Whole(_)))
     }
 }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::app::words::fields::{in_words, name_and_unit};
+use crate::app::words::numbers::rounded;
 use crate::dynamics::Model;
 use crate::mechanics::{BuildError, FlexureError, Mechanism};
 use crate::scene::{Document, Fault, Scene, SceneError, Stops};
@@ -20,39 +21,38 @@ pub enum CannotRun {
     Unsolved(#[from] FlexureError),
 }
 
-pub(super) fn build_error(document: &Document, error: BuildError) -> CannotRun {
-    match error {
+pub(super) fn mechanism(document: &Document, tolerance: f64) -> Result<Arc<Mechanism>, CannotRun> {
+    let built = Mechanism::build_with(&document.scene.mechanism, &document.files, tolerance);
+    built.map(Arc::new).map_err(|error| match error {
         BuildError::Wrong(fault) => document.error_from(vec![fault]).into(),
         BuildError::Unsolved(error) => error.into(),
-    }
+    })
 }
 
-/// Builds the mechanism and the model of a scene.
+/// The model of a scene that has been checked, with its mechanism.
+pub(super) fn model(document: &Document, mechanism: &Arc<Mechanism>) -> Result<Model, CannotRun> {
+    let model = Model::build(&document.scene, Arc::clone(mechanism));
+    Ok(model.map_err(|faults| document.error_from(faults))?)
+}
+
 pub(super) fn solve(document: &Document, tolerance: f64) -> Result<(Arc<Mechanism>, Model), CannotRun> {
     document.check()?;
-    let scene = &document.scene;
-    let mechanism = Mechanism::build_with(&scene.mechanism, &document.files, tolerance)
-        .map_err(|error| build_error(document, error))?;
-    let mechanism = Arc::new(mechanism);
-    let model = Model::build(scene, Arc::clone(&mechanism)).map_err(|faults| document.error_from(faults))?;
+    let mechanism = mechanism(document, tolerance)?;
+    let model = model(document, &mechanism)?;
     Ok((mechanism, model))
 }
 
-/// The first fault, with the field names of the screen and without the position in the file, which is of no
-/// use at a slider.
+/// The first fault, with the field names of the screen and without its position in the file.
 pub(super) fn fault_message(error: &CannotRun, scene: &Scene) -> String {
-    match error {
-        CannotRun::Wrong(SceneError::Faults { faults, .. }) => faults.first().map_or_else(
-            || error.to_string(),
-            |placed| {
-                let Fault { field, value, problem } = &placed.fault;
-                let (name, unit) = name_and_unit(field);
-                let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
-                in_words(&format!("{name} = {value}{unit}: {problem}"), scene)
-            },
-        ),
-        _ => error.to_string(),
+    if let CannotRun::Wrong(SceneError::Faults { faults, .. }) = error
+        && let Some(placed) = faults.first()
+    {
+        let Fault { field, value, problem } = &placed.fault;
+        let (name, unit) = name_and_unit(field);
+        let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+        return in_words(&format!("{name} = {value}{unit}: {problem}"), scene);
     }
+    error.to_string()
 }
 
 /// The stops that the scene gets when they are first switched on.
@@ -69,9 +69,9 @@ pub(super) fn first_stops(scene: &Scene, model: &Model) -> Stops {
 }
 
 /// Travel limit in mm that suits a well at this distance: the same share of it as in the prototype.
-pub fn suiting_limit(well_mm: Option<f64>) -> f64 {
+fn suiting_limit(well_mm: Option<f64>) -> f64 {
     match well_mm.filter(|mm| *mm > 0.0 && mm.is_finite()) {
-        Some(mm) => format!("{:.1e}", 0.215 * mm).parse().unwrap_or(mm),
+        Some(mm) => rounded(0.215 * mm, 2),
         None => 1.5,
     }
 }

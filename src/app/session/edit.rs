@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::app::words::fields::{in_words, name_and_unit};
+use crate::app::words::numbers::rounded;
 use crate::dynamics::STANDARD_GRAVITY;
 use crate::mechanics::FLEXURE_TOLERANCE;
 use crate::scene::{Excitation, FieldPath, Mechanism, Scene, Stops, check};
@@ -10,7 +11,7 @@ use crate::scene::{Excitation, FieldPath, Mechanism, Scene, Stops, check};
 use super::Session;
 use super::build::{fault_message, first_stops, solve};
 use super::editor::Editor;
-use super::player::fitting_speed;
+use super::player::opening_speed;
 
 /// Error of the force of flexures during a gesture: the curve is solved within a frame, and its error is too
 /// small to see. At the end of the gesture the flexures are solved with [`FLEXURE_TOLERANCE`].
@@ -52,7 +53,6 @@ impl Session {
         }
     }
 
-    /// Why the last change of the mechanism was refused.
     pub fn refused(&self) -> Option<&str> {
         self.refused.as_deref()
     }
@@ -86,12 +86,10 @@ impl Session {
         changed
     }
 
-    /// Undoes one step. Returns whether there was one.
     pub fn undo(&mut self) -> bool {
         self.move_in_history(Editor::undo)
     }
 
-    /// Redoes one step. Returns whether there was one.
     pub fn redo(&mut self) -> bool {
         self.move_in_history(Editor::redo)
     }
@@ -153,8 +151,7 @@ impl Session {
         scene
     }
 
-    /// Notes a key press on a field at the time `now` in s. Presses on one field that follow each other
-    /// within a second are one gesture.
+    /// Notes a key press on a field at `now` in s; presses within a second on one field are one gesture.
     pub fn press(&mut self, field: &str, now: f64) {
         if self.presses.as_ref().is_none_or(|(pressed, last)| pressed != field || now - last > PRESS_GAP) {
             self.end_gesture();
@@ -169,8 +166,7 @@ impl Session {
         }
     }
 
-    /// Ends a series of key presses after a second without one. Returns the time in s, from `now`, that is
-    /// left for another press.
+    /// Ends a series of key presses after a second without one. Returns the time in s left for another one.
     pub fn follow_presses(&mut self, now: f64) -> Option<f64> {
         let last = self.presses.as_ref()?.1;
         let left = last + PRESS_GAP - now;
@@ -184,7 +180,7 @@ impl Session {
     pub fn suiting_sine(&self) -> Excitation {
         let scales = &self.model().scales();
         let one_digit = |value: f64, otherwise: f64| match value > 0.0 && value.is_finite() {
-            true => format!("{value:.0e}").parse().unwrap_or(otherwise),
+            true => rounded(value, 1),
             false => otherwise,
         };
         let frequency_hz = one_digit(0.2 / (std::f64::consts::TAU * scales.time), 3.0);
@@ -201,7 +197,6 @@ impl Session {
         self.edit_once(|scene| scene.stops = stops);
     }
 
-    /// The stops that the scene gets when they are switched on.
     pub fn remembered_stops(&self) -> Stops {
         self.remembered_stops
     }
@@ -212,8 +207,7 @@ impl Session {
         self.before = None;
         self.remembered_stops = first_stops(self.scene(), &self.model);
         self.restart();
-        let hinted = self.scene().app.as_ref().and_then(|hints| hints.speed);
-        self.player.speed = hinted.unwrap_or_else(|| fitting_speed(self.model.characteristic_time()));
+        self.player.speed = opening_speed(self.scene(), &self.model);
         self.player.set_playing(true);
     }
 }

@@ -6,11 +6,11 @@
 use std::path::Path;
 
 use crate::output::write_file;
-use crate::scene::{Document, Files, Scene, SceneError, Source, Start, numeric_fields, write};
+use crate::scene::{
+    Document, FileError, Files, Scene, SceneError, Source, Start, named_paths, numeric_fields, write,
+};
+use crate::system;
 
-use super::companions::{copy_files, update_names};
-
-/// Largest number of undo steps that are kept.
 const MAX_STEPS: usize = 500;
 
 /// Name in messages of a scene that was given as text.
@@ -18,11 +18,9 @@ const PASTED: &str = "the pasted scene";
 
 #[derive(Debug, Clone)]
 pub struct Editor {
-    /// The document with the edited scene.
     document: Document,
     /// The scene as it was opened or last saved.
     saved: Scene,
-    /// The scene that its origin names.
     named: Scene,
     undo: Vec<Scene>,
     redo: Vec<Scene>,
@@ -59,8 +57,7 @@ impl Editor {
         Document::from_text(PASTED, text, Files::default()).map(Self::new)
     }
 
-    /// The name on the command line of the scene as it was opened or last saved; `None` for a scene that was
-    /// given as text.
+    /// The scene's name on the command line; `None` for a scene that was given as text.
     pub fn origin(&self) -> Option<String> {
         match &self.document.source {
             Source::File(path) => Some(path.to_string_lossy().into_owned()),
@@ -75,7 +72,6 @@ impl Editor {
         runnable(&self.document)
     }
 
-    /// The scene as text.
     pub fn text(&self) -> Result<String, String> {
         text_of(&self.runnable().scene)
     }
@@ -89,7 +85,6 @@ impl Editor {
         &self.document.scene
     }
 
-    /// The scene as it was opened or last saved, as in its file.
     pub fn saved(&self) -> &Scene {
         &self.saved
     }
@@ -112,12 +107,10 @@ impl Editor {
         }
     }
 
-    /// Whether there is something to save.
     pub fn is_dirty(&self) -> bool {
         self.document.scene != self.saved
     }
 
-    /// Whether a gesture is under way.
     pub fn in_gesture(&self) -> bool {
         self.gesture.is_some()
     }
@@ -145,7 +138,7 @@ impl Editor {
         self.undo.drain(..excess);
     }
 
-    /// Changes the scene in a gesture of its own. Returns whether the scene changed.
+    /// Changes the scene as one undo step. Returns whether it changed.
     pub fn edit_once(&mut self, change: impl FnOnce(&mut Scene)) -> bool {
         self.end_gesture();
         let changed = self.edit(change);
@@ -153,12 +146,10 @@ impl Editor {
         changed
     }
 
-    /// Whether there is a step to undo.
     pub fn can_undo(&self) -> bool {
         !self.undo.is_empty() || self.gesture.is_some()
     }
 
-    /// Whether there is a step to redo.
     pub fn can_redo(&self) -> bool {
         !self.redo.is_empty()
     }
@@ -206,7 +197,6 @@ impl Editor {
     }
 }
 
-/// See [`Editor::runnable`].
 fn runnable(document: &Document) -> Document {
     let mut document = document.clone();
     let fields = numeric_fields(&document.scene);
@@ -214,7 +204,6 @@ fn runnable(document: &Document) -> Document {
     document
 }
 
-/// A scene as text that reads back.
 fn text_of(scene: &Scene) -> Result<String, String> {
     write(scene).map_err(|error| format!("the scene cannot be written as text: {error}"))
 }
@@ -230,4 +219,76 @@ pub(in crate::app) fn keep_start_inside(scene: &mut Scene) {
             *x_mm = left;
         }
     }
+}
+
+/// Copies the table and the records of `scene` into the folder of `target`, and renames them in `scene`
+/// accordingly. An existing file is used if its content is the same, and is never overwritten. Returns the
+/// names of the files written; the error says why one could not be.
+fn copy_files(scene: &mut Scene, files: &Files, target: &Path) -> Result<Vec<String>, String> {
+    let mut written = Vec::new();
+    let target_folder = target.parent().unwrap_or(Path::new(""));
+    if files.folder.as_deref().is_some_and(|folder| is_same(folder, target_folder)) {
+        return Ok(written);
+    }
+    for path in named_paths(scene) {
+        if Path::new(path.as_str()).is_absolute() {
+            continue;
+        }
+        let text = match files.read(path) {
+            Err(FileError::Missing { embedded: true, .. }) => Files::default().read(path),
+            read => read,
+        };
+        let text = text.map_err(|error| format!("the scene names a file that cannot be read: {error}"))?;
+        let name = free_name(path, &text, target)?;
+        if !system::files::exists(&target.with_file_name(&name)) {
+            write_file(&target.with_file_name(&name), text.as_bytes())?;
+            written.push(name.clone());
+        }
+        *path = name;
+    }
+    Ok(written)
+}
+
+/// Updates the file names in a scene of the undo history after a save to another folder: a copied file gets
+/// the name of its copy, any other its absolute path. `was` and `now` are the saved scene before and after.
+fn update_names(scene: &mut Scene, files: &Files, was: &mut Scene, now: &mut Scene) {
+    let renamed: Vec<_> = named_paths(was).into_iter().zip(named_paths(now)).collect();
+    for path in named_paths(scene) {
+        let place = || files.place(path).and_then(|place| std::path::absolute(place).ok());
+        if let Some((_, name)) = renamed.iter().find(|names| names.0 == path) {
+            path.clone_from(name);
+        } else if let Some(place) = place().as_deref().and_then(Path::to_str) {
+            *path = place.to_owned();
+        }
+    }
+}
+
+/// The first of `a.csv`, `a-2.csv`, `a-3.csv` .. beside `target` that is free or holds this text.
+fn free_name(path: &str, text: &str, target: &Path) -> Result<String, String> {
+    let file = Path::new(path);
+    let part = |part: Option<&std::ffi::OsStr>| part.map(|part| part.to_string_lossy().into_owned());
+    let stem = part(file.file_stem()).ok_or_else(|| format!("`{path}` names no file"))?;
+    let ending = part(file.extension()).map_or_else(String::new, |ending| format!(".{ending}"));
+    let names = (1_u32..).map(|n| match n {
+        1 => format!("{stem}{ending}"),
+        n => format!("{stem}-{n}{ending}"),
+    });
+    let fits = |name: &String| {
+        let there = target.with_file_name(name);
+        there != target
+            && (!system::files::exists(&there)
+                || system::files::bytes(&there).is_ok_and(|bytes| bytes == text.as_bytes()))
+    };
+    names
+        .take(1000)
+        .find(fits)
+        .ok_or_else(|| format!("no name is free for `{path}` beside {}", target.display()))
+}
+
+fn is_same(a: &Path, b: &Path) -> bool {
+    let whole = |path: &Path| {
+        let path = if path.as_os_str().is_empty() { Path::new(".") } else { path };
+        system::files::canonical(path)
+    };
+    whole(a).is_some_and(|a| whole(b) == Some(a))
 }

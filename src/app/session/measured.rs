@@ -9,8 +9,10 @@ use crate::app::words::capital;
 use crate::dynamics::Model;
 use crate::numeric::{extent, short};
 use crate::output::Argument;
-use crate::scene::{Channel, Measured, MeasuredText, Quantity, Scene, Timing, Unit};
+use crate::scene::{Channel, Excitation, Measured, MeasuredText, Quantity, Scene, Timing, Unit, read_record};
 use crate::study::{Comparison, ForceComparison, MeasuredMotion, NoComparison, compare, compare_force};
+
+use super::Session;
 
 /// A measured record with its two chosen columns.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,7 +65,6 @@ impl MeasuredRecord {
         Ok(Self { path, name, units, across, values, decimal_commas, timing, range })
     }
 
-    /// How it was sampled, as a sentence.
     pub fn describe(&self) -> String {
         let commas = if self.decimal_commas { ", with decimal commas" } else { "" };
         match &self.timing {
@@ -88,7 +89,6 @@ pub struct Overlay {
     pub record: Identity<MeasuredRecord>,
     /// Offset in m that is added to displacements or positions.
     pub offset: f64,
-    /// Factor of the times.
     pub time_scale: f64,
     /// Shift in s that is added to the scaled times.
     pub shift: f64,
@@ -138,27 +138,21 @@ impl Overlay {
 /// A record, and the scene and model that it is compared with.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasuredQuestion {
-    pub(super) model: Identity<Model>,
-    pub(super) scene: Scene,
-    pub(super) over: Overlay,
+    model: Identity<Model>,
+    scene: Scene,
+    over: Overlay,
 }
 
 impl MeasuredQuestion {
     /// The differences with a given shift, or with the best one; `None` if cancelled.
-    pub(super) fn differences(
-        &self,
-        shift: Option<f64>,
-        cancel: &AtomicBool,
-    ) -> Option<Result<Differences, String>> {
+    fn differences(&self, shift: Option<f64>, cancel: &AtomicBool) -> Option<Result<Differences, String>> {
         let Self { model, scene, over } = self;
         let (across, channel) = (&over.record.across.values, &over.record.values);
         if channel.quantity == Quantity::Force {
             let positions: Vec<f64> = across.iter().map(|x| x + over.offset).collect();
             let found = compare_force(model.mechanism(), &positions, &channel.values);
-            return Some(match found {
-                Ok(found) => Ok(Differences::Force(Box::new(found))),
-                Err(problem) => Err(sentence(&problem.to_string())),
-            });
+            let found = found.map(|found| Differences::Force(Box::new(found)));
+            return Some(found.map_err(|problem| sentence(&problem.to_string())));
         }
         let (offset, time_scale) = (over.added(), over.time_scale);
         let motion = MeasuredMotion { times: across, channel, offset, time_scale, shift };
@@ -184,8 +178,7 @@ pub struct MeasuredData {
     /// The differences, or why they are not known.
     pub found: Background<MeasuredQuestion, Result<Differences, String>>,
     /// The shift in s that fits best, or why there is none.
-    pub(super) fit: Background<MeasuredQuestion, Result<f64, String>>,
-    /// Why no shift was found.
+    fit: Background<MeasuredQuestion, Result<f64, String>>,
     pub no_fit: Option<String>,
 }
 
@@ -207,7 +200,6 @@ impl MeasuredData {
         }
     }
 
-    /// Whether the shift that fits best is being looked for.
     pub fn is_fitting(&self) -> bool {
         self.fit.is_running()
     }
@@ -222,7 +214,60 @@ impl MeasuredData {
     }
 }
 
-/// A clause as a sentence.
 pub fn sentence(clause: &str) -> String {
     format!("{}{}", capital(clause), if clause.ends_with('.') { "" } else { "." })
+}
+
+impl Session {
+    /// Asks for the differences of the record from the present scene; called in every frame that shows them.
+    pub fn want_differences(&mut self) {
+        let (still, Some(question)) = (self.stands_still(), self.measured_question()) else { return };
+        self.measured.found.want(question, still, &self.wake, |question, cancel, _| {
+            question.differences(Some(question.over.shift), cancel)
+        });
+    }
+
+    /// Starts the search for the shift with which the record fits the run of the scene best.
+    pub fn fit_shift(&mut self) {
+        let Some(question) = self.measured_question() else { return };
+        self.measured.no_fit = None;
+        self.measured.fit.ask(question, &self.wake, |question, cancel, _| {
+            let shift = |found| match found {
+                Differences::Motion(comparison) => comparison.shift,
+                Differences::Force(_) => 0.0,
+            };
+            question.differences(None, cancel).map(|found| found.map(shift))
+        });
+    }
+
+    fn measured_question(&self) -> Option<MeasuredQuestion> {
+        let over = self.measured.over.clone()?;
+        Some(MeasuredQuestion { model: Identity(Arc::clone(&self.model)), scene: self.built.clone(), over })
+    }
+
+    /// Shakes the base with the acceleration in the file at `path`, as one undo step. Returns warnings about
+    /// the record, each a clause that continues its name. On an error, which is a sentence, nothing changes.
+    pub fn shake_with(&mut self, path: &Path, shown: &MeasuredRecord) -> Result<Vec<String>, String> {
+        let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        let name = absolute.to_str().ok_or("The name of the file is not valid UTF-8: rename it.")?;
+        let record = read_record(&absolute).map_err(|problem| {
+            format!(
+                "A scene knows its record by the file alone, and has to find the columns of time and \
+                 acceleration by the units at the ends of their names, such as `t_s` and `a_g`. The file \
+                 {problem}"
+            )
+        })?;
+        let mismatch = "A scene knows its record by the file alone, and reads other columns than those that \
+                     are chosen here, or in other units: name the two columns `t_s` and `accel_m_per_s2`, \
+                     or end their names with their units, and no other ones with such units.";
+        if (&record.times, &record.accelerations) != (&shown.across.values, &shown.values.values) {
+            return Err(mismatch.to_owned());
+        }
+        let warnings = record.warnings(self.scene().run.duration_s);
+        let excitation = Excitation::Recorded { path: name.to_owned(), record: Some(Arc::new(record)) };
+        self.edit_once(|scene| scene.excitation = excitation);
+        self.apply();
+        self.restart();
+        Ok(warnings)
+    }
 }

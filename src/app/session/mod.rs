@@ -4,10 +4,8 @@
 
 pub mod accuracy;
 mod ask;
-mod beside;
 pub mod best;
 mod build;
-mod companions;
 mod edit;
 pub mod editor;
 pub mod explore;
@@ -17,27 +15,27 @@ pub mod measured;
 pub mod pins;
 pub mod player;
 pub mod sliders;
-mod state;
 
 use std::sync::Arc;
 use std::time::Duration;
 
 use crate::app::task::{Background, Wake};
-use crate::dynamics::Model;
+use crate::app::words::status::{self, DrivenMotion, Sentence};
+use crate::dynamics::{Model, Outcome, Summary};
 use crate::mechanics::{FLEXURE_TOLERANCE, Mechanism};
-use crate::study;
+use crate::scene::{self, Excitation, Scene, Stops};
+use crate::study::{self, Thresholds};
 
-use accuracy::Accuracy;
+use accuracy::{Accuracy, LiveRun};
 use best::BestStops;
 pub use build::CannotRun;
-use build::{build_error, fault_message, first_stops, solve};
+use build::{fault_message, first_stops, solve};
 use editor::Editor;
 use explore::Explore;
 use map::Mapping;
 use measured::MeasuredData;
 use pins::Pins;
-use player::{Player, fitting_speed};
-pub use state::{Card, OpenedScales, Session};
+use player::{Player, opening_speed};
 
 /// Time after which the user is offered to stop a background computation.
 pub const OFFER_TO_STOP: Duration = Duration::from_secs(2);
@@ -48,22 +46,92 @@ const LEAST_CONTINUATION: f64 = 0.02;
 /// Least displacement of the mass by a change that is reported, as a share of the length scale.
 const REPORTED_MOVE: f64 = 0.02;
 
+/// Scales that set the ranges of the sliders: those of the scene as it was opened, so that no slider jumps
+/// while another one is moved.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OpenedScales {
+    /// Length in m.
+    pub length: f64,
+    /// Time in s.
+    pub time: f64,
+    /// Distance of the right-hand well from the middle in mm.
+    pub well_mm: Option<f64>,
+}
+
+impl OpenedScales {
+    fn of(model: &Model) -> Self {
+        let well_mm = model.mechanism().landscape.right_stable().map(|well| well.x.abs() * 1e3);
+        Self { length: model.scales().length, time: model.scales().time, well_mm }
+    }
+}
+
+/// A side of the card Before / now.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Card {
+    pub scene: Scene,
+    /// What it settles to; `None` until it is known.
+    pub settled: Option<Summary>,
+    /// Its thresholds; `None` until they are known.
+    pub thresholds: Option<Thresholds>,
+}
+
+pub struct Session {
+    pub editor: Editor,
+    /// The model that moves: that of the scene, or of its last version that could be run.
+    model: Arc<Model>,
+    /// Why the present scene cannot be run.
+    fault: Option<String>,
+    pub player: Player,
+    settled: Background<LiveRun, Summary>,
+    /// The thresholds of the scene, whatever the amplitude of its shaking.
+    thresholds: Background<Scene, Thresholds>,
+    /// The travel limit in mm with which the mass would cross the barrier; computed only on request.
+    stops_that_cross: Background<Scene, Option<f64>>,
+    pub accuracy: Accuracy,
+    pub map: Mapping,
+    pub explore: Explore,
+    pub pins: Pins,
+    pub measured: MeasuredData,
+    before: Option<Card>,
+    /// The scene that the model was built from.
+    built: Scene,
+    mechanism: Arc<Mechanism>,
+    /// What the mechanism was built from, so that a table is fitted once and not at every move of a slider.
+    mechanism_of: scene::Mechanism,
+    /// Whether the mechanism was solved with the coarse tolerance of a gesture.
+    is_coarse: bool,
+    /// Why the last change of the mechanism was refused.
+    refused: Option<String>,
+    /// Live time in s of the last change.
+    changed_at: f64,
+    /// Whether the last change was a move of the mass by hand.
+    pub by_hand: bool,
+    /// Whether the last change moved the mass to a stop.
+    moved_to_stop: bool,
+    /// The scales of the scene as it was opened.
+    opened: OpenedScales,
+    /// Whether the motion was changed after its start, so that it is no run of the scene from its start.
+    continued: bool,
+    /// The stops that the scene gets when they are switched on.
+    remembered_stops: Stops,
+    /// The field of the current series of arrow key presses, and the time in s of the last press.
+    presses: Option<(String, f64)>,
+    /// Whether to withhold what it would take to cross the barrier, as the answer of a lesson.
+    pub keeps_remedy: bool,
+    pub best: BestStops,
+    wake: Wake,
+}
+
 impl Session {
     /// A session on a scene; `wake` is called from other threads when a result has come.
     pub fn new(editor: Editor, wake: Wake) -> Result<Self, CannotRun> {
         let document = editor.document();
         let (mechanism, model) = solve(document, FLEXURE_TOLERANCE)?;
         let scene = editor.scene().clone();
-        let hints = scene.app.clone().unwrap_or_default();
-        let speed = hints.speed.unwrap_or_else(|| fitting_speed(model.characteristic_time()));
-        let player = Player::new(&model, speed);
-        let remembered_stops = first_stops(&scene, &model);
-        let opened = OpenedScales::of(&model);
         let mut session = Self {
             editor,
-            model: Arc::new(model),
             fault: None,
-            player,
+            player: Player::new(&model, opening_speed(&scene, &model)),
             settled: Background::default(),
             thresholds: Background::default(),
             stops_that_cross: Background::default(),
@@ -76,17 +144,18 @@ impl Session {
             mechanism_of: scene.mechanism.clone(),
             is_coarse: false,
             refused: None,
-            built: scene,
             mechanism,
             changed_at: 0.0,
             by_hand: false,
             moved_to_stop: false,
-            opened,
+            opened: OpenedScales::of(&model),
             continued: false,
-            remembered_stops,
+            remembered_stops: first_stops(&scene, &model),
+            model: Arc::new(model),
             presses: None,
             keeps_remedy: false,
             best: BestStops::default(),
+            built: scene,
             wake,
         };
         session.map.trail.note(&session.built);
@@ -117,7 +186,6 @@ impl Session {
         self.player.end_frame();
     }
 
-    /// Restarts the motion.
     pub fn restart(&mut self) {
         self.player.restart(&self.model);
         self.pins.restart(&self.wake);
@@ -143,7 +211,7 @@ impl Session {
     }
 
     /// Applies the edited scene to the motion, if it has changed.
-    pub(super) fn apply(&mut self) {
+    fn apply(&mut self) {
         if *self.editor.scene() == self.built {
             return;
         }
@@ -164,8 +232,7 @@ impl Session {
         self.forget_ways();
     }
 
-    /// Continues the motion from its present state with the new model. A motion that has ended and cannot
-    /// continue from there is restarted.
+    /// Continues the motion with the new model; a motion that has ended and cannot continue is restarted.
     fn continue_motion(&mut self) {
         let (ended, before) = (self.player.ended().is_some(), self.player.watch().now().x);
         self.player.change(&self.model);
@@ -192,8 +259,7 @@ impl Session {
         self.moved_to_stop && (self.settling().is_some() || elapsed < self.model.characteristic_time())
     }
 
-    /// Progress of the motion, after a change, towards the settled motion that the sentence describes: the
-    /// elapsed time and the whole time in s.
+    /// Progress after a change towards the settled motion: the elapsed and the whole time in s.
     pub fn settling(&self) -> Option<(f64, f64)> {
         let moves = self.model.is_shaken() && self.player.ended().is_none();
         let facts = self.sentence_facts().filter(|_| moves && self.changed_at > 0.0)?;
@@ -201,18 +267,14 @@ impl Session {
         (elapsed < whole).then_some((elapsed, whole))
     }
 
-    /// Builds the model of the present scene.
-    pub(super) fn build(&mut self) -> Result<Model, CannotRun> {
+    fn build(&mut self) -> Result<Model, CannotRun> {
         let document = &self.editor.runnable();
         document.check()?;
-        let scene = &document.scene;
-        if scene.mechanism != self.mechanism_of {
-            let built = Mechanism::build(&scene.mechanism, &document.files)
-                .map_err(|error| build_error(document, error))?;
-            self.mechanism = Arc::new(built);
-            self.mechanism_of = scene.mechanism.clone();
+        if document.scene.mechanism != self.mechanism_of {
+            self.mechanism = build::mechanism(document, FLEXURE_TOLERANCE)?;
+            self.mechanism_of = document.scene.mechanism.clone();
         }
-        Ok(Model::build(scene, Arc::clone(&self.mechanism)).map_err(|faults| document.error_from(faults))?)
+        build::model(document, &self.mechanism)
     }
 
     /// Waits at most `timeout` until it is known what the motion settles to.
@@ -228,5 +290,116 @@ impl Session {
         self.stops_that_cross.wait(timeout);
         self.follow_accuracy();
         self.accuracy.wait(timeout);
+    }
+
+    pub fn scene(&self) -> &Scene {
+        self.editor.scene()
+    }
+
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The model at the time that is shown, which may be in the past.
+    pub fn shown(&self) -> &Model {
+        let player = &self.player;
+        if player.is_past() { player.watch().model_at(player.time()) } else { &self.model }
+    }
+
+    /// Why the present scene cannot be run; the motion is then that of its last version that could.
+    pub fn fault(&self) -> Option<&str> {
+        self.fault.as_deref()
+    }
+
+    pub fn wake(&self) -> &Wake {
+        &self.wake
+    }
+
+    /// Whether the settled motion crosses the barrier; `None` until it is known.
+    pub fn crosses(&self) -> Option<bool> {
+        let summary = self.settled.answer()?;
+        (self.fault.is_none() && summary.outcome == Outcome::Done).then_some(summary.crossings > 0)
+    }
+
+    /// What the present scene settles to; `None` until it is known.
+    pub fn settled_now(&self) -> Option<&Summary> {
+        self.settled.answer().filter(|_| self.fault.is_none())
+    }
+
+    /// What the motion settles to, or that of an earlier scene until the new answer has come.
+    pub fn settled(&self) -> Option<&Summary> {
+        self.settled.newest()
+    }
+
+    pub fn now_card(&self) -> Card {
+        Card {
+            scene: self.scene().clone(),
+            settled: self.settled.answer().copied(),
+            thresholds: self.thresholds.answer().copied().filter(|_| !self.keeps_remedy),
+        }
+    }
+
+    /// The scene before the last gesture, for the card.
+    pub fn before_card(&self) -> Option<&Card> {
+        self.before.as_ref()
+    }
+
+    /// The live time in s at which the run ends: the scene's run length after the last change, or after the
+    /// start if the excitation is a function of the time since then.
+    pub fn end_of_run(&self) -> f64 {
+        let begins_here = self.player.watch().from_here().is_some();
+        self.model.duration() + if begins_here { self.changed_at } else { 0.0 }
+    }
+
+    pub fn is_continued(&self) -> bool {
+        self.continued
+    }
+
+    /// Live time in s of the last change: of the scene, or of the mass by hand.
+    pub fn changed_at(&self) -> f64 {
+        self.changed_at
+    }
+
+    /// Amplitude of the excitation in g, if it is a sine.
+    pub fn amplitude_g(&self) -> Option<f64> {
+        match self.scene().excitation {
+            Excitation::Sine { amplitude_g, .. } => Some(amplitude_g),
+            _ => None,
+        }
+    }
+
+    pub fn sentence(&self) -> Sentence {
+        if let Some(fault) = &self.fault {
+            return Sentence::fault(fault);
+        }
+        let state = self.player.state();
+        if self.player.is_held() {
+            return status::held(&self.model, &state);
+        }
+        if let Some(outcome) = self.player.ended() {
+            return status::ended(&self.model, outcome);
+        }
+        if !self.model.is_shaken() {
+            return status::unshaken(&self.model, &state);
+        }
+        match self.sentence_facts() {
+            Some(facts) if self.keeps_remedy => Sentence { remedy: String::new(), ..status::driven(&facts) },
+            Some(facts) => status::driven(&facts),
+            None if self.settled.is_running() => Sentence::waiting(),
+            None => Sentence::stopped(),
+        }
+    }
+
+    /// The facts for the sentence about a driven motion; `None` until it is known what the motion settles to.
+    fn sentence_facts(&self) -> Option<DrivenMotion<'_>> {
+        let (run, summary) = (self.settled.question()?, self.settled.answer()?);
+        Some(DrivenMotion {
+            scene: self.scene(),
+            model: &self.model,
+            summary,
+            thresholds: self.thresholds.answer(),
+            origin: run.from,
+            now: self.player.watch().time(),
+        })
     }
 }

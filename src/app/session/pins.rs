@@ -5,12 +5,19 @@ use std::time::Duration;
 
 use crate::app::task::{Background, Identity, Wake};
 use crate::dynamics::{Model, Outcome, Sample, Summary};
-use crate::scene::Scene;
+use crate::scene::{Scene, Start, Stops};
 use crate::study::{self, Watch};
 use crate::system::clock::WallClock;
 
-/// Names of the pinned motions; as many can be pinned at a time.
-pub(super) const LETTERS: [char; 3] = ['A', 'B', 'C'];
+use super::Session;
+use super::build::{self, CannotRun, fault_message};
+use super::editor::keep_start_inside;
+
+/// Distance in mm of the twin's start from that of the mass.
+const TWIN_OFFSET_MM: f64 = 1e-3;
+
+/// Names of the pinned motions, one for each that can be pinned at a time.
+const LETTERS: [char; 3] = ['A', 'B', 'C'];
 
 /// Computing time that one frame spends to bring a pinned motion up to the present.
 const FRAME_SHARE: Duration = Duration::from_millis(4);
@@ -27,21 +34,20 @@ pub enum PinKind {
 }
 
 pub struct Pin {
-    pub(super) letter: char,
-    pub(super) kind: PinKind,
-    pub(super) scene: Scene,
-    pub(super) model: Arc<Model>,
-    pub(super) watch: Watch,
+    letter: char,
+    kind: PinKind,
+    scene: Scene,
+    model: Arc<Model>,
+    watch: Watch,
     /// Live time in s from which on it is computed separately.
-    pub(super) since: f64,
+    since: f64,
     /// What it settles to, if that was known when it was pinned.
-    pub(super) known: Option<Summary>,
+    known: Option<Summary>,
     /// What it settles to, if it had to be asked.
-    pub(super) settled: Background<Identity<Model>, Summary>,
+    settled: Background<Identity<Model>, Summary>,
 }
 
 impl Pin {
-    /// Its name.
     pub fn letter(&self) -> char {
         self.letter
     }
@@ -63,7 +69,6 @@ impl Pin {
         &self.watch
     }
 
-    /// Live time in s from which on it is computed separately.
     pub fn since(&self) -> f64 {
         self.since
     }
@@ -83,7 +88,7 @@ impl Pin {
         self.known.as_ref().or(self.settled.answer())
     }
 
-    pub(super) fn ask(&mut self, wake: &Wake) {
+    fn ask(&mut self, wake: &Wake) {
         let model = self.watch.from_here().unwrap_or_else(|| (*self.model).clone());
         self.known = None;
         let model = Identity(Arc::new(model));
@@ -95,7 +100,7 @@ impl Pin {
     }
 
     /// Continues to the live time `to` in s, or as far as a frame's share of computing time allows.
-    pub(super) fn follow(&mut self, to: f64) {
+    fn follow(&mut self, to: f64) {
         let begun = WallClock::start();
         let stretch = CHECK_INTERVAL * self.model.characteristic_time();
         while self.is_behind(to) {
@@ -110,7 +115,7 @@ impl Pin {
 
 #[derive(Default)]
 pub struct Pins {
-    pub(super) all: Vec<Pin>,
+    all: Vec<Pin>,
 }
 
 impl Pins {
@@ -119,17 +124,14 @@ impl Pins {
         &self.all
     }
 
-    /// The pin with this letter.
     pub fn get(&self, letter: char) -> Option<&Pin> {
         self.all.iter().find(|pin| pin.letter == letter)
     }
 
-    /// Whether no more motions can be pinned.
     pub fn is_full(&self) -> bool {
         self.free_letter().is_none()
     }
 
-    /// Whether a pin has not reached the live time `t` in s yet.
     pub fn are_behind(&self, t: f64) -> bool {
         self.all.iter().any(|pin| pin.is_behind(t))
     }
@@ -138,18 +140,16 @@ impl Pins {
         self.all.retain(|pin| pin.letter != letter);
     }
 
-    pub(super) fn free_letter(&self) -> Option<char> {
+    fn free_letter(&self) -> Option<char> {
         LETTERS.into_iter().find(|letter| self.get(*letter).is_none())
     }
 
-    /// Receives background results.
     pub(super) fn poll(&mut self) {
         for pin in &mut self.all {
             pin.settled.poll();
         }
     }
 
-    /// Restarts all pins, each from its own start.
     pub(super) fn restart(&mut self, wake: &Wake) {
         for pin in &mut self.all {
             (pin.watch, pin.since) = (Watch::new(&pin.model), 0.0);
@@ -162,8 +162,81 @@ impl Pins {
         self.all.iter().filter_map(|pin| pin.settled.running_for()).max()
     }
 
-    /// Stops the computations of what the pins settle to.
     pub(super) fn stop_working(&mut self) {
         self.all.iter_mut().for_each(|pin| pin.settled.pause());
+    }
+}
+
+impl Session {
+    /// Pins a motion beside the present one. Returns the letter of the pin; the error says why there is none.
+    pub fn pin(&mut self, kind: PinKind) -> Result<char, String> {
+        let Some(letter) = self.pins.free_letter() else {
+            return Err(format!("{} motions are pinned already: unpin one first", LETTERS.len()));
+        };
+        self.end_gesture();
+        self.apply();
+        if let Some(fault) = self.fault() {
+            return Err(format!("No motion of this scene can be pinned: {fault}"));
+        }
+        let (mut scene, mut watch) = (self.scene().clone(), self.player.watch().clone());
+        let mut model = Arc::clone(&self.model);
+        match kind {
+            PinKind::Motion => {}
+            PinKind::OtherStops => {
+                let off = scene.stops == Stops::None;
+                scene.stops = if off { self.remembered_stops() } else { Stops::None };
+                keep_start_inside(&mut scene);
+                model = Arc::new(self.model_of(&scene)?);
+                watch.change(&model);
+            }
+            PinKind::Twin => {
+                scene.start = self.twin_start();
+                model = Arc::new(self.model_of(&scene)?);
+                self.restart();
+                watch = Watch::new(&model);
+            }
+        }
+        let known = self.settled.answer().copied().filter(|_| kind == PinKind::Motion);
+        let since = watch.time();
+        let mut pin = Pin { letter, kind, scene, model, watch, since, known, settled: Background::default() };
+        if known.is_none() {
+            pin.ask(&self.wake);
+        }
+        self.pins.all.push(pin);
+        Ok(letter)
+    }
+
+    /// Replaces the scene by that of a pin, as one undo step. Returns whether the scene changed.
+    pub fn take_back(&mut self, letter: char) -> bool {
+        let Some(scene) = self.pins.get(letter).map(|pin| pin.scene().clone()) else { return false };
+        self.edit_once(|edited| *edited = scene)
+    }
+
+    /// Continues the pinned motions to the live time; to be called after the motion has been advanced.
+    pub fn follow_pins(&mut self) {
+        let watch = self.player.watch();
+        for pin in &mut self.pins.all {
+            pin.watch.keep_ledgers(watch.keeps_ledgers());
+            pin.follow(watch.time());
+        }
+    }
+
+    /// A start a micrometre beside that of the scene, on a side without a stop in the way.
+    fn twin_start(&self) -> Start {
+        let start = Watch::new(&self.model).now();
+        let (_, right) = self.model.stop_positions();
+        let room = right.is_none_or(|stop| (stop - start.x) * 1e3 > TWIN_OFFSET_MM);
+        let offset = if room { TWIN_OFFSET_MM } else { -TWIN_OFFSET_MM };
+        Start::At { x_mm: start.x * 1e3 + offset, v_m_per_s: start.v, electrical: start.electrical }
+    }
+
+    /// The model of a scene with the mechanism of the open one, or why there is none.
+    fn model_of(&self, scene: &Scene) -> Result<Model, String> {
+        let mut document = self.editor.runnable();
+        // the sweep axes do not matter for a motion
+        document.scene = Scene { sweep: Vec::new(), ..scene.clone() };
+        let checked = document.check().map_err(CannotRun::from);
+        let model = checked.and_then(|_| build::model(&document, &self.mechanism));
+        model.map_err(|error| fault_message(&error, scene))
     }
 }

@@ -7,12 +7,11 @@ use crate::scene::{Control, FieldPath, Mechanism, Scale, Stops};
 
 use super::Session;
 
-/// The range of a control's slider in a scene: that for the prototype if it suits the scales of the scene,
-/// else one that is derived from them.
+/// The range of a control's slider: that for the prototype, or one derived from the scales of the scene.
 pub fn reach(control: &Control, session: &Session) -> Reach {
     let (low, high, step) = control.slider;
     let saved = FieldPath::new(control.path).get(session.editor.saved());
-    let scales = session.opened();
+    let scales = session.opened;
     // for the prototype these are 2 g and 20 Hz
     let scaled = match control.scale {
         Scale::Fixed => None,
@@ -43,7 +42,7 @@ pub fn reach(control: &Control, session: &Session) -> Reach {
 /// The range of the slider of a travel limit: from near the middle to beyond the well.
 fn travel(session: &Session) -> Reach {
     let (saved, limits) = (session.editor.saved(), [session.remembered_stops(), session.scene().stops]);
-    let well = session.opened().well_mm;
+    let well = session.opened.well_mm;
     let furthest = |stops: &Stops| stops.limits_mm().into_iter().flatten().reduce(f64::max);
     let stops = || furthest(&saved.stops).or_else(|| limits.iter().find_map(furthest));
     let size = well.filter(|mm| *mm > 0.0).or_else(stops).unwrap_or(10.0);

@@ -8,7 +8,7 @@ use std::cell::RefCell;
 use eframe::egui::{self, Color32, DragValue, Key, Response, RichText, Slider, Ui, pos2};
 
 use crate::app::words::fields::Reach;
-use crate::app::words::numbers::{decimal, decimals, exact, shown};
+use crate::app::words::numbers::{decimal, decimals, exact, rounded, shown};
 
 use super::style::{COMPACT_BELOW, Style};
 use super::widgets::hover_beside;
@@ -61,7 +61,6 @@ pub struct Turn {
 }
 
 impl Knob<'_> {
-    /// Draws the knob and returns the input on it.
     pub fn ui(&self, ui: &mut Ui, value: f64) -> Turn {
         let decimals = decimals(self.reach.step);
         // read first, since the widgets consume the arrow keys
@@ -171,7 +170,6 @@ impl Knob<'_> {
         format!("{space}{}", self.unit)
     }
 
-    /// The number of a typed text, or a message why it is not accepted.
     fn parsed(&self, text: &str, present: f64) -> Result<f64, String> {
         let unit = self.suffix();
         let number = text.strip_suffix(self.unit).unwrap_or(text).trim().replace('−', "-");
@@ -224,13 +222,8 @@ fn logarithmic_ui(ui: &mut Ui, value: &mut f64, (low, high): (f64, f64)) -> Resp
         let from = present.clamp(low, high);
         *value = from * (*value / from).powi(10);
     }
-    *value = three_digits(value.clamp(low, high));
+    *value = rounded(value.clamp(low, high), 3);
     slider
-}
-
-/// Rounds to three significant digits.
-fn three_digits(value: f64) -> f64 {
-    format!("{value:.2e}").parse().unwrap_or(value)
 }
 
 /// Replaces a decimal comma by a point; `1,234` stays, since its comma may separate thousands.
@@ -250,7 +243,6 @@ fn clipped(text: &str) -> String {
 /// An input that was refused.
 #[derive(Debug, Clone)]
 struct Refused {
-    /// The control.
     id: egui::Id,
     why: String,
     /// Time in s of the input.
@@ -321,23 +313,15 @@ mod tests {
         {
             assert_eq!(parsed(text), Ok(value));
         }
-        for (text, why) in [
-            ("abc", "“abc” is no number: amplitude stays 0.9 g."),
-            (
-                "1,5,2",
-                "“1,5,2” is no number: amplitude stays 0.9 g. Write it with a point or without a comma.",
-            ),
-            (
-                "1,234",
-                "“1,234” is no number: amplitude stays 0.9 g. Write it with a point or without a comma.",
-            ),
-            ("a,5", "“a,5” is no number: amplitude stays 0.9 g."),
-            ("", "No number was typed: amplitude stays 0.9 g."),
-            ("nan", "“nan” is no number: amplitude stays 0.9 g."),
-            ("1e9", "1e9 g was not taken: amplitude may be -10 to 10 g."),
-        ] {
-            assert_eq!(parsed(text), Err(why.to_owned()));
+        let with_comma = "is no number: amplitude stays 0.9 g. Write it with a point or without a comma.";
+        for (text, why) in [("1,5,2", with_comma), ("1,234", with_comma)]
+            .into_iter()
+            .chain(["abc", "a,5", "nan"].map(|text| (text, "is no number: amplitude stays 0.9 g.")))
+        {
+            assert_eq!(parsed(text), Err(format!("“{text}” {why}")));
         }
+        assert_eq!(parsed(""), Err("No number was typed: amplitude stays 0.9 g.".to_owned()));
+        assert_eq!(parsed("1e9"), Err("1e9 g was not taken: amplitude may be -10 to 10 g.".to_owned()));
         // infinity is accepted if it is in the range
         assert!(parsed("inf").is_err());
         let load = Knob { typed: (0.0, f64::INFINITY), ..knob() };

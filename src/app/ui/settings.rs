@@ -7,16 +7,14 @@ pub struct Settings {
     pub dark: bool,
     /// Light ground, larger, thicker lines.
     pub projector: bool,
-    /// Whether rings at impacts are left out.
+    /// No rings at impacts.
     pub reduce_motion: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Setting {
     Dark,
-    /// Light ground, larger, thicker lines.
     Projector,
-    /// No rings at impacts.
     ReduceMotion,
 }
 

@@ -11,7 +11,6 @@ use eframe::egui::{self, Color32, FontData, FontDefinitions, FontFamily, FontId,
 use crate::app::words::kind::Kind;
 use crate::output::{Ink, Role, Theme};
 
-/// Zoom of the projector mode.
 pub const PROJECTOR_ZOOM: f32 = 1.5;
 
 /// Width in points below which the window is laid out for a projector: two controls in a row, two views.
@@ -20,16 +19,14 @@ pub const COMPACT_BELOW: f32 = 1000.0;
 /// Size in points of a window above which there is room for one more tile.
 pub const LARGE_FROM: egui::Vec2 = egui::Vec2::new(1600.0, 880.0);
 
-/// Size of small text in points.
 pub const SMALL: f32 = 11.5;
-/// Size of body text and buttons in points.
 pub const BODY: f32 = 14.0;
 pub const STATUS: f32 = 18.0;
 /// Size of the status sentence in points where room is short.
 pub const STATUS_COMPACT: f32 = 16.0;
 
-/// Radius in points of the proof mass where it rides on a curve; stops are drawn as far outside their limit,
-/// so that the mass touches them at the limit.
+/// Radius in points of the proof mass where it rides on a curve; stops are drawn this far outside their
+/// limit, so that the mass touches them at the limit.
 pub const BALL: f32 = 9.0;
 
 /// Distance in points within which something can be grabbed.
@@ -41,11 +38,11 @@ pub const RING_SECONDS: f64 = 0.3;
 /// Points of the screen in a unit of a line's width on paper.
 const STROKE: f32 = 2.0 / 3.0;
 
-const ORANGE: Color32 = Color32::from_rgb(230, 159, 0);
+const ORANGE: Color32 = rgb(230, 159, 0);
 
 /// A colour of a picture on paper.
-pub fn colour(Ink(red, green, blue): Ink) -> Color32 {
-    Color32::from_rgb(red, green, blue)
+pub const fn colour(Ink(red, green, blue): Ink) -> Color32 {
+    rgb(red, green, blue)
 }
 
 /// The colours and widths of one appearance.
@@ -57,13 +54,16 @@ pub struct Style {
 }
 
 impl Style {
-    /// The style of the present theme.
     pub fn of(ctx: &egui::Context, projector: bool) -> Self {
         Self { dark: ctx.theme() == egui::Theme::Dark, projector }
     }
 
     fn pick(&self, light: Color32, dark: Color32) -> Color32 {
         if self.dark { dark } else { light }
+    }
+
+    pub fn mass(&self) -> Color32 {
+        ORANGE
     }
 
     /// The colours of pictures in this appearance.
@@ -82,45 +82,17 @@ impl Style {
         Stroke::new(self.width(STROKE * look.width as f32), colour(look.ink))
     }
 
-    /// Text and axes.
-    pub fn ink(&self) -> Color32 {
-        colour(self.theme().ink)
+    pub fn kind(&self, kind: Kind) -> Color32 {
+        match kind {
+            Kind::Resting | Kind::Other => self.faint(),
+            Kind::Intrawell => self.colour(Role::Regime(1)),
+            Kind::Irregular => self.colour(Role::Second),
+            Kind::Interwell | Kind::Crossing | Kind::Fault => self.impact(),
+        }
     }
 
-    /// Secondary text and lines: ticks, units, notes.
-    pub fn faint(&self) -> Color32 {
-        colour(self.theme().soft)
-    }
-
-    /// Edges of controls, with a contrast of at least 3:1 to the background.
-    pub fn edge(&self) -> Color32 {
-        self.pick(Color32::from_gray(135), Color32::from_gray(118))
-    }
-
-    pub fn grid(&self) -> Color32 {
-        colour(self.theme().grid)
-    }
-
-    pub fn ground(&self) -> Color32 {
-        colour(self.theme().paper)
-    }
-
-    pub fn mass(&self) -> Color32 {
-        ORANGE
-    }
-
-    /// The outline of a pinned motion's mass.
-    pub fn ghost_mass_stroke(&self) -> Stroke {
-        Stroke::new(self.width(1.8), self.mass_ink())
-    }
-
-    /// Text about the proof mass.
-    pub fn mass_ink(&self) -> Color32 {
-        self.pick(Color32::from_rgb(140, 92, 0), ORANGE)
-    }
-
-    pub fn mass_edge(&self) -> Color32 {
-        self.pick(Color32::from_rgb(122, 84, 0), Color32::from_rgb(255, 214, 128))
+    pub fn measured(&self) -> Color32 {
+        self.kind(Kind::Irregular)
     }
 
     pub fn stop(&self) -> Color32 {
@@ -141,15 +113,6 @@ impl Style {
         self.colour(Role::Impact)
     }
 
-    pub fn kind(&self, kind: Kind) -> Color32 {
-        match kind {
-            Kind::Resting | Kind::Other => self.faint(),
-            Kind::Intrawell => self.colour(Role::Regime(1)),
-            Kind::Irregular => self.colour(Role::Second),
-            Kind::Interwell | Kind::Crossing | Kind::Fault => self.impact(),
-        }
-    }
-
     pub fn width(&self, points: f32) -> f32 {
         // three pixels at the zoom of the projector mode
         if self.projector { points.max(3.0 / PROJECTOR_ZOOM) } else { points }
@@ -164,28 +127,9 @@ impl Style {
         Stroke::new(self.width(1.3), self.kind(Kind::Irregular))
     }
 
-    /// The potential with the base's push, on which the mass rides.
-    pub fn tray_stroke(&self) -> Stroke {
-        self.stroke(Role::Curve)
-    }
-
-    /// The potential without the push.
-    pub fn ghost_stroke(&self) -> Stroke {
-        self.stroke(Role::Reference)
-    }
-
-    /// The motion over time.
-    pub fn motion_stroke(&self) -> Stroke {
-        self.stroke(Role::Motion)
-    }
-
     /// A pinned motion, over time and in the phase portrait.
     pub fn ghost_motion_stroke(&self) -> Stroke {
         Stroke::new(self.width(1.6), self.ink().gamma_multiply(0.6))
-    }
-
-    pub fn measured(&self) -> Color32 {
-        self.kind(Kind::Irregular)
     }
 
     /// Many measured samples, below the computed line.
@@ -193,64 +137,8 @@ impl Style {
         Stroke::new(self.width(4.5), self.measured().lerp_to_gamma(self.ground(), 0.25))
     }
 
-    /// Power of a transducer over time.
-    pub fn power_stroke(&self) -> Stroke {
-        self.stroke(Role::Motion)
-    }
-
-    /// Acceleration of the base over time, and its push.
-    pub fn base_stroke(&self) -> Stroke {
-        self.stroke(Role::Drive)
-    }
-
-    /// The height of the barrier where energies are compared with it.
-    pub fn barrier_stroke(&self) -> Stroke {
-        Stroke::new(self.width(2.0), self.ink())
-    }
-
-    /// An impact: a tick on a time axis, a jump of the velocity.
-    pub fn impact_stroke(&self) -> Stroke {
-        self.stroke(Role::Impact)
-    }
-
-    pub fn stop_stroke(&self) -> Stroke {
-        self.stroke(Role::Stop)
-    }
-
-    /// Frame of what has the keyboard focus.
-    pub fn focus_stroke(&self) -> Stroke {
-        Stroke::new(self.width(2.0), self.base())
-    }
-
-    /// Frame of what a lesson points at.
-    pub fn pointing_stroke(&self) -> Stroke {
-        Stroke::new(3.0, self.mass_ink())
-    }
-
-    pub fn arrow_stroke(&self) -> Stroke {
-        Stroke::new(3.0, self.base())
-    }
-
-    pub fn flexure_stroke(&self) -> Stroke {
-        Stroke::new(self.width(2.0), self.ink())
-    }
-
     pub fn grid_stroke(&self) -> Stroke {
         Stroke::new(1.0, self.grid())
-    }
-
-    pub fn frame_colour(&self) -> Color32 {
-        self.pick(Color32::from_gray(190), Color32::from_gray(85))
-    }
-
-    /// Background of panels, and cells that are not computed yet.
-    pub fn panel(&self) -> Color32 {
-        self.pick(Color32::from_gray(246), Color32::from_gray(34))
-    }
-
-    /// Veil over a map that is not that of the scene.
-    pub fn veil(&self) -> Color32 {
-        self.pick(Color32::from_white_alpha(140), Color32::from_black_alpha(130))
     }
 
     /// The mark of the scene on a map, in the colour of the mass: outline and mark.
@@ -265,20 +153,108 @@ impl Style {
         [Stroke::new(width + 1.8, Color32::BLACK), Stroke::new(width, ORANGE)]
     }
 
-    /// Outline of the cell under the pointer.
-    pub fn cell_stroke(&self) -> Stroke {
-        Stroke::new(self.width(2.0), self.ink())
-    }
-
-    /// Small text in a picture.
     pub fn small(&self) -> FontId {
         FontId::proportional(SMALL)
     }
 
-    /// Body text in a picture.
     pub fn body(&self) -> FontId {
         FontId::proportional(BODY)
     }
+}
+
+/// Methods of [`Style`] that return a colour: its name, the colour in light mode and that in dark mode.
+macro_rules! colours {
+    ($($(#[$doc:meta])* $name:ident: $light:expr, $dark:expr;)+) => {
+        impl Style {
+            $($(#[$doc])*
+            pub fn $name(&self) -> Color32 {
+                self.pick($light, $dark)
+            })+
+        }
+    };
+}
+
+colours! {
+    /// Text and axes.
+    ink: colour(Theme::LIGHT.ink), colour(Theme::DARK.ink);
+    /// Secondary text and lines: ticks, units, notes.
+    faint: colour(Theme::LIGHT.soft), colour(Theme::DARK.soft);
+    /// Edges of controls, with a contrast of at least 3:1 to the background.
+    edge: gray(135), gray(118);
+    grid: colour(Theme::LIGHT.grid), colour(Theme::DARK.grid);
+    ground: colour(Theme::LIGHT.paper), colour(Theme::DARK.paper);
+    /// Text about the proof mass.
+    mass_ink: rgb(140, 92, 0), ORANGE;
+    mass_edge: rgb(122, 84, 0), rgb(255, 214, 128);
+    frame_colour: gray(190), gray(85);
+    /// Background of panels, and cells that are not computed yet.
+    panel: gray(246), gray(34);
+    /// Veil over a map that is not that of the scene.
+    veil: Color32::from_white_alpha(140), Color32::from_black_alpha(130);
+}
+
+/// Methods of [`Style`] that return the line of a role: its name and the role.
+macro_rules! roles {
+    ($($(#[$doc:meta])* $name:ident: $role:ident;)+) => {
+        impl Style {
+            $($(#[$doc])*
+            pub fn $name(&self) -> Stroke {
+                self.stroke(Role::$role)
+            })+
+        }
+    };
+}
+
+roles! {
+    /// The potential with the base's push, on which the mass rides.
+    tray_stroke: Curve;
+    /// The potential without the push.
+    ghost_stroke: Reference;
+    /// The motion over time.
+    motion_stroke: Motion;
+    /// Power of a transducer over time.
+    power_stroke: Motion;
+    /// Acceleration of the base over time, and its push.
+    base_stroke: Drive;
+    /// An impact: a tick on a time axis, a jump of the velocity.
+    impact_stroke: Impact;
+    stop_stroke: Stop;
+}
+
+/// Methods of [`Style`] that return a stroke: its name, its width in points and its colour. In projector mode
+/// it is thicker.
+macro_rules! strokes {
+    ($($(#[$doc:meta])* $name:ident: $points:expr, $colour:ident;)+) => {
+        impl Style {
+            $($(#[$doc])*
+            pub fn $name(&self) -> Stroke {
+                Stroke::new(self.width($points), self.$colour())
+            })+
+        }
+    };
+}
+
+strokes! {
+    /// The outline of a pinned motion's mass.
+    ghost_mass_stroke: 1.8, mass_ink;
+    /// The height of the barrier where energies are compared with it.
+    barrier_stroke: 2.0, ink;
+    /// Frame of what has the keyboard focus.
+    focus_stroke: 2.0, base;
+    /// Frame of what a lesson points at.
+    pointing_stroke: 3.0, mass_ink;
+    arrow_stroke: 3.0, base;
+    flexure_stroke: 2.0, ink;
+    /// Outline of the cell under the pointer.
+    cell_stroke: 2.0, ink;
+}
+
+const fn gray(level: u8) -> Color32 {
+    Color32::from_gray(level)
+}
+
+const fn rgb(red: u8, green: u8, blue: u8) -> Color32 {
+    Color32::from_rgb(red, green, blue)
 }
 
 /// Installs fonts, text sizes and spacing of the window; to be called once.

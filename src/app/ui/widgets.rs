@@ -6,7 +6,6 @@ use crate::app::words::kind::Kind;
 
 use super::style::COMPACT_BELOW;
 
-/// A modal dialog.
 pub fn dialog(ctx: &egui::Context, id: &str) -> egui::Modal {
     let frame = egui::Frame::popup(&ctx.global_style()).inner_margin(16.0);
     egui::Modal::new(egui::Id::unique(id)).frame(frame)
@@ -26,12 +25,11 @@ pub fn dialog_width(ui: &Ui, wanted: f32) -> f32 {
 /// the next one. After an input on the widget it stays hidden until the pointer has left and come back.
 pub fn hover_beside(response: Response, text: &str) -> Response {
     let hidden = egui::Id::unique("hidden hover text");
-    let id = Some(response.id);
-    let is_hidden = || response.ctx.data(|data| data.get_temp::<Option<egui::Id>>(hidden)).flatten() == id;
+    let is_hidden = || response.ctx.data(|data| data.get_temp(hidden)) == Some(response.id);
     if response.changed() || response.dragged() || response.is_pointer_button_down_on() {
-        response.ctx.data_mut(|data| data.insert_temp(hidden, id));
+        response.ctx.data_mut(|data| data.insert_temp(hidden, response.id));
     } else if is_hidden() && !response.contains_pointer() {
-        response.ctx.data_mut(|data| data.insert_temp::<Option<egui::Id>>(hidden, None));
+        response.ctx.data_mut(|data| data.remove::<egui::Id>(hidden));
     }
     if is_hidden() {
         return response;
@@ -68,9 +66,7 @@ pub fn arrows(ui: &Ui, id: egui::Id) -> f64 {
 /// The icon of a button.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Icon {
-    /// A triangle.
     Play,
-    /// Two bars.
     Pause,
     /// A bar and a triangle to the left.
     Restart,
@@ -84,9 +80,7 @@ pub enum Icon {
     Restore,
     /// Two axes and a line: a figure of a view.
     Figure,
-    /// A closed lock.
     Held,
-    /// An open lock.
     Free,
 }
 
@@ -119,11 +113,7 @@ fn icon_shapes(icon: Icon, rect: Rect, color: Color32) -> Vec<Shape> {
         let x = |share: f32| rect.left() + share * rect.width();
         Rect::from_min_max(pos2(x(from), rect.top()), pos2(x(to), rect.bottom()))
     };
-    let diamond = |x: f32| {
-        let (c, r) = (pos2(x, rect.center().y), rect.width() * 0.22);
-        let points = vec![c - vec2(0.0, r), c + vec2(r, 0.0), c + vec2(0.0, r), c - vec2(r, 0.0)];
-        Shape::convex_polygon(points, color, Stroke::NONE)
-    };
+    let diamond = |x: f32| polygon(pos2(x, rect.center().y), rect.width() * 0.22, &DIAMOND, color);
     match icon {
         Icon::Play => vec![triangle(rect, true)],
         Icon::Pause => {
@@ -174,34 +164,29 @@ fn icon_shapes(icon: Icon, rect: Rect, color: Color32) -> Vec<Shape> {
 /// The shape of a kind of motion: square, circle, diamond, double arrow; a ring where it has no name.
 pub fn kind_shapes(kind: Kind, center: Pos2, radius: f32, color: Color32) -> Vec<Shape> {
     let r = radius;
-    let polygon = |points: Vec<Pos2>| Shape::convex_polygon(points, color, Stroke::NONE);
     match kind {
         Kind::Other => vec![Shape::circle_stroke(center, 0.8 * r, Stroke::new(0.35 * r, color))],
         Kind::Resting => {
             vec![Shape::rect_filled(Rect::from_center_size(center, Vec2::splat(1.7 * r)), 0.0, color)]
         }
         Kind::Intrawell => vec![Shape::circle_filled(center, r, color)],
-        Kind::Irregular => vec![polygon(vec![
-            center + vec2(0.0, -1.2 * r),
-            center + vec2(1.2 * r, 0.0),
-            center + vec2(0.0, 1.2 * r),
-            center + vec2(-1.2 * r, 0.0),
-        ])],
+        Kind::Irregular => vec![polygon(center, 1.2 * r, &DIAMOND, color)],
         Kind::Interwell | Kind::Crossing => {
             let head = |side: f32| {
-                polygon(vec![
-                    center + vec2(side * 1.4 * r, 0.0),
-                    center + vec2(side * 0.4 * r, -0.9 * r),
-                    center + vec2(side * 0.4 * r, 0.9 * r),
-                ])
+                let points = [(side * 1.4, 0.0), (side * 0.4, -0.9), (side * 0.4, 0.9)];
+                polygon(center, r, &points, color)
             };
             let shaft = [center - vec2(0.6 * r, 0.0), center + vec2(0.6 * r, 0.0)];
             vec![head(-1.0), head(1.0), Shape::line_segment(shaft, Stroke::new(0.4 * r, color))]
         }
-        Kind::Fault => vec![polygon(vec![
-            center + vec2(0.0, -r),
-            center + vec2(1.1 * r, 0.9 * r),
-            center + vec2(-1.1 * r, 0.9 * r),
-        ])],
+        Kind::Fault => vec![polygon(center, r, &[(0.0, -1.0), (1.1, 0.9), (-1.1, 0.9)], color)],
     }
+}
+
+pub const DIAMOND: [(f32, f32); 4] = [(0.0, -1.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0)];
+
+/// A convex polygon: its corners, each from the centre in units of `scale` points.
+pub fn polygon(center: Pos2, scale: f32, corners: &[(f32, f32)], color: Color32) -> Shape {
+    let points = corners.iter().map(|(x, y)| center + scale * vec2(*x, *y)).collect();
+    Shape::convex_polygon(points, color, Stroke::NONE)
 }

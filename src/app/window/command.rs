@@ -20,7 +20,6 @@ pub enum Command {
     RemoveMeasured,
     Save,
     SaveAs(Wanted),
-    /// A figure of a view; `None` for the one under the pointer.
     Figure(Option<View>),
     CopyScene,
     PasteScene,
@@ -37,7 +36,6 @@ pub enum Command {
     NextRelease,
     NextCrossing,
     RunToEnd,
-    /// One of the speeds.
     Speed(usize),
     Arrange(Layout),
     ArrangeOwn,
@@ -47,7 +45,6 @@ pub enum Command {
     /// Fill the window with one view, or show all again.
     Fill,
     Cover,
-    /// Two cursors over time.
     Cursors,
     /// Hold the axes of the active view, or release them.
     HoldAxes,
@@ -63,7 +60,6 @@ pub enum Command {
     Pin(PinKind),
     Ways,
     BestStops,
-    /// A built-in lesson.
     OpenLesson(&'static str),
     OpenLessonFile,
     LeaveLesson,
@@ -77,8 +73,7 @@ pub enum Command {
 }
 
 impl Command {
-    /// Whether it changes the motion or the scene, or reveals results; such a command is blocked while a
-    /// prediction covers the motion.
+    /// Whether it changes or reveals the motion; it is then blocked while a prediction covers the motion.
     pub(super) fn reveals_motion(&self) -> bool {
         use Wanted::{Events, Map, Motion, Run};
         matches!(
@@ -105,8 +100,10 @@ impl Command {
 }
 
 pub(super) enum Part {
-    /// A command: its name, which is empty if it is in no menu; its key; its entry in the list of keys.
+    /// A command: its name, its key, its entry in the list of keys.
     Item(&'static str, Option<KeyboardShortcut>, Command, Listed),
+    /// A command that is in no menu: its key, its entry in the list of keys.
+    Hidden(Option<KeyboardShortcut>, Command, Listed),
     /// A row that is only in the list of keys: its heading, the keys, and what they do.
     Row(&'static str, &'static str, &'static str),
     Menu(&'static str, &'static [Part]),
@@ -114,9 +111,7 @@ pub(super) enum Part {
     Presets,
     /// The scene files opened last.
     Recent,
-    /// The settings as checkboxes.
     Settings,
-    /// The views as checkboxes.
     Views,
     /// The speeds, with the keys 1 to 7.
     Speeds,
@@ -157,7 +152,7 @@ pub(super) const DISCARD: &str = "Discard changes";
 
 use Command as C;
 use Listed::{As, Joined, No};
-use Part::{Item, Line, Row};
+use Part::{Hidden, Item, Line, Row};
 
 #[rustfmt::skip]
 pub(super) static MENUS: [(&str, &[Part]); 6] = [
@@ -188,7 +183,7 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
     ("Edit", &[
         Item("Undo", Some(UNDO), C::Undo, As("Scene", "undo, redo")),
         Item("Redo", control_shift(Key::Z), C::Redo, No),
-        Item("", control(Key::Y), C::Redo, Joined),
+        Hidden(control(Key::Y), C::Redo, Joined),
         Item(DISCARD, plain(Key::Home), C::BackToStart,
             As("Time", "discard your changes: scene, view and time as opened")),
         Item("Find the best stops", plain(Key::B), C::BestStops,
@@ -211,27 +206,27 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
             Item("Keep this as your own", None, C::KeepOwn, No),
         ]),
         Part::Settings,
-        Item("", plain(Key::P), C::Toggle(Setting::Projector),
+        Hidden(plain(Key::P), C::Toggle(Setting::Projector),
             As("Views", "projector: light, larger, thicker lines")),
-        Item("", plain(Key::D), C::Toggle(Setting::Dark), As("Views", "light letters on a dark ground")),
+        Hidden(plain(Key::D), C::Toggle(Setting::Dark), As("Views", "light letters on a dark ground")),
         Line,
         Part::Views,
         Item("The next tab", control(Key::Tab), C::NextTab,
             As("Views", "the next of the views that share a place")),
         Item("One view over the window", plain(Key::Z), C::Fill,
             As("Views", "the view under the pointer over the whole window")),
-        Item("", plain(Key::Escape), C::Fill, No),
+        Hidden(plain(Key::Escape), C::Fill, No),
         Row("Views", "Esc", "all views again"),
         Item("Two cursors over time", plain(Key::T), C::Cursors,
             As("Views", "two cursors over time: by hand or arrows, up and down to events")),
         Item("Hold the axes", plain(Key::L), C::HoldAxes,
             As("Views", "hold the axes of the view under the pointer, or let go of them")),
         Item("Axes by themselves", plain(Key::Num0), C::FreeAxes, As("Views", "its axes by themselves")),
-        Item("", plain(Key::I), C::Zoom { upwards: false, closer: true },
+        Hidden(plain(Key::I), C::Zoom { upwards: false, closer: true },
             As("Views", "its axis to the right closer, wider; with Shift the other one")),
-        Item("", plain(Key::O), C::Zoom { upwards: false, closer: false }, Joined),
-        Item("", shift(Key::I), C::Zoom { upwards: true, closer: true }, No),
-        Item("", shift(Key::O), C::Zoom { upwards: true, closer: false }, No),
+        Hidden(plain(Key::O), C::Zoom { upwards: false, closer: false }, Joined),
+        Hidden(shift(Key::I), C::Zoom { upwards: true, closer: true }, No),
+        Hidden(shift(Key::O), C::Zoom { upwards: true, closer: false }, No),
         Row("Views", "wheel, drag", "zoom (Shift up, Ctrl both); Shift and drag moves, right drag is a box"),
         Item("Cover the results", plain(Key::C), C::Cover,
             As("Views", "cover the motion and all results, until C again: predict first")),
@@ -258,7 +253,7 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
         Line,
         Part::Speeds,
         Row("Time", "1 to 7", "speed, from 1/1000 of real time to 100 times"),
-        Item("", plain(Key::G), C::Grab, As("Hands", "take hold of the mass")),
+        Hidden(plain(Key::G), C::Grab, As("Hands", "take hold of the mass")),
         Row("Hands", "Left, Right", "move what has the focus by a step, the held mass by 0.1 mm"),
         Row("Hands", "Shift", "with these, ten steps"),
         Row("Hands", "Enter", "let go of the mass"),
@@ -287,7 +282,6 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
     ]),
 ];
 
-/// The parts of all menus.
 pub(super) fn parts() -> impl Iterator<Item = &'static Part> {
     MENUS.iter().flat_map(|menu| menu.1).flat_map(|part| match part {
         Part::Menu(_, parts) => parts.iter(),

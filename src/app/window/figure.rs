@@ -1,15 +1,20 @@
-//! Request for a figure of a view: its content, layout and file.
+//! Figures of views: the dialog for content, layout and file, and what is done with its answer.
 
 use std::path::{Path, PathBuf};
+
+use eframe::egui::{self, Button, ComboBox, Grid, Key, RichText, TextEdit, Ui};
 
 use crate::app::export::figure::{FigureOrder, Place, Subject, round_times};
 use crate::app::session::Session;
 use crate::app::task::Background;
+use crate::app::ui::widgets::{dialog, dialog_width};
 use crate::app::views::{Memory, View, stretch};
 use crate::output::{Format, RunPanel, Sheet, SheetText};
 use crate::system::files;
 
+use super::Window;
 use super::messages::WriteResult;
+use super::wanted::{Wanted, path_fault};
 
 /// Share of the traces' time window below which the whole run is offered instead.
 const LEAST_SHARE: f64 = 0.05;
@@ -18,7 +23,7 @@ const LEAST_SHARE: f64 = 0.05;
 #[derive(Debug)]
 pub struct Figures {
     /// The view; `None` while no figure is requested.
-    pub(super) view: Option<View>,
+    view: Option<View>,
     pub path: String,
     /// Width on paper in mm.
     pub width: String,
@@ -34,21 +39,20 @@ pub struct Figures {
     /// Why the last figure was not saved.
     pub(super) problem: Option<String>,
     /// Whether the path has had the keyboard focus.
-    pub(super) had_focus: bool,
-    pub(super) job: Background<(), WriteResult>,
+    had_focus: bool,
+    job: Background<(), WriteResult>,
 }
 
 impl Default for Figures {
     fn default() -> Self {
-        let text = String::new;
         Self {
             view: None,
-            path: text(),
+            path: String::new(),
             width: "85".to_owned(),
             font: "8".to_owned(),
             titled: true,
             data: false,
-            times: [text(), text()],
+            times: <[String; 2]>::default(),
             panels: [false; RunPanel::ALL.len()],
             problem: None,
             had_focus: false,
@@ -66,13 +70,6 @@ impl Figures {
         self.path = path.to_string_lossy().into_owned();
     }
 
-    /// Reports that the desktop has no file dialog, so that the path has to be typed.
-    pub(super) fn report_no_dialog(&mut self) {
-        let text = "This desktop has no file dialog to offer (xdg-desktop-portal or zenity would be one): \
-                    type the path.";
-        self.problem = Some(text.to_owned());
-    }
-
     pub fn problem(&self) -> Option<&str> {
         self.problem.as_deref()
     }
@@ -88,18 +85,13 @@ impl Figures {
         let name = view.name().to_lowercase().replace(" / ", "-").replace(' ', "-");
         self.choose(&folder.join(format!("{stem}-{name}.{ending}")));
         self.times = times(session, memory)
-            .map_or([String::new(), String::new()], |(from, to)| [from, to].map(|t| t.to_string()));
+            .map_or_else(Default::default, |(from, to)| [from, to].map(|t| t.to_string()));
         self.panels = RunPanel::ALL.map(|shown| panel(view) == Some(shown));
         (self.view, self.problem, self.had_focus) = (Some(view), None, false);
     }
 
     /// The order for the requested figure, or what is wrong with the request.
-    pub(super) fn order(
-        &self,
-        view: View,
-        session: &Session,
-        memory: &Memory,
-    ) -> Result<FigureOrder, String> {
+    fn order(&self, view: View, session: &Session, memory: &Memory) -> Result<FigureOrder, String> {
         let path = PathBuf::from(self.path.trim());
         let subject = self.subject(view, session, memory)?;
         let format = Format::of(&path).map_err(|_| {
@@ -119,15 +111,12 @@ impl Figures {
     fn subject(&self, view: View, session: &Session, memory: &Memory) -> Result<Subject, String> {
         match view {
             _ if panel(view).is_some() => {
-                let shown =
-                    RunPanel::ALL.into_iter().zip(self.panels).filter(|pair| pair.1).map(|pair| pair.0);
-                let shown: Vec<RunPanel> = shown.collect();
-                let none = "Panels: at least one is needed.";
+                let panels = RunPanel::ALL.into_iter().zip(self.panels);
+                let shown: Vec<RunPanel> = panels.filter_map(|(panel, on)| on.then_some(panel)).collect();
                 if shown.is_empty() {
-                    Err(none.to_owned())
-                } else {
-                    Ok(Subject::Run(self.typed_times()?, shown))
+                    return Err("Panels: at least one is needed.".to_owned());
                 }
+                Ok(Subject::Run(self.typed_times()?, shown))
             }
             View::Section => Ok(Subject::Section),
             View::Mechanism => Subject::shapes(session),
@@ -160,22 +149,13 @@ impl Figures {
     }
 
     /// Whether the figure can be saved as requested, and the remark under the fields.
-    pub(super) fn remark(
-        &self,
-        order: Result<&FigureOrder, &String>,
-        view: View,
-        session: &Session,
-    ) -> (bool, String) {
+    fn remark(&self, order: Result<&FigureOrder, &String>, view: View, session: &Session) -> (bool, String) {
         let path = Path::new(self.path.trim());
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
         if let Err(problem) = order {
             return (false, problem.clone());
         }
-        if files::is_folder(path) {
-            return (false, "This is a folder: add the name of a file.".to_owned());
-        }
-        if folder.is_some_and(|folder| !files::is_folder(folder)) {
-            return (false, "There is no such folder.".to_owned());
+        if let Some(fault) = path_fault(path) {
+            return (false, fault.to_owned());
         }
         let mut words = match view {
             _ if panel(view).is_some() && session.is_continued() => {
@@ -199,7 +179,7 @@ impl Figures {
     }
 }
 
-pub(super) fn panel(view: View) -> Option<RunPanel> {
+fn panel(view: View) -> Option<RunPanel> {
     match view {
         View::Displacement => Some(RunPanel::Displacement),
         View::Velocity => Some(RunPanel::Velocity),
@@ -216,4 +196,182 @@ fn times(session: &Session, memory: &Memory) -> Option<(f64, f64)> {
     let window = memory.timeline.window.unwrap_or_else(|| stretch(session.model()));
     let from = (now - window).max(0.0);
     (!session.is_continued() && now - from > LEAST_SHARE * window).then(|| round_times((from, now))).flatten()
+}
+
+enum Action {
+    Save,
+    Copy,
+    /// Choose the file in the desktop's dialog.
+    Browse,
+    Close,
+}
+
+impl Figures {
+    fn ui(&mut self, ui: &Ui, view: View, session: &Session, memory: &Memory) -> Option<Action> {
+        let answer = dialog(ui.ctx(), "figure").show(ui.ctx(), |ui| {
+            ui.set_width(dialog_width(ui, 560.0));
+            ui.heading("Save a figure");
+            ui.add_space(4.0);
+            self.contents_ui(ui, view, session, memory)
+        });
+        let closed = answer.should_close().then_some(Action::Close);
+        answer.inner.or(closed)
+    }
+
+    fn contents_ui(&mut self, ui: &mut Ui, view: View, session: &Session, memory: &Memory) -> Option<Action> {
+        let mut action = None;
+        let entered = Grid::new("figure").num_columns(2).spacing([12.0, 6.0]).show(ui, |ui| {
+            self.view_choice_ui(ui, view, session, memory);
+            self.fields_ui(ui, view, &mut action)
+        });
+        let order = self.order(view, session, memory);
+        let (can_save, remark) = self.remark(order.as_ref(), view, session);
+        let remark = self.problem.clone().unwrap_or(remark);
+        let running = self.job.is_running();
+        let words = if running { "Working it out." } else { remark.as_str() };
+        ui.add_space(4.0);
+        let room = egui::Vec2::new(ui.available_width(), 2.0 * ui.text_style_height(&egui::TextStyle::Body));
+        ui.allocate_ui(room, |ui| {
+            ui.set_min_height(room.y);
+            let label = ui.add(egui::Label::new(RichText::new(words)).wrap());
+            ui.ctx().accesskit_node_builder(label.id, |node| node.set_live(egui::accesskit::Live::Polite));
+        });
+        ui.add_space(4.0);
+        ui.horizontal(|ui| {
+            if running {
+                if ui.button("Stop").clicked() {
+                    self.job.clear();
+                }
+                return;
+            }
+            if ui.add_enabled(can_save, Button::new("Save")).clicked() || entered.inner && can_save {
+                action = Some(Action::Save);
+            }
+            let hover = "The command that makes the same file without a window.";
+            let copy = ui.add_enabled(order.is_ok(), Button::new("Copy as command")).on_hover_text(hover);
+            if copy.clicked() {
+                action = Some(Action::Copy);
+            }
+            if ui.button("Cancel").clicked() {
+                action = Some(Action::Close);
+            }
+        });
+        action
+    }
+
+    fn view_choice_ui(&mut self, ui: &mut Ui, view: View, session: &Session, memory: &Memory) {
+        let name = ui.label("Of");
+        let mut chosen = view;
+        let combo = ComboBox::from_id_salt("figure of").width(180.0).selected_text(view.name());
+        let combo = combo.show_ui(ui, |ui| {
+            for choice in View::ALL {
+                ui.selectable_value(&mut chosen, choice, choice.name());
+            }
+        });
+        combo.response.labelled_by(name.id);
+        if chosen != view {
+            self.open(chosen, session, memory);
+        }
+        ui.end_row();
+    }
+
+    /// File, layout and contents. Returns whether Enter was pressed in a text field.
+    fn fields_ui(&mut self, ui: &mut Ui, view: View, action: &mut Option<Action>) -> bool {
+        let field = |ui: &mut Ui, name: &str, text: &mut String, width: f32, unit: &str| {
+            let name = ui.label(name);
+            let field = ui.add(TextEdit::singleline(text).desired_width(width)).labelled_by(name.id);
+            ui.label(unit);
+            field
+        };
+        let name = ui.label("File");
+        let path = ui.horizontal(|ui| {
+            let path = TextEdit::singleline(&mut self.path);
+            let room = ui.available_width() - 84.0;
+            let path = ui.add(path.desired_width(room)).labelled_by(name.id);
+            if ui.button("Browse...").clicked() {
+                *action = Some(Action::Browse);
+            }
+            path
+        });
+        ui.end_row();
+        ui.label("On paper");
+        let (width, font) = ui
+            .horizontal(|ui| {
+                let width = field(ui, "width", &mut self.width, 44.0, "mm,");
+                (width, field(ui, "text", &mut self.font, 36.0, "points"))
+            })
+            .inner;
+        ui.end_row();
+        let mut fields = vec![path.inner, width, font];
+        if panel(view).is_some() {
+            ui.label("Panels");
+            ui.horizontal(|ui| {
+                let names = ["displacement", "velocity", "base acceleration", "energy", "phase portrait"];
+                for (name, panel) in names.into_iter().zip(&mut self.panels) {
+                    ui.checkbox(panel, name);
+                }
+            });
+            ui.end_row();
+            ui.label("Times");
+            ui.horizontal(|ui| {
+                let [from, to] = &mut self.times;
+                fields.push(field(ui, "from", from, 64.0, ""));
+                fields.push(field(ui, "to", to, 64.0, "s; empty for the whole run"));
+            });
+            ui.end_row();
+        }
+        ui.label("");
+        ui.checkbox(&mut self.titled, "With title and footer");
+        ui.end_row();
+        ui.label("");
+        ui.checkbox(&mut self.data, "Also the numbers that are drawn, as CSV beside it");
+        ui.end_row();
+        if !std::mem::replace(&mut self.had_focus, true) {
+            fields[0].request_focus();
+        }
+        if fields.iter().any(|field| field.changed()) {
+            self.problem = None;
+        }
+        fields.iter().any(|field| field.lost_focus()) && ui.input(|input| input.key_pressed(Key::Enter))
+    }
+}
+
+impl Window {
+    pub(super) fn figure_ui(&mut self, ui: &Ui) {
+        let Some(view) = self.figures.view else { return };
+        let Some(action) = self.figures.ui(ui, view, &self.session, &self.memory) else { return };
+        // the dialog may have chosen another view
+        let view = self.figures.view.unwrap_or(view);
+        let order = self.figures.order(view, &self.session, &self.memory);
+        match (action, order) {
+            (Action::Browse, _) => self.choose(Wanted::Figure),
+            (Action::Close, _) => {
+                self.figures.job.clear();
+                self.figures.view = None;
+            }
+            (_, Err(problem)) => self.figures.problem = Some(problem),
+            (Action::Copy, Ok(order)) => {
+                ui.ctx().copy_text(order.command_line());
+                self.messages.notify("Copied: the command line of this figure");
+            }
+            (Action::Save, Ok(order)) => {
+                self.figures.problem = None;
+                self.figures.job.ask((), &self.wake, move |(), cancel, _| {
+                    order.save(cancel).map_err(|error| error.to_string()).transpose()
+                });
+            }
+        }
+    }
+
+    /// Receives the result of saving a figure; after an error the dialog stays open.
+    pub(super) fn take_figure(&mut self) {
+        match self.figures.job.take() {
+            Some(Ok(text)) => {
+                self.figures.view = None;
+                self.messages.notify(text);
+            }
+            Some(Err(problem)) => self.figures.problem = Some(problem),
+            None => {}
+        }
+    }
 }

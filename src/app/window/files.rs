@@ -1,5 +1,4 @@
-//! Opening of scenes and measured data, and choice of files: dialogs, dropped files, the clipboard, questions
-//! to the user.
+//! Opening of scenes and measured data, choice of files, and questions to the user.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -20,8 +19,8 @@ use super::Window;
 use super::leave::{self, Answer, Next};
 use super::lessons;
 use super::measured_dialog::{ENDINGS, MeasuredAnswer, MeasuredDialog, is_measured};
-use super::messages::CANNOT_OPEN;
-use super::wanted::{Chosen, PathAnswer, PathDialog, Wanted};
+use super::messages::{CANNOT_OPEN, Messages};
+use super::wanted::{Chosen, NO_DIALOG, PathAnswer, PathDialog, Wanted};
 
 /// Time in ms below which a dialog that is closed again has not been visible.
 const UNSEEN: u128 = 300;
@@ -53,7 +52,7 @@ impl Window {
                     figures: std::mem::take(&mut self.figures),
                     covered: self.covered,
                     lessons: std::mem::take(&mut self.lessons),
-                    messages: self.messages.take_notice(),
+                    messages: Messages { alert: None, notice: self.messages.notice.take() },
                     applied: self.applied,
                     memory: self.memory.for_another_scene(),
                     ..window
@@ -123,12 +122,13 @@ impl Window {
         }
     }
 
-    /// Receives the answer of a file dialog.
     pub(super) fn take_choice(&mut self, ctx: &egui::Context) {
         if let Some(chosen) = self.file_dialog.take() {
             match chosen {
                 Chosen::File(wanted, path) => self.take_file(ctx, wanted, path),
-                Chosen::NoDialog(Wanted::Figure, _) => self.figures.report_no_dialog(),
+                Chosen::NoDialog(Wanted::Figure, _) => {
+                    self.figures.problem = Some(format!("{NO_DIALOG}: type the path."));
+                }
                 Chosen::NoDialog(wanted, path) => self.path_dialog = Some(PathDialog::new(wanted, &path)),
             }
         } else if !self.file_dialog.is_running() && self.over_comments.is_none() && self.path_dialog.is_none()
@@ -198,7 +198,6 @@ impl Window {
         }
     }
 
-    /// Takes a file that was dropped on the window: measured data, a scene or a lesson.
     pub fn take_dropped(&mut self, ctx: &egui::Context, path: &Path) {
         match is_measured(path) {
             true if self.waits_for_answer() && self.columns.is_none() => {}
@@ -263,7 +262,6 @@ impl Window {
         self.path_dialog = Some(PathDialog::new(wanted, Path::new("")));
     }
 
-    /// Opens a file dialog in the background.
     pub(super) fn choose(&mut self, wanted: Wanted) {
         if !self.opens_dialogs {
             return;
@@ -298,7 +296,6 @@ impl Window {
         });
     }
 
-    /// Opens the dialog for the columns of a file of measured data.
     pub fn open_measured(&mut self, path: &Path) {
         self.columns = Some(MeasuredDialog::new(path, &self.wake));
     }
@@ -318,7 +315,6 @@ impl Window {
         self.tiling.show(view, true);
     }
 
-    /// Draws the dialog for the columns, and carries out its answer.
     pub(super) fn measured_ui(&mut self, ui: &Ui) {
         let Some(answer) = self.columns.as_mut().and_then(|dialog| dialog.ui(ui, &self.wake)) else { return };
         match answer {

@@ -1,17 +1,18 @@
 //! State of the window that is kept from one start of the program to the next.
+//!
+//! eframe saves the size in points at the zoom of that time and restores it before a zoom is set, so that a
+//! window in projector mode would become smaller with every start. The size is therefore saved here, in
+//! points at zoom 1.
 
+use eframe::egui::{Context, Vec2, ViewportCommand, vec2};
 use eframe::{Storage, get_value, set_value};
 
 use super::Window;
-use super::size::WindowSize;
 
-/// Key of the recently opened files.
 const RECENT: &str = "recent";
 /// Key of the window's size in points at zoom 1.
 const SIZE: &str = "size";
-/// Key of the custom arrangement.
 const CUSTOM: &str = "arrangement";
-/// Key of the progress in lessons.
 const LESSONS: &str = "lessons";
 
 impl Window {
@@ -37,11 +38,64 @@ impl Window {
 
     /// Restores a saved size; `None` at the first start.
     pub fn restore_size(&mut self, size: Option<[f32; 2]>) {
-        self.window_size = WindowSize::restored(size);
+        let sane = |size: &Vec2| size.is_finite() && size.min_elem() >= 1.0;
+        let wanted = size.map(|[x, y]| vec2(x, y)).filter(sane);
+        self.window_size = WindowSize { wanted, ..WindowSize::default() };
     }
 
     /// The size to save, in points at zoom 1.
     pub fn size(&self) -> Option<[f32; 2]> {
-        self.window_size.size()
+        self.window_size.size.map(|size| [size.x, size.y])
+    }
+}
+
+/// Number of frames after which sizes are those of the present zoom.
+const SETTLED: u32 = 3;
+/// Number of frames within which the window system reports the size of the window's decoration.
+const DECORATED: u32 = 90;
+
+/// Size of the window, and how far it has been restored.
+#[derive(Debug, Clone, Default)]
+pub(super) struct WindowSize {
+    /// The size to restore; `None` once it has been requested.
+    wanted: Option<Vec2>,
+    /// Number of frames with the wanted zoom.
+    frames: u32,
+    /// Whether the window was larger than the screen and has been maximized.
+    fitted: bool,
+    /// The last size of the window that was neither maximized nor full-screen.
+    size: Option<Vec2>,
+}
+
+impl WindowSize {
+    /// To be called in every frame, with the wanted zoom.
+    pub fn follow(&mut self, ctx: &Context, zoom: f32) {
+        self.frames = if (ctx.zoom_factor() - zoom).abs() < 1e-3 { self.frames.saturating_add(1) } else { 0 };
+        if self.frames < SETTLED {
+            ctx.request_repaint();
+            return;
+        }
+        let (inner, outer, screen, fills_screen) = ctx.input(|input| {
+            let view = input.viewport();
+            let fills_screen = view.maximized == Some(true) || view.fullscreen == Some(true);
+            (view.inner_rect, view.outer_rect, view.monitor_size, fills_screen)
+        });
+        let Some(inner) = inner.map(|rect| rect.size()).filter(|_| !fills_screen) else { return };
+        if let Some(wanted) = self.wanted.take() {
+            if (inner * zoom - wanted).abs().max_elem() > 1.0 {
+                ctx.send_viewport_cmd(ViewportCommand::InnerSize(wanted / zoom));
+                self.frames = 0;
+            }
+            return;
+        }
+        // with its decoration it may be larger than the screen, which then cuts off the lowest bar
+        if let Some(screen) = screen.filter(|_| !self.fitted && self.frames < DECORATED) {
+            let outer = outer.map_or(inner, |rect| rect.size()).max(inner);
+            if outer.x > screen.x + 1.0 || outer.y > screen.y + 1.0 {
+                self.fitted = true;
+                ctx.send_viewport_cmd(ViewportCommand::Maximized(true));
+            }
+        }
+        self.size = Some(inner * zoom);
     }
 }

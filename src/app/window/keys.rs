@@ -26,7 +26,9 @@ pub fn pressed(ctx: &Context, filled: bool) -> Vec<Command> {
     let speeds = SPEED_KEYS.into_iter().enumerate();
     let speeds = speeds.map(|(i, key)| (KeyboardShortcut::new(Modifiers::NONE, key), Command::Speed(i)));
     let keys = parts().filter_map(|part| match part {
-        Part::Item(_, Some(key), command, _) => Some((*key, command.clone())),
+        Part::Item(_, Some(key), command, _) | Part::Hidden(Some(key), command, _) => {
+            Some((*key, command.clone()))
+        }
         _ => None,
     });
     let (shifted, others): (Vec<_>, Vec<_>) = keys.chain(speeds).partition(|(key, _)| key.modifiers.shift);
@@ -60,13 +62,15 @@ fn rows(ctx: &Context, heading: &str, projector: bool) -> Vec<(String, &'static 
     for part in parts() {
         match (part, rows.last_mut()) {
             // the projector is light
-            (Part::Item(_, _, Command::Toggle(Setting::Dark), _), _) if projector => {}
+            (Part::Hidden(_, Command::Toggle(Setting::Dark), _), _) if projector => {}
             (Part::Row(group, keys, text), _) => rows.push((group, (*keys).to_owned(), text)),
-            (Part::Item(_, Some(key), _, Listed::As(group, text)), _) => {
-                rows.push((group, ctx.format_shortcut(key), text));
-            }
-            (Part::Item(_, Some(key), _, Listed::Joined), Some(row)) => {
-                row.1 += &format!(", {}", ctx.format_shortcut(key));
+            (Part::Item(_, Some(key), _, listed) | Part::Hidden(Some(key), _, listed), last) => {
+                let key = ctx.format_shortcut(key);
+                match (listed, last) {
+                    (Listed::As(group, text), _) => rows.push((group, key, text)),
+                    (Listed::Joined, Some(row)) => row.1 += &format!(", {key}"),
+                    _ => {}
+                }
             }
             _ => {}
         }

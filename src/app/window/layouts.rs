@@ -1,7 +1,7 @@
 //! Tiles of the views in each arrangement.
 
-use eframe::egui::{self, Ui, Vec2, WidgetText};
-use egui_tiles::{Container, SimplificationOptions, Tile, TileId, Tiles, Tree, UiResponse};
+use eframe::egui::{self, Response, Ui, Vec2, WidgetText};
+use egui_tiles::{Container, SimplificationOptions, Tabs, Tile, TileId, Tiles, Tree, UiResponse};
 
 use crate::app::ui::style::{BODY, COMPACT_BELOW, LARGE_FROM};
 use crate::app::ui::widgets::{Icon, icon_button_ui};
@@ -12,11 +12,9 @@ use trees::{compact_lesson_tree, compact_tree, lesson_tree, tabs_tree, views_of,
 
 mod trees;
 
-/// Space in points beside a title.
 const TITLE_MARGIN: f32 = 6.0;
 /// Width in points of the buttons beside the titles.
 const BUTTONS: f32 = 58.0;
-/// Least text size in points of a title.
 const LEAST_TITLE: f32 = 9.5;
 
 /// Size class of the window.
@@ -67,7 +65,6 @@ impl Tiling {
         Self { tree, room }
     }
 
-    /// The tiles of a lesson with these views.
     pub fn of_lesson(views: &[View], room: Room) -> Self {
         let tree = if room == Room::Compact { compact_lesson_tree(views) } else { lesson_tree(views) };
         Self { tree, room }
@@ -110,8 +107,7 @@ impl Tiling {
         self.tree.tiles.find_pane(&view).is_some_and(|id| self.tree.is_visible(id))
     }
 
-    /// Shows or hides a view. A view without a tile joins those of its kind: below them, or in a compact
-    /// window as a tab.
+    /// Shows or hides a view. A view without a tile joins those of its kind, in a compact window as a tab.
     pub fn show(&mut self, view: View, shown: bool) {
         match self.tree.tiles.find_pane(&view) {
             Some(id) => self.tree.set_visible(id, shown),
@@ -217,9 +213,8 @@ struct Behavior<'a, 'b> {
 }
 
 /// The button that holds the axes of a view; `None` if it has no axes.
-pub(super) fn hold_ui(ui: &mut Ui, view: View, memory: &mut Memory) -> Option<egui::Response> {
-    let held = memory.are_axes_held(view)?;
-    let (icon, name, hover) = match held {
+pub(super) fn hold_ui(ui: &mut Ui, view: View, memory: &mut Memory) -> Option<Response> {
+    let (icon, name, hover) = match memory.are_axes_held(view)? {
         true => (Icon::Held, "let go of the axes of", "The axes are held. A click lets go of them (L)."),
         false => (Icon::Free, "hold the axes of", "Hold the axes as they are, whatever comes (L)."),
     };
@@ -248,26 +243,14 @@ impl egui_tiles::Behavior<View> for Behavior<'_, '_> {
         26.0
     }
 
-    fn on_tab_button(
-        &mut self,
-        tiles: &mut Tiles<View>,
-        id: TileId,
-        button: egui::Response,
-    ) -> egui::Response {
+    fn on_tab_button(&mut self, tiles: &mut Tiles<View>, id: TileId, button: Response) -> Response {
         match tiles.get_pane(&id) {
             Some(view) => button.on_hover_text(view.about()),
             None => button,
         }
     }
 
-    fn top_bar_right_ui(
-        &mut self,
-        tiles: &Tiles<View>,
-        ui: &mut Ui,
-        _: TileId,
-        tabs: &egui_tiles::Tabs,
-        _: &mut f32,
-    ) {
+    fn top_bar_right_ui(&mut self, tiles: &Tiles<View>, ui: &mut Ui, _: TileId, tabs: &Tabs, _: &mut f32) {
         let Some(view) = tabs.active.and_then(|id| tiles.get_pane(&id)) else { return };
         let name = format!("fill the window with {}", view.name());
         let hover = "This view over the whole window (Z)";

@@ -9,7 +9,6 @@ use crate::app::ui::widgets::{dialog, dialog_width};
 pub enum Next {
     /// A scene file or a built-in scene.
     Open(String),
-    /// A scene as text.
     Text(String),
     /// A file that the user has yet to choose.
     Choose,
@@ -30,8 +29,7 @@ pub fn question_ui(ui: &Ui, title: &str) -> Option<Answer> {
     choice_ui(ui, "unsaved", "Save the changes?", &text, "Don't save")
 }
 
-/// Asks before a hand-written file is overwritten, which drops its comments: they are not part of a scene.
-/// Returns `None` until there is an answer.
+/// Asks before a file loses its comments. Returns `None` until there is an answer.
 pub fn comments_ui(ui: &Ui, path: &str) -> Option<Answer> {
     let text = format!(
         "{path} has comments. They are no part of the scene, and saving over the file does not keep them; \

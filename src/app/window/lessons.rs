@@ -25,7 +25,6 @@ use crate::system::files;
 use super::Window;
 use super::layouts::{Arrangement, Tiling};
 
-/// Title of the alert about a lesson that cannot be opened.
 pub(super) const CANNOT_OPEN_LESSON: &str = "This lesson cannot be opened";
 
 /// Distance in points between a control and the outline around it.
@@ -34,11 +33,8 @@ const OUTLINE_DISTANCE: f32 = 2.0;
 #[derive(Default)]
 pub(super) struct Lessons {
     pub open: Option<OpenLesson>,
-    /// The state of the window before the lesson.
     suspended: Option<Suspended>,
-    /// The progress in all lessons.
     pub records: Records,
-    /// Whether the lecturer's notes are shown.
     pub notes: bool,
     /// Rectangles of the controls in this frame.
     controls: Vec<(String, Rect)>,
@@ -64,7 +60,6 @@ struct Suspended {
     ways: bool,
 }
 
-/// Reads a lesson: a built-in one or a file.
 pub(super) fn read(spec: &str) -> Result<LessonDocument, CannotRun> {
     LessonDocument::load(spec, &result_fields()).map_err(|error| match error {
         LessonError::Wrong(error) => error.into(),
@@ -74,8 +69,7 @@ pub(super) fn read(spec: &str) -> Result<LessonDocument, CannotRun> {
     })
 }
 
-/// Whether what is to be opened is a lesson: a lesson's file or, where no file is called so, the name, number
-/// or words of a built-in lesson.
+/// Whether `spec` is a lesson: a file or, if there is none, the name, number or words of a built-in one.
 pub(super) fn is_lesson(spec: &str) -> bool {
     let path = Path::new(spec);
     let built_in = || !files::exists(path) && BuiltInLesson::find(spec).is_some();
@@ -83,8 +77,7 @@ pub(super) fn is_lesson(spec: &str) -> bool {
 }
 
 impl Window {
-    /// Opens a lesson: a built-in one by its name or number, or a file. If that fails, the window stays as it
-    /// is, and an alert says why.
+    /// Opens a built-in lesson by its name or number, or a file. If that fails, an alert says why.
     pub fn open_lesson(&mut self, spec: &str) {
         match read(spec).and_then(|document| self.begin_lesson(document)) {
             Ok(()) => {}
@@ -103,7 +96,7 @@ impl Window {
         };
         let key = OpenLesson::key_of(&document);
         let (lesson, scene) = OpenLesson::open(document, self.lessons.records.get(&key), wake);
-        let session = self.lesson_session(&lesson, *scene, !lesson.is_covering())?;
+        let session = self.session_on(&lesson, *scene, !lesson.is_covering())?;
         let before = std::mem::replace(&mut self.session, session);
         if self.lessons.suspended.is_none() {
             self.lessons.suspended = Some(Suspended {
@@ -128,12 +121,7 @@ impl Window {
     }
 
     /// A session on a scene of a lesson, at the lesson's speed.
-    fn lesson_session(
-        &self,
-        lesson: &OpenLesson,
-        scene: Document,
-        plays: bool,
-    ) -> Result<Session, CannotRun> {
+    fn session_on(&self, lesson: &OpenLesson, scene: Document, plays: bool) -> Result<Session, CannotRun> {
         let mut session = Session::new(Editor::in_lesson(scene), Arc::clone(&self.wake))?;
         session.player.speed = lesson.lesson().speed.unwrap_or(session.player.speed);
         session.player.set_playing(plays);
@@ -197,7 +185,6 @@ impl Window {
         matches!(self.cover(), Cover::Future | Cover::All)
     }
 
-    /// Whether a prediction covers the motion.
     pub(super) fn lesson_covers(&self) -> bool {
         self.lessons.open.as_ref().is_some_and(OpenLesson::is_covering)
     }
@@ -226,7 +213,6 @@ impl Window {
         self.take_turn(turn);
     }
 
-    /// Restarts the open lesson from its first step, without answers.
     pub(super) fn begin_lesson_anew(&mut self) {
         let turn = self.lessons.open.as_mut().map(OpenLesson::begin_anew);
         turn.into_iter().for_each(|turn| self.take_turn(turn));
@@ -236,7 +222,7 @@ impl Window {
         let Some(lesson) = &self.lessons.open else { return };
         match turn {
             Turn::Stay | Turn::Same => {}
-            Turn::Show(scene, plays) => match self.lesson_session(lesson, *scene, plays) {
+            Turn::Show(scene, plays) => match self.session_on(lesson, *scene, plays) {
                 Ok(session) => {
                     self.session = session;
                     self.memory = Memory::default();
@@ -250,7 +236,6 @@ impl Window {
         }
     }
 
-    /// Carries out the pressed keys of the open lesson.
     pub(super) fn lesson_keys(&mut self, ctx: &egui::Context) {
         let Some(lesson) = self.lessons.open.as_ref().filter(|_| !ctx.text_edit_focused()) else { return };
         let mut keys = vec![(Key::PageDown, LessonAction::Next), (Key::PageUp, LessonAction::Back)];
@@ -280,8 +265,7 @@ impl Window {
         self.session.keeps_remedy = !lesson.tells_remedy();
     }
 
-    /// The strip of the open lesson, and the controls that it names; they are disabled while a prediction
-    /// covers the motion.
+    /// The strip of the open lesson, and its controls; they are disabled while the motion is covered.
     pub(super) fn lesson_panels_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) {
         let Some(lesson) = &mut self.lessons.open else { return };
         // not a panel, whose height would follow its contents one frame late

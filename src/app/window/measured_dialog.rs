@@ -19,7 +19,6 @@ const ROWS: [(&str, &[Quantity]); 2] = [
     ("values", &[Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration, Quantity::Force]),
 ];
 
-/// Width in points of the dialog.
 const WIDTH: f32 = 560.0;
 /// Width in points of the choice of a column.
 const COLUMN: f32 = 190.0;
@@ -40,20 +39,16 @@ pub struct MeasuredDialog {
     chosen: Option<[ChosenColumn; 2]>,
     /// The record of two columns, each with its unit.
     record: Background<[(usize, Unit); 2], Result<MeasuredRecord, String>>,
-    /// Why the base cannot be shaken with the record.
     refused: Option<String>,
 }
 
 pub(super) enum MeasuredAnswer {
-    /// Draw the record over the computed motion or curve.
     Overlay(Box<MeasuredRecord>),
-    /// Shake the base with the record of the file.
     Shake(PathBuf, Box<MeasuredRecord>),
     Cancelled,
 }
 
 impl MeasuredDialog {
-    /// Begins to read the file.
     pub fn new(path: &Path, wake: &Wake) -> Self {
         let name = file_name(path);
         let mut text = Background::default();
@@ -66,7 +61,6 @@ impl MeasuredDialog {
         Self { path: path.to_owned(), name, text, chosen: None, record, refused: None }
     }
 
-    /// Says why the base cannot be shaken with the record.
     pub fn refuse(&mut self, why: String) {
         self.refused = Some(why);
     }
@@ -107,7 +101,6 @@ impl MeasuredDialog {
             .want(wanted, true, wake, move |wanted, _, _| Some(MeasuredRecord::of(&path, &text, *wanted)));
     }
 
-    /// Draws the dialog. Returns the answer once there is one.
     pub(super) fn ui(&mut self, ui: &Ui, wake: &Wake) -> Option<MeasuredAnswer> {
         self.poll(wake);
         let answer = dialog(ui.ctx(), "measured").show(ui.ctx(), |ui| {
@@ -182,51 +175,37 @@ impl MeasuredDialog {
         });
     }
 
-    /// The record that was read, or why it cannot be read.
     fn known_ui(&self, ui: &mut Ui) {
         ui.add_space(4.0);
         match self.known() {
             None => _ = ui.label("Reading the file."),
             Some(Err(problem)) => _ = ui.label(RichText::new(problem).heading()),
-            Some(Ok(record)) => {
-                ui.label(record.describe());
-            }
+            Some(Ok(record)) => _ = ui.label(record.describe()),
         }
         if let Some(why) = &self.refused {
             ui.label(RichText::new(format!("The base is not shaken with it. {why}")).heading());
         }
     }
 
-    fn buttons_ui(&mut self, ui: &mut Ui) -> Option<MeasuredAnswer> {
-        let ready = matches!(self.known(), Some(Ok(_)));
-        let record = |dialog: &mut Self| dialog.record.take().and_then(Result::ok).map(Box::new);
+    fn buttons_ui(&self, ui: &mut Ui) -> Option<MeasuredAnswer> {
+        let record = self.known().and_then(Result::ok);
         ui.horizontal(|ui| {
-            let lay = ui.add_enabled(ready, Button::new("Lay it over"));
-            if ready && ui.memory(|memory| memory.focused().is_none()) {
+            let lay = ui.add_enabled(record.is_some(), Button::new("Lay it over"));
+            if record.is_some() && ui.memory(|memory| memory.focused().is_none()) {
                 lay.request_focus();
             }
-            let accelerates =
-                matches!(self.known(), Some(Ok(record)) if record.values.quantity == Quantity::Acceleration);
-            let shaken = accelerates
-                && ui
-                    .button("Shake the base with it")
-                    .on_hover_text(
-                        "The excitation of the scene becomes this record, linear between its samples, from \
-                         its time 0 on. A step that can be undone.",
-                    )
-                    .clicked();
+            let accelerates = record.is_some_and(|record| record.values.quantity == Quantity::Acceleration);
+            let hover = "The excitation of the scene becomes this record, linear between its samples, from \
+                         its time 0 on. A step that can be undone.";
+            let shaken = accelerates && ui.button("Shake the base with it").on_hover_text(hover).clicked();
             let cancelled = ui.button("Cancel").clicked();
-            if lay.clicked() {
-                return record(self).map(MeasuredAnswer::Overlay);
+            match record {
+                Some(record) if lay.clicked() => Some(MeasuredAnswer::Overlay(Box::new(record.clone()))),
+                Some(record) if shaken => {
+                    Some(MeasuredAnswer::Shake(self.path.clone(), Box::new(record.clone())))
+                }
+                _ => cancelled.then_some(MeasuredAnswer::Cancelled),
             }
-            if shaken {
-                return self
-                    .record
-                    .answer()
-                    .and_then(|record| record.clone().ok())
-                    .map(|record| MeasuredAnswer::Shake(self.path.clone(), Box::new(record)));
-            }
-            cancelled.then_some(MeasuredAnswer::Cancelled)
         })
         .inner
     }

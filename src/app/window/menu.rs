@@ -11,7 +11,7 @@ use crate::app::session::player::SPEEDS;
 use crate::app::ui::settings::{Setting, Settings};
 use crate::app::views::View;
 use crate::app::words::lesson::numbered;
-use crate::scene::lesson::{BuiltInLesson, LESSONS, LessonDocument};
+use crate::scene::lesson::{LESSONS, Lesson, LessonDocument};
 use crate::scene::{Document, PRESETS};
 use crate::study::result_fields;
 
@@ -32,13 +32,13 @@ pub(super) struct Menus<'a> {
 }
 
 impl Menus<'_> {
-    /// Draws the bar. Returns the commands that were chosen.
     pub fn ui(mut self, ui: &mut Ui) -> Vec<Command> {
         egui::MenuBar::new().ui(ui, |ui| {
             for (name, parts) in &MENUS {
-                ui.menu_button(*name, |ui| match *name {
-                    "View" | "Lessons" => scroll_ui(ui, |ui| self.parts_ui(ui, parts)),
-                    _ => self.parts_ui(ui, parts),
+                let is_long = parts.iter().any(|part| matches!(part, Part::Views | Part::Lessons));
+                ui.menu_button(*name, |ui| match is_long {
+                    true => scroll_ui(ui, |ui| self.parts_ui(ui, parts)),
+                    false => self.parts_ui(ui, parts),
                 });
             }
             ui.add_space(16.0);
@@ -71,7 +71,7 @@ impl Menus<'_> {
     fn parts_ui(&mut self, ui: &mut Ui, parts: &[Part]) {
         for part in parts {
             match part {
-                Part::Item("", ..) | Part::Row(..) => {}
+                Part::Hidden(..) | Part::Row(..) => {}
                 Part::Item(name, key, command, _) => {
                     let mut button = Button::new(*name);
                     if let Some(key) = key {
@@ -100,7 +100,6 @@ impl Menus<'_> {
         }
     }
 
-    /// Whether a command can be chosen in a menu.
     fn is_enabled(&self, command: &Command) -> bool {
         let Self { session, tiling, lessons, .. } = self;
         let model = session.model();
@@ -194,17 +193,17 @@ impl Menus<'_> {
     /// The built-in lessons in order; those that are done have a mark, and the open one is selected.
     fn lessons_ui(&mut self, ui: &mut Ui) {
         let open = self.lessons.open.as_ref().map(OpenLesson::key);
-        for (lesson, about) in LESSONS.iter().zip(ABOUT_LESSONS.iter()) {
-            let is_open = open.as_deref() == Some(lesson.name);
+        for (name, lesson) in BUILT_IN.iter() {
+            let is_open = open.as_deref() == Some(*name);
             let done = match (is_open, &self.lessons.open) {
                 (true, Some(open)) => open.progress().done,
-                _ => self.lessons.records.get(lesson.name).is_some_and(|record| record.done),
+                _ => self.lessons.records.get(*name).is_some_and(|record| record.done),
             };
             let mark = if done { "done" } else { "" };
-            let name = format!("{}  {} ({} min)", numbered(lesson.name), about.title, about.minutes);
-            let button = Button::selectable(is_open, name).right_text(mark);
-            let item = ui.add(button).on_hover_text(&about.goal);
-            self.choose(ui, &item, || Command::OpenLesson(lesson.name));
+            let text = format!("{}  {} ({} min)", numbered(name), lesson.title, lesson.minutes);
+            let button = Button::selectable(is_open, text).right_text(mark);
+            let item = ui.add(button).on_hover_text(&lesson.goal);
+            self.choose(ui, &item, || Command::OpenLesson(name));
         }
     }
 }
@@ -219,22 +218,10 @@ fn scroll_ui(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
     egui::ScrollArea::vertical().max_height(room).show(ui, contents);
 }
 
-/// The facts about a lesson that its menu item shows.
-struct LessonFacts {
-    title: String,
-    minutes: u32,
-    goal: String,
-}
-
-/// The facts about all built-in lessons.
-static ABOUT_LESSONS: LazyLock<Vec<LessonFacts>> = LazyLock::new(|| {
-    let facts = |built_in: &BuiltInLesson| match LessonDocument::load(built_in.name, &result_fields()) {
-        Ok(LessonDocument { lesson, .. }) => {
-            LessonFacts { title: lesson.title, minutes: lesson.minutes, goal: lesson.goal }
-        }
-        Err(error) => LessonFacts { title: built_in.name.to_owned(), minutes: 0, goal: error.to_string() },
-    };
-    LESSONS.iter().map(facts).collect()
+/// The built-in lessons, each with its name.
+static BUILT_IN: LazyLock<Vec<(&str, Lesson)>> = LazyLock::new(|| {
+    let load = |name| Some((name, LessonDocument::load(name, &result_fields()).ok()?.lesson));
+    LESSONS.iter().filter_map(|lesson| load(lesson.name)).collect()
 });
 
 static TITLES: LazyLock<Vec<String>> = LazyLock::new(|| {

@@ -5,7 +5,6 @@ use eframe::egui::{self, Align2, Area, Id, Order, Ui, accesskit::Live, vec2};
 use crate::app::session::player::Reached;
 use crate::app::ui::widgets::{close_ui, dialog, dialog_width};
 
-/// Title of the alert about a scene that cannot be opened.
 pub(super) const CANNOT_OPEN: &str = "This scene cannot be opened";
 
 /// Time in s for which a notice is shown.
@@ -18,16 +17,15 @@ pub(super) type WriteResult = Result<String, String>;
 
 /// A notice, and the time in s since which it has been shown.
 #[derive(Debug)]
-struct Notice {
-    text: String,
+pub(super) struct Notice {
+    pub text: String,
     since: Option<f64>,
 }
 
 #[derive(Debug, Default)]
 pub(super) struct Messages {
-    /// Title and text of the alert.
-    alert: Option<(String, String)>,
-    notice: Option<Notice>,
+    pub alert: Option<(String, String)>,
+    pub notice: Option<Notice>,
 }
 
 impl Messages {
@@ -39,7 +37,6 @@ impl Messages {
         self.notice = Some(Notice { text: text.into(), since: None });
     }
 
-    /// Reports what was written, or why it was not.
     pub fn report_written(&mut self, result: WriteResult) {
         match result {
             Ok(text) => self.notify(text),
@@ -56,23 +53,6 @@ impl Messages {
             Reached::Nothing(kind) => self.notify(format!("No {} up to {time:.2} s", kind.name())),
             Reached::Ended => self.notify(format!("The run ended at {time:.3} s")),
         }
-    }
-
-    pub fn alert_text(&self) -> Option<&str> {
-        self.alert.as_ref().map(|alert| alert.1.as_str())
-    }
-
-    pub fn notice_text(&self) -> Option<&str> {
-        self.notice.as_ref().map(|notice| notice.text.as_str())
-    }
-
-    pub fn drop_notice(&mut self) {
-        self.notice = None;
-    }
-
-    /// Takes the notice along to another scene, without the alert.
-    pub fn take_notice(&mut self) -> Self {
-        Self { alert: None, notice: self.notice.take() }
     }
 
     pub fn ui(&mut self, ui: &Ui) {

@@ -7,6 +7,7 @@ use eframe::egui::{self, CentralPanel, Panel, RichText, Ui};
 use crate::app::panels::status_line::{self, covered_ui, status_ui};
 use crate::app::panels::{controls, notes, transport};
 use crate::app::session::lesson::Records;
+use crate::app::ui::settings::Settings;
 use crate::app::ui::style::{self, PROJECTOR_ZOOM, Style};
 use crate::app::ui::widgets::{Icon, icon_button_ui, panel_frame};
 use crate::app::views::{self, Drawn, ViewContext};
@@ -15,20 +16,16 @@ use crate::scene::lesson::LESSONS;
 
 use layouts::{Arrangement, Room};
 
-/// Height in points of the row of controls.
 const ROW: f32 = 28.0;
 /// Width in points of the column of controls that opens beside the views.
 const MORE: f32 = 276.0;
 
 /// Height in points of a window up to which the hint line is shown only with a hint.
 const LOW: f32 = 440.0;
-/// Least height in points of the hint line.
 const HINT_ROW: f32 = 32.0;
 
 mod command;
-mod deferred;
 mod figure;
-mod figure_dialog;
 mod files;
 mod kept;
 mod keys;
@@ -39,7 +36,6 @@ mod measured_dialog;
 mod menu;
 mod messages;
 mod perform;
-mod size;
 mod state;
 mod wanted;
 mod writing;
@@ -53,18 +49,16 @@ pub use wanted::Wanted;
 impl Window {
     /// Updates the state before a frame is drawn: settings, input, results of the background, the motion.
     pub fn logic(&mut self, ctx: &egui::Context) {
+        let Settings { dark, projector, .. } = self.settings;
+        let zoom = if projector { PROJECTOR_ZOOM } else { 1.0 };
         if self.applied != Some(self.settings) {
-            let dark = self.settings.dark && !self.settings.projector;
-            ctx.set_theme(if dark { egui::Theme::Dark } else { egui::Theme::Light });
-            let zoom = if self.settings.projector { PROJECTOR_ZOOM } else { 1.0 };
-            if self.applied.is_some_and(|applied| applied.projector != self.settings.projector)
-                || self.settings.projector
-            {
+            ctx.set_theme(if dark && !projector { egui::Theme::Dark } else { egui::Theme::Light });
+            if projector || self.applied.is_some_and(|applied| applied.projector) {
                 ctx.set_zoom_factor(zoom);
             }
             self.applied = Some(self.settings);
         }
-        self.window_size.follow(ctx, if self.settings.projector { PROJECTOR_ZOOM } else { 1.0 });
+        self.window_size.follow(ctx, zoom);
         self.take_choice(ctx);
         self.take_input(ctx);
         // a view that is no longer shown cannot release the mass itself
@@ -150,8 +144,7 @@ impl Window {
         bar.inner
     }
 
-    /// The controls of the scene: in a compact window a row, else a column with the notes below. Returns the
-    /// command that shows all of the notes, if it was chosen.
+    /// The controls: in a compact window a row, else a column with the notes. Returns the chosen command.
     fn controls_ui(&mut self, ui: &mut Ui, compact: bool) -> Option<Command> {
         if compact {
             let line = panel_frame(ui, 12, 4);
@@ -161,7 +154,8 @@ impl Window {
             });
             if self.more {
                 Panel::right("more").frame(line).resizable(false).exact_size(MORE).show(ui, |ui| {
-                    controls::more_column_ui(ui, &mut self.session);
+                    let session = &mut self.session;
+                    egui::ScrollArea::vertical().show(ui, |ui| controls::more_ui(ui, session, 150.0));
                 });
             }
             return None;
@@ -181,8 +175,7 @@ impl Window {
         column.inner.then_some(Command::Notes)
     }
 
-    /// The row with the hint of the first minute, or with what it would take to cross. Returns the command
-    /// that was chosen.
+    /// The row with the hint of the first minute or the ways to cross. Returns the chosen command.
     fn hint_row_ui(&mut self, ui: &mut Ui, style: &Style) -> Option<Command> {
         let hinted = self.hint.is_shown(&self.session);
         self.hint_row |= hinted;
@@ -195,7 +188,12 @@ impl Window {
         let panel = Panel::top("hint").frame(panel_frame(ui, 12, 4)).min_size(HINT_ROW);
         let row = panel.show(ui, |ui| {
             if shows_ways {
-                ways_ui(ui, &self.session.ways(), hinted, style);
+                ui.horizontal_wrapped(|ui| {
+                    ui.label(self.session.ways());
+                    if hinted {
+                        ui.label(RichText::new("H: back to the lesson").color(style.faint()));
+                    }
+                });
                 return None;
             }
             if hinted && !self.covered {
@@ -273,16 +271,6 @@ fn next_lesson(records: &Records) -> Option<&'static str> {
     names.clone().find(|name| is_open(name)).or_else(|| names.next())
 }
 
-/// What it would take to cross, and how to get back to the hint that this line replaces.
-fn ways_ui(ui: &mut Ui, ways: &str, hinted: bool, style: &Style) {
-    ui.horizontal_wrapped(|ui| {
-        ui.label(ways);
-        if hinted {
-            ui.label(RichText::new("H: back to the lesson").color(style.faint()));
-        }
-    });
-}
-
 /// A ring around the widget that has the keyboard focus, so that the focus can always be seen.
 fn focus_ui(ctx: &egui::Context, style: &Style) {
     let focused = ctx.memory(egui::Memory::focused).and_then(|id| ctx.read_response(id));
@@ -321,4 +309,59 @@ impl eframe::App for Window {
 /// Installs fonts and spacing; to be called once for a context.
 pub fn prepare(ctx: &egui::Context) {
     style::install(ctx);
+}
+
+/// Input that follows the release of a pointer button, deferred to the next frame.
+///
+/// All events between two frames arrive together in the next frame, and a slider takes the last position of
+/// the pointer as the one at which it was released. If a frame takes long, a pointer that moves on after the
+/// release would drag the slider along.
+#[derive(Debug, Default)]
+struct DeferredInput {
+    events: Vec<egui::Event>,
+}
+
+impl DeferredInput {
+    /// Leaves in `input` the deferred and new events up to the first release. Returns whether more wait.
+    fn hold_back(&mut self, input: &mut egui::RawInput) -> bool {
+        let mut events = std::mem::take(&mut self.events);
+        events.append(&mut input.events);
+        let released =
+            |event: &egui::Event| matches!(event, egui::Event::PointerButton { pressed: false, .. });
+        if let Some(at) = events.iter().position(released) {
+            self.events = events.split_off(at + 1);
+        }
+        input.events = events;
+        !self.events.is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use eframe::egui::{Event, Modifiers, PointerButton, RawInput, pos2};
+
+    use super::*;
+
+    #[test]
+    fn what_follows_a_release_comes_in_the_next_frame() {
+        let button = |pressed| Event::PointerButton {
+            pos: pos2(3.0, 0.0),
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        };
+        let moved = |x| Event::PointerMoved(pos2(x, 0.0));
+        let all =
+            [moved(1.0), button(true), moved(3.0), button(false), moved(9.0), button(true), button(false)];
+        let mut deferred = DeferredInput::default();
+        let mut input = RawInput { events: all.to_vec(), ..RawInput::default() };
+        assert!(deferred.hold_back(&mut input));
+        assert_eq!(input.events, all[..4]);
+        let mut input = RawInput { events: vec![moved(10.0)], ..RawInput::default() };
+        assert!(deferred.hold_back(&mut input));
+        assert_eq!(input.events, all[4..]);
+        let mut input = RawInput::default();
+        assert!(!deferred.hold_back(&mut input));
+        assert_eq!(input.events, [moved(10.0)]);
+    }
 }

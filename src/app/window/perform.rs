@@ -2,7 +2,7 @@
 
 use eframe::egui;
 
-use crate::app::export::{self, Runs};
+use crate::app::export;
 use crate::app::panels::hint;
 use crate::app::panels::transport::EVENT_AHEAD;
 use crate::app::session::measured::MeasuredData;
@@ -51,17 +51,23 @@ impl Window {
             return self.messages.notify("First choose what you expect");
         }
         match command {
-            // a lesson has fixed views
-            Command::Arrange(_) | Command::ArrangeOwn | Command::KeepOwn if self.lesson().is_some() => {}
+            // a lesson has fixed views, and a pinned motion may be the answer to its question
+            Command::Arrange(_) | Command::ArrangeOwn | Command::KeepOwn | Command::Pin(_)
+                if self.lesson().is_some() => {}
             Command::OpenPreset(name) => self.leave_for(ctx, Next::Open(name.to_owned())),
             Command::OpenRecent(path) => self.leave_for(ctx, Next::Open(path)),
             Command::Open => self.leave_for(ctx, Next::Choose),
-            Command::OpenMeasured if self.lesson().is_none() => self.choose(Wanted::Measured),
+            Command::OpenMeasured | Command::BestStops if self.lesson().is_some() => {
+                self.messages.notify("Leave the lesson first");
+            }
+            Command::OpenMeasured => self.choose(Wanted::Measured),
             Command::RemoveMeasured => self.session.measured = MeasuredData::default(),
-            Command::OpenMeasured => self.messages.notify("Leave the lesson first"),
             Command::Save => self.save(ctx),
             Command::SaveAs(wanted) => self.choose(wanted),
-            Command::Figure(view) => self.open_figure_dialog(view),
+            Command::Figure(view) => {
+                let view = view.unwrap_or_else(|| self.active_view());
+                self.figures.open(view, &self.session, &self.memory);
+            }
             Command::CopyScene => self.copy_scene(ctx),
             Command::PasteScene => ctx.send_viewport_cmd(egui::ViewportCommand::RequestPaste),
             Command::CopyCommand => self.copy_command(ctx),
@@ -122,12 +128,9 @@ impl Window {
                 *value = !*value;
             }
             Command::Grab => self.memory.grab = true,
-            // a pinned motion may be the answer to a lesson's question
-            Command::Pin(_) if self.lesson().is_some() => {}
             Command::Pin(kind) => self.pin(kind),
             // in a lesson this would be the answer
             Command::Ways => self.ways = !self.ways && self.lesson().is_none(),
-            Command::BestStops if self.lesson().is_some() => self.messages.notify("Leave the lesson first"),
             Command::BestStops => self.session.find_best_stops(),
             Command::OpenLesson(name) => self.open_lesson(name),
             Command::OpenLessonFile => self.choose(Wanted::Lesson),
@@ -145,14 +148,7 @@ impl Window {
     fn copy_command(&mut self, ctx: &egui::Context) {
         let Some((line, runs)) = export::command_line(&self.session) else { return self.alert_unnamed() };
         ctx.copy_text(line);
-        self.messages.notify(match runs {
-            Runs::Whole => "Copied: the command line of this motion, from its start",
-            Runs::FromNow => "Copied: the command line of this motion, from its present state on",
-            Runs::Another => {
-                "Copied: the command line of the scene from its start. This motion was changed on its way \
-                 and is another"
-            }
-        });
+        self.messages.notify(format!("Copied: the command line of {runs}"));
     }
 
     fn copy_map_command(&mut self, ctx: &egui::Context) {
@@ -166,7 +162,6 @@ impl Window {
         }
     }
 
-    /// Goes back to the scene as it was opened or last saved, with its views.
     fn back_to_start(&mut self, ctx: &egui::Context) {
         let changed = self.session.editor.is_dirty();
         self.session.back_to_start();
@@ -201,19 +196,19 @@ impl Window {
     fn hold_axes(&mut self) {
         let view = self.active_view();
         if view.has_axes() {
-            let held = self.memory.hold_axes(view);
-            let what = if held { "held: L again lets go of them" } else { "by themselves again" };
+            let what = match self.memory.hold_axes(view) {
+                true => "held: L again lets go of them",
+                false => "by themselves again",
+            };
             self.messages.notify(format!("{}: its axes are {what}", view.name()));
         }
     }
 
-    /// The view that keys act on: the one that fills the window, or the one under the pointer or with the
-    /// keyboard focus.
+    /// The view that keys act on: it fills the window, is under the pointer or has the focus.
     fn active_view(&self) -> View {
         self.filled.or(self.memory.hovered).unwrap_or(View::Displacement)
     }
 
-    /// Pins a motion, and shows how it compares.
     fn pin(&mut self, kind: PinKind) {
         match self.session.pin(kind) {
             Ok(letter) => {

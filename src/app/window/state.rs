@@ -7,27 +7,26 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use egui_tiles::Tree;
 
 use crate::app::panels::hint;
+use crate::app::panels::status_line::Announcer;
 use crate::app::session::editor::Editor;
 use crate::app::session::{CannotRun, Session};
 use crate::app::task::{Background, Wake};
 use crate::app::ui::settings::Settings;
 use crate::app::views::{Memory, View};
-use crate::app::words::announce::Announcer;
 use crate::scene::{Layout, PRESETS};
 use crate::system::files;
 
-use super::deferred::DeferredInput;
+use super::DeferredInput;
 use super::figure::Figures;
+use super::kept::WindowSize;
 use super::layouts::{Arrangement, Room, Tiling};
 use super::leave::Next;
 use super::lessons::CANNOT_OPEN_LESSON;
 use super::lessons::{self, Lessons};
 use super::measured_dialog::{MeasuredDialog, is_measured};
 use super::messages::{CANNOT_OPEN, Messages, WriteResult};
-use super::size::WindowSize;
 use super::wanted::{Chosen, PathDialog};
 
-/// Number of recently opened files that are remembered.
 const MOST_RECENT: usize = 8;
 
 pub struct Window {
@@ -65,15 +64,12 @@ pub struct Window {
     pub(super) window_size: WindowSize,
     pub(super) shown_title: String,
     pub(super) file_dialog: Background<(), Chosen>,
-    /// Whether file dialogs are opened.
     pub(super) opens_dialogs: bool,
     /// The dialog in which a path is typed, if the desktop has no file dialog.
     pub(super) path_dialog: Option<PathDialog>,
     /// The requested figure, and the layout of figures.
     pub figures: Figures,
-    /// The dialog in which the columns of measured data are chosen.
     pub columns: Option<MeasuredDialog>,
-    /// Input that is deferred to the next frame.
     pub(super) deferred: DeferredInput,
     pub(super) hint: hint::Hint,
     /// Whether the hint line has been shown.
@@ -163,7 +159,6 @@ impl Window {
         }
     }
 
-    /// Puts a file first among the recent ones.
     pub(super) fn remember(&mut self, path: &Path) {
         let full = files::canonical(path).unwrap_or_else(|| path.to_owned()).to_string_lossy().into_owned();
         self.recent.retain(|recent| *recent != full);
@@ -171,14 +166,12 @@ impl Window {
         self.recent.truncate(MOST_RECENT);
     }
 
-    /// The text of the alert that is shown.
     pub fn message(&self) -> Option<&str> {
-        self.messages.alert_text()
+        self.messages.alert.as_ref().map(|(_, text)| text.as_str())
     }
 
-    /// The text of the notice that is shown.
     pub fn notice(&self) -> Option<&str> {
-        self.messages.notice_text()
+        self.messages.notice.as_ref().map(|notice| notice.text.as_str())
     }
 
     /// Whether a dialog is open, so that keys do not act on the window behind it.

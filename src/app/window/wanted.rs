@@ -1,5 +1,4 @@
-//! Files that the user chooses: their purposes, the answers of the file dialog, and the dialog in which a
-//! path is typed, for a desktop without a file dialog.
+//! Files that the user chooses: their purposes, the answers, and the dialog in which a path is typed.
 
 use std::path::{Path, PathBuf};
 
@@ -14,19 +13,12 @@ pub enum Wanted {
     Lesson,
     /// Measured data, to be drawn over the computed motion or curve.
     Measured,
-    /// The scene.
     Save,
-    /// The motion that was seen, as CSV.
     Motion,
-    /// The whole run of the scene, as CSV.
     Run,
-    /// The events, as CSV.
     Events,
-    /// The force curve, as CSV.
     Curve,
-    /// The map, as CSV.
     Map,
-    /// The window, as PNG.
     Picture,
     Figure,
 }
@@ -49,12 +41,10 @@ impl Wanted {
         }
     }
 
-    /// Label of the button that confirms the choice.
     fn verb(self) -> &'static str {
         if self.is_read() { "Open" } else { "Save" }
     }
 
-    /// Whether the file is read, not written.
     pub(super) fn is_read(self) -> bool {
         matches!(self, Self::Open | Self::Lesson | Self::Measured)
     }
@@ -63,10 +53,23 @@ impl Wanted {
 /// The answer of a file dialog.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Chosen {
-    /// The chosen file.
     File(Wanted, PathBuf),
     /// The desktop has no dialog; the path that it would have suggested.
     NoDialog(Wanted, PathBuf),
+}
+
+/// Beginning of a remark where a path has to be typed.
+pub(super) const NO_DIALOG: &str =
+    "This desktop has no file dialog to offer (xdg-desktop-portal or zenity would be one)";
+
+/// Why no file can be written to a path; `None` if one can.
+pub(super) fn path_fault(path: &Path) -> Option<&'static str> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    if files::is_folder(path) {
+        Some("This is a folder: add the name of a file.")
+    } else {
+        folder.is_some_and(|folder| !files::is_folder(folder)).then_some("There is no such folder.")
+    }
 }
 
 /// A path that is being typed, and its purpose.
@@ -85,7 +88,6 @@ pub(super) enum PathAnswer {
 }
 
 impl PathDialog {
-    /// A dialog with a suggested path.
     pub fn new(wanted: Wanted, path: &Path) -> Self {
         Self { wanted, path: path.to_string_lossy().into_owned(), had_focus: false }
     }
@@ -93,29 +95,21 @@ impl PathDialog {
     /// Whether the path can be chosen, and a remark: why not, or what happens to the file.
     fn remark(&self) -> (bool, Option<&'static str>) {
         let path = Path::new(self.path.trim());
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-        if self.path.trim().is_empty() {
-            (false, Some("A path is needed."))
-        } else if files::is_folder(path) {
-            (false, Some("This is a folder: add the name of a file."))
-        } else if self.wanted.is_read() {
-            if files::is_file(path) { (true, None) } else { (false, Some("There is no such file.")) }
-        } else if folder.is_some_and(|folder| !files::is_folder(folder)) {
-            (false, Some("There is no such folder."))
-        } else if files::exists(path) {
-            (true, Some("This file exists and will be replaced."))
-        } else {
-            (true, None)
-        }
+        let fault = match self.wanted.is_read() {
+            _ if self.path.trim().is_empty() => Some("A path is needed."),
+            true if !files::is_folder(path) => (!files::is_file(path)).then_some("There is no such file."),
+            _ => path_fault(path),
+        };
+        let replaces = !self.wanted.is_read() && files::exists(path);
+        (fault.is_none(), fault.or(replaces.then_some("This file exists and will be replaced.")))
     }
 
-    /// Draws the dialog. Returns the answer once there is one.
     pub fn ui(&mut self, ui: &Ui) -> Option<PathAnswer> {
         let answer = dialog(ui.ctx(), "path").show(ui.ctx(), |ui| {
             ui.set_width(dialog_width(ui, 520.0));
             let (question, ..) = self.wanted.words();
             ui.heading(question);
-            ui.label("This desktop has no file dialog to offer (xdg-desktop-portal or zenity would be one).");
+            ui.label(format!("{NO_DIALOG}."));
             ui.add_space(4.0);
             let name = ui.label("path of the file");
             let field = TextEdit::singleline(&mut self.path).desired_width(f32::INFINITY);

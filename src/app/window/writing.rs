@@ -6,6 +6,7 @@ use std::sync::Arc;
 use eframe::egui;
 
 use crate::app::export;
+use crate::app::session::measured::file_name;
 use crate::output::write_file;
 
 use super::Window;
@@ -43,7 +44,6 @@ impl Window {
         }
     }
 
-    /// Reports what other threads have written.
     pub(super) fn report_written(&mut self) {
         let run = self.run.take();
         for result in run.into_iter().chain(self.written.1.try_iter()) {
@@ -55,7 +55,6 @@ impl Window {
         self.messages.report_written(write_text(path, text));
     }
 
-    /// Writes the recorded motion as CSV.
     pub fn write_motion(&mut self, path: &Path) {
         self.write(path, &export::motion_csv(&self.session.player));
     }
@@ -73,24 +72,20 @@ impl Window {
         self.messages.notify("Computing the run");
     }
 
-    /// Waits until a run is written, at most `timeout`.
     pub fn wait_for_run(&mut self, timeout: std::time::Duration) {
         self.run.wait(timeout);
         self.report_written();
     }
 
-    /// Writes the recorded events as CSV.
     pub fn write_events(&mut self, path: &Path) {
         self.write(path, &export::events_csv(&self.session.player));
     }
 
-    /// Writes the force curve as CSV.
     pub fn write_curve(&mut self, path: &Path) {
         let text = export::curve_csv(&self.session).map_err(|error| error.to_string());
         self.messages.report_written(text.and_then(|text| write_text(path, &text)));
     }
 
-    /// Writes the map as the rows of a sweep.
     pub(super) fn write_map(&mut self, path: &Path) {
         let Some(text) = self.session.map.csv() else { return };
         self.write(path, &text);
@@ -100,7 +95,7 @@ impl Window {
     pub(super) fn write_picture(&mut self, ctx: &egui::Context, path: PathBuf) {
         let (written, wake) = (self.written.0.clone(), Arc::clone(&self.wake));
         // the picture shows no notice
-        self.messages.drop_notice();
+        self.messages.notice = None;
         ctx.request_screenshot(move |image| {
             let bytes = export::png(&image);
             let saved = bytes.and_then(|bytes| write_file(&path, &bytes));
@@ -110,11 +105,6 @@ impl Window {
     }
 }
 
-/// Writes a text. Returns the notice about it.
 fn write_text(path: &Path, text: &str) -> WriteResult {
     write_file(path, text.as_bytes()).map(|()| format!("Saved {}", file_name(path)))
-}
-
-fn file_name(path: &Path) -> String {
-    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }

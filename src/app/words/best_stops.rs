@@ -5,44 +5,34 @@ use crate::app::words::status::speed;
 use crate::numeric::short;
 use crate::study::{Basins, BestDesign, DesignRange, NoBest, Optimum, SummaryField};
 
-/// State of a search for the best stops.
-#[derive(Debug, Clone, Copy)]
-pub enum Found<'a> {
-    /// The search is running: the number of runs so far, and the best stops of its coarse scan.
-    Searching(u64, Option<&'a Optimum>),
-    Whole(&'a Result<BestDesign, NoBest>),
-    /// The search has ended without an answer.
-    Nothing,
-}
-
 /// A value of the column that is maximized, with its unit.
 fn value_of(column: &str, value: f64) -> String {
     if column.ends_with("_w") { power(value) } else { format!("{} mm/s", speed(value)) }
 }
 
+/// The sentence while the search runs: the number of runs so far, and the best stops of its coarse scan.
+pub fn looking(runs: u64, best: Option<&Optimum>, column: &str) -> String {
+    let so_far = best.map_or_else(String::new, |best| {
+        format!("; so far ±{} mm with {}", short(best.at[0]), value_of(column, best.value))
+    });
+    format!("Looking for the best stops: {runs} runs{so_far}.")
+}
+
 /// The answer of a search with runs from rest. Each run lasts `duration_s` seconds or, if that is `None`,
 /// until its motion repeats.
-pub fn sentence(found: &Found<'_>, column: &str, range: &DesignRange, duration_s: Option<f64>) -> String {
+pub fn sentence(
+    answer: &Result<BestDesign, NoBest>,
+    column: &str,
+    range: &DesignRange,
+    duration_s: Option<f64>,
+) -> String {
     let name = SummaryField::find(column).map_or(column, |field| field.label);
     let mm = |value: f64| format!("{} mm", short(value));
-    let design = match found {
-        Found::Searching(runs, None) => return format!("Looking for the best stops: {runs} runs."),
-        Found::Searching(runs, Some(best)) => {
-            let (at, value) = (mm(best.at[0]), value_of(column, best.value));
-            return format!("Looking for the best stops: {runs} runs; so far ±{at} with {value}.");
-        }
-        Found::Nothing => return "The search for the best stops ended without an answer.".to_owned(),
-        Found::Whole(Err(_)) => {
-            return format!(
-                "With stops anywhere between ±{} and ±{} no run has a {name}.",
-                short(range.low),
-                mm(range.high)
-            );
-        }
-        Found::Whole(Ok(design)) => design,
+    let between = format!("between ±{} and ±{}", short(range.low), mm(range.high));
+    let Ok(design) = answer else {
+        return format!("With stops anywhere {between} no run has a {name}.");
     };
     let (at, value) = (design.optimum.at[0], value_of(column, design.optimum.value));
-    let between = format!("between ±{} and ±{}", short(range.low), mm(range.high));
     let runs = match duration_s {
         Some(duration) => format!("from rest, in runs of {} s", three(duration)),
         None => format!(
@@ -58,10 +48,7 @@ pub fn sentence(found: &Found<'_>, column: &str, range: &DesignRange, duration_s
         Some(margin) => format!("{} further {way}", mm(margin)),
         None => format!("nowhere further {way}, up to ±{}", mm(end)),
     };
-    let border = match design.at_border[0] {
-        true => " It is an end of the range that was searched.",
-        false => "",
-    };
+    let border = if design.at_border[0] { " It is an end of the range that was searched." } else { "" };
     format!(
         "Best stops: ±{}, where the {name} is largest, {value}, {runs}. A tenth of it is lost {} and \
          {}.{border}",

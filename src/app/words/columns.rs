@@ -31,7 +31,6 @@ pub const COLUMNS: [(&str, &[&str]); 7] = [
     ]),
 ];
 
-/// A column as the screen shows it.
 pub trait ShownColumn {
     /// Its label with an initial capital, for a heading.
     fn title(&self) -> String;
@@ -39,7 +38,6 @@ pub trait ShownColumn {
     /// The words that can be its values, in order; `None` for a numeric column.
     fn shown_words(&self) -> Option<&'static [&'static str]>;
 
-    /// Whether its values are whole numbers.
     fn is_count(&self) -> bool;
 }
 

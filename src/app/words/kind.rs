@@ -7,7 +7,6 @@ use crate::dynamics::Regime;
 pub enum Kind {
     /// At rest, or pressed on a stop.
     Resting,
-    /// Stays in a well.
     Intrawell,
     /// Crosses, and the crossings do not repeat.
     Irregular,
@@ -15,7 +14,6 @@ pub enum Kind {
     Interwell,
     /// Crosses under a drive that has no period.
     Crossing,
-    /// Any other motion.
     Other,
     /// The scene cannot be run, or the run has ended.
     Fault,

@@ -64,7 +64,6 @@ pub fn not_yet(lack: &Lack) -> String {
     why.unwrap_or_else(|| "Not yet.".to_owned())
 }
 
-/// Name and unit of the field of a condition.
 fn name_and_unit_of(field: &str) -> Option<(String, &'static str)> {
     let (subject, name) = field.split_once('.')?;
     let (before, after) = match subject {
@@ -85,9 +84,7 @@ fn name_and_unit_of(field: &str) -> Option<(String, &'static str)> {
 /// A part of a text, and whether it is bold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Piece<'a> {
-    /// The text without marks.
     pub text: &'a str,
-    /// Whether it is between two `**`.
     pub bold: bool,
 }
 
@@ -100,7 +97,6 @@ pub fn pieces(text: &str) -> Vec<Piece<'_>> {
     all.filter(|piece| !piece.text.is_empty()).collect()
 }
 
-/// A text without its marks.
 pub fn plain(text: &str) -> String {
     text.replace("**", "")
 }

@@ -1,6 +1,5 @@
 //! Text of the window: names of the fields, explanations of terms, the sentence that describes the motion.
 
-pub(super) mod announce;
 pub mod best_stops;
 pub mod columns;
 pub mod fields;
@@ -11,7 +10,6 @@ pub mod numbers;
 pub mod status;
 pub mod wells;
 
-/// The text with an initial capital.
 pub fn capital(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())

@@ -14,24 +14,29 @@ pub fn below(value: f64) -> f64 {
     round::round_down(value, &round::ONE_TWO_FIVE)
 }
 
+/// The value rounded to this many significant digits.
+pub fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
+}
+
 /// The value rounded to seven significant digits, which removes the rounding errors of products.
 pub fn decimal(value: f64) -> f64 {
-    format!("{value:.6e}").parse().unwrap_or(value)
+    rounded(value, 7)
 }
 
 /// Number of decimals that distinguishes multiples of a step.
 pub fn decimals(step: f64) -> usize {
-    let text = format!("{}", decimal(step));
-    text.split_once('.').map_or(0, |(_, after)| after.len()).min(12)
+    decimals_in(&decimal(step).to_string()).min(12)
 }
 
-/// Greatest number of significant digits that a field shows while it is not edited.
-const DIGITS: usize = 7;
+fn decimals_in(number: &str) -> usize {
+    number.split_once('.').map_or(0, |(_, after)| after.len())
+}
 
-/// A number as a field shows it: with at least `least` decimals, and up to seven significant digits.
+/// A number as a field shows it while it is not edited: with at least `least` decimals, and up to seven
+/// significant digits.
 pub fn shown(value: f64, least: usize) -> String {
-    let rounded: f64 = format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value);
-    exact(rounded, least)
+    exact(decimal(value), least)
 }
 
 /// The same, with all digits of the number.
@@ -40,8 +45,7 @@ pub fn exact(value: f64, least: usize) -> String {
         return format!("{value:e}");
     }
     let text = format!("{}", value + 0.0);
-    let decimals = text.split_once('.').map_or(0, |(_, after)| after.len());
-    if decimals >= least { text } else { format!("{:.least$}", value + 0.0) }
+    if decimals_in(&text) >= least { text } else { format!("{:.least$}", value + 0.0) }
 }
 
 /// A number with at least three significant digits, and no more decimals than these take.
@@ -75,14 +79,13 @@ fn significant(value: f64, digits: i32) -> String {
     if !(size > 0.0) || !size.is_finite() {
         return format!("{}", value + 0.0);
     }
-    let place = digits - 1 - size.log10().floor() as i32;
-    let rounded: f64 = format!("{value:.0$e}", digits as usize - 1).parse().unwrap_or(value);
-    if !(1e-6..1e7).contains(&size) {
-        return format!("{rounded:e}");
+    // rounding may reach the next power of ten
+    let rounded = rounded(value, digits as usize);
+    if (1e-6..1e7).contains(&size) {
+        format!("{rounded:.*}", numeric::decimals(rounded, digits))
+    } else {
+        format!("{rounded:e}")
     }
-    // rounding may have reached the next power of ten
-    let place = if rounded.abs().log10().floor() > size.log10().floor() { place - 1 } else { place };
-    format!("{rounded:.*}", place.max(0) as usize)
 }
 
 /// An amplitude or a threshold in g: three significant digits.
@@ -220,10 +223,7 @@ mod tests {
         ] {
             assert_eq!(grams(value), text);
         }
-        assert_eq!(
-            (grams_up(0.6881), grams_up(1.15), grams_up(0.9991)),
-            ("0.689".into(), "1.15".into(), "1.00".into())
-        );
+        assert_eq!([0.6881, 1.15, 0.9991].map(grams_up), ["0.689", "1.15", "1.00"]);
         assert_eq!((grams_apart(0.2604), newtons(0.196_8)), ("0.26".into(), "0.20 N".into()));
     }
 
@@ -239,19 +239,12 @@ mod tests {
     #[test]
     fn a_length_stays_on_its_side_of_a_stop() {
         let stops = |mm: f64| (Some(-mm * 1e-3), Some(mm * 1e-3));
-        assert_eq!(
-            (mm_beside(2.25e-3, stops(2.25)), mm_beside(6.875e-3, stops(6.875))),
-            ("2.25".into(), "6.875".into())
-        );
-        assert_eq!(
-            (mm_beside(-2.25e-3, stops(2.25)), mm_beside(1.5e-3, stops(1.5))),
-            ("-2.25".into(), "1.5".into())
-        );
+        let at = [(2.25e-3, 2.25), (6.875e-3, 6.875), (-2.25e-3, 2.25), (1.5e-3, 1.5)];
+        let texts = at.map(|(m, limit)| mm_beside(m, stops(limit)));
+        assert_eq!(texts, ["2.25", "6.875", "-2.25", "1.5"]);
         // beyond a compliant stop
-        assert_eq!(
-            (mm_beside(1.52e-3, stops(1.5)), mm_beside(7.9e-3, (None, None))),
-            ("1.52".into(), "7.9".into())
-        );
+        assert_eq!(mm_beside(1.52e-3, stops(1.5)), "1.52");
+        assert_eq!(mm_beside(7.9e-3, (None, None)), "7.9");
         assert_eq!(between(-2.25e-3, 1.11e-3, stops(2.25)), "between -2.25 and 1.1 mm");
     }
 }

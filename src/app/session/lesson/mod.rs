@@ -52,9 +52,7 @@ pub enum TaskState {
 /// Which option of a prediction holds.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Outcome {
-    /// The verdict is still being computed.
     Unknown,
-    /// This one.
     Holds(usize),
     /// No option or several, which is a fault of the lesson.
     Unclear,
@@ -111,12 +109,10 @@ impl OpenLesson {
         }
     }
 
-    /// The name or the path under which its progress is kept.
     pub fn key(&self) -> String {
         Self::key_of(&self.document)
     }
 
-    /// What the student has done so far.
     pub fn progress(&self) -> &Progress {
         &self.progress
     }
@@ -138,7 +134,6 @@ impl OpenLesson {
         &mut self.progress.answers[self.progress.step]
     }
 
-    /// The student's reason for a prediction.
     pub fn why_mut(&mut self) -> &mut String {
         &mut self.answer_mut().why
     }
@@ -163,7 +158,7 @@ impl OpenLesson {
         first.is_some_and(|number| !self.is_settled(number))
     }
 
-    /// Whether a step has been answered or done; always so for a step that only tells or explains something.
+    /// Whether a step has been answered or done. A step that only tells or explains something always is.
     pub fn is_settled(&self, number: usize) -> bool {
         match (&self.lesson().steps[number], &self.progress.answers[number]) {
             (Step::Say(_) | Step::Explain(_), _) => true,
@@ -172,12 +167,11 @@ impl OpenLesson {
         }
     }
 
-    /// Whether the student may go on to the next step.
     pub fn may_go_on(&self) -> bool {
         self.is_settled(self.progress.step)
     }
 
-    /// Whether it may be said what it would take to cross the barrier: once all steps are settled.
+    /// Whether the window may say what it would take to cross the barrier: after all steps are settled.
     pub fn tells_remedy(&self) -> bool {
         (0..self.lesson().steps.len()).all(|number| self.is_settled(number))
     }
@@ -186,14 +180,12 @@ impl OpenLesson {
         self.progress.step + 1 == self.lesson().steps.len()
     }
 
-    /// The name of the built-in lesson that comes after this one.
     pub fn following(&self) -> Option<&'static str> {
         let Source::BuiltIn(name) = self.document.source else { return None };
         let number = LESSONS.iter().position(|lesson| lesson.name == name)?;
         LESSONS.get(number + 1).map(|lesson| lesson.name)
     }
 
-    /// Chooses an option of a covered prediction.
     pub fn choose(&mut self, option: usize) -> Turn {
         let Some(choice) = self.options().get(option) else { return Turn::Stay };
         let text = choice.text.clone();
@@ -232,7 +224,6 @@ impl OpenLesson {
         self.enter_from_elsewhere(self.progress.step)
     }
 
-    /// Begins again with the first step, without answers.
     pub fn begin_anew(&mut self) -> Turn {
         let done = self.progress.done;
         self.progress = Progress { done, ..Progress::of(self.lesson(), None) };
@@ -268,9 +259,8 @@ impl OpenLesson {
                     false => Turn::Show(Box::new(begin.clone()), false),
                 }
             }
-            Step::Do { .. } => Turn::Show(Box::new(begin.clone()), true),
-            Step::Say(_) | Step::Explain(_) if number == 0 => Turn::Show(Box::new(begin.clone()), true),
-            Step::Say(_) | Step::Explain(_) => Turn::Same,
+            Step::Say(_) | Step::Explain(_) if number > 0 => Turn::Same,
+            Step::Do { .. } | Step::Say(_) | Step::Explain(_) => Turn::Show(Box::new(begin.clone()), true),
         }
     }
 
@@ -369,7 +359,6 @@ impl OpenLesson {
         }
     }
 
-    /// Which option of the prediction holds.
     pub fn outcome(&self) -> Outcome {
         self.options.answer().cloned().unwrap_or(Outcome::Unknown)
     }
@@ -379,7 +368,6 @@ impl OpenLesson {
         self.offered_hint().filter(|_| self.hinted)
     }
 
-    /// The hint of a task, shown or not.
     pub fn offered_hint(&self) -> Option<&str> {
         match self.step() {
             Step::Do { hint, .. } => hint.as_deref(),
@@ -406,7 +394,6 @@ impl OpenLesson {
     }
 }
 
-/// The outcome of a prediction, from whether each of its options holds.
 fn single_option(options: &[bool]) -> Outcome {
     let mut right = options.iter().enumerate().filter(|(_, holds)| **holds).map(|(number, _)| number);
     match (right.next(), right.next()) {
@@ -428,8 +415,7 @@ fn judge<T>(
     let before = Subject::new(&begin.scene, &begin.files, lesson, &task);
     let subject = Subject::new(&judged.scene, &judged.files, lesson, &task);
     match verdict(&lesson.steps[number], subject, &before) {
-        Ok(verdict) => Some(Ok(verdict)),
         Err(Unjudged::Cancelled) => None,
-        Err(error) => Some(Err(error.to_string())),
+        verdict => Some(verdict.map_err(|error| error.to_string())),
     }
 }

@@ -17,7 +17,6 @@ pub struct Answer {
     pub shown: bool,
     /// The option that holds, once it is known.
     pub outcome: Option<String>,
-    /// The student's reason.
     pub why: String,
     pub met: bool,
     /// The settings with which the task was done, as the command line takes them.
@@ -30,9 +29,7 @@ pub struct Progress {
     pub title: String,
     /// Number of the step that was open last.
     pub step: usize,
-    /// One answer for each step.
     pub answers: Vec<Answer>,
-    /// Whether the lesson has been completed.
     pub done: bool,
 }
 

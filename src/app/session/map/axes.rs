@@ -67,8 +67,7 @@ pub fn default_axes(scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> Opti
 
 /// An axis over a field, around its present value; `well_mm` is the position of the right-hand well.
 pub fn axis(path: &str, scene: &Scene, when_on: Stops, well_mm: Option<f64>) -> SweepAxis {
-    let with_stops =
-        ground(scene, when_on, &[SweepAxis { field: path.to_owned(), step: 1.0, ..SweepAxis::default() }]);
+    let with_stops = ground(scene, when_on, &[SweepAxis { field: path.to_owned(), ..SweepAxis::default() }]);
     // the load of an open circuit is infinite
     let signed = FieldPath::new(path).get(&with_stops).filter(|value| value.is_finite()).unwrap_or(1.0);
     let present = signed.abs();

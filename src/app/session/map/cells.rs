@@ -16,11 +16,10 @@ use crate::study::{
 
 use super::{Question, over};
 
-/// Largest number of cells of a map in the window.
 const MAX_CELLS: u64 = 200_000;
 
 /// Why a map of so many cells is not made; `None` if it is.
-pub(in crate::app::session) fn too_many(cells: u64) -> Option<String> {
+pub(super) fn too_many(cells: u64) -> Option<String> {
     let problem = || format!("{cells} cells are more than the window makes ({MAX_CELLS}): take longer steps");
     (cells > MAX_CELLS).then(problem)
 }
@@ -46,11 +45,7 @@ pub struct Map {
 
 impl Map {
     /// The map of a question before its first cell, or why there is none. `mechanism` is that of the session.
-    pub(in crate::app::session) fn new(
-        question: &Question,
-        editor: &Editor,
-        mechanism: &Mechanism,
-    ) -> Result<Self, String> {
+    pub(super) fn new(question: &Question, editor: &Editor, mechanism: &Mechanism) -> Result<Self, String> {
         let mut document = editor.document().clone();
         document.scene = question.scene.clone();
         let message = |error: SceneError| in_words(&error.to_string(), &question.scene);
@@ -84,7 +79,6 @@ impl Map {
         })
     }
 
-    /// Number of cells.
     pub fn len(&self) -> usize {
         self.cells.len()
     }
@@ -98,7 +92,6 @@ impl Map {
         self.known
     }
 
-    /// Whether every cell is known.
     pub fn is_whole(&self) -> bool {
         self.known == self.cells.len()
     }
@@ -112,30 +105,28 @@ impl Map {
         self.sweep.grid()
     }
 
-    /// Number of columns and rows.
+    /// Number of columns and of rows.
     pub fn size(&self) -> [usize; 2] {
         [self.edges[0].values.len(), self.edges[1].values.len()]
     }
 
     /// The cell in a column and row, or its stand-in until it is known, and whether it is the cell itself.
     pub fn cell(&self, column: usize, row: usize) -> Option<(&Cell, bool)> {
-        let index = (column * self.size()[1] + row) as u64;
-        let known = self.cells.get(index as usize)?.as_ref();
-        if let Some(cell) = known {
+        let index = column * self.size()[1] + row;
+        if let Some(cell) = self.cells.get(index)? {
             return Some((cell, true));
         }
+        let stand_in = |level| self.cells[self.levels.stand_in(index as u64, level) as usize].as_ref();
         let levels = (0..STRIDES.len() - 1).rev();
-        let stand_in = |level| self.cells[self.levels.stand_in(index, level) as usize].as_ref();
         levels.filter_map(stand_in).next().map(|cell| (cell, false))
     }
 
-    /// The cells that have been run.
     pub fn known_cells(&self) -> impl Iterator<Item = &Cell> {
         self.cells.iter().flatten()
     }
 
     /// The indices of the cells that are not known, level by level.
-    pub(in crate::app::session) fn missing(&self) -> Vec<Vec<u64>> {
+    pub(super) fn missing(&self) -> Vec<Vec<u64>> {
         let mut begin = 0;
         let level = |end: usize| {
             let cells = &self.levels.order[begin..end];
@@ -166,9 +157,8 @@ impl Map {
         true
     }
 
-    /// Whether it may be shown until every part of another map shows a result: if it has the fields and the
-    /// columns of that map.
-    pub(in crate::app::session) fn stands_in_for(&self, other: &Self) -> bool {
+    /// Whether it may be shown until the other map is covered: it has the fields and columns of that map.
+    pub(super) fn stands_in_for(&self, other: &Self) -> bool {
         let fields = |map: &Self| map.question.axes.clone().map(|axis| axis.field);
         let has_columns = self.question.ledger.is_some() || other.question.ledger.is_none();
         fields(self) == fields(other) && has_columns

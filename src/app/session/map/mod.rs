@@ -3,20 +3,26 @@
 //! It is the sweep of the command line, run in the background and shown while its cells come. The view that
 //! shows it asks for it in every frame; a map that no view asks for pauses until a view asks for it again.
 
-pub(super) mod axes;
-pub(super) mod cells;
+mod axes;
+mod cells;
 
 use std::collections::VecDeque;
+use std::sync::Arc;
+use std::time::Duration;
 
-use crate::app::task::Background;
-use crate::scene::{FieldPath, Scene, SweepAxis};
-use crate::study::{Cell, RMS_VELOCITY, STANDARD_COLUMNS, SummaryField};
+use crate::app::session::Session;
+use crate::app::task::{Background, pool};
+use crate::app::words::fields::{in_words, name_and_unit};
+use crate::scene::{Axis, FieldPath, Scene, Stops, SweepAxis};
+use crate::study::{Cell, RMS_VELOCITY, STANDARD_COLUMNS, SummaryField, Task};
 
 pub use crate::numeric::short;
 pub use axes::{ground, label, over, part};
 pub use cells::Map;
 
-/// Largest number of scenes that are remembered.
+/// Time in s without a change after which a map is begun in the middle of a gesture.
+const STILL: f64 = 0.25;
+
 const MAX_SCENES: usize = 400;
 
 /// The question that a map answers: a scene, apart from the fields of the axes, and the axes.
@@ -34,25 +40,22 @@ pub struct Question {
 pub struct Mapping {
     /// The quantity that the map shows; `None` for the RMS velocity.
     quantity: Option<&'static SummaryField>,
-    /// The earlier positions of the scene.
     pub trail: Trail,
     /// The axes that the user has chosen; `None` for the default axes.
-    pub(super) chosen: Option<[SweepAxis; 2]>,
+    chosen: Option<[SweepAxis; 2]>,
     /// The default axes, as they were when the map was first shown: they do not move with the scene.
-    pub(super) default_axes: Option<[SweepAxis; 2]>,
+    default_axes: Option<[SweepAxis; 2]>,
     /// The axes of the enlarged parts of the map, each a part of the one before.
     enlarged: Vec<[SweepAxis; 2]>,
-    pub(super) map: Option<Map>,
+    map: Option<Map>,
     /// The previous map, shown until the new one has a result everywhere.
-    pub(super) previous: Option<Map>,
+    previous: Option<Map>,
     /// The cells of the map that have come and are not in it yet.
-    pub(super) cells: Background<Question, (u64, Cell)>,
-    /// Number of changes of the picture.
-    pub(super) version: u64,
+    cells: Background<Question, (u64, Cell)>,
+    version: u64,
     /// A question that waits for a pause in the gesture, and the time in s since which it has not changed.
-    pub(super) waiting: Option<(Question, f64)>,
-    /// Why there is no map.
-    pub(super) problem: Option<String>,
+    waiting: Option<(Question, f64)>,
+    problem: Option<String>,
 }
 
 impl Mapping {
@@ -74,17 +77,14 @@ impl Mapping {
         self.map.as_ref()
     }
 
-    /// Number of changes of the picture.
     pub fn version(&self) -> u64 {
         self.version
     }
 
-    /// Whether cells are being run.
     pub fn is_running(&self) -> bool {
         self.cells.is_running()
     }
 
-    /// Why there is no map.
     pub fn problem(&self) -> Option<&str> {
         self.problem.as_deref()
     }
@@ -134,12 +134,10 @@ impl Mapping {
         (self.chosen, self.enlarged) = (axes, Vec::new());
     }
 
-    /// Enlarges the part of the map that these axes span.
     pub fn enlarge(&mut self, axes: [SweepAxis; 2]) {
         self.enlarged.push(axes);
     }
 
-    /// Whether a part of the map is enlarged.
     pub fn is_enlarged(&self) -> bool {
         !self.enlarged.is_empty()
     }
@@ -149,17 +147,15 @@ impl Mapping {
         self.enlarged.pop();
     }
 
-    /// Goes back to the whole map.
     pub fn show_whole(&mut self) {
         self.enlarged.clear();
     }
 
     /// The axes of the enlarged part, or those that the user has chosen.
-    pub(super) fn chosen(&self) -> Option<&[SweepAxis; 2]> {
+    fn chosen(&self) -> Option<&[SweepAxis; 2]> {
         self.enlarged.last().or(self.chosen.as_ref())
     }
 
-    /// Receives the cells that have been computed.
     pub fn take(&mut self) {
         let cells = self.cells.take_parts();
         let Some(map) = &mut self.map else { return };
@@ -173,9 +169,164 @@ impl Mapping {
         }
     }
 
-    /// Pauses the map if no view has asked for it in this frame; to be called once a frame.
     pub fn end_frame(&mut self) {
         self.cells.end_frame();
+    }
+}
+
+impl Session {
+    /// The axes of the map; `None` if the scene has fewer than two fields for them.
+    pub fn map_axes(&self) -> Option<[SweepAxis; 2]> {
+        let mut known = self.map.chosen().into_iter().chain(&self.map.default_axes);
+        match known.find(|axes| self.has_fields_of(*axes)) {
+            Some(axes) => Some(axes.clone()),
+            None => axes::default_axes(self.scene(), self.remembered_stops(), self.well_mm()),
+        }
+    }
+
+    /// Whether the scene, with its stops switched on if need be, has the fields of these axes.
+    pub(super) fn has_fields_of(&self, axes: &[SweepAxis]) -> bool {
+        let ground = ground(self.scene(), self.remembered_stops(), axes);
+        axes.iter().all(|axis| FieldPath::new(&axis.field).get(&ground).is_some())
+    }
+
+    pub fn map_fields(&self) -> Vec<String> {
+        axes::fields(self.scene(), self.remembered_stops())
+    }
+
+    pub fn map_axis(&self, field: &str) -> SweepAxis {
+        axes::axis(field, self.scene(), self.remembered_stops(), self.well_mm())
+    }
+
+    fn well_mm(&self) -> Option<f64> {
+        self.model().mechanism().landscape.right_stable().map(|well| well.x * 1e3)
+    }
+
+    /// Asks for the map of the scene at `time` in s. Returns whether it waits for a pause in the gesture.
+    pub fn want_map(&mut self, time: f64) -> bool {
+        let Some(axes) = self.map_axes() else {
+            self.map.problem = Some("This scene has no two fields to make a map over.".to_owned());
+            return false;
+        };
+        // chosen axes whose fields the scene lacks at present stay chosen
+        if self.map.chosen() != Some(&axes) {
+            self.map.default_axes = Some(axes.clone());
+        }
+        let Some(question) = self.map_question(axes) else { return false };
+        self.map.cells.mark_wanted();
+        if self.map.cells.question() == Some(&question) {
+            (self.map.waiting, self.map.problem) = (None, None);
+            self.run_cells();
+            return false;
+        }
+        let waiting = self.map.waiting.take().filter(|(same, _)| *same == question);
+        if self.map.problem.is_some() && waiting.is_some() {
+            self.map.waiting = waiting;
+            return false;
+        }
+        // the results of the running cells would not be used
+        self.map.cells.pause();
+        self.map.take();
+        let since = waiting.map_or(time, |(_, since)| since);
+        if self.editor.in_gesture() && time - since < STILL {
+            self.map.waiting = Some((question, since));
+            return true;
+        }
+        self.map.version += 1;
+        self.map.cells.resume();
+        match Map::new(&question, &self.editor, self.model().mechanism()) {
+            Ok(map) => {
+                let mapping = &mut self.map;
+                let old = mapping.map.take().filter(Map::is_covered).or_else(|| mapping.previous.take());
+                mapping.previous = old.filter(|old| old.stands_in_for(&map));
+                (mapping.map, mapping.problem) = (Some(map), None);
+                self.run_cells();
+            }
+            Err(problem) => {
+                self.map.problem = Some(problem);
+                self.map.waiting = Some((question, time));
+            }
+        }
+        false
+    }
+
+    /// The question of the map over these axes; `None` if the first value of one cannot be set.
+    fn map_question(&self, axes: [SweepAxis; 2]) -> Option<Question> {
+        let mut scene = ground(self.scene(), self.remembered_stops(), &axes);
+        if !axes.iter().all(|axis| FieldPath::new(&axis.field).set(&mut scene, axis.from)) {
+            return None;
+        }
+        let same = self.map.map().filter(|map| map.question.scene == scene && map.question.axes == axes);
+        // runs with an energy ledger have all columns of runs without one
+        let quantity = self.map.quantity();
+        let needed = || quantity.needs_ledger.then_some(quantity.name);
+        let ledger = same.and_then(|map| map.question.ledger).or_else(needed);
+        Some(Question { scene, axes, ledger })
+    }
+
+    /// Runs the missing cells of the map, unless they are running or were stopped.
+    fn run_cells(&mut self) {
+        let Mapping { map: Some(map), cells, .. } = &mut self.map else { return };
+        if map.is_whole() || cells.question() == Some(&map.question) && !cells.is_paused() {
+            return;
+        }
+        let (sweep, levels) = (Arc::clone(&map.sweep), map.missing());
+        cells.ask(map.question.clone(), &self.wake, move |_, cancel, each| {
+            let (pool, task) = (pool()?, Task { tick: &|| (), cancel });
+            for cells in levels {
+                if !sweep.run_cells(&pool, &task, &cells, &|index, cell| each((index, cell))) {
+                    break;
+                }
+            }
+            None
+        });
+    }
+
+    /// Why a map cannot have these axes: the index of the faulty axis, its faulty part, and a sentence.
+    pub fn map_problem(&self, axes: &[SweepAxis; 2]) -> Option<(usize, &'static str, String)> {
+        let ground = ground(self.scene(), self.remembered_stops(), axes);
+        let mut cells = 1;
+        for (i, axis) in axes.iter().enumerate() {
+            match Axis::from_scene(axis, &ground) {
+                Err((part, problem)) => {
+                    let why = in_words(&problem, &ground);
+                    return Some((i, part, format!("{}, {part}: {why}", name_and_unit(&axis.field).0)));
+                }
+                Ok(axis) => cells *= axis.values.len() as u64,
+            }
+        }
+        cells::too_many(cells).map(|problem| (1, "step", problem))
+    }
+
+    /// Moves the scene to a cell of its map, as one gesture; the motion goes on from its present state.
+    pub fn go_to_cell(&mut self, column: usize, row: usize) {
+        self.end_gesture();
+        self.drag_to_cell(column, row);
+        self.end_gesture();
+    }
+
+    pub fn drag_to_cell(&mut self, column: usize, row: usize) {
+        let Some((map, _)) = self.map.shown() else { return };
+        let (Some(x), Some(y)) = (map.edges[0].values.get(column), map.edges[1].values.get(row)) else {
+            return;
+        };
+        let (values, axes, stops) = ([*x, *y], map.question.axes.clone(), map.question.scene.stops);
+        self.edit(|scene| {
+            if scene.stops == Stops::None && axes.iter().any(|axis| axis.field.starts_with("stops.")) {
+                scene.stops = stops;
+            }
+            for (axis, value) in axes.iter().zip(values) {
+                let is_set = FieldPath::new(&axis.field).set(scene, value);
+                debug_assert!(is_set, "an axis of the map belongs to the scene");
+            }
+        });
+    }
+
+    /// Waits at most `timeout` until all cells of the map are known. Returns whether they are.
+    pub fn wait_for_map(&mut self, timeout: Duration) -> bool {
+        self.map.cells.wait(timeout);
+        self.map.take();
+        self.map.map().is_some_and(Map::is_whole)
     }
 }
 

@@ -10,7 +10,6 @@ use crate::scene::Layout;
 const LEFT_SHARE: f32 = 590.0 / 1030.0;
 /// Share of the height that the displacement has in the right column: 340 of 584 points.
 const DISPLACEMENT_SHARE: f32 = 340.0 / 584.0;
-/// Share of the width that the map has in the layout Map.
 const MAP_SHARE: f32 = 640.0 / 1030.0;
 /// Share of the height that the mechanism has above the well.
 const MECHANISM_SHARE: f32 = 0.4;
@@ -20,7 +19,6 @@ const STUDY_COLUMN: f32 = 0.34;
 const MUCH: f32 = 0.62;
 const HALF: f32 = 0.5;
 
-/// A part of a tree of tiles.
 enum Part {
     Pane(View),
     /// Views that share a place.
@@ -88,14 +86,8 @@ pub(super) fn views_of(layout: Layout) -> Vec<View> {
         Layout::Look => look.to_vec(),
         Layout::Map => vec![View::Map, View::Well, View::BeforeNow],
         Layout::Explore => {
-            vec![
-                View::UpAndDown,
-                View::Basins,
-                View::Spectrum,
-                View::Well,
-                View::PhasePortrait,
-                View::Displacement,
-            ]
+            let motion = [View::Well, View::PhasePortrait, View::Displacement];
+            [View::UpAndDown, View::Basins, View::Spectrum].into_iter().chain(motion).collect()
         }
         Layout::Study => look.into_iter().chain(study).collect(),
     }
@@ -135,8 +127,7 @@ pub(super) fn wide_tree(layout: Layout, large: bool) -> Tree<View> {
     }
 }
 
-/// Two groups of tabs: the views along the displacement except the mechanism, and the mechanism with the
-/// other views.
+/// Two groups of tabs: the views along the displacement, and the mechanism with all others.
 pub(super) fn compact_tree(views: &[View]) -> Tree<View> {
     let is_first = |view: &&View| view.is_along_x() && **view != View::Mechanism;
     let (along, others): (Vec<View>, Vec<View>) = views.iter().partition(is_first);

@@ -19,15 +19,12 @@ const AT_ONCE: f64 = 5.0;
 #[derive(Debug, Clone, Copy)]
 pub struct DrivenMotion<'a> {
     pub scene: &'a Scene,
-    /// The model that moves.
     pub model: &'a Model,
-    /// What its motion settles to.
     pub summary: &'a Summary,
     /// Its thresholds; `None` until they are known.
     pub thresholds: Option<&'a Thresholds>,
     /// Live time in s at which the run of the summary began.
     pub origin: f64,
-    /// The present live time in s.
     pub now: f64,
 }
 
@@ -79,7 +76,6 @@ impl DrivenMotion<'_> {
     }
 }
 
-/// The sentence about a driven motion, by what it settles to.
 pub fn driven(facts: &DrivenMotion) -> Sentence {
     let DrivenMotion { scene, model, summary, .. } = *facts;
     if summary.outcome != Outcome::Done {
@@ -168,7 +164,6 @@ pub fn driven(facts: &DrivenMotion) -> Sentence {
     sentence
 }
 
-/// The sentence about a motion that crosses and repeats.
 fn interwell(facts: &DrivenMotion, crosses: &str, rms: &str, range: &str) -> String {
     let DrivenMotion { model, summary, .. } = *facts;
     let rate = summary.crossings as f64 / summary.periods.max(1) as f64;
@@ -186,20 +181,15 @@ fn interwell(facts: &DrivenMotion, crosses: &str, rms: &str, range: &str) -> Str
     let equal = left.zip(right).filter(|(left, right)| *left == -*right);
     let share = summary.impact_share.filter(|_| summary.impacts > 0).map(|share| share * 100.0);
     let from = facts.settling_time();
-    match (equal, share) {
-        (Some((_, limit)), Some(share)) => format!(
-            "Interwell{from}: {how}, from stop to stop at ±{} mm; {rms}, impacts take {share:.0} % of the \
-             work.",
-            limit_mm(limit * 1e3)
-        ),
-        (None, Some(share)) => {
-            format!("Interwell{from}: {how}, {range}; {rms}, impacts take {share:.0} % of the work.")
+    let place = match (equal, share) {
+        (Some((_, limit)), Some(_)) => format!("from stop to stop at ±{} mm", limit_mm(limit * 1e3)),
+        (None, Some(_)) => range.to_owned(),
+        (_, None) => {
+            format!("reaching {} mm", mm_beside(summary.max_abs_x.unwrap_or(0.0), (left, right)))
         }
-        _ => format!(
-            "Interwell{from}: {how}, reaching {} mm; {rms}.",
-            mm_beside(summary.max_abs_x.unwrap_or(0.0), (left, right))
-        ),
-    }
+    };
+    let impacts = share.map_or_else(String::new, |share| format!(", impacts take {share:.0} % of the work"));
+    format!("Interwell{from}: {how}, {place}; {rms}{impacts}.")
 }
 
 /// The sentence about a motion under a drive without a period: what it does in the settled window.
@@ -258,10 +248,9 @@ fn ramped(facts: &DrivenMotion, firsts: &Firsts) -> Sentence {
         }
         (None, _) => parts.push("never crosses".to_owned()),
     }
-    let until = if firsts.crossing_in_every_period.is_some() {
-        String::new()
-    } else {
-        format!(" up to {}", seconds(end))
+    let until = match firsts.crossing_in_every_period {
+        Some(_) => String::new(),
+        None => format!(" up to {}", seconds(end)),
     };
     Sentence::new(kind, format!("Growing shaking: {}{until}.", parts.join("; ")))
 }

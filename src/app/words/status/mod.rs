@@ -1,8 +1,8 @@
 //! Sentence about what the mass does.
 //!
 //! Its form is: name of the motion: what the mass does; a number; what it would take to cross. Every number
-//! comes from a run. Motion that has not been on the screen yet is described in the future tense, and what is
-//! not known is said to be unknown.
+//! comes from a run. Motion that has not been on the screen yet is described in the future tense, and a fact
+//! that is not known is called unknown.
 
 mod driven;
 mod remedy;
@@ -42,13 +42,15 @@ impl Sentence {
         Self::new(Kind::Other, "Working out what this settles to.")
     }
 
+    /// The sentence after the user has stopped the computation of what the motion settles to.
+    pub fn stopped() -> Self {
+        let text = "Stopped before it was known what this settles to: a shorter run length is known sooner.";
+        Self::new(Kind::Other, text)
+    }
+
     pub fn whole(&self) -> String {
         if self.remedy.is_empty() { self.text.clone() } else { format!("{} {}", self.text, self.remedy) }
     }
-}
-
-fn side_name(phase: Phase) -> &'static str {
-    if phase == Phase::LeftStop { "left-hand" } else { "right-hand" }
 }
 
 /// Share of the scene's acceleration scale below which a mass without speed is at rest.
@@ -57,7 +59,6 @@ const STILL_PULL: f64 = 1e-3;
 /// Share of the mechanism's largest force below which it is said not to pull.
 const NO_PULL: f64 = 2e-3;
 
-/// The sentence while the mass is held by hand.
 pub fn held(model: &Model, state: &Sample) -> Sentence {
     let force = model.mechanism().curve.force(state.x);
     let middle = model.mechanism().landscape.barrier.map_or(0.0, |barrier| barrier.x);
@@ -74,28 +75,19 @@ pub fn held(model: &Model, state: &Sample) -> Sentence {
     Sentence::new(Kind::Other, text)
 }
 
-/// The sentence about a run that has ended early.
 pub fn ended(model: &Model, outcome: Outcome) -> Sentence {
     let at = outcome.ended_at().unwrap_or(0.0);
-    let domain = model.mechanism().curve.domain();
+    let (low, high) = model.mechanism().curve.domain();
+    let end = mm(low.abs().min(high));
     let remedy = ended_remedy(model, outcome).unwrap_or_default();
     let why = match outcome {
-        Outcome::LeftTable { .. } => {
-            let end = mm(domain.0.abs().min(domain.1));
-            if model.mechanism().flexures.is_some() {
-                return Sentence::new(
-                    Kind::Fault,
-                    format!(
-                        "The run ended at {at:.2} s: the mass went further than the flexures were computed, \
-                         {end} mm. Set stops inside that, or shake less."
-                    ),
-                );
-            }
-            format!(
-                "the mass left the force table, which ends at {end} mm. Set stops inside it or extend the \
-                 table."
-            )
-        }
+        Outcome::LeftTable { .. } if model.mechanism().flexures.is_some() => format!(
+            "the mass went further than the flexures were computed, {end} mm. Set stops inside that, or \
+             shake less."
+        ),
+        Outcome::LeftTable { .. } => format!(
+            "the mass left the force table, which ends at {end} mm. Set stops inside it or extend the table."
+        ),
         Outcome::ImpactBudget { count, .. } => {
             format!("{count} impacts are more than it may make. Lower the restitution.")
         }
@@ -109,44 +101,40 @@ pub fn ended(model: &Model, outcome: Outcome) -> Sentence {
     Sentence::new(Kind::Fault, format!("The run ended at {at:.2} s: {why}"))
 }
 
-/// The sentence while nothing shakes the base.
 pub fn unshaken(model: &Model, state: &Sample) -> Sentence {
     let base = model.base_acceleration(state.t);
     let pull = model.acceleration(state.x, state.v, base).abs() * model.scales().time / model.scales().speed;
     let rests = state.phase != Phase::Free || pull < STILL_PULL;
     let still = state.v.abs() < 1e-4 * model.scales().speed && rests;
     let Some(Standing { well, pressed_n, energy_j, needed_j }) = standing(model, state) else {
-        let text = if still {
-            "At rest; nothing shakes it.".to_owned()
-        } else {
-            format!("Moving at {} mm/s; nothing shakes it.", speed(state.v.abs()))
+        return match still {
+            true => Sentence::new(Kind::Resting, "At rest; nothing shakes it."),
+            false => {
+                let speed = speed(state.v.abs());
+                Sentence::new(Kind::Other, format!("Moving at {speed} mm/s; nothing shakes it."))
+            }
         };
-        return Sentence::new(if still { Kind::Resting } else { Kind::Other }, text);
     };
     let wells = model.mechanism().landscape.wells().len();
-    let (well, needed) = (well_name(well, wells), energy(needed_j));
+    let (well, needed, left) = (well_name(well, wells), energy(needed_j), energy(energy_j));
     let lift = format!("nothing shakes it. {needed} would lift it over the barrier.");
-    match pressed_n {
-        Some(force) => Sentence::new(
-            Kind::Resting,
-            format!("Pressed on the {} stop with {}; {lift}", side_name(state.phase), newtons(force)),
-        ),
+    let (kind, text) = match pressed_n {
+        Some(force) => {
+            let side = if state.phase == Phase::LeftStop { "left-hand" } else { "right-hand" };
+            (Kind::Resting, format!("Pressed on the {side} stop with {}; {lift}", newtons(force)))
+        }
         None if still && energy_j < 1e-3 * needed_j => {
-            Sentence::new(Kind::Resting, format!("At rest in the {well}; {lift}"))
+            (Kind::Resting, format!("At rest in the {well}; {lift}"))
         }
-        None if energy_j < needed_j => {
-            let left = energy(energy_j);
-            let text =
-                format!("Ringing down in the {well}: {left} of energy left, {needed} needed to cross.");
-            Sentence::new(Kind::Intrawell, text)
-        }
+        None if energy_j < needed_j => (
+            Kind::Intrawell,
+            format!("Ringing down in the {well}: {left} of energy left, {needed} needed to cross."),
+        ),
         None => {
-            let left = energy(energy_j);
             let all = if wells == 2 { "both" } else { "several" };
-            let text = format!(
-                "Ringing down over {all} wells: {left} of energy left, below {needed} it stays in one."
-            );
-            Sentence::new(Kind::Other, text)
+            let below = format!("below {needed} it stays in one");
+            (Kind::Other, format!("Ringing down over {all} wells: {left} of energy left, {below}."))
         }
-    }
+    };
+    Sentence::new(kind, text)
 }

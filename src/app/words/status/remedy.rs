@@ -27,7 +27,7 @@ fn gaps(found: &Thresholds, from: f64) -> String {
     }
 }
 
-/// What stands before a threshold beside which a motion may be a transient.
+/// The word before a threshold near which a motion may be a transient.
 fn about(found: &Thresholds) -> &'static str {
     if found.crossing.undecided { "about " } else { "" }
 }
@@ -40,13 +40,13 @@ pub(super) fn remedy(scene: &Scene, summary: &Summary, found: &Thresholds) -> St
     }
     let crosses = summary.crossings > 0;
     let Some(from) = found.crossing.value else {
-        let most = grams(found.searched_to);
+        let limit = grams(found.searched_to);
         return match crosses {
             true => String::new(),
             false if found.crossing.undecided => {
-                format!("From rest no shaking up to {most} g was seen to cross.")
+                format!("From rest no shaking up to {limit} g was seen to cross.")
             }
-            false => format!("From rest no shaking up to {most} g crosses."),
+            false => format!("From rest no shaking up to {limit} g crosses."),
         };
     };
     let about = about(found);
@@ -65,10 +65,7 @@ pub(super) fn remedy(scene: &Scene, summary: &Summary, found: &Thresholds) -> St
     capital(&text)
 }
 
-/// What it would take to cross, or to cross every period: more shaking or stops, where they were searched
-/// for.
-///
-/// `stops_mm` is the travel limit that [`study::stops_that_cross`](crate::study::stops_that_cross) found.
+/// What it would take to cross in every period: more shaking, or stops with the travel limit `stops_mm`.
 pub fn ways(scene: &Scene, settled: &Summary, thresholds: &Thresholds, stops_mm: Option<f64>) -> String {
     let Some(g) = amplitude(scene) else { return String::new() };
     let stops = stops_mm.map(|limit| format!("with stops at ±{} mm", at_least_one_decimal(limit)));
@@ -126,30 +123,17 @@ mod tests {
             let found = Thresholds { frees_at: None, crossing, searched_to: 30.0 };
             [remedy(&scene, &settled, &found), ways(&scene, &settled, &found, None)]
         };
-        assert_eq!(
-            said(Some(1.2), false),
-            ["0.30 g short of crossing at 1.20 g.", "Crosses with 0.30 g more; no stops alone would do it."]
-        );
-        assert_eq!(
-            said(Some(1.2), true),
-            [
-                "About 0.30 g short of crossing at about 1.20 g.",
-                "Crosses with about 0.30 g more; no stops alone would do it."
-            ]
-        );
-        assert_eq!(
-            said(None, false),
-            [
-                "From rest no shaking up to 30.0 g crosses.",
-                "From rest neither shaking up to 30.0 g nor any stops make it cross."
-            ]
-        );
-        assert_eq!(
-            said(None, true),
-            [
-                "From rest no shaking up to 30.0 g was seen to cross.",
-                "From rest neither shaking up to 30.0 g nor any stops were seen to make it cross."
-            ]
-        );
+        let short = "0.30 g short of crossing at 1.20 g.";
+        let more = "Crosses with 0.30 g more; no stops alone would do it.";
+        assert_eq!(said(Some(1.2), false), [short, more]);
+        let short = "About 0.30 g short of crossing at about 1.20 g.";
+        let more = "Crosses with about 0.30 g more; no stops alone would do it.";
+        assert_eq!(said(Some(1.2), true), [short, more]);
+        let nothing = "From rest no shaking up to 30.0 g crosses.";
+        let neither = "From rest neither shaking up to 30.0 g nor any stops make it cross.";
+        assert_eq!(said(None, false), [nothing, neither]);
+        let nothing = "From rest no shaking up to 30.0 g was seen to cross.";
+        let neither = "From rest neither shaking up to 30.0 g nor any stops were seen to make it cross.";
+        assert_eq!(said(None, true), [nothing, neither]);
     }
 }

@@ -3,14 +3,12 @@
 //! The motion is live: playing advances it, and a change acts from its present state. Its past is remembered
 //! and can be shown; playing from a time in the past repeats it up to the present, and then goes on.
 
-mod goal;
-
-use std::sync::Arc;
+use std::time::Duration;
 
 use crate::dynamics::{Event, EventKind, Model, Outcome, Sample};
+use crate::scene::Scene;
 use crate::study::Watch;
-
-pub use goal::{Goal, Reached};
+use crate::system::clock::WallClock;
 
 /// Speeds relative to real time, with their names; for the keys 1 to 7.
 pub const SPEEDS: [(f64, &str); 7] = [
@@ -33,11 +31,47 @@ pub fn fitting_speed(characteristic_time: f64) -> f64 {
     speeds.min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or(1.0)
 }
 
+/// The speed at which a scene is opened: that of its hints, or one that suits its motion.
+pub(super) fn opening_speed(scene: &Scene, model: &Model) -> f64 {
+    let hinted = scene.app.as_ref().and_then(|hints| hints.speed);
+    hinted.unwrap_or_else(|| fitting_speed(model.characteristic_time()))
+}
+
 /// Longest real time in s that one frame plays, so that the motion does not jump after a pause of the window.
 const LONGEST_FRAME: f64 = 0.1;
 
 /// Time on the screen in s that a single step takes.
 const STEP: f64 = 1.0 / 30.0;
+
+/// Computing time that one frame spends on the way to a goal.
+const FRAME_SHARE: Duration = Duration::from_millis(12);
+/// Motion between two checks of that time, in multiples of the characteristic time.
+const CHECK_INTERVAL: f64 = 2.0;
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Goal {
+    /// To this time in s.
+    Time(f64),
+    /// To the first event of this kind, if it comes before this time in s.
+    First(EventKind, f64),
+}
+
+impl Goal {
+    fn until(self) -> f64 {
+        let (Self::Time(until) | Self::First(_, until)) = self;
+        until
+    }
+}
+
+/// How the way to a goal ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Reached {
+    Time,
+    Event(Event),
+    /// No event of this kind came up to the time of the goal.
+    Nothing(EventKind),
+    Ended,
+}
 
 #[derive(Debug, Clone)]
 pub struct Player {
@@ -49,7 +83,6 @@ pub struct Player {
     past: Option<f64>,
     /// Whether the mass is held by hand, which stops the clock.
     held: bool,
-    /// The goal of the current fast forward.
     goal: Option<Goal>,
     /// How the last fast forward ended, until it is reported.
     reached: Option<Reached>,
@@ -58,7 +91,6 @@ pub struct Player {
 }
 
 impl Player {
-    /// A player at the start of the model, playing.
     pub fn new(model: &Model, speed: f64) -> Self {
         Self {
             watch: Watch::new(model),
@@ -125,7 +157,6 @@ impl Player {
         self.watch.keep_ledgers(std::mem::take(&mut self.wants_ledgers));
     }
 
-    /// Continues the motion with another model.
     pub fn change(&mut self, model: &Model) {
         (self.past, self.goal) = (None, None);
         self.watch.change(model);
@@ -147,7 +178,6 @@ impl Player {
         self.held = false;
     }
 
-    /// Whether the mass is held by hand.
     pub fn is_held(&self) -> bool {
         self.held
     }
@@ -203,14 +233,8 @@ impl Player {
         self.past.unwrap_or(self.watch.time())
     }
 
-    /// Goes back to the present.
     pub fn to_present(&mut self) {
         self.past = None;
-    }
-
-    /// The model that held at the time that is shown.
-    pub fn shown_model(&self) -> &Arc<Model> {
-        self.watch.model_at(self.time())
     }
 
     pub fn is_past(&self) -> bool {
@@ -229,4 +253,79 @@ impl Player {
     pub fn ended(&self) -> Option<Outcome> {
         self.watch.ended()
     }
+}
+
+/// Fast forward to the end of the run or to the next release or crossing. It may take many frames: each one
+/// advances the motion in short stretches until its share of computing time is used up.
+impl Player {
+    /// Starts towards a goal from the time that is shown; an event in the remembered past is reached at once.
+    pub fn go_to(&mut self, goal: Goal) {
+        self.playing = false;
+        if let (Goal::First(kind, _), Some(past)) = (goal, self.past)
+            && let Some(event) = self.first(kind, past)
+        {
+            self.seek(event.t);
+            self.reached = Some(Reached::Event(event));
+            return;
+        }
+        (self.past, self.held, self.reached) = (None, false, None);
+        self.goal = Some(goal);
+    }
+
+    pub fn goal(&self) -> Option<Goal> {
+        self.goal
+    }
+
+    pub fn give_up(&mut self) {
+        self.goal = None;
+    }
+
+    pub fn take_reached(&mut self) -> Option<Reached> {
+        self.reached.take()
+    }
+
+    /// The first remembered event of a kind after a time in s.
+    fn first(&self, kind: EventKind, after: f64) -> Option<Event> {
+        let events = self.watch.events();
+        let begin = events.partition_point(|event| event.t <= after);
+        events.range(begin..).find(|event| is_kind(event, kind)).copied()
+    }
+
+    fn follow(&mut self, goal: Goal) {
+        let (begun, until) = (WallClock::start(), goal.until());
+        let stretch = CHECK_INTERVAL * self.watch.model_at(self.watch.time()).characteristic_time();
+        loop {
+            let before = self.watch.time();
+            let arrived = self.watch.advance((before + stretch).min(until));
+            if let Goal::First(kind, _) = goal
+                && let Some(event) = self.first(kind, before)
+            {
+                self.seek(event.t);
+                return self.arrive(Reached::Event(event));
+            }
+            if self.watch.ended().is_some() {
+                return self.arrive(Reached::Ended);
+            }
+            // also if the stretch is too short to change the time in floating point
+            if self.watch.time() >= until || arrived && self.watch.time() <= before {
+                let reached = match goal {
+                    Goal::Time(_) => Reached::Time,
+                    Goal::First(kind, _) => Reached::Nothing(kind),
+                };
+                return self.arrive(reached);
+            }
+            if begun.elapsed() >= FRAME_SHARE {
+                return;
+            }
+        }
+    }
+
+    fn arrive(&mut self, reached: Reached) {
+        (self.goal, self.reached) = (None, Some(reached));
+    }
+}
+
+/// Whether an event is of a kind; leaving a compliant stop counts as a release.
+fn is_kind(event: &Event, kind: EventKind) -> bool {
+    event.kind == kind || (kind == EventKind::Release && event.kind == EventKind::Separate)
 }

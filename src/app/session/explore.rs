@@ -1,0 +1,251 @@
+//! Studies of the open scene for the views of the layout Explore. A view asks for its study in every frame;
+//! the study begins once nobody is changing the scene, and stops when no view asks for it.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use crate::app::session::Session;
+use crate::app::session::map::ground;
+use crate::app::task::{Background, Identity, pool};
+use crate::app::words::numbers::decimal;
+use crate::dynamics::Model;
+use crate::mechanics::Mechanism;
+use crate::output::{Chart, basins_chart, suited_unit};
+use crate::scene::{Axis, FieldPath, Scene, Start, SweepAxis};
+use crate::study::{
+    Answer, Basins, EvenRange, Family, NoBasins, Signal, Spectrum, SpectrumOptions, Starts, Task, Visit,
+    followed_until, spectrum, up_and_down,
+};
+
+/// The studies that the views of the layout Explore ask for.
+#[derive(Default)]
+pub struct Explore {
+    pub walks: Walks,
+    pub basins: BasinsFound,
+    pub spectra: Spectra,
+}
+
+impl Explore {
+    pub(super) fn poll(&mut self) {
+        self.walks.found.poll();
+        self.basins.poll();
+        self.spectra.found.poll();
+    }
+
+    pub fn end_frame(&mut self) {
+        self.walks.found.end_frame();
+        self.basins.end_frame();
+        self.spectra.found.end_frame();
+    }
+}
+
+/// A model, and the signal of its motion to analyse.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpectrumQuestion {
+    model: Identity<Model>,
+    signal: Signal,
+}
+
+pub struct Spectra {
+    pub signal: Signal,
+    /// The spectrum, or why there is none.
+    pub found: Background<SpectrumQuestion, Result<Spectrum, String>>,
+}
+
+impl Default for Spectra {
+    fn default() -> Self {
+        Self { signal: Signal::Displacement, found: Background::default() }
+    }
+}
+
+impl Session {
+    /// Asks for the spectrum of the present scene; to be called in every frame that shows it.
+    pub fn want_spectrum(&mut self) {
+        let (model, signal) = (Identity(Arc::clone(&self.model)), self.explore.spectra.signal);
+        let (question, still) = (SpectrumQuestion { model, signal }, self.stands_still());
+        self.explore.spectra.found.want(question, still, &self.wake, |question, cancel, _| {
+            let until_settled = longest_wait(&question.model);
+            let options =
+                SpectrumOptions { signal: question.signal, taper: None, rate_hz: None, until_settled };
+            let found = spectrum(&question.model, &options, &Task { tick: &|| (), cancel });
+            Some(found.map_err(|error| error.to_string()))
+        });
+    }
+}
+
+/// How long in s to wait for the motion to repeat; `None` if it cannot settle.
+pub fn longest_wait(model: &Model) -> Option<f64> {
+    model.can_settle().then(|| followed_until(model))
+}
+
+/// Stride of the coarse walks, which come first.
+const COARSE: usize = 5;
+
+/// The quantity that is drawn for each run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum WalkQuantity {
+    /// Displacements once a forcing period.
+    #[default]
+    Strobes,
+    RmsVelocity,
+    /// Mean power into the load of a transducer.
+    LoadPower,
+}
+
+/// A scene, apart from its value of the field, and the axis over the field.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WalkQuestion {
+    /// The scene, from rest, with the first value of the axis.
+    pub scene: Scene,
+    pub axis: SweepAxis,
+}
+
+#[derive(Default)]
+pub struct Walks {
+    /// The axis that the user has chosen; `None` for an axis around the present value.
+    pub chosen: Option<SweepAxis>,
+    pub quantity: WalkQuantity,
+    /// The runs as they come, each with the stride of its walk; the coarse walks come first.
+    pub found: Background<WalkQuestion, (usize, Visit)>,
+    pub problem: Option<String>,
+}
+
+impl Session {
+    /// The axis of the walks: the chosen one if the scene has its field, else one over the amplitude of the
+    /// shaking, else over the first field that a map could have. Returns `None` if there is no such field.
+    pub fn walk_axis(&self) -> Option<SweepAxis> {
+        let chosen = self.explore.walks.chosen.as_ref();
+        if let Some(chosen) = chosen.filter(|axis| self.has_fields_of(std::slice::from_ref(axis))) {
+            return Some(chosen.clone());
+        }
+        let known = self.map_fields();
+        let path = known.iter().find(|path| path.ends_with("amplitude_g")).or(known.first())?;
+        Some(self.map_axis(path))
+    }
+
+    /// Asks for the walks of the present scene; to be called in every frame that shows them.
+    pub fn want_walks(&mut self) {
+        let still = self.stands_still();
+        let (ground, values, question) = match self.walk_question() {
+            Ok(walk) => walk,
+            Err(problem) => return self.explore.walks.problem = Some(problem),
+        };
+        self.explore.walks.problem = None;
+        let (mechanism, files) = (Arc::clone(&self.mechanism), self.editor.document().files.clone());
+        self.explore.walks.found.want(question, still, &self.wake, move |question, cancel, each| {
+            let (pool, task) = (pool()?, Task { tick: &|| (), cancel });
+            let family = Family::new(&ground, &files, &mechanism, &question.axis.field);
+            for stride in [COARSE, 1] {
+                let values: Vec<f64> = values.iter().step_by(stride).copied().collect();
+                if !up_and_down(&family, &values, &pool, &task, &|visit| each((stride, visit))) {
+                    break;
+                }
+            }
+            None
+        });
+    }
+
+    /// The scene from rest, the values of its field, and the question; or why there are no walks.
+    fn walk_question(&self) -> Result<(Scene, Vec<f64>, WalkQuestion), String> {
+        let axis = self.walk_axis().ok_or("This scene has no field to walk over.")?;
+        let ground = ground(self.scene(), self.remembered_stops(), std::slice::from_ref(&axis));
+        let values = Axis::from_scene(&axis, &ground).map(|axis| axis.values);
+        let values = values.map_err(|(part, problem)| format!("{part}: {problem}"))?;
+        if !self.model().repeats() {
+            return Err("Each run goes on from the state of the one before at the drive's phase 0: that \
+                        needs shaking that repeats, such as a sine."
+                .to_owned());
+        }
+        let mut scene = ground.clone();
+        let is_set = FieldPath::new(&axis.field).set(&mut scene, axis.from);
+        debug_assert!(is_set, "the axis is over a field of the scene");
+        Ok((ground, values, WalkQuestion { scene, axis }))
+    }
+
+    /// Sets the field of the walks to a value, as part of a gesture.
+    pub fn drag_along_walk(&mut self, value: f64) {
+        let Some(axis) = self.walk_axis() else { return };
+        let value = ((value / axis.step).round() * axis.step).clamp(axis.from, axis.to);
+        // a value that is refused is reported where the scene is checked
+        let _ = self.set_number(&axis.field, decimal(value));
+    }
+}
+
+/// Number of starts of the basins along each axis.
+pub const STARTS: u64 = 81;
+
+/// A scene, apart from its start, and the ranges of the starts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BasinsQuestion {
+    pub scene: Scene,
+    /// Least and greatest displacement in mm.
+    pub x_mm: (f64, f64),
+    /// Least and greatest velocity in m/s.
+    pub v: (f64, f64),
+}
+
+/// What is known of the basins after one level of starts has been run.
+#[derive(Debug, Clone)]
+pub struct Level {
+    /// The attractors, and the attractor that each start goes to.
+    pub answer: Answer,
+    /// Their picture, in which a start that has not been run shows the answer of a neighbour.
+    pub chart: Chart,
+    /// How many units of its velocities are 1 m/s.
+    pub per_speed: f64,
+    /// Range of displacements in m that the mass may have.
+    pub room: (f64, f64),
+}
+
+/// The basins, level by level, or why there are none.
+pub type BasinsFound = Background<BasinsQuestion, Result<Level, String>>;
+
+impl Session {
+    /// Asks for the basins of the present scene over a range of displacements in m and of velocities `v` in
+    /// m/s; to be called in every frame that shows them.
+    pub fn want_basins(&mut self, (low, high): (f64, f64), v: (f64, f64)) {
+        let still = self.stands_still();
+        let scene = ground(self.scene(), self.remembered_stops(), &[]);
+        let question = BasinsQuestion { scene, x_mm: (low * 1e3, high * 1e3), v };
+        let mechanism = Arc::clone(&self.mechanism);
+        self.explore.basins.want(question, still, &self.wake, move |question, cancel, each| {
+            find_basins(question, mechanism, cancel, &|level| each(Ok(level))).err().map(Err)
+        });
+    }
+
+    /// Starts the scene at a displacement in m and a velocity in m/s, from now on, as one undo step.
+    pub fn start_at(&mut self, x: f64, v: f64) {
+        let rounded = |value: f64, unit: f64| (value / unit).round() * unit;
+        let x_mm = decimal(rounded(x * 1e3, 1e-3));
+        let v_m_per_s = decimal(rounded(v, 1e-4));
+        if self.edit_once(|scene| scene.start = Start::At { x_mm, v_m_per_s, electrical: 0.0 }) {
+            self.apply();
+            self.restart();
+        }
+    }
+}
+
+fn find_basins(
+    question: &BasinsQuestion,
+    mechanism: Arc<Mechanism>,
+    cancel: &AtomicBool,
+    each: &dyn Fn(Level),
+) -> Result<(), String> {
+    let range = |(from, to): (f64, f64)| EvenRange { from, to, count: STARTS };
+    let starts = Starts::grid(&range(question.x_mm), &range(question.v)).map_err(|why| why.to_string())?;
+    let message = |error: NoBasins| match error {
+        NoBasins::Faults(faults) => faults.first().map_or(String::new(), |fault| fault.problem.clone()),
+        other => other.to_string(),
+    };
+    let mut basins = Basins::new(&question.scene, mechanism, starts).map_err(message)?;
+    let per_speed = suited_unit("m/s", [question.v.0, question.v.1].into_iter()).0;
+    let task = Task { tick: &|| (), cancel };
+    let Some(pool) = pool() else { return Ok(()) };
+    while !basins.is_whole() {
+        let Some(answer) = basins.run_level(&pool, &task).then(|| basins.answer(&task)).flatten() else {
+            return Ok(());
+        };
+        each(Level { chart: basins_chart(&basins, &answer), per_speed, answer, room: basins.room() });
+    }
+    Ok(())
+}
