@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use super::data::{Scene, SweepAxis};
 use super::error::clip;
 use super::field_table::FieldInfo;
-use super::fields::{Field, FieldPath, numeric_fields};
+use super::fields::{FieldPath, info_of, numeric_fields};
 use super::steps::EvenSteps;
 use crate::numeric::{Decimal, number_text};
 
@@ -142,11 +142,7 @@ impl Axis {
 
 /// The specification of a numeric field, or a sentence that lists the numeric fields of the scene.
 fn numeric(scene: &Scene, field: &str) -> Result<&'static FieldInfo, String> {
-    let found = FieldPath::new(field).follow(&mut scene.clone(), |found| match found {
-        Field::Number(spec, _) => Some(spec),
-        _ => None,
-    });
-    match found.flatten() {
+    match info_of(scene, field) {
         Some(spec) if !field.starts_with("sweep.") => Ok(spec),
         _ => Err(unknown("numeric field", field, &numeric_fields(scene))),
     }

@@ -75,7 +75,7 @@ impl Checked {
         value: impl Into<String>,
         problem: impl Into<String>,
     ) {
-        self.faults.push(Fault { field: field.into(), value: value.into(), problem: problem.into() });
+        self.faults.push(Fault::new(field, value, problem));
     }
 }
 

@@ -17,66 +17,65 @@ pub struct Place {
     pub column: usize,
 }
 
+impl Place {
+    /// The place of the character at byte `at`.
+    pub(super) fn of_byte(text: &str, at: usize) -> Self {
+        let before = &text.as_bytes()[..at];
+        let line_start = before.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
+        let is_continuation = |byte: &u8| (0x80..=0xBF).contains(byte);
+        Self {
+            line: 1 + before.iter().filter(|byte| **byte == b'\n').count(),
+            column: 1 + before[line_start..].iter().filter(|byte| !is_continuation(byte)).count(),
+        }
+    }
+
+    /// The byte at this place, or the end of its line if that is shorter.
+    fn byte(self, text: &str) -> usize {
+        let line_start = text.split_inclusive('\n').take(self.line.saturating_sub(1)).map(str::len).sum();
+        let line = text[line_start..].split('\n').next().unwrap_or_default();
+        line_start + line.char_indices().nth(self.column.saturating_sub(1)).map_or(line.len(), |(at, _)| at)
+    }
+}
+
 /// The fields of a text with their places, in the order of the text.
 ///
 /// Each field stores only the index of the field around it and the last part of its path. Whole paths could
 /// exceed the memory for a hostile text of a few megabytes with long names around a million fields.
-#[derive(Debug, Clone, Default)]
-pub struct Places(Vec<Named>);
-
-/// A field of a text.
 #[derive(Debug, Clone)]
-struct Named {
-    /// Index of the field around it.
-    around: Option<usize>,
-    part: Part,
-    place: Place,
-    /// The bytes of its name and value.
-    bytes: Range<usize>,
+pub struct Places<'t> {
+    text: &'t str,
+    fields: Vec<Found>,
 }
 
-impl Places {
+impl<'t> Places<'t> {
     /// Scans a text.
-    pub fn of(text: &str) -> Self {
-        let scanner = Scanner::over(text);
-        let mut places = Vec::with_capacity(scanner.found.len());
-        let (mut place, mut passed) = (Place { line: 1, column: 1 }, 0);
-        for Found { around, part, at, end } in scanner.found {
-            for byte in &text.as_bytes()[passed..at] {
-                match byte {
-                    b'\n' => place = Place { line: place.line + 1, column: 1 },
-                    // continuation bytes of a character
-                    0x80..=0xBF => {}
-                    _ => place.column += 1,
-                }
-            }
-            passed = at;
-            places.push(Named { around, part, place, bytes: at..end });
-        }
-        Self(places)
+    pub fn of(text: &'t str) -> Self {
+        Self { text, fields: Scanner::over(text).found }
     }
 
     /// The place of a field, or of the innermost field around it that the text has.
     pub fn find(&self, path: &str) -> Option<Place> {
-        let parts: Vec<Part> = path.split('.').map(Part::of).collect();
-        let place =
-            |parts: &[Part]| self.0.iter().find(|named| self.is_at(named, parts)).map(|named| named.place);
-        (1..=parts.len()).rev().find_map(|length| place(&parts[..length]))
+        let parts = Part::all_of(path);
+        let find = |parts: &[Part]| self.fields.iter().find(|field| self.is_at(field, parts));
+        let field = (1..=parts.len()).rev().find_map(|length| find(&parts[..length]))?;
+        Some(Place::of_byte(self.text, field.at))
     }
 
     /// The bytes of the field called `name` that begins at a place, including its value.
     pub(super) fn bytes_at(&self, place: Place, name: &str) -> Option<Range<usize>> {
+        let at = place.byte(self.text);
         let is_name = |part: &Part| matches!(part, Part::Name(part) if part == name);
-        let field = self.0.iter().find(|named| named.place == place && is_name(&named.part));
-        field.map(|named| named.bytes.clone())
+        let field = self.fields.iter().find(|field| field.at == at && is_name(&field.part))?;
+        Some(field.at..field.end)
     }
 
     /// The path of the last field that begins at or before a place.
     pub fn last_before(&self, place: Place) -> Option<String> {
-        let last = self.0.iter().rev().find(|named| named.place <= place)?;
-        let outwards = std::iter::successors(Some(last), |named| named.around.map(|i| &self.0[i]));
+        let at = place.byte(self.text);
+        let last = self.fields.iter().rev().find(|field| field.at <= at)?;
+        let outwards = std::iter::successors(Some(last), |field| field.around.map(|i| &self.fields[i]));
         let mut parts: Vec<String> = outwards
-            .map(|named| match &named.part {
+            .map(|field| match &field.part {
                 Part::Name(name) => name.clone(),
                 Part::Index(index) => index.to_string(),
             })
@@ -86,11 +85,11 @@ impl Places {
     }
 
     /// Whether a field has this path, compared from its end, where most paths differ.
-    fn is_at(&self, named: &Named, path: &[Part]) -> bool {
+    fn is_at(&self, field: &Found, path: &[Part]) -> bool {
         let Some((last, around)) = path.split_last() else { return false };
-        named.part == *last
-            && match named.around {
-                Some(index) => self.is_at(&self.0[index], around),
+        field.part == *last
+            && match field.around {
+                Some(index) => self.is_at(&self.fields[index], around),
                 None => around.is_empty(),
             }
     }

@@ -82,8 +82,11 @@ pub enum RecordError {
 
 /// Reads the record in the file at `path` in the same way as for a scene; the error is a clause.
 pub fn read_record(path: &Path) -> Result<Record, String> {
-    let files = Files::default();
-    let text = files.read(&path.to_string_lossy()).map_err(|error| error.to_string())?;
+    read(&Files::default(), &path.to_string_lossy())
+}
+
+fn read(files: &Files, path: &str) -> Result<Record, String> {
+    let text = files.read(path).map_err(|error| error.to_string())?;
     Record::parse(&text).map_err(|error| error.to_string())
 }
 
@@ -183,17 +186,11 @@ impl Record {
 pub(super) fn attach(excitation: &mut Excitation, path: &str, files: &Files) -> Vec<Fault> {
     match excitation {
         Excitation::Recorded { path: file, record } => {
-            let read = files.read(file).map_err(|e| e.to_string());
-            match read.and_then(|text| Record::parse(&text).map_err(|e| e.to_string())) {
-                Ok(found) => {
-                    *record = Some(Arc::new(found));
-                    Vec::new()
-                }
-                Err(problem) => {
-                    *record = None;
-                    vec![Fault { field: format!("{path}.path"), value: file.clone(), problem }]
-                }
-            }
+            let read = read(files, file).map(Arc::new);
+            let fault =
+                read.as_ref().err().map(|problem| Fault::new(format!("{path}.path"), &*file, problem));
+            *record = read.ok();
+            fault.into_iter().collect()
         }
         Excitation::Sum(terms) => terms
             .iter_mut()

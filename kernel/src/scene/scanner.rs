@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-/// The last part of a path.
+/// One part of a path.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Part {
     Name(String),
@@ -13,8 +13,13 @@ pub(super) enum Part {
 }
 
 impl Part {
-    pub fn of(text: &str) -> Self {
-        text.parse().map_or_else(|_| Self::Name(text.to_owned()), Self::Index)
+    /// Splits a path at its dots. A number with further zeros or a sign, such as `01`, is a name.
+    pub fn all_of(path: &str) -> Vec<Self> {
+        let part = |text: &str| match text.parse::<usize>() {
+            Ok(index) if index.to_string() == text => Self::Index(index),
+            _ => Self::Name(text.to_owned()),
+        };
+        path.split('.').map(part).collect()
     }
 }
 
@@ -27,6 +32,7 @@ pub fn has_comments(text: &str) -> bool {
 }
 
 /// A field with the bytes at which it begins and ends.
+#[derive(Debug, Clone)]
 pub(super) struct Found {
     /// Index of the field around it.
     pub around: Option<usize>,

@@ -35,6 +35,11 @@ pub(super) struct ParseError {
 }
 
 impl ParseError {
+    /// An error of the whole text.
+    pub(super) fn at_start(problem: impl Into<String>) -> Self {
+        Self { place: Place { line: 1, column: 1 }, problem: problem.into(), unknown: None }
+    }
+
     /// The text with the unknown field replaced by blanks, so that further errors can be found
     /// at their places.
     pub(super) fn without_unknown(&self, text: &str) -> Option<String> {
@@ -52,17 +57,15 @@ impl ParseError {
 
 /// Parses a scene without checking ranges.
 pub(super) fn parse(text: &str) -> Result<Scene, ParseError> {
-    let start = Place { line: 1, column: 1 };
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     if text.trim().is_empty() {
-        let problem = "the file is empty; a scene begins with `(title: \"..\", mass_g: 15.2, ..`".to_owned();
-        return Err(ParseError { place: start, problem, unknown: None });
+        let problem = "the file is empty; a scene begins with `(title: \"..\", mass_g: 15.2, ..`";
+        return Err(ParseError::at_start(problem));
     }
     if is_json(text) {
         let problem = "this is JSON; a scene begins with `(`. The manifest of a sweep is taken by every \
-                       command that takes a scene"
-            .to_owned();
-        return Err(ParseError { place: start, problem, unknown: None });
+                       command that takes a scene";
+        return Err(ParseError::at_start(problem));
     }
     read(text)
 }
@@ -71,7 +74,7 @@ pub(super) fn parse(text: &str) -> Result<Scene, ParseError> {
 pub(super) fn read<T: DeserializeOwned>(text: &str) -> Result<T, ParseError> {
     if text.len() > MAX_SCENE_BYTES {
         let problem = format!("{} bytes are more than are read ({MAX_SCENE_BYTES})", text.len());
-        return Err(ParseError { place: Place { line: 1, column: 1 }, problem, unknown: None });
+        return Err(ParseError::at_start(problem));
     }
     let read = options().from_str(text).map_err(|error| parse_error(text, &error))?;
     overflow(text).map_or(Ok(read), Err)
@@ -83,10 +86,7 @@ pub(super) const TOO_LARGE: &str = "is beyond the largest number, 1.8e308";
 /// The error for a decimal number that overflows a double; `None` if the text has none.
 pub(super) fn overflow(text: &str) -> Option<ParseError> {
     let bytes = Scanner::over(text).overflow?;
-    let before = &text[..bytes.start];
-    let line = 1 + before.matches('\n').count();
-    let column = 1 + before.rsplit('\n').next().unwrap_or_default().chars().count();
-    let place = Place { line, column };
+    let place = Place::of_byte(text, bytes.start);
     let field = Places::of(text).last_before(place);
     let field = field.map_or(String::new(), |field| format!("{}: ", clip(&field)));
     let number = clip(&text[bytes]);

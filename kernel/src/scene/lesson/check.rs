@@ -246,7 +246,7 @@ struct Found(Vec<Fault>);
 
 impl Found {
     fn add(&mut self, field: &str, value: impl Into<String>, problem: impl Into<String>) {
-        self.0.push(Fault { field: field.to_owned(), value: value.into(), problem: problem.into() });
+        self.0.push(Fault::new(field, value, problem));
     }
 
     /// Adds a fault if a text is missing or too long.

@@ -10,7 +10,7 @@ use crate::scene::data::joined;
 use crate::scene::document::{Document, Source, structure_error};
 use crate::scene::error::{Fault, Origin, PlacedFault, SceneError, clip};
 use crate::scene::files::{ReadError, read_text};
-use crate::scene::locate::{Place, Places};
+use crate::scene::locate::Places;
 use crate::scene::text::{MAX_SCENE_BYTES, ParseError, read};
 
 /// A lesson with the scenes of its steps.
@@ -77,7 +77,9 @@ impl LessonDocument {
         results: &[ResultField],
     ) -> Result<Self, LessonError> {
         let parse = |text: &str| read::<Lesson>(text);
-        let mut lesson = match check_not_empty(text).and_then(|()| parse(text)) {
+        let is_empty = text.trim_start_matches('\u{feff}').trim().is_empty();
+        let problem = "the file is empty; a lesson begins with `(format: 1, title: \"..\", ..`";
+        let mut lesson = match if is_empty { Err(ParseError::at_start(problem)) } else { parse(text) } {
             Ok(lesson) => lesson,
             Err(parse_error) => {
                 let rest = |text: &str| Self::from_text(name, text, folder, results).err();
@@ -122,17 +124,5 @@ impl LessonDocument {
             faults: faults.into_iter().map(place).collect(),
             more: 0,
         }
-    }
-}
-
-/// Fails if the text is empty.
-fn check_not_empty(text: &str) -> Result<(), ParseError> {
-    let parse_error = |problem: &str| {
-        let place = Place { line: 1, column: 1 };
-        Err(ParseError { place, problem: problem.to_owned(), unknown: None })
-    };
-    match text.trim_start_matches('\u{feff}').trim() {
-        "" => parse_error("the file is empty; a lesson begins with `(format: 1, title: \"..\", ..`"),
-        _ => Ok(()),
     }
 }

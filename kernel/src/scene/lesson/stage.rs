@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::{Lesson, Step};
 use crate::scene::document::Document;
-use crate::scene::error::Fault;
+use crate::scene::error::{Fault, SceneError};
 use crate::scene::presets::PRESETS;
 
 /// The scenes of a step.
@@ -23,27 +23,22 @@ pub(super) fn stages(lesson: &Lesson, folder: Option<&Path>, found: &mut Vec<Fau
         Some(folder) => folder.join(&lesson.scene).to_string_lossy().into_owned(),
         None => lesson.scene.clone(),
     };
+    let first_line = |error: &SceneError| error.to_string().lines().next().unwrap_or_default().to_owned();
     let mut current = match Document::load(&spec) {
         Ok(document) => document,
         Err(error) => {
-            found.push(Fault {
-                field: "scene".into(),
-                value: lesson.scene.clone(),
-                problem: error.to_string().lines().next().unwrap_or_default().to_owned(),
-            });
+            found.push(Fault::new("scene", &lesson.scene, first_line(&error)));
             return Vec::new();
         }
     };
     let mut change = |document: &mut Document, changes: &[(String, String)], at: &str| {
         for (index, (field, value)) in changes.iter().enumerate() {
             if let Err(error) = document.assign(field, value, &format!("{field}={value}")) {
-                let (value, problem) = (format!("{field}={value}"), error.problem);
-                found.push(Fault { field: format!("{at}.{index}"), value, problem });
+                found.push(Fault::new(format!("{at}.{index}"), format!("{field}={value}"), error.problem));
             }
         }
         if let Err(error) = document.check() {
-            let problem = error.to_string().lines().next().unwrap_or_default().to_owned();
-            found.push(Fault { field: at.to_owned(), value: String::new(), problem });
+            found.push(Fault::new(at, "", first_line(&error)));
         }
     };
     change(&mut current, &lesson.set, "set");
