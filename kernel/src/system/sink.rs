@@ -40,7 +40,8 @@ pub enum OpenError {
 pub struct Sink {
     name: String,
     kind: Kind,
-    identity: Identity,
+    /// The existing file, if no other output may go to it.
+    inode: Option<(u64, u64)>,
     buffer: Vec<u8>,
     closed: bool,
 }
@@ -52,14 +53,6 @@ enum Kind {
     Replace { part: NamedTempFile, target: PathBuf },
 }
 
-/// Identity of an output; two outputs must not have a part of it in common.
-#[derive(Debug, Clone, PartialEq, Eq)]
-struct Identity {
-    stdout: bool,
-    path: Option<PathBuf>,
-    inode: Option<(u64, u64)>,
-}
-
 /// Number of bytes collected before they are written.
 const BUFFER: usize = 1 << 16;
 
@@ -68,8 +61,7 @@ impl Sink {
     /// file is not changed until [`finish`](Self::finish).
     pub fn open(path: &Path) -> Result<Self, OpenError> {
         if is_stdout(path) {
-            let identity = Identity { stdout: true, path: None, inode: stdout_inode() };
-            return Ok(Self::new("standard output".into(), Kind::Stdout, identity));
+            return Ok(Self::new("standard output".into(), Kind::Stdout, stdout_inode()));
         }
         let refused = |problem| OpenError::Refused { path: path.to_owned(), problem };
         let name = path.display().to_string();
@@ -90,9 +82,8 @@ impl Sink {
             let mut open = fs::OpenOptions::new();
             let file = open.write(true).append(descriptor).open(path).map_err(refused)?;
             // Any number of outputs may go to a device such as /dev/null, but not to one pipe or file.
-            let shared = is_device(existing);
-            let identity = Identity { stdout: false, path: None, inode: inode(existing).filter(|_| !shared) };
-            return Ok(Self::new(name, Kind::Direct(file), identity));
+            let inode = inode(existing).filter(|_| !is_device(existing));
+            return Ok(Self::new(name, Kind::Direct(file), inode));
         }
         let folder = match target.parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
@@ -101,25 +92,21 @@ impl Sink {
         let Some(file_name) = target.file_name().filter(|_| !path.as_os_str().is_empty()) else {
             return Err(OpenError::IsFolder(path.to_owned()));
         };
-        let Ok(whole_folder) = folder.canonicalize() else {
+        let Some(whole_folder) = folder.canonicalize().ok().filter(|folder| folder.is_dir()) else {
             return Err(OpenError::MissingFolder { path: path.to_owned(), folder });
         };
-        if !whole_folder.is_dir() {
-            return Err(OpenError::MissingFolder { path: path.to_owned(), folder });
-        }
         let target = whole_folder.join(file_name);
         if existing.is_some() {
             // Fail for a write-protected file, which a rename would replace.
             fs::OpenOptions::new().write(true).open(&target).map_err(refused)?;
         }
         let part = create_part(&whole_folder, existing.as_ref()).map_err(refused)?;
-        let identity =
-            Identity { stdout: false, path: Some(target.clone()), inode: existing.as_ref().and_then(inode) };
-        Ok(Self::new(name, Kind::Replace { part, target }, identity))
+        let inode = existing.as_ref().and_then(inode);
+        Ok(Self::new(name, Kind::Replace { part, target }, inode))
     }
 
-    fn new(name: String, kind: Kind, identity: Identity) -> Self {
-        Self { name, kind, identity, buffer: Vec::with_capacity(BUFFER), closed: false }
+    fn new(name: String, kind: Kind, inode: Option<(u64, u64)>) -> Self {
+        Self { name, kind, inode, buffer: Vec::with_capacity(BUFFER), closed: false }
     }
 
     /// The path as requested, or "standard output".
@@ -213,10 +200,12 @@ fn is_descriptor(path: &Path) -> bool {
 
 /// Whether two outputs would overwrite each other: both are standard output, or two names of one file.
 pub fn same_target(a: &Sink, b: &Sink) -> bool {
-    let (a, b) = (&a.identity, &b.identity);
-    (a.stdout && b.stdout)
-        || (a.path.is_some() && a.path == b.path)
-        || (a.inode.is_some() && a.inode == b.inode)
+    let is_same_name = match (&a.kind, &b.kind) {
+        (Kind::Stdout, Kind::Stdout) => true,
+        (Kind::Replace { target: a, .. }, Kind::Replace { target: b, .. }) => a == b,
+        _ => false,
+    };
+    is_same_name || (a.inode.is_some() && a.inode == b.inode)
 }
 
 /// The end of a chain of symbolic links, whether it exists or not.
