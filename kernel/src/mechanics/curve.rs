@@ -17,6 +17,11 @@ pub struct Piece {
 }
 
 impl Piece {
+    /// A piece whose potential is not yet known; [`ForceCurve::from_pieces`] sets it.
+    pub(super) fn new(origin: f64, coefficients: Vec<f64>) -> Self {
+        Self { origin, coefficients, potential_at_origin: 0.0 }
+    }
+
     /// Force dV/dx at `x` in N (the force that holds the mass there).
     pub fn force(&self, x: f64) -> f64 {
         let y = x - self.origin;
@@ -36,7 +41,11 @@ impl Piece {
     /// Potential at `x` in J.
     pub fn potential(&self, x: f64) -> f64 {
         let y = x - self.origin;
-        self.potential_at_origin + self.potential_from_origin(y)
+        let mut sum = 0.0;
+        for (i, c) in self.coefficients.iter().enumerate().rev() {
+            sum = sum * y + c / (i + 1) as f64;
+        }
+        self.potential_at_origin + sum * y
     }
 
     /// Potential at `b` less that at `a`, in J. It is computed as a divided difference times `b - a`, so that
@@ -62,14 +71,6 @@ impl Piece {
             coefficients: self.coefficients.iter().enumerate().map(|(i, c)| sign(i) * c).collect(),
             potential_at_origin: self.potential_at_origin,
         }
-    }
-
-    fn potential_from_origin(&self, y: f64) -> f64 {
-        let mut sum = 0.0;
-        for (i, c) in self.coefficients.iter().enumerate().rev() {
-            sum = sum * y + c / (i + 1) as f64;
-        }
-        sum * y
     }
 }
 
@@ -113,7 +114,7 @@ impl ForceCurve {
         }
         let odd = coefficients.iter().step_by(2).all(|c| *c == 0.0);
         Self {
-            pieces: vec![Piece { origin: 0.0, coefficients, potential_at_origin: 0.0 }],
+            pieces: vec![Piece::new(0.0, coefficients)],
             breaks: Vec::new(),
             domain: (f64::NEG_INFINITY, f64::INFINITY),
             odd,
@@ -137,19 +138,32 @@ impl ForceCurve {
         assert_eq!(pieces.len(), breaks.len() + 1);
         let zero = 0.0_f64.clamp(domain.0, domain.1);
         let middle = breaks.partition_point(|b| *b < zero);
+        let level_at = |piece: &mut Piece, x: f64, level: f64| {
+            piece.potential_at_origin = 0.0;
+            piece.potential_at_origin = level - piece.potential(x);
+        };
         pieces[middle].potential_at_origin = 0.0;
         pieces[middle].potential_at_origin = -pieces[middle].potential(zero);
         for i in middle + 1..pieces.len() {
             let level = pieces[i - 1].potential(breaks[i - 1]);
-            pieces[i].potential_at_origin = 0.0;
-            pieces[i].potential_at_origin = level - pieces[i].potential(breaks[i - 1]);
+            level_at(&mut pieces[i], breaks[i - 1], level);
         }
         for i in (0..middle).rev() {
             let level = pieces[i + 1].potential(breaks[i]);
-            pieces[i].potential_at_origin = 0.0;
-            pieces[i].potential_at_origin = level - pieces[i].potential(breaks[i]);
+            level_at(&mut pieces[i], breaks[i], level);
         }
         Self { pieces, breaks, domain, odd, fit }
+    }
+
+    /// The odd curve on -`end` to `end` with these pieces and breaks at x >= 0. Without a break at 0 the first
+    /// piece, which is odd itself, reaches to both sides of it.
+    pub(super) fn odd(right: Vec<Piece>, breaks: &[f64], end: f64) -> Self {
+        let in_middle = breaks.first() == Some(&0.0);
+        let left = right.iter().skip(usize::from(!in_middle)).rev().map(Piece::mirrored);
+        let pieces = left.chain(right.iter().cloned()).collect();
+        let left = breaks.iter().skip(usize::from(in_middle)).rev().map(|x| -x);
+        let breaks = left.chain(breaks.iter().copied()).collect();
+        Self::from_pieces(pieces, breaks, (-end, end), true, None)
     }
 
     /// The same curve with a report of how well it follows its data.

@@ -115,7 +115,7 @@ pub fn magnet(strength: f64, gap: f64) -> Result<ForceCurve, String> {
             factor /= gap;
             scaled
         });
-        Piece { origin: piece.origin * gap, coefficients: coefficients.collect(), potential_at_origin: 0.0 }
+        Piece::new(piece.origin * gap, coefficients.collect())
     };
     let pieces: Vec<Piece> = unit.pieces().iter().map(scaled).collect();
     let breaks: Vec<f64> = unit.breaks().iter().map(|u| u * gap).collect();

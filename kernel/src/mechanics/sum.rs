@@ -32,12 +32,8 @@ pub fn sum(parts: &[&ForceCurve]) -> Option<ForceCurve> {
     let right: Vec<f64> = breaks.into_iter().filter(|x| *x > 0.0).collect();
     let first = if in_middle { 0.0 } else { -right.first().copied().unwrap_or(high) };
     let ends: Vec<f64> = [&[first], &right[..], &[high]].concat();
-    let half: Vec<Piece> = ends.windows(2).map(|pair| piece(parts, pair[0], pair[1])).collect();
-    let mirrored = half.iter().skip(usize::from(!in_middle)).rev().map(Piece::mirrored);
-    let pieces: Vec<Piece> = mirrored.chain(half.iter().cloned()).collect();
-    let middle = if in_middle { &[0.0][..] } else { &[] };
-    let breaks = right.iter().rev().map(|x| -x).chain(middle.iter().copied()).chain(right.iter().copied());
-    Some(ForceCurve::from_pieces(pieces, breaks.collect(), (-high, high), true, None))
+    let half = ends.windows(2).map(|pair| piece(parts, pair[0], pair[1])).collect();
+    Some(ForceCurve::odd(half, &ends[usize::from(!in_middle)..ends.len() - 1], high))
 }
 
 /// The sum from `left` to `right`, an interval without a break of any part.
@@ -64,7 +60,7 @@ fn piece(parts: &[&ForceCurve], left: f64, right: f64) -> Piece {
     }
     let keep = coefficients.iter().rposition(|c| *c != 0.0).map_or(1, |i| i + 1);
     coefficients.truncate(keep);
-    Piece { origin, coefficients, potential_at_origin: 0.0 }
+    Piece::new(origin, coefficients)
 }
 
 /// The coefficients of a piece expanded about another origin, by synthetic division.

@@ -99,7 +99,7 @@ impl Samples<'_> {
             coefficients.push(c / unit);
             unit *= half;
         }
-        let mut piece = Piece { origin, coefficients, potential_at_origin: 0.0 };
+        let mut piece = Piece::new(origin, coefficients);
         let (a, b) = (self.x[span.start], self.x[span.end]);
         for _ in 0..2 {
             let at_b = self.force[span.end] - piece.force(b);

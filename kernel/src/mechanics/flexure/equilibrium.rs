@@ -47,12 +47,6 @@ pub(super) enum Prescribed {
     BumpVanishes(usize),
 }
 
-/// Failure of the iteration to converge, with the size of its last step relative to the unknowns.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Stalled {
-    pub residual: f64,
-}
-
 impl System {
     /// The state without sway: compressed flexures that are straight or have their stress-free bow.
     pub fn straight(&self) -> Point {
@@ -77,8 +71,9 @@ impl System {
 
     /// Solves for the equilibrium near `guess`.
     ///
-    /// Returns the point with force, stiffness and energy; fails if the iteration does not converge.
-    pub fn solve(&self, guess: &Point, prescribed: Prescribed) -> Result<Point, Stalled> {
+    /// Returns the point with force, stiffness and energy; if the iteration does not converge, the size of its
+    /// last step relative to the unknowns.
+    pub fn solve(&self, guess: &Point, prescribed: Prescribed) -> Result<Point, f64> {
         let mut point = guess.clone();
         match prescribed {
             Prescribed::Displacement(x) => point.x = x,
@@ -98,7 +93,7 @@ impl System {
                 return Ok(self.finish(point, &factors, residual, prescribed));
             }
         }
-        Err(Stalled { residual })
+        Err(residual)
     }
 
     /// Takes Newton's step, shortened to [`MAX_ROTATION`]; returns its full size relative to the unknowns.

@@ -338,24 +338,16 @@ fn scaled<'a>(geometry: &Geometry, tail: f64, cancel: Option<&'a AtomicBool>) ->
 
 /// The whole curve in SI units from the scaled pieces of its right half.
 fn curve(scaled_pieces: &[ScaledPiece], units: Units) -> ForceCurve {
-    let piece = |scaled_piece: &ScaledPiece| {
+    let in_metres = |ScaledPiece { piece, .. }: &ScaledPiece| {
         let mut power = 1.0;
-        let coefficients = scaled_piece.coefficients.iter().map(|c| {
+        let coefficients = piece.coefficients.iter().map(|c| {
             let scaled = c * units.force / power;
             power *= units.length;
             scaled
         });
-        Piece {
-            origin: scaled_piece.origin * units.length,
-            coefficients: coefficients.collect(),
-            potential_at_origin: 0.0,
-        }
+        Piece::new(piece.origin * units.length, coefficients.collect())
     };
-    let right: Vec<Piece> = scaled_pieces.iter().map(piece).collect();
+    let right: Vec<Piece> = scaled_pieces.iter().map(in_metres).collect();
     let ends: Vec<f64> = scaled_pieces.iter().map(|s| s.to * units.length).collect();
-    let (breaks, end) = (&ends[..ends.len() - 1], ends[ends.len() - 1]);
-    let left = right.iter().skip(1).rev().map(Piece::mirrored);
-    let pieces: Vec<Piece> = left.chain(right.iter().cloned()).collect();
-    let all: Vec<f64> = breaks.iter().rev().map(|b| -b).chain(breaks.iter().copied()).collect();
-    ForceCurve::from_pieces(pieces, all, (-end, end), true, None)
+    ForceCurve::odd(right, &ends[..ends.len() - 1], ends[ends.len() - 1])
 }

@@ -12,6 +12,7 @@ use nalgebra::{DMatrix, DVector};
 use super::branch::Segment;
 use super::point::Point;
 use super::solver::{Failure, Solver};
+use crate::mechanics::Piece;
 
 /// Points of a piece; its degree is twice this less one.
 const POINTS: usize = 7;
@@ -53,24 +54,18 @@ const MIN_LENGTH: f64 = 1e-9;
 /// computed from it would be dominated by rounding.
 const STRAIGHT_LENGTH: f64 = 3e-8;
 
-/// A polynomial in x - origin on an interval of x >= 0, in scaled units.
+/// A polynomial on an interval of x >= 0, in scaled units.
 #[derive(Debug, Clone)]
 pub(super) struct ScaledPiece {
     pub to: f64,
-    pub origin: f64,
-    pub coefficients: Vec<f64>,
+    pub piece: Piece,
     /// The solved states that it was compared with.
     pub checks: Vec<Point>,
 }
 
 impl ScaledPiece {
-    fn force(&self, x: f64) -> f64 {
-        self.coefficients.iter().rev().fold(0.0, |sum, c| sum * (x - self.origin) + c)
-    }
-
-    fn stiffness(&self, x: f64) -> f64 {
-        let terms = self.coefficients.iter().enumerate().skip(1).rev();
-        terms.fold(0.0, |sum, (i, c)| sum * (x - self.origin) + i as f64 * c)
+    fn new(to: f64, origin: f64, coefficients: Vec<f64>) -> Self {
+        Self { to, piece: Piece::new(origin, coefficients), checks: Vec::new() }
     }
 }
 
@@ -96,9 +91,9 @@ impl Scale {
     }
 
     /// Error of a piece at a solved state, relative to what `tolerance` allows.
-    fn error(&self, scaled_piece: &ScaledPiece, point: &Point, tolerance: f64) -> f64 {
-        let force = (scaled_piece.force(point.x) - point.force).abs() / self.force.max(point.force.abs());
-        let slope = (scaled_piece.stiffness(point.x) - point.stiffness).abs() / self.stiffness;
+    fn error(&self, piece: &Piece, point: &Point, tolerance: f64) -> f64 {
+        let force = (piece.force(point.x) - point.force).abs() / self.force.max(point.force.abs());
+        let slope = (piece.stiffness(point.x) - point.stiffness).abs() / self.stiffness;
         let error = if point.x <= self.inside { force.max(slope / SLOPE_FACTOR) } else { force };
         error / tolerance
     }
@@ -138,7 +133,7 @@ pub(super) fn fit(
                 let point = segment.at(solver, at(*t));
                 solver.tail = tail;
                 let point = point?;
-                error = error.max(scale.error(&scaled_piece, &point, tolerance));
+                error = error.max(scale.error(&scaled_piece.piece, &point, tolerance));
                 scaled_piece.checks.push(point);
                 // far too large: further checks would not matter
                 if error > 1e3 {
@@ -166,7 +161,7 @@ pub(super) fn fit(
 fn line(segment: &Segment) -> ScaledPiece {
     let (first, last) = (&segment.points[0], &segment.points[segment.points.len() - 1]);
     let slope = (last.force - first.force) / (last.x - first.x);
-    ScaledPiece { to: last.x, origin: first.x, coefficients: vec![first.force, slope], checks: Vec::new() }
+    ScaledPiece::new(last.x, first.x, vec![first.force, slope])
 }
 
 /// The odd polynomial from 0 to `to`.
@@ -197,7 +192,7 @@ fn odd_piece(solver: &mut Solver, segment: &mut Segment, to: f64) -> Result<Scal
     for (degree, c) in degrees.iter().zip(all.iter()) {
         coefficients[*degree] = *c;
     }
-    Ok(ScaledPiece { to, origin: 0.0, coefficients: monomials(&coefficients, to), checks: Vec::new() })
+    Ok(ScaledPiece::new(to, 0.0, monomials(&coefficients, to)))
 }
 
 /// The polynomial from `from` to `to`.
@@ -223,7 +218,7 @@ fn piece(solver: &mut Solver, segment: &mut Segment, from: f64, to: f64) -> Resu
         right[2 * j + 1] = point.stiffness * half;
     }
     let coefficients = solved(matrix, &right);
-    Ok(ScaledPiece { to, origin: middle, coefficients: monomials(&coefficients, half), checks: Vec::new() })
+    Ok(ScaledPiece::new(to, middle, monomials(&coefficients, half)))
 }
 
 /// Solves for the coefficients of an interpolation; its points are distinct, so that the matrix is regular.
@@ -272,8 +267,8 @@ fn monomials(chebyshev: &[f64], half: f64) -> Vec<f64> {
 /// its end.
 ///
 /// Each degree makes every step of a run slower. T_n - T_(n-2) is at most 2 and vanishes at the end.
-fn lower_degree(piece: &mut ScaledPiece, scale: Scale, tolerance: f64) {
-    let to = piece.to;
+fn lower_degree(ScaledPiece { to, piece, .. }: &mut ScaledPiece, scale: Scale, tolerance: f64) {
+    let to = *to;
     let (mut force, mut slope) = (0.0, 0.0);
     while piece.coefficients.len() > 4 {
         let highest = piece.coefficients.len() - 1;

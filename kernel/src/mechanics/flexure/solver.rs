@@ -111,7 +111,7 @@ impl<'a> Solver<'a> {
             let point = self
                 .system(modes)
                 .solve(&guess, prescribed)
-                .map_err(|stalled| Failure::NotConverged { x: guess.x, residual: stalled.residual })?;
+                .map_err(|residual| Failure::NotConverged { x: guess.x, residual })?;
             let side = side(&point, &self.bow);
             if side == Side::Opposite || (side == Side::Leaning && !self.is_stable(&point)) {
                 return Err(Failure::NotConverged { x: point.x, residual: 1.0 });
@@ -176,19 +176,19 @@ impl<'a> Solver<'a> {
 /// by about the bow. Two other equilibria bulge to the opposite side: a stable one with a large bulge
 /// and an unstable one.
 fn side(point: &Point, bow: &[f64; 2]) -> Side {
-    let mut side = Side::Same;
-    for g in (0..2).filter(|g| point.shapes[*g] == Shape::Bowed) {
+    let of_group = |g: usize| {
         let leading = point.odd[g].first().copied().unwrap_or(0.0);
-        if leading * bow[g] < 0.0 {
-            side =
-                if leading.abs() > MAX_LEAN * bow[g].abs() { return Side::Opposite } else { Side::Leaning };
+        match leading * bow[g] < 0.0 {
+            true if leading.abs() > MAX_LEAN * bow[g].abs() => Side::Opposite,
+            true => Side::Leaning,
+            false => Side::Same,
         }
-    }
-    side
+    };
+    (0..2).filter(|g| point.shapes[*g] == Shape::Bowed).map(of_group).max().unwrap_or(Side::Same)
 }
 
 /// See [`side`].
-#[derive(PartialEq)]
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
 enum Side {
     Same,
     Leaning,
