@@ -3,9 +3,8 @@
 use std::sync::OnceLock;
 
 use super::lanes::Lanes;
-use super::number::Number;
 use super::quadrature::even_half;
-use super::scalar::Scalar;
+use super::scalar::{Number, Scalar};
 
 /// Number of points in a group, as many as the widest registers hold.
 pub const GROUP: usize = 8;

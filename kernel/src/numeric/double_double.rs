@@ -5,11 +5,10 @@
 //! the result does not depend on the processor. It is the integrator's reference number type, and slow.
 
 use std::cmp::Ordering;
-use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::number::Number;
 use super::quadrature::{GaussLegendre, Rules};
-use super::scalar::{Scalar, sin_cos_by_octant};
+use super::scalar::{Number, Scalar, assign_operators, sin_cos_by_octant};
 
 /// high + low with |low| at most half an ulp of high.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,14 +21,14 @@ pub struct DoubleDouble {
 const TAU: DoubleDouble = DoubleDouble { high: std::f64::consts::TAU, low: 2.449_293_598_294_706_4e-16 };
 
 /// Sum of two doubles with its rounding error.
-pub(super) fn two_sum(a: f64, b: f64) -> (f64, f64) {
+fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let s = a + b;
     let t = s - a;
     (s, (a - (s - t)) + (b - t))
 }
 
 /// Product of two doubles with its rounding error. Precondition: magnitudes below 1e300.
-pub(super) fn two_product(a: f64, b: f64) -> (f64, f64) {
+fn two_product(a: f64, b: f64) -> (f64, f64) {
     let split = |x: f64| {
         let t = 134_217_729.0 * x; // 2^27 + 1
         let high = t - (t - x);
@@ -107,17 +106,7 @@ impl Div for DoubleDouble {
     }
 }
 
-impl AddAssign for DoubleDouble {
-    fn add_assign(&mut self, o: Self) {
-        *self = *self + o;
-    }
-}
-
-impl SubAssign for DoubleDouble {
-    fn sub_assign(&mut self, o: Self) {
-        *self = *self - o;
-    }
-}
+assign_operators!([] DoubleDouble);
 
 impl PartialOrd for DoubleDouble {
     fn partial_cmp(&self, o: &Self) -> Option<Ordering> {

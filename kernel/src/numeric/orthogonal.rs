@@ -26,7 +26,7 @@ pub struct Orthogonal {
 
 /// Value and derivatives of a polynomial at one position. The variances hold for samples whose errors have
 /// variance 1.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Tangent {
     /// The value.
     pub value: f64,
@@ -86,8 +86,7 @@ impl Orthogonal {
     /// The polynomial with `terms` coefficients, at most the number of samples, at `place`.
     pub fn at(&self, place: f64, terms: usize) -> Tangent {
         let u = (place - self.centre) / self.scale;
-        let mut tangent =
-            Tangent { value: 0.0, slope: 0.0, bend: 0.0, of_value: 0.0, of_slope: 0.0, of_both: 0.0 };
+        let mut tangent = Tangent::default();
         // value and two derivatives of the current polynomial and of the previous one
         let (mut p, mut before) = ([self.first, 0.0, 0.0], [0.0; 3]);
         for k in 0..terms.min(self.terms) {

@@ -79,14 +79,11 @@ mod tests {
     use std::f64::consts::TAU;
 
     use super::*;
+    use crate::numeric::random;
 
     fn noise(n: usize) -> Vec<f64> {
-        let mut state = 1_u64;
-        let mut next = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.3
-        };
-        (0..n).map(|_| next()).collect()
+        let mut next = random();
+        (0..n).map(|_| next() - 0.3).collect()
     }
 
     fn near(value: f64, exact: f64, bound: f64) {

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use super::number::Number;
+use super::scalar::Number;
 
 /// Largest number of points of a rule.
 pub const MAX_POINTS: usize = 20;
@@ -35,9 +35,7 @@ impl<T: Number> GaussLegendre<T> {
     pub fn map<U: Number>(&self, f: impl Fn(T) -> U) -> GaussLegendre<U> {
         GaussLegendre { points: self.points, nodes: self.nodes.map(&f), weights: self.weights.map(&f) }
     }
-}
 
-impl<T: Number> GaussLegendre<T> {
     /// The rule with 1 to [`MAX_POINTS`] points (clamped), to the rounding of `T`: Newton's method on the
     /// Legendre polynomials from the usual cosine guess.
     pub fn new(points: usize) -> Self {

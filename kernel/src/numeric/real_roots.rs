@@ -204,20 +204,12 @@ fn bracketed(coefficients: &[f64], slope: &[f64], mut low: f64, mut high: f64, s
 #[cfg(test)]
 mod tests {
     use super::real_roots;
+    use crate::numeric::times_roots;
 
     const LINE: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 
     fn product(roots: &[f64]) -> Vec<f64> {
-        let mut p = vec![1.0];
-        for r in roots {
-            let mut next = vec![0.0; p.len() + 1];
-            for (i, c) in p.iter().enumerate() {
-                next[i + 1] += c;
-                next[i] -= r * c;
-            }
-            p = next;
-        }
-        p
+        times_roots(&[1.0], roots)
     }
 
     #[test]

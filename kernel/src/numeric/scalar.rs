@@ -1,10 +1,85 @@
-//! Scalar number types of the integrator, with comparison and a few functions.
+//! Number types of the integrator: branch-free arithmetic, also of several motions in one vector, and scalars
+//! with comparison and a few functions.
 //!
 //! `f64` is the working type, [`DoubleDouble`](super::DoubleDouble) the reference.
 
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
 use super::double_double::DoubleDouble;
-use super::number::Number;
 use super::quadrature::{GaussLegendre, Rules};
+
+/// A number type whose arithmetic has no branches.
+pub trait Number:
+    'static
+    + Copy
+    + Debug
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+{
+    /// Whether one operation is so cheap that the overhead of a short loop costs as much.
+    const QUICK: bool = false;
+
+    /// The number nearest to `value`.
+    fn of(value: f64) -> Self;
+    /// The number nearest to `over / under`.
+    fn ratio(over: f64, under: f64) -> Self;
+    /// Magnitude.
+    fn abs(self) -> Self;
+
+    /// Converts a whole number below 2^32, usually a degree.
+    #[inline(always)]
+    fn whole(number: usize) -> Self {
+        Self::of(f64::from(number as u32)) // one instruction; a conversion from u64 takes several
+    }
+
+    /// 0.
+    fn zero() -> Self {
+        Self::of(0.0)
+    }
+}
+
+impl Number for f64 {
+    const QUICK: bool = true;
+
+    #[inline(always)]
+    fn of(value: f64) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn ratio(over: f64, under: f64) -> Self {
+        over / under
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        f64::abs(self)
+    }
+}
+
+/// Implements `+=` and `-=` of a number type by its sum and difference.
+macro_rules! assign_operators {
+    ([$($generics:tt)*] $type:ty) => {
+        impl<$($generics)*> std::ops::AddAssign for $type {
+            #[inline(always)]
+            fn add_assign(&mut self, other: Self) {
+                *self = *self + other;
+            }
+        }
+
+        impl<$($generics)*> std::ops::SubAssign for $type {
+            #[inline(always)]
+            fn sub_assign(&mut self, other: Self) {
+                *self = *self - other;
+            }
+        }
+    };
+}
+pub(super) use assign_operators;
 
 /// A real number with comparison and a few functions.
 pub trait Scalar: Number + PartialOrd {

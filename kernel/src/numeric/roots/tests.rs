@@ -2,20 +2,11 @@
 
 use proptest::prelude::*;
 
-use super::super::DoubleDouble;
 use super::*;
+use crate::numeric::{DoubleDouble, random, times_roots};
 
 fn from_roots(roots: &[f64], scale: f64) -> Vec<f64> {
-    let mut g = vec![scale];
-    for r in roots {
-        let mut next = vec![0.0; g.len() + 1];
-        for (k, c) in g.iter().enumerate() {
-            next[k] -= c * r;
-            next[k + 1] += c;
-        }
-        g = next;
-    }
-    g
+    times_roots(&[scale], roots)
 }
 
 fn all(g: &[f64]) -> Vec<f64> {
@@ -31,11 +22,7 @@ fn all(g: &[f64]) -> Vec<f64> {
 #[test]
 fn a_polynomial_and_its_negative_have_the_same_roots_whatever_sign_a_zero_has() {
     // a mass that starts at rest: the slope is 0 or -0
-    let mut state = 1_u64;
-    let mut next = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1_u64 << 53) as f64
-    };
+    let mut next = random();
     for _ in 0..200 {
         let g = [0.2 + 0.5 * next(), 0.0, -0.9 - 0.3 * next(), 0.05 * next(), -0.01 * next()];
         let other = [g[0], -0.0, g[2], g[3], g[4]];
