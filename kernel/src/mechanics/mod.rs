@@ -7,7 +7,6 @@ mod hertz;
 mod landscape;
 mod local;
 mod magnet;
-mod sum;
 mod table;
 
 pub use curve::{FitReport, ForceCurve, Piece};
@@ -205,7 +204,7 @@ impl Mechanism {
     /// The sum of at least one mechanism in parallel. Fails if the domains of their curves do not overlap.
     fn sum(parts: Vec<Self>) -> Result<Self, BuildError> {
         let curves: Vec<&ForceCurve> = parts.iter().map(|part| &part.curve).collect();
-        let curve = sum::sum(&curves)
+        let curve = curve::sum(&curves)
             .filter(|sum| sum.pieces().iter().all(|piece| piece.coefficients.iter().all(|c| c.is_finite())));
         let problem = "the parts have no displacement at which all of their forces are known and finite; take \
                        tables that overlap";

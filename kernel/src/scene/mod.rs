@@ -36,7 +36,6 @@ mod presets;
 mod record;
 mod scanner;
 mod shape;
-mod steps;
 mod stops;
 mod text;
 mod timing;

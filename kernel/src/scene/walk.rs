@@ -129,23 +129,17 @@ trait Number {
     fn visit(&mut self, segment: Segment, info: &'static FieldInfo, v: &mut impl Visitor);
 }
 
-impl Number for f64 {
-    fn visit(&mut self, segment: Segment, info: &'static FieldInfo, v: &mut impl Visitor) {
-        v.field(segment, false, Field::Number(info, Slot::Required(self)));
-    }
+macro_rules! numbers {
+    ($($type:ty: $slot:ident),*) => {
+        $(impl Number for $type {
+            fn visit(&mut self, segment: Segment, info: &'static FieldInfo, v: &mut impl Visitor) {
+                v.field(segment, false, Field::Number(info, Slot::$slot(self)));
+            }
+        })*
+    };
 }
 
-impl Number for Option<f64> {
-    fn visit(&mut self, segment: Segment, info: &'static FieldInfo, v: &mut impl Visitor) {
-        v.field(segment, false, Field::Number(info, Slot::Optional(self)));
-    }
-}
-
-impl Number for u64 {
-    fn visit(&mut self, segment: Segment, info: &'static FieldInfo, v: &mut impl Visitor) {
-        v.field(segment, false, Field::Number(info, Slot::Whole(self)));
-    }
-}
+numbers!(f64: Required, Option<f64>: Optional, u64: Whole);
 
 impl Number for Vec<f64> {
     fn visit(&mut self, segment: Segment, info: &'static FieldInfo, v: &mut impl Visitor) {

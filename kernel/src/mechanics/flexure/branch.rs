@@ -8,10 +8,9 @@
 //! branch inwards is never followed.
 
 use super::beam::Shape;
-use super::equilibrium::Prescribed;
+use super::equilibrium::{Prescribed, stays_straight};
 use super::point::Point;
 use super::solver::{Failure, Solver};
-use super::stability::stays_straight;
 
 /// Number of halvings after which a continuation fails.
 const MAX_HALVINGS: u32 = 40;

@@ -18,7 +18,6 @@ mod pieces;
 mod point;
 mod shape;
 mod solver;
-mod stability;
 
 use std::sync::atomic::AtomicBool;
 

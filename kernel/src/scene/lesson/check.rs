@@ -1,7 +1,7 @@
 //! Validation of a lesson.
 
 use super::condition::Condition;
-use super::stage::Stage;
+use super::document::Stage;
 use super::{LESSON_FORMAT, Lesson, MAX_OPTION_LENGTH, MAX_STEP_LENGTH, Step};
 use crate::numeric::number_text;
 use crate::scene::axis::Axis;
