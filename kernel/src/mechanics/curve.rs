@@ -156,8 +156,8 @@ impl ForceCurve {
         Self { pieces, breaks, domain, odd, fit }
     }
 
-    /// The odd curve on -`end` to `end` with these pieces and breaks at x >= 0. Without a break at 0 the first
-    /// piece, which is odd itself, reaches to both sides of it.
+    /// The odd curve from -`end` to `end` with these pieces and breaks at x >= 0. Without a break at 0 the
+    /// first piece is odd and reaches to both sides of it.
     pub(super) fn odd(right: Vec<Piece>, breaks: &[f64], end: f64) -> Self {
         let in_middle = breaks.first() == Some(&0.0);
         let left = right.iter().skip(usize::from(!in_middle)).rev().map(Piece::mirrored);

@@ -206,8 +206,8 @@ impl Mechanism {
         let curves: Vec<&ForceCurve> = parts.iter().map(|part| &part.curve).collect();
         let curve = curve::sum(&curves)
             .filter(|sum| sum.pieces().iter().all(|piece| piece.coefficients.iter().all(|c| c.is_finite())));
-        let problem = "the parts have no displacement at which all of their forces are known and finite; take \
-                       tables that overlap";
+        let problem = "the parts have no displacement at which all of their forces are known and finite; \
+                       take tables that overlap";
         let curve = curve.ok_or_else(|| Fault::new("mechanism", "Sum([..])", problem))?;
         let mut flexures = parts.iter().filter_map(|part| part.flexures.clone());
         let only = flexures.next().filter(|_| flexures.next().is_none());

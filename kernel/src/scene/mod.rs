@@ -64,7 +64,7 @@ pub use measured::{
 };
 pub use mechanism::{FlexureGroup, Mechanism};
 pub use presets::{EmbeddedTable, PRESETS, Preset, TABLES, export};
-pub use record::{Record, RecordError, read_record};
+pub use record::{Record, read_record};
 pub use scanner::has_comments;
 pub use stops::Stops;
 pub use text::{MAX_SCENE_BYTES, write};

@@ -47,6 +47,10 @@ pub(super) struct Segment {
 }
 
 impl Segment {
+    pub fn last(&self) -> &Point {
+        &self.points[self.points.len() - 1]
+    }
+
     /// A guess for the state at `x` from the nearest ones.
     pub fn guess(&self, x: f64) -> Point {
         let mut nearest: Vec<&Point> = self.points.iter().collect();
@@ -122,7 +126,7 @@ fn chain(solver: &mut Solver, mut start: Point, min_end: f64) -> Result<Vec<Segm
         };
         while next.is_none() {
             let Some(farther) = beyond_well(solver, &mut segment)? else { break };
-            let last = segment.points[segment.points.len() - 1].clone();
+            let last = segment.last().clone();
             let step = 0.5 * (farther - last.x);
             let (rest, after) = march(solver, last, step, Some(farther))?;
             segment.points.extend(rest.points.into_iter().skip(1));
@@ -282,7 +286,7 @@ fn march(
     let mut segment = Segment { from, to: from, points: vec![start] };
     let mut halvings = 0;
     loop {
-        let last = segment.points[segment.points.len() - 1].x;
+        let last = segment.last().x;
         let x = match end {
             Some(end) if last + 1.01 * step >= end => end,
             _ => last + step,
@@ -290,11 +294,7 @@ fn march(
         if x > max_x {
             return Err(Failure::Unstable { x });
         }
-        let guess = if halvings % 2 == 0 {
-            segment.guess(x)
-        } else {
-            segment.points[segment.points.len() - 1].clone()
-        };
+        let guess = if halvings % 2 == 0 { segment.guess(x) } else { segment.last().clone() };
         match solver.solve(&guess, Prescribed::Displacement(x)) {
             Err(failure) => {
                 halvings += 1;
@@ -340,7 +340,7 @@ fn pitchfork(
     beyond: &Point,
     changed: [bool; 2],
 ) -> Result<(Segment, Option<Point>), Failure> {
-    let last = segment.points[segment.points.len() - 1].clone();
+    let last = segment.last().clone();
     let mut first: Option<(usize, Point)> = None;
     let mut kinks = [f64::NAN; 2];
     let mut failure = Failure::Unstable { x: beyond.x };

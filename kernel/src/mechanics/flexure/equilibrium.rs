@@ -71,8 +71,8 @@ impl System {
 
     /// Solves for the equilibrium near `guess`.
     ///
-    /// Returns the point with force, stiffness and energy; if the iteration does not converge, the size of its
-    /// last step relative to the unknowns.
+    /// Returns the point with force, stiffness and energy. The error, if the iteration does not converge, is
+    /// the size of its last step relative to the unknowns.
     pub fn solve(&self, guess: &Point, prescribed: Prescribed) -> Result<Point, f64> {
         let mut point = guess.clone();
         match prescribed {

@@ -159,7 +159,7 @@ pub(super) fn fit(
 
 /// The straight line between the ends of a segment.
 fn line(segment: &Segment) -> ScaledPiece {
-    let (first, last) = (&segment.points[0], &segment.points[segment.points.len() - 1]);
+    let (first, last) = (&segment.points[0], segment.last());
     let slope = (last.force - first.force) / (last.x - first.x);
     ScaledPiece::new(last.x, first.x, vec![first.force, slope])
 }
