@@ -2,9 +2,9 @@
 //! several.
 //!
 //! Each piece between two breaks is a polynomial about its own origin. Potential and stiffness follow
-//! exactly, by integration and differentiation of the same coefficients. The piece is a *mode* of the motion:
-//! a run changes it only at a located crossing of a break and never looks it up by x, which rounding could
-//! put on the wrong side.
+//! exactly, by integration and differentiation of the same coefficients. The piece is a *mode* of the motion.
+//! A run changes it only at a located crossing of a break and never looks it up by x, because rounding could
+//! put x on the wrong side of the break.
 
 /// One polynomial piece: `F(x) = sum coefficients[i] (x - origin)^i`.
 #[derive(Debug, Clone, PartialEq)]

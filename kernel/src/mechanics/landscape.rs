@@ -217,9 +217,9 @@ impl Landscape {
         nearest(self.kinks.iter().filter(beyond), well.x)
     }
 
-    /// The kink on either side of the right-most stable equilibrium within 1 % of its distance from
-    /// the barrier, if the force rises on both sides of that kink. The stiffness of such a well is a
-    /// matter of definition.
+    /// The kink on either side of the right-most stable equilibrium within 1 % of its distance from the
+    /// barrier, if the force rises on both sides of that kink. The stiffness of such a well depends on the
+    /// side that is chosen.
     pub fn kink_at_right_well(&self) -> Option<KinkAtWell> {
         let well = self.right_stable()?;
         let middle = self.middle();

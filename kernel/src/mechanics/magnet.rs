@@ -39,8 +39,8 @@ const SAMPLES: usize = 801;
 /// Number of intervals between two samples at whose ends the error is measured.
 const CHECKS_PER_SAMPLE: usize = 16;
 
-/// Ratio of the true largest error to the largest measured one, at most: the error has about fifteen extrema
-/// per piece, each of which is sampled by tens of checks.
+/// Upper bound of the largest error over the largest measured one: the error has about fifteen extrema per
+/// piece, and each is sampled by tens of checks.
 const CHECK_MARGIN: f64 = 1.01;
 
 /// F in units of K/g^4 at x = u g.

@@ -148,7 +148,7 @@ impl Scalar for Dual {
         RULES.of(points)
     }
 
-    /// An iteration stops when its value no longer changes, when the derivatives may lag by one step. One
+    /// An iteration stops when the value no longer changes; the derivatives may then lag by one step. One
     /// more step of Newton's method at the root computes them.
     #[inline(always)]
     fn at_root(root: Self, value_and_slope: impl FnOnce(Self) -> (Self, Self)) -> Self {

@@ -2,8 +2,8 @@
 //!
 //! The loops have a fixed width and no branch, so that the compiler turns them into vector instructions, as
 //! wide as the target features of the caller allow. Each lane gets the bits that it would get alone: nothing
-//! is fused or reordered. They are written without iterators: a batch has thousands of these loops in one
-//! function, and with the blocks of an iterator in each it takes minutes to compile.
+//! is fused or reordered. They have no iterators: a batch inlines thousands of these loops into one function,
+//! which would take minutes to compile if each had the basic blocks of an iterator.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

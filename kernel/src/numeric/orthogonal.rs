@@ -12,11 +12,9 @@ pub const MOST_TERMS: usize = 7;
 pub struct Orthogonal {
     centre: f64,
     scale: f64,
-    /// Coefficients a of the recurrence b p_next = (u - a) p - b_before p_before.
+    /// Coefficients of the recurrence b p_next = (u - a) p - b_before p_before, which begins with `first`.
     a: [f64; MOST_TERMS],
-    /// Coefficients b of the recurrence.
     b: [f64; MOST_TERMS],
-    /// The constant polynomial p_0.
     first: f64,
     coefficients: [f64; MOST_TERMS],
     squares: [f64; MOST_TERMS],

@@ -45,7 +45,7 @@ pub fn periodogram(mut values: Vec<f64>, step: f64, taper: Taper) -> Periodogram
         return Periodogram { amplitude: Vec::new(), density: Vec::new() };
     }
     let weight = |k: usize| match taper {
-        // the von Hann window would leave none of one value and only one of two
+        // of one or two values the von Hann window would keep none or only one
         Taper::Hann if n > 2 => (PI * k as f64 / n as f64).sin().powi(2),
         _ => 1.0,
     };

@@ -77,7 +77,7 @@ fn roots<T: Number>(points: usize, first: usize, count: usize) -> ([T; MAX_POINT
         let place = (first + i) as f64 + 0.75;
         *x = T::of((std::f64::consts::PI * place / (points as f64 + 0.5)).cos());
     }
-    // All roots together: for one root each division would wait for the previous one.
+    // All roots are refined together: with one root alone each division would wait for the previous one.
     let mut slope = [one; MAX_POINTS];
     for _ in 0..8 {
         let (mut value, mut before) = ([one; MAX_POINTS], [T::zero(); MAX_POINTS]);

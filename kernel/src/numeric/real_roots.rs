@@ -57,7 +57,7 @@ pub fn real_roots(coefficients: &[f64], left: f64, right: f64) -> Vec<f64> {
         if core.iter().skip(1).step_by(2).all(|c| *c == 0.0) {
             let squares: Vec<f64> = core.iter().copied().step_by(2).collect();
             let reach = low.abs().max(high.abs());
-            // slightly beyond, so that a root at an end is not lost to the rounding of the square
+            // slightly larger, so that rounding of the square does not exclude a root at an end
             let limit = (reach * reach * (1.0 + 4.0 * f64::EPSILON)).min(f64::MAX);
             for square in scaled_roots(&squares, 0.0, limit) {
                 let root = square.sqrt();

@@ -22,7 +22,7 @@ pub trait Number:
     + AddAssign
     + SubAssign
 {
-    /// Whether one operation is so cheap that the overhead of a short loop costs as much.
+    /// Whether one operation costs no more than the overhead of a short loop.
     const QUICK: bool = false;
 
     /// The number nearest to `value`.
@@ -108,8 +108,7 @@ pub trait Scalar: Number + PartialOrd {
     /// The Gauss-Legendre rule with 1 to 20 points (clamped), computed once.
     fn gauss_legendre(points: usize) -> &'static GaussLegendre<Self>;
 
-    /// Completes the root of a function that an iteration has found, if this number type needs more than the
-    /// iteration's last step.
+    /// Completes a root that an iteration has found, for number types that need one more step.
     #[inline(always)]
     fn at_root(root: Self, _value_and_slope: impl FnOnce(Self) -> (Self, Self)) -> Self {
         root

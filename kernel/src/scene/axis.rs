@@ -149,7 +149,6 @@ fn numeric(scene: &Scene, field: &str) -> Result<&'static FieldInfo, String> {
     }
 }
 
-/// The sentence for a path that does not exist.
 pub(super) fn unknown(kind: &str, field: &str, known: &[String]) -> String {
     const MAX_SHOWN: usize = 60;
     let more = known.len().saturating_sub(MAX_SHOWN);
@@ -212,7 +211,6 @@ pub fn column_names<S: AsRef<str>>(fields: &[S]) -> Vec<String> {
     fields.iter().map(column).collect()
 }
 
-/// The first field that occurs twice.
 pub(super) fn repeated<'a>(fields: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let mut seen = HashSet::new();
     fields.into_iter().find(|field| !seen.insert(*field))

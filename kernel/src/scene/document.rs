@@ -19,8 +19,8 @@ use crate::system::files;
 /// Largest number of faults that an error lists; further ones are counted. A list may contain a million NaN.
 const MAX_FAULTS: usize = 50;
 
-/// Largest number of values of all axes of a sweep together. Three axes that exceed it, even if no single
-/// axis is too long, make more cells than a sweep may have; they are rejected before all are expanded.
+/// Largest number of values of all axes of a sweep together. Three axes with more values make more cells than
+/// a sweep may have, even if no axis is too long. They are rejected before all of them are expanded.
 const MAX_VALUES: usize = 2 * MAX_AXIS_VALUES;
 
 /// Name in messages of a scene from standard input.
@@ -54,11 +54,9 @@ pub struct Document {
     pub swept: Option<SweepRequest>,
     /// Changes by arguments; of several of one field the last one counts.
     assigned: Vec<Assignment>,
-    /// Faults of the records that the excitation names.
     unread: Vec<Fault>,
 }
 
-/// Change of a field by an argument.
 #[derive(Debug, Clone)]
 struct Assignment {
     field: String,
@@ -320,7 +318,6 @@ fn read_scene(spec: &str, largest: usize) -> Result<String, SceneError> {
     })
 }
 
-/// The error for a text that is not a scene.
 fn scene_error(name: &str, text: &str, parse_error: text::ParseError, files: Files) -> SceneError {
     let rest = |text: &str| {
         Document::from_text(name, text, files.clone()).and_then(|document| document.check()).err()

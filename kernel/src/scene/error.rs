@@ -97,7 +97,6 @@ pub struct ArgumentError {
     pub problem: String,
 }
 
-/// Further lines of a message, each on a new line.
 fn further(lines: &[String]) -> String {
     lines.iter().map(|line| format!("\n{line}")).collect()
 }

@@ -39,7 +39,7 @@ pub(super) fn for_each(scene: &mut Scene, each: impl FnMut(&str, Field<'_>)) {
     scene.visit_fields(&mut Each { path: String::new(), lengths: Vec::new(), each });
 }
 
-/// Whether every number of a scene is within its range; no path is written for that.
+/// Whether every number of a scene is within its range. Unlike [`for_each`] it builds no paths.
 pub(super) fn in_range(scene: &mut Scene) -> bool {
     struct InRange(bool);
     impl Visitor for InRange {

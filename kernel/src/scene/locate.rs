@@ -1,8 +1,8 @@
 //! Places of the fields in a scene's text.
 //!
 //! serde keeps no positions. In a text that RON accepts, the [scanner](super::scanner) finds every field by
-//! the same path as the traversal in `fields`. In other text it finds what it can, which is enough to tell
-//! near which field a parser stopped.
+//! the same path as the traversal in `fields`. In any other text it finds some of the fields, which is enough
+//! to name the field near which a parser stopped.
 
 use std::ops::Range;
 
@@ -30,7 +30,7 @@ impl Place {
     }
 
     /// The byte at this place, or the end of its line if that is shorter.
-    fn byte(self, text: &str) -> usize {
+    pub(super) fn byte(self, text: &str) -> usize {
         let line_start = text.split_inclusive('\n').take(self.line.saturating_sub(1)).map(str::len).sum();
         let line = text[line_start..].split('\n').next().unwrap_or_default();
         line_start + line.char_indices().nth(self.column.saturating_sub(1)).map_or(line.len(), |(at, _)| at)

@@ -1,7 +1,7 @@
 //! Recorded base acceleration.
 //!
-//! A record is read once, when a document is read or changed, and is then a part of the scene, so that all
-//! cells of a sweep share it.
+//! A record is read when a document is read or changed. It is then a part of the scene, and all cells of a
+//! sweep share it.
 
 use std::path::Path;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -28,7 +28,6 @@ pub struct Record {
     derived: Derived,
 }
 
-/// Data derived from a record, shared by all runs of it.
 #[derive(Debug, Default)]
 struct Derived {
     peak: OnceLock<f64>,
@@ -91,10 +90,10 @@ impl Record {
     /// of acceleration identified by the units in their names, like a measured record. The error is a clause.
     pub fn parse(text: &str) -> Result<Self, String> {
         let columns = match read_columns(text, [TIME, ACCELERATION], MOST_ROWS, false) {
-            Err(problem @ ColumnsError::MissingColumn { .. }) => {
+            Err(ColumnsError::MissingColumn(problem)) => {
                 return Self::by_units(text).map_err(|error| match error {
                     // no column has a unit of time: report the missing standard column
-                    MeasuredError::NoColumn { quantity: Quantity::Time, .. } => problem.to_string(),
+                    MeasuredError::NoColumn { quantity: Quantity::Time, .. } => problem,
                     other => other.to_string(),
                 });
             }

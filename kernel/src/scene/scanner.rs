@@ -41,13 +41,11 @@ pub(super) struct Found {
     pub end: usize,
 }
 
-/// Scanner of a text and its results.
 pub(super) struct Scanner<'t> {
     text: &'t [u8],
     at: usize,
     /// The fields in the order of the text.
     pub found: Vec<Found>,
-    /// Whether there is a comment.
     comments: bool,
     /// The bytes of the first decimal number that exceeds the largest double.
     pub overflow: Option<Range<usize>>,
@@ -90,7 +88,6 @@ impl<'t> Scanner<'t> {
         }
     }
 
-    /// Skips blanks and comments.
     fn blank(&mut self) {
         while let Some(byte) = self.peek() {
             if byte.is_ascii_whitespace() {

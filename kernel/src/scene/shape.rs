@@ -1,7 +1,7 @@
 //! Limits on the dimensions of flexures.
 //!
-//! Every limit is linear in its fields, as the check of a sweep's corners requires, and none is an absolute
-//! size, so that a scaled geometry stays valid.
+//! Every limit is linear in its fields, because a sweep is checked only at its corners. No limit is an
+//! absolute size, so that a scaled geometry stays valid.
 
 use super::check::{Checked, has_fault};
 use super::mechanism::{FlexureGroup, Mechanism};

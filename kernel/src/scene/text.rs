@@ -25,7 +25,6 @@ pub(super) fn options() -> ron::Options {
     ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME).with_recursion_limit(MAX_DEPTH)
 }
 
-/// Error of parsing a text.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ParseError {
     pub place: Place,
@@ -70,7 +69,6 @@ pub(super) fn parse(text: &str) -> Result<Scene, ParseError> {
     read(text)
 }
 
-/// Parses a text of limited size.
 pub(super) fn read<T: DeserializeOwned>(text: &str) -> Result<T, ParseError> {
     if text.len() > MAX_SCENE_BYTES {
         let problem = format!("{} bytes are more than are read ({MAX_SCENE_BYTES})", text.len());
@@ -95,7 +93,6 @@ pub(super) fn overflow(text: &str) -> Option<ParseError> {
     Some(ParseError { place, problem, unknown: None })
 }
 
-/// Converts an error of the RON parser.
 pub(super) fn parse_error(text: &str, error: &SpannedError) -> ParseError {
     let trailing = error.code == Ron::TrailingCharacters;
     let place = Place { line: error.span.start.line, column: error.span.start.col };
@@ -127,7 +124,7 @@ pub(super) fn parse_error(text: &str, error: &SpannedError) -> ParseError {
     ParseError { unknown, place, problem }
 }
 
-/// For a named number at `place` in a choice whose number has no name, the correct text: `Ratio(0.1)` for
+/// The correct text if the number at `place` has a name and must not have one, such as `Ratio(0.1)` for
 /// `Ratio(xi: 0.1)`.
 fn unnamed(text: &str, place: Place) -> Option<String> {
     let (before, named) = split_at(text, place);
@@ -146,7 +143,7 @@ fn split_at(text: &str, place: Place) -> (&str, &str) {
     line.split_at(at)
 }
 
-/// Whether there is a word behind a number at a place that is not the name of a field.
+/// Whether the word at a place follows a number and is not the name of a field.
 fn is_unit(text: &str, place: Place) -> bool {
     let (before, word) = split_at(text, place);
     let after = word.trim_start_matches(|c: char| c.is_alphanumeric() || c == '_');
@@ -162,22 +159,14 @@ pub(super) fn is_json(text: &str) -> bool {
 
 /// The place of the token at or after `place`: the parser's cursor may be on the blanks before it.
 fn token_at(text: &str, place: Place, further_lines: bool) -> Place {
-    let lines = text.lines().enumerate().skip(place.line - 1);
-    let mut column = place.column;
-    for (index, line) in lines {
-        let blank = line.chars().skip(column - 1).take_while(|c| c.is_whitespace()).count();
-        if column - 1 + blank < line.chars().count() {
-            return Place { line: index + 1, column: column + blank };
-        }
-        if !further_lines {
-            break;
-        }
-        column = 1;
+    let begin = place.byte(text);
+    let blank = text[begin..].find(|c: char| !c.is_whitespace());
+    match blank.map(|blank| begin + blank) {
+        Some(at) if further_lines || !text[begin..at].contains('\n') => Place::of_byte(text, at),
+        _ => place,
     }
-    place
 }
 
-/// The choices of a field.
 fn choices(field: &str) -> Option<&'static [&'static str]> {
     fn of<T: DeserializeOwned>() -> Option<&'static [&'static str]> {
         match options().from_str::<T>("Unknown").err()?.code {

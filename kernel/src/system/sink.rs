@@ -40,7 +40,7 @@ pub enum OpenError {
 pub struct Sink {
     name: String,
     kind: Kind,
-    /// The existing file, if no other output may go to it.
+    /// Device and inode of the existing file; `None` for a device, which several outputs may share.
     inode: Option<(u64, u64)>,
     buffer: Vec<u8>,
     closed: bool,
@@ -78,10 +78,10 @@ impl Sink {
         }
         let descriptor = is_descriptor(path);
         if let Some(existing) = existing.as_ref().filter(|existing| descriptor || !existing.is_file()) {
-            // With `3>file` the shell has truncated the file if it should be; append to its contents.
+            // The shell has truncated the file after `3>file` and not after `3>>file`; append in both cases.
             let mut open = fs::OpenOptions::new();
             let file = open.write(true).append(descriptor).open(path).map_err(refused)?;
-            // Any number of outputs may go to a device such as /dev/null, but not to one pipe or file.
+            // Several outputs may go to one device such as /dev/null, but not to one pipe or file.
             let inode = inode(existing).filter(|_| !is_device(existing));
             return Ok(Self::new(name, Kind::Direct(file), inode));
         }
@@ -97,7 +97,7 @@ impl Sink {
         };
         let target = whole_folder.join(file_name);
         if existing.is_some() {
-            // Fail for a write-protected file, which a rename would replace.
+            // A rename would replace even a write-protected file, so check that it can be written.
             fs::OpenOptions::new().write(true).open(&target).map_err(refused)?;
         }
         let part = create_part(&whole_folder, existing.as_ref()).map_err(refused)?;
@@ -188,7 +188,6 @@ pub fn is_regular(path: &Path) -> bool {
     !is_stdout(path) && existing.map_or(true, |existing| existing.is_file() && !is_descriptor(path))
 }
 
-/// Whether a path is one of the system's names of standard output.
 fn is_stdout(path: &Path) -> bool {
     ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|name| path == Path::new(name))
 }

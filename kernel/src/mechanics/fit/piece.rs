@@ -48,9 +48,9 @@ impl Samples<'_> {
             let local = combine(&base, &shape, q, odd);
             let piece = self.in_metres(&local, origin, half, &span, left);
             // The picked samples are checked first, since most trials fail there. A single interval is
-            // accepted without a check between its ends, so that a chain exists. Its ends are still checked:
-            // on an interval a million times longer than the previous one a prescribed slope can make the
-            // rounding error at the ends too large.
+            // accepted without a check between its ends, so that there is always a chain. Its ends are still
+            // checked: on an interval a million times longer than the previous one a prescribed slope can
+            // make the rounding error at the ends too large.
             let good = inner.clone().step_by(stride).all(|i| meets(&piece, i))
                 && [span.start, span.end].iter().all(|i| meets(&piece, *i))
                 && (stride == 1 || inner.clone().all(|i| meets(&piece, i)))

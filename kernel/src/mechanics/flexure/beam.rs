@@ -127,6 +127,11 @@ fn odd_functions(q: f64, psi: f64) -> (f64, f64, f64) {
 }
 
 impl Beam {
+    /// Shortening of the straight group of equal flexures under unit compression of the group.
+    pub fn compliance(&self) -> f64 {
+        self.length * self.stretch / self.count
+    }
+
     /// Evaluates the equations. Method: Gauss-Legendre quadrature of the products over one half.
     pub fn terms(&self, basis: &Basis, state: &Rotation) -> Terms {
         let n = basis.modes;
@@ -231,7 +236,6 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Adds `factor` times `values`.
 fn add(sum: &mut [f64], factor: f64, values: &[f64]) {
     for (s, value) in sum.iter_mut().zip(values) {
         *s += factor * value;

@@ -12,13 +12,11 @@ use super::equilibrium::{Prescribed, stays_straight};
 use super::point::Point;
 use super::solver::{Failure, Solver};
 
-/// Number of halvings after which a continuation fails.
 const MAX_HALVINGS: u32 = 40;
 
-/// Largest number of intermediate states on the way to a state that an interpolated guess does not lead to.
+/// Largest number of intermediate states if an interpolated guess does not lead to the wanted state.
 const MAX_APPROACH_STEPS: u32 = 200;
 
-/// Number of states that a guess is interpolated from.
 const GUESS_POINTS: usize = 6;
 
 /// End of the curve relative to the position of the last kink.
@@ -34,7 +32,7 @@ const BEYOND_WELL: f64 = 1.1;
 /// Relative distance below which two kinks are one: equal groups lose their bumps together.
 const SAME_KINK: f64 = 1e-11;
 
-/// Largest number of segments, more than two groups of flexures can have; a longer chain repeats itself.
+/// Largest number of segments. Two groups of flexures have fewer; a longer chain repeats itself.
 const MAX_SEGMENTS: usize = 8;
 
 /// A range of x over which the same flexures have a bump.

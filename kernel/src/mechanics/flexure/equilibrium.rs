@@ -38,7 +38,6 @@ pub(super) struct System {
     pub basis: Basis,
 }
 
-/// Condition that selects one equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Prescribed {
     /// The displacement is given.
@@ -50,7 +49,7 @@ pub(super) enum Prescribed {
 impl System {
     /// The state without sway: compressed flexures that are straight or have their stress-free bow.
     pub fn straight(&self) -> Point {
-        let compliance: f64 = self.beams.iter().map(|b| b.length * b.stretch / b.count).sum();
+        let compliance: f64 = self.beams.iter().map(Beam::compliance).sum();
         let shapes = std::array::from_fn(|g| match self.beams[g].natural.is_empty() {
             true => Shape::Straight,
             false => Shape::Bowed,

@@ -129,7 +129,6 @@ pub enum FlexureError {
     },
 }
 
-/// Advice after a failed solve.
 fn remedy(is_preloaded: bool) -> &'static str {
     if is_preloaded { "try a smaller preload or other proportions" } else { "try other proportions" }
 }

@@ -135,7 +135,7 @@ pub(super) fn fit(
                 let point = point?;
                 error = error.max(scale.error(&scaled_piece.piece, &point, tolerance));
                 scaled_piece.checks.push(point);
-                // far too large: further checks would not matter
+                // the piece is rejected in any case
                 if error > 1e3 {
                     break;
                 }

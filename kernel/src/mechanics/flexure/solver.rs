@@ -1,8 +1,8 @@
 //! Solver for equilibria that adapts the number of basis functions to each state.
 //!
-//! Functions are added until the last coefficients are negligible: eight of each parity are enough in
-//! the wells, ten times as many are needed far up the taut branch. Each state starts with as many as
-//! its guess has.
+//! Functions are added until the last coefficients are negligible: eight of each parity are enough in the
+//! wells, and about eighty are needed far up the taut branch. Each state starts with the number of functions
+//! of its guess.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -19,7 +19,8 @@ pub(super) const MAX_MODES: usize = 256;
 
 /// Largest work for a mechanism, as the sum over its states of the cube of their number of functions. This is
 /// a thousand times the work for the prototype and ends after about twenty seconds on one core (10 to 45 ns
-/// per unit, measured). Only lengths that differ a thousandfold exceed it, as when one is in the wrong unit.
+/// per unit, measured). Only lengths that differ a thousandfold exceed it, for example if one is in the wrong
+/// unit.
 const MAX_WORK: usize = 500_000_000;
 
 /// Largest leading coefficient of a leaning flexure, relative to the coefficient of its bow.
@@ -150,7 +151,7 @@ impl<'a> Solver<'a> {
 
     /// Sum of the shortenings of both straight groups under unit compression.
     pub fn compliance(&self) -> f64 {
-        self.beams.iter().map(|b| b.length * b.stretch / b.count).sum()
+        self.beams.iter().map(Beam::compliance).sum()
     }
 
     /// The square of the bump's amplitude that causes a given shortening, for small slopes.

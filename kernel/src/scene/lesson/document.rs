@@ -126,7 +126,6 @@ impl LessonDocument {
     }
 }
 
-/// The scenes of a step.
 #[derive(Debug, Clone)]
 pub(super) struct Stage {
     /// At the beginning of the step.

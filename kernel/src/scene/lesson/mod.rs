@@ -61,7 +61,7 @@ pub struct Lesson {
     pub steps: Vec<Step>,
     /// The misconception that the lesson corrects.
     pub misconception: String,
-    /// Notes for the lecturer; never shown on the projector unless requested.
+    /// Notes for the lecturer, shown only on request.
     pub lecturer: String,
 }
 
@@ -220,7 +220,6 @@ impl BuiltInLesson {
     }
 }
 
-/// Names of all lessons, separated by commas.
 fn names() -> String {
     LESSONS.iter().map(|lesson| lesson.name).collect::<Vec<_>>().join(", ")
 }
