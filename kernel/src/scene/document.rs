@@ -8,10 +8,10 @@ use super::data::Scene;
 use super::error::{ArgumentError, Fault, Origin, PlacedFault, SceneError, clip};
 use super::fields::{FieldPath, all_fields, replace};
 use super::files::{Files, ReadError, read_from, read_text};
-use super::locate::Places;
 use super::manifest::{self, SweepRequest};
 use super::presets::{self, PRESETS};
 use super::record;
+use super::scanner::Places;
 use super::text::{self, MAX_SCENE_BYTES};
 use crate::numeric::number_text;
 use crate::system::files;
@@ -234,16 +234,16 @@ impl Document {
             return Err(ArgumentError { argument: "--over".to_owned(), problem }.into());
         }
         let mut values = 0;
-        let mut count = |axis: &Axis| {
+        let mut counted = |axis: Axis, argument: String| -> Result<Axis, SceneError> {
             values += axis.values.len();
             if values <= MAX_VALUES {
-                Ok(())
-            } else {
-                Err(format!(
-                    "{values} values, with the axes before it, are more than a sweep may have \
-                     ({MAX_VALUES}); give larger steps"
-                ))
+                return Ok(axis);
             }
+            let problem = format!(
+                "{values} values, with the axes before it, are more than a sweep may have ({MAX_VALUES}); give \
+                 larger steps"
+            );
+            Err(ArgumentError { argument, problem }.into())
         };
         let axes: Vec<Axis> = if over.is_empty() {
             // The check gives more detail than `from_scene`.
@@ -253,20 +253,18 @@ impl Document {
             }
             let axes = self.scene.sweep.iter().map(|axis| {
                 let axis = Axis::from_scene(axis, &self.scene).map_err(|_| check_error())?;
-                count(&axis).map_err(|problem| ArgumentError { argument: "sweep".to_owned(), problem })?;
-                Ok(axis)
+                counted(axis, "sweep".to_owned())
             });
             axes.collect::<Result<_, SceneError>>()?
         } else {
-            let parse = |over: &S| {
-                let argument = over.as_ref();
-                let parsed = Axis::parse(argument, &self.scene).and_then(|axis| count(&axis).map(|()| axis));
-                parsed.map_err(|problem| ArgumentError {
-                    argument: clip(&format!("--over {argument}")),
-                    problem,
-                })
-            };
-            over.iter().map(parse).collect::<Result<_, _>>()?
+            let axes = over.iter().map(|over| {
+                let argument = clip(&format!("--over {}", over.as_ref()));
+                match Axis::parse(over.as_ref(), &self.scene) {
+                    Ok(axis) => counted(axis, argument),
+                    Err(problem) => Err(ArgumentError { argument, problem }.into()),
+                }
+            });
+            axes.collect::<Result<_, SceneError>>()?
         };
         if let Some(field) = repeated(axes.iter().map(|axis| axis.field.as_str())) {
             let argument = if over.is_empty() { "sweep" } else { "--over" };

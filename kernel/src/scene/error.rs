@@ -1,6 +1,6 @@
 //! Error types of scenes.
 
-use super::locate::Place;
+use super::scanner::Place;
 
 /// One thing that is wrong with a scene.
 #[derive(Debug, Clone, PartialEq)]

@@ -9,9 +9,8 @@ use serde::de::DeserializeOwned;
 
 use super::data::*;
 use super::error::clip;
-use super::locate::{Place, Places};
 use super::mechanism::Mechanism;
-use super::scanner::Scanner;
+use super::scanner::{Place, Places, Scanner};
 use super::stops::Stops;
 use super::transducer::Transducer;
 

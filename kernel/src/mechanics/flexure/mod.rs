@@ -9,7 +9,6 @@
 //! equations of all beams together (`equilibrium`), the stable branch with its kinks (`branch`), and a
 //! piecewise polynomial through a few dozen states (`pieces`).
 
-mod accuracy;
 mod basis;
 mod beam;
 mod branch;
@@ -21,12 +20,11 @@ mod solver;
 
 use std::sync::atomic::AtomicBool;
 
-pub use accuracy::Accuracy;
-use accuracy::measure;
 use beam::{Beam, Shape};
 use branch::Segment;
 use equilibrium::Prescribed;
-use pieces::{Scale, ScaledPiece};
+pub use pieces::Accuracy;
+use pieces::{Scale, ScaledPiece, measure};
 use point::Point;
 use shape::Deflected;
 use solver::{Failure, Solver};
@@ -76,14 +74,6 @@ pub struct Geometry {
     pub parallel: Group,
     /// The flexures that bulge.
     pub buckling: Group,
-}
-
-impl Accuracy {
-    /// Whether a state needed the largest number of functions: its flexures are so thin that their bending is
-    /// not resolved.
-    pub fn is_at_limit(&self) -> bool {
-        self.modes >= solver::MAX_MODES
-    }
 }
 
 /// Reason why no curve could be computed; x in m.

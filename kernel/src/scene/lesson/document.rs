@@ -8,8 +8,8 @@ use crate::scene::data::joined;
 use crate::scene::document::{Document, Source, structure_error};
 use crate::scene::error::{Fault, Origin, PlacedFault, SceneError, clip};
 use crate::scene::files::{ReadError, read_text};
-use crate::scene::locate::Places;
 use crate::scene::presets::PRESETS;
+use crate::scene::scanner::Places;
 use crate::scene::text::{MAX_SCENE_BYTES, ParseError, read};
 
 /// A lesson with the scenes of its steps.
