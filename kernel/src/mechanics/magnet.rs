@@ -27,11 +27,6 @@ const TOLERANCE: f64 = 1e-8;
 /// Largest degree of a piece: the one that makes a run near the other magnet the cheapest.
 const DEGREE: usize = 9;
 
-/// The square of the last extremum of the force in gaps, a root of 4 s^2 - 27 s + 4.
-fn last_extremum_squared() -> f64 {
-    (27.0 + 665_f64.sqrt()) / 8.0
-}
-
 /// Number of samples that the pieces are fitted to: enough for local interpolation between them to be more
 /// accurate than the tolerance.
 const SAMPLES: usize = 801;
@@ -76,7 +71,9 @@ fn unit_curve() -> Result<&'static ForceCurve, String> {
         let x: Vec<f64> = (0..SAMPLES).map(|i| place(i as f64)).collect();
         let force = x.iter().map(|u| unit_force(*u)).collect();
         let table = ForceTable { x, force };
-        let (near, last) = (allowed_error(&table, TOLERANCE), last_extremum_squared().sqrt());
+        // the square of the last extremum of the force in gaps is a root of 4 s^2 - 27 s + 4
+        let last = ((27.0 + 665_f64.sqrt()) / 8.0).sqrt();
+        let near = allowed_error(&table, TOLERANCE);
         let falloff = |u: &f64| if u.abs() > last { unit_force(*u) / unit_force(last) } else { 1.0 };
         let allowed: Vec<f64> = table.x.iter().map(|u| near * falloff(u).abs()).collect();
         let curve = fit_within(&table, &allowed, &[DEGREE], None)?;

@@ -8,7 +8,7 @@ use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::quadrature::{GaussLegendre, Rules};
-use super::scalar::{Number, Scalar, assign_operators, sin_cos_by_octant};
+use super::scalar::{Number, Scalar, assign_operators};
 
 /// high + low with |low| at most half an ulp of high.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -162,21 +162,31 @@ impl Scalar for DoubleDouble {
         let better = guess + (self - guess * guess) / (guess + guess);
         better + (self - better * better) / (better + better)
     }
+    /// Reduces `u` exactly to |r| <= 1/8 turn, sums the series there and restores the octant.
     fn sin_cos_turns(u: Self) -> (Self, Self) {
-        sin_cos_by_octant(u, |r| {
-            let y = TAU * r;
-            let z = y * y;
-            let series = |first: i32| {
-                // sum of (-z)^i first!/(first + 2 i)!, from the innermost factor
-                let mut sum = Self::of(1.0);
-                for i in (1..=15).rev() {
-                    let d = f64::from((first + 2 * i) * (first + 2 * i - 1));
-                    sum = Self::of(1.0) - z * sum / Self::of(d);
-                }
-                sum
-            };
-            (y * series(1), series(0))
-        })
+        let size = u.abs();
+        let part = size - size.floor(); // exact
+        let quarter = (part * Self::of(4.0) + Self::of(0.5)).floor();
+        let r = part - quarter * Self::of(0.25); // exact
+        let y = TAU * r;
+        let z = y * y;
+        let series = |first: i32| {
+            // sum of (-z)^i first!/(first + 2 i)!, from the innermost factor
+            let mut sum = Self::of(1.0);
+            for i in (1..=15).rev() {
+                let d = f64::from((first + 2 * i) * (first + 2 * i - 1));
+                sum = Self::of(1.0) - z * sum / Self::of(d);
+            }
+            sum
+        };
+        let (s, c) = (y * series(1), series(0));
+        let (s, c) = match quarter.to_f64() as i32 & 3 {
+            0 => (s, c),
+            1 => (c, -s),
+            2 => (-s, -c),
+            _ => (-c, s),
+        };
+        if u < Self::zero() { (-s, c) } else { (s, c) }
     }
 }
 

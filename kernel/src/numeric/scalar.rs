@@ -172,8 +172,8 @@ impl Scalar for f64 {
     fn sqrt(self) -> Self {
         f64::sqrt(self)
     }
-    /// Like `sin_cos_by_octant`, but without branches, so that several can be evaluated at once, and with
-    /// short chains of dependent operations, since a step of the motion begins with it.
+    /// It has no branches, so that several can be evaluated at once, and short chains of dependent
+    /// operations, because each step of the motion begins with it.
     #[inline(always)]
     fn sin_cos_turns(u: Self) -> (Self, Self) {
         // 1.5 2^52: the last bits of its sum with a number below 2^50 are that number's nearest integer
@@ -198,25 +198,6 @@ impl Scalar for f64 {
         let negated = |value: f64, bit: u64| f64::from_bits(value.to_bits() ^ (bit & 2) << 62);
         (negated(sine, quarter), negated(cosine, quarter + 1))
     }
-}
-
-/// Reduces `u` exactly to |r| <= 1/8 turn, calls `small` for (sin, cos) there and restores the octant.
-#[inline(always)]
-pub(super) fn sin_cos_by_octant<T: Scalar>(u: T, small: impl Fn(T) -> (T, T)) -> (T, T) {
-    let negative = u < T::zero();
-    let a = u.abs();
-    let whole = a.floor();
-    let f = a - whole; // exact
-    let quarter = (f * T::of(4.0) + T::of(0.5)).floor();
-    let r = f - quarter * T::of(0.25); // exact
-    let (s, c) = small(r);
-    let (s, c) = match quarter.to_f64() as i32 & 3 {
-        0 => (s, c),
-        1 => (c, -s),
-        2 => (-s, -c),
-        _ => (-c, s),
-    };
-    if negative { (-s, c) } else { (s, c) }
 }
 
 #[cfg(test)]

@@ -110,7 +110,11 @@ impl Document {
     pub fn from_text(name: &str, text: &str, files: Files) -> Result<Self, SceneError> {
         let mut scene = match text::parse(text) {
             Ok(scene) => scene,
-            Err(parse_error) => return Err(scene_error(name, text, parse_error, files)),
+            Err(parse_error) => {
+                let rest =
+                    |text: &str| Self::from_text(name, text, files.clone()).and_then(|d| d.check()).err();
+                return Err(structure_error(name, text, parse_error, |text| text::parse(text).err(), rest));
+            }
         };
         if scene.title.is_empty() && Places::of(text).find("title").is_none() {
             let stem = Path::new(name).file_stem().unwrap_or_default();
@@ -240,8 +244,8 @@ impl Document {
                 return Ok(axis);
             }
             let problem = format!(
-                "{values} values, with the axes before it, are more than a sweep may have ({MAX_VALUES}); give \
-                 larger steps"
+                "{values} values, with the axes before it, are more than a sweep may have ({MAX_VALUES}); \
+                 give larger steps"
             );
             Err(ArgumentError { argument, problem }.into())
         };
@@ -314,13 +318,6 @@ fn read_scene(spec: &str, largest: usize) -> Result<String, SceneError> {
         }
         ReadError::Unusable(problem) => SceneError::Unreadable { name: clip(spec), problem },
     })
-}
-
-fn scene_error(name: &str, text: &str, parse_error: text::ParseError, files: Files) -> SceneError {
-    let rest = |text: &str| {
-        Document::from_text(name, text, files.clone()).and_then(|document| document.check()).err()
-    };
-    structure_error(name, text, parse_error, |text| text::parse(text).err(), rest)
 }
 
 /// The error for a text that does not parse. Unknown field names are removed one by one and the text

@@ -16,7 +16,6 @@ use crate::numeric::number_text;
 pub(super) fn for_each(scene: &mut Scene, each: impl FnMut(&str, Field<'_>)) {
     struct Each<F> {
         path: String,
-        lengths: Vec<usize>,
         each: F,
     }
     impl<F: FnMut(&str, Field<'_>)> Visitor for Each<F> {
@@ -25,18 +24,16 @@ pub(super) fn for_each(scene: &mut Scene, each: impl FnMut(&str, Field<'_>)) {
             let dot = if length == 0 { "" } else { "." };
             self.path.push_str(&format!("{dot}{segment}"));
             (self.each)(&self.path, field);
-            if inner {
-                self.lengths.push(length);
-            } else {
+            if !inner {
                 self.path.truncate(length);
             }
             inner
         }
         fn leave(&mut self) {
-            self.path.truncate(self.lengths.pop().unwrap_or(0));
+            self.path.truncate(self.path.rfind('.').unwrap_or(0));
         }
     }
-    scene.visit_fields(&mut Each { path: String::new(), lengths: Vec::new(), each });
+    scene.visit_fields(&mut Each { path: String::new(), each });
 }
 
 /// Whether every number of a scene is within its range. Unlike [`for_each`] it builds no paths.

@@ -340,7 +340,7 @@ fn pitchfork(
 ) -> Result<(Segment, Option<Point>), Failure> {
     let last = segment.last().clone();
     let mut first: Option<(usize, Point)> = None;
-    let mut kinks = [f64::NAN; 2];
+    let mut kinks = [None; 2];
     let mut failure = Failure::Unstable { x: beyond.x };
     for g in (0..2).filter(|g| changed[*g]) {
         let vanishes = beyond.shapes[g] == Shape::Bump;
@@ -358,7 +358,7 @@ fn pitchfork(
         let guess = solver.reshaped(&extended.guess(x), shapes);
         match solver.solve(&guess, Prescribed::BumpVanishes(g)) {
             Ok(kink) => {
-                kinks[g] = kink.x;
+                kinks[g] = Some(kink.x);
                 let within = kink.x >= segment.from && kink.x <= beyond.x;
                 if within && first.as_ref().is_none_or(|(_, other)| kink.x < other.x) {
                     first = Some((g, kink));
@@ -371,8 +371,8 @@ fn pitchfork(
     // the state at the kink on either side; both have the same force and position
     let mut shapes = kink.shapes;
     shapes[g] = Shape::Straight;
-    let both = beyond.shapes == [Shape::Bump; 2] && (kinks[0] - kinks[1]).abs() <= SAME_KINK * kink.x;
-    if both {
+    let is_same = |(a, b): (f64, f64)| (a - b).abs() <= SAME_KINK * kink.x;
+    if beyond.shapes == [Shape::Bump; 2] && kinks[0].zip(kinks[1]).is_some_and(is_same) {
         shapes = [Shape::Straight; 2];
     }
     let straight = solver.reshaped(&kink, shapes);
