@@ -306,14 +306,8 @@ fn signs_beside(candidates: &[f64], domain: (f64, f64), sign: impl Fn(f64) -> f6
         let middle = 0.5 * a + 0.5 * b;
         if middle > a && middle < b { sign(middle) } else { 0.0 }
     };
-    (0..candidates.len())
-        .map(|i| {
-            let x = candidates[i];
-            let before = if i == 0 { ends.0 } else { candidates[i - 1] };
-            let after = candidates.get(i + 1).copied().unwrap_or(ends.1);
-            (inside(before, x), inside(x, after))
-        })
-        .collect()
+    let all = [&[ends.0], candidates, &[ends.1]].concat();
+    all.windows(3).map(|near| (inside(near[0], near[1]), inside(near[1], near[2]))).collect()
 }
 
 fn sign_of(value: f64) -> f64 {

@@ -68,5 +68,4 @@ pub use stops::Stops;
 pub use text::{MAX_SCENE_BYTES, write};
 pub use timing::Timing;
 pub use transducer::Transducer;
-pub use unit::unit_ending;
-pub use unit::{Quantity, STANDARD_GRAVITY, Unit};
+pub use unit::{Quantity, STANDARD_GRAVITY, Unit, unit_ending};

@@ -145,7 +145,7 @@ pub(super) fn fit(
             let change = (0.3 * CHECK_SHARE / error.max(1e-30)).powf(0.5 / POINTS as f64);
             if error <= CHECK_SHARE {
                 from = to;
-                size = (to - from).max(size) * change.clamp(0.5, 2.5);
+                size *= change.clamp(0.5, 2.5);
                 scaled_pieces.push(scaled_piece);
             } else {
                 size = (to - from) * change.clamp(0.1, 0.8);
@@ -251,10 +251,6 @@ fn monomials(chebyshev: &[f64], half: f64) -> Vec<f64> {
         let next: Vec<f64> =
             (0..now.len()).map(|i| factor * if i > 0 { now[i - 1] } else { 0.0 } - before[i]).collect();
         before = std::mem::replace(&mut now, next);
-        if degree == 0 {
-            before = vec![0.0; chebyshev.len()];
-            before[0] = 1.0;
-        }
     }
     let mut power = 1.0;
     for s in &mut sum {
