@@ -6,7 +6,7 @@
 //! a break, where there are two derivatives, and at a double root, where the derivative is 0.
 
 use super::curve::{ForceCurve, Piece};
-use crate::numeric::real_roots::{derivative, real_roots, rounding, value_and_magnitude};
+use crate::numeric::real_roots::{derivative, real_roots, sign, value_and_magnitude};
 use crate::numeric::{Turn, turns};
 
 /// Smallest jump of the slope at a kink, relative to the terms of the slope. Pieces that meet smoothly agree
@@ -320,8 +320,7 @@ fn vanishes(curve: &ForceCurve, x: f64) -> bool {
     [i.checked_sub(1), Some(i), Some(i + 1)].into_iter().flatten().any(|i| {
         let (left, right) = if i < curve.pieces().len() { curve.piece_interval(i) } else { return false };
         let piece = &curve.pieces()[i];
-        let (value, magnitude) = value_and_magnitude(&piece.coefficients, x - piece.origin);
-        (left..=right).contains(&x) && value.abs() <= rounding(piece.coefficients.len()) * magnitude
+        (left..=right).contains(&x) && sign(&piece.coefficients, x - piece.origin) == 0.0
     })
 }
 

@@ -52,9 +52,8 @@ impl Orthogonal {
         let places: Vec<f64> = places.iter().map(|x| (x - centre) / scale).collect();
         let mut rest = values.to_vec();
         let (mut now, mut before) = (vec![first; samples], vec![0.0; samples]);
-        let mut terms = 0;
-        while terms < MOST_TERMS.min(samples) {
-            let k = terms;
+        let terms = MOST_TERMS.min(samples);
+        for k in 0..terms {
             coefficients[k] = now.iter().zip(&rest).map(|(p, r)| p * r).sum();
             rest.iter_mut().zip(&now).for_each(|(r, p)| *r -= coefficients[k] * p);
             squares[k] = rest.iter().map(|r| r * r).sum();
@@ -65,7 +64,6 @@ impl Orthogonal {
             }
             b[k] = now.iter().map(|p| p * p).sum::<f64>().sqrt();
             now.iter_mut().for_each(|p| *p /= b[k]);
-            terms += 1;
         }
         Self { centre, scale, a, b, first, coefficients, squares, terms, samples }
     }

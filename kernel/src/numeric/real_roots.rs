@@ -22,12 +22,8 @@ pub fn value_and_magnitude(coefficients: &[f64], x: f64) -> (f64, f64) {
 /// for Horner's scheme (Higham, "Accuracy and Stability of Numerical Algorithms", eq. 5.3).
 pub fn sign(coefficients: &[f64], x: f64) -> f64 {
     let (value, magnitude) = value_and_magnitude(coefficients, x);
-    if value.abs() <= rounding(coefficients.len()) * magnitude { 0.0 } else { value.signum() }
-}
-
-/// Relative rounding error of Horner's scheme with `terms` coefficients.
-pub fn rounding(terms: usize) -> f64 {
-    2.0 * terms as f64 * (0.5 * f64::EPSILON)
+    let rounding = 2.0 * coefficients.len() as f64 * (0.5 * f64::EPSILON);
+    if value.abs() <= rounding * magnitude { 0.0 } else { value.signum() }
 }
 
 /// The derivative's coefficients.
