@@ -208,7 +208,7 @@ pub struct UnderWay {
     pub full: bool,
 }
 
-/// Number of the last numbers, for each thread, that threads with full lanes may take.
+/// Threads with full lanes may take only the last numbers of a queue: this many for each thread.
 const LAST_PER_THREAD: usize = 16;
 
 /// Numbers from 0 that several threads take, each number once.
