@@ -1,9 +1,10 @@
-//! Restoring force as a piecewise polynomial, the common representation of every mechanism.
+//! Restoring force as a piecewise polynomial, the common representation of every mechanism, and the sum of
+//! several.
 //!
 //! Each piece between two breaks is a polynomial about its own origin. Potential and stiffness follow
-//! exactly, by integration and differentiation of the same coefficients. The piece is a *mode* of the motion:
-//! a run changes it only at a located crossing of a break and never looks it up by x, which rounding could
-//! put on the wrong side.
+//! exactly, by integration and differentiation of the same coefficients. The piece is a *mode* of the motion.
+//! A run changes it only at a located crossing of a break and never looks it up by x, because rounding could
+//! put x on the wrong side of the break.
 
 /// One polynomial piece: `F(x) = sum coefficients[i] (x - origin)^i`.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,6 +18,11 @@ pub struct Piece {
 }
 
 impl Piece {
+    /// A piece whose potential is not yet known; [`ForceCurve::from_pieces`] sets it.
+    pub(super) fn new(origin: f64, coefficients: Vec<f64>) -> Self {
+        Self { origin, coefficients, potential_at_origin: 0.0 }
+    }
+
     /// Force dV/dx at `x` in N (the force that holds the mass there).
     pub fn force(&self, x: f64) -> f64 {
         let y = x - self.origin;
@@ -36,7 +42,11 @@ impl Piece {
     /// Potential at `x` in J.
     pub fn potential(&self, x: f64) -> f64 {
         let y = x - self.origin;
-        self.potential_at_origin + self.potential_from_origin(y)
+        let mut sum = 0.0;
+        for (i, c) in self.coefficients.iter().enumerate().rev() {
+            sum = sum * y + c / (i + 1) as f64;
+        }
+        self.potential_at_origin + sum * y
     }
 
     /// Potential at `b` less that at `a`, in J. It is computed as a divided difference times `b - a`, so that
@@ -62,14 +72,6 @@ impl Piece {
             coefficients: self.coefficients.iter().enumerate().map(|(i, c)| sign(i) * c).collect(),
             potential_at_origin: self.potential_at_origin,
         }
-    }
-
-    fn potential_from_origin(&self, y: f64) -> f64 {
-        let mut sum = 0.0;
-        for (i, c) in self.coefficients.iter().enumerate().rev() {
-            sum = sum * y + c / (i + 1) as f64;
-        }
-        sum * y
     }
 }
 
@@ -113,7 +115,7 @@ impl ForceCurve {
         }
         let odd = coefficients.iter().step_by(2).all(|c| *c == 0.0);
         Self {
-            pieces: vec![Piece { origin: 0.0, coefficients, potential_at_origin: 0.0 }],
+            pieces: vec![Piece::new(0.0, coefficients)],
             breaks: Vec::new(),
             domain: (f64::NEG_INFINITY, f64::INFINITY),
             odd,
@@ -137,19 +139,32 @@ impl ForceCurve {
         assert_eq!(pieces.len(), breaks.len() + 1);
         let zero = 0.0_f64.clamp(domain.0, domain.1);
         let middle = breaks.partition_point(|b| *b < zero);
+        let level_at = |piece: &mut Piece, x: f64, level: f64| {
+            piece.potential_at_origin = 0.0;
+            piece.potential_at_origin = level - piece.potential(x);
+        };
         pieces[middle].potential_at_origin = 0.0;
         pieces[middle].potential_at_origin = -pieces[middle].potential(zero);
         for i in middle + 1..pieces.len() {
             let level = pieces[i - 1].potential(breaks[i - 1]);
-            pieces[i].potential_at_origin = 0.0;
-            pieces[i].potential_at_origin = level - pieces[i].potential(breaks[i - 1]);
+            level_at(&mut pieces[i], breaks[i - 1], level);
         }
         for i in (0..middle).rev() {
             let level = pieces[i + 1].potential(breaks[i]);
-            pieces[i].potential_at_origin = 0.0;
-            pieces[i].potential_at_origin = level - pieces[i].potential(breaks[i]);
+            level_at(&mut pieces[i], breaks[i], level);
         }
         Self { pieces, breaks, domain, odd, fit }
+    }
+
+    /// The odd curve from -`end` to `end` with these pieces and breaks at x >= 0. Without a break at 0 the
+    /// first piece is odd and reaches to both sides of it.
+    pub(super) fn odd(right: Vec<Piece>, breaks: &[f64], end: f64) -> Self {
+        let in_middle = breaks.first() == Some(&0.0);
+        let left = right.iter().skip(usize::from(!in_middle)).rev().map(Piece::mirrored);
+        let pieces = left.chain(right.iter().cloned()).collect();
+        let left = breaks.iter().skip(usize::from(in_middle)).rev().map(|x| -x);
+        let breaks = left.chain(breaks.iter().copied()).collect();
+        Self::from_pieces(pieces, breaks, (-end, end), true, None)
     }
 
     /// The same curve with a report of how well it follows its data.
@@ -230,4 +245,79 @@ impl ForceCurve {
     fn inside(&self, x: f64) -> Option<&Piece> {
         (x >= self.domain.0 && x <= self.domain.1).then(|| &self.pieces[self.piece_index(x)])
     }
+}
+
+/// Breaks closer together than this share of their distance from x = 0 are merged.
+const SAME_BREAK: f64 = 8.0 * f64::EPSILON;
+
+/// The sum of `parts` on the intersection of their domains; `None` if that is empty. Its breaks are those of
+/// all parts, and each of its pieces is the sum of their polynomials.
+///
+/// Guarantee: exact but for rounding. Polynomials about the same origin are added coefficient by coefficient;
+/// others are first expanded about a common origin. The sum is odd bit for bit if every part is.
+///
+/// Precondition: at least one curve.
+pub fn sum(parts: &[&ForceCurve]) -> Option<ForceCurve> {
+    let low = parts.iter().map(|part| part.domain().0).fold(f64::NEG_INFINITY, f64::max);
+    let high = parts.iter().map(|part| part.domain().1).fold(f64::INFINITY, f64::min);
+    if low >= high {
+        return None;
+    }
+    let odd = parts.iter().all(|part| part.is_odd());
+    let inside = |x: &f64| *x > low && *x < high;
+    let mut breaks: Vec<f64> = parts.iter().flat_map(|part| part.breaks()).copied().filter(inside).collect();
+    breaks.sort_by(f64::total_cmp);
+    breaks.dedup_by(|next, kept| *next - *kept <= SAME_BREAK * kept.abs());
+    if !odd {
+        let ends: Vec<f64> = [&[low], &breaks[..], &[high]].concat();
+        let pieces = ends.windows(2).map(|pair| piece_of_sum(parts, pair[0], pair[1])).collect();
+        return Some(ForceCurve::from_pieces(pieces, breaks, (low, high), false, None));
+    }
+    let in_middle = breaks.contains(&0.0);
+    let right: Vec<f64> = breaks.into_iter().filter(|x| *x > 0.0).collect();
+    let first = if in_middle { 0.0 } else { -right.first().copied().unwrap_or(high) };
+    let ends: Vec<f64> = [&[first], &right[..], &[high]].concat();
+    let half = ends.windows(2).map(|pair| piece_of_sum(parts, pair[0], pair[1])).collect();
+    Some(ForceCurve::odd(half, &ends[usize::from(!in_middle)..ends.len() - 1], high))
+}
+
+/// The sum from `left` to `right`, an interval without a break of any part.
+fn piece_of_sum(parts: &[&ForceCurve], left: f64, right: f64) -> Piece {
+    let middle = match (left.is_finite(), right.is_finite()) {
+        (true, true) => 0.5 * left + 0.5 * right,
+        (true, false) => left + left.abs().max(1.0),
+        (false, true) => right - right.abs().max(1.0),
+        (false, false) => 0.0,
+    };
+    let pieces: Vec<&Piece> = parts.iter().map(|part| &part.pieces()[part.piece_index(middle)]).collect();
+    // A line can be written about any origin to rounding; a curved piece loses digits far from its own.
+    let mut curved = pieces.iter().filter(|piece| piece.coefficients.len() > 2);
+    let origin = match curved.next() {
+        None => pieces[0].origin,
+        Some(first) if curved.all(|piece| piece.origin == first.origin) => first.origin,
+        Some(_) => middle,
+    };
+    let mut coefficients = vec![0.0];
+    for piece in pieces {
+        let moved = shifted_to(piece, origin);
+        coefficients.resize(coefficients.len().max(moved.len()), 0.0);
+        coefficients.iter_mut().zip(moved).for_each(|(sum, c)| *sum += c);
+    }
+    let keep = coefficients.iter().rposition(|c| *c != 0.0).map_or(1, |i| i + 1);
+    coefficients.truncate(keep);
+    Piece::new(origin, coefficients)
+}
+
+/// The coefficients of a piece expanded about another origin, by synthetic division.
+fn shifted_to(piece: &Piece, origin: f64) -> Vec<f64> {
+    let mut shifted = piece.coefficients.clone();
+    let step = origin - piece.origin;
+    if step != 0.0 {
+        for i in 0..shifted.len().saturating_sub(1) {
+            for j in (i..shifted.len() - 1).rev() {
+                shifted[j] += step * shifted[j + 1];
+            }
+        }
+    }
+    shifted
 }

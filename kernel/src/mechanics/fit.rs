@@ -238,9 +238,6 @@ impl Samples<'_> {
         if !self.odd {
             return ForceCurve::from_pieces(pieces, right, (self.x[0], last), false, None);
         }
-        let mut all: Vec<Piece> = pieces.iter().skip(1).rev().map(Piece::mirrored).collect();
-        all.extend(pieces);
-        let breaks = right.iter().rev().map(|b| -b).chain(right.iter().copied()).collect();
-        ForceCurve::from_pieces(all, breaks, (-last, last), true, None)
+        ForceCurve::odd(pieces, &right, last)
     }
 }

@@ -88,7 +88,7 @@ impl Hertz {
     /// alone, is 1 - (2/3) a v for slow impacts and falls to 1/(a v) for fast ones.
     pub fn restitution(&self, speed: f64) -> f64 {
         let impact = self.loss * speed;
-        if impact > 0.0 { -rebound(gamma(impact)) / impact } else { 1.0 }
+        if impact > 0.0 { -inverse(-(2.0 * gamma(impact)).sqrt()) / impact } else { 1.0 }
     }
 
     /// Loss times impact speed at a given [`restitution`](Self::restitution), which depends on that product
@@ -206,11 +206,6 @@ fn gamma(z: f64) -> f64 {
         sum -= power / f64::from(k);
     }
     sum
-}
-
-/// The z below 0 with gamma(z) = `value`.
-fn rebound(value: f64) -> f64 {
-    inverse(-(2.0 * value).sqrt())
 }
 
 /// z/q, where gamma(z) = q^2/2 and z has the sign of q.

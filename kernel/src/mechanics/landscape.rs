@@ -6,7 +6,7 @@
 //! a break, where there are two derivatives, and at a double root, where the derivative is 0.
 
 use super::curve::{ForceCurve, Piece};
-use crate::numeric::real_roots::{derivative, real_roots, rounding, value_and_magnitude};
+use crate::numeric::real_roots::{derivative, real_roots, sign, value_and_magnitude};
 use crate::numeric::{Turn, turns};
 
 /// Smallest jump of the slope at a kink, relative to the terms of the slope. Pieces that meet smoothly agree
@@ -217,9 +217,9 @@ impl Landscape {
         nearest(self.kinks.iter().filter(beyond), well.x)
     }
 
-    /// The kink on either side of the right-most stable equilibrium within 1 % of its distance from
-    /// the barrier, if the force rises on both sides of that kink. The stiffness of such a well is a
-    /// matter of definition.
+    /// The kink on either side of the right-most stable equilibrium within 1 % of its distance from the
+    /// barrier, if the force rises on both sides of that kink. The stiffness of such a well depends on the
+    /// side that is chosen.
     pub fn kink_at_right_well(&self) -> Option<KinkAtWell> {
         let well = self.right_stable()?;
         let middle = self.middle();
@@ -306,14 +306,8 @@ fn signs_beside(candidates: &[f64], domain: (f64, f64), sign: impl Fn(f64) -> f6
         let middle = 0.5 * a + 0.5 * b;
         if middle > a && middle < b { sign(middle) } else { 0.0 }
     };
-    (0..candidates.len())
-        .map(|i| {
-            let x = candidates[i];
-            let before = if i == 0 { ends.0 } else { candidates[i - 1] };
-            let after = candidates.get(i + 1).copied().unwrap_or(ends.1);
-            (inside(before, x), inside(x, after))
-        })
-        .collect()
+    let all = [&[ends.0], candidates, &[ends.1]].concat();
+    all.windows(3).map(|near| (inside(near[0], near[1]), inside(near[1], near[2]))).collect()
 }
 
 fn sign_of(value: f64) -> f64 {
@@ -326,8 +320,7 @@ fn vanishes(curve: &ForceCurve, x: f64) -> bool {
     [i.checked_sub(1), Some(i), Some(i + 1)].into_iter().flatten().any(|i| {
         let (left, right) = if i < curve.pieces().len() { curve.piece_interval(i) } else { return false };
         let piece = &curve.pieces()[i];
-        let (value, magnitude) = value_and_magnitude(&piece.coefficients, x - piece.origin);
-        (left..=right).contains(&x) && value.abs() <= rounding(piece.coefficients.len()) * magnitude
+        (left..=right).contains(&x) && sign(&piece.coefficients, x - piece.origin) == 0.0
     })
 }
 

@@ -18,20 +18,25 @@ const BETWEEN_SAMPLES: f64 = 3.0;
 pub(super) fn roughness(table: &ForceTable) -> f64 {
     let mut misses: Vec<f64> = (2..table.x.len().saturating_sub(2))
         .map(|i| {
-            let near = [i - 2, i - 1, i + 1, i + 2];
-            let mut sum = 0.0;
-            for a in near {
-                let mut weight = 1.0;
-                for b in near.into_iter().filter(|b| *b != a) {
-                    weight *= (table.x[i] - table.x[b]) / (table.x[a] - table.x[b]);
-                }
-                sum += weight * table.force[a];
-            }
-            (sum - table.force[i]).abs()
+            let near = [i - 2, i - 1, i + 1, i + 2].into_iter();
+            (interpolated(&table.x, &table.force, near, table.x[i]) - table.force[i]).abs()
         })
         .collect();
     misses.sort_by(f64::total_cmp);
     misses.get(misses.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// The force at `x = at` on the polynomial through the samples `near`, in Lagrange's form.
+fn interpolated(x: &[f64], force: &[f64], near: impl Iterator<Item = usize> + Clone, at: f64) -> f64 {
+    let mut sum = 0.0;
+    for a in near.clone() {
+        let mut weight = 1.0;
+        for b in near.clone().filter(|b| *b != a) {
+            weight *= (at - x[b]) / (x[a] - x[b]);
+        }
+        sum += weight * force[a];
+    }
+    sum
 }
 
 /// Whether the slope jumps at each sample.
@@ -93,22 +98,11 @@ pub(super) fn slopes(x: &[f64], force: &[f64], corner: &[bool]) -> Vec<f64> {
 /// The force half-way between each sample and the next, and the allowed distance of a curve from it: a few
 /// tolerances plus the difference between the interpolants through six and through four neighbours.
 pub(super) fn between(x: &[f64], force: &[f64], corner: &[bool], allowed: &[f64]) -> Vec<(f64, f64)> {
-    let interpolant = |near: Range<usize>, at: f64| {
-        let mut sum = 0.0;
-        for a in near.clone() {
-            let mut weight = 1.0;
-            for b in near.clone().filter(|b| *b != a) {
-                weight *= (at - x[b]) / (x[a] - x[b]);
-            }
-            sum += weight * force[a];
-        }
-        sum
-    };
     (0..x.len() - 1)
         .map(|i| {
             let at = 0.5 * (x[i] + x[i + 1]);
-            let six = interpolant(neighbours(i, i + 1, 2, corner), at);
-            let four = interpolant(neighbours(i, i + 1, 1, corner), at);
+            let six = interpolated(x, force, neighbours(i, i + 1, 2, corner), at);
+            let four = interpolated(x, force, neighbours(i, i + 1, 1, corner), at);
             (six, BETWEEN_SAMPLES * allowed[i].min(allowed[i + 1]) + (six - four).abs())
         })
         .collect()

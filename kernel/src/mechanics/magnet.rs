@@ -27,11 +27,6 @@ const TOLERANCE: f64 = 1e-8;
 /// Largest degree of a piece: the one that makes a run near the other magnet the cheapest.
 const DEGREE: usize = 9;
 
-/// The square of the last extremum of the force in gaps, a root of 4 s^2 - 27 s + 4.
-fn last_extremum_squared() -> f64 {
-    (27.0 + 665_f64.sqrt()) / 8.0
-}
-
 /// Number of samples that the pieces are fitted to: enough for local interpolation between them to be more
 /// accurate than the tolerance.
 const SAMPLES: usize = 801;
@@ -39,8 +34,8 @@ const SAMPLES: usize = 801;
 /// Number of intervals between two samples at whose ends the error is measured.
 const CHECKS_PER_SAMPLE: usize = 16;
 
-/// Ratio of the true largest error to the largest measured one, at most: the error has about fifteen extrema
-/// per piece, each of which is sampled by tens of checks.
+/// Upper bound of the largest error over the largest measured one: the error has about fifteen extrema per
+/// piece, and each is sampled by tens of checks.
 const CHECK_MARGIN: f64 = 1.01;
 
 /// F in units of K/g^4 at x = u g.
@@ -76,7 +71,9 @@ fn unit_curve() -> Result<&'static ForceCurve, String> {
         let x: Vec<f64> = (0..SAMPLES).map(|i| place(i as f64)).collect();
         let force = x.iter().map(|u| unit_force(*u)).collect();
         let table = ForceTable { x, force };
-        let (near, last) = (allowed_error(&table, TOLERANCE), last_extremum_squared().sqrt());
+        // the square of the last extremum of the force in gaps is a root of 4 s^2 - 27 s + 4
+        let last = ((27.0 + 665_f64.sqrt()) / 8.0).sqrt();
+        let near = allowed_error(&table, TOLERANCE);
         let falloff = |u: &f64| if u.abs() > last { unit_force(*u) / unit_force(last) } else { 1.0 };
         let allowed: Vec<f64> = table.x.iter().map(|u| near * falloff(u).abs()).collect();
         let curve = fit_within(&table, &allowed, &[DEGREE], None)?;
@@ -115,7 +112,7 @@ pub fn magnet(strength: f64, gap: f64) -> Result<ForceCurve, String> {
             factor /= gap;
             scaled
         });
-        Piece { origin: piece.origin * gap, coefficients: coefficients.collect(), potential_at_origin: 0.0 }
+        Piece::new(piece.origin * gap, coefficients.collect())
     };
     let pieces: Vec<Piece> = unit.pieces().iter().map(scaled).collect();
     let breaks: Vec<f64> = unit.breaks().iter().map(|u| u * gap).collect();

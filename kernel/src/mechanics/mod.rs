@@ -7,7 +7,6 @@ mod hertz;
 mod landscape;
 mod local;
 mod magnet;
-mod sum;
 mod table;
 
 pub use curve::{FitReport, ForceCurve, Piece};
@@ -139,7 +138,8 @@ impl Mechanism {
                     parallel: group(parallel),
                     buckling: group(buckling),
                 };
-                Self::from_flexures(&geometry, flexure_tolerance, cancel)
+                let (curve, flexures) = Flexures::solve_unless(&geometry, flexure_tolerance, cancel)?;
+                Ok(Self { flexures: Some(Arc::new(flexures)), ..Self::new(curve) })
             }
             scene::Mechanism::Cubic { linear_n_per_m, cubic_n_per_m3 } => {
                 Ok(Self::new(ForceCurve::polynomial(&[0.0, *linear_n_per_m, 0.0, *cubic_n_per_m3])))
@@ -150,17 +150,14 @@ impl Mechanism {
             scene::Mechanism::Polynomial { coefficients_si } => {
                 let terms = coefficients_si.iter().rposition(|c| *c != 0.0).map_or(0, |i| i + 1);
                 if terms > ForceCurve::MAX_COEFFICIENTS {
-                    return Err(BuildError::Wrong(Fault {
-                        field: "mechanism.coefficients_si".into(),
-                        value: format!("{terms} coefficients"),
-                        problem: format!("at most {} are possible", ForceCurve::MAX_COEFFICIENTS),
-                    }));
+                    let problem = format!("at most {} are possible", ForceCurve::MAX_COEFFICIENTS);
+                    let value = format!("{terms} coefficients");
+                    return Err(Fault::new("mechanism.coefficients_si", value, problem).into());
                 }
                 Ok(Self::new(ForceCurve::polynomial(coefficients_si)))
             }
             scene::Mechanism::Table { path, tolerance } => {
-                let fault =
-                    |problem: String| Fault { field: "mechanism.path".into(), value: path.clone(), problem };
+                let fault = |problem: String| Fault::new("mechanism.path", path, problem);
                 let text = files.read(path).map_err(|e| fault(e.to_string()))?;
                 let table = ForceTable::parse(&text).map_err(|e| fault(e.to_string()))?;
                 Ok(Self::new(fit_unless(&table, *tolerance, cancel).map_err(fault)?))
@@ -170,25 +167,19 @@ impl Mechanism {
                 Ok(Self { element, ..Self::new(ForceCurve::polynomial(&[0.0, *n_per_m])) })
             }
             scene::Mechanism::Magnet { strength_n_mm4, gap_mm } => {
-                let fault = |problem: String| Fault {
-                    field: "mechanism.strength_n_mm4".into(),
-                    value: strength_n_mm4.to_string(),
-                    problem,
-                };
                 let (strength, gap) = (strength_n_mm4 * 1e-12, gap_mm / 1e3);
+                let value = strength_n_mm4.to_string();
+                let fault = |problem: String| Fault::new("mechanism.strength_n_mm4", value, problem);
                 let curve = magnet::magnet(strength, gap).map_err(fault)?;
                 Ok(Self { element: Some(Element::Magnets { strength, gap }), ..Self::new(curve) })
             }
             scene::Mechanism::Sum(parts) => {
                 let part = |(index, part): (usize, &scene::Mechanism)| {
-                    let indexed =
-                        |field: &str| field.replacen("mechanism.", &format!("mechanism.{index}."), 1);
-                    Self::built(part, files, flexure_tolerance, cancel).map_err(|error| match error {
-                        BuildError::Wrong(fault) => {
-                            BuildError::Wrong(Fault { field: indexed(&fault.field), ..fault })
-                        }
-                        other => other,
-                    })
+                    let mut built = Self::built(part, files, flexure_tolerance, cancel);
+                    if let Err(BuildError::Wrong(fault)) = &mut built {
+                        fault.field = fault.field.replacen("mechanism.", &format!("mechanism.{index}."), 1);
+                    }
+                    built
                 };
                 Self::sum(parts.iter().enumerate().map(part).collect::<Result<_, _>>()?)
             }
@@ -204,16 +195,6 @@ impl Mechanism {
         fit(&table, tolerance).map(Self::new)
     }
 
-    /// Solves flexures given in SI units. Fails if the solver does not converge.
-    fn from_flexures(
-        geometry: &Geometry,
-        tolerance: f64,
-        cancel: Option<&AtomicBool>,
-    ) -> Result<Self, BuildError> {
-        let (curve, flexures) = Flexures::solve_unless(geometry, tolerance, cancel)?;
-        Ok(Self { flexures: Some(Arc::new(flexures)), ..Self::new(curve) })
-    }
-
     /// A mechanism with this curve.
     pub fn new(curve: ForceCurve) -> Self {
         let landscape = Landscape::of(&curve);
@@ -223,16 +204,11 @@ impl Mechanism {
     /// The sum of at least one mechanism in parallel. Fails if the domains of their curves do not overlap.
     fn sum(parts: Vec<Self>) -> Result<Self, BuildError> {
         let curves: Vec<&ForceCurve> = parts.iter().map(|part| &part.curve).collect();
-        let curve = sum::sum(&curves)
+        let curve = curve::sum(&curves)
             .filter(|sum| sum.pieces().iter().all(|piece| piece.coefficients.iter().all(|c| c.is_finite())));
-        let curve = curve.ok_or_else(|| Fault {
-            field: "mechanism".into(),
-            value: "Sum([..])".into(),
-            problem:
-                "the parts have no displacement at which all of their forces are known and finite; take \
-                      tables that overlap"
-                    .into(),
-        })?;
+        let problem = "the parts have no displacement at which all of their forces are known and finite; \
+                       take tables that overlap";
+        let curve = curve.ok_or_else(|| Fault::new("mechanism", "Sum([..])", problem))?;
         let mut flexures = parts.iter().filter_map(|part| part.flexures.clone());
         let only = flexures.next().filter(|_| flexures.next().is_none());
         let error = parts.iter().filter_map(|part| part.curve.fit()).map(|fit| fit.worst_n).sum();

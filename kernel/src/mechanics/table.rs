@@ -85,13 +85,10 @@ impl ForceTable {
 
     /// Warnings about values that are possible but unlikely, each a sentence.
     pub fn warnings(&self) -> Vec<String> {
-        let mut warnings = Vec::new();
         let (first, last) = (self.x[0], self.x[self.x.len() - 1]);
-        if last - first > 1.0 {
-            warnings.push(format!(
-                "{X} runs from {first} m to {last} m: if these are millimetres, divide the column by 1000"
-            ));
-        }
-        warnings
+        let warning = format!(
+            "{X} runs from {first} m to {last} m: if these are millimetres, divide the column by 1000"
+        );
+        if last - first > 1.0 { vec![warning] } else { Vec::new() }
     }
 }

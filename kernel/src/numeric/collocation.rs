@@ -3,11 +3,10 @@
 use std::sync::OnceLock;
 
 use super::lanes::Lanes;
-use super::number::Number;
 use super::quadrature::even_half;
-use super::scalar::Scalar;
+use super::scalar::{Number, Scalar};
 
-/// Number of points in a group, as many as the widest registers hold.
+/// Number of points in a group: the number of doubles in the widest registers.
 pub const GROUP: usize = 8;
 
 /// Largest number of groups.
@@ -149,7 +148,7 @@ impl Collocation {
         last(points - 1).larger(last(points - 2)) * T::of(2.0)
     }
 
-    /// The scalar product of a row and the values, accumulated in as many sums as a group has points.
+    /// The scalar product of a row and the values, with one partial sum for each point of a group.
     #[inline(always)]
     fn product<T: Scalar>(&self, row: &Values<f64>, values: &Values<T>) -> T {
         let mut sums = Lanes::all(T::zero());

@@ -60,12 +60,11 @@ pub fn alignment(one: &[f64], other: &[f64], min_overlap: usize) -> Option<Align
     let (low, high) = (1 - other.len() as i64, one.len() as i64 - 1);
     let best = (low..=high).filter_map(mean).fold(f64::INFINITY, f64::min);
     let good = EQUAL_FIT.0 * best + EQUAL_FIT.1 * one_squares[one.len()] / one.len() as f64;
-    let minimum = |lag: &i64| {
-        let here = mean(*lag)?;
-        let lower = [lag - 1, lag + 1].into_iter().filter_map(mean).all(|near| here <= near);
-        (lower && here <= good).then_some(*lag)
+    let is_minimum = |lag: &i64| {
+        let is_lower = |here: f64| [lag - 1, lag + 1].into_iter().filter_map(mean).all(|near| here <= near);
+        mean(*lag).is_some_and(|here| here <= good && is_lower(here))
     };
-    let minima: Vec<i64> = (low..=high).filter_map(|lag| minimum(&lag)).collect();
+    let minima: Vec<i64> = (low..=high).filter(is_minimum).collect();
     let lag = minima.iter().copied().min_by_key(|lag| lag.abs())?;
     let vertex = || {
         let (before, here, after) = (mean(lag - 1)?, mean(lag)?, mean(lag + 1)?);

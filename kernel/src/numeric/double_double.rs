@@ -5,11 +5,10 @@
 //! the result does not depend on the processor. It is the integrator's reference number type, and slow.
 
 use std::cmp::Ordering;
-use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::number::Number;
 use super::quadrature::{GaussLegendre, Rules};
-use super::scalar::{Scalar, sin_cos_by_octant};
+use super::scalar::{Number, Scalar, assign_operators};
 
 /// high + low with |low| at most half an ulp of high.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,14 +21,14 @@ pub struct DoubleDouble {
 const TAU: DoubleDouble = DoubleDouble { high: std::f64::consts::TAU, low: 2.449_293_598_294_706_4e-16 };
 
 /// Sum of two doubles with its rounding error.
-pub(super) fn two_sum(a: f64, b: f64) -> (f64, f64) {
+fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let s = a + b;
     let t = s - a;
     (s, (a - (s - t)) + (b - t))
 }
 
 /// Product of two doubles with its rounding error. Precondition: magnitudes below 1e300.
-pub(super) fn two_product(a: f64, b: f64) -> (f64, f64) {
+fn two_product(a: f64, b: f64) -> (f64, f64) {
     let split = |x: f64| {
         let t = 134_217_729.0 * x; // 2^27 + 1
         let high = t - (t - x);
@@ -107,17 +106,7 @@ impl Div for DoubleDouble {
     }
 }
 
-impl AddAssign for DoubleDouble {
-    fn add_assign(&mut self, o: Self) {
-        *self = *self + o;
-    }
-}
-
-impl SubAssign for DoubleDouble {
-    fn sub_assign(&mut self, o: Self) {
-        *self = *self - o;
-    }
-}
+assign_operators!([] DoubleDouble);
 
 impl PartialOrd for DoubleDouble {
     fn partial_cmp(&self, o: &Self) -> Option<Ordering> {
@@ -173,21 +162,31 @@ impl Scalar for DoubleDouble {
         let better = guess + (self - guess * guess) / (guess + guess);
         better + (self - better * better) / (better + better)
     }
+    /// Reduces `u` exactly to |r| <= 1/8 turn, sums the series there and restores the octant.
     fn sin_cos_turns(u: Self) -> (Self, Self) {
-        sin_cos_by_octant(u, |r| {
-            let y = TAU * r;
-            let z = y * y;
-            let series = |first: i32| {
-                // sum of (-z)^i first!/(first + 2 i)!, from the innermost factor
-                let mut sum = Self::of(1.0);
-                for i in (1..=15).rev() {
-                    let d = f64::from((first + 2 * i) * (first + 2 * i - 1));
-                    sum = Self::of(1.0) - z * sum / Self::of(d);
-                }
-                sum
-            };
-            (y * series(1), series(0))
-        })
+        let size = u.abs();
+        let part = size - size.floor(); // exact
+        let quarter = (part * Self::of(4.0) + Self::of(0.5)).floor();
+        let r = part - quarter * Self::of(0.25); // exact
+        let y = TAU * r;
+        let z = y * y;
+        let series = |first: i32| {
+            // sum of (-z)^i first!/(first + 2 i)!, from the innermost factor
+            let mut sum = Self::of(1.0);
+            for i in (1..=15).rev() {
+                let d = f64::from((first + 2 * i) * (first + 2 * i - 1));
+                sum = Self::of(1.0) - z * sum / Self::of(d);
+            }
+            sum
+        };
+        let (s, c) = (y * series(1), series(0));
+        let (s, c) = match quarter.to_f64() as i32 & 3 {
+            0 => (s, c),
+            1 => (c, -s),
+            2 => (-s, -c),
+            _ => (-c, s),
+        };
+        if u < Self::zero() { (-s, c) } else { (s, c) }
     }
 }
 

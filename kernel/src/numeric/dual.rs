@@ -5,12 +5,11 @@
 //! decides every comparison.
 
 use std::cmp::Ordering;
-use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::double_double::DoubleDouble;
-use super::number::Number;
 use super::quadrature::{GaussLegendre, Rules};
-use super::scalar::Scalar;
+use super::scalar::{Number, Scalar, assign_operators};
 
 /// A value and its derivatives with respect to two quantities.
 #[derive(Debug, Clone, Copy)]
@@ -83,19 +82,7 @@ impl Neg for Dual {
     }
 }
 
-impl AddAssign for Dual {
-    #[inline(always)]
-    fn add_assign(&mut self, o: Self) {
-        *self = *self + o;
-    }
-}
-
-impl SubAssign for Dual {
-    #[inline(always)]
-    fn sub_assign(&mut self, o: Self) {
-        *self = *self - o;
-    }
-}
+assign_operators!([] Dual);
 
 impl Number for Dual {
     #[inline(always)]
@@ -161,7 +148,7 @@ impl Scalar for Dual {
         RULES.of(points)
     }
 
-    /// An iteration stops when its value no longer changes, when the derivatives may lag by one step. One
+    /// An iteration stops when the value no longer changes; the derivatives may then lag by one step. One
     /// more step of Newton's method at the root computes them.
     #[inline(always)]
     fn at_root(root: Self, value_and_slope: impl FnOnce(Self) -> (Self, Self)) -> Self {

@@ -45,7 +45,6 @@ pub struct Envelope {
     drift: f64,
     swing: f64,
     middle: f64,
-    /// Weighted sum of the squared residuals.
     square: f64,
 }
 

@@ -2,12 +2,12 @@
 //!
 //! The loops have a fixed width and no branch, so that the compiler turns them into vector instructions, as
 //! wide as the target features of the caller allow. Each lane gets the bits that it would get alone: nothing
-//! is fused or reordered. They are written without iterators: a batch has thousands of these loops in one
-//! function, and with the blocks of an iterator in each it takes minutes to compile.
+//! is fused or reordered. They have no iterators: a batch inlines thousands of these loops into one function,
+//! which would take minutes to compile if each had the basic blocks of an iterator.
 
-use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::number::Number;
+use super::scalar::{Number, assign_operators};
 
 /// `W` numbers side by side.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,19 +71,7 @@ impl<const W: usize, T: Number> Neg for Lanes<W, T> {
     }
 }
 
-impl<const W: usize, T: Number> AddAssign for Lanes<W, T> {
-    #[inline(always)]
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
-}
-
-impl<const W: usize, T: Number> SubAssign for Lanes<W, T> {
-    #[inline(always)]
-    fn sub_assign(&mut self, other: Self) {
-        *self = *self - other;
-    }
-}
+assign_operators!([const W: usize, T: Number] Lanes<W, T>);
 
 impl<const W: usize, T: Number> Number for Lanes<W, T> {
     const QUICK: bool = T::QUICK;
@@ -104,6 +92,35 @@ impl<const W: usize, T: Number> Number for Lanes<W, T> {
             lane += 1;
         }
         result
+    }
+}
+
+/// Runs `work` with the widest vector instructions of this processor. Nothing is fused, so the bits are the
+/// same on every processor. Everything that `work` calls must be inlined into it.
+#[inline]
+pub(crate) fn widest<R>(work: impl FnOnce() -> R) -> R {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    {
+        if let Some(wide) = pulp::x86::V4::try_new() {
+            return wide.vectorize(Wide(work));
+        }
+        if let Some(wide) = pulp::x86::V3::try_new() {
+            return wide.vectorize(Wide(work));
+        }
+    }
+    work()
+}
+
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+struct Wide<F>(F);
+
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+impl<R, F: FnOnce() -> R> pulp::NullaryFnOnce for Wide<F> {
+    type Output = R;
+
+    #[inline(always)]
+    fn call(self) -> R {
+        (self.0)()
     }
 }
 

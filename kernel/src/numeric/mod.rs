@@ -3,20 +3,17 @@
 mod bisect;
 mod collocation;
 mod correlation;
-mod decay;
 mod decimal;
 mod double_double;
 mod dual;
 mod envelope;
+mod exponential;
 pub mod fit;
 mod lanes;
-mod number;
 pub mod orthogonal;
 mod periodogram;
 pub mod pieces;
 mod quadrature;
-mod quick;
-mod ratio;
 pub mod real_roots;
 pub mod regression;
 mod roots;
@@ -26,26 +23,44 @@ pub(crate) mod single_root;
 mod sum;
 mod text;
 mod turns;
-mod wide;
 
 pub use bisect::{bisect, golden_section};
 pub(crate) use collocation::{Collocation, GROUP, MOST_GROUPS, Values};
 pub use correlation::{Alignment, alignment};
-pub(crate) use decay::decay;
-pub use decimal::Decimal;
+pub use decimal::{Decimal, Ratio, greatest_common_divisor};
 pub use double_double::DoubleDouble;
 pub use dual::Dual;
 pub use envelope::{Envelope, FEWEST_TURNS, TurningPoint};
+pub(crate) use exponential::{decay, fast_exp2, fast_log2};
 pub use lanes::Lanes;
-pub use number::Number;
+pub(crate) use lanes::widest;
 pub use periodogram::{Periodogram, Taper, periodogram};
 pub use quadrature::{GaussLegendre, MAX_POINTS, even_half};
-pub(crate) use quick::{fast_exp2, fast_log2};
-pub use ratio::Ratio;
-pub use ratio::greatest_common_divisor;
 pub use roots::{MAX_DEGREE, PolynomialRoots};
-pub use scalar::Scalar;
+pub use scalar::{Number, Scalar};
 pub use sum::CompensatedSum;
 pub use text::{decimals, number_text, push_number, short};
 pub use turns::{Turn, extent, turns};
-pub(crate) use wide::widest;
+
+/// The coefficients of the polynomial `factor` times (x - root) for each root.
+#[cfg(test)]
+fn times_roots(factor: &[f64], roots: &[f64]) -> Vec<f64> {
+    roots.iter().fold(factor.to_vec(), |g, root| {
+        let mut next = vec![0.0; g.len() + 1];
+        for (k, c) in g.iter().enumerate() {
+            next[k] -= root * c;
+            next[k + 1] += c;
+        }
+        next
+    })
+}
+
+/// Numbers from 0 to 1, the same in every test.
+#[cfg(test)]
+fn random() -> impl FnMut() -> f64 {
+    let mut state = 1_u64;
+    move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}

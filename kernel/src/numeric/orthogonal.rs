@@ -12,11 +12,9 @@ pub const MOST_TERMS: usize = 7;
 pub struct Orthogonal {
     centre: f64,
     scale: f64,
-    /// Coefficients a of the recurrence b p_next = (u - a) p - b_before p_before.
+    /// Coefficients of the recurrence b p_next = (u - a) p - b_before p_before, which begins with `first`.
     a: [f64; MOST_TERMS],
-    /// Coefficients b of the recurrence.
     b: [f64; MOST_TERMS],
-    /// The constant polynomial p_0.
     first: f64,
     coefficients: [f64; MOST_TERMS],
     squares: [f64; MOST_TERMS],
@@ -26,7 +24,7 @@ pub struct Orthogonal {
 
 /// Value and derivatives of a polynomial at one position. The variances hold for samples whose errors have
 /// variance 1.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Tangent {
     /// The value.
     pub value: f64,
@@ -54,9 +52,8 @@ impl Orthogonal {
         let places: Vec<f64> = places.iter().map(|x| (x - centre) / scale).collect();
         let mut rest = values.to_vec();
         let (mut now, mut before) = (vec![first; samples], vec![0.0; samples]);
-        let mut terms = 0;
-        while terms < MOST_TERMS.min(samples) {
-            let k = terms;
+        let terms = MOST_TERMS.min(samples);
+        for k in 0..terms {
             coefficients[k] = now.iter().zip(&rest).map(|(p, r)| p * r).sum();
             rest.iter_mut().zip(&now).for_each(|(r, p)| *r -= coefficients[k] * p);
             squares[k] = rest.iter().map(|r| r * r).sum();
@@ -67,7 +64,6 @@ impl Orthogonal {
             }
             b[k] = now.iter().map(|p| p * p).sum::<f64>().sqrt();
             now.iter_mut().for_each(|p| *p /= b[k]);
-            terms += 1;
         }
         Self { centre, scale, a, b, first, coefficients, squares, terms, samples }
     }
@@ -86,8 +82,7 @@ impl Orthogonal {
     /// The polynomial with `terms` coefficients, at most the number of samples, at `place`.
     pub fn at(&self, place: f64, terms: usize) -> Tangent {
         let u = (place - self.centre) / self.scale;
-        let mut tangent =
-            Tangent { value: 0.0, slope: 0.0, bend: 0.0, of_value: 0.0, of_slope: 0.0, of_both: 0.0 };
+        let mut tangent = Tangent::default();
         // value and two derivatives of the current polynomial and of the previous one
         let (mut p, mut before) = ([self.first, 0.0, 0.0], [0.0; 3]);
         for k in 0..terms.min(self.terms) {

@@ -45,7 +45,7 @@ pub fn periodogram(mut values: Vec<f64>, step: f64, taper: Taper) -> Periodogram
         return Periodogram { amplitude: Vec::new(), density: Vec::new() };
     }
     let weight = |k: usize| match taper {
-        // the von Hann window would leave none of one value and only one of two
+        // of one or two values the von Hann window would keep none or only one
         Taper::Hann if n > 2 => (PI * k as f64 / n as f64).sin().powi(2),
         _ => 1.0,
     };
@@ -79,14 +79,11 @@ mod tests {
     use std::f64::consts::TAU;
 
     use super::*;
+    use crate::numeric::random;
 
     fn noise(n: usize) -> Vec<f64> {
-        let mut state = 1_u64;
-        let mut next = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.3
-        };
-        (0..n).map(|_| next()).collect()
+        let mut next = random();
+        (0..n).map(|_| next() - 0.3).collect()
     }
 
     fn near(value: f64, exact: f64, bound: f64) {

@@ -3,8 +3,8 @@
 //! An acceleration given by samples and interpolated linearly changes its slope at each sample. An integrator
 //! that steps from corner to corner takes one step per sample, however smooth the samples are. The moving
 //! mass sees the acceleration only through two integrals. The projection of the lines on Legendre polynomials
-//! has the same integral and first moment as the lines, so speed and position (the first and the second
-//! integral) agree at both ends of each piece; in between they may differ by no more than the given limits.
+//! has the same integral and first moment as the lines, so that speed and position (the first and the second
+//! integral) agree at both ends of each piece. Between the ends they differ by no more than the given limits.
 
 /// Degree of the polynomials.
 pub const DEGREE: usize = 10;

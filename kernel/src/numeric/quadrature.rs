@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use super::number::Number;
+use super::scalar::Number;
 
 /// Largest number of points of a rule.
 pub const MAX_POINTS: usize = 20;
@@ -35,9 +35,7 @@ impl<T: Number> GaussLegendre<T> {
     pub fn map<U: Number>(&self, f: impl Fn(T) -> U) -> GaussLegendre<U> {
         GaussLegendre { points: self.points, nodes: self.nodes.map(&f), weights: self.weights.map(&f) }
     }
-}
 
-impl<T: Number> GaussLegendre<T> {
     /// The rule with 1 to [`MAX_POINTS`] points (clamped), to the rounding of `T`: Newton's method on the
     /// Legendre polynomials from the usual cosine guess.
     pub fn new(points: usize) -> Self {
@@ -79,7 +77,7 @@ fn roots<T: Number>(points: usize, first: usize, count: usize) -> ([T; MAX_POINT
         let place = (first + i) as f64 + 0.75;
         *x = T::of((std::f64::consts::PI * place / (points as f64 + 0.5)).cos());
     }
-    // All roots together: for one root each division would wait for the previous one.
+    // All roots are refined together: with one root alone each division would wait for the previous one.
     let mut slope = [one; MAX_POINTS];
     for _ in 0..8 {
         let (mut value, mut before) = ([one; MAX_POINTS], [T::zero(); MAX_POINTS]);

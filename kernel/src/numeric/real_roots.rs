@@ -22,12 +22,8 @@ pub fn value_and_magnitude(coefficients: &[f64], x: f64) -> (f64, f64) {
 /// for Horner's scheme (Higham, "Accuracy and Stability of Numerical Algorithms", eq. 5.3).
 pub fn sign(coefficients: &[f64], x: f64) -> f64 {
     let (value, magnitude) = value_and_magnitude(coefficients, x);
-    if value.abs() <= rounding(coefficients.len()) * magnitude { 0.0 } else { value.signum() }
-}
-
-/// Relative rounding error of Horner's scheme with `terms` coefficients.
-pub fn rounding(terms: usize) -> f64 {
-    2.0 * terms as f64 * (0.5 * f64::EPSILON)
+    let rounding = 2.0 * coefficients.len() as f64 * (0.5 * f64::EPSILON);
+    if value.abs() <= rounding * magnitude { 0.0 } else { value.signum() }
 }
 
 /// The derivative's coefficients.
@@ -57,7 +53,7 @@ pub fn real_roots(coefficients: &[f64], left: f64, right: f64) -> Vec<f64> {
         if core.iter().skip(1).step_by(2).all(|c| *c == 0.0) {
             let squares: Vec<f64> = core.iter().copied().step_by(2).collect();
             let reach = low.abs().max(high.abs());
-            // slightly beyond, so that a root at an end is not lost to the rounding of the square
+            // slightly larger, so that rounding of the square does not exclude a root at an end
             let limit = (reach * reach * (1.0 + 4.0 * f64::EPSILON)).min(f64::MAX);
             for square in scaled_roots(&squares, 0.0, limit) {
                 let root = square.sqrt();
@@ -204,20 +200,12 @@ fn bracketed(coefficients: &[f64], slope: &[f64], mut low: f64, mut high: f64, s
 #[cfg(test)]
 mod tests {
     use super::real_roots;
+    use crate::numeric::times_roots;
 
     const LINE: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 
     fn product(roots: &[f64]) -> Vec<f64> {
-        let mut p = vec![1.0];
-        for r in roots {
-            let mut next = vec![0.0; p.len() + 1];
-            for (i, c) in p.iter().enumerate() {
-                next[i + 1] += c;
-                next[i] -= r * c;
-            }
-            p = next;
-        }
-        p
+        times_roots(&[1.0], roots)
     }
 
     #[test]

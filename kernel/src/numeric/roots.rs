@@ -10,7 +10,7 @@
 //! resolved given the rounding of the coefficients and is not reported.
 
 use super::scalar::Scalar;
-use super::single_root::{expansion, step};
+use super::single_root::{completed, expansion, step};
 
 /// The largest degree that can be searched.
 pub const MAX_DEGREE: usize = 39;
@@ -88,13 +88,7 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
     /// it returns false.
     pub fn each_sign_change(&self, visit: &mut dyn FnMut(T) -> bool) {
         let reduced = self.without_a_root_at_0();
-        reduced.each_bracket(&mut |above, bracket| {
-            let root = reduced.polish(above, bracket);
-            visit(T::at_root(root, |s| {
-                let (value, slope, _) = expansion(self.g, s);
-                (value, slope)
-            }))
-        });
+        reduced.each_bracket(&mut |above, bracket| visit(completed(self.g, reduced.polish(above, bracket))));
     }
 
     /// The number of sign changes in (0, 1], without locating them.

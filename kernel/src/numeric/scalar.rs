@@ -1,10 +1,85 @@
-//! Scalar number types of the integrator, with comparison and a few functions.
+//! Number types of the integrator: branch-free arithmetic, also of several motions in one vector, and scalars
+//! with comparison and a few functions.
 //!
 //! `f64` is the working type, [`DoubleDouble`](super::DoubleDouble) the reference.
 
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
 use super::double_double::DoubleDouble;
-use super::number::Number;
 use super::quadrature::{GaussLegendre, Rules};
+
+/// A number type whose arithmetic has no branches.
+pub trait Number:
+    'static
+    + Copy
+    + Debug
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+{
+    /// Whether one operation costs no more than the overhead of a short loop.
+    const QUICK: bool = false;
+
+    /// The number nearest to `value`.
+    fn of(value: f64) -> Self;
+    /// The number nearest to `over / under`.
+    fn ratio(over: f64, under: f64) -> Self;
+    /// Magnitude.
+    fn abs(self) -> Self;
+
+    /// Converts a whole number below 2^32, usually a degree.
+    #[inline(always)]
+    fn whole(number: usize) -> Self {
+        Self::of(f64::from(number as u32)) // one instruction; a conversion from u64 takes several
+    }
+
+    /// 0.
+    fn zero() -> Self {
+        Self::of(0.0)
+    }
+}
+
+impl Number for f64 {
+    const QUICK: bool = true;
+
+    #[inline(always)]
+    fn of(value: f64) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn ratio(over: f64, under: f64) -> Self {
+        over / under
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        f64::abs(self)
+    }
+}
+
+/// Implements `+=` and `-=` of a number type by its sum and difference.
+macro_rules! assign_operators {
+    ([$($generics:tt)*] $type:ty) => {
+        impl<$($generics)*> std::ops::AddAssign for $type {
+            #[inline(always)]
+            fn add_assign(&mut self, other: Self) {
+                *self = *self + other;
+            }
+        }
+
+        impl<$($generics)*> std::ops::SubAssign for $type {
+            #[inline(always)]
+            fn sub_assign(&mut self, other: Self) {
+                *self = *self - other;
+            }
+        }
+    };
+}
+pub(super) use assign_operators;
 
 /// A real number with comparison and a few functions.
 pub trait Scalar: Number + PartialOrd {
@@ -33,8 +108,7 @@ pub trait Scalar: Number + PartialOrd {
     /// The Gauss-Legendre rule with 1 to 20 points (clamped), computed once.
     fn gauss_legendre(points: usize) -> &'static GaussLegendre<Self>;
 
-    /// Completes the root of a function that an iteration has found, if this number type needs more than the
-    /// iteration's last step.
+    /// Completes a root that an iteration has found, for number types that need one more step.
     #[inline(always)]
     fn at_root(root: Self, _value_and_slope: impl FnOnce(Self) -> (Self, Self)) -> Self {
         root
@@ -98,8 +172,8 @@ impl Scalar for f64 {
     fn sqrt(self) -> Self {
         f64::sqrt(self)
     }
-    /// Like `sin_cos_by_octant`, but without branches, so that several can be evaluated at once, and with
-    /// short chains of dependent operations, since a step of the motion begins with it.
+    /// It has no branches, so that several can be evaluated at once, and short chains of dependent
+    /// operations, because each step of the motion begins with it.
     #[inline(always)]
     fn sin_cos_turns(u: Self) -> (Self, Self) {
         // 1.5 2^52: the last bits of its sum with a number below 2^50 are that number's nearest integer
@@ -124,25 +198,6 @@ impl Scalar for f64 {
         let negated = |value: f64, bit: u64| f64::from_bits(value.to_bits() ^ (bit & 2) << 62);
         (negated(sine, quarter), negated(cosine, quarter + 1))
     }
-}
-
-/// Reduces `u` exactly to |r| <= 1/8 turn, calls `small` for (sin, cos) there and restores the octant.
-#[inline(always)]
-pub(super) fn sin_cos_by_octant<T: Scalar>(u: T, small: impl Fn(T) -> (T, T)) -> (T, T) {
-    let negative = u < T::zero();
-    let a = u.abs();
-    let whole = a.floor();
-    let f = a - whole; // exact
-    let quarter = (f * T::of(4.0) + T::of(0.5)).floor();
-    let r = f - quarter * T::of(0.25); // exact
-    let (s, c) = small(r);
-    let (s, c) = match quarter.to_f64() as i32 & 3 {
-        0 => (s, c),
-        1 => (c, -s),
-        2 => (-s, -c),
-        _ => (-c, s),
-    };
-    if negative { (-s, c) } else { (s, c) }
 }
 
 #[cfg(test)]

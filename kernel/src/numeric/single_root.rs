@@ -3,8 +3,7 @@
 //! It works on one polynomial or on several in lanes; each lane gets exactly the root that it
 //! would get alone.
 
-use super::number::Number;
-use super::scalar::Scalar;
+use super::scalar::{Number, Scalar};
 
 /// Largest number of steps to the root; each cubes the error.
 pub(crate) const MOST_STEPS: usize = 3;
@@ -51,14 +50,20 @@ pub(crate) fn single_root<T: Scalar>(g: &[T], guess: T) -> Option<T> {
         let (next, found) = next(s, expansion(g, s));
         s = next;
         if found {
-            let root = T::at_root(s, |s| {
-                let (value, slope, _) = expansion(g, s);
-                (value, slope)
-            });
+            let root = completed(g, s);
             return (root > T::zero() && root <= T::of(1.0)).then_some(root);
         }
     }
     None
+}
+
+/// The root of a polynomial that an iteration has found; see [`Scalar::at_root`].
+#[inline(always)]
+pub(crate) fn completed<T: Scalar>(g: &[T], root: T) -> T {
+    T::at_root(root, |s| {
+        let (value, slope, _) = expansion(g, s);
+        (value, slope)
+    })
 }
 
 /// Value, first and half the second derivative of a polynomial at `s`. Even and odd powers are summed
@@ -99,18 +104,8 @@ pub(crate) fn expansion<T: Number>(g: &[T], s: T) -> (T, T, T) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{DoubleDouble, Lanes};
     use super::*;
-
-    /// The product of (s - root) and another polynomial.
-    fn with_root(root: f64, factor: &[f64]) -> Vec<f64> {
-        let mut g = vec![0.0; factor.len() + 1];
-        for (k, c) in factor.iter().enumerate() {
-            g[k] -= root * c;
-            g[k + 1] += c;
-        }
-        g
-    }
+    use crate::numeric::{DoubleDouble, Lanes, times_roots};
 
     fn guessed(g: &[f64]) -> f64 {
         let (value, slope, _) = expansion(g, 1.0);
@@ -121,7 +116,7 @@ mod tests {
     fn the_root_is_found_to_rounding_wherever_it_lies() {
         for root in [1e-9, 1e-4, 0.01, 0.3, 0.5, 0.9, 0.9999] {
             for factor in [&[1.0, 0.4, 0.1, -0.05][..], &[-3.0, 0.5, -0.2], &[2.0, -0.7, 0.0, 0.0, 0.03]] {
-                let g = with_root(root, factor);
+                let g = times_roots(factor, &[root]);
                 let found = single_root(&g, guessed(&g)).unwrap();
                 assert!((found - root).abs() <= 4e-16 * root.max(0.25), "{root} {factor:?} {found:e}");
                 let negative = g.iter().map(|c| -c).collect::<Vec<_>>();
@@ -132,7 +127,7 @@ mod tests {
 
     #[test]
     fn a_root_beyond_1_is_none_and_so_is_one_that_is_not_there() {
-        let g = with_root(1.25, &[1.0, 0.4]);
+        let g = times_roots(&[1.0, 0.4], &[1.25]);
         assert_eq!(single_root(&g, 1.2), None);
         assert_eq!(single_root(&[1.0, 0.1, 1.0], 0.5), None);
         assert_eq!(single_root(&[1.0, -2.0], f64::NAN), None);
@@ -140,7 +135,7 @@ mod tests {
 
     #[test]
     fn zeros_above_the_highest_power_change_no_bit() {
-        let g = with_root(0.37, &[1.0, 0.4, 0.1, -0.05]);
+        let g = times_roots(&[1.0, 0.4, 0.1, -0.05], &[0.37]);
         let longer = [&g[..], &[0.0, 0.0, 0.0]].concat();
         for length in g.len()..=longer.len() {
             assert_eq!(expansion(&longer[..length], 0.3), expansion(&g, 0.3));

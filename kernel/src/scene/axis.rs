@@ -1,12 +1,15 @@
 //! Axes of a sweep: their values and the names of their columns.
+//!
+//! Even steps are counted in whole units of the last decimal of their three numbers, in 128-bit integers, and
+//! every value is the double nearest to its decimal: 0.58 is 0.58, whereas repeated addition of 0.02 would
+//! give 0.5800000000000001.
 
 use std::collections::HashSet;
 
 use super::data::{Scene, SweepAxis};
 use super::error::clip;
 use super::field_table::FieldInfo;
-use super::fields::{Field, FieldPath, numeric_fields};
-use super::steps::EvenSteps;
+use super::fields::{FieldPath, info_of, numeric_fields};
 use crate::numeric::{Decimal, number_text};
 
 /// Largest number of values of one axis, which limits the list of values to 80 MB. The number of cells of a
@@ -29,7 +32,7 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// Parses `FIELD=FROM:TO:STEP` or `FIELD=a,b,c` for a scene. Values are exact decimals (see `steps`); the
+    /// Parses `FIELD=FROM:TO:STEP` or `FIELD=a,b,c` for a scene. Values are exact decimals; the
     /// error is a sentence without the argument, which the caller knows.
     pub fn parse(argument: &str, scene: &Scene) -> Result<Self, String> {
         let Some((field, values)) = argument.split_once('=') else {
@@ -56,7 +59,7 @@ impl Axis {
             };
             let parts = [read(from)?, read(to)?, read(step)?];
             steps = Some(parts.map(Decimal::value));
-            expand(EvenSteps::new(parts[0], parts[1], parts[2])?)?
+            even_steps(parts)?
         } else {
             // infinity is valid for some fields, as for an open circuit
             let endless = |text: &str| text.trim() == "inf" && spec.range.high == f64::INFINITY;
@@ -89,11 +92,9 @@ impl Axis {
             let problem = || (part, format!("{} is not a finite number", number_text(value)));
             Decimal::shortest(value).ok_or_else(problem)
         };
-        let parts = (read("from", axis.from)?, read("to", axis.to)?, read("step", axis.step)?);
-        let below = axis.to < axis.from;
-        let part = if axis.step > 0.0 && below { "to" } else { "step" };
-        let grid = EvenSteps::new(parts.0, parts.1, parts.2).map_err(|problem| (part, problem.to_owned()))?;
-        let values = expand(grid).map_err(|problem| ("step", problem))?;
+        let parts = [read("from", axis.from)?, read("to", axis.to)?, read("step", axis.step)?];
+        let part = if axis.step > 0.0 && axis.to < axis.from { "to" } else { "step" };
+        let values = even_steps(parts).map_err(|problem| (part, problem))?;
         let part = if spec.range.contains(axis.from) { "to" } else { "from" };
         with(values, Some([axis.from, axis.to, axis.step])).within(spec).map_err(|problem| (part, problem))
     }
@@ -142,17 +143,12 @@ impl Axis {
 
 /// The specification of a numeric field, or a sentence that lists the numeric fields of the scene.
 fn numeric(scene: &Scene, field: &str) -> Result<&'static FieldInfo, String> {
-    let found = FieldPath::new(field).follow(&mut scene.clone(), |found| match found {
-        Field::Number(spec, _) => Some(spec),
-        _ => None,
-    });
-    match found.flatten() {
+    match info_of(scene, field) {
         Some(spec) if !field.starts_with("sweep.") => Ok(spec),
         _ => Err(unknown("numeric field", field, &numeric_fields(scene))),
     }
 }
 
-/// The sentence for a path that does not exist.
 pub(super) fn unknown(kind: &str, field: &str, known: &[String]) -> String {
     const MAX_SHOWN: usize = 60;
     let more = known.len().saturating_sub(MAX_SHOWN);
@@ -161,10 +157,31 @@ pub(super) fn unknown(kind: &str, field: &str, known: &[String]) -> String {
     format!("the scene has no {kind} `{}`; it has: {known}{more}", clip(field))
 }
 
-fn expand(grid: EvenSteps) -> Result<Vec<f64>, String> {
-    match usize::try_from(grid.count()) {
-        Ok(count) if count <= MAX_AXIS_VALUES => Ok((0..count as u128).map(|i| grid.at(i).value()).collect()),
-        _ => Err(too_long(grid.count())),
+/// The values from the first decimal up to the second in steps of the third; the second is included if a step
+/// reaches it.
+fn even_steps(parts: [Decimal; 3]) -> Result<Vec<f64>, String> {
+    let exponents = parts.iter().filter(|part| part.digits != 0).map(|part| part.exponent);
+    let exponent = exponents.min().unwrap_or(0);
+    if parts[2].digits == 0 {
+        return Err("a step of 0 never arrives; give a step above 0".to_owned());
+    }
+    if parts[2].digits < 0 {
+        let problem =
+            "the step is negative; an axis goes upwards: give the smaller end first and a step above 0";
+        return Err(problem.to_owned());
+    }
+    let [Some(from), Some(to), Some(step)] = parts.map(|part| part.in_units(exponent)) else {
+        return Err("the ends and the step differ by more than 36 digits".to_owned());
+    };
+    let span = to.checked_sub(from).ok_or("the ends differ by more than 36 digits")?;
+    if span < 0 {
+        return Err("the end lies below the beginning; give the smaller end first".to_owned());
+    }
+    let count = (span / step) as u128 + 1;
+    let value = |i: usize| Decimal { digits: from + step * i as i128, exponent }.trimmed().value();
+    match usize::try_from(count) {
+        Ok(count) if count <= MAX_AXIS_VALUES => Ok((0..count).map(value).collect()),
+        _ => Err(too_long(count)),
     }
 }
 
@@ -194,7 +211,6 @@ pub fn column_names<S: AsRef<str>>(fields: &[S]) -> Vec<String> {
     fields.iter().map(column).collect()
 }
 
-/// The first field that occurs twice.
 pub(super) fn repeated<'a>(fields: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let mut seen = HashSet::new();
     fields.into_iter().find(|field| !seen.insert(*field))
@@ -223,9 +239,21 @@ mod tests {
         );
     }
 
+    fn grid(from: &str, to: &str, step: &str) -> Result<Vec<f64>, String> {
+        even_steps([from, to, step].map(|text| Decimal::parse(text).unwrap()))
+    }
+
     #[test]
-    fn a_field_on_two_axes_is_noticed() {
-        assert_eq!(repeated(["a", "b", "a"]), Some("a"));
-        assert_eq!(repeated(["a", "b"]), None);
+    fn the_end_is_included_where_a_step_reaches_it() {
+        assert_eq!(grid("0", "1", "0.25").unwrap(), [0.0, 0.25, 0.5, 0.75, 1.0]);
+        assert_eq!(grid("0", "1", "0.3").unwrap(), [0.0, 0.3, 0.6, 0.9]);
+        assert_eq!(grid("-0.1", "0.1", "1e-1").unwrap(), [-0.1, 0.0, 0.1]);
+        assert_eq!(grid("3", "3", "1").unwrap(), [3.0]);
+        assert_eq!(grid("0.5", "8", "0.1875").unwrap().len(), 41);
+        assert!(grid("0", "-1", "1").is_err());
+        assert!(grid("0", "1", "0").is_err());
+        assert!(grid("1", "0", "-1").is_err());
+        assert!(grid("1e200", "1e201", "1e-3").is_err());
+        assert_eq!(grid("1e200", "3e200", "1e200").unwrap(), [1e200, 2e200, 3e200]);
     }
 }

@@ -49,8 +49,8 @@ pub fn check(scene: &Scene) -> Checked {
     checked
 }
 
-/// Whether the numbers of a scene, except those of its mechanism, pass its check. It is faster than
-/// [`check`], since it does not say what is wrong, and is called for each cell of a sweep.
+/// Whether the numbers of a scene, except those of its mechanism, pass its check. It is faster than [`check`]
+/// because it writes no messages; a sweep calls it for each cell.
 pub(crate) fn is_sound(scene: &Scene) -> bool {
     let mut numbers = Scene {
         title: String::new(),
@@ -75,7 +75,7 @@ impl Checked {
         value: impl Into<String>,
         problem: impl Into<String>,
     ) {
-        self.faults.push(Fault { field: field.into(), value: value.into(), problem: problem.into() });
+        self.faults.push(Fault::new(field, value, problem));
     }
 }
 
@@ -360,8 +360,8 @@ fn sweep(scene: &Scene, checked: &mut Checked) {
     if let Some(field) = repeated(scene.sweep.iter().map(|axis| axis.field.as_str())) {
         checked.fault("sweep", field, "is swept twice; give each field one axis");
     }
-    // `corners` checks relations between fields at the values of a sweep: `simulate` must not fail because of
-    // a sweep that is not run. An axis that can never be used is a fault here.
+    // Only `corners` checks relations between fields at the values of a sweep, so that `simulate` does not
+    // fail because of a sweep that is not run. An axis that can never be used is a fault here.
     for (i, axis) in scene.sweep.iter().enumerate() {
         let path = format!("sweep.{i}.");
         if checked.faults.iter().any(|fault| fault.field.starts_with(&path)) {

@@ -19,25 +19,8 @@ pub enum ColumnsError {
         wanted: String,
     },
     /// A needed column is not in the header.
-    #[error("line {line}: no column {missing}; the header has: {found} (comma separated; needed: {wanted})")]
-    MissingColumn {
-        /// Line of the header.
-        line: usize,
-        /// Name of the needed column.
-        missing: String,
-        /// The names in the header.
-        found: String,
-        /// The columns that are needed.
-        wanted: String,
-    },
-    /// The first row has numbers in place of column names.
-    #[error("line {line}: a row of numbers; put a row with the columns' names above it, such as {wanted}")]
-    NoHeader {
-        /// Line of the first row.
-        line: usize,
-        /// The columns that are needed.
-        wanted: String,
-    },
+    #[error("{0}")]
+    MissingColumn(String),
     /// A needed column occurs twice.
     #[error("line {line}: column {column} is there more than once")]
     RepeatedColumn {
@@ -46,9 +29,6 @@ pub enum ColumnsError {
         /// Its name.
         column: String,
     },
-    /// A row is not readable as CSV.
-    #[error("is not a CSV table: {0}")]
-    Unreadable(String),
     /// A text in quotation marks that extends beyond its line, so that it would include further rows.
     #[error(
         "line {line}: a quotation mark opens a text that does not end on this line; close it or leave it out"
@@ -70,22 +50,12 @@ pub enum ColumnsError {
         /// The value as written, empty if the row is too short.
         value: String,
     },
-    /// More values than the header has names.
-    #[error(
-        "line {line}: has {found} values where the header has {names} names; if commas are meant as decimal \
-         points, separate the values by semicolons"
-    )]
-    TooManyValues {
-        /// Line of the row.
-        line: usize,
-        /// Number of values in the row.
-        found: usize,
-        /// Number of names in the header.
-        names: usize,
-    },
     /// More rows than are read.
     #[error("has more than {0} rows, the most that are read: thin it out, or cut it to what the run needs")]
     TooMany(usize),
+    /// The text is no CSV, its first row is not a header, or a row has more values than the header has names.
+    #[error("{0}")]
+    Unusable(String),
 }
 
 /// Columns of a table with the line numbers of their rows.
@@ -118,7 +88,6 @@ pub fn read_columns<const N: usize>(
     sheet.numbers(at)
 }
 
-/// Separators between values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Separators {
     /// A comma.
@@ -128,7 +97,6 @@ pub(super) enum Separators {
     Any,
 }
 
-/// A CSV text with its header parsed.
 pub(super) struct Sheet {
     /// The text without comments and blank lines.
     body: String,
@@ -181,7 +149,10 @@ impl Sheet {
         sheet.names = header.iter().map(|name| name.trim().to_owned()).collect();
         let numeric = |name: &String| name.replace(',', ".").parse::<f64>().is_ok();
         if allowed == Separators::Any && sheet.names.iter().all(numeric) {
-            return Err(ColumnsError::NoHeader { line: sheet.lines[0], wanted: wanted.to_owned() });
+            return Err(ColumnsError::Unusable(format!(
+                "line {}: a row of numbers; put a row with the columns' names above it, such as {wanted}",
+                sheet.lines[0]
+            )));
         }
         Ok(sheet)
     }
@@ -208,11 +179,14 @@ impl Sheet {
     /// Index of the column called `name`.
     pub fn column(&self, name: &str) -> Result<usize, ColumnsError> {
         let mut at = self.names.iter().enumerate().filter(|(_, other)| *other == name).map(|(i, _)| i);
-        let first = at.next().ok_or_else(|| ColumnsError::MissingColumn {
-            line: self.line(0),
-            missing: clip(name),
-            found: clip(&self.names.join(", ")),
-            wanted: self.wanted.clone(),
+        let first = at.next().ok_or_else(|| {
+            ColumnsError::MissingColumn(format!(
+                "line {}: no column {}; the header has: {} (comma separated; needed: {})",
+                self.line(0),
+                clip(name),
+                clip(&self.names.join(", ")),
+                self.wanted
+            ))
         })?;
         match at.next() {
             None => Ok(first),
@@ -234,7 +208,10 @@ impl Sheet {
             let beyond = record.iter().skip(names).any(|value| !value.trim().is_empty());
             if !self.ragged && beyond {
                 let (line, found) = (self.line(place), record.len());
-                return Err(ColumnsError::TooManyValues { line, found, names });
+                return Err(ColumnsError::Unusable(format!(
+                    "line {line}: has {found} values where the header has {names} names; if commas are meant \
+                     as decimal points, separate the values by semicolons"
+                )));
             }
             let mut row = [0.0; N];
             for (cell, at) in row.iter_mut().zip(at) {
@@ -261,7 +238,7 @@ impl Sheet {
 }
 
 fn unreadable(error: csv::Error) -> ColumnsError {
-    ColumnsError::Unreadable(error.to_string())
+    ColumnsError::Unusable(format!("is not a CSV table: {error}"))
 }
 
 /// The lines of a text with line ends of any system: a line feed, a carriage return or both.

@@ -8,10 +8,10 @@ use super::data::Scene;
 use super::error::{ArgumentError, Fault, Origin, PlacedFault, SceneError, clip};
 use super::fields::{FieldPath, all_fields, replace};
 use super::files::{Files, ReadError, read_from, read_text};
-use super::locate::Places;
 use super::manifest::{self, SweepRequest};
 use super::presets::{self, PRESETS};
 use super::record;
+use super::scanner::Places;
 use super::text::{self, MAX_SCENE_BYTES};
 use crate::numeric::number_text;
 use crate::system::files;
@@ -19,8 +19,8 @@ use crate::system::files;
 /// Largest number of faults that an error lists; further ones are counted. A list may contain a million NaN.
 const MAX_FAULTS: usize = 50;
 
-/// Largest number of values of all axes of a sweep together. Three axes that exceed it, even if no single
-/// axis is too long, make more cells than a sweep may have; they are rejected before all are expanded.
+/// Largest number of values of all axes of a sweep together. Three axes with more values make more cells than
+/// a sweep may have, even if no axis is too long. They are rejected before all of them are expanded.
 const MAX_VALUES: usize = 2 * MAX_AXIS_VALUES;
 
 /// Name in messages of a scene from standard input.
@@ -54,11 +54,9 @@ pub struct Document {
     pub swept: Option<SweepRequest>,
     /// Changes by arguments; of several of one field the last one counts.
     assigned: Vec<Assignment>,
-    /// Faults of the records that the excitation names.
     unread: Vec<Fault>,
 }
 
-/// Change of a field by an argument.
 #[derive(Debug, Clone)]
 struct Assignment {
     field: String,
@@ -112,7 +110,11 @@ impl Document {
     pub fn from_text(name: &str, text: &str, files: Files) -> Result<Self, SceneError> {
         let mut scene = match text::parse(text) {
             Ok(scene) => scene,
-            Err(parse_error) => return Err(scene_error(name, text, parse_error, files)),
+            Err(parse_error) => {
+                let rest =
+                    |text: &str| Self::from_text(name, text, files.clone()).and_then(|d| d.check()).err();
+                return Err(structure_error(name, text, parse_error, |text| text::parse(text).err(), rest));
+            }
         };
         if scene.title.is_empty() && Places::of(text).find("title").is_none() {
             let stem = Path::new(name).file_stem().unwrap_or_default();
@@ -236,16 +238,16 @@ impl Document {
             return Err(ArgumentError { argument: "--over".to_owned(), problem }.into());
         }
         let mut values = 0;
-        let mut count = |axis: &Axis| {
+        let mut counted = |axis: Axis, argument: String| -> Result<Axis, SceneError> {
             values += axis.values.len();
             if values <= MAX_VALUES {
-                Ok(())
-            } else {
-                Err(format!(
-                    "{values} values, with the axes before it, are more than a sweep may have \
-                     ({MAX_VALUES}); give larger steps"
-                ))
+                return Ok(axis);
             }
+            let problem = format!(
+                "{values} values, with the axes before it, are more than a sweep may have ({MAX_VALUES}); \
+                 give larger steps"
+            );
+            Err(ArgumentError { argument, problem }.into())
         };
         let axes: Vec<Axis> = if over.is_empty() {
             // The check gives more detail than `from_scene`.
@@ -255,20 +257,18 @@ impl Document {
             }
             let axes = self.scene.sweep.iter().map(|axis| {
                 let axis = Axis::from_scene(axis, &self.scene).map_err(|_| check_error())?;
-                count(&axis).map_err(|problem| ArgumentError { argument: "sweep".to_owned(), problem })?;
-                Ok(axis)
+                counted(axis, "sweep".to_owned())
             });
             axes.collect::<Result<_, SceneError>>()?
         } else {
-            let parse = |over: &S| {
-                let argument = over.as_ref();
-                let parsed = Axis::parse(argument, &self.scene).and_then(|axis| count(&axis).map(|()| axis));
-                parsed.map_err(|problem| ArgumentError {
-                    argument: clip(&format!("--over {argument}")),
-                    problem,
-                })
-            };
-            over.iter().map(parse).collect::<Result<_, _>>()?
+            let axes = over.iter().map(|over| {
+                let argument = clip(&format!("--over {}", over.as_ref()));
+                match Axis::parse(over.as_ref(), &self.scene) {
+                    Ok(axis) => counted(axis, argument),
+                    Err(problem) => Err(ArgumentError { argument, problem }.into()),
+                }
+            });
+            axes.collect::<Result<_, SceneError>>()?
         };
         if let Some(field) = repeated(axes.iter().map(|axis| axis.field.as_str())) {
             let argument = if over.is_empty() { "sweep" } else { "--over" };
@@ -318,14 +318,6 @@ fn read_scene(spec: &str, largest: usize) -> Result<String, SceneError> {
         }
         ReadError::Unusable(problem) => SceneError::Unreadable { name: clip(spec), problem },
     })
-}
-
-/// The error for a text that is not a scene.
-fn scene_error(name: &str, text: &str, parse_error: text::ParseError, files: Files) -> SceneError {
-    let rest = |text: &str| {
-        Document::from_text(name, text, files.clone()).and_then(|document| document.check()).err()
-    };
-    structure_error(name, text, parse_error, |text| text::parse(text).err(), rest)
 }
 
 /// The error for a text that does not parse. Unknown field names are removed one by one and the text

@@ -1,8 +1,6 @@
 //! Error types of scenes.
 
-use std::fmt;
-
-use super::locate::Place;
+use super::scanner::Place;
 
 /// One thing that is wrong with a scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,6 +11,13 @@ pub struct Fault {
     pub value: String,
     /// The problem and its remedy.
     pub problem: String,
+}
+
+impl Fault {
+    /// A fault of a field.
+    pub fn new(field: impl Into<String>, value: impl Into<String>, problem: impl Into<String>) -> Self {
+        Self { field: field.into(), value: value.into(), problem: problem.into() }
+    }
 }
 
 /// Where the value at fault was written.
@@ -68,7 +73,7 @@ pub enum SceneError {
         more: Vec<String>,
     },
     /// All invalid values.
-    #[error("{}", Lines { name, faults, more: *more })]
+    #[error("{}", lines(name, faults, *more))]
     Faults {
         /// The file.
         name: String,
@@ -92,40 +97,24 @@ pub struct ArgumentError {
     pub problem: String,
 }
 
-/// Further lines of a message, each on a new line.
 fn further(lines: &[String]) -> String {
     lines.iter().map(|line| format!("\n{line}")).collect()
 }
 
-struct Lines<'a> {
-    name: &'a str,
-    faults: &'a [PlacedFault],
-    more: usize,
-}
-
-impl fmt::Display for Lines<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, PlacedFault { fault, origin }) in self.faults.iter().enumerate() {
-            if i > 0 {
-                f.write_str("\n")?;
-            }
-            match origin {
-                Origin::Text(place) => write!(f, "{}:{}:{}: ", self.name, place.line, place.column)?,
-                Origin::Argument(argument) => write!(f, "{}: {}: ", self.name, clip(argument))?,
-                Origin::Unwritten => write!(f, "{}: ", self.name)?,
-            }
-            let Fault { field, value, problem } = fault;
-            if value.is_empty() {
-                write!(f, "{field}: {problem}")?;
-            } else {
-                write!(f, "{field} = {}: {problem}", clip(value))?;
-            }
-        }
-        if self.more > 0 {
-            write!(f, "\n{}: and {} more", self.name, self.more)?;
-        }
-        Ok(())
-    }
+/// The faults of the scene called `name`, one a line, and the number of those that are not listed.
+fn lines(name: &str, faults: &[PlacedFault], more: usize) -> String {
+    let line = |PlacedFault { fault, origin }: &PlacedFault| {
+        let origin = match origin {
+            Origin::Text(place) => format!("{name}:{}:{}", place.line, place.column),
+            Origin::Argument(argument) => format!("{name}: {}", clip(argument)),
+            Origin::Unwritten => name.to_owned(),
+        };
+        let Fault { field, value, problem } = fault;
+        let value = if value.is_empty() { String::new() } else { format!(" = {}", clip(value)) };
+        format!("{origin}: {field}{value}: {problem}")
+    };
+    let more = (more > 0).then(|| format!("{name}: and {more} more"));
+    faults.iter().map(line).chain(more).collect::<Vec<_>>().join("\n")
 }
 
 /// The text shortened to one line without control characters.

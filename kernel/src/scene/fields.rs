@@ -6,7 +6,7 @@
 use super::data::Scene;
 use super::error::clip;
 use super::field_table::FieldInfo;
-use super::scanner::overflows;
+use super::scanner::{Part, overflows};
 use super::text::{self, ParseError, TOO_LARGE};
 pub(super) use super::walk::{Field, Slot};
 use super::walk::{Fields, Segment, Visitor};
@@ -16,7 +16,6 @@ use crate::numeric::number_text;
 pub(super) fn for_each(scene: &mut Scene, each: impl FnMut(&str, Field<'_>)) {
     struct Each<F> {
         path: String,
-        lengths: Vec<usize>,
         each: F,
     }
     impl<F: FnMut(&str, Field<'_>)> Visitor for Each<F> {
@@ -25,21 +24,19 @@ pub(super) fn for_each(scene: &mut Scene, each: impl FnMut(&str, Field<'_>)) {
             let dot = if length == 0 { "" } else { "." };
             self.path.push_str(&format!("{dot}{segment}"));
             (self.each)(&self.path, field);
-            if inner {
-                self.lengths.push(length);
-            } else {
+            if !inner {
                 self.path.truncate(length);
             }
             inner
         }
         fn leave(&mut self) {
-            self.path.truncate(self.lengths.pop().unwrap_or(0));
+            self.path.truncate(self.path.rfind('.').unwrap_or(0));
         }
     }
-    scene.visit_fields(&mut Each { path: String::new(), lengths: Vec::new(), each });
+    scene.visit_fields(&mut Each { path: String::new(), each });
 }
 
-/// Whether every number of a scene is within its range; no path is written for that.
+/// Whether every number of a scene is within its range. Unlike [`for_each`] it builds no paths.
 pub(super) fn in_range(scene: &mut Scene) -> bool {
     struct InRange(bool);
     impl Visitor for InRange {
@@ -59,22 +56,14 @@ pub(super) fn in_range(scene: &mut Scene) -> bool {
 /// The dotted path of a field, split once so that it can be followed many times.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FieldPath {
-    steps: Vec<PathPart>,
+    parts: Vec<Part>,
 }
 
-#[derive(Debug, Clone, PartialEq, Eq)]
-enum PathPart {
-    Name(String),
-    Index(usize),
-}
-
-impl PathPart {
-    fn is(&self, segment: Segment) -> bool {
-        match (self, segment) {
-            (Self::Name(part), Segment::Name(name)) => part == name,
-            (Self::Index(part), Segment::Index(index)) => *part == index,
-            _ => false,
-        }
+fn is_same(part: &Part, segment: Segment) -> bool {
+    match (part, segment) {
+        (Part::Name(part), Segment::Name(name)) => part == name,
+        (Part::Index(part), Segment::Index(index)) => *part == index,
+        _ => false,
     }
 }
 
@@ -82,11 +71,7 @@ impl FieldPath {
     /// Splits a path such as `stops.travel_limit_mm` at its dots. Any text is accepted; whether a scene has
     /// the field is found when the path is followed.
     pub fn new(path: &str) -> Self {
-        let step = |part: &str| match part.parse::<usize>() {
-            Ok(index) if index.to_string() == part => PathPart::Index(index),
-            _ => PathPart::Name(part.to_owned()),
-        };
-        Self { steps: path.split('.').map(step).collect() }
+        Self { parts: Part::all_of(path) }
     }
 
     /// Sets the number at this path without checking its range; returns false if the scene has
@@ -127,17 +112,17 @@ impl FieldPath {
     /// Calls `found` with the field at this path; returns `None` if the scene has no such field.
     pub(super) fn follow<R>(&self, scene: &mut Scene, found: impl FnOnce(Field<'_>) -> R) -> Option<R> {
         struct Seek<'p, F, R> {
-            steps: &'p [PathPart],
+            parts: &'p [Part],
             depth: usize,
             found: Option<F>,
             result: Option<R>,
         }
         impl<R, F: FnOnce(Field<'_>) -> R> Visitor for Seek<'_, F, R> {
             fn field(&mut self, segment: Segment, inner: bool, field: Field<'_>) -> bool {
-                if !self.steps.get(self.depth).is_some_and(|step| step.is(segment)) {
+                if !self.parts.get(self.depth).is_some_and(|part| is_same(part, segment)) {
                     return false;
                 }
-                if self.depth + 1 < self.steps.len() {
+                if self.depth + 1 < self.parts.len() {
                     self.depth += usize::from(inner);
                     return inner;
                 }
@@ -150,34 +135,44 @@ impl FieldPath {
                 self.depth -= 1;
             }
         }
-        let mut seek = Seek { steps: &self.steps, depth: 0, found: Some(found), result: None };
+        let mut seek = Seek { parts: &self.parts, depth: 0, found: Some(found), result: None };
         scene.visit_fields(&mut seek);
         seek.result
     }
 }
 
-/// The paths of all numbers of a scene, as `--over` takes them. They include optional numbers that are left
-/// out, but not the numbers of the scene's `sweep`.
-pub fn numeric_fields(scene: &Scene) -> Vec<String> {
-    let mut paths = Vec::new();
-    for_each(&mut scene.clone(), |path, field| {
-        if matches!(field, Field::Number(..)) && !path.starts_with("sweep.") {
-            paths.push(path.to_owned());
-        }
-    });
-    paths
+/// The row in the table of fields of the number at this path; `None` if the scene does not have it.
+pub(super) fn info_of(scene: &Scene, path: &str) -> Option<&'static FieldInfo> {
+    let info = |field: Field<'_>| match field {
+        Field::Number(info, _) => Some(info),
+        _ => None,
+    };
+    FieldPath::new(path).follow(&mut scene.clone(), info).flatten()
 }
 
 /// Whether the number at this path is whole, such as a count or a seed; false if the scene does not have it.
 pub fn is_whole(scene: &Scene, path: &str) -> bool {
-    let whole = |field: Field<'_>| matches!(field, Field::Number(spec, _) if spec.range.whole);
-    FieldPath::new(path).follow(&mut scene.clone(), whole).unwrap_or(false)
+    info_of(scene, path).is_some_and(|info| info.range.whole)
+}
+
+/// The paths of all numbers of a scene, as `--over` takes them. They include optional numbers that are left
+/// out, but not the numbers of the scene's `sweep`.
+pub fn numeric_fields(scene: &Scene) -> Vec<String> {
+    paths(scene, |path, field| matches!(field, Field::Number(..)) && !path.starts_with("sweep."))
 }
 
 /// The paths of all fields of a scene, numbers and other values, as `--set` takes them.
 pub fn all_fields(scene: &Scene) -> Vec<String> {
+    paths(scene, |_, _| true)
+}
+
+fn paths(scene: &Scene, is_listed: fn(&str, Field<'_>) -> bool) -> Vec<String> {
     let mut paths = Vec::new();
-    for_each(&mut scene.clone(), |path, _| paths.push(path.to_owned()));
+    for_each(&mut scene.clone(), |path, field| {
+        if is_listed(path, field) {
+            paths.push(path.to_owned());
+        }
+    });
     paths
 }
 

@@ -36,25 +36,9 @@ pub enum FileError {
         /// Whether there is an embedded table of this name.
         embedded: bool,
     },
-    /// A relative path in a scene without a folder.
-    #[error(
-        "no embedded table is called {path} (there are: {embedded}), and a built-in or pasted scene has no \
-         folder: give an absolute path"
-    )]
-    NoFolder {
-        /// The path as written.
-        path: String,
-        /// The names of the embedded tables.
-        embedded: String,
-    },
-    /// The file exists but cannot be used.
-    #[error("{path}: {problem}")]
-    Unreadable {
-        /// The path that was tried.
-        path: String,
-        /// The reason and its remedy.
-        problem: String,
-    },
+    /// The file cannot be used, or a relative path is not the name of an embedded table and has no folder.
+    #[error("{0}")]
+    Unusable(String),
 }
 
 impl Files {
@@ -81,19 +65,22 @@ impl Files {
         if let Some(text) = self.held.get(path) {
             return Ok(text.clone());
         }
-        let embedded = || presets::TABLES.iter().find(|table| table.name == path);
-        let names = || presets::TABLES.iter().map(|table| table.name).collect::<Vec<_>>().join(", ");
+        let embedded = presets::TABLES.iter().find(|table| table.name == path);
         let Some(tried) = self.place(path) else {
-            let missing = || FileError::NoFolder { path: clip(path), embedded: names() };
-            return embedded().map(|table| table.text.to_owned()).ok_or_else(missing);
+            return embedded.map(|table| table.text.to_owned()).ok_or_else(|| {
+                let names = presets::TABLES.iter().map(|table| table.name).collect::<Vec<_>>().join(", ");
+                FileError::Unusable(format!(
+                    "no embedded table is called {} (there are: {names}), and a built-in or pasted scene has \
+                     no folder: give an absolute path",
+                    clip(path)
+                ))
+            });
         };
         let shown = clip(&tried.display().to_string());
         match read_text(&tried, MAX_TABLE_BYTES) {
             Ok(text) => Ok(text),
-            Err(ReadError::Missing) => {
-                Err(FileError::Missing { path: shown, embedded: embedded().is_some() })
-            }
-            Err(ReadError::Unusable(problem)) => Err(FileError::Unreadable { path: shown, problem }),
+            Err(ReadError::Missing) => Err(FileError::Missing { path: shown, embedded: embedded.is_some() }),
+            Err(ReadError::Unusable(problem)) => Err(FileError::Unusable(format!("{shown}: {problem}"))),
         }
     }
 }

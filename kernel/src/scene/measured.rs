@@ -55,89 +55,23 @@ pub struct Measured<const N: usize> {
     pub decimal_commas: bool,
 }
 
-/// Error in a measured record.
+/// Reason why a measured record cannot be read, as a clause.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MeasuredError {
-    /// The file does not exist or is not text.
-    #[error("{0}")]
-    Unreadable(String),
-    /// The columns cannot be read.
+    /// The text is no table of numbers.
     #[error(transparent)]
     Columns(#[from] ColumnsError),
     /// No column has a unit of the quantity.
-    #[error(
-        "line {line}: no column of {name} ({name} in {units}, as in `{example}`); the header has: {found}. \
-         {remedy}. The header is the first line that does not begin with #: put that before what stands \
-         above it",
-        name = .quantity.name(),
-        units = .quantity.units()
-    )]
+    #[error("{problem}")]
     NoColumn {
-        /// Line of the header.
-        line: usize,
         /// Requested quantity.
         quantity: Quantity,
-        /// Example of a column name.
-        example: String,
-        /// The names in the header.
-        found: String,
-        /// Advice, a sentence.
-        remedy: String,
+        /// What the header has, and the remedy.
+        problem: String,
     },
-    /// Several columns have a unit of the quantity.
-    #[error("line {line}: {found} are all columns of {quantity}: {remedy}")]
-    SeveralColumns {
-        /// Line of the header.
-        line: usize,
-        /// Requested quantity.
-        quantity: &'static str,
-        /// The names of the columns.
-        found: String,
-        /// Advice, a clause.
-        remedy: String,
-    },
-    /// The unit of a column is not known.
-    #[error("{option}: `{unit}` is no unit of {quantity}; known are {units}")]
-    UnknownUnit {
-        /// Option that gave the unit.
-        option: &'static str,
-        /// The unit as given.
-        unit: String,
-        /// Requested quantity.
-        quantity: String,
-        /// The known units.
-        units: String,
-    },
-    /// A column whose name has no unit.
-    #[error("column {column}: its name ends with no unit of {quantity}; give it by {option} ({units})")]
-    UnitNeeded {
-        /// Name of the column.
-        column: String,
-        /// Requested quantity.
-        quantity: String,
-        /// Option that gives the unit.
-        option: &'static str,
-        /// The known units.
-        units: String,
-    },
-    /// Fewer rows than a record needs.
-    #[error("has {0} rows of numbers; a record needs at least 2")]
-    TooFew(usize),
-    /// A time that is not after the previous one.
-    #[error(
-        "line {line}: {column} = {time} does not come after {before}; times must increase from row to row \
-         (sort the rows; of several with one time keep one)"
-    )]
-    NotAfter {
-        /// Line of the later row.
-        line: usize,
-        /// Its column.
-        column: String,
-        /// The time as written.
-        time: f64,
-        /// The time in the row before it.
-        before: f64,
-    },
+    /// Anything else: the file, the choice of a column, or the values in it.
+    #[error("{0}")]
+    Unusable(String),
 }
 
 /// Reads the record in the file at `path`.
@@ -147,7 +81,7 @@ pub fn read_measured<const N: usize>(path: &Path, requests: &[Ask; N]) -> Result
 
 fn text_of(path: &Path) -> Result<String, MeasuredError> {
     read_text(path, MAX_MEASURED_BYTES).map_err(|error| {
-        MeasuredError::Unreadable(match error {
+        MeasuredError::Unusable(match error {
             ReadError::Missing => {
                 "is not there (no such file); give the path of a CSV with a header".to_owned()
             }
@@ -218,18 +152,18 @@ impl<const N: usize> Measured<N> {
     fn of(sheet: &Sheet, chosen: [(usize, Unit); N]) -> Result<Self, MeasuredError> {
         let columns = sheet.numbers(chosen.map(|(at, _)| at))?;
         if columns.rows.len() < 2 {
-            return Err(MeasuredError::TooFew(columns.rows.len()));
+            return Err(MeasuredError::Unusable(too_few(columns.rows.len())));
         }
         let times = chosen.iter().enumerate().filter(|(_, (_, unit))| unit.quantity == Quantity::Time);
         for (k, (at, unit)) in times {
             let turn = columns.rows.windows(2).position(|pair| unit.si(pair[1][k]) <= unit.si(pair[0][k]));
             if let Some(row) = turn {
-                return Err(MeasuredError::NotAfter {
-                    line: columns.lines[row + 1],
-                    column: clip(&sheet.names[*at]),
-                    time: columns.rows[row + 1][k],
-                    before: columns.rows[row][k],
-                });
+                let (before, time) = (columns.rows[row][k], columns.rows[row + 1][k]);
+                let (line, column) = (columns.lines[row + 1], clip(&sheet.names[*at]));
+                return Err(MeasuredError::Unusable(format!(
+                    "line {line}: {column} = {time} does not come after {before}; times must increase from \
+                     row to row (sort the rows; of several with one time keep one)"
+                )));
             }
         }
         let channels = std::array::from_fn(|k| Channel {
@@ -255,24 +189,8 @@ impl Ask {
 
     /// The requested name, or an example of one, for messages.
     fn wanted(&self) -> String {
-        self.options.as_ref().and_then(|options| options.column.clone()).unwrap_or_else(|| {
-            let name = match self.quantities[0] {
-                Quantity::Time => "t",
-                Quantity::Displacement => "x",
-                Quantity::Velocity => "v",
-                Quantity::Acceleration => "accel",
-                Quantity::Force => "force",
-            };
-            format!("{name}{}", self.quantities[0].ending())
-        })
-    }
-
-    fn quantity_names(&self) -> String {
-        self.quantities.iter().map(|quantity| quantity.name()).collect::<Vec<_>>().join(" or ")
-    }
-
-    fn known_units(&self) -> String {
-        self.quantities.iter().map(|quantity| quantity.units()).collect::<Vec<_>>().join(", ")
+        let column = self.options.as_ref().and_then(|options| options.column.clone());
+        column.unwrap_or_else(|| self.quantities[0].example())
     }
 
     /// The column's index and unit.
@@ -280,31 +198,33 @@ impl Ask {
         let Some(AskOptions { column, unit, names: [_, unit_option] }) = &self.options else {
             return self.choose_by_unit(sheet, None);
         };
+        let quantity =
+            self.quantities.iter().map(|quantity| quantity.name()).collect::<Vec<_>>().join(" or ");
+        let units = self.quantities.iter().map(|quantity| quantity.units()).collect::<Vec<_>>().join(", ");
         let of_word = |word: &str| {
             let found = self.quantities.iter().find_map(|quantity| Unit::of_word(word, *quantity));
-            found.ok_or_else(|| MeasuredError::UnknownUnit {
-                option: unit_option,
-                unit: clip(word),
-                quantity: self.quantity_names(),
-                units: self.known_units(),
+            let unit = clip(word);
+            found.ok_or_else(|| {
+                let problem = format!("{unit_option}: `{unit}` is no unit of {quantity}; known are {units}");
+                MeasuredError::Unusable(problem)
             })
         };
         let given = unit.as_deref().map(of_word).transpose()?;
         let Some(name) = column else { return self.choose_by_unit(sheet, given) };
         let at = sheet.column(name)?;
         let in_name = Unit::of_name(name).filter(|unit| self.quantities.contains(&unit.quantity));
-        let unit = given.or(in_name).ok_or_else(|| MeasuredError::UnitNeeded {
-            column: clip(name),
-            quantity: self.quantity_names(),
-            option: unit_option,
-            units: self.known_units(),
+        let unit = given.or(in_name).ok_or_else(|| {
+            MeasuredError::Unusable(format!(
+                "column {}: its name ends with no unit of {quantity}; give it by {unit_option} ({units})",
+                clip(name)
+            ))
         })?;
         Ok((at, unit))
     }
 
     /// The only column with a unit of the first quantity that has one; `given` replaces that unit.
     fn choose_by_unit(&self, sheet: &Sheet, given: Option<Unit>) -> Result<(usize, Unit), MeasuredError> {
-        let names = self.options.as_ref().map(|options| options.names);
+        let (line, names) = (sheet.line(0), self.options.as_ref().map(|options| options.names));
         for quantity in &self.quantities {
             let with_unit = |(at, name): (usize, &String)| {
                 let unit = Unit::of_name(name).filter(|unit| unit.quantity == *quantity)?;
@@ -316,27 +236,35 @@ impl Ask {
                 [(at, unit)] => return Ok((at, given.unwrap_or(unit))),
                 _ => {
                     let found: Vec<&str> = found.iter().map(|(at, _)| sheet.names[*at].as_str()).collect();
-                    return Err(MeasuredError::SeveralColumns {
-                        line: sheet.line(0),
-                        quantity: quantity.name(),
-                        found: clip(&found.join(", ")),
-                        remedy: match names {
-                            None => "leave the unit to one of them".to_owned(),
-                            Some([option, _]) => format!("name one by {option}"),
-                        },
-                    });
+                    let (found, name) = (clip(&found.join(", ")), quantity.name());
+                    let remedy = match names {
+                        None => "leave the unit to one of them".to_owned(),
+                        Some([option, _]) => format!("name one by {option}"),
+                    };
+                    let problem = format!("line {line}: {found} are all columns of {name}: {remedy}");
+                    return Err(MeasuredError::Unusable(problem));
                 }
             }
         }
-        Err(MeasuredError::NoColumn {
-            line: sheet.line(0),
-            quantity: self.quantities[0],
-            example: self.wanted(),
-            found: clip(&sheet.names.join(", ")),
-            remedy: match names {
-                None => "Put the unit at the end of the column's name".to_owned(),
-                Some([option, unit]) => format!("Name the column by {option} and its unit by {unit}"),
-            },
-        })
+        let quantity = self.quantities[0];
+        let remedy = match names {
+            None => "Put the unit at the end of the column's name".to_owned(),
+            Some([option, unit]) => format!("Name the column by {option} and its unit by {unit}"),
+        };
+        let problem = format!(
+            "line {line}: no column of {name} ({name} in {units}, as in `{example}`); the header has: \
+             {found}. {remedy}. The header is the first line that does not begin with #: put that before \
+             what stands above it",
+            name = quantity.name(),
+            units = quantity.units(),
+            example = self.wanted(),
+            found = clip(&sheet.names.join(", "))
+        );
+        Err(MeasuredError::NoColumn { quantity, problem })
     }
+}
+
+/// The clause for a record with this many rows, fewer than 2.
+pub(super) fn too_few(rows: usize) -> String {
+    format!("has {rows} rows of numbers; a record needs at least 2")
 }

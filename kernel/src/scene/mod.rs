@@ -28,7 +28,6 @@ mod field_table;
 mod fields;
 mod files;
 pub mod lesson;
-mod locate;
 mod manifest;
 mod measured;
 mod mechanism;
@@ -36,7 +35,6 @@ mod presets;
 mod record;
 mod scanner;
 mod shape;
-mod steps;
 mod stops;
 mod text;
 mod timing;
@@ -57,7 +55,6 @@ pub use field_table::{
 };
 pub use fields::{FieldPath, all_fields, is_whole, numeric_fields};
 pub use files::{FileError, Files, MAX_TABLE_BYTES};
-pub use locate::{Place, Places};
 pub use manifest::{PROGRAM, SweepRequest, is_manifest};
 pub use measured::{
     Ask, AskOptions, Channel, ChosenColumn, MAX_MEASURED_BYTES, MAX_MEASURED_ROWS, Measured, MeasuredError,
@@ -65,11 +62,10 @@ pub use measured::{
 };
 pub use mechanism::{FlexureGroup, Mechanism};
 pub use presets::{EmbeddedTable, PRESETS, Preset, TABLES, export};
-pub use record::{Record, RecordError, read_record};
-pub use scanner::has_comments;
+pub use record::{Record, read_record};
+pub use scanner::{Place, Places, has_comments};
 pub use stops::Stops;
 pub use text::{MAX_SCENE_BYTES, write};
 pub use timing::Timing;
 pub use transducer::Transducer;
-pub use unit::unit_ending;
-pub use unit::{Quantity, STANDARD_GRAVITY, Unit};
+pub use unit::{Quantity, STANDARD_GRAVITY, Unit, unit_ending};

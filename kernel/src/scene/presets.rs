@@ -63,7 +63,6 @@ pub static TABLES: &[EmbeddedTable] = &[
     EmbeddedTable { name: "walking.csv", text: include_str!("../../../assets/walking.csv") },
 ];
 
-/// Names of all presets, separated by commas.
 pub(super) fn names() -> String {
     PRESETS.iter().map(|preset| preset.name).collect::<Vec<_>>().join(", ")
 }

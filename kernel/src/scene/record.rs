@@ -1,7 +1,7 @@
 //! Recorded base acceleration.
 //!
-//! A record is read once, when a document is read or changed, and is then a part of the scene, so that all
-//! cells of a sweep share it.
+//! A record is read when a document is read or changed. It is then a part of the scene, and all cells of a
+//! sweep share it.
 
 use std::path::Path;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -10,7 +10,7 @@ use super::columns::{ColumnsError, MOST_ROWS, read_columns};
 use super::data::Excitation;
 use super::error::Fault;
 use super::files::Files;
-use super::measured::{Ask, Measured, MeasuredError};
+use super::measured::{Ask, Measured, MeasuredError, too_few};
 use super::timing::Timing;
 use super::unit::Quantity;
 use crate::numeric::pieces::{Piece, pieces};
@@ -28,7 +28,6 @@ pub struct Record {
     derived: Derived,
 }
 
-/// Data derived from a record, shared by all runs of it.
 #[derive(Debug, Default)]
 struct Derived {
     peak: OnceLock<f64>,
@@ -54,37 +53,14 @@ impl PartialEq for Derived {
     }
 }
 
-/// Error in the text of a record.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum RecordError {
-    /// The columns cannot be read.
-    #[error(transparent)]
-    Columns(#[from] ColumnsError),
-    /// The columns, chosen by their units, cannot be read.
-    #[error(transparent)]
-    Measured(#[from] MeasuredError),
-    /// Fewer than two samples.
-    #[error("has {0} rows of numbers; a record needs at least 2")]
-    TooFew(usize),
-    /// A time that is not after the previous one.
-    #[error(
-        "line {line}: {TIME} = {time:e} does not come after {before:e}; times must increase from row to row"
-    )]
-    NotAfter {
-        /// Line of the later row.
-        line: usize,
-        /// Its time.
-        time: f64,
-        /// Time of the row before it.
-        before: f64,
-    },
-}
-
 /// Reads the record in the file at `path` in the same way as for a scene; the error is a clause.
 pub fn read_record(path: &Path) -> Result<Record, String> {
-    let files = Files::default();
-    let text = files.read(&path.to_string_lossy()).map_err(|error| error.to_string())?;
-    Record::parse(&text).map_err(|error| error.to_string())
+    read(&Files::default(), &path.to_string_lossy())
+}
+
+fn read(files: &Files, path: &str) -> Result<Record, String> {
+    let text = files.read(path).map_err(|error| error.to_string())?;
+    Record::parse(&text)
 }
 
 impl Record {
@@ -111,34 +87,36 @@ impl Record {
     }
 
     /// Parses a record: CSV with the columns `t_s` and `accel_m_per_s2`, or with one column of time and one
-    /// of acceleration identified by the units in their names, like a measured record.
-    pub fn parse(text: &str) -> Result<Self, RecordError> {
+    /// of acceleration identified by the units in their names, like a measured record. The error is a clause.
+    pub fn parse(text: &str) -> Result<Self, String> {
         let columns = match read_columns(text, [TIME, ACCELERATION], MOST_ROWS, false) {
-            Err(problem @ ColumnsError::MissingColumn { .. }) => {
-                return match Self::by_units(text) {
+            Err(ColumnsError::MissingColumn(problem)) => {
+                return Self::by_units(text).map_err(|error| match error {
                     // no column has a unit of time: report the missing standard column
-                    Err(RecordError::Measured(MeasuredError::NoColumn {
-                        quantity: Quantity::Time, ..
-                    })) => Err(problem.into()),
-                    read => read,
-                };
+                    MeasuredError::NoColumn { quantity: Quantity::Time, .. } => problem,
+                    other => other.to_string(),
+                });
             }
-            columns => columns?,
+            columns => columns.map_err(|problem| problem.to_string())?,
         };
         if columns.rows.len() < 2 {
-            return Err(RecordError::TooFew(columns.rows.len()));
+            return Err(too_few(columns.rows.len()));
         }
         for (i, pair) in columns.rows.windows(2).enumerate() {
             let (before, time) = (pair[0][0], pair[1][0]);
             if time <= before {
-                return Err(RecordError::NotAfter { line: columns.lines[i + 1], time, before });
+                let line = columns.lines[i + 1];
+                return Err(format!(
+                    "line {line}: {TIME} = {time:e} does not come after {before:e}; times must increase from \
+                     row to row"
+                ));
             }
         }
         let (times, accelerations) = columns.rows.iter().map(|row| (row[0], row[1])).unzip();
         Ok(Self::new(times, accelerations))
     }
 
-    fn by_units(text: &str) -> Result<Self, RecordError> {
+    fn by_units(text: &str) -> Result<Self, MeasuredError> {
         let requests = [Quantity::Time, Quantity::Acceleration]
             .map(|quantity| Ask { quantities: vec![quantity], options: None });
         let [times, accelerations] = Measured::parse(text, &requests)?.channels.map(|channel| channel.values);
@@ -183,17 +161,11 @@ impl Record {
 pub(super) fn attach(excitation: &mut Excitation, path: &str, files: &Files) -> Vec<Fault> {
     match excitation {
         Excitation::Recorded { path: file, record } => {
-            let read = files.read(file).map_err(|e| e.to_string());
-            match read.and_then(|text| Record::parse(&text).map_err(|e| e.to_string())) {
-                Ok(found) => {
-                    *record = Some(Arc::new(found));
-                    Vec::new()
-                }
-                Err(problem) => {
-                    *record = None;
-                    vec![Fault { field: format!("{path}.path"), value: file.clone(), problem }]
-                }
-            }
+            let read = read(files, file).map(Arc::new);
+            let fault =
+                read.as_ref().err().map(|problem| Fault::new(format!("{path}.path"), &*file, problem));
+            *record = read.ok();
+            fault.into_iter().collect()
         }
         Excitation::Sum(terms) => terms
             .iter_mut()

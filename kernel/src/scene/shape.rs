@@ -1,7 +1,7 @@
 //! Limits on the dimensions of flexures.
 //!
-//! Every limit is linear in its fields, as the check of a sweep's corners requires, and none is an absolute
-//! size, so that a scaled geometry stays valid.
+//! Every limit is linear in its fields, because a sweep is checked only at its corners. No limit is an
+//! absolute size, so that a scaled geometry stays valid.
 
 use super::check::{Checked, has_fault};
 use super::mechanism::{FlexureGroup, Mechanism};
@@ -31,44 +31,37 @@ pub(super) fn check(at: &str, mechanism: &Mechanism, checked: &mut Checked) {
     else {
         return;
     };
-    let bad = |checked: &Checked, field: &str| has_fault(&format!("{at}.{field}"), checked);
-    let no_length = |checked: &Checked, group: &str| bad(checked, &format!("{group}.length_mm"));
-    if no_length(checked, "buckling") {
+    let no_length = |group: &str, checked: &Checked| has_fault(&format!("{at}.{group}.length_mm"), checked);
+    let at_most = |name: &str, value: f64, limit: f64, problem: String, checked: &mut Checked| {
+        let field = format!("{at}.{name}");
+        if value > limit * ROUNDING && !has_fault(&field, checked) {
+            checked.fault(field, number_text(value), problem);
+        }
+    };
+    if no_length("buckling", checked) {
         return;
     }
     let limit = buckling.length_mm / LENGTH_OVER_BOW;
-    if *initial_bow_mm > limit * ROUNDING && !bad(checked, "initial_bow_mm") {
-        let problem = format!(
-            "must be 0 to {}, a twentieth of {at}.buckling.length_mm = {}; a stronger bow is an arch \
-             and not a flexure",
-            number_text(limit),
-            number_text(buckling.length_mm)
-        );
-        checked.fault(format!("{at}.initial_bow_mm"), number_text(*initial_bow_mm), problem);
-    }
-    if no_length(checked, "parallel") {
+    let problem = format!(
+        "must be 0 to {}, a twentieth of {at}.buckling.length_mm = {}; a stronger bow is an arch and not a \
+         flexure",
+        number_text(limit),
+        number_text(buckling.length_mm)
+    );
+    at_most("initial_bow_mm", *initial_bow_mm, limit, problem, checked);
+    if no_length("parallel", checked) {
         return;
     }
     let (shorter, field) = shorter(at, parallel, buckling);
+    let named = format!("the shorter flexure ({field} = {})", number_text(shorter));
     let limit = shorter / LENGTH_OVER_PRELOAD;
-    if *preload_mm > limit * ROUNDING && !bad(checked, "preload_mm") {
-        let problem = format!(
-            "must be 0 to {} mm, half of the shorter flexure ({field} = {}); lower it or lengthen the \
-             flexure",
-            number_text(limit),
-            number_text(shorter)
-        );
-        checked.fault(format!("{at}.preload_mm"), number_text(*preload_mm), problem);
-    }
+    let shown = number_text(limit);
+    let problem = format!("must be 0 to {shown} mm, half of {named}; lower it or lengthen the flexure");
+    at_most("preload_mm", *preload_mm, limit, problem, checked);
     let limit = shorter / LENGTH_OVER_THICKNESS;
-    if *thickness_mm > limit * ROUNDING && !bad(checked, "thickness_mm") {
-        let problem = format!(
-            "must be at most {} mm, a tenth of the shorter flexure ({field} = {}); a thicker one is no beam",
-            number_text(limit),
-            number_text(shorter)
-        );
-        checked.fault(format!("{at}.thickness_mm"), number_text(*thickness_mm), problem);
-    }
+    let shown = number_text(limit);
+    let problem = format!("must be at most {shown} mm, a tenth of {named}; a thicker one is no beam");
+    at_most("thickness_mm", *thickness_mm, limit, problem, checked);
 }
 
 /// Warnings about valid but unlikely dimensions, and about preloads that may not be solvable. The dimensions

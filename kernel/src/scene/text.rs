@@ -9,9 +9,8 @@ use serde::de::DeserializeOwned;
 
 use super::data::*;
 use super::error::clip;
-use super::locate::{Place, Places};
 use super::mechanism::Mechanism;
-use super::scanner::Scanner;
+use super::scanner::{Place, Places, Scanner};
 use super::stops::Stops;
 use super::transducer::Transducer;
 
@@ -25,7 +24,6 @@ pub(super) fn options() -> ron::Options {
     ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME).with_recursion_limit(MAX_DEPTH)
 }
 
-/// Error of parsing a text.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ParseError {
     pub place: Place,
@@ -35,6 +33,11 @@ pub(super) struct ParseError {
 }
 
 impl ParseError {
+    /// An error of the whole text.
+    pub(super) fn at_start(problem: impl Into<String>) -> Self {
+        Self { place: Place { line: 1, column: 1 }, problem: problem.into(), unknown: None }
+    }
+
     /// The text with the unknown field replaced by blanks, so that further errors can be found
     /// at their places.
     pub(super) fn without_unknown(&self, text: &str) -> Option<String> {
@@ -52,26 +55,23 @@ impl ParseError {
 
 /// Parses a scene without checking ranges.
 pub(super) fn parse(text: &str) -> Result<Scene, ParseError> {
-    let start = Place { line: 1, column: 1 };
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     if text.trim().is_empty() {
-        let problem = "the file is empty; a scene begins with `(title: \"..\", mass_g: 15.2, ..`".to_owned();
-        return Err(ParseError { place: start, problem, unknown: None });
+        let problem = "the file is empty; a scene begins with `(title: \"..\", mass_g: 15.2, ..`";
+        return Err(ParseError::at_start(problem));
     }
     if is_json(text) {
         let problem = "this is JSON; a scene begins with `(`. The manifest of a sweep is taken by every \
-                       command that takes a scene"
-            .to_owned();
-        return Err(ParseError { place: start, problem, unknown: None });
+                       command that takes a scene";
+        return Err(ParseError::at_start(problem));
     }
     read(text)
 }
 
-/// Parses a text of limited size.
 pub(super) fn read<T: DeserializeOwned>(text: &str) -> Result<T, ParseError> {
     if text.len() > MAX_SCENE_BYTES {
         let problem = format!("{} bytes are more than are read ({MAX_SCENE_BYTES})", text.len());
-        return Err(ParseError { place: Place { line: 1, column: 1 }, problem, unknown: None });
+        return Err(ParseError::at_start(problem));
     }
     let read = options().from_str(text).map_err(|error| parse_error(text, &error))?;
     overflow(text).map_or(Ok(read), Err)
@@ -83,10 +83,7 @@ pub(super) const TOO_LARGE: &str = "is beyond the largest number, 1.8e308";
 /// The error for a decimal number that overflows a double; `None` if the text has none.
 pub(super) fn overflow(text: &str) -> Option<ParseError> {
     let bytes = Scanner::over(text).overflow?;
-    let before = &text[..bytes.start];
-    let line = 1 + before.matches('\n').count();
-    let column = 1 + before.rsplit('\n').next().unwrap_or_default().chars().count();
-    let place = Place { line, column };
+    let place = Place::of_byte(text, bytes.start);
     let field = Places::of(text).last_before(place);
     let field = field.map_or(String::new(), |field| format!("{}: ", clip(&field)));
     let number = clip(&text[bytes]);
@@ -95,7 +92,6 @@ pub(super) fn overflow(text: &str) -> Option<ParseError> {
     Some(ParseError { place, problem, unknown: None })
 }
 
-/// Converts an error of the RON parser.
 pub(super) fn parse_error(text: &str, error: &SpannedError) -> ParseError {
     let trailing = error.code == Ron::TrailingCharacters;
     let place = Place { line: error.span.start.line, column: error.span.start.col };
@@ -127,7 +123,7 @@ pub(super) fn parse_error(text: &str, error: &SpannedError) -> ParseError {
     ParseError { unknown, place, problem }
 }
 
-/// For a named number at `place` in a choice whose number has no name, the correct text: `Ratio(0.1)` for
+/// The correct text if the number at `place` has a name and must not have one, such as `Ratio(0.1)` for
 /// `Ratio(xi: 0.1)`.
 fn unnamed(text: &str, place: Place) -> Option<String> {
     let (before, named) = split_at(text, place);
@@ -146,7 +142,7 @@ fn split_at(text: &str, place: Place) -> (&str, &str) {
     line.split_at(at)
 }
 
-/// Whether there is a word behind a number at a place that is not the name of a field.
+/// Whether the word at a place follows a number and is not the name of a field.
 fn is_unit(text: &str, place: Place) -> bool {
     let (before, word) = split_at(text, place);
     let after = word.trim_start_matches(|c: char| c.is_alphanumeric() || c == '_');
@@ -162,22 +158,14 @@ pub(super) fn is_json(text: &str) -> bool {
 
 /// The place of the token at or after `place`: the parser's cursor may be on the blanks before it.
 fn token_at(text: &str, place: Place, further_lines: bool) -> Place {
-    let lines = text.lines().enumerate().skip(place.line - 1);
-    let mut column = place.column;
-    for (index, line) in lines {
-        let blank = line.chars().skip(column - 1).take_while(|c| c.is_whitespace()).count();
-        if column - 1 + blank < line.chars().count() {
-            return Place { line: index + 1, column: column + blank };
-        }
-        if !further_lines {
-            break;
-        }
-        column = 1;
+    let begin = place.byte(text);
+    let blank = text[begin..].find(|c: char| !c.is_whitespace());
+    match blank.map(|blank| begin + blank) {
+        Some(at) if further_lines || !text[begin..at].contains('\n') => Place::of_byte(text, at),
+        _ => place,
     }
-    place
 }
 
-/// The choices of a field.
 fn choices(field: &str) -> Option<&'static [&'static str]> {
     fn of<T: DeserializeOwned>() -> Option<&'static [&'static str]> {
         match options().from_str::<T>("Unknown").err()?.code {

@@ -47,11 +47,7 @@ impl Timing {
 
     /// The first of the longest gaps: the last time before it, and its length.
     pub fn longest_gap(&self) -> Option<(f64, f64)> {
-        let longer = |best: Option<(f64, f64)>, gap: &(f64, f64)| match best {
-            Some(best) if best.1 >= gap.1 => Some(best),
-            _ => Some(*gap),
-        };
-        self.gaps.iter().fold(None, longer)
+        self.gaps.iter().copied().rev().max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// The sampling in one line.

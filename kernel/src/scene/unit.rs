@@ -19,26 +19,30 @@ pub enum Quantity {
 }
 
 impl Quantity {
+    /// Its name, the ending of a column's name for its SI unit, and the beginning of one.
+    fn words(self) -> [&'static str; 3] {
+        match self {
+            Self::Time => ["time", "_s", "t"],
+            Self::Displacement => ["displacement", "_m", "x"],
+            Self::Velocity => ["velocity", "_m_per_s", "v"],
+            Self::Acceleration => ["acceleration", "_m_per_s2", "accel"],
+            Self::Force => ["force", "_n", "force"],
+        }
+    }
+
     /// Name of the quantity.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Time => "time",
-            Self::Displacement => "displacement",
-            Self::Velocity => "velocity",
-            Self::Acceleration => "acceleration",
-            Self::Force => "force",
-        }
+        self.words()[0]
     }
 
     /// The ending of a column's name for its SI unit.
     pub fn ending(self) -> &'static str {
-        match self {
-            Self::Time => "_s",
-            Self::Displacement => "_m",
-            Self::Velocity => "_m_per_s",
-            Self::Acceleration => "_m_per_s2",
-            Self::Force => "_n",
-        }
+        self.words()[1]
+    }
+
+    /// An example of a column's name for the quantity in its SI unit.
+    pub(super) fn example(self) -> String {
+        self.words()[2].to_owned() + self.ending()
     }
 
     /// The known units of the quantity, separated by commas.

@@ -16,7 +16,6 @@ use super::stops::Stops;
 use super::text;
 use super::transducer::Transducer;
 
-/// One part of a path during the traversal.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Segment {
     Name(&'static str),
@@ -79,14 +78,12 @@ impl<T: DeserializeOwned + Serialize> Assign for T {
     }
 }
 
-/// A field found by the traversal.
 pub(super) enum Field<'a> {
     Number(&'static FieldInfo, Slot<'a>),
     Text(&'a mut String),
     Value(&'a mut dyn Assign),
 }
 
-/// Receiver of the fields of a traversal.
 pub(super) trait Visitor {
     /// Visits a field; returns whether to visit the fields inside it. If so and `inner` is set, `leave` is
     /// called after them.
@@ -94,7 +91,6 @@ pub(super) trait Visitor {
     fn leave(&mut self);
 }
 
-/// A scene or a part of it whose fields can be visited.
 pub(super) trait Fields {
     /// Visits every field, in the order in which a scene is written.
     fn visit_fields<V: Visitor>(&mut self, v: &mut V);
@@ -121,7 +117,7 @@ fn inside<V: Visitor>(v: &mut V, _: Segment, value: &mut impl Fields) {
     value.visit_fields(v);
 }
 
-/// Visits nothing: the field is no part of the text of a scene.
+/// Visits nothing: the field is not written in the text of a scene.
 fn hidden<T>(_: &mut impl Visitor, _: Segment, _: &mut T) {}
 
 /// A number, an optional number or a list of numbers.
@@ -129,23 +125,17 @@ trait Number {
     fn visit(&mut self, segment: Segment, info: &'static FieldInfo, v: &mut impl Visitor);
 }
 
-impl Number for f64 {
-    fn visit(&mut self, segment: Segment, info: &'static FieldInfo, v: &mut impl Visitor) {
-        v.field(segment, false, Field::Number(info, Slot::Required(self)));
-    }
+macro_rules! numbers {
+    ($($type:ty: $slot:ident),*) => {
+        $(impl Number for $type {
+            fn visit(&mut self, segment: Segment, info: &'static FieldInfo, v: &mut impl Visitor) {
+                v.field(segment, false, Field::Number(info, Slot::$slot(self)));
+            }
+        })*
+    };
 }
 
-impl Number for Option<f64> {
-    fn visit(&mut self, segment: Segment, info: &'static FieldInfo, v: &mut impl Visitor) {
-        v.field(segment, false, Field::Number(info, Slot::Optional(self)));
-    }
-}
-
-impl Number for u64 {
-    fn visit(&mut self, segment: Segment, info: &'static FieldInfo, v: &mut impl Visitor) {
-        v.field(segment, false, Field::Number(info, Slot::Whole(self)));
-    }
-}
+numbers!(f64: Required, Option<f64>: Optional, u64: Whole);
 
 impl Number for Vec<f64> {
     fn visit(&mut self, segment: Segment, info: &'static FieldInfo, v: &mut impl Visitor) {

@@ -1,11 +1,9 @@
 //! SHA-256 checksums in the format of `sha256sum`.
 
-use std::fmt;
-
 use sha2::{Digest, Sha256};
 
 /// A checksum to which bytes are added.
-#[derive(Clone, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Checksum(Sha256);
 
 impl Checksum {
@@ -17,12 +15,6 @@ impl Checksum {
     /// The checksum of all bytes so far, in hexadecimal digits.
     pub fn text(&self) -> String {
         self.0.clone().finalize().iter().map(|byte| format!("{byte:02x}")).collect()
-    }
-}
-
-impl fmt::Debug for Checksum {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.text())
     }
 }
 

@@ -1,8 +1,8 @@
 //! Journal of a file that is written in blocks: its head and the checksum of each block.
 //!
 //! A line is a checksum of the rest of the line, a space, and JSON. The first line is the head that the file
-//! was begun with, and each further line is a block. A line that was being written during a power failure
-//! does not match its checksum; it is dropped if it is the last line.
+//! was begun with, and each further line is a block. A line that was not completely written, as after a power
+//! failure, does not match its checksum; it is dropped if it is the last one.
 
 use serde::{Deserialize, Serialize};
 
@@ -33,7 +33,6 @@ pub(super) struct Journal {
     pub damaged: bool,
 }
 
-/// Number of hexadecimal digits of a line's checksum.
 const DIGITS: usize = 16;
 
 /// The line for this JSON.

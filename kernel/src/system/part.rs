@@ -122,8 +122,8 @@ impl Opened {
         &self.paths.part
     }
 
-    /// Whether an earlier process left rows, or bytes of which the journal says nothing. A process that ended
-    /// before the first line was in its journal left none.
+    /// Whether an earlier process left rows, or bytes that the journal does not mention. A process that ended
+    /// before it wrote the first line of its journal left no rows.
     pub fn has_rows(&self) -> bool {
         let is_begun = self.journal.head.is_some() && !self.journal.damaged;
         self.exists && !(is_begun && self.journal.blocks.is_empty())

@@ -40,7 +40,8 @@ pub enum OpenError {
 pub struct Sink {
     name: String,
     kind: Kind,
-    identity: Identity,
+    /// Device and inode of the existing file; `None` for a device, which several outputs may share.
+    inode: Option<(u64, u64)>,
     buffer: Vec<u8>,
     closed: bool,
 }
@@ -52,14 +53,6 @@ enum Kind {
     Replace { part: NamedTempFile, target: PathBuf },
 }
 
-/// Identity of an output; two outputs must not have a part of it in common.
-#[derive(Debug, Clone, PartialEq, Eq)]
-struct Identity {
-    stdout: bool,
-    path: Option<PathBuf>,
-    inode: Option<(u64, u64)>,
-}
-
 /// Number of bytes collected before they are written.
 const BUFFER: usize = 1 << 16;
 
@@ -68,8 +61,7 @@ impl Sink {
     /// file is not changed until [`finish`](Self::finish).
     pub fn open(path: &Path) -> Result<Self, OpenError> {
         if is_stdout(path) {
-            let identity = Identity { stdout: true, path: None, inode: stdout_inode() };
-            return Ok(Self::new("standard output".into(), Kind::Stdout, identity));
+            return Ok(Self::new("standard output".into(), Kind::Stdout, stdout_inode()));
         }
         let refused = |problem| OpenError::Refused { path: path.to_owned(), problem };
         let name = path.display().to_string();
@@ -86,13 +78,12 @@ impl Sink {
         }
         let descriptor = is_descriptor(path);
         if let Some(existing) = existing.as_ref().filter(|existing| descriptor || !existing.is_file()) {
-            // With `3>file` the shell has truncated the file if it should be; append to its contents.
+            // The shell has truncated the file after `3>file` and not after `3>>file`; append in both cases.
             let mut open = fs::OpenOptions::new();
             let file = open.write(true).append(descriptor).open(path).map_err(refused)?;
-            // Any number of outputs may go to a device such as /dev/null, but not to one pipe or file.
-            let shared = is_device(existing);
-            let identity = Identity { stdout: false, path: None, inode: inode(existing).filter(|_| !shared) };
-            return Ok(Self::new(name, Kind::Direct(file), identity));
+            // Several outputs may go to one device such as /dev/null, but not to one pipe or file.
+            let inode = inode(existing).filter(|_| !is_device(existing));
+            return Ok(Self::new(name, Kind::Direct(file), inode));
         }
         let folder = match target.parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
@@ -101,25 +92,21 @@ impl Sink {
         let Some(file_name) = target.file_name().filter(|_| !path.as_os_str().is_empty()) else {
             return Err(OpenError::IsFolder(path.to_owned()));
         };
-        let Ok(whole_folder) = folder.canonicalize() else {
+        let Some(whole_folder) = folder.canonicalize().ok().filter(|folder| folder.is_dir()) else {
             return Err(OpenError::MissingFolder { path: path.to_owned(), folder });
         };
-        if !whole_folder.is_dir() {
-            return Err(OpenError::MissingFolder { path: path.to_owned(), folder });
-        }
         let target = whole_folder.join(file_name);
         if existing.is_some() {
-            // Fail for a write-protected file, which a rename would replace.
+            // A rename would replace even a write-protected file, so check that it can be written.
             fs::OpenOptions::new().write(true).open(&target).map_err(refused)?;
         }
         let part = create_part(&whole_folder, existing.as_ref()).map_err(refused)?;
-        let identity =
-            Identity { stdout: false, path: Some(target.clone()), inode: existing.as_ref().and_then(inode) };
-        Ok(Self::new(name, Kind::Replace { part, target }, identity))
+        let inode = existing.as_ref().and_then(inode);
+        Ok(Self::new(name, Kind::Replace { part, target }, inode))
     }
 
-    fn new(name: String, kind: Kind, identity: Identity) -> Self {
-        Self { name, kind, identity, buffer: Vec::with_capacity(BUFFER), closed: false }
+    fn new(name: String, kind: Kind, inode: Option<(u64, u64)>) -> Self {
+        Self { name, kind, inode, buffer: Vec::with_capacity(BUFFER), closed: false }
     }
 
     /// The path as requested, or "standard output".
@@ -201,7 +188,6 @@ pub fn is_regular(path: &Path) -> bool {
     !is_stdout(path) && existing.map_or(true, |existing| existing.is_file() && !is_descriptor(path))
 }
 
-/// Whether a path is one of the system's names of standard output.
 fn is_stdout(path: &Path) -> bool {
     ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|name| path == Path::new(name))
 }
@@ -213,10 +199,12 @@ fn is_descriptor(path: &Path) -> bool {
 
 /// Whether two outputs would overwrite each other: both are standard output, or two names of one file.
 pub fn same_target(a: &Sink, b: &Sink) -> bool {
-    let (a, b) = (&a.identity, &b.identity);
-    (a.stdout && b.stdout)
-        || (a.path.is_some() && a.path == b.path)
-        || (a.inode.is_some() && a.inode == b.inode)
+    let is_same_name = match (&a.kind, &b.kind) {
+        (Kind::Stdout, Kind::Stdout) => true,
+        (Kind::Replace { target: a, .. }, Kind::Replace { target: b, .. }) => a == b,
+        _ => false,
+    };
+    is_same_name || (a.inode.is_some() && a.inode == b.inode)
 }
 
 /// The end of a chain of symbolic links, whether it exists or not.
@@ -305,9 +293,7 @@ mod tests {
         drop(sink);
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 
-        let mut sink = Sink::open(&path).unwrap();
-        sink.put("b\n").unwrap();
-        sink.finish().unwrap();
+        write_file(&path, b"b\n").unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "b\n");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }
@@ -327,9 +313,7 @@ mod tests {
         fs::set_permissions(&path, fs::Permissions::from_mode(0o640)).unwrap();
         let link = folder.path().join("link.csv");
         symlink("new.csv", &link).unwrap();
-        let mut sink = Sink::open(&link).unwrap();
-        sink.put("through").unwrap();
-        sink.finish().unwrap();
+        write_file(&link, b"through").unwrap();
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
         assert_eq!(fs::read_to_string(&path).unwrap(), "through");
         assert_eq!(mode(&path) & 0o777, 0o640);

@@ -80,10 +80,10 @@ impl Pool {
     /// Each thread calls `work` once. The first argument of `work` gives the next number from 0 to `count`
     /// (exclusive), as from a [`Queue`]; the second one takes the results. Each number has `each` results,
     /// whose indices continue from one number to the next; the results of one number must come in order.
-    /// `leave` gets several results at a time, and all results of a number together if there are at most
-    /// 256. At most `ahead` numbers are begun beyond the last one whose results have all been
-    /// passed on. The function returns early if `leave` returns false, or if a `work` returns while numbers
-    /// remain; then the results that are still complete and in order are passed on.
+    /// `leave` gets several results at a time, and all results of a number together if there are at most 256.
+    /// At most `ahead` numbers are begun beyond the last one whose results have all been passed on. The
+    /// function returns early if `leave` returns false. It also does so if a `work` returns while numbers
+    /// remain, after it has passed on the results that are complete and in order.
     pub fn in_order<R: Send>(
         &self,
         count: usize,
@@ -203,12 +203,12 @@ pub struct UnderWay {
     /// Number of runs in progress.
     pub runs: usize,
     /// Whether these runs fill the lanes of the thread. A [`Queue`] then gives it only numbers near the end,
-    /// 16 for each thread. Such runs start early, alternate with the others, and all end at about the same
-    /// time; if they started one after another, more and more lanes would be empty at the end.
+    /// 16 for each thread. These runs start early and alternate with the others, so that all end at about the
+    /// same time. Runs that start one after another would leave more and more lanes empty at the end.
     pub full: bool,
 }
 
-/// Count of last numbers, per thread, that threads with full lanes may take.
+/// Threads with full lanes may take only the last numbers of a queue: this many for each thread.
 const LAST_PER_THREAD: usize = 16;
 
 /// Numbers from 0 that several threads take, each number once.
@@ -273,7 +273,6 @@ impl Queue {
         self.changed.notify_all();
     }
 
-    /// Makes the queue return no more numbers.
     fn stop(&self) {
         self.lock().stopped = true;
         self.changed.notify_all();
@@ -292,7 +291,7 @@ enum Message<R> {
     Ended,
 }
 
-/// Sends [`Message::Ended`] when dropped, also by a panic.
+/// Sends [`Message::Ended`] when it is dropped, which a panic does too.
 struct EndNotice<R>(Sender<Message<R>>);
 
 impl<R> Drop for EndNotice<R> {
@@ -301,7 +300,6 @@ impl<R> Drop for EndNotice<R> {
     }
 }
 
-/// Stops a queue when dropped.
 struct StopOnDrop<'a>(&'a Queue);
 
 impl Drop for StopOnDrop<'_> {

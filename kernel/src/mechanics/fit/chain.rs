@@ -34,7 +34,8 @@ impl Samples<'_> {
     /// The slope of a least-squares piece is least accurate at its end. If keeping that slope makes the next
     /// piece less than half as long as a free one, both pieces are tried with a better slope: that of the
     /// free piece, that of the neighbouring samples, or a mean. If no slope works for both, the original
-    /// slope is kept, even if that takes more pieces: data that are merely coarse or rough have no corners.
+    /// slope is kept, even if that takes more pieces, because coarse or rough data do not have corners for
+    /// that reason alone.
     fn continued(&self, links: &mut [Link], from: usize, limit: usize, degree: usize) -> Option<Link> {
         let before = links.last_mut()?;
         let slope = before.piece.stiffness(self.x[from]);
@@ -108,7 +109,6 @@ struct Link {
     piece: Piece,
 }
 
-/// Condition at the left end of a piece.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Left {
     /// Any slope.

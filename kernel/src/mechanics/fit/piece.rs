@@ -48,9 +48,9 @@ impl Samples<'_> {
             let local = combine(&base, &shape, q, odd);
             let piece = self.in_metres(&local, origin, half, &span, left);
             // The picked samples are checked first, since most trials fail there. A single interval is
-            // accepted without a check between its ends, so that a chain exists. Its ends are still checked:
-            // on an interval a million times longer than the previous one a prescribed slope can make the
-            // rounding error at the ends too large.
+            // accepted without a check between its ends, so that there is always a chain. Its ends are still
+            // checked: on an interval a million times longer than the previous one a prescribed slope can
+            // make the rounding error at the ends too large.
             let good = inner.clone().step_by(stride).all(|i| meets(&piece, i))
                 && [span.start, span.end].iter().all(|i| meets(&piece, *i))
                 && (stride == 1 || inner.clone().all(|i| meets(&piece, i)))
@@ -99,7 +99,7 @@ impl Samples<'_> {
             coefficients.push(c / unit);
             unit *= half;
         }
-        let mut piece = Piece { origin, coefficients, potential_at_origin: 0.0 };
+        let mut piece = Piece::new(origin, coefficients);
         let (a, b) = (self.x[span.start], self.x[span.end]);
         for _ in 0..2 {
             let at_b = self.force[span.end] - piece.force(b);

@@ -5,6 +5,7 @@
 //! middle (the sway between the shuttle and the frame) and an odd part (the bump). The two are not coupled in
 //! the linear terms, and every integral is taken over one half.
 
+use super::beam::dot;
 use crate::numeric::even_half;
 
 /// The functions sampled at quadrature points; xi runs over \[-1, 1] along a flexure.
@@ -58,8 +59,7 @@ impl Basis {
     pub fn shortening(&self, odd: &[f64]) -> f64 {
         let rows = self.odd.chunks_exact(self.modes).zip(&self.weights);
         rows.map(|(row, weight)| {
-            let angle: f64 = row.iter().zip(odd).map(|(f, a)| f * a).sum();
-            let sine = (0.5 * angle).sin();
+            let sine = (0.5 * dot(row, odd)).sin();
             2.0 * weight * sine * sine
         })
         .sum()
@@ -68,23 +68,23 @@ impl Basis {
 
 /// The values at `xi` of as many functions as `row` holds: even, odd, even, ...
 pub(super) fn functions(xi: f64, row: &mut [f64]) {
-    // The integral of P_k from -1 is (P_{k+1} - P_{k-1})/(2k + 1), k = 1, 2, ...
-    let (mut before, mut now) = (1.0, xi);
-    for (i, value) in row.iter_mut().enumerate() {
-        let k = (i + 1) as f64;
-        let next = ((2.0 * k + 1.0) * xi * now - k * before) / (k + 1.0);
-        *value = (next - before) / (2.0 * (2.0 * k + 1.0)).sqrt();
-        (before, now) = (now, next);
-    }
+    // the integral of P_k from -1 is (P_{k+1} - P_{k-1})/(2k + 1)
+    for_each_legendre(xi, row, |twice, [before, _, next]| (next - before) / (2.0 * twice).sqrt());
 }
 
 /// The derivatives with respect to xi of the [`functions`]: orthonormal over \[-1, 1].
 pub(super) fn slopes(xi: f64, row: &mut [f64]) {
+    for_each_legendre(xi, row, |twice, [_, now, _]| (0.5 * twice).sqrt() * now);
+}
+
+/// Sets each element of `row` from 2k + 1 and the Legendre polynomials of degrees k - 1 to k + 1 at `xi`,
+/// where k = 1, 2, ...
+fn for_each_legendre(xi: f64, row: &mut [f64], value: impl Fn(f64, [f64; 3]) -> f64) {
     let (mut before, mut now) = (1.0, xi);
-    for (i, value) in row.iter_mut().enumerate() {
+    for (i, element) in row.iter_mut().enumerate() {
         let k = (i + 1) as f64;
-        *value = (0.5 * (2.0 * k + 1.0)).sqrt() * now;
         let next = ((2.0 * k + 1.0) * xi * now - k * before) / (k + 1.0);
+        *element = value(2.0 * k + 1.0, [before, now, next]);
         (before, now) = (now, next);
     }
 }

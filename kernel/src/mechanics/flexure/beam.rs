@@ -127,6 +127,11 @@ fn odd_functions(q: f64, psi: f64) -> (f64, f64, f64) {
 }
 
 impl Beam {
+    /// Shortening of the straight group of equal flexures under unit compression of the group.
+    pub fn compliance(&self) -> f64 {
+        self.length * self.stretch / self.count
+    }
+
     /// Evaluates the equations. Method: Gauss-Legendre quadrature of the products over one half.
     pub fn terms(&self, basis: &Basis, state: &Rotation) -> Terms {
         let n = basis.modes;
@@ -168,8 +173,8 @@ impl Beam {
             let even = &basis.even[point * n..(point + 1) * n];
             let odd = &basis.odd[point * n..(point + 1) * n];
             let weight = weight * self.length;
-            let angle: f64 = dot(even, state.even);
-            let psi: f64 = if odd_modes > 0 { dot(odd, state.odd) } else { 0.0 };
+            let angle = dot(even, state.even);
+            let psi = if odd_modes > 0 { dot(odd, state.odd) } else { 0.0 };
             let (sine, cosine) = angle.sin_cos();
             let (c, s, s_by_q) = odd_functions(q, psi);
             let (cosine_2, sine_2) = (cosine * cosine - sine * sine, 2.0 * sine * cosine);
@@ -227,11 +232,10 @@ impl Beam {
     }
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Adds `factor` times `values`.
 fn add(sum: &mut [f64], factor: f64, values: &[f64]) {
     for (s, value) in sum.iter_mut().zip(values) {
         *s += factor * value;

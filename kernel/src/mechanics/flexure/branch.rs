@@ -8,18 +8,15 @@
 //! branch inwards is never followed.
 
 use super::beam::Shape;
-use super::equilibrium::Prescribed;
+use super::equilibrium::{Prescribed, stays_straight};
 use super::point::Point;
 use super::solver::{Failure, Solver};
-use super::stability::stays_straight;
 
-/// Number of halvings after which a continuation fails.
 const MAX_HALVINGS: u32 = 40;
 
-/// Largest number of intermediate states on the way to a state that an interpolated guess does not lead to.
+/// Largest number of intermediate states if an interpolated guess does not lead to the wanted state.
 const MAX_APPROACH_STEPS: u32 = 200;
 
-/// Number of states that a guess is interpolated from.
 const GUESS_POINTS: usize = 6;
 
 /// End of the curve relative to the position of the last kink.
@@ -35,7 +32,7 @@ const BEYOND_WELL: f64 = 1.1;
 /// Relative distance below which two kinks are one: equal groups lose their bumps together.
 const SAME_KINK: f64 = 1e-11;
 
-/// Largest number of segments, more than two groups of flexures can have; a longer chain repeats itself.
+/// Largest number of segments. Two groups of flexures have fewer; a longer chain repeats itself.
 const MAX_SEGMENTS: usize = 8;
 
 /// A range of x over which the same flexures have a bump.
@@ -48,6 +45,10 @@ pub(super) struct Segment {
 }
 
 impl Segment {
+    pub fn last(&self) -> &Point {
+        &self.points[self.points.len() - 1]
+    }
+
     /// A guess for the state at `x` from the nearest ones.
     pub fn guess(&self, x: f64) -> Point {
         let mut nearest: Vec<&Point> = self.points.iter().collect();
@@ -123,7 +124,7 @@ fn chain(solver: &mut Solver, mut start: Point, min_end: f64) -> Result<Vec<Segm
         };
         while next.is_none() {
             let Some(farther) = beyond_well(solver, &mut segment)? else { break };
-            let last = segment.points[segment.points.len() - 1].clone();
+            let last = segment.last().clone();
             let step = 0.5 * (farther - last.x);
             let (rest, after) = march(solver, last, step, Some(farther))?;
             segment.points.extend(rest.points.into_iter().skip(1));
@@ -283,7 +284,7 @@ fn march(
     let mut segment = Segment { from, to: from, points: vec![start] };
     let mut halvings = 0;
     loop {
-        let last = segment.points[segment.points.len() - 1].x;
+        let last = segment.last().x;
         let x = match end {
             Some(end) if last + 1.01 * step >= end => end,
             _ => last + step,
@@ -291,11 +292,7 @@ fn march(
         if x > max_x {
             return Err(Failure::Unstable { x });
         }
-        let guess = if halvings % 2 == 0 {
-            segment.guess(x)
-        } else {
-            segment.points[segment.points.len() - 1].clone()
-        };
+        let guess = if halvings % 2 == 0 { segment.guess(x) } else { segment.last().clone() };
         match solver.solve(&guess, Prescribed::Displacement(x)) {
             Err(failure) => {
                 halvings += 1;
@@ -341,9 +338,9 @@ fn pitchfork(
     beyond: &Point,
     changed: [bool; 2],
 ) -> Result<(Segment, Option<Point>), Failure> {
-    let last = segment.points[segment.points.len() - 1].clone();
+    let last = segment.last().clone();
     let mut first: Option<(usize, Point)> = None;
-    let mut kinks = [f64::NAN; 2];
+    let mut kinks = [None; 2];
     let mut failure = Failure::Unstable { x: beyond.x };
     for g in (0..2).filter(|g| changed[*g]) {
         let vanishes = beyond.shapes[g] == Shape::Bump;
@@ -361,7 +358,7 @@ fn pitchfork(
         let guess = solver.reshaped(&extended.guess(x), shapes);
         match solver.solve(&guess, Prescribed::BumpVanishes(g)) {
             Ok(kink) => {
-                kinks[g] = kink.x;
+                kinks[g] = Some(kink.x);
                 let within = kink.x >= segment.from && kink.x <= beyond.x;
                 if within && first.as_ref().is_none_or(|(_, other)| kink.x < other.x) {
                     first = Some((g, kink));
@@ -374,8 +371,8 @@ fn pitchfork(
     // the state at the kink on either side; both have the same force and position
     let mut shapes = kink.shapes;
     shapes[g] = Shape::Straight;
-    let both = beyond.shapes == [Shape::Bump; 2] && (kinks[0] - kinks[1]).abs() <= SAME_KINK * kink.x;
-    if both {
+    let is_same = |(a, b): (f64, f64)| (a - b).abs() <= SAME_KINK * kink.x;
+    if beyond.shapes == [Shape::Bump; 2] && kinks[0].zip(kinks[1]).is_some_and(is_same) {
         shapes = [Shape::Straight; 2];
     }
     let straight = solver.reshaped(&kink, shapes);

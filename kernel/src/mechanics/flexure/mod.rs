@@ -9,7 +9,6 @@
 //! equations of all beams together (`equilibrium`), the stable branch with its kinks (`branch`), and a
 //! piecewise polynomial through a few dozen states (`pieces`).
 
-mod accuracy;
 mod basis;
 mod beam;
 mod branch;
@@ -18,16 +17,14 @@ mod pieces;
 mod point;
 mod shape;
 mod solver;
-mod stability;
 
 use std::sync::atomic::AtomicBool;
 
-pub use accuracy::Accuracy;
-use accuracy::measure;
 use beam::{Beam, Shape};
 use branch::Segment;
 use equilibrium::Prescribed;
-use pieces::{Scale, ScaledPiece};
+pub use pieces::Accuracy;
+use pieces::{Scale, ScaledPiece, measure};
 use point::Point;
 use shape::Deflected;
 use solver::{Failure, Solver};
@@ -79,14 +76,6 @@ pub struct Geometry {
     pub buckling: Group,
 }
 
-impl Accuracy {
-    /// Whether a state needed the largest number of functions: its flexures are so thin that their bending is
-    /// not resolved.
-    pub fn is_at_limit(&self) -> bool {
-        self.modes >= solver::MAX_MODES
-    }
-}
-
 /// Reason why no curve could be computed; x in m.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum FlexureError {
@@ -130,7 +119,6 @@ pub enum FlexureError {
     },
 }
 
-/// Advice after a failed solve.
 fn remedy(is_preloaded: bool) -> &'static str {
     if is_preloaded { "try a smaller preload or other proportions" } else { "try other proportions" }
 }
@@ -338,24 +326,16 @@ fn scaled<'a>(geometry: &Geometry, tail: f64, cancel: Option<&'a AtomicBool>) ->
 
 /// The whole curve in SI units from the scaled pieces of its right half.
 fn curve(scaled_pieces: &[ScaledPiece], units: Units) -> ForceCurve {
-    let piece = |scaled_piece: &ScaledPiece| {
+    let in_metres = |ScaledPiece { piece, .. }: &ScaledPiece| {
         let mut power = 1.0;
-        let coefficients = scaled_piece.coefficients.iter().map(|c| {
+        let coefficients = piece.coefficients.iter().map(|c| {
             let scaled = c * units.force / power;
             power *= units.length;
             scaled
         });
-        Piece {
-            origin: scaled_piece.origin * units.length,
-            coefficients: coefficients.collect(),
-            potential_at_origin: 0.0,
-        }
+        Piece::new(piece.origin * units.length, coefficients.collect())
     };
-    let right: Vec<Piece> = scaled_pieces.iter().map(piece).collect();
+    let right: Vec<Piece> = scaled_pieces.iter().map(in_metres).collect();
     let ends: Vec<f64> = scaled_pieces.iter().map(|s| s.to * units.length).collect();
-    let (breaks, end) = (&ends[..ends.len() - 1], ends[ends.len() - 1]);
-    let left = right.iter().skip(1).rev().map(Piece::mirrored);
-    let pieces: Vec<Piece> = left.chain(right.iter().cloned()).collect();
-    let all: Vec<f64> = breaks.iter().rev().map(|b| -b).chain(breaks.iter().copied()).collect();
-    ForceCurve::from_pieces(pieces, all, (-end, end), true, None)
+    ForceCurve::odd(right, &ends[..ends.len() - 1], ends[ends.len() - 1])
 }

@@ -9,9 +9,11 @@ use std::f64::consts::PI;
 
 use nalgebra::{DMatrix, DVector};
 
+use super::Units;
 use super::branch::Segment;
 use super::point::Point;
-use super::solver::{Failure, Solver};
+use super::solver::{Failure, MAX_MODES, Solver};
+use crate::mechanics::{ForceCurve, Piece};
 
 /// Points of a piece; its degree is twice this less one.
 const POINTS: usize = 7;
@@ -53,24 +55,18 @@ const MIN_LENGTH: f64 = 1e-9;
 /// computed from it would be dominated by rounding.
 const STRAIGHT_LENGTH: f64 = 3e-8;
 
-/// A polynomial in x - origin on an interval of x >= 0, in scaled units.
+/// A polynomial on an interval of x >= 0, in scaled units.
 #[derive(Debug, Clone)]
 pub(super) struct ScaledPiece {
     pub to: f64,
-    pub origin: f64,
-    pub coefficients: Vec<f64>,
+    pub piece: Piece,
     /// The solved states that it was compared with.
     pub checks: Vec<Point>,
 }
 
 impl ScaledPiece {
-    fn force(&self, x: f64) -> f64 {
-        self.coefficients.iter().rev().fold(0.0, |sum, c| sum * (x - self.origin) + c)
-    }
-
-    fn stiffness(&self, x: f64) -> f64 {
-        let terms = self.coefficients.iter().enumerate().skip(1).rev();
-        terms.fold(0.0, |sum, (i, c)| sum * (x - self.origin) + i as f64 * c)
+    fn new(to: f64, origin: f64, coefficients: Vec<f64>) -> Self {
+        Self { to, piece: Piece::new(origin, coefficients), checks: Vec::new() }
     }
 }
 
@@ -96,9 +92,9 @@ impl Scale {
     }
 
     /// Error of a piece at a solved state, relative to what `tolerance` allows.
-    fn error(&self, scaled_piece: &ScaledPiece, point: &Point, tolerance: f64) -> f64 {
-        let force = (scaled_piece.force(point.x) - point.force).abs() / self.force.max(point.force.abs());
-        let slope = (scaled_piece.stiffness(point.x) - point.stiffness).abs() / self.stiffness;
+    fn error(&self, piece: &Piece, point: &Point, tolerance: f64) -> f64 {
+        let force = (piece.force(point.x) - point.force).abs() / self.force.max(point.force.abs());
+        let slope = (piece.stiffness(point.x) - point.stiffness).abs() / self.stiffness;
         let error = if point.x <= self.inside { force.max(slope / SLOPE_FACTOR) } else { force };
         error / tolerance
     }
@@ -138,9 +134,9 @@ pub(super) fn fit(
                 let point = segment.at(solver, at(*t));
                 solver.tail = tail;
                 let point = point?;
-                error = error.max(scale.error(&scaled_piece, &point, tolerance));
+                error = error.max(scale.error(&scaled_piece.piece, &point, tolerance));
                 scaled_piece.checks.push(point);
-                // far too large: further checks would not matter
+                // the piece is rejected in any case
                 if error > 1e3 {
                     break;
                 }
@@ -149,7 +145,7 @@ pub(super) fn fit(
             let change = (0.3 * CHECK_SHARE / error.max(1e-30)).powf(0.5 / POINTS as f64);
             if error <= CHECK_SHARE {
                 from = to;
-                size = (to - from).max(size) * change.clamp(0.5, 2.5);
+                size *= change.clamp(0.5, 2.5);
                 scaled_pieces.push(scaled_piece);
             } else {
                 size = (to - from) * change.clamp(0.1, 0.8);
@@ -164,9 +160,9 @@ pub(super) fn fit(
 
 /// The straight line between the ends of a segment.
 fn line(segment: &Segment) -> ScaledPiece {
-    let (first, last) = (&segment.points[0], &segment.points[segment.points.len() - 1]);
+    let (first, last) = (&segment.points[0], segment.last());
     let slope = (last.force - first.force) / (last.x - first.x);
-    ScaledPiece { to: last.x, origin: first.x, coefficients: vec![first.force, slope], checks: Vec::new() }
+    ScaledPiece::new(last.x, first.x, vec![first.force, slope])
 }
 
 /// The odd polynomial from 0 to `to`.
@@ -197,7 +193,7 @@ fn odd_piece(solver: &mut Solver, segment: &mut Segment, to: f64) -> Result<Scal
     for (degree, c) in degrees.iter().zip(all.iter()) {
         coefficients[*degree] = *c;
     }
-    Ok(ScaledPiece { to, origin: 0.0, coefficients: monomials(&coefficients, to), checks: Vec::new() })
+    Ok(ScaledPiece::new(to, 0.0, monomials(&coefficients, to)))
 }
 
 /// The polynomial from `from` to `to`.
@@ -223,7 +219,7 @@ fn piece(solver: &mut Solver, segment: &mut Segment, from: f64, to: f64) -> Resu
         right[2 * j + 1] = point.stiffness * half;
     }
     let coefficients = solved(matrix, &right);
-    Ok(ScaledPiece { to, origin: middle, coefficients: monomials(&coefficients, half), checks: Vec::new() })
+    Ok(ScaledPiece::new(to, middle, monomials(&coefficients, half)))
 }
 
 /// Solves for the coefficients of an interpolation; its points are distinct, so that the matrix is regular.
@@ -255,10 +251,6 @@ fn monomials(chebyshev: &[f64], half: f64) -> Vec<f64> {
         let next: Vec<f64> =
             (0..now.len()).map(|i| factor * if i > 0 { now[i - 1] } else { 0.0 } - before[i]).collect();
         before = std::mem::replace(&mut now, next);
-        if degree == 0 {
-            before = vec![0.0; chebyshev.len()];
-            before[0] = 1.0;
-        }
     }
     let mut power = 1.0;
     for s in &mut sum {
@@ -272,8 +264,8 @@ fn monomials(chebyshev: &[f64], half: f64) -> Vec<f64> {
 /// its end.
 ///
 /// Each degree makes every step of a run slower. T_n - T_(n-2) is at most 2 and vanishes at the end.
-fn lower_degree(piece: &mut ScaledPiece, scale: Scale, tolerance: f64) {
-    let to = piece.to;
+fn lower_degree(ScaledPiece { to, piece, .. }: &mut ScaledPiece, scale: Scale, tolerance: f64) {
+    let to = *to;
     let (mut force, mut slope) = (0.0, 0.0);
     while piece.coefficients.len() > 4 {
         let highest = piece.coefficients.len() - 1;
@@ -298,4 +290,73 @@ fn lower_degree(piece: &mut ScaledPiece, scale: Scale, tolerance: f64) {
         }
         piece.coefficients.truncate(highest);
     }
+}
+
+/// Errors of the force curve at states that were not used to build it.
+///
+/// *Inside* is the range between the outermost kinks, or between the outermost equilibria without kinks. With
+/// one well and no kink there is no such range, and errors inside are NaN.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Accuracy {
+    /// Error of the force inside, relative to its largest magnitude between the wells.
+    pub force: f64,
+    /// Error of the potential inside, relative to the barrier; NaN with one well.
+    pub potential: f64,
+    /// Error of the stiffness inside, relative to its magnitude at x = 0.
+    pub stiffness: f64,
+    /// Error of the force outside, relative to the larger of that largest magnitude and the force itself.
+    pub outer_force: f64,
+    /// Number of equilibria solved.
+    pub solves: usize,
+    /// Largest number of functions of each parity that an equilibrium needed.
+    pub modes: usize,
+}
+
+impl Accuracy {
+    /// Whether a state needed the largest number of functions: its flexures are so thin that their bending is
+    /// not resolved.
+    pub fn is_at_limit(&self) -> bool {
+        self.modes >= MAX_MODES
+    }
+}
+
+/// Compares the curve with the check states of its pieces.
+pub(super) fn measure(
+    curve: &ForceCurve,
+    scaled_pieces: &[ScaledPiece],
+    segments: &[Segment],
+    scale: Scale,
+    units: Units,
+    solver: &Solver,
+) -> Accuracy {
+    let Units { length, force } = units;
+    let start = segments[0].points[0].energy;
+    let inside = segments.iter().flat_map(|s| &s.points).filter(|p| p.x > 0.0 && p.x <= scale.inside);
+    let two_wells = inside.clone().any(|p| p.force < 0.0);
+    let deepest = inside.fold(0.0_f64, |largest, p| largest.max(start - p.energy));
+    let start_value = if scale.inside > 0.0 { 0.0 } else { f64::NAN };
+    let mut accuracy = Accuracy {
+        force: start_value,
+        potential: if two_wells { 0.0 } else { f64::NAN },
+        stiffness: start_value,
+        outer_force: 0.0,
+        solves: solver.solves,
+        modes: solver.max_modes,
+    };
+    for point in scaled_pieces.iter().flat_map(|s| &s.checks) {
+        let x = point.x * length;
+        let error = (curve.force(x) / force - point.force).abs() / scale.force.max(point.force.abs());
+        if point.x > scale.inside {
+            accuracy.outer_force = accuracy.outer_force.max(error);
+            continue;
+        }
+        let potential = curve.potential(x) / (force * length) - (point.energy - start);
+        let stiffness = curve.stiffness(x) * length / force - point.stiffness;
+        accuracy.force = accuracy.force.max(error);
+        if two_wells {
+            accuracy.potential = accuracy.potential.max(potential.abs() / deepest);
+        }
+        accuracy.stiffness = accuracy.stiffness.max(stiffness.abs() / scale.stiffness);
+    }
+    accuracy
 }

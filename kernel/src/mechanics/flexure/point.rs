@@ -108,18 +108,15 @@ impl Point {
     /// Magnitude of the last coefficients of the rotations relative to the largest: an estimate of what more
     /// functions would add.
     pub fn tail(&self) -> f64 {
-        let all = (0..2).flat_map(|g| {
-            let size = self.q[g].abs().sqrt();
-            let bowed = self.shapes[g] == Shape::Bowed;
-            let odd: Vec<f64> = self.odd[g].iter().map(|a| if bowed { *a } else { a * size }).collect();
-            [self.even[g].clone(), odd]
-        });
-        let parts: Vec<Vec<f64>> = all.collect();
-        let largest = parts.iter().flatten().fold(0.0_f64, |largest, a| largest.max(a.abs()));
-        let last = parts
-            .iter()
-            .flat_map(|part| part.iter().rev().take(2))
-            .fold(0.0_f64, |largest, a| largest.max(a.abs()));
+        let size = |g: usize| if self.shapes[g] == Shape::Bowed { 1.0 } else { self.q[g].abs().sqrt() };
+        let parts = [0, 1].map(|g| [(1.0, &self.even[g]), (size(g), &self.odd[g])]);
+        let largest_of_last = |count: usize| {
+            let last = |(size, part): &(f64, &Vec<f64>)| {
+                part.iter().rev().take(count).fold(0.0_f64, |largest, a| largest.max((a * size).abs()))
+            };
+            parts.iter().flatten().map(last).fold(0.0, f64::max)
+        };
+        let (largest, last) = (largest_of_last(usize::MAX), largest_of_last(2));
         if largest > 0.0 { last / largest } else { 0.0 }
     }
 

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::basis::{functions, slopes};
-use super::beam::{Beam, Shape};
+use super::beam::{Beam, Shape, dot};
 use super::point::Point;
 use crate::numeric::GaussLegendre;
 
@@ -53,8 +53,7 @@ impl<'a> Deflected<'a> {
             let (from, to) = (knot(i - 1), knot(i));
             for (node, weight) in rule.nodes().iter().zip(rule.weights()) {
                 functions(2.0 * (from + (to - from) * node) - 1.0, &mut row);
-                let angle: f64 = row.iter().zip(&self.rotation).map(|(f, a)| f * a).sum();
-                let (sine, cosine) = angle.sin_cos();
+                let (sine, cosine) = dot(&row, &self.rotation).sin_cos();
                 let stretch = 1.0 + self.beam.stretch * (self.axial * cosine + self.lateral * sine);
                 let shear = self.beam.shear * (self.lateral * cosine - self.axial * sine);
                 let ds = weight * (to - from) * self.beam.length;
@@ -78,8 +77,7 @@ impl<'a> Deflected<'a> {
         let places = (0..CURVATURE_POINTS).map(|i| (PI * i as f64 / (CURVATURE_POINTS - 1) as f64).cos());
         places.fold(0.0, |largest: f64, xi| {
             slopes(xi, &mut row);
-            let slope: f64 = row.iter().zip(&bend).map(|(f, a)| f * a).sum();
-            largest.max((slope * 2.0 / self.beam.length).abs())
+            largest.max((dot(&row, &bend) * 2.0 / self.beam.length).abs())
         })
     }
 }

@@ -1,8 +1,8 @@
 //! Solver for equilibria that adapts the number of basis functions to each state.
 //!
-//! Functions are added until the last coefficients are negligible: eight of each parity are enough in
-//! the wells, ten times as many are needed far up the taut branch. Each state starts with as many as
-//! its guess has.
+//! Functions are added until the last coefficients are negligible: eight of each parity are enough in the
+//! wells, and about eighty are needed far up the taut branch. Each state starts with the number of functions
+//! of its guess.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -19,7 +19,8 @@ pub(super) const MAX_MODES: usize = 256;
 
 /// Largest work for a mechanism, as the sum over its states of the cube of their number of functions. This is
 /// a thousand times the work for the prototype and ends after about twenty seconds on one core (10 to 45 ns
-/// per unit, measured). Only lengths that differ a thousandfold exceed it, as when one is in the wrong unit.
+/// per unit, measured). Only lengths that differ a thousandfold exceed it, for example if one is in the wrong
+/// unit.
 const MAX_WORK: usize = 500_000_000;
 
 /// Largest leading coefficient of a leaning flexure, relative to the coefficient of its bow.
@@ -111,7 +112,7 @@ impl<'a> Solver<'a> {
             let point = self
                 .system(modes)
                 .solve(&guess, prescribed)
-                .map_err(|stalled| Failure::NotConverged { x: guess.x, residual: stalled.residual })?;
+                .map_err(|residual| Failure::NotConverged { x: guess.x, residual })?;
             let side = side(&point, &self.bow);
             if side == Side::Opposite || (side == Side::Leaning && !self.is_stable(&point)) {
                 return Err(Failure::NotConverged { x: point.x, residual: 1.0 });
@@ -150,7 +151,7 @@ impl<'a> Solver<'a> {
 
     /// Sum of the shortenings of both straight groups under unit compression.
     pub fn compliance(&self) -> f64 {
-        self.beams.iter().map(|b| b.length * b.stretch / b.count).sum()
+        self.beams.iter().map(Beam::compliance).sum()
     }
 
     /// The square of the bump's amplitude that causes a given shortening, for small slopes.
@@ -176,19 +177,19 @@ impl<'a> Solver<'a> {
 /// by about the bow. Two other equilibria bulge to the opposite side: a stable one with a large bulge
 /// and an unstable one.
 fn side(point: &Point, bow: &[f64; 2]) -> Side {
-    let mut side = Side::Same;
-    for g in (0..2).filter(|g| point.shapes[*g] == Shape::Bowed) {
+    let of_group = |g: usize| {
         let leading = point.odd[g].first().copied().unwrap_or(0.0);
-        if leading * bow[g] < 0.0 {
-            side =
-                if leading.abs() > MAX_LEAN * bow[g].abs() { return Side::Opposite } else { Side::Leaning };
+        match leading * bow[g] < 0.0 {
+            true if leading.abs() > MAX_LEAN * bow[g].abs() => Side::Opposite,
+            true => Side::Leaning,
+            false => Side::Same,
         }
-    }
-    side
+    };
+    (0..2).filter(|g| point.shapes[*g] == Shape::Bowed).map(of_group).max().unwrap_or(Side::Same)
 }
 
 /// See [`side`].
-#[derive(PartialEq)]
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
 enum Side {
     Same,
     Leaning,

@@ -2,20 +2,11 @@
 
 use proptest::prelude::*;
 
-use super::super::DoubleDouble;
 use super::*;
+use crate::numeric::{DoubleDouble, random, times_roots};
 
 fn from_roots(roots: &[f64], scale: f64) -> Vec<f64> {
-    let mut g = vec![scale];
-    for r in roots {
-        let mut next = vec![0.0; g.len() + 1];
-        for (k, c) in g.iter().enumerate() {
-            next[k] -= c * r;
-            next[k + 1] += c;
-        }
-        g = next;
-    }
-    g
+    times_roots(&[scale], roots)
 }
 
 fn all(g: &[f64]) -> Vec<f64> {
@@ -31,11 +22,7 @@ fn all(g: &[f64]) -> Vec<f64> {
 #[test]
 fn a_polynomial_and_its_negative_have_the_same_roots_whatever_sign_a_zero_has() {
     // a mass that starts at rest: the slope is 0 or -0
-    let mut state = 1_u64;
-    let mut next = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1_u64 << 53) as f64
-    };
+    let mut next = random();
     for _ in 0..200 {
         let g = [0.2 + 0.5 * next(), 0.0, -0.9 - 0.3 * next(), 0.05 * next(), -0.01 * next()];
         let other = [g[0], -0.0, g[2], g[3], g[4]];
@@ -74,13 +61,6 @@ fn a_double_root_is_a_touch() {
     // a value of exactly 0 at a halving point is found as a pair, as close as rounding allows
     let pair = all(&from_roots(&[0.5, 0.5], 1.0));
     assert!(pair.len() == 2 && (pair[0] - 0.5).abs() < 1e-7 && (pair[1] - 0.5).abs() < 1e-7);
-}
-
-#[test]
-fn a_root_at_the_end_and_at_a_halving_point() {
-    assert_eq!(all(&[1.0, -1.0]), vec![1.0]);
-    let found = all(&from_roots(&[0.25, 0.5, 0.75], -1.0));
-    assert_eq!(found.len(), 3);
 }
 
 #[test]
@@ -129,6 +109,7 @@ fn a_root_at_0_is_no_sign_change() {
         (&[-0.0, -1.0, 4.0], &[0.25]),
         (&[0.0, 0.0, 1.0, -2.0], &[0.5]),
         (&[0.0, -1e-200, 1e-200], &[1.0]),
+        (&[1.0, -1.0], &[1.0]),
         (&[0.0, 0.0, 0.0], &[]),
         (&[0.0], &[]),
     ] {

@@ -1,7 +1,7 @@
 //! Validation of a lesson.
 
 use super::condition::Condition;
-use super::stage::Stage;
+use super::document::Stage;
 use super::{LESSON_FORMAT, Lesson, MAX_OPTION_LENGTH, MAX_STEP_LENGTH, Step};
 use crate::numeric::number_text;
 use crate::scene::axis::Axis;
@@ -29,16 +29,13 @@ const MAX_TITLE_LENGTH: usize = 60;
 /// Largest number of minutes of a lesson.
 const MAX_MINUTES: u32 = 90;
 
-/// The fields of a whole walk.
 pub(super) const OF_WALK: [&str; 3] = ["walk.up_crosses_from", "walk.down_crosses_to", "walk.gap"];
 
-/// A field that a condition may name.
 struct Known {
     name: String,
     kind: Kind,
 }
 
-/// What the value of a field is.
 enum Kind {
     Number,
     Text,
@@ -127,7 +124,6 @@ fn settings(lesson: &Lesson, scenes: &[&Scene], found: &mut Found) {
     }
 }
 
-/// The fields that the conditions may name.
 fn known(lesson: &Lesson, scenes: &[&Scene], results: &[ResultField]) -> Vec<Known> {
     let numbers = union(scenes, numeric_fields);
     let mut known: Vec<Known> = union(scenes, all_fields)
@@ -246,7 +242,7 @@ struct Found(Vec<Fault>);
 
 impl Found {
     fn add(&mut self, field: &str, value: impl Into<String>, problem: impl Into<String>) {
-        self.0.push(Fault { field: field.to_owned(), value: value.into(), problem: problem.into() });
+        self.0.push(Fault::new(field, value, problem));
     }
 
     /// Adds a fault if a text is missing or too long.

@@ -3,14 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use super::check::{ResultField, faults};
-use super::library::{BuiltInLesson, names};
-use super::stage::{Stage, stages};
-use super::{Lesson, Step};
+use super::{BuiltInLesson, Lesson, Step, names};
 use crate::scene::data::joined;
 use crate::scene::document::{Document, Source, structure_error};
 use crate::scene::error::{Fault, Origin, PlacedFault, SceneError, clip};
 use crate::scene::files::{ReadError, read_text};
-use crate::scene::locate::{Place, Places};
+use crate::scene::presets::PRESETS;
+use crate::scene::scanner::Places;
 use crate::scene::text::{MAX_SCENE_BYTES, ParseError, read};
 
 /// A lesson with the scenes of its steps.
@@ -77,7 +76,9 @@ impl LessonDocument {
         results: &[ResultField],
     ) -> Result<Self, LessonError> {
         let parse = |text: &str| read::<Lesson>(text);
-        let mut lesson = match check_not_empty(text).and_then(|()| parse(text)) {
+        let is_empty = text.trim_start_matches('\u{feff}').trim().is_empty();
+        let problem = "the file is empty; a lesson begins with `(format: 1, title: \"..\", ..`";
+        let mut lesson = match if is_empty { Err(ParseError::at_start(problem)) } else { parse(text) } {
             Ok(lesson) => lesson,
             Err(parse_error) => {
                 let rest = |text: &str| Self::from_text(name, text, folder, results).err();
@@ -125,14 +126,58 @@ impl LessonDocument {
     }
 }
 
-/// Fails if the text is empty.
-fn check_not_empty(text: &str) -> Result<(), ParseError> {
-    let parse_error = |problem: &str| {
-        let place = Place { line: 1, column: 1 };
-        Err(ParseError { place, problem: problem.to_owned(), unknown: None })
+#[derive(Debug, Clone)]
+pub(super) struct Stage {
+    /// At the beginning of the step.
+    pub begin: Document,
+    /// For the answer or the solution; at the beginning for a step without them.
+    pub end: Document,
+}
+
+/// The scenes of all steps; their faults are added to `found`.
+pub(super) fn stages(lesson: &Lesson, folder: Option<&Path>, found: &mut Vec<Fault>) -> Vec<Stage> {
+    let preset = PRESETS.iter().any(|preset| preset.name == lesson.scene);
+    let spec = match folder.filter(|_| !preset) {
+        Some(folder) => folder.join(&lesson.scene).to_string_lossy().into_owned(),
+        None => lesson.scene.clone(),
     };
-    match text.trim_start_matches('\u{feff}').trim() {
-        "" => parse_error("the file is empty; a lesson begins with `(format: 1, title: \"..\", ..`"),
-        _ => Ok(()),
+    let first_line = |error: &SceneError| error.to_string().lines().next().unwrap_or_default().to_owned();
+    let mut current = match Document::load(&spec) {
+        Ok(document) => document,
+        Err(error) => {
+            found.push(Fault::new("scene", &lesson.scene, first_line(&error)));
+            return Vec::new();
+        }
+    };
+    let mut change = |document: &mut Document, changes: &[(String, String)], at: &str| {
+        for (index, (field, value)) in changes.iter().enumerate() {
+            if let Err(error) = document.assign(field, value, &format!("{field}={value}")) {
+                found.push(Fault::new(format!("{at}.{index}"), format!("{field}={value}"), error.problem));
+            }
+        }
+        if let Err(error) = document.check() {
+            found.push(Fault::new(at, "", first_line(&error)));
+        }
+    };
+    change(&mut current, &lesson.set, "set");
+    let mut stages = Vec::with_capacity(lesson.steps.len());
+    for (index, step) in lesson.steps.iter().enumerate() {
+        let at = |part: &str| format!("steps.{index}.{part}");
+        let stage = match step {
+            Step::Say(_) | Step::Explain(_) => Stage { begin: current.clone(), end: current.clone() },
+            Step::Predict { set, .. } => {
+                let begin = current.clone();
+                change(&mut current, set, &at("set"));
+                Stage { begin, end: current.clone() }
+            }
+            Step::Do { set, solution, .. } => {
+                change(&mut current, set, &at("set"));
+                let mut end = current.clone();
+                change(&mut end, solution, &at("solution"));
+                Stage { begin: current.clone(), end }
+            }
+        };
+        stages.push(stage);
     }
+    stages
 }

@@ -8,8 +8,6 @@
 mod check;
 mod condition;
 mod document;
-mod library;
-mod stage;
 
 use serde::Deserialize;
 
@@ -18,7 +16,6 @@ use super::data::SweepAxis;
 pub use check::ResultField;
 pub use condition::Condition;
 pub use document::{LessonDocument, LessonError};
-pub use library::{BuiltInLesson, LESSONS, TEMPLATE};
 
 /// Version of the format.
 pub const LESSON_FORMAT: u32 = 1;
@@ -64,7 +61,7 @@ pub struct Lesson {
     pub steps: Vec<Step>,
     /// The misconception that the lesson corrects.
     pub misconception: String,
-    /// Notes for the lecturer; never shown on the projector unless requested.
+    /// Notes for the lecturer, shown only on request.
     pub lecturer: String,
 }
 
@@ -174,4 +171,55 @@ impl Step {
             Self::Do { ask, hint, .. } => [ask].into_iter().chain(hint).collect(),
         }
     }
+}
+
+/// A built-in lesson.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BuiltInLesson {
+    /// Name of its file without extension: a number and a few words.
+    pub name: &'static str,
+    /// The lesson's text.
+    pub text: &'static str,
+}
+
+macro_rules! lessons {
+    ($($name:literal)*) => {
+        /// The built-in lessons, in the order of a course.
+        pub static LESSONS: &[BuiltInLesson] = &[$(BuiltInLesson {
+            name: $name,
+            text: include_str!(concat!("../../../../lessons/", $name, ".ron")),
+        }),*];
+    };
+}
+
+lessons! {
+    "01-two-wells-and-a-hill"
+    "02-shake-it-over"
+    "03-a-stop-that-helps"
+    "04-letting-go-is-not-crossing"
+    "05-the-price-of-a-stop"
+    "06-bouncy-or-dead"
+    "07-a-coin-toss"
+    "08-design-it"
+    "09-up-is-not-down"
+    "10-noise-has-no-rhythm"
+}
+
+/// Template for a new lesson.
+pub static TEMPLATE: &str = include_str!("../../../../lessons/template.ron");
+
+impl BuiltInLesson {
+    /// The lesson of that name, which may also be its number or its words alone.
+    pub fn find(name: &str) -> Option<&'static Self> {
+        LESSONS.iter().find(|lesson| {
+            let (number, words) = lesson.name.split_once('-').unwrap_or(("", lesson.name));
+            lesson.name == name
+                || words == name
+                || number.trim_start_matches('0') == name.trim_start_matches('0')
+        })
+    }
+}
+
+fn names() -> String {
+    LESSONS.iter().map(|lesson| lesson.name).collect::<Vec<_>>().join(", ")
 }
