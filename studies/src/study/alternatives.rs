@@ -8,11 +8,10 @@ use super::bisection::multiple;
 use super::family::Family;
 use super::fields::SummaryField;
 use super::grid::{is_of_mechanism, name_of};
-use super::onset::Onset;
 use super::settled::{followed, settled_within};
 use super::shared_runs::shared_runs;
 use super::table::{Table, Values};
-use super::thresholds::Found;
+use super::thresholds::{Found, Onset};
 use super::{Cancelled, Task};
 use crate::dynamics::{Model, Run, Summary};
 use crate::mechanics::{BuildError, Mechanism};
@@ -34,7 +33,7 @@ pub struct Alternative {
 }
 
 /// Relative change of each size.
-pub const SIZE_CHANGE: f64 = 0.01;
+const SIZE_CHANGE: f64 = 0.01;
 
 /// Crossings are searched from the drive's frequency divided by this to its multiple by this.
 pub const SEARCHED_SPAN: f64 = 10.0;

@@ -4,9 +4,8 @@ use std::sync::Arc;
 
 use super::bisection::multiple;
 use super::family::Family;
-use super::onset::{Onset, Verdict};
 use super::settled::followed;
-use super::thresholds::{Answers, Found, Search};
+use super::thresholds::{Answers, Found, Onset, Search, Verdict};
 use super::{Cancelled, Task};
 use crate::dynamics::{Model, Request, STANDARD_GRAVITY};
 use crate::mechanics::{Landscape, Mechanism};

@@ -3,7 +3,8 @@
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use super::table::Table;
+use super::Table;
+use super::identify::median;
 use crate::dynamics::{EventKind, Model, Outcome, Request, Summary};
 use crate::mechanics::Hertz;
 use crate::numeric::round::{ONE_TWO_FIVE, round_up};
@@ -98,11 +99,9 @@ pub fn strikes(model: &Model, cancel: &AtomicBool) -> Option<Strikes> {
         }
     }
     let settled = first.iter().any(|(t, _)| *t >= model.settle());
-    let mut speeds: Vec<f64> =
-        first.into_iter().filter(|(t, _)| !settled || *t >= model.settle()).map(|(_, speed)| speed).collect();
-    speeds.sort_by(f64::total_cmp);
-    let speed = *speeds.get(speeds.len() / 2)?;
-    Some(Strikes { speed, count: speeds.len(), settled })
+    let counted = first.into_iter().filter(|(t, _)| !settled || *t >= model.settle());
+    let speeds: Vec<f64> = counted.map(|(_, speed)| speed).collect();
+    Some(Strikes { count: speeds.len(), speed: median(speeds)?, settled })
 }
 
 /// How long `check` runs a scene to see how fast its stops are struck.

@@ -5,9 +5,8 @@
 //! periodic motion lies in lines and no taper is needed. Every other motion is tapered by the window of
 //! von Hann.
 
-use super::Task;
-use super::table::{Table, Values};
-use super::times::MAX_SAMPLES;
+use super::simulate::MAX_SAMPLES;
+use super::{Table, Task, Values};
 use crate::dynamics::{Model, Outcome, Request, Sample};
 use crate::numeric::{Taper, periodogram, short};
 

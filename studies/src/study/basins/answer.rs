@@ -1,11 +1,9 @@
 //! Answer of a map of basins: its attractors, numbered by the first start that goes to each, and the rows.
 
 use super::Basins;
-use super::item::Way;
-use super::rounds::{Fate, Kind};
+use super::rounds::{Fate, Kind, Way};
 use crate::dynamics::{Model, Outcome, Place, Regime, Request, Side, Summary};
-use crate::study::Task;
-use crate::study::table::Table;
+use crate::study::{Table, Task};
 
 /// The quantile of the normal distribution that leaves 95 % within.
 const NORMAL_95: f64 = 1.959_963_984_540_054;

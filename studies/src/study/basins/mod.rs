@@ -16,8 +16,6 @@
 //! rounds of starts alone, so neither batches nor threads change a bit.
 
 mod answer;
-mod effort;
-mod item;
 mod orbit;
 mod region;
 mod rounds;
@@ -30,12 +28,11 @@ use std::sync::Arc;
 use crate::dynamics::{Model, Request};
 use crate::mechanics::Mechanism;
 use crate::scene::{Damping, Excitation, Fault, Scene, Start, Stops};
-use crate::study::levels::{Levels, STRIDES};
+use crate::study::{Levels, STRIDES};
 pub use answer::{Answer, Attractor, Shares};
-use effort::Effort;
-use item::PATIENCE;
-use rounds::Rounds;
+use rounds::{PATIENCE, Rounds};
 pub use starts::{EvenRange, MAX_STARTS, Starts, StartsError};
+use stroboscopic::Effort;
 
 /// Why a scene has no basins.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

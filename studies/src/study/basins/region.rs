@@ -9,6 +9,7 @@ use std::collections::BTreeSet;
 
 use super::stroboscopic::Stroboscope;
 use crate::dynamics::{Capture, Region};
+use crate::numeric::extent;
 use crate::study::Cancelled;
 
 /// Motions that are followed to find an attractor.
@@ -46,11 +47,8 @@ pub(super) fn absorbing(
     if states.iter().any(|state| known.iter().any(|other| other.holds(*state))) {
         return Ok(None);
     }
-    let ends = |of: &dyn Fn(&(f64, f64)) -> f64| {
-        let fold = |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
-        states.iter().map(of).fold((f64::INFINITY, f64::NEG_INFINITY), fold)
-    };
-    let ((left, right), (low, high)) = (ends(&|state| state.0), ends(&|state| state.1));
+    let (left, right) = extent(states.iter().map(|state| state.0));
+    let (low, high) = extent(states.iter().map(|state| state.1));
     if !(right > left && high > low) {
         return Ok(None);
     }

@@ -3,9 +3,8 @@
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use crate::numeric::Decimal;
-use crate::study::curve::even_positions;
-use crate::study::levels::Levels;
+use crate::numeric::{Decimal, extent};
+use crate::study::{Levels, even_positions};
 
 /// The most starts of one map: some minutes of a core where the mass comes to rest on stops, and many hours
 /// where it does not.
@@ -155,10 +154,7 @@ impl Starts {
 
     /// Displacements in mm and largest velocity in m/s either way.
     pub(super) fn extent(&self) -> ((f64, f64), f64) {
-        let ends = |values: &[f64]| {
-            let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-            (low, values.iter().copied().fold(f64::NEG_INFINITY, f64::max))
-        };
+        let ends = |values: &[f64]| extent(values.iter().copied());
         let (slow, fast) = ends(&self.v);
         (ends(&self.x_mm), if -slow > fast { slow } else { fast })
     }

@@ -6,11 +6,9 @@
 
 use std::collections::BTreeMap;
 
-use super::Basins;
-use super::answer::Answer;
-use super::item::{Item, PATIENCE, Way};
-use super::rounds::{Fate, Kind, LONGEST_ROUND};
+use super::rounds::{Fate, Item, Kind, LONGEST_ROUND, PATIENCE, Way};
 use super::stroboscopic::Stroboscope;
+use super::{Answer, Basins};
 use crate::dynamics::{Place, Pursuit};
 use crate::scene::TOLERANCES;
 use crate::study::{Cancelled, Task};

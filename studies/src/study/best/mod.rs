@@ -7,7 +7,6 @@
 
 mod design;
 mod evaluate;
-mod margin;
 mod search;
 mod varied;
 
@@ -31,7 +30,7 @@ pub fn best(
 ) -> Result<BestDesign, NoBest> {
     let evaluator = Evaluator::new(question, pool, task)?;
     let found = search::search(&evaluator, preview)?;
-    let margins = margin::margins(&evaluator, &found)?;
+    let margins = search::margins(&evaluator, &found)?;
     let (spread, stepped_back) = varied::robust(&evaluator, &found, &margins)?;
     let border = |(range, at): (&DesignRange, &f64)| *at <= range.low || *at >= range.high;
     Ok(BestDesign {

@@ -5,11 +5,11 @@ use std::f64::consts::PI;
 use super::clipped::{Clipped, clipped};
 use super::peaks::{Peak, peaks};
 use super::turns::{noise, reach, turns};
-use super::{Identified, Identity, Unidentified};
+use super::{Identified, Identity, Unidentified, with_interval};
 use crate::numeric::regression::{least_squares, student};
 use crate::numeric::{Envelope, FEWEST_TURNS, TurningPoint, short};
 use crate::scene::Channel;
-use crate::study::table::{Table, Values};
+use crate::study::Table;
 
 /// Pieces of the line that is drawn as an envelope.
 const ENVELOPE: u32 = 400;
@@ -47,10 +47,8 @@ pub fn damping(times: &[f64], channel: &Channel) -> Result<Identified, Unidentif
     let back = reach(values, noise);
     let all = turns(values, back);
     let few = |found: usize| match flat {
-        None => Unidentified::FewSwings { found, least: FEWEST_TURNS, noise: short(noise) },
-        Some(Clipped { tops, limit, .. }) => {
-            Unidentified::Clipped { tops, limit: short(limit), found, least: FEWEST_TURNS }
-        }
+        None => Unidentified::FewSwings { found, noise: short(noise) },
+        Some(Clipped { tops, limit, .. }) => Unidentified::Clipped { tops, limit: short(limit), found },
     };
     let swing = |k: usize| (values[all[k + 1].at] - values[all[k].at]).abs();
     let swings = all.len().saturating_sub(1);
@@ -75,7 +73,7 @@ pub fn damping(times: &[f64], channel: &Channel) -> Result<Identified, Unidentif
     Ok(Identified {
         rows: table(&rows, &format!("amplitude{}", channel.quantity.ending())),
         fitted: whole.lines(),
-        summary: whole.summary(),
+        summary: vec![whole.ratio, whole.frequency, whole.natural, whole.rate],
         remarks: remarks(&rows, &whole, channel, times, flat, sparse),
     })
 }
@@ -187,10 +185,6 @@ impl Decay {
         })
     }
 
-    fn summary(&self) -> Vec<Identity> {
-        vec![self.ratio, self.frequency, self.natural, self.rate]
-    }
-
     /// The lines on which the maxima and the minima lie.
     fn lines(&self) -> Table {
         let (from, to) = self.span;
@@ -202,11 +196,8 @@ impl Decay {
                 centre + side * swing
             }
         };
-        Table::new().each("t_s", &places, |t| *t).each("upper", &places, line(1.0)).each(
-            "lower",
-            &places,
-            line(-1.0),
-        )
+        let table = Table::new().each("t_s", &places, |t| *t);
+        table.each("upper", &places, line(1.0)).each("lower", &places, line(-1.0))
     }
 }
 
@@ -240,21 +231,15 @@ fn differ(rows: impl ExactSizeIterator<Item = Identity>, whole: f64) -> bool {
 }
 
 fn table(rows: &[Decay], amplitude: &str) -> Table {
-    let turns = rows.iter().map(|row| Some(row.turns as u64)).collect();
-    let with = |table: Table, of: fn(&Decay) -> Identity, names: [&str; 3]| {
-        table.each(names[0], rows, |row| of(row).value).each(names[1], rows, |row| of(row).interval.0).each(
-            names[2],
-            rows,
-            |row| of(row).interval.1,
-        )
-    };
     let table = Table::new()
-        .with("turns", Values::Counts(turns))
+        .each("turns", rows, |row| Some(row.turns as u64))
         .each("from_s", rows, |row| row.span.0)
         .each("to_s", rows, |row| row.span.1)
         .each(amplitude, rows, |row| row.amplitude);
     let ratios = ["damping_ratio", "damping_ratio_low", "damping_ratio_high"];
-    let table = with(table, |row| row.ratio, ratios);
-    let table = with(table, |row| row.frequency, ["frequency_hz", "frequency_low_hz", "frequency_high_hz"]);
-    with(table, |row| row.rate, ["decay_per_s", "decay_low_per_s", "decay_high_per_s"])
+    let frequencies = ["frequency_hz", "frequency_low_hz", "frequency_high_hz"];
+    let decays = ["decay_per_s", "decay_low_per_s", "decay_high_per_s"];
+    let table = with_interval(table, ratios, rows, |row| row.ratio);
+    let table = with_interval(table, frequencies, rows, |row| row.frequency);
+    with_interval(table, decays, rows, |row| row.rate)
 }

@@ -1,11 +1,11 @@
 //! Force curve from a slow pull, with its hysteresis, equilibria and barrier.
 
 use super::rests::Rest;
-use super::turns::{noise, turns};
-use super::{Identified, Identity, Unidentified};
+use super::turns::{median, noise, turns};
+use super::{Identified, Identity, Unidentified, with_interval};
 use crate::numeric::regression::{Fit, least_squares, powers, student};
 use crate::numeric::{extent, short};
-use crate::study::table::{Table, Values};
+use crate::study::{Table, Values};
 
 /// Default number of points of a curve.
 pub const FORCE_POINTS: usize = 101;
@@ -93,13 +93,12 @@ pub fn force(x: &[f64], force: &[f64], points: usize) -> Result<Identified, Unid
             false => curve.directions[which].iter().map(|row| row.0.value).collect(),
         }
     };
-    let rows = Table::new()
-        .with("x_m", Values::Numbers(curve.positions.clone()))
-        .each("force_n", &curve.mean, |row| row.0.value)
-        .each("force_low_n", &curve.mean, |row| row.0.value - row.0.half())
-        .each("force_high_n", &curve.mean, |row| row.0.value + row.0.half())
-        .with("force_rising_n", which(&rising, 0))
-        .with("force_falling_n", which(&falling, pulls.len() - 1));
+    let rows = Table::new().each("x_m", &curve.positions, |x| *x);
+    let rows = with_interval(rows, ["force_n", "force_low_n", "force_high_n"], &curve.mean, |(force, _)| {
+        Identity::new("force_n", force.value, force.half())
+    })
+    .with("force_rising_n", which(&rising, 0))
+    .with("force_falling_n", which(&falling, pulls.len() - 1));
     let (mut summary, mut remarks) = curve.landscape(&rests);
     if let [one, other] = &curve.directions[..] {
         summary.extend(hysteresis(one, other, high - low));
@@ -242,9 +241,8 @@ impl Curve {
         };
         let inside = self.positions.iter().zip(&self.mean).filter(|point| between(point.0));
         let largest = inside.map(|point| point.1.0.value.abs()).fold(0.0, f64::max);
-        let mut halves: Vec<f64> = self.mean.iter().map(|row| row.0.half()).collect();
-        halves.sort_by(f64::total_cmp);
-        let share = halves[halves.len() / 2] / largest;
+        let half = median(self.mean.iter().map(|row| row.0.half()).collect());
+        let share = half.unwrap_or(f64::NAN) / largest;
         format!(
             "the curve is known to {} % of its force{}; as a mechanism: Table(path: \"FILE\", tolerance: {})",
             short(100.0 * share),
@@ -323,11 +321,13 @@ fn turning(before: &Pull, after: &Pull, (end, range): (f64, f64)) -> bool {
     count > 0 && near.abs() < 0.5 * usual.abs()
 }
 
+/// The samples of a pull between two places.
+pub fn within(pull: &Pull, from: f64, to: f64) -> &[(f64, f64)] {
+    &pull[pull.partition_point(|sample| sample.0 < from)..pull.partition_point(|sample| sample.0 <= to)]
+}
+
 /// The cubic in (x - `at`)/`unit` through the samples between two places.
 fn near(pull: &Pull, at: f64, (from, to): (f64, f64), unit: f64) -> Option<Fit<4>> {
-    let inside =
-        pull.partition_point(|sample| sample.0 < from)..pull.partition_point(|sample| sample.0 <= to);
-    let rows: Vec<([f64; 4], f64)> =
-        pull[inside].iter().map(|(x, force)| (powers((x - at) / unit), *force)).collect();
-    least_squares(&rows)
+    let row = |(x, force): &(f64, f64)| (powers((x - at) / unit), *force);
+    least_squares(&within(pull, from, to).iter().map(row).collect::<Vec<_>>())
 }

@@ -11,10 +11,12 @@ mod turns;
 pub use damping::damping;
 pub use force::{FORCE_POINTS, force};
 pub use restitution::{restitution, restitution_of_times};
-pub(super) use turns::{Turn, noise, reach, turns};
+pub(super) use turns::{Turn, median, noise, reach, turns};
 
-use super::table::{Table, label_and_unit};
-use crate::numeric::short;
+use super::{Table, label_and_unit};
+use crate::numeric::{FEWEST_TURNS, short};
+use peaks::FEWEST_SAMPLES;
+use restitution::ENOUGH;
 
 /// A number with its interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,6 +46,15 @@ impl Identity {
     }
 }
 
+/// The table with three more columns: a number of each row, and the ends of its interval.
+fn with_interval<R>(table: Table, names: [&str; 3], rows: &[R], of: impl Fn(&R) -> Identity) -> Table {
+    table.each(names[0], rows, |row| of(row).value).each(names[1], rows, |row| of(row).interval.0).each(
+        names[2],
+        rows,
+        |row| of(row).interval.1,
+    )
+}
+
 /// What was identified from a record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Identified {
@@ -65,27 +76,24 @@ pub enum Unidentified {
     /// Too few swings stand out from the noise.
     #[error(
         "{found} turning points stand out from the noise (of standard deviation {noise}); the damping ratio \
-         needs {least} of a free decay: record longer, pluck harder, or widen --from and --to"
+         needs {FEWEST_TURNS} of a free decay: record longer, pluck harder, or widen --from and --to"
     )]
     FewSwings {
         /// How many were found.
         found: usize,
-        /// The least that is needed.
-        least: usize,
         /// Noise of the values, in SI.
         noise: String,
     },
     /// A swing has too few samples.
     #[error(
-        "the swing at {at} s has {samples} samples near its turning point; {least} are needed: sample faster"
+        "the swing at {at} s has {samples} samples near its turning point; {FEWEST_SAMPLES} are needed: \
+         sample faster"
     )]
     Sparse {
         /// When, in s.
         at: String,
         /// How many.
         samples: usize,
-        /// The least that is needed.
-        least: usize,
     },
     /// Swings of unequal length.
     #[error(
@@ -100,19 +108,16 @@ pub enum Unidentified {
         /// The median length in s of those around it.
         usual: String,
     },
-    /// Swings about places that differ.
+    /// Swings about places that differ, from this time in s on.
     #[error(
-        "the middle of the swings moves at {at} s by more than a quarter of a swing: the motion changes \
+        "the middle of the swings moves at {0} s by more than a quarter of a swing: the motion changes \
          wells there, or the sensor moved; cut the record by --from and --to"
     )]
-    Moved {
-        /// When, in s.
-        at: String,
-    },
+    Moved(String),
     /// Too few swings are left beside those with flat tops.
     #[error(
         "{tops} swings have flat tops, at the limit {limit} of the sensor or its converter, and after them \
-         {found} turning points stand out from the noise; the damping ratio needs {least}: pluck less, widen \
+         {found} turning points stand out from the noise; the damping ratio needs {FEWEST_TURNS}: pluck less, widen \
          the range, or record longer"
     )]
     Clipped {
@@ -122,8 +127,6 @@ pub enum Unidentified {
         limit: String,
         /// How many turning points are left.
         found: usize,
-        /// The least that is needed.
-        least: usize,
     },
     /// Swings that are cut off hide the impacts.
     #[error(
@@ -139,22 +142,17 @@ pub enum Unidentified {
     /// The turning points follow no decay.
     #[error("the turning points follow no decaying oscillation: cut the record by --from and --to")]
     NoDecay,
-    /// No impact was found.
+    /// No impact was found in values with this noise, in SI.
     #[error(
         "no turning point is an impact: at none does the velocity jump by more than noise (of standard \
-         deviation {noise}) and a smooth turn explain. Impacts show where the flights after them hold \
-         {enough} samples: sample faster, cut the record by --from and --to, or give the places of the stops \
+         deviation {0}) and a smooth turn explain. Impacts show where the flights after them hold \
+         {ENOUGH} samples: sample faster, cut the record by --from and --to, or give the places of the stops \
          by --left-mm and --right-mm"
     )]
-    NoImpact {
-        /// Noise of the values, in SI.
-        noise: String,
-        /// Samples that a rebound should have.
-        enough: usize,
-    },
+    NoImpact(String),
     /// The rebounds are too short.
     #[error(
-        "the rebounds hold at most {longest} samples at {rate} a second, and {enough} are needed: take \
+        "the rebounds hold at most {longest} samples at {rate} a second, and {ENOUGH} are needed: take \
          {needed} samples a second or more"
     )]
     Slow {
@@ -164,8 +162,6 @@ pub enum Unidentified {
         rate: String,
         /// The rate at which the longest rebound has enough.
         needed: String,
-        /// Samples that it should have.
-        enough: usize,
     },
     /// The rebounds are lost in noise.
     #[error(

@@ -1,11 +1,12 @@
 //! Turning points of a free decay, each fitted to the samples around it, with their weights.
 
 use std::f64::consts::{FRAC_PI_4, TAU};
+use std::ops::Range;
 
 use nalgebra::SVector;
 
 use super::Unidentified;
-use super::turns::Turn;
+use super::turns::{Turn, median};
 use crate::numeric::regression::{Fit, least_squares};
 use crate::numeric::{Envelope, FEWEST_TURNS, TurningPoint, short};
 
@@ -38,7 +39,7 @@ const EVEN: std::ops::RangeInclusive<f64> = 0.6..=1.6;
 const MOVED: f64 = 0.25;
 
 /// The fewest samples of a fit.
-const FEWEST_SAMPLES: usize = 5;
+pub const FEWEST_SAMPLES: usize = 5;
 /// The fewest samples of a fit with the second harmonic.
 const FEWEST_OF_HARMONICS: usize = 9;
 
@@ -123,10 +124,8 @@ pub fn peaks(
         }
         peaks = kept;
         if peaks.len() < FEWEST_TURNS {
-            let few =
-                Unidentified::FewSwings { found: peaks.len(), least: FEWEST_TURNS, noise: short(noise) };
-            let too_few =
-                |(at, samples)| Unidentified::Sparse { at: short(at), samples, least: FEWEST_SAMPLES };
+            let few = Unidentified::FewSwings { found: peaks.len(), noise: short(noise) };
+            let too_few = |(at, samples)| Unidentified::Sparse { at: short(at), samples };
             return Err(sparse.map_or(few, too_few));
         }
         peaks.iter_mut().zip(&fits).for_each(|(peak, fit)| peak.point.value = fit.value);
@@ -154,12 +153,13 @@ fn periods(times: &[f64]) -> Result<Vec<f64>, Unidentified> {
 
 /// The median of the values around one.
 fn around(values: &[f64], k: usize) -> f64 {
-    median(values[k.saturating_sub(NEIGHBOURS)..(k + NEIGHBOURS + 1).min(values.len())].to_vec())
+    let near = k.saturating_sub(NEIGHBOURS)..(k + NEIGHBOURS + 1).min(values.len());
+    median(values[near].to_vec()).unwrap_or(f64::NAN)
 }
 
-fn median(mut values: Vec<f64>) -> f64 {
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+/// The samples from one time to another.
+fn within(times: &[f64], from: f64, to: f64) -> Range<usize> {
+    times.partition_point(|t| *t < from)..times.partition_point(|t| *t <= to)
 }
 
 /// Checks that the swings stay about one place, as they do in one well.
@@ -170,7 +170,7 @@ fn stays(times: &[f64], values: &[f64]) -> Result<(), Unidentified> {
         |k: &usize| (middles[*k + 2] - middles[*k]).abs() > MOVED * (values[*k + 1] - values[*k]).abs();
     match (0..middles.len().saturating_sub(2)).find(moved) {
         None => Ok(()),
-        Some(k) => Err(Unidentified::Moved { at: short(times[k]) }),
+        Some(k) => Err(Unidentified::Moved(short(times[k]))),
     }
 }
 
@@ -181,8 +181,7 @@ fn narrow(times: &[f64], values: &[f64], turns: &[Turn], periods: &[f64], noise:
         let last = turns.len() - 1;
         let depth = DEPTH * swing(k.saturating_sub(1)).min(swing(k.min(last - 1)));
         let (value, t, reach) = (values[turns[k].at], times[turns[k].at], 2.0 * REACH * periods[k]);
-        let range =
-            times.partition_point(|time| *time < t - reach)..times.partition_point(|time| *time <= t + reach);
+        let range = within(times, t - reach, t + reach);
         let inside = t - reach >= times[0] && t + reach <= times[times.len() - 1];
         if !inside || range.len() < 2 || depth < CLEAR * noise {
             return None;
@@ -196,14 +195,11 @@ fn narrow(times: &[f64], values: &[f64], turns: &[Turn], periods: &[f64], noise:
     for first in [0, 1] {
         let known: Vec<(usize, f64)> =
             (first..turns.len()).step_by(2).filter_map(|k| Some((k, widths[k]?))).collect();
-        if known.is_empty() {
-            continue;
-        }
         for k in (first..turns.len()).step_by(2) {
             let at = known.partition_point(|width| width.0 < k);
             let begin = at.saturating_sub(WIDTHS / 2).min(known.len().saturating_sub(WIDTHS));
             let near = &known[begin..(begin + WIDTHS).min(known.len())];
-            let usual = median(near.iter().map(|width| width.1).collect());
+            let usual = median(near.iter().map(|width| width.1).collect()).unwrap_or(1.0);
             narrow[k] = if usual > NARROW { 1.0 } else { usual };
         }
     }
@@ -221,8 +217,7 @@ fn local(times: &[f64], values: &[f64], peak: &Peak, rate: f64) -> Result<Option
         if !(centre - reach >= times[0] && centre + reach <= times[times.len() - 1]) {
             return Ok(None);
         }
-        let range =
-            times.partition_point(|t| *t < centre - reach)..times.partition_point(|t| *t <= centre + reach);
+        let range = within(times, centre - reach, centre + reach);
         samples = range.len();
         let near = times[range.clone()].iter().map(|t| t - centre).zip(values[range].iter().copied());
         if samples >= FEWEST_OF_HARMONICS {

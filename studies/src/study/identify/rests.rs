@@ -3,7 +3,7 @@
 use nalgebra::SVector;
 
 use super::Identity;
-use super::force::{Known, Pull};
+use super::force::{Known, Pull, within};
 use crate::numeric::regression::{Fit, least_squares};
 use crate::numeric::{bisect, golden_section};
 
@@ -59,8 +59,7 @@ impl Rest {
         let mut best: Option<Self> = None;
         let fitted = |reach: f64, kinked: bool| {
             let reach = reach * range;
-            let samples: Vec<Vec<(f64, f64)>> =
-                pulls.iter().map(|pull| samples(pull, place, reach)).collect();
+            let samples: Vec<_> = pulls.iter().map(|pull| samples(pull, place, reach)).collect();
             let kink = if kinked { Some(kink_of(&samples)?) } else { None };
             let fit = |samples: &Vec<(f64, f64)>| Near::fit(samples, place, reach, kink);
             Self::of(place, reach, samples.iter().map(fit).collect::<Option<Vec<_>>>()?)
@@ -77,9 +76,7 @@ impl Rest {
 
     /// The equilibrium of the mean of these fits.
     fn of(place: f64, reach: f64, fits: Vec<Near>) -> Option<Self> {
-        let at = |x: f64, order: usize| {
-            fits.iter().map(|fit| fit.known(&fit.terms(x, order), order)).reduce(Known::and)
-        };
+        let at = |x: f64, order: usize| mean(&fits, x, order);
         let force = |x: f64| at(x, 0).map_or(f64::NAN, |known| known.value);
         let (low, high) = (place - reach, place + reach);
         let step = (high - low) / f64::from(PLACES);
@@ -128,25 +125,27 @@ impl Rest {
     }
 
     /// Place and stiffness under these names.
-    pub fn identities(&self, [place, stiffness]: [&'static str; 2]) -> [Identity; 2] {
-        let identity =
-            |name, (value, [low, high]): (f64, [f64; 2])| Identity { name, value, interval: (low, high) };
-        [identity(place, self.x), identity(stiffness, self.stiffness)]
+    pub fn identities(&self, names: [&'static str; 2]) -> [Identity; 2] {
+        let named = [(names[0], self.x), (names[1], self.stiffness)];
+        named.map(|(name, (value, interval))| Identity { name, value, interval: interval.into() })
     }
 
     /// Integral of the force from this equilibrium to a place within the reach of its fits, in J, and force
     /// and slope there.
     pub fn work_to(&self, x: f64) -> Option<[Known; 3]> {
         let work = self.fits.iter().map(|fit| fit.work(self.x.0, x)).reduce(Known::and)?;
-        let at =
-            |order| self.fits.iter().map(|fit| fit.known(&fit.terms(x, order), order)).reduce(Known::and);
-        Some([work, at(0)?, at(1)?])
+        Some([work, mean(&self.fits, x, 0)?, mean(&self.fits, x, 1)?])
     }
 
     /// How far the fits reach to either side, in m.
     pub fn reach(&self) -> f64 {
         self.fits.first().map_or(0.0, |fit| fit.reach - (self.x.0 - fit.centre).abs())
     }
+}
+
+/// The mean force of some fits at a place in m, or with an order of 1 its slope.
+fn mean(fits: &[Near], x: f64, order: usize) -> Option<Known> {
+    fits.iter().map(|fit| fit.known(&fit.terms(x, order), order)).reduce(Known::and)
 }
 
 /// Terms of a fit: four of a cubic, three of another beyond the kink, and what moves the kink.
@@ -251,9 +250,8 @@ fn joined_terms(u: f64, kink: f64) -> [f64; 7] {
 
 /// The samples of a pull up to `reach` away from a place, over u.
 fn samples(pull: &Pull, centre: f64, reach: f64) -> Vec<(f64, f64)> {
-    let inside = pull.partition_point(|sample| sample.0 < centre - reach)
-        ..pull.partition_point(|sample| sample.0 <= centre + reach);
-    pull[inside].iter().map(|(x, force)| ((x - centre) / reach, *force)).collect()
+    let inside = within(pull, centre - reach, centre + reach);
+    inside.iter().map(|(x, force)| ((x - centre) / reach, *force)).collect()
 }
 
 /// The place of a kink that all directions have, which leaves the least squares.

@@ -1,10 +1,11 @@
 //! Evaluation of the conditions of lessons.
 
-use super::fields::{Value, value};
-use super::subject::Subject;
+use super::Subject;
 use crate::dynamics::Summary;
-use crate::scene::lesson::{Condition, Step};
+use crate::numeric::extent;
+use crate::scene::lesson::{Condition, ResultField, Step};
 use crate::scene::{FieldPath, Start};
+use crate::study::{SUMMARY_FIELDS, SummaryField};
 
 /// Why there is no verdict.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -107,10 +108,7 @@ impl Judge<'_> {
                     })
                     .collect();
                 Ok(values.is_some_and(|values| {
-                    let (low, high) =
-                        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), number| {
-                            (a.min(*number), b.max(*number))
-                        });
+                    let (low, high) = extent(values);
                     high - low <= within * low.abs().max(high.abs())
                 }))
             }
@@ -185,4 +183,43 @@ fn mean(values: &[f64]) -> (f64, f64) {
     let mean = values.iter().sum::<f64>() / count;
     let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
     (mean, (squares / (count - 1.0) / count).sqrt())
+}
+
+/// Value of a field.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Value {
+    /// A number.
+    Number(f64),
+    /// A word.
+    Word(String),
+    /// Nothing.
+    Missing,
+}
+
+impl Value {
+    /// A number, missing if it is not finite.
+    pub fn number(value: f64) -> Self {
+        if value.is_finite() { Self::Number(value) } else { Self::Missing }
+    }
+}
+
+/// Forcing periods after which the motion repeats, 0 where no period was found.
+const PERIOD_MULTIPLE: &str = "period_multiple";
+
+/// The fields of a summary that conditions may name: those of `simulate` and `period_multiple`.
+pub fn result_fields() -> Vec<ResultField> {
+    let of_summary = SUMMARY_FIELDS.iter().map(|field| ResultField { name: field.name, words: field.words });
+    of_summary.chain([ResultField { name: PERIOD_MULTIPLE, words: &[] }]).collect()
+}
+
+/// The field called `name` of a summary.
+pub(super) fn value(summary: &Summary, name: &str) -> Value {
+    if name == PERIOD_MULTIPLE {
+        return Value::Number(summary.period.map_or(0.0, f64::from));
+    }
+    let field = SummaryField::find(name);
+    if let Some(number) = field.and_then(|field| field.number(summary)) {
+        return Value::Number(number);
+    }
+    field.and_then(|field| field.word(summary)).map_or(Value::Missing, |word| Value::Word(word.to_owned()))
 }

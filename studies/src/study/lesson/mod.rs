@@ -2,12 +2,9 @@
 //! right from its first step to its last.
 
 mod check;
-mod fields;
 mod judge;
 mod subject;
 
 pub use check::{LessonFinding, LessonReport, check_lesson};
-pub use fields::Value;
-pub use fields::result_fields;
-pub use judge::{Lack, Unjudged, goal_lack, options_that_hold};
+pub use judge::{Lack, Unjudged, Value, goal_lack, options_that_hold, result_fields};
 pub use subject::Subject;

@@ -8,10 +8,9 @@ use crate::dynamics::{Model, Request, Run, Summary};
 use crate::mechanics::Mechanism;
 use crate::scene::lesson::{Condition, Lesson};
 use crate::scene::{Axis, Excitation, FieldPath, Files, Scene, Start};
-use crate::study::fields::SummaryField;
 use crate::study::shared_runs::shared_runs;
-use crate::study::up_and_down::walk_over;
-use crate::study::{Family, Task};
+use crate::study::walk::walk_over;
+use crate::study::{Family, SummaryField, Task};
 use crate::system::threads::Pool;
 
 /// What is judged: a scene, and what it is compared with.

@@ -3,11 +3,10 @@
 
 use nalgebra::Vector3;
 
-use super::branch::{Branch, BranchEnd};
 use super::corrector::{Corrector, Point};
 use super::events::{BranchEvent, between, differ};
 use super::grazing::{Beside, Grazing, grazings};
-use super::{NoOrbit, Orbit, SAME};
+use super::{Branch, BranchEnd, NoOrbit, Orbit, SAME};
 use crate::dynamics::Model;
 use crate::study::Task;
 

@@ -2,10 +2,9 @@
 
 use std::ops::Range;
 
-use crate::study::identify::turns::{Turn, turns};
-
 use super::meeting::{Meeting, Sides};
-use super::motion::{Motion, median};
+use super::{Motion, median};
+use crate::study::identify::turns::{Turn, turns};
 
 /// A turning point at a stop.
 #[derive(Debug, Clone)]

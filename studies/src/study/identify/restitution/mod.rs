@@ -1,26 +1,25 @@
 //! Coefficient of restitution from a record of displacement, or from the times of impacts.
 
-mod choice;
 mod contacts;
 mod meeting;
 mod motion;
-mod times;
 mod trials;
 
-use self::choice::Choice;
 use self::contacts::{Contact, contacts};
 use self::meeting::{place, restitution as ratio};
 use self::motion::Motion;
-pub(super) use self::motion::median;
-use self::trials::{Single, Trial, each, together, trials};
-use super::{Identified, Identity, Unidentified};
+use self::trials::{Choice, Single, Trial, each, together, trials};
+pub(super) use super::turns::median;
+use super::{Identified, Identity, Unidentified, with_interval};
+use crate::numeric::regression::{geometric, student};
 use crate::numeric::short;
-use crate::study::table::Table;
+use crate::study::Table;
 
-pub use times::restitution_of_times;
+/// Columns of the restitution with its interval.
+const RESTITUTION: [&str; 3] = ["restitution", "restitution_low", "restitution_high"];
 
 /// Samples that a rebound should have.
-const ENOUGH: usize = 8;
+pub(super) const ENOUGH: usize = 8;
 
 /// Restitution of the impacts in a record of displacement `x` in m over `times` in s, of a mass that is
 /// shaken between stops or bounces freely.
@@ -212,10 +211,10 @@ fn unresolved(motion: &Motion, found: usize) -> Unidentified {
     match contacts::longest_rebound(motion).or((found > 0).then_some(2)) {
         Some(longest) if longest < ENOUGH => {
             let [rate, needed] = [rate, rate * ENOUGH as f64 / longest as f64].map(short);
-            Unidentified::Slow { longest, rate, needed, enough: ENOUGH }
+            Unidentified::Slow { longest, rate, needed }
         }
         _ if found > 0 => Unidentified::Noisy { found, noise },
-        _ => Unidentified::NoImpact { noise, enough: ENOUGH },
+        _ => Unidentified::NoImpact(noise),
     }
 }
 
@@ -223,29 +222,18 @@ fn rows(contacts: &[Contact], singles: &[Single]) -> Table {
     let right = |single: &Single| contacts[single.contact].right;
     let outward = |single: &Single| if right(single) { 1.0 } else { -1.0 };
     let side = |single: &Single| if right(single) { "right" } else { "left" };
-    let v_in = |single: &Single| (outward(single) * single.impact.towards, single.halves[0]);
-    let v_out = |single: &Single| (-outward(single) * single.impact.away, single.halves[1]);
-    let ratio = |single: &Single| (single.ratio.value, single.ratio.half);
+    let v_in = ["v_in_m_per_s", "v_in_low_m_per_s", "v_in_high_m_per_s"];
+    let v_out = ["v_out_m_per_s", "v_out_low_m_per_s", "v_out_high_m_per_s"];
     let table = Table::new().each("t_s", singles, |single| single.impact.t).each("side", singles, side);
-    let table =
-        with_interval(table, singles, ["v_in_m_per_s", "v_in_low_m_per_s", "v_in_high_m_per_s"], v_in);
-    let table =
-        with_interval(table, singles, ["v_out_m_per_s", "v_out_low_m_per_s", "v_out_high_m_per_s"], v_out);
-    with_interval(table, singles, ["restitution", "restitution_low", "restitution_high"], ratio)
-}
-
-/// The table with a value, of which half of the interval is known, and the ends of the interval.
-fn with_interval(
-    table: Table,
-    singles: &[Single],
-    names: [&str; 3],
-    of: impl Fn(&Single) -> (f64, f64),
-) -> Table {
-    let end = |single: &Single, sign: f64| of(single).0 + sign * of(single).1;
-    table
-        .each(names[0], singles, |single| of(single).0)
-        .each(names[1], singles, |single| end(single, -1.0))
-        .each(names[2], singles, |single| end(single, 1.0))
+    let table = with_interval(table, v_in, singles, |single| {
+        Identity::new(v_in[0], outward(single) * single.impact.towards, single.halves[0])
+    });
+    let table = with_interval(table, v_out, singles, |single| {
+        Identity::new(v_out[0], -outward(single) * single.impact.away, single.halves[1])
+    });
+    with_interval(table, RESTITUTION, singles, |single| {
+        Identity::new(RESTITUTION[0], single.ratio.value, single.ratio.half)
+    })
 }
 
 /// The impacts, and how far each flight goes after it.
@@ -262,4 +250,37 @@ fn fitted(motion: &Motion, contacts: &[Contact], singles: &[Single]) -> Table {
         .each("x_m", singles, |single| single.impact.x)
         .each("rebound_t_s", &ends, |end| at(&motion.times, end))
         .each("rebound_x_m", &ends, |end| at(&motion.x, end))
+}
+
+/// Restitution of the impacts at these `times` in s of a body that bounces on one stop under a constant
+/// acceleration: then each flight is as much shorter than the one before, and the times follow
+/// c + a e^k, which is fitted by least squares.
+///
+/// Rows, one for each impact between two flights: `t_s,restitution,restitution_low,restitution_high`.
+pub fn restitution_of_times(times: &[f64]) -> Result<Identified, Unidentified> {
+    let none = |why| Unidentified::NoBounces(times.len(), why);
+    let law = geometric(times).ok_or_else(|| none("give more, or such as lie between bounces alone"))?;
+    let e = law.coefficients[2];
+    if !(e > 0.0 && law.coefficients[1] < 0.0) {
+        return Err(none("the flights do not become shorter; give such as lie between bounces alone"));
+    }
+    let misfit =
+        |(k, t): (usize, &f64)| (t - law.coefficients[0] - law.coefficients[1] * e.powi(k as i32)).powi(2);
+    let noise = (times.iter().enumerate().map(misfit).sum::<f64>() / law.freedom as f64).sqrt();
+    let row = |times: &[f64]| {
+        let flight = times[1] - times[0];
+        let ratio = (times[2] - times[1]) / flight;
+        let error = noise / flight * (1.0 + ratio.powi(2) + (1.0 + ratio).powi(2)).sqrt();
+        (times[1], Identity::new(RESTITUTION[0], ratio, student(law.freedom) * error))
+    };
+    let rows: Vec<(f64, Identity)> = times.windows(3).map(row).collect();
+    let rows = with_interval(Table::new().each("t_s", &rows, |row| row.0), RESTITUTION, &rows, |row| row.1);
+    let half = student(law.freedom) * law.covariance[(2, 2)].sqrt();
+    let remarks = vec![
+        "of impact times: the ratio of successive flights, which is the restitution where the acceleration \
+         of the flights is constant"
+            .to_owned(),
+    ];
+    let summary = vec![Identity::new("restitution", e, half)];
+    Ok(Identified { rows, fitted: Table::new(), summary, remarks })
 }

@@ -122,9 +122,3 @@ fn integrated(times: &[f64], accelerations: &[f64]) -> Vec<[f64; 3]> {
     };
     times.iter().zip(accelerations).map(next).collect()
 }
-
-/// The median of some values; the greater of two middle ones.
-pub fn median(mut values: Vec<f64>) -> Option<f64> {
-    let middle = values.len() / 2;
-    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
-}
