@@ -5,16 +5,12 @@ use std::sync::Arc;
 
 use super::amplitudes::{Above, crossing, frees_at};
 use super::bisection::multiple;
-use super::family::Family;
-use super::fields::SummaryField;
 use super::grid::{is_of_mechanism, name_of};
 use super::settled::{followed, settled_within};
 use super::shared_runs::shared_runs;
-use super::table::{Table, Values};
-use super::thresholds::{Found, Onset};
-use super::{Cancelled, Task};
+use super::{Cancelled, Family, Found, Onset, SummaryField, Table, Task};
 use crate::dynamics::{Model, Run, Summary};
-use crate::mechanics::{BuildError, Mechanism};
+use crate::mechanics::Mechanism;
 use crate::numeric::round::decade;
 use crate::scene::{Excitation, FieldPath, Files, Scene, Start, numeric_fields};
 use crate::system::threads::Pool;
@@ -188,11 +184,9 @@ impl Rating<'_> {
         // the scene has the field, which is one of its sizes
         path.get(&trial).filter(|value| path.set(&mut trial, value * (1.0 + by))).ok_or(Cancelled)?;
         let built = Mechanism::build_unless(&trial.mechanism, &scene.files, self.task.cancel);
-        let mechanism = match built.ok_or(Cancelled)? {
-            Ok(mechanism) => Arc::new(mechanism),
-            Err(BuildError::Wrong(_) | BuildError::Unsolved(_)) => return Ok(None),
-        };
-        Ok(self.crossing(&trial, &mechanism, Above::Skipped)?.and_then(|found| found.value))
+        let Ok(mechanism) = built.ok_or(Cancelled)? else { return Ok(None) };
+        let found = self.crossing(&trial, &Arc::new(mechanism), Above::Skipped)?;
+        Ok(found.and_then(|found| found.value))
     }
 
     /// The band of frequencies that cross. All steps of a scan are run, and only the ends of the band are
@@ -251,30 +245,22 @@ fn decimal(value: f64) -> f64 {
 /// A row for each scene: name, thresholds, numbers of the settled motion, band of frequencies, and
 /// sensitivity of the threshold to sizes.
 pub fn comparison_table(rated: &[Rated]) -> Table {
-    let number =
-        |of: fn(&Rated) -> Option<f64>| rated.iter().map(|row| of(row).unwrap_or(f64::NAN)).collect();
-    let names = |of: fn(&Rated) -> String| Values::Names(rated.iter().map(of).collect());
     let mut table = Table::new()
-        .with("scene", names(|row| row.name.clone()))
-        .with("release_g", number(|row| row.release_g))
-        .with("crossing_g", number(Rated::crossing_g))
-        .with("crossing_low_g", number(|rated| rated.crossing?.low))
-        .with("crossing_high_g", number(|rated| rated.crossing?.high))
-        .each("crossing_undecided", rated, |row| match row.crossing {
-            Some(found) if found.undecided => "true",
-            Some(_) => "false",
-            None => "",
-        });
+        .each("scene", rated, |row| row.name.clone())
+        .each("release_g", rated, |row| row.release_g)
+        .each("crossing_g", rated, Rated::crossing_g)
+        .each("crossing_low_g", rated, |row| row.crossing?.low)
+        .each("crossing_high_g", rated, |row| row.crossing?.high)
+        .each("crossing_undecided", rated, |row| row.crossing.map(|found| found.undecided));
     let summary = ["rms_velocity_m_per_s", "mean_load_power_w", "max_abs_x_m", "impact_speed_max_m_per_s"];
     for field in summary.into_iter().filter_map(SummaryField::find) {
         table = table.with(field.name, field.column(rated.iter().map(|row| Some(&row.summary))));
     }
     table
-        .with("crosses_from_hz", number(|row| row.crosses_hz.map(|band| band.0)))
-        .with("crosses_to_hz", number(|row| row.crosses_hz.map(|band| band.1)))
-        .with("threshold_sensitivity", number(|row| row.sensitivity.as_ref().map(|(change, _)| *change)))
-        .with(
-            "most_sensitive_to",
-            names(|row| row.sensitivity.as_ref().map_or(String::new(), |(_, size)| size.clone())),
-        )
+        .each("crosses_from_hz", rated, |row| row.crosses_hz.map(|band| band.0))
+        .each("crosses_to_hz", rated, |row| row.crosses_hz.map(|band| band.1))
+        .each("threshold_sensitivity", rated, |row| Some(row.sensitivity.as_ref()?.0))
+        .each("most_sensitive_to", rated, |row| {
+            row.sensitivity.clone().map_or(String::new(), |(_, size)| size)
+        })
 }

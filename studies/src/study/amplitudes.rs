@@ -3,10 +3,9 @@
 use std::sync::Arc;
 
 use super::bisection::multiple;
-use super::family::Family;
 use super::settled::followed;
-use super::thresholds::{Answers, Found, Onset, Search, Verdict};
-use super::{Cancelled, Task};
+use super::thresholds::{Answers, Search};
+use super::{Cancelled, Family, Found, Onset, Task, Verdict};
 use crate::dynamics::{Model, Request, STANDARD_GRAVITY};
 use crate::mechanics::{Landscape, Mechanism};
 use crate::numeric::round::{ONE_TWO_FIVE, decade, round_down};

@@ -29,7 +29,7 @@ pub fn contact(model: &Model, rigid: f64) -> Option<Table> {
     let last = (SPEEDS - 1) as f64;
     let speeds: Vec<f64> = (0..SPEEDS).map(|i| top * i as f64 / last).collect();
     let force = |v: &f64| stop.peak_force(model.mass(), *v);
-    let time = |v: &f64| if *v > 0.0 { stop.contact_time(model.mass(), *v) } else { f64::NAN };
+    let time = |v: &f64| (*v > 0.0).then(|| stop.contact_time(model.mass(), *v));
     let table = Table::new()
         .each("speed_m_per_s", &speeds, |v| *v)
         .each("restitution", &speeds, |v| stop.restitution(*v))
@@ -37,7 +37,7 @@ pub fn contact(model: &Model, rigid: f64) -> Option<Table> {
         .each("contact_time_s", &speeds, time)
         .each("depth_m", &speeds, |v| stop.depth(model.mass(), *v))
         .each("peak_force_n", &speeds, force)
-        .each("peak_pressure_pa", &speeds, |v| stop.pressure(force(v)).unwrap_or(f64::NAN));
+        .each("peak_pressure_pa", &speeds, |v| stop.pressure(force(v)));
     Some(table)
 }
 

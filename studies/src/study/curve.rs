@@ -1,6 +1,6 @@
 //! Force, potential and stiffness of a mechanism over the displacement.
 
-use super::table::Table;
+use super::Table;
 use crate::mechanics::{Equilibrium, Mechanism};
 use crate::numeric::Decimal;
 use crate::numeric::round::decade;

@@ -3,7 +3,7 @@
 
 use Read::{Count, Flag, Number, Word};
 
-use super::table::Values;
+use super::Values;
 use crate::dynamics::{First, Firsts, Outcome, Place, Regime, STANDARD_GRAVITY, Summary};
 
 /// What a field of a summary is, and how it is read. A number, count or flag of `None` and an empty word are
@@ -245,8 +245,8 @@ impl SummaryField {
     /// Its column over these summaries, of which some may be missing.
     pub fn column<'a>(&self, summaries: impl Iterator<Item = Option<&'a Summary>>) -> Values {
         match self.read {
-            Number(_) => summaries.map(|s| s.and_then(|s| self.number(s)).unwrap_or(f64::NAN)).collect(),
-            Count(of) => summaries.map(|s| s.and_then(of)).collect(),
+            Number(_) => summaries.map(|s| self.number(s?)).collect(),
+            Count(of) => summaries.map(|s| of(s?)).collect(),
             Word(_) | Flag(_) => {
                 summaries.map(|s| s.and_then(|s| self.word(s)).unwrap_or_default()).collect()
             }

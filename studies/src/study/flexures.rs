@@ -2,9 +2,8 @@
 //!
 //! Unlike the force curve, which is a polynomial, every position here is solved separately.
 
-use super::Task;
-use super::curve::{OutsideCurve, check_positions, curve};
-use super::table::Table;
+use super::curve::check_positions;
+use super::{OutsideCurve, Table, Task, curve};
 use crate::mechanics::Mechanism;
 use crate::mechanics::flexure::{FlexureError, Flexures, State};
 use crate::numeric::short;
@@ -40,9 +39,7 @@ pub fn flexures_at<'a>(mechanism: &'a Mechanism, positions: &[f64]) -> Result<&'
 pub fn states(mechanism: &Mechanism, positions: &[f64], task: &Task) -> Result<Vec<State>, StatesError> {
     let flexures = flexures_at(mechanism, positions)?;
     let state = |x: &f64| {
-        if task.is_cancelled() {
-            return Err(StatesError::Cancelled);
-        }
+        task.go_on().map_err(|_| StatesError::Cancelled)?;
         let state = flexures.state(*x)?;
         (task.tick)();
         Ok(state)
@@ -55,11 +52,8 @@ pub fn states(mechanism: &Mechanism, positions: &[f64], task: &Task) -> Result<V
 /// any flexure.
 pub fn full_curve(mechanism: &Mechanism, states: &[State]) -> Result<Table, OutsideCurve> {
     let table = curve(mechanism, states.iter().map(|state| state.x).collect())?;
-    Ok(table.each("axial_n", states, |state| state.axial).each("bump_m", states, |state| state.bump).each(
-        "max_stress_pa",
-        states,
-        |state| state.max_stress,
-    ))
+    let table = table.each("axial_n", states, |state| state.axial).each("bump_m", states, |state| state.bump);
+    Ok(table.each("max_stress_pa", states, |state| state.max_stress))
 }
 
 /// The table `x_m,flexure,s_m,px_m,py_m`: the centre lines of each state, point after point; `flexure` is

@@ -1,4 +1,4 @@
-//! Cells of a sweep: the product of its axes, the first one slowest; and their order in a map, coarse to fine.
+//! Cells of a sweep: the product of its axes, the first one slowest; and their order in a map, coarse first.
 
 use super::Table;
 use crate::scene::{Axis, Scene, column_names};
@@ -77,7 +77,7 @@ impl Grid {
 
     /// The columns of the swept fields, a row for each of these cells.
     pub(super) fn table<I: Iterator<Item = u64>>(&self, cells: impl Fn() -> I) -> Table {
-        let value = |place: usize| move |index: u64| self.values(index).nth(place).unwrap_or(f64::NAN);
+        let value = |place: usize| move |index: u64| self.values(index).nth(place);
         let columns = self.columns.iter().enumerate();
         columns
             .fold(Table::new(), |table, (place, name)| table.with(name, cells().map(value(place)).collect()))
@@ -143,8 +143,9 @@ fn count(lengths: impl Iterator<Item = u64> + Clone) -> Result<u64, GridError> {
 /// The strides of the levels, coarse first: powers of two, 1 at last.
 pub const STRIDES: [usize; 4] = [8, 4, 2, 1];
 
-/// The cells of a grid, coarse first: every eighth value of each axis, then every fourth, every second, every one.
-/// The cells of a level are among those of the next, so nothing is run twice, and the last level is the grid.
+/// The cells of a grid, coarse first: every eighth value of each axis, then every fourth, every second, every
+/// one. The cells of a level are among those of the next, so nothing is run twice, and the last level is the
+/// grid.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Levels {
     /// Every cell once, those of a coarser level before those that a finer one adds.

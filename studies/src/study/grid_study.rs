@@ -9,12 +9,8 @@ use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::Task;
-use super::cell::{Cell, CellFaults, SweepEnd, Tally};
-use super::grid::Grid;
-use super::slice::{Shard, Slice};
-use super::table::Table;
-use super::walk::{Carry, Direction, Walk};
+use super::walk::Walk;
+use super::{Carry, Cell, CellFaults, Direction, Grid, Shard, Slice, SweepEnd, Table, Tally, Task};
 use crate::dynamics::{Model, Request, Run};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, Files, Scene};

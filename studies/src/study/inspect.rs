@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::amplitudes::frees_at;
 use super::contact::strikes_in_words;
-use super::curve::small_amplitude_frequency;
+use super::small_amplitude_frequency;
 use crate::dynamics::Model;
 use crate::mechanics::flexure::{Accuracy, Geometry, Group};
 use crate::mechanics::{Equilibrium, Landscape, Mechanism};

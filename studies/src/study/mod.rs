@@ -112,6 +112,9 @@ impl Task<'_> {
     }
 }
 
+/// Displacement in m and velocity in m/s.
+type State = (f64, f64);
+
 /// A study was told to stop before it had its answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Cancelled;

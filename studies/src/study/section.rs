@@ -4,11 +4,9 @@
 
 use std::sync::atomic::AtomicBool;
 
-use super::cell::{Cell, Tally};
-use super::grid::Grid;
-use super::grid_study::{AHEAD, GridStudy, Question, Row, fields};
-use super::table::Table;
-use super::walk::{Carry, without_a_period};
+use super::grid_study::{AHEAD, fields};
+use super::walk::without_a_period;
+use super::{Carry, Cell, Grid, GridStudy, Question, Row, Table, Tally};
 use crate::dynamics::{EventKind, Model, Request, Run, SectionPoint, Side, Summary};
 use crate::scene::{Fault, Scene};
 
@@ -54,12 +52,13 @@ pub struct Sectioned {
     impacts: Vec<Struck>,
 }
 
-/// An impact: its time in s, the stop, the drive's phase in degrees, and the velocity in m/s before it.
+/// An impact: its time in s, the stop, the phase of a drive that repeats in degrees, and the velocity in m/s
+/// before it.
 #[derive(Debug, Clone, Copy)]
 struct Struck {
     t: f64,
     side: Side,
-    phase: f64,
+    phase: Option<f64>,
     v_in: f64,
 }
 
@@ -133,7 +132,7 @@ impl Question for SectionOptions {
         let struck = strikes.map(|event| Struck {
             t: event.t,
             side: event.side,
-            phase: model.drive_phase(event.t).map_or(f64::NAN, |turns| 360.0 * turns),
+            phase: model.drive_phase(event.t).map(|turns| 360.0 * turns),
             v_in: event.v_in,
         });
         Sectioned { cell: Cell::Run(run.summary), impacts: struck.collect(), states: run.section }

@@ -104,7 +104,7 @@ pub fn samples_table(samples: &[Sample], output: impl Fn(&Sample) -> Option<Outp
     if outputs.iter().all(Option::is_none) {
         return table;
     }
-    let column = |of: fn(&Output) -> f64| move |output: &Option<Output>| output.as_ref().map_or(f64::NAN, of);
+    let column = |of: fn(&Output) -> f64| move |output: &Option<Output>| output.as_ref().map(of);
     table
         .each("voltage_v", &outputs, column(|output| output.voltage))
         .each("current_a", &outputs, column(|output| output.current))

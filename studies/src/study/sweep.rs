@@ -2,12 +2,9 @@
 
 use std::sync::atomic::AtomicBool;
 
-use super::cell::{Cell, Tally};
-use super::fields::SummaryField;
-use super::grid::Grid;
-use super::grid_study::{GridStudy, Question, Row, fields};
-use super::table::{Table, Values};
-use super::walk::{Carry, without_a_period};
+use super::grid_study::fields;
+use super::walk::without_a_period;
+use super::{Carry, Cell, Grid, GridStudy, Question, Row, SummaryField, Table, Tally, Values};
 use crate::dynamics::{Model, Request, Run};
 use crate::scene::{Fault, Scene};
 

@@ -132,10 +132,10 @@ pub fn threshold_table(
     Ok(grid
         .table(|| 0..grid.cells())
         .each("of", &found, |_| onset.name())
-        .each("value", &found, |found| found.value.unwrap_or(f64::NAN))
-        .each("low", &found, |found| found.low.unwrap_or(f64::NAN))
-        .each("high", &found, |found| found.high.unwrap_or(f64::NAN))
-        .each("undecided", &found, |found| if found.undecided { "true" } else { "false" })
+        .each("value", &found, |found| found.value)
+        .each("low", &found, |found| found.low)
+        .each("high", &found, |found| found.high)
+        .each("undecided", &found, |found| Some(found.undecided))
         .each("windows", &found, |found| found.value.map(|_| found.windows)))
 }
 

@@ -3,8 +3,8 @@
 //! A picture must be right however sparse the requested samples are, so it has separate ones; a single run
 //! gives both.
 
-use super::Table;
-use super::simulate::{Keep, Simulation, events_table, in_order, samples_table};
+use super::simulate::in_order;
+use super::{Keep, Simulation, Table, events_table, samples_table};
 use crate::dynamics::{Event, EventKind, Model, Outcome, Phase, Request, Sample, Side};
 
 /// One run as a picture shows it.
@@ -71,10 +71,8 @@ pub fn simulate_with_trace(
     let mut seen = picture_times(model, close, span.1);
     let times = ascending(seen.iter().chain(&keep.times).copied().collect());
     let run = model.run(&Request { sample_times: &times, events: true, ledger: true, ..request });
-    let stop = |side: Option<f64>| side.unwrap_or(f64::NAN);
-    let stops = model.stops().map_or((f64::NAN, f64::NAN), |pair| {
-        (stop(pair.left.map(|stop| stop.x)), stop(pair.right.map(|stop| stop.x)))
-    });
+    let (left, right) = model.stop_positions();
+    let stops = (left.unwrap_or(f64::NAN), right.unwrap_or(f64::NAN));
     let end = run.summary.outcome.ended_at().unwrap_or(span.1);
     let mut shown = in_order(&seen, &run.samples);
     if end < span.1 && !matches!(run.summary.outcome, Outcome::Cancelled { .. }) {
@@ -197,11 +195,8 @@ fn rests(events: &[Event], first: Option<&Sample>, end: f64) -> Table {
         }
     }
     spans.extend(open.map(|(from, side)| (from, end, side)));
-    Table::new().each("from_s", &spans, |span| span.0).each("to_s", &spans, |span| span.1).each(
-        "side",
-        &spans,
-        |span| span.2.name(),
-    )
+    let table = Table::new().each("from_s", &spans, |span| span.0).each("to_s", &spans, |span| span.1);
+    table.each("side", &spans, |span| span.2.name())
 }
 
 /// Displacements in m and velocities in m/s at `count` - 1 times, even between two samples of a flight,
@@ -209,7 +204,7 @@ fn rests(events: &[Event], first: Option<&Sample>, end: f64) -> Table {
 ///
 /// For pictures: samples that are dense enough for an oscillation are too few where taut flexures turn the
 /// mass round in a hundredth of it. The classical Runge-Kutta method goes from one sample towards the next,
-/// the base's acceleration taken as linear between them, and its error at the next one is spread over the way.
+/// with the acceleration of the base linear between them; its error at the next one is spread over the way.
 pub fn between(model: &Model, from: &Sample, to: &Sample, count: usize) -> Vec<(f64, f64)> {
     let whole = to.t - from.t;
     if !(whole > 0.0) || from.phase != Phase::Free || count < 2 {

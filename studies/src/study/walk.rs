@@ -1,6 +1,6 @@
 //! Walks over a field: runs each of which goes on from where the one before was.
 
-use super::{Family, Task};
+use super::{Family, State, Task};
 use crate::dynamics::{Model, Request, Run, Summary};
 use crate::scene::{Fault, FieldPath, Scene};
 use crate::system::threads::Pool;
@@ -76,7 +76,7 @@ pub(super) struct Walk {
 
 /// The model of the last run of a walk, and the state from which the next one goes on.
 #[derive(Default)]
-pub(super) struct Carried(Option<(Model, (f64, f64))>);
+pub(super) struct Carried(Option<(Model, State)>);
 
 impl Carried {
     /// The next model, which goes on from the run before.

@@ -9,9 +9,8 @@ use std::collections::VecDeque;
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::Table;
-use super::models::{Held, Models};
-use super::simulate::events_table;
+use super::models::Models;
+use super::{Held, Table, events_table};
 use crate::dynamics::{Event, EventKind, Live, LiveLedger, LiveOutput, Model, Outcome, Phase, Sample, Side};
 use crate::scene::{Excitation, Scene, Start};
 
@@ -375,12 +374,12 @@ pub fn watched_events(watch: &Watch, which: Range<usize>) -> Table {
     let count = watch.events().len();
     let which = which.start.min(count)..which.end.min(count);
     let events: Vec<Event> = watch.events().range(which).copied().collect();
-    let phase =
-        |event: &Event| watch.model_at(event.t).drive_phase(event.t).map_or(f64::NAN, |turns| 360.0 * turns);
-    let lost = |event: &Event| match event.kind {
-        EventKind::Contact | EventKind::Separate => f64::NAN,
+    let phase = |event: &Event| watch.model_at(event.t).drive_phase(event.t).map(|turns| 360.0 * turns);
+    let lost = |event: &Event| {
+        let mass = watch.model_at(event.t).mass();
+        let is_spread = matches!(event.kind, EventKind::Contact | EventKind::Separate);
         // the sum of the speeds times their difference: exact where they are nearly equal
-        _ => 0.5 * watch.model_at(event.t).mass() * (event.v_in + event.v_out) * (event.v_in - event.v_out),
+        (!is_spread).then_some(0.5 * mass * (event.v_in + event.v_out) * (event.v_in - event.v_out))
     };
     events_table(&events).each("phase_deg", &events, phase).each("lost_j", &events, lost)
 }

@@ -3,7 +3,7 @@
 use super::Basins;
 use super::rounds::{Fate, Kind, Way};
 use crate::dynamics::{Model, Outcome, Place, Regime, Request, Side, Summary};
-use crate::study::{Table, Task};
+use crate::study::{State, Table, Task};
 
 /// The quantile of the normal distribution that leaves 95 % within.
 const NORMAL_95: f64 = 1.959_963_984_540_054;
@@ -103,11 +103,7 @@ impl Answer {
             .each("v_m_per_s", &rows, |row| basins.starts().at(*row).1)
             .each("attractor", &rows, |row| self.rows[*row].map(|(number, _)| u64::from(number)))
             .each("periods", &rows, |row| self.rows[*row].map(|(_, periods)| u64::from(periods)))
-            .each("sure", &rows, |row| match self.rows[*row].and_then(|_| self.sure.get(*row)) {
-                Some(true) => "true",
-                Some(false) => "false",
-                None => "",
-            })
+            .each("sure", &rows, |row| self.rows[*row].and_then(|_| self.sure.get(*row).copied()))
     }
 
     /// How many rows have an answer that is not sure.
@@ -124,7 +120,7 @@ impl Answer {
             .each("regime", all, |attractor| attractor.regime.name())
             .each("period", all, |attractor| attractor.period.map(u64::from))
             .each("side", all, |attractor| attractor.side.map_or("", Place::name))
-            .each("rms_velocity_m_per_s", all, |attractor| attractor.rms_velocity.unwrap_or(f64::NAN))
+            .each("rms_velocity_m_per_s", all, |attractor| attractor.rms_velocity)
             .each("x_m", all, |attractor| attractor.states[0].0)
             .each("v_m_per_s", all, |attractor| attractor.states[0].1)
             .each("starts", all, |attractor| Some(attractor.starts))
@@ -226,13 +222,7 @@ impl Basins {
 
     /// The summary of an attractor, and its states: of an orbit from one of its states, else from the start
     /// `row`, which settles after `settled` periods.
-    fn describe(
-        &self,
-        key: Key,
-        row: usize,
-        settled: u32,
-        task: &Task,
-    ) -> Option<(Summary, Vec<(f64, f64)>)> {
+    fn describe(&self, key: Key, row: usize, settled: u32, task: &Task) -> Option<(Summary, Vec<State>)> {
         let period = self.model.forcing_period().unwrap_or(1.0);
         let (x_mm, v) = self.starts.at(row);
         let mut start = (x_mm / 1e3, v);
@@ -267,15 +257,15 @@ impl Basins {
 
 /// The state of a settled motion after each of `count` forcing periods, that with the largest
 /// displacement first.
-fn states(model: &Model, state: (f64, f64), count: u32, period: f64) -> Vec<(f64, f64)> {
+fn states(model: &Model, state: State, count: u32, period: f64) -> Vec<State> {
     let times: Vec<f64> = (0..count).map(|number| f64::from(number) * period).collect();
     let request = Request { sample_times: &times, ..Request::default() };
     let run = model.with_start(state).with_duration(f64::from(count) * period, 0.0).run(&request);
     if run.summary.outcome != Outcome::Done || run.samples.len() != times.len() {
         return vec![state];
     }
-    let mut states: Vec<(f64, f64)> = run.samples.iter().map(|sample| (sample.x, sample.v)).collect();
-    let by_state = |a: &(f64, f64), b: &(f64, f64)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1));
+    let mut states: Vec<State> = run.samples.iter().map(|sample| (sample.x, sample.v)).collect();
+    let by_state = |a: &State, b: &State| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1));
     let first = (0..states.len()).max_by(|a, b| by_state(&states[*a], &states[*b])).unwrap_or(0);
     states.rotate_left(first);
     states

@@ -28,7 +28,7 @@ use std::sync::Arc;
 use crate::dynamics::{Model, Request};
 use crate::mechanics::Mechanism;
 use crate::scene::{Damping, Excitation, Fault, Scene, Start, Stops};
-use crate::study::{Levels, STRIDES};
+use crate::study::{Levels, STRIDES, State};
 pub use answer::{Answer, Attractor, Shares};
 use rounds::{PATIENCE, Rounds};
 pub use starts::{EvenRange, MAX_STARTS, Starts, StartsError};
@@ -183,7 +183,7 @@ impl Basins {
     }
 
     /// Start `row` in m and m/s; `None` outside the room.
-    fn start(&self, row: usize) -> Option<(f64, f64)> {
+    fn start(&self, row: usize) -> Option<State> {
         let (x_mm, v) = self.starts.at(row);
         let x = x_mm / 1e3;
         (x >= self.room.0 && x <= self.room.1).then_some((x, v))

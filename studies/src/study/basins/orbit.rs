@@ -10,7 +10,7 @@
 
 use super::stroboscopic::Stroboscope;
 use crate::dynamics::{Capture, Jacobian, Outcome};
-use crate::study::Cancelled;
+use crate::study::{Cancelled, State};
 
 /// A displacement and a velocity in units of the scene's scales.
 type Point = [f64; 2];
@@ -52,13 +52,13 @@ pub(super) enum Found {
     /// A stable one: its states, each with its ellipse.
     Stable(Vec<Capture>),
     /// An unstable one, through this state in m and m/s.
-    Unstable((f64, f64)),
+    Unstable(State),
     /// No orbit, or none with an ellipse from which all motions go to it.
     Nothing,
 }
 
 /// The orbit of the proposed period, or twice that, near a state in m and m/s.
-pub(super) fn find(scope: &Stroboscope, period: u32, state: (f64, f64)) -> Result<Found, Cancelled> {
+pub(super) fn find(scope: &Stroboscope, period: u32, state: State) -> Result<Found, Cancelled> {
     let first = of_period(scope, period, state)?;
     // Soon after a period doubling the two halves of the doubled orbit are nearly equal.
     if let Found::Unstable(_) = first
@@ -69,7 +69,7 @@ pub(super) fn find(scope: &Stroboscope, period: u32, state: (f64, f64)) -> Resul
     Ok(first)
 }
 
-fn of_period(scope: &Stroboscope, period: u32, state: (f64, f64)) -> Result<Found, Cancelled> {
+fn of_period(scope: &Stroboscope, period: u32, state: State) -> Result<Found, Cancelled> {
     let Some(root) = newton(scope, period, scope.point(state)) else { return Ok(Found::Nothing) };
     let after: Vec<(Point, u32)> = (1..=period).map(|periods| (root, periods)).collect();
     let Some(states) = scope.map(&after)?.into_iter().collect::<Option<Vec<Point>>>() else {

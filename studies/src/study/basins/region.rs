@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use super::stroboscopic::Stroboscope;
 use crate::dynamics::{Capture, Region};
 use crate::numeric::extent;
-use crate::study::Cancelled;
+use crate::study::{Cancelled, State};
 
 /// Motions that are followed to find an attractor.
 const MOTIONS: usize = 16;
@@ -34,11 +34,11 @@ const ROUNDS: usize = 40;
 /// it comes to a known orbit.
 pub(super) fn absorbing(
     scope: &Stroboscope,
-    state: (f64, f64),
+    state: State,
     known: &[Capture],
 ) -> Result<Option<Region>, Cancelled> {
     let [x, v] = scope.point(state);
-    let starts: Vec<(f64, f64)> = (0..MOTIONS)
+    let starts: Vec<State> = (0..MOTIONS)
         .map(|number| [x, v + APART * number as f64])
         .filter(|point| scope.has(*point))
         .map(|point| scope.state(point))
@@ -66,7 +66,7 @@ pub(super) fn absorbing(
 fn closed(
     scope: &Stroboscope,
     region: Region,
-    states: &[(f64, f64)],
+    states: &[State],
     known: &[Capture],
 ) -> Result<Option<Region>, Cancelled> {
     let mut cells: BTreeSet<(i32, i32)> = BTreeSet::new();

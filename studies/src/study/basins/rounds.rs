@@ -7,7 +7,7 @@ use super::{Basins, Starts};
 use crate::dynamics::{
     Arrival, Capture, Outcome, Place, Pursued, Pursuit, Regime, Region, ReleaseIdentity, Side, Summary,
 };
-use crate::study::{Cancelled, Task, settled};
+use crate::study::{Cancelled, State, Task, settled};
 use crate::system::threads::Pool;
 
 /// Forcing periods after which a motion that reaches no known attractor is judged.
@@ -192,9 +192,9 @@ pub(super) struct Rounds {
     /// The orbit of each capture.
     pub orbit_of: Vec<u32>,
     /// States that proposed no stable orbit.
-    rejected: Vec<(f64, f64)>,
+    rejected: Vec<State>,
     /// States of unstable orbits.
-    unstable: Vec<(f64, f64)>,
+    unstable: Vec<State>,
     /// Regions around irregular motions.
     pub regions: Vec<Region>,
     /// The kind of each region.
@@ -315,7 +315,7 @@ impl Rounds {
     }
 
     /// Looks for an orbit near a state that proposed one.
-    fn propose(&mut self, scope: &Stroboscope, period: u32, state: (f64, f64)) -> Result<(), Cancelled> {
+    fn propose(&mut self, scope: &Stroboscope, period: u32, state: State) -> Result<(), Cancelled> {
         let known = self.captures.iter().any(|capture| capture.holds(state));
         let tried = self.rejected.iter().any(|rejected| is_near(scope, *rejected, state, SAME_PROPOSAL));
         if known || tried {
@@ -342,7 +342,7 @@ impl Rounds {
     }
 
     /// Looks for a region around the irregular motion to which an item goes and which passes `state`.
-    fn surround(&mut self, scope: &Stroboscope, item: Item, state: (f64, f64)) -> Result<(), Cancelled> {
+    fn surround(&mut self, scope: &Stroboscope, item: Item, state: State) -> Result<(), Cancelled> {
         let fate = item.after.map_or(self.fates[item.row], |after| self.releases[after.0 as usize].next);
         let Fate::Kind(kind, _) = fate else { return Ok(()) };
         let irregular = match &self.kinds[kind as usize] {
@@ -362,12 +362,12 @@ impl Rounds {
     }
 
     /// Whether a state lies in a region.
-    fn is_surrounded(&self, state: (f64, f64)) -> bool {
+    fn is_surrounded(&self, state: State) -> bool {
         self.regions.iter().any(|region| region.holds(state))
     }
 }
 
-fn is_near(scope: &Stroboscope, a: (f64, f64), b: (f64, f64), share: f64) -> bool {
+fn is_near(scope: &Stroboscope, a: State, b: State, share: f64) -> bool {
     let (length, speed) = scope.units();
     (a.0 - b.0).abs() <= share * length && (a.1 - b.1).abs() <= share * speed
 }

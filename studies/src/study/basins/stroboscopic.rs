@@ -1,9 +1,9 @@
-//! The stroboscopic map of a model by runs of whole forcing periods, and the work that a map of basins may take.
+//! The stroboscopic map of a model by runs of whole forcing periods, and the work that a map of basins takes.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use crate::dynamics::{Arrival, Model, Outcome, Pursued, Pursuit, Request};
-use crate::study::{Cancelled, ExponentOptions, average_exponents};
+use crate::study::{Cancelled, ExponentOptions, State, average_exponents};
 use crate::system::threads::{Pool, UnderWay, share};
 
 /// A displacement and a velocity in units of the scene's scales.
@@ -30,13 +30,13 @@ impl Stroboscope<'_> {
     }
 
     /// A state in m and m/s as a point.
-    pub fn point(&self, (x, v): (f64, f64)) -> Point {
+    pub fn point(&self, (x, v): State) -> Point {
         let (length, speed) = self.units();
         [x / length, v / speed]
     }
 
     /// A point as a state in m and m/s.
-    pub fn state(&self, [x, v]: Point) -> (f64, f64) {
+    pub fn state(&self, [x, v]: Point) -> State {
         let (length, speed) = self.units();
         (x * length, v * speed)
     }
@@ -83,10 +83,10 @@ impl Stroboscope<'_> {
     /// ends early or they take more work than is left.
     pub fn paths(
         &self,
-        starts: &[(f64, f64)],
+        starts: &[State],
         periods: u32,
         skipped: usize,
-    ) -> Result<Option<Vec<(f64, f64)>>, Cancelled> {
+    ) -> Result<Option<Vec<State>>, Cancelled> {
         if !self.effort.has_room_for(starts.len() as u64 * u64::from(periods)) {
             return Ok(None);
         }
@@ -110,7 +110,7 @@ impl Stroboscope<'_> {
 
     /// Whether the motion through a stroboscopic state in m and m/s is irregular by its exponent; false if
     /// too little work is left.
-    pub fn is_irregular(&self, state: (f64, f64)) -> bool {
+    pub fn is_irregular(&self, state: State) -> bool {
         if !self.effort.has_room_for(WITH_DERIVATIVES * u64::from(ExponentOptions::PERIODS)) {
             return false;
         }

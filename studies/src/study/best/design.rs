@@ -2,8 +2,7 @@
 //! and the best design.
 
 use crate::scene::{Fault, FieldPath, Files, Scene, column_names};
-use crate::study::fields::SummaryField;
-use crate::study::table::{Table, Values};
+use crate::study::{SummaryField, Table, Values};
 
 /// A field that the design may change, and between which values, in its own unit.
 #[derive(Debug, Clone, PartialEq)]

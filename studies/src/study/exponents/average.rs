@@ -6,6 +6,7 @@ use super::result::{Estimate, Exponents, NoExponents};
 use super::tangent::Tangent;
 use crate::dynamics::Model;
 use crate::numeric::CompensatedSum;
+use crate::study::State;
 
 /// Forcing periods in which a change turns into the direction that grows most, before anything is averaged.
 const TURNING: u32 = 20;
@@ -18,7 +19,7 @@ const TURNING: u32 = 20;
 /// (Flegal and Jones 2010): they cover the scatter of a motion whose correlations decay within a batch.
 pub fn average_exponents(
     model: &Model,
-    state: (f64, f64),
+    state: State,
     phase: f64,
     periods: u32,
     cancel: &AtomicBool,
@@ -29,7 +30,7 @@ pub fn average_exponents(
 /// The same of a map.
 pub(super) fn average(
     tangent: &Tangent,
-    mut state: (f64, f64),
+    mut state: State,
     periods: u32,
     cancel: &AtomicBool,
 ) -> Result<Exponents, NoExponents> {

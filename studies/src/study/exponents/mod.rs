@@ -128,13 +128,13 @@ pub fn exponents_row(found: &Exponents) -> Table {
 }
 
 fn with_columns(table: Table, found: &[Found]) -> Table {
-    let number = |of: fn(&Exponents) -> f64| move |cell: &Found| cell.as_ref().map_or(f64::NAN, of);
+    let number = |of: fn(&Exponents) -> f64| move |cell: &Found| cell.as_ref().map(of);
     table
         .each("exponent_1_per_s", found, number(|exponents| exponents.first.per_s))
         .each("exponent_1_se", found, number(|exponents| exponents.first.error))
         .each("exponent_2_per_s", found, number(|exponents| exponents.second.per_s))
         .each("exponent_2_se", found, number(|exponents| exponents.second.error))
         .each("sum_per_s", found, number(|exponents| exponents.sum))
-        .each("exact_sum_per_s", found, number(|exponents| exponents.exact_sum.unwrap_or(f64::NAN)))
+        .each("exact_sum_per_s", found, |cell| cell.as_ref()?.exact_sum)
         .each("dimension", found, number(Exponents::dimension))
 }

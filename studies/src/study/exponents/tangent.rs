@@ -2,6 +2,7 @@
 
 use super::result::NoExponents;
 use crate::dynamics::{EventKind, Jacobian, Model, Outcome, Passage, Scales, Side, StroboscopicMap};
+use crate::study::State;
 
 /// Below this share of its two products a determinant has lost its digits: rounding is some 1e-15 of them.
 /// (The error of the integration is a share of the areas themselves, of the size of the tolerance.)
@@ -27,7 +28,7 @@ pub(super) struct Tangent {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Passed {
     /// The state at their end, in m and m/s.
-    pub state: (f64, f64),
+    pub state: State,
     /// Derivatives of it by that at the start, in units of the scales.
     pub jacobian: Jacobian,
     /// Logarithm of their determinant; NaN where its digits are lost.
@@ -81,7 +82,7 @@ impl Tangent {
     }
 
     /// The next period of the motion from a state in m and m/s.
-    pub fn pass(&self, state: (f64, f64)) -> Result<Passed, NoExponents> {
+    pub fn pass(&self, state: State) -> Result<Passed, NoExponents> {
         let (passage, derivative) = self.map.pass_with_jacobian(state, 1);
         if passage.outcome != Outcome::Done {
             return Err(NoExponents::EndedEarly(passage.outcome));
@@ -120,7 +121,7 @@ impl Tangent {
     }
 
     /// The same of a period from its parts, NaN where one has lost its digits.
-    fn by_parts(&self, mut state: (f64, f64)) -> f64 {
+    fn by_parts(&self, mut state: State) -> f64 {
         let share = 1.0 / f64::from(PARTS);
         let parts = (0..PARTS).map(|part| {
             let span = (f64::from(part) * share, f64::from(part + 1) * share);
@@ -132,7 +133,7 @@ impl Tangent {
     }
 
     /// The result of `periods` forcing periods.
-    pub fn pass_many(&self, state: (f64, f64), periods: u32) -> Result<Passed, NoExponents> {
+    pub fn pass_many(&self, state: State, periods: u32) -> Result<Passed, NoExponents> {
         let mut all =
             Passed { state, jacobian: Jacobian::IDENTITY, measured: 0.0, exact: self.struck.map(|_| 0.0) };
         for _ in 0..periods {
@@ -148,12 +149,12 @@ impl Tangent {
     }
 
     /// A change of the state in units of the scales, from `from` to `to`.
-    pub fn scaled(&self, from: (f64, f64), to: (f64, f64)) -> [f64; 2] {
+    pub fn scaled(&self, from: State, to: State) -> [f64; 2] {
         [(to.0 - from.0) / self.scales.length, (to.1 - from.1) / self.scales.speed]
     }
 
     /// A state changed so much, in units of the scales.
-    pub fn changed(&self, (x, v): (f64, f64), by: [f64; 2]) -> (f64, f64) {
+    pub fn changed(&self, (x, v): State, by: [f64; 2]) -> State {
         (x + by[0] * self.scales.length, v + by[1] * self.scales.speed)
     }
 }

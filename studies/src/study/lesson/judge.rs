@@ -72,9 +72,8 @@ struct Judge<'a> {
 
 impl Judge<'_> {
     fn holds(&self, condition: &Condition) -> Result<bool, Unjudged> {
-        let compare = |field: &str, of: &dyn Fn(f64) -> bool| {
-            Ok(matches!(self.value(field)?, Value::Number(number) if of(number)))
-        };
+        let compare =
+            |field: &str, of: &dyn Fn(f64) -> bool| Ok(self.value(field)?.as_number().is_some_and(of));
         match condition {
             Condition::Is(field, text) => Ok(match self.value(field)? {
                 Value::Number(number) => text.trim().parse() == Ok(number),
@@ -91,22 +90,12 @@ impl Judge<'_> {
             Condition::All(parts) => self.count(parts).map(|count| count == parts.len()),
             Condition::Any(parts) => self.count(parts).map(|count| count > 0),
             Condition::Not(part) => self.holds(part).map(|holds| !holds),
-            Condition::Every(starts, part) => {
-                self.over_starts(starts, part).map(|all| all.into_iter().all(|holds| holds))
-            }
-            Condition::ForSome(starts, part) => {
-                self.over_starts(starts, part).map(|all| all.into_iter().any(|holds| holds))
-            }
+            Condition::Every(starts, part) => Ok(!self.over_starts(starts, part)?.contains(&false)),
+            Condition::ForSome(starts, part) => Ok(self.over_starts(starts, part)?.contains(&true)),
             Condition::Same(field, within, starts) => {
                 let name = field.split_once('.').map_or("", |(_, name)| name);
                 let runs = self.subject.from(starts)?;
-                let values: Option<Vec<f64>> = runs
-                    .iter()
-                    .map(|run| match value(run, name) {
-                        Value::Number(number) => Some(number),
-                        _ => None,
-                    })
-                    .collect();
+                let values: Option<Vec<f64>> = runs.iter().map(|run| value(run, name).as_number()).collect();
                 Ok(values.is_some_and(|values| {
                     let (low, high) = extent(values);
                     high - low <= within * low.abs().max(high.abs())
@@ -165,10 +154,7 @@ impl Judge<'_> {
             }
             "mean" | "error" => {
                 let runs = self.subject.over_seeds()?;
-                let number = |run: &Summary| match value(run, name) {
-                    Value::Number(number) => number,
-                    _ => f64::NAN,
-                };
+                let number = |run: &Summary| value(run, name).as_number().unwrap_or(f64::NAN);
                 let (mean, error) = mean(&runs.iter().map(number).collect::<Vec<_>>());
                 Value::number(if of == "mean" { mean } else { error })
             }
@@ -200,6 +186,10 @@ impl Value {
     /// A number, missing if it is not finite.
     pub fn number(value: f64) -> Self {
         if value.is_finite() { Self::Number(value) } else { Self::Missing }
+    }
+
+    fn as_number(&self) -> Option<f64> {
+        if let Self::Number(number) = self { Some(*number) } else { None }
     }
 }
 

@@ -106,10 +106,8 @@ impl<'a> Subject<'a> {
                 }
                 self.model(&scene)
             };
-            let models = (1..=u64::from(self.lesson.seeds.unwrap_or(0)))
-                .map(of_seed)
-                .collect::<Result<Vec<_>, _>>()?;
-            self.together(&models)
+            let seeds = 1..=u64::from(self.lesson.seeds.unwrap_or(0));
+            self.together(&seeds.map(of_seed).collect::<Result<Vec<_>, _>>()?)
         });
         runs.map(Vec::as_slice)
     }
@@ -122,11 +120,9 @@ impl<'a> Subject<'a> {
             let present = path
                 .get(self.scene)
                 .ok_or_else(|| Unjudged::of(&axis.field, "the scene has no such field"))?;
-            let mut before: Vec<f64> = axis.values.iter().copied().filter(|value| *value < present).collect();
-            let mut after: Vec<f64> =
-                axis.values.iter().rev().copied().filter(|value| *value > present).collect();
-            before.push(present);
-            after.push(present);
+            let values = axis.values.iter().copied();
+            let before = values.clone().filter(|value| *value < present).chain([present]).collect();
+            let after = values.rev().filter(|value| *value > present).chain([present]).collect();
             let [up, down] = self.walks(&axis.field, [before, after], |_, last, _, summary| {
                 *last = Some(*summary);
                 true
@@ -207,11 +203,8 @@ impl<'a> Subject<'a> {
     /// The model of a scene that differs from the subject's in a few fields.
     fn model(&self, scene: &Scene) -> Result<Model, Unjudged> {
         Model::build(scene, self.mechanism_of(scene)?).map_err(|faults| {
-            let fault = faults.into_iter().next();
-            fault.map_or_else(
-                || Unjudged::of("", "cannot be run"),
-                |fault| Unjudged::of(&fault.field, &fault.problem),
-            )
+            let first = faults.first().map_or(("", "cannot be run"), |fault| (&fault.field, &fault.problem));
+            Unjudged::of(first.0, first.1)
         })
     }
 

@@ -10,7 +10,7 @@ use crate::dynamics::{Model, Outcome, Request, Sample};
 use crate::mechanics::Mechanism;
 use crate::numeric::{alignment, short};
 use crate::scene::{Channel, Quantity, Scene, Timing};
-use numbers::{Row, assembled, rms};
+use numbers::{assembled, rms, statistics};
 
 /// A measured motion, and how it is laid over a run.
 #[derive(Debug, Clone, Copy)]
@@ -164,15 +164,14 @@ pub fn compare(
         return Err(NoComparison::Apart { samples: samples.len(), from, to, end });
     }
     let measured = values[range.clone()].to_vec();
-    let rms = square(&range, &samples).sqrt();
-    let of_measured = (measured.iter().map(|m| m * m).sum::<f64>() / measured.len() as f64).sqrt();
+    let rms_apart = square(&range, &samples).sqrt();
     if samples.len() < motion.times.len() {
         let outside = motion.times.len() - samples.len();
         remarks.push(format!("{outside} of {} samples lie outside the run", motion.times.len()));
     }
     let computed: Vec<f64> = samples.iter().map(of).collect();
     let table = numbers::table(scene, model, motion.channel.quantity, &times, &measured, &computed);
-    let rms = (rms, 100.0 * rms / of_measured);
+    let rms = (rms_apart, 100.0 * rms_apart / rms(&measured));
     Ok(Comparison { table, times, measured, computed, shift, rms, remarks })
 }
 
@@ -236,17 +235,13 @@ pub fn compare_force(
     let apart: Vec<f64> = measured.iter().zip(&computed).map(|(m, c)| c - m).collect();
     let by_size = |a: &usize, b: &usize| apart[*a].abs().total_cmp(&apart[*b].abs());
     let worst = (0..apart.len()).max_by(by_size).unwrap_or(0);
-    let fold = |values: &[f64], of: fn(f64, f64) -> f64| values.iter().copied().fold(f64::NAN, of);
-    let both = |name, of: &dyn Fn(&[f64]) -> f64| -> Row { (name, "N", of(&measured), of(&computed)) };
     let (of_measured, rms_apart) = (rms(&measured), rms(&apart));
-    let rows = vec![
+    let mut rows = vec![
         ("rms_difference", "N", f64::NAN, f64::NAN),
         ("largest_difference", "N", measured[worst], computed[worst]),
         ("largest_difference_at", "m", positions[worst], positions[worst]),
-        both("rms", &rms),
-        both("minimum", &|values| fold(values, f64::min)),
-        both("maximum", &|values| fold(values, f64::max)),
     ];
+    rows.extend(statistics("N", &measured, &computed));
     let mut remarks = Vec::new();
     if positions.len() < x.len() {
         let outside = x.len() - positions.len();

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 
 use super::{Orbit, SAME, allowed, map_of};
 use crate::dynamics::{Event, EventKind, Jacobian, Outcome, Passage, Side, StroboscopicMap};
-use crate::study::family::Family;
+use crate::study::{Family, State};
 
 /// The most steps to a point.
 const MOST_STEPS: usize = 24;
@@ -144,7 +144,7 @@ impl Corrector<'_> {
     }
 
     /// A state after that many forcing periods as the corrector's map has it.
-    pub fn image(&self, (x, v): (f64, f64)) -> (f64, f64) {
+    pub fn image(&self, (x, v): State) -> State {
         if self.mirrored { (-x, -v) } else { (x, v) }
     }
 
@@ -215,29 +215,23 @@ impl Corrector<'_> {
     }
 
     /// The coordinates of a state at a value of the field.
-    pub fn at(&self, state: (f64, f64), value: f64) -> Vector3<f64> {
+    pub fn at(&self, state: State, value: f64) -> Vector3<f64> {
         let Units { length, speed, range } = self.units;
         Vector3::new(state.0 / length, state.1 / speed, value / range)
     }
 
-    fn state(&self, at: &Vector3<f64>) -> (f64, f64) {
+    fn state(&self, at: &Vector3<f64>) -> State {
         (at.x * self.units.length, at.y * self.units.speed)
     }
 
     /// Change from one state to another in the units.
-    pub fn change(&self, from: (f64, f64), to: (f64, f64)) -> [f64; 2] {
+    pub fn change(&self, from: State, to: State) -> [f64; 2] {
         [(to.0 - from.0) / self.units.length, (to.1 - from.1) / self.units.speed]
     }
 
     /// The derivative of the map by the field at a passage from a state, in the units; from one side where
     /// the other is no scene. `by_state` are its derivatives by the state.
-    fn by_field(
-        &self,
-        state: (f64, f64),
-        passage: &Passage,
-        by_state: &Jacobian,
-        value: f64,
-    ) -> Option<[f64; 2]> {
+    fn by_field(&self, state: State, passage: &Passage, by_state: &Jacobian, value: f64) -> Option<[f64; 2]> {
         let stretch = match passage.strikes() {
             false => self.slopes(by_state, [0.0; 2]).iter().map(|row| row.amax()).fold(0.0, f64::max),
             true => 0.0,

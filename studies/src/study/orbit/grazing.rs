@@ -15,6 +15,7 @@ use nalgebra::Vector3;
 use super::corrector::{Accuracy, Corrector, Equations, Point, newton};
 use super::{Orbit, map_of};
 use crate::dynamics::{EventKind, Jacobian, Miss, Outcome, Passage, Side, StroboscopicMap};
+use crate::study::State;
 
 /// The share of the length scale that a gap is below where its stop may be touched near by.
 const SMALL_GAP: f64 = 0.1;
@@ -195,7 +196,7 @@ impl Grazing<'_> {
     }
 
     /// The state in m and m/s to which a motion comes over a time without stops near the grazing.
-    fn fly(&self, maps: &Maps, state: (f64, f64), span: (f64, f64)) -> Option<(f64, f64)> {
+    fn fly(&self, maps: &Maps, state: State, span: (f64, f64)) -> Option<State> {
         self.parts(span).into_iter().try_fold(state, |state, (stops, span)| {
             let map = if stops { &maps.with } else { &maps.without };
             let passage = map.pass_between(state, span);
@@ -204,7 +205,7 @@ impl Grazing<'_> {
     }
 
     /// Displacement and velocity at the grazing, and those to which they must come after the flight.
-    fn ends(&self, maps: &Maps, size: f64, beside: Beside) -> Option<[(f64, f64); 2]> {
+    fn ends(&self, maps: &Maps, size: f64, beside: Beside) -> Option<[State; 2]> {
         let (stop, restitution) = self.stop(maps)?;
         let units = &self.corrector.units;
         let toward = if self.side == Side::Left { -size } else { size };
@@ -253,7 +254,7 @@ impl Grazing<'_> {
 
     /// The grazing motion from its state at a strobe, at a value of the field; none where it does not touch
     /// the stop or does not come back.
-    fn at_strobe(&self, maps: &Maps, state: (f64, f64), value: f64) -> Option<Point> {
+    fn at_strobe(&self, maps: &Maps, state: State, value: f64) -> Option<Point> {
         let corrector = self.corrector;
         let flight = corrector.flight();
         let (mut at, mut by_state) = (state, Jacobian::IDENTITY);
@@ -300,7 +301,7 @@ impl Grazing<'_> {
     }
 
     /// Its state in m and m/s at another phase of the drive.
-    pub fn at_phase(&self, phase: f64) -> Option<(f64, f64)> {
+    pub fn at_phase(&self, phase: f64) -> Option<State> {
         let maps = Maps::of(self.corrector, self.point.value)?;
         self.fly(&maps, self.point.orbit.state, (0.0, (phase - self.corrector.phase).rem_euclid(1.0)))
     }

@@ -18,7 +18,7 @@ use std::sync::atomic::AtomicBool;
 
 use nalgebra::Vector3;
 
-use super::{Family, Table, Task, settled};
+use super::{Family, State, Table, Task, settled};
 use crate::dynamics::{
     Event, EventKind, Jacobian, Model, Multiplier, Outcome, Passage, Regime, StroboscopicMap,
 };
@@ -155,7 +155,7 @@ impl Orbit {
 }
 
 /// A state between rigid stops and on the curve, with the mass held at the one that it lies beyond.
-pub(super) fn allowed(model: &Model, state: (f64, f64)) -> (f64, f64) {
+pub(super) fn allowed(model: &Model, state: State) -> State {
     model.held_within(state, if model.compliant().is_some() { f64::INFINITY } else { 0.0 })
 }
 
@@ -168,7 +168,7 @@ pub(super) fn map_of(model: &Model, phase: f64) -> Option<StroboscopicMap> {
 /// method. Its period is `periods` or a divisor of it.
 pub fn orbit_near(map: &StroboscopicMap, guess: (f64, f64), periods: u32) -> Result<Orbit, NoOrbit> {
     let scales = map.model().scales();
-    let size = |change: (f64, f64)| (change.0 / scales.length).abs().max((change.1 / scales.speed).abs());
+    let size = |change: State| (change.0 / scales.length).abs().max((change.1 / scales.speed).abs());
     let mut state = allowed(map.model(), guess);
     let mut best = f64::INFINITY;
     for _ in 0..MOST_STEPS {
@@ -245,16 +245,15 @@ pub fn orbit(model: &Model, phase: f64, period: Option<u32>, cancel: &AtomicBool
 }
 
 /// Of the states that follow one strobe by strobe, that which comes back the closest after `periods`.
-fn closest_return(map: &StroboscopicMap, from: (f64, f64), periods: u32) -> (f64, f64) {
+fn closest_return(map: &StroboscopicMap, from: State, periods: u32) -> State {
     let scales = map.model().scales();
-    let next = |state: &(f64, f64)| {
+    let next = |state: &State| {
         let passage = map.pass(*state, 1);
         (passage.outcome == Outcome::Done).then_some(passage.state)
     };
     let states: Vec<_> = std::iter::successors(Some(from), next).take(STROBES + periods as usize).collect();
     let returns = states.iter().zip(states.iter().skip(periods as usize));
-    let far =
-        |(a, b): (&(f64, f64), &(f64, f64))| ((a.0 - b.0) / scales.length).hypot((a.1 - b.1) / scales.speed);
+    let far = |(a, b): (&State, &State)| ((a.0 - b.0) / scales.length).hypot((a.1 - b.1) / scales.speed);
     returns.min_by(|a, b| far(*a).total_cmp(&far(*b))).map_or(from, |(state, _)| *state)
 }
 
@@ -274,11 +273,11 @@ fn with_orbits(table: Table, orbits: &[Orbit]) -> Table {
         .each("multiplier_1_im", orbits, part(0, |multiplier| multiplier.im))
         .each("multiplier_2_re", orbits, part(1, |multiplier| multiplier.re))
         .each("multiplier_2_im", orbits, part(1, |multiplier| multiplier.im))
-        .each("stable", orbits, |orbit| if orbit.is_stable() { "true" } else { "false" })
+        .each("stable", orbits, |orbit| Some(orbit.is_stable()))
         .each("impacts", orbits, |orbit| Some(orbit.passage.impacts))
         .each("rests", orbits, |orbit| Some(orbit.passage.rests()))
-        .each("gentlest_impact_m_per_s", orbits, |orbit| orbit.gentlest_impact().unwrap_or(f64::NAN))
-        .each("nearest_miss_m", orbits, |orbit| orbit.passage.nearest_miss().unwrap_or(f64::NAN))
+        .each("gentlest_impact_m_per_s", orbits, |orbit| orbit.gentlest_impact())
+        .each("nearest_miss_m", orbits, |orbit| orbit.passage.nearest_miss())
 }
 
 /// Why a branch ended.

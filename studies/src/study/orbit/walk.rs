@@ -8,7 +8,7 @@ use super::events::{BranchEvent, between, differ};
 use super::grazing::{Beside, Grazing, grazings};
 use super::{Branch, BranchEnd, NoOrbit, Orbit, SAME};
 use crate::dynamics::Model;
-use crate::study::Task;
+use crate::study::{State, Task};
 
 /// Steps of the walk in the units of the branch: the first, the longest, and the one below which it does not
 /// go on.
@@ -41,7 +41,7 @@ const AT_AN_END: f64 = 1e-12;
 pub(super) type Directed = (Point, Vector3<f64>);
 
 /// Events in order, each with its point and the state at the phase of the rows where that is known.
-type Events = Vec<(BranchEvent, Point, Option<(f64, f64)>)>;
+type Events = Vec<(BranchEvent, Point, Option<State>)>;
 
 /// A stretch of the branch from the last point on.
 struct Stretch {
@@ -340,7 +340,7 @@ impl<'a> Walk<'a> {
 
     /// Adds a row, with its state at the phase of the rows where it is known; without its event where the
     /// branch had been at this motion before.
-    fn add(&mut self, event: Option<BranchEvent>, point: &Point, state: Option<(f64, f64)>) {
+    fn add(&mut self, event: Option<BranchEvent>, point: &Point, state: Option<State>) {
         let orbit = match state {
             Some(state) => Orbit { state, ..point.orbit.clone() },
             None => {

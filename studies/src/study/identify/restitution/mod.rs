@@ -244,7 +244,7 @@ fn fitted(motion: &Motion, contacts: &[Contact], singles: &[Single]) -> Table {
         flight.max_by(|a, b| away(a).total_cmp(&away(b)))
     };
     let ends: Vec<Option<usize>> = singles.iter().map(farthest).collect();
-    let at = |values: &[f64], end: &Option<usize>| end.map_or(f64::NAN, |i| values[i]);
+    let at = |values: &[f64], end: &Option<usize>| end.map(|i| values[i]);
     Table::new()
         .each("t_s", singles, |single| single.impact.t)
         .each("x_m", singles, |single| single.impact.x)
