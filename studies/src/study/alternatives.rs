@@ -69,7 +69,6 @@ enum Part {
     Changed(usize, String, f64),
 }
 
-/// Result of a part.
 enum Done {
     Unchanged(Box<Rated>),
     /// The crossing threshold.
@@ -136,7 +135,6 @@ pub fn alternatives(
     Some(rated)
 }
 
-/// How scenes are rated.
 struct Rating<'a> {
     until_settled: Option<f64>,
     pool: &'a Pool,
@@ -166,7 +164,6 @@ impl Rating<'_> {
         })
     }
 
-    /// The crossing threshold.
     fn crossing(
         &self,
         trial: &Scene,
@@ -189,8 +186,8 @@ impl Rating<'_> {
         Ok(found.and_then(|found| found.value))
     }
 
-    /// The band of frequencies that cross. All steps of a scan are run, and only the ends of the band are
-    /// bisected: a gap or band narrower than a step may be missed.
+    /// The band of frequencies that cross, by a scan whose ends alone are bisected: a gap or a band narrower
+    /// than a step of the scan may be missed.
     fn band(&self, scene: &Alternative, trial: &Scene) -> Result<Option<(f64, f64)>, Cancelled> {
         let Excitation::Sine { frequency_hz, .. } = trial.excitation else { return Ok(None) };
         let family = Family::new(trial, &scene.files, &scene.mechanism, FREQUENCY);
@@ -242,8 +239,8 @@ fn decimal(value: f64) -> f64 {
     multiple(value, 10_f64.powi(decade(value) - 4))
 }
 
-/// A row for each scene: name, thresholds, numbers of the settled motion, band of frequencies, and
-/// sensitivity of the threshold to sizes.
+/// A row for each scene: thresholds, numbers of the settled motion, band of frequencies, sensitivity to
+/// sizes.
 pub fn comparison_table(rated: &[Rated]) -> Table {
     let mut table = Table::new()
         .each("scene", rated, |row| row.name.clone())

@@ -39,8 +39,7 @@ impl Cell {
         self.summary().is_some_and(|summary| summary.outcome == Outcome::Done)
     }
 
-    /// The summary of a run that reached its settled window. A run that ended earlier has no numbers there,
-    /// and counts of 0 would mislead.
+    /// The summary of a run that reached its settled window: in others counts of 0 would mislead.
     pub fn settled(&self) -> Option<&Summary> {
         self.summary().filter(|summary| summary.rms_velocity.is_some())
     }
@@ -76,14 +75,12 @@ pub struct Tally {
     /// Cells whose motion rests on a stop, so that both exponents are minus infinity.
     #[serde(skip)]
     pub resting: u64,
-    /// Cells without exponents: the motion ended early or touched a stop without speed, or the flexures were
-    /// not solved.
+    /// Cells without exponents: ended early, touched a stop without speed, or with flexures not solved.
     #[serde(skip)]
     pub without_exponents: u64,
     /// Cells in which the contact with a compliant stop was pressed beyond what its material bears.
     pub yielding: u64,
-    /// Mechanisms built: one for each combination of the swept fields of the mechanism, however many cells
-    /// share it.
+    /// Mechanisms built: one for each combination of the swept fields of the mechanism.
     #[serde(skip)]
     pub mechanisms: u64,
     /// Cells by outcome.
@@ -92,7 +89,6 @@ pub struct Tally {
     pub regimes: BTreeMap<Box<str>, u64>,
 }
 
-/// Adds `n` to the count of a word.
 fn add(counts: &mut BTreeMap<Box<str>, u64>, word: &str, n: u64) {
     match counts.get_mut(word) {
         Some(count) => *count += n,

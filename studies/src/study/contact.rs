@@ -15,9 +15,8 @@ use crate::system::threads;
 /// Positions of the speed on a table: more than a picture needs.
 const SPEEDS: usize = 401;
 
-/// A single impact on the model's compliant stop over the impact speed, in even steps from 0 to twice
-/// the speed scale of the scene, rounded up to 1, 2 or 5 times a power of ten; `None` if the stops are
-/// not compliant.
+/// A single impact on the model's compliant stop over the impact speed, in even steps up to twice the speed
+/// scale, rounded up to 1, 2 or 5 times a power of ten; `None` if the stops are not compliant.
 ///
 /// Columns
 /// `speed_m_per_s,restitution,rigid_restitution,contact_time_s,depth_m,peak_force_n,peak_pressure_pa`; the
@@ -43,7 +42,7 @@ pub fn contact(model: &Model, rigid: f64) -> Option<Table> {
 
 /// The impact speed in m/s from which on the contact yields; `None` if its material is not known.
 ///
-/// By halving: the largest force grows with the speed, and the speed scale is within a factor of 1e30 of it.
+/// By halving: the force grows with the speed, and the speed scale is within a factor of 1e30.
 pub fn yield_speed(stop: &Hertz, mass: f64) -> Option<f64> {
     let material = stop.material?;
     let yields = |v: f64| material.pressure(stop.peak_force(mass, v)) > material.yield_pressure();
@@ -76,9 +75,8 @@ pub struct Strikes {
     pub settled: bool,
 }
 
-/// The first impacts of flights in one run of `model`: those after a crossing, a release or an impact on the
-/// other stop. The rebounds that follow them, down to chatter, do not count. `None` if there is no impact or
-/// the run is cancelled.
+/// The first impacts of flights in one run: those after a crossing, a release or an impact on the other stop,
+/// without the rebounds that follow. `None` without an impact, or if cancelled.
 pub fn strikes(model: &Model, cancel: &AtomicBool) -> Option<Strikes> {
     let run = model.run(&Request { events: true, cancel: Some(cancel), ..Request::default() });
     if matches!(run.summary.outcome, Outcome::Cancelled { .. }) {

@@ -45,9 +45,8 @@ pub(super) fn check_positions(mechanism: &Mechanism, positions: &[f64]) -> Resul
     }
 }
 
-/// The range in mm that shows what matters: 1.15 times as far as the outermost equilibrium or stop,
-/// rounded up to two digits and symmetric about 0, cut to where the curve is known; 10 mm each way
-/// where there is neither.
+/// The range in mm that shows what matters: 1.15 times as far as the outermost equilibrium or stop (10 mm
+/// without one), rounded up to two digits, cut to where the curve is known.
 fn default_range_mm(scene: &Scene, mechanism: &Mechanism) -> (f64, f64) {
     const MARGIN: f64 = 1.15;
     const PLAIN: f64 = 10.0;

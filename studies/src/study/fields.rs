@@ -1,13 +1,11 @@
-//! Table of the fields of a summary: the keys of `simulate`'s JSON, the columns of a sweep, the quantities of
-//! maps.
+//! Fields of a summary: the keys of `simulate`'s JSON, the columns of a sweep, the quantities of maps.
 
 use Read::{Count, Flag, Number, Word};
 
 use super::Values;
 use crate::dynamics::{First, Firsts, Outcome, Place, Regime, STANDARD_GRAVITY, Summary};
 
-/// What a field of a summary is, and how it is read. A number, count or flag of `None` and an empty word are
-/// missing values.
+/// How a field of a summary is read; `None` and an empty word are missing values.
 #[derive(Debug, Clone, Copy)]
 pub enum Read {
     /// A real number.

@@ -47,9 +47,8 @@ pub fn states(mechanism: &Mechanism, positions: &[f64], task: &Task) -> Result<V
     positions.iter().map(state).collect()
 }
 
-/// The table of [`curve`] at the positions of `states` with the columns `axial_n,bump_m,max_stress_pa`: the
-/// compression of all buckling flexures together, the height of their bump, and the largest bending stress of
-/// any flexure.
+/// The table of [`curve`] at the positions of `states`, with `axial_n,bump_m,max_stress_pa`: the compression
+/// of all buckling flexures, the height of their bump, the largest bending stress of any flexure.
 pub fn full_curve(mechanism: &Mechanism, states: &[State]) -> Result<Table, OutsideCurve> {
     let table = curve(mechanism, states.iter().map(|state| state.x).collect())?;
     let table = table.each("axial_n", states, |state| state.axial).each("bump_m", states, |state| state.bump);

@@ -27,7 +27,6 @@ pub struct Grid {
     cells: u64,
 }
 
-/// Whether a field is one of the mechanism.
 pub(super) fn is_of_mechanism(field: &str) -> bool {
     field.split('.').next() == Some("mechanism")
 }
@@ -144,8 +143,7 @@ fn count(lengths: impl Iterator<Item = u64> + Clone) -> Result<u64, GridError> {
 pub const STRIDES: [usize; 4] = [8, 4, 2, 1];
 
 /// The cells of a grid, coarse first: every eighth value of each axis, then every fourth, every second, every
-/// one. The cells of a level are among those of the next, so nothing is run twice, and the last level is the
-/// grid.
+/// one. The cells of a level are among those of the next, so nothing is run twice.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Levels {
     /// Every cell once, those of a coarser level before those that a finer one adds.

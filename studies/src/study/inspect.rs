@@ -135,8 +135,7 @@ fn force_curve(mechanism: &Mechanism) -> String {
     }
 }
 
-/// k and c of a damping ratio: those that are used and, where the well lies beside a kink, those that other
-/// readings of the same ratio give.
+/// k and c of a damping ratio, and beside a kink those that other readings of the same ratio give.
 fn damping(scene: &Scene, model: &Model) -> Vec<String> {
     let Damping::Ratio(xi) = scene.damping else { return Vec::new() };
     let landscape = &model.mechanism().landscape;

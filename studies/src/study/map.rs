@@ -14,12 +14,11 @@ const LIMIT: &str = "stops.travel_limit_mm";
 /// Points of the line of releases.
 const POINTS: usize = 400;
 
-/// `travel_limit_mm,amplitude_g`: the least amplitude of a sine that frees a mass from the stop that it
-/// rests on, in closed form: mass times base acceleration reaches the force that presses it there,
-/// amplitude = |F(D)|/m.
+/// `travel_limit_mm,amplitude_g`: the least amplitude of a sine that frees a mass from the stop that it rests
+/// on: mass times base acceleration reaches the force that presses it there, amplitude = |F(D)|/m.
 ///
-/// Only for a grid over these two fields, from rest; only for travel limits inside the right-hand
-/// well, because further out the mass rests in the well and not on the stop.
+/// Only for a grid over these two fields, from rest, and for travel limits inside the right-hand well:
+/// further out the mass does not rest on the stop.
 pub fn release_line(scene: &Scene, mechanism: &Mechanism, grid: &Grid) -> Option<Table> {
     let applies = scene.stops.travel_limit_mm().is_some()
         && matches!(scene.excitation, Excitation::Sine { .. })

@@ -1,8 +1,7 @@
 //! History of the models of a motion.
 //!
 //! While a slider is dragged there is another model with every frame. One that held too briefly to be seen
-//! gives way to the next, and of too many the one that held the shortest time is forgotten, so that memory
-//! stays bounded.
+//! gives way to the next; of too many the one that held the shortest time is forgotten.
 
 use std::collections::VecDeque;
 use std::sync::Arc;

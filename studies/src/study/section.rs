@@ -22,8 +22,7 @@ pub const IMPACTS: &str = "impacts";
 /// Where a section is taken.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SectionAt {
-    /// At this phase of the drive in degrees: the argument of its sine; of a sum, the share of the common
-    /// period since the start.
+    /// At this phase of the drive in degrees: of a sum, the share of the common period since the start.
     Phase(f64),
     /// At every impact that counts, contacts with a compliant stop among them.
     Impacts,
@@ -52,8 +51,7 @@ pub struct Sectioned {
     impacts: Vec<Struck>,
 }
 
-/// An impact: its time in s, the stop, the phase of a drive that repeats in degrees, and the velocity in m/s
-/// before it.
+/// An impact: time in s, stop, phase in degrees of a drive that repeats, velocity in m/s before it.
 #[derive(Debug, Clone, Copy)]
 struct Struck {
     t: f64,
@@ -208,8 +206,8 @@ impl SectionOptions {
 }
 
 /// The section of a run of `model`, which is that of `scene`: its [columns](SectionOptions::columns), of
-/// states also [`IMPACTS`], and the run's summary. A fault where the drive does not repeat, or the settled
-/// window holds no period or too many.
+/// states also [`IMPACTS`], and the summary. A fault if the drive does not repeat, or the window has no or
+/// too many periods.
 pub fn section(
     model: &Model,
     scene: &Scene,
@@ -226,6 +224,5 @@ pub fn section(
     Ok((options.table(&Grid::of_one(), &[row]), summary))
 }
 
-/// Sections of the cells of a grid: the bifurcation diagram. Its rows are the swept fields, the direction of
-/// a walk, then as of one [`section`].
+/// Sections of the cells of a grid: the swept fields, the direction of a walk, then as of one [`section`].
 pub type Sections = GridStudy<SectionOptions>;

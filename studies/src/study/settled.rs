@@ -9,8 +9,7 @@ use crate::dynamics::{Model, Outcome, Phase, Request, Sample, Summary};
 /// without stops, of 40 amplitudes within 1 % of it, five take between 1000 and 4500 periods.
 pub(super) const PATIENCE: u32 = 1000;
 
-/// Least number of forcing periods for which it is followed, for sums whose fastest sine is much faster than
-/// their common period.
+/// Least number of forcing periods, for sums whose fastest sine is much faster than their common period.
 const LEAST_PATIENCE: f64 = 16.0;
 
 /// The time in s up to which a run of `model` is followed until its motion repeats: 1000 periods of
@@ -21,8 +20,7 @@ pub fn followed_until(model: &Model) -> f64 {
     model.duration() + (f64::from(PATIENCE) * fastest).max(LEAST_PATIENCE * period)
 }
 
-/// Forcing periods of a settled window in place of one that holds less than two: with fewer a repetition
-/// cannot be seen.
+/// Forcing periods of a settled window in place of less than two, with which no repetition can be seen.
 const WINDOW: f64 = 8.0;
 
 /// The model with a settled window in which a motion can be seen to repeat, where its drive does.
@@ -33,8 +31,8 @@ pub fn widened(model: Model) -> Model {
     }
 }
 
-/// A model, and the request by which its run is followed until the motion repeats, or up to a time in s
-/// ([`followed_until`] if not given).
+/// A model, and the request that follows its run until it repeats, or up to `until` ([`followed_until`]) in
+/// s.
 pub(super) fn followed<'a>(model: Model, until: Option<f64>) -> (Model, Request<'a>) {
     let model = widened(model);
     let until_settled = until.or(Some(followed_until(&model)));

@@ -6,9 +6,8 @@ use super::Task;
 use crate::dynamics::{Model, Request, Run};
 use crate::system::threads::{Pool, Queue, UnderWay, share_from};
 
-/// The answers of `count` runs, in order, by the threads of a pool or by this one. `model` gives the model
-/// and the request of a number, or its answer if there is nothing to run; `answer` reads it off the run.
-/// `None` if the task was cancelled.
+/// The answers of `count` runs in order. `model` gives the model and the request of a number, or its answer
+/// if there is nothing to run; `answer` reads it off the run. `None` if the task was cancelled.
 pub(super) fn shared_runs<'q, R: Send>(
     pool: Option<&Pool>,
     task: &'q Task,

@@ -32,8 +32,7 @@ pub struct Keep {
 /// One run, recorded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Simulation {
-    /// `t_s,x_m,v_m_per_s,base_accel_m_per_s2,phase`, with a transducer also `voltage_v,current_a,power_w`;
-    /// up to the end of the run.
+    /// `t_s,x_m,v_m_per_s,base_accel_m_per_s2,phase`, with a transducer also `voltage_v,current_a,power_w`.
     pub samples: Table,
     /// `t_s,kind,side,v_in_m_per_s,v_out_m_per_s` in order of time.
     pub events: Table,
@@ -91,8 +90,7 @@ pub(super) fn in_order(times: &[f64], samples: &[Sample]) -> Vec<Sample> {
     times.iter().filter_map(find).collect()
 }
 
-/// Samples as the table `t_s,x_m,v_m_per_s,base_accel_m_per_s2,phase`; where any has an `output` of a
-/// transducer also `voltage_v,current_a,power_w`, which the others miss.
+/// Samples as the table of [`Simulation::samples`]; an `output` of a transducer may be missing.
 pub fn samples_table(samples: &[Sample], output: impl Fn(&Sample) -> Option<Output>) -> Table {
     let table = Table::new()
         .each("t_s", samples, |sample| sample.t)
@@ -149,8 +147,8 @@ pub fn ended_remedy(model: &Model, outcome: Outcome) -> Option<String> {
     }
 }
 
-/// A clause on how to keep a run within its steps, which it used up at `at` in s: a shorter run, a larger
-/// tolerance if its cheaper steps suffice, fewer lines if most of the work is theirs.
+/// A clause on how to keep a run within its steps, which it used up at `at` in s: shorter, with a larger
+/// tolerance if cheaper steps suffice, with fewer lines if most of the work is theirs.
 fn fewer_steps(model: &Model, at: f64) -> String {
     let (step, of_drive) = model.cost_of_a_step(model.tolerance());
     let (coarse, _) = model.cost_of_a_step(TOLERANCES.1);
@@ -221,8 +219,7 @@ struct Fraction {
 }
 
 impl Fraction {
-    /// The decimal number that the shortest text of `value` spells; `None` if it is not above 0 or needs more
-    /// than 38 digits.
+    /// The decimal that the shortest text of `value` spells; `None` if not above 0 or above 38 digits.
     fn decimal(value: f64) -> Option<Self> {
         let Decimal { digits, exponent } = Decimal::shortest(value).filter(|decimal| decimal.digits > 0)?;
         let digits = digits.unsigned_abs();
@@ -298,8 +295,7 @@ impl SamplingStep {
 /// The times 0, dt, 2 dt, .. up to `duration` in s, which is among them where the step reaches it.
 ///
 /// A step is the decimal that a person wrote: 0.1 makes 0.1, 0.2, 0.3, not 0.30000000000000004, and a 60th of
-/// a forcing period of 1/3 s makes the doubles nearest to k/180. So the times ascend and none exceeds
-/// `duration`.
+/// a forcing period of 1/3 s the doubles nearest to k/180. So times ascend and none exceeds `duration`.
 fn even_times(step: SamplingStep, duration: f64) -> Result<Vec<f64>, TimesError> {
     let SamplingStep { seconds: dt, exact } = step;
     if !(dt.is_finite() && dt > 0.0) {

@@ -1,9 +1,8 @@
 //! Spectrum of a settled motion: amplitude and power spectral density over frequency.
 //!
-//! A run is sampled evenly over its settled window. Under a drive with a period the samples are a whole
-//! number of forcing periods, and where the motion repeats a whole number of its own, so that all of a
-//! periodic motion lies in lines and no taper is needed. Every other motion is tapered by the window of
-//! von Hann.
+//! A run is sampled evenly over its settled window. Under a drive with a period that holds a whole number of
+//! forcing periods, and of its own of a motion that repeats, which then lies in lines and needs no taper.
+//! Every other motion is tapered by the window of von Hann.
 
 use super::simulate::MAX_SAMPLES;
 use super::{Table, Task, Values};
@@ -48,8 +47,7 @@ impl Signal {
 pub struct SpectrumOptions {
     /// The signal.
     pub signal: Signal,
-    /// How the samples are weighted; by default not at all if the motion repeats, else by the window of
-    /// von Hann.
+    /// How the samples are weighted; by default not if the motion repeats, else by the window of von Hann.
     pub taper: Option<Taper>,
     /// Samples a second, raised until a whole number falls into a forcing period; by default enough for 128
     /// in the shortest period of excitation and mechanism, and for 4096 in all.
@@ -139,8 +137,7 @@ const FEWEST: f64 = 4.0;
 /// The fewest samples by default.
 const PLENTY: f64 = 4096.0;
 
-/// The spectrum of the settled motion of `model`. The motion is run twice: for its verdict, then for
-/// its samples.
+/// The spectrum of the settled motion of `model`, which is run twice: for its verdict and for its samples.
 ///
 /// Frequencies above half the rate are folded back below it. In a smooth motion that is negligible: its
 /// spectrum falls faster than any power of the frequency. Impacts are jumps of the velocity, whose amplitude

@@ -21,8 +21,7 @@ pub const DIRECTION: &str = "direction";
 /// What a sweep does beyond running each cell for its duration.
 #[derive(Debug, Clone, Default)]
 pub struct SweepOptions {
-    /// More columns than the [standard](STANDARD) ones. One that needs the energy ledger has the cells run
-    /// one by one.
+    /// More columns than the [standard](STANDARD) ones; one of the energy ledger has cells run one by one.
     pub columns: Vec<&'static SummaryField>,
     /// Each run goes on until its motion repeats, or up to this time in s.
     pub until_settled: Option<f64>,

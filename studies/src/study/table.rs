@@ -7,8 +7,7 @@ use crate::scene::unit_ending;
 /// Values of one column, all of one type.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Values {
-    /// Real numbers. NaN and plus infinity stand for a missing value; minus infinity is the logarithm
-    /// of nothing.
+    /// Real numbers. NaN and plus infinity are missing values; minus infinity is the logarithm of nothing.
     Numbers(Vec<f64>),
     /// Whole numbers; `None` is a missing value.
     Counts(Vec<Option<u64>>),

@@ -29,8 +29,7 @@ pub struct Scan {
     pub values: Vec<f64>,
     /// The threshold is located among the multiples of this, in the field's unit.
     pub resolution: f64,
-    /// Time in s up to which a run goes on until its motion repeats; 1000 forcing periods beyond the run
-    /// where there is none.
+    /// Time in s up to which runs go on until they repeat; by default 1000 forcing periods beyond the run.
     pub until_settled: Option<f64>,
 }
 
@@ -43,22 +42,20 @@ pub struct Found {
     pub low: Option<f64>,
     /// The first value from it on, of those tried, that is known to do it.
     pub high: Option<f64>,
-    /// Whether the answer just below the value, or at it, is not known; without a value, that at the end of
-    /// the scan.
+    /// Whether the answer just below the value, or at it, is unknown; without a value, at the end of the
+    /// scan.
     pub undecided: bool,
     /// How often the answer changes above it, within the scan.
     pub windows: u64,
-    /// The value of the last change upward, from which on the answer does not change; `None` if the scan ends
-    /// with the answer no.
+    /// The value from which on the answer stays yes; `None` if the scan ends with no.
     pub without_gap: Option<f64>,
 }
 
-/// Runs the scan of `scene`, each run from rest. `mechanism` is that of the scene, built from `files`. `None`
-/// if cancelled.
+/// Runs the scan of `scene`, each run from rest, with its `mechanism` built from `files`. `None` if
+/// cancelled.
 ///
-/// A value that makes no valid model does not do it. A release under one sine that moves a mass from the stop
-/// it is pressed on, over the amplitude, is known in closed form: exactly there the mass is not released yet,
-/// so that a value within the scan is also the last one that does not do it.
+/// A value that makes no valid model does not do it. A release under one sine, over the amplitude, is known
+/// in closed form: exactly there the mass is not released yet, so that value is also the last one below.
 pub fn threshold(
     scene: &Scene,
     mechanism: &Arc<Mechanism>,
@@ -82,10 +79,9 @@ pub enum NoThresholds {
     Wrong(Vec<CellFaults>),
 }
 
-/// The thresholds of every cell of `grid` over `scene`, in order: the swept fields, then
-/// `of,value,low,high,undecided,windows`. A value that is not found is missing, as is that of a cell whose
-/// mechanism is not solved. Ticks for each value of the scan in each cell. If cells are wrong, nothing has
-/// been run.
+/// The thresholds of every cell of `grid`: the swept fields, then `of,value,low,high,undecided,windows`. A
+/// value is missing if it is not found or the mechanism is not solved. Ticks for each value of the scan in
+/// each cell. If cells are wrong, nothing has been run.
 pub fn threshold_table(
     scene: &Scene,
     files: &Files,

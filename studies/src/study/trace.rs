@@ -1,7 +1,6 @@
 //! Samples of a run for a picture: its path, every jump of the velocity, and the spans at rest.
 //!
-//! A picture must be right however sparse the requested samples are, so it has separate ones; a single run
-//! gives both.
+//! A picture must be right however sparse the requested samples are, so it has its own, from the same run.
 
 use super::simulate::in_order;
 use super::{Keep, Simulation, Table, events_table, samples_table};
@@ -17,11 +16,10 @@ pub struct Trace {
     pub impacts: Table,
     /// `from_s,to_s,side` of every span at rest on a stop.
     pub rests: Table,
-    /// Time in s from which on the phase portrait is shown: the settled window, but no more than
-    /// some forcing periods of it; or a window that was asked for.
+    /// Time in s from which on the phase portrait is shown: the last forcing periods, or a `window` asked
+    /// for.
     pub portrait_from: f64,
-    /// Time in s from which on the motion is shown over time: of a long run under a drive that repeats, its
-    /// last forcing periods, since all of it would be a filled band.
+    /// Time in s from which on the motion is shown: all of it, or the last forcing periods of a long run.
     pub shown_from: f64,
     /// Time in s up to which motion and phase portrait are shown.
     pub shown_to: f64,
@@ -53,8 +51,7 @@ const PORTRAIT: f64 = 24_000.0;
 /// The most rows in a phase portrait; more of them, as from a million impacts, only blacken it.
 const MOST_PORTRAIT: usize = 60_000;
 
-/// Runs `model` once and keeps, besides what `keep` says, what a picture needs; a `window` in s, which lies
-/// within the run, is all that is shown.
+/// Runs `model` once, with what `keep` says and what a picture needs; a `window` in s is all that it shows.
 pub fn simulate_with_trace(
     model: &Model,
     keep: &Keep,

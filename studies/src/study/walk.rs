@@ -61,8 +61,7 @@ impl Carry {
 }
 
 /// Cells that are answered one after the other. The first begins at its scene's start, each further one in
-/// the state of the one before at the last instant of its run that is a whole number of forcing periods after
-/// its start. A cell alone is a walk of length 1 without a direction.
+/// the state of the one before after whole forcing periods. A cell alone is a walk of length 1.
 pub(super) struct Walk {
     /// The first of its cells in the order of the grid.
     begin: u64,
@@ -100,7 +99,6 @@ impl Walk {
         Self { begin, length, direction, done: 0, carried: Carried::default() }
     }
 
-    /// The next cell.
     pub fn cell(&self) -> u64 {
         match self.direction {
             Some(Direction::Down) => self.begin + self.length - 1 - self.done,
@@ -141,8 +139,7 @@ pub struct Visit {
 }
 
 /// Walks a family over `values`, ascending, upwards and downwards side by side, and hands over each run as
-/// soon as it is known, those of a direction in their order. A value that makes no model is skipped. Returns
-/// false if cancelled.
+/// soon as it is known. A value that makes no model is skipped. False if cancelled.
 pub fn up_and_down(
     family: &Family,
     values: &[f64],

@@ -1,9 +1,8 @@
 //! Live run with a memory of its path.
 //!
-//! The path is sampled for the eye: some eighty times a period, and at every event, so that rebounds
-//! are corners and rests are flat. The energy ledger is kept at the end of every forcing period
-//! while somebody looks at it. The oldest part is forgotten. The models of the motion are kept with
-//! it ([`models`](super::models)).
+//! The path is sampled for the eye: some eighty times a period, and at every event, so that rebounds are
+//! corners and rests are flat. The energy ledger is kept at the end of every forcing period while somebody
+//! looks at it. The oldest part is forgotten. The models are kept with it ([`models`](super::models)).
 
 use std::collections::VecDeque;
 use std::ops::Range;
@@ -69,8 +68,7 @@ impl Watch {
         watch
     }
 
-    /// Whether from now on a ledger is kept at the end of every forcing period: each repeats the last step.
-    /// Ledgers already kept stay, and the present one is always available.
+    /// Whether from now on a ledger is kept at the end of every forcing period, which repeats the last step.
     pub fn keep_ledgers(&mut self, keep: bool) {
         self.keeps_ledgers = keep;
     }
@@ -85,8 +83,8 @@ impl Watch {
         self.ledgers.len()
     }
 
-    /// Goes on to the time `to` in s. False where it did not get there: the run has ended, or impacts
-    /// crowd so that it needs more calls.
+    /// Goes on to the time `to` in s. False if the run ended before, or impacts crowd so that it needs more
+    /// calls.
     pub fn advance(&mut self, to: f64) -> bool {
         let from = self.live.time();
         let step = self.step.max((to - from) / MOST_AT_ONCE);
@@ -134,8 +132,8 @@ impl Watch {
         self.jump(|live, passage| live.place(x, v, passage));
     }
 
-    /// Changes the motion at the present instant, whose state before that is remembered, so that the path
-    /// jumps and does not lead there from the last sample.
+    /// Changes the motion at the present instant. The state before is remembered, so that the path jumps
+    /// there.
     fn jump(&mut self, change: impl FnOnce(&mut Live, &mut LiveOutput)) {
         if self.samples.back().is_none_or(|last| last.t < self.now.t) {
             self.samples.push_back(self.now);
@@ -401,8 +399,7 @@ pub fn continued_scene(scene: &Scene, here: &Model) -> Option<Scene> {
     put_phases(&mut scene.excitation, &mut turns).then_some(scene)
 }
 
-/// Gives every sine of an excitation its phase, from turns and the half turn of a negative amplitude; false
-/// if another part has a phase.
+/// Gives every sine of an excitation its phase, from turns and half turns; false if another part has one.
 fn put_phases(excitation: &mut Excitation, turns: &mut impl Iterator<Item = (f64, f64)>) -> bool {
     match excitation {
         Excitation::None | Excitation::Constant { .. } => true,

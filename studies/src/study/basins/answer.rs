@@ -8,8 +8,7 @@ use crate::study::{State, Table, Task};
 /// The quantile of the normal distribution that leaves 95 % within.
 const NORMAL_95: f64 = 1.959_963_984_540_054;
 
-/// Forcing periods of the window over which an attractor is described: two of the longest period that
-/// is recognised.
+/// Forcing periods over which an attractor is described: two of the longest period that is recognised.
 const WINDOW: u32 = 24;
 
 /// A share with its 95 % interval (Wilson 1927).
@@ -45,8 +44,7 @@ pub struct Attractor {
     pub side: Option<Place>,
     /// Its RMS velocity in m/s.
     pub rms_velocity: Option<f64>,
-    /// Its states once a period at the starts' phase of the drive, in m and m/s: as many as it has periods,
-    /// else one.
+    /// Its states in m and m/s at the starts' phase of the drive: one for each of its periods, else one.
     pub states: Vec<(f64, f64)>,
     /// The number of starts that go to it.
     pub starts: u64,
@@ -143,7 +141,8 @@ impl Basins {
     pub fn answer(&self, task: &Task) -> Option<Answer> {
         let after: Vec<Option<(Key, Way)>> =
             (0..self.rounds.releases.len()).map(|place| self.after(place as u32)).collect();
-        let (mut keys, mut counts): (Vec<(Key, usize)>, Vec<u64>) = (Vec::new(), Vec::new());
+        // each with the first row that goes to it, and how many do
+        let mut keys: Vec<(Key, usize, u64)> = Vec::new();
         let (mut outside, mut lost, mut spent, mut undecided) = (0, 0, 0, 0);
         let mut rows = Vec::with_capacity(self.rounds.fates.len());
         for (row, fate) in self.rounds.fates.iter().enumerate() {
@@ -161,20 +160,19 @@ impl Basins {
             spent += u64::from(end == Fate::Lost { spent: true });
             undecided += u64::from(end == Fate::Undecided);
             rows.push(key.map(|(key, way)| {
-                let known = keys.iter().position(|(known, _)| *known == key);
+                let known = keys.iter().position(|(known, ..)| *known == key);
                 let place = known.unwrap_or_else(|| {
-                    keys.push((key, row));
-                    counts.push(0);
+                    keys.push((key, row, 0));
                     keys.len() - 1
                 });
-                counts[place] += 1;
+                keys[place].2 += 1;
                 (place as u32 + 1, way.periods)
             }));
         }
         let run = self.rounds.fates.iter().filter(|fate| **fate != Fate::NotRun).count() as u64;
         let inside = (run - outside).max(1);
         let mut attractors = Vec::with_capacity(keys.len());
-        for ((key, row), starts) in keys.into_iter().zip(counts) {
+        for (key, row, starts) in keys {
             let settled = rows[row].map_or(0, |(_, periods)| periods);
             let (summary, states) = self.describe(key, row, settled, task)?;
             attractors.push(Attractor {
@@ -190,8 +188,7 @@ impl Basins {
         Some(Answer { attractors, rows, sure: Vec::new(), outside, lost, spent, undecided })
     }
 
-    /// The releases that follow each other from `release` on, and the first fate that is no release or
-    /// repeats one.
+    /// The releases that follow each other from `release` on, and the first fate that is none or repeats one.
     pub(super) fn chain(&self, release: u32) -> (Vec<(u32, Way)>, Fate) {
         let (mut passed, mut at, mut way) = (Vec::new(), release, Way::default());
         loop {
@@ -220,13 +217,14 @@ impl Basins {
         }
     }
 
-    /// The summary of an attractor, and its states: of an orbit from one of its states, else from the start
+    /// The summary and the states of an attractor: of an orbit from one of its states, else from the start
     /// `row`, which settles after `settled` periods.
     fn describe(&self, key: Key, row: usize, settled: u32, task: &Task) -> Option<(Summary, Vec<State>)> {
         let period = self.model.forcing_period().unwrap_or(1.0);
         let (x_mm, v) = self.starts.at(row);
-        let mut start = (x_mm / 1e3, v);
+        let (mut start, mut settle) = ((x_mm / 1e3, v), 0.0);
         match key {
+            Key::Cycle(_) => settle = f64::from(settled) * period,
             Key::Kind(kind) => match &self.rounds.kinds[kind as usize] {
                 Kind::Orbit(orbit) => {
                     let first = self.rounds.orbit_of.iter().position(|number| number == orbit)?;
@@ -241,9 +239,7 @@ impl Basins {
                     return Some((**summary, vec![(summary.final_x, summary.final_v)]));
                 }
             },
-            Key::Cycle(_) => {}
         }
-        let settle = if let Key::Cycle(_) = key { f64::from(settled) * period } else { 0.0 };
         let window = self.model.with_start(start).with_duration(settle + f64::from(WINDOW) * period, settle);
         let summary = window.run(&Request { cancel: Some(task.cancel), ..Request::default() }).summary;
         if task.is_cancelled() {
@@ -255,8 +251,7 @@ impl Basins {
     }
 }
 
-/// The state of a settled motion after each of `count` forcing periods, that with the largest
-/// displacement first.
+/// The state of a settled motion after each of `count` forcing periods, the one farthest right first.
 fn states(model: &Model, state: State, count: u32, period: f64) -> Vec<State> {
     let times: Vec<f64> = (0..count).map(|number| f64::from(number) * period).collect();
     let request = Request { sample_times: &times, ..Request::default() };

@@ -12,8 +12,8 @@
 //!   first such motions a region is looked for that no motion leaves (see `region`); later ones that enter it
 //!   need not be followed on.
 //!
-//! The scales of all starts are those of the one farthest from the barrier, and what is known grows between
-//! rounds of starts alone, so neither batches nor threads change a bit.
+//! All starts have the scales of the one farthest from the barrier, and what is known grows between rounds
+//! alone, so that neither batches nor threads change a bit.
 
 mod answer;
 mod orbit;
@@ -89,8 +89,8 @@ impl Basins {
     /// Forcing periods after which a motion that reaches no known attractor is judged.
     pub const PATIENCE: u64 = PATIENCE;
 
-    /// The map of a scene from these starts, none of which has been run; the scene's own start is ignored.
-    /// States are taken once a period of the excitation; without one, once a period of small oscillations.
+    /// The map of a scene from these starts, none of which has been run; the start of the scene is ignored.
+    /// States are taken once a period of the excitation; without one, of small oscillations.
     pub fn new(scene: &Scene, mechanism: Arc<Mechanism>, starts: Starts) -> Result<Self, NoBasins> {
         if scene.transducer.has_state() {
             return Err(NoBasins::ElectricalState);
@@ -209,8 +209,8 @@ fn loses_energy(scene: &Scene) -> bool {
         }
 }
 
-/// An equivalent excitation with a period, if the scene's has none because it is constant: with a sine of
-/// amplitude 0 added, at the frequency of small oscillations.
+/// The excitation of a scene that is constant with a sine of amplitude 0 added, so that it has a period: that
+/// of small oscillations.
 fn shaken(scene: &Scene, model: &Model) -> Option<Excitation> {
     if model.forcing_period().is_some() || !model.excitation().is_constant() {
         return None;

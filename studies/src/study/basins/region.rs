@@ -24,14 +24,13 @@ const APART: f64 = 1e-6;
 
 /// Cells along each side of the extent of an attractor, coarse ones first.
 const ALONG: [f64; 3] = [48.0, 96.0, 192.0];
-/// Most cells of a region.
 const MOST_CELLS: usize = 20_000;
 
 /// Rounds in which cells may be added.
 const ROUNDS: usize = 40;
 
-/// A region around the irregular motion through `state` in m and m/s; `None` if there is none or a state of
-/// it comes to a known orbit.
+/// A region around the irregular motion through `state`; `None` if there is none or it comes to a known
+/// orbit.
 pub(super) fn absorbing(
     scope: &Stroboscope,
     state: State,

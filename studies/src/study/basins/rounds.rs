@@ -16,9 +16,7 @@ pub(super) const PATIENCE: u64 = settled::PATIENCE as u64;
 /// Length of a motion until its attractor is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Way {
-    /// Forcing periods.
     pub periods: u32,
-    /// Crossings of the barrier.
     pub crossings: u32,
 }
 
@@ -40,8 +38,7 @@ impl Way {
     }
 }
 
-/// A motion to follow: a start, or the motion after a release, as the continuation of a start past
-/// some releases.
+/// A motion to follow: a start, or what comes after a release, as the start's motion past some releases.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Item {
     pub row: usize,
@@ -52,7 +49,6 @@ pub(super) struct Item {
 }
 
 impl Item {
-    /// A start.
     pub fn of_start(row: usize) -> Self {
         Self { row, releases: 0, after: None, repeats_from: 0 }
     }
@@ -106,9 +102,7 @@ const ON_ORBIT: f64 = 1e-6;
 pub(super) enum Verdict {
     /// A settled motion: all with the same regime, side and period (if any) are one attractor.
     Settled {
-        /// See [`Regime`].
         regime: Regime,
-        /// Where it is.
         side: Option<Place>,
         /// Its period, where no ellipse could be found around it.
         period: Option<u32>,
@@ -120,12 +114,11 @@ pub(super) enum Verdict {
 }
 
 /// The verdict by the summary of a pursuit, whose window is its last hundred forcing periods, and whether it
-/// ended on an orbit that is unstable. A verdict without a period is confirmed by the exponent of one motion
-/// of its kind.
+/// ended on an unstable orbit. The exponent of one motion of a kind confirms a verdict without a period.
 ///
-/// An exponent tells irregular motion from a motion that is slow to settle, but not from a long transient:
-/// the transients of a double well are themselves irregular, and end by chance. So a motion is called
-/// irregular only after a thousand periods in which it found no other.
+/// An exponent tells irregular motion from motion that is slow to settle, but not from a long transient,
+/// which is itself irregular in a double well and ends by chance. So a motion is called irregular only after
+/// a thousand periods in which it found no other.
 pub(super) fn verdict(summary: &Summary, on_unstable: bool) -> Verdict {
     match summary.outcome {
         Outcome::Done if on_unstable || summary.steady != Some(true) => Verdict::Undecided,
@@ -157,7 +150,6 @@ pub(super) enum Fate {
 pub(super) enum Kind {
     /// A stable orbit, by its number.
     Orbit(u32),
-    /// Rest on a stop.
     Rest(Side),
     /// What [`verdict`] says, and the summary of the first one.
     Judged(Verdict, Box<Summary>),
@@ -214,12 +206,10 @@ impl Rounds {
         Self { fates, next_round: FIRST_ROUND, remaining: starts, ..Self::default() }
     }
 
-    /// The place of a kind that is known.
     fn known_kind(&self, kind: &Kind) -> Option<u32> {
         self.kinds.iter().position(|known| known.is_same(kind)).map(|place| place as u32)
     }
 
-    /// The place of a kind.
     fn kind(&mut self, kind: Kind) -> u32 {
         self.known_kind(&kind).unwrap_or_else(|| {
             self.kinds.push(kind);
@@ -236,7 +226,6 @@ impl Rounds {
         (place.unwrap_or(self.releases.len() as u32 - 1), place.is_none())
     }
 
-    /// The place of a release that is known.
     fn known_release(&self, identity: ReleaseIdentity) -> Option<u32> {
         self.releases.iter().position(|release| release.identity == identity).map(|place| place as u32)
     }
@@ -416,8 +405,7 @@ fn round(
 }
 
 impl Basins {
-    /// Runs the starts of the next level, with a tick of the task for each start. Returns false if cancelled;
-    /// the map is then unusable.
+    /// Runs the starts of the next level, each with a tick. False if cancelled; the map is then unusable.
     pub fn run_level(&mut self, pool: &Pool, task: &Task) -> bool {
         let Self { model, starts, levels, done, room, rounds, effort } = self;
         let scope = Stroboscope { model, room: *room, pool, cancel: task.cancel, effort };

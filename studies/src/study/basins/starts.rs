@@ -6,8 +6,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use crate::numeric::{Decimal, extent};
 use crate::study::{Levels, even_positions};
 
-/// The most starts of one map: some minutes of a core where the mass comes to rest on stops, and many hours
-/// where it does not.
+/// The most starts of one map: minutes of a core where the mass comes to rest on stops, many hours elsewhere.
 pub const MAX_STARTS: u64 = 10_000_000;
 
 /// The largest displacement in mm and velocity in m/s, those of a scene.
@@ -87,8 +86,8 @@ fn within((from, to): (f64, f64)) -> Result<(), StartsError> {
 pub struct Starts {
     x_mm: Vec<f64>,
     v: Vec<f64>,
-    /// Whether they are all pairs of the values, displacement the slower; else values of the same index are
-    /// a start.
+    /// Whether they are all pairs of the values, displacement the slower; else values of one index are a
+    /// start.
     product: bool,
 }
 

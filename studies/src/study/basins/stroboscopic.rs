@@ -7,7 +7,7 @@ use crate::study::{Cancelled, ExponentOptions, State, average_exponents};
 use crate::system::threads::{Pool, UnderWay, share};
 
 /// A displacement and a velocity in units of the scene's scales.
-type Point = [f64; 2];
+pub(super) type Point = [f64; 2];
 
 /// Cost of a forcing period with its derivatives, in periods without.
 const WITH_DERIVATIVES: u64 = 4;
@@ -35,7 +35,6 @@ impl Stroboscope<'_> {
         [x / length, v / speed]
     }
 
-    /// A point as a state in m and m/s.
     pub fn state(&self, [x, v]: Point) -> State {
         let (length, speed) = self.units();
         (x * length, v * speed)
@@ -47,9 +46,8 @@ impl Stroboscope<'_> {
         x >= self.room.0 && x <= self.room.1 && v.is_finite()
     }
 
-    /// The images of points after a number of forcing periods each: `None` for those that begin outside the
-    /// room, end early, or come to rest on the way, after which the map has no inverse, and for all if they
-    /// take more work than is left.
+    /// The images of points after a number of forcing periods each; `None` for those that begin outside the
+    /// room, end early or come to rest, and for all if they take more work than is left.
     pub fn map(&self, starts: &[(Point, u32)]) -> Result<Vec<Option<Point>>, Cancelled> {
         let mut images = vec![None; starts.len()];
         if !self.effort.has_room_for(starts.iter().map(|(_, periods)| u64::from(*periods)).sum()) {
@@ -108,8 +106,7 @@ impl Stroboscope<'_> {
         Ok(all.map(|paths| paths.iter().flatten().map(|sample| (sample.x, sample.v)).collect()))
     }
 
-    /// Whether the motion through a stroboscopic state in m and m/s is irregular by its exponent; false if
-    /// too little work is left.
+    /// Whether the motion through a state is irregular by its exponent; false if too little work is left.
     pub fn is_irregular(&self, state: State) -> bool {
         if !self.effort.has_room_for(WITH_DERIVATIVES * u64::from(ExponentOptions::PERIODS)) {
             return false;
@@ -150,8 +147,7 @@ impl Stroboscope<'_> {
     }
 }
 
-/// Units of the orbits and regions that a map looks for: the ellipses of an orbit of 12 periods that passes a
-/// kink of the force take some of the prototype's.
+/// Units of the orbits and regions of a map: some ellipses of an orbit of 12 periods past a kink take that.
 const OF_THE_MAP: u64 = 20_000_000_000;
 
 /// Units of each start: four times those of the prototype followed for 1000 forcing periods.
@@ -164,9 +160,8 @@ const LEAST: u64 = 2_000_000;
 
 /// Work of one map, in the units of a [`Pursuit`].
 ///
-/// A well may swing ten thousand times in a forcing period, and a map would then take days. What is left of
-/// the work between rounds decides how far a start is followed, so that the answer does not depend on the
-/// number of threads.
+/// A well may swing ten thousand times in a forcing period, and a map would then take days. How far a start
+/// is followed depends on what is left between rounds, and so not on the number of threads.
 #[derive(Debug)]
 pub(super) struct Effort {
     budget: u64,
@@ -201,8 +196,7 @@ impl Effort {
         (SHARES * (self.left() / remaining.max(1) as u64)).max(LEAST)
     }
 
-    /// Whether `periods` more forcing periods, each with the mean work of those before, are within what
-    /// is left.
+    /// Whether `periods` more forcing periods of the mean work fit into what is left.
     pub fn has_room_for(&self, periods: u64) -> bool {
         let (done, before) = (self.done.load(Ordering::Relaxed), self.periods.load(Ordering::Relaxed));
         done as f64 / before.max(1) as f64 * periods as f64 <= self.left() as f64

@@ -1,5 +1,4 @@
-//! Question and result of a design search: fields with their ranges, constraints, environments, variations,
-//! and the best design.
+//! Question and result of a search for the best design.
 
 use crate::scene::{Fault, FieldPath, Files, Scene, column_names};
 use crate::study::{SummaryField, Table, Values};
@@ -81,8 +80,8 @@ pub struct BestQuestion {
     pub vary: Vec<Variation>,
     /// Seed of the samples of what varies.
     pub seed: u64,
-    /// Time in s up to which each run is followed until its motion repeats; 1000 forcing periods beyond the
-    /// run where there is none.
+    /// Time in s up to which runs are followed until they repeat; by default 1000 forcing periods beyond the
+    /// run.
     pub until_settled: Option<f64>,
 }
 
@@ -141,8 +140,7 @@ pub enum NoBest {
     Invalid(Vec<Fault>),
     /// No design has the result and those of the constraints.
     NoValue,
-    /// No design meets the constraints. The nearest one, with the results that they bound, in the environment
-    /// that is furthest off.
+    /// No design meets the constraints; the nearest one, and its results in the environment furthest off.
     NoneMeets {
         /// The fields' values.
         nearest: Vec<f64>,

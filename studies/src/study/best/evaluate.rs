@@ -20,12 +20,10 @@ pub(super) enum Judged {
     Missing,
     /// Constraints are broken: the sum of the excesses, each relative to its limit, and the results.
     Broken(f64, Vec<f64>),
-    /// It has a value.
     Value(f64, Vec<f64>),
 }
 
 impl Judged {
-    /// The value, where there is one.
     pub fn value(&self) -> Option<f64> {
         if let Self::Value(value, _) = self { Some(*value) } else { None }
     }
@@ -43,7 +41,6 @@ pub(super) type Design = (Vec<f64>, Vec<f64>);
 /// The summary of a run, or what is wrong with its scene.
 type Ran = Result<Box<Summary>, Vec<Fault>>;
 
-/// Evaluator of designs.
 pub(super) struct Evaluator<'a> {
     pub question: &'a BestQuestion,
     /// The ranges of the question, with the fields of whole numbers marked.
@@ -92,7 +89,6 @@ impl<'a> Evaluator<'a> {
         self.varied.iter().map(|path| path.get(&scene).unwrap_or(f64::NAN)).collect()
     }
 
-    /// Results of these designs, in their order.
     pub fn judge(&self, designs: &[Vec<f64>]) -> Result<Vec<Judged>, NoBest> {
         let designs: Vec<Design> = designs.iter().map(|at| (at.clone(), Vec::new())).collect();
         self.judge_varied(&designs)

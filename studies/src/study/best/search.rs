@@ -9,8 +9,7 @@ use crate::study::bisection::multiple;
 /// Stride of the coarse scan before the full one.
 const COARSE: usize = 4;
 
-/// How many of the best places of the scan are refined: beside the highest there may be a higher one in a
-/// window that the scan has only grazed.
+/// How many of the best places are refined: a window that the scan has only grazed may hold a higher one.
 const REFINED: usize = 5;
 
 /// Intervals to each side of the middle in a refinement, for one field, two, three and four.
@@ -33,7 +32,6 @@ pub(super) fn resolution(range: &DesignRange) -> f64 {
     if range.whole { parts.max(1.0) } else { parts }
 }
 
-/// The place of the scan with these indices.
 fn place(over: &[DesignRange], indices: &[usize]) -> Vec<f64> {
     let at = |(range, index): (&DesignRange, &usize)| match *index {
         0 => range.low,
@@ -114,8 +112,7 @@ struct Closer {
     tried: Vec<Vec<f64>>,
 }
 
-/// Scans a box around each of some places, moves each to the best in it and halves it or less, until the
-/// resolution of every field is reached.
+/// Scans a box around each place, moves it to the best in it and halves it or less, down to the resolution.
 fn refine(evaluator: &Evaluator, starts: Vec<Optimum>) -> Result<Vec<Optimum>, NoBest> {
     let over = &evaluator.over;
     let sides = SIDES[over.len() - 1];
@@ -206,8 +203,7 @@ pub(super) fn margins(evaluator: &Evaluator, found: &Found) -> Result<Vec<[Optio
         .collect()
 }
 
-/// The least distance in direction `way` at which the value has fallen, with every finer step tried, since
-/// the values that hold form no interval.
+/// The least distance in direction `way` at which the value has fallen; every finer step is tried.
 fn side(evaluator: &Evaluator, found: &Found, field: usize, way: f64) -> Result<Option<f64>, NoBest> {
     let range = &evaluator.over[field];
     let (best, middle) = (&found.optimum, found.optimum.at[field]);

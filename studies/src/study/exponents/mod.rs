@@ -36,10 +36,9 @@ const WINDOW: f64 = 36.0;
 
 /// The exponents of the settled motion of `model`.
 ///
-/// Its run goes to the end of its settled window, and on, window after window, until it repeats or the time
-/// of the options is over. If it repeats, the exponents are those of the periodic motion; else they are
-/// averages over the periods that follow. Without a drive the mass is followed for 1000 periods of its
-/// small oscillations.
+/// Its run goes on, window after window, until it repeats or the time of the options is over. If it repeats,
+/// the exponents are those of the periodic motion; else averages over the periods that follow. Without a
+/// drive the mass is followed for 1000 periods of its small oscillations.
 pub fn exponents(
     model: &Model,
     options: &ExponentOptions,
@@ -115,8 +114,7 @@ impl Question for ExponentOptions {
     }
 }
 
-/// What is wrong with the excitation of a scene whose exponents are asked for: it changes and does
-/// not repeat.
+/// The fault of an excitation that changes and does not repeat, so that there are no exponents.
 pub fn drive_fault(model: &Model, scene: &Scene) -> Option<Fault> {
     let suits = model.excitation().is_constant();
     if suits { None } else { without_a_period(model, scene, "an exponent") }

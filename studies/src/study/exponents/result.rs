@@ -7,8 +7,8 @@ use crate::dynamics::Outcome;
 pub struct ExponentOptions {
     /// Forcing periods over which a motion without a period is averaged.
     pub periods: u32,
-    /// Time in s up to which a motion is followed until it repeats; `None`: for 1000 forcing periods after
-    /// the scene's run.
+    /// Time in s up to which a motion is followed until it repeats; by default 1000 forcing periods beyond
+    /// the run.
     pub until_settled: Option<f64>,
 }
 
@@ -51,8 +51,8 @@ pub struct Exponents {
     /// Their sum in 1/s by the determinants of the derivatives. NaN where a forcing period shrinks areas so
     /// much that a determinant, the difference of two products, has lost its digits.
     pub sum: f64,
-    /// Their sum in 1/s by damping and impacts; `None` with compliant stops, whose loss depends on
-    /// the motion.
+    /// Their sum in 1/s by damping and impacts; `None` with compliant stops, whose loss depends on the
+    /// motion.
     pub exact_sum: Option<f64>,
     /// Forcing periods after which the motion repeats, where they are those of a periodic motion.
     pub period: Option<u32>,
@@ -63,8 +63,7 @@ pub struct Exponents {
 /// Standard errors above 0 from which an exponent counts as positive.
 const CLEAR: f64 = 3.0;
 
-/// Least growth of an irregular motion, in multiples of that of a shear, which is linear in the number
-/// of periods.
+/// Least growth of an irregular motion, in multiples of that of a shear: the logarithm of the periods.
 const BEYOND_SHEAR: f64 = 3.0;
 
 impl Exponents {

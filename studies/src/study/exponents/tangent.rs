@@ -11,7 +11,6 @@ const LOST: f64 = 1e-12;
 /// Below this share the determinant of a period is the product of those of its parts. A mass that lingers
 /// near the top of a barrier turns all changes into the one that grows there, up to 1e6-fold in a period.
 const FEW_LEFT: f64 = 1e-4;
-/// Number of these parts.
 const PARTS: u32 = 8;
 
 /// The stroboscopic map of a model, with changes of a state in units of its scales.
@@ -50,8 +49,7 @@ impl Passed {
 }
 
 impl Tangent {
-    /// The map from a phase of the drive on, in forcing periods; without a drive over the natural time of
-    /// the mechanism.
+    /// The map from a phase of the drive on, in forcing periods; without a drive over the natural time.
     pub fn of(model: &Model, phase: f64) -> Result<Self, NoExponents> {
         if model.has_electrical_state() {
             return Err(NoExponents::ElectricalState);
@@ -71,7 +69,6 @@ impl Tangent {
         Ok(Self { scales: model.scales(), map, damped, struck })
     }
 
-    /// The model.
     pub fn model(&self) -> &Model {
         self.map.model()
     }
@@ -112,8 +109,7 @@ impl Tangent {
         Ok(Passed { state: passage.state, jacobian, measured, exact })
     }
 
-    /// Logarithm of the determinant of a share of a period; `None` if it is less than `least` of
-    /// its products.
+    /// Logarithm of the determinant of a share of a period; `None` if less than `least` of its products.
     fn logarithm(&self, passage: &Passage, derivative: &Jacobian, share: f64, least: f64) -> Option<f64> {
         let determinant = derivative.determinant().abs();
         let exact = passage.determinant.unwrap_or_else(|| (self.damped * share).exp());
@@ -132,7 +128,6 @@ impl Tangent {
         parts.sum()
     }
 
-    /// The result of `periods` forcing periods.
     pub fn pass_many(&self, state: State, periods: u32) -> Result<Passed, NoExponents> {
         let mut all =
             Passed { state, jacobian: Jacobian::IDENTITY, measured: 0.0, exact: self.struck.map(|_| 0.0) };

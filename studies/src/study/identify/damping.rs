@@ -23,8 +23,7 @@ const NEGLIGIBLE: f64 = 1e-3;
 /// Swings count down to this many times the reach of the noise.
 const CLEAR: f64 = 1.5;
 
-/// Damping ratio, decay and frequency of a free decay, over the whole record and as they change with
-/// the amplitude.
+/// Damping ratio, decay and frequency of a free decay, over the record and as they change with amplitude.
 ///
 /// Each turning point is fitted separately (see `peaks`) and an exponential envelope through them by weighted
 /// least squares (see [`Envelope`]), whose rate r is the decay of the amplitude a second. Over half a period
@@ -206,8 +205,7 @@ fn ratio(d: f64) -> f64 {
     d / PI.hypot(d)
 }
 
-/// The frequency without the damping, f/sqrt(1 - z^2) of a frequency f and a damping ratio z; its interval is
-/// that of independent errors.
+/// The frequency f without the damping of ratio z, f/sqrt(1 - z^2), with the interval of independent errors.
 fn natural(frequency: Identity, damping: Identity) -> Identity {
     let slower = (1.0 - damping.value.powi(2)).sqrt();
     let value = frequency.value / slower;
@@ -221,8 +219,7 @@ fn natural(frequency: Identity, damping: Identity) -> Identity {
     Identity { name: "natural_frequency_hz", value, interval: (value - low, value + high) }
 }
 
-/// Whether the numbers of the rows differ from that of the whole by more than their intervals explain, and by
-/// more than counts.
+/// Whether the numbers of the rows differ from the whole by more than intervals explain and than counts.
 fn differ(rows: impl ExactSizeIterator<Item = Identity>, whole: f64) -> bool {
     let chance = 1 + rows.len() / 5;
     let apart = |row: &Identity| (row.value - whole).abs() > NEGLIGIBLE * whole.abs();

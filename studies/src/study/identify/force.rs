@@ -63,14 +63,13 @@ struct Curve {
 /// The force curve of a slow pull: force `force` in N over position `x` in m, in the order in which they were
 /// measured, in one direction or in both, any number of times.
 ///
-/// The curve has `points` even positions over the range that all directions cover. At each of them a cubic is
-/// fitted by least squares to the samples of one direction up to the neighbouring points, or up to a kink
-/// beside an equilibrium. The force of the curve is the mean of both directions, and half their difference
-/// the friction. The equilibria are fitted separately (see `Rest::near`). Intervals are 95 %, from the
-/// residuals of the fits.
+/// The curve has `points` even positions over the range that all directions cover. At each a cubic is fitted
+/// by least squares to the samples of one direction up to the neighbouring points, or up to a kink beside an
+/// equilibrium. The force is the mean of both directions, half their difference the friction. The equilibria
+/// are fitted separately (see `Rest::near`). Intervals are 95 %, from the residuals of the fits.
 ///
-/// Rows: `x_m,force_n,force_low_n,force_high_n,force_rising_n,force_falling_n`, as a table mechanism
-/// reads them.
+/// Rows, as a table mechanism reads them:
+/// `x_m,force_n,force_low_n,force_high_n,force_rising_n,force_falling_n`.
 pub fn force(x: &[f64], force: &[f64], points: usize) -> Result<Identified, Unidentified> {
     let [rising, falling] = directions(x, force);
     let pulls: Vec<&Pull> = [&rising, &falling].into_iter().filter(|pull| !pull.is_empty()).collect();
@@ -202,8 +201,8 @@ impl Curve {
         (summary, remarks)
     }
 
-    /// Integral of the force from one equilibrium to another: near them that of their fits, and by cubics
-    /// between the points of the curve (the trapezoidal rule with its end correction) from one to the other.
+    /// Integral of the force from one equilibrium to another: near them that of their fits, elsewhere by
+    /// cubics between the points of the curve (the trapezoidal rule with its end correction).
     fn work(&self, one: &Rest, other: &Rest) -> Option<Known> {
         let (low, high) = if one.x.0 < other.x.0 { (one, other) } else { (other, one) };
         let apart = high.x.0 - low.x.0;
@@ -303,8 +302,8 @@ fn directions(x: &[f64], force: &[f64]) -> [Pull; 2] {
     pulls
 }
 
-/// Whether the two directions are still near each other after the turn at `end`, from which the range extends
-/// by `range`.
+/// Whether the directions are still near each other after the turn at `end` of a range of signed length
+/// `range`.
 fn turning(before: &Pull, after: &Pull, (end, range): (f64, f64)) -> bool {
     let apart = |(x, force): &(f64, f64)| -> Option<f64> {
         let next = before.partition_point(|sample| sample.0 < *x);

@@ -84,8 +84,8 @@ struct Local {
 /// the times found improves each, and the value is read there: the extreme of a noisy curve lies too far out,
 /// the value at a time that hardly depends on the same noise does not.
 ///
-/// The variance of each value follows from that of the samples, which is one part for all and one that grows
-/// with the square of the amplitude, as errors of the times make it; both from the residuals of the fits.
+/// The variance of each value follows from that of the samples: a part for all, and one that grows with the
+/// square of the amplitude, as errors of the times make it; both from the residuals of the fits.
 pub fn peaks(
     times: &[f64],
     values: &[f64],
@@ -135,8 +135,7 @@ pub fn peaks(
     Ok((peaks, sparse.map(|(at, _)| at)))
 }
 
-/// The period about each of the times of turning points, which are half of one apart: the median of those
-/// around it.
+/// The period about each turning point: the median of those around, each from the turn before to that after.
 fn periods(times: &[f64]) -> Result<Vec<f64>, Unidentified> {
     let lengths: Vec<f64> = times.windows(3).map(|turns| turns[2] - turns[0]).collect();
     let usual: Vec<f64> = (0..lengths.len()).map(|k| around(&lengths, k)).collect();
@@ -151,7 +150,6 @@ fn periods(times: &[f64]) -> Result<Vec<f64>, Unidentified> {
     }
 }
 
-/// The median of the values around one.
 fn around(values: &[f64], k: usize) -> f64 {
     let near = k.saturating_sub(NEIGHBOURS)..(k + NEIGHBOURS + 1).min(values.len());
     median(values[near].to_vec()).unwrap_or(f64::NAN)
@@ -339,8 +337,7 @@ fn variances(fits: &[Local], sizes: &[f64]) -> Vec<f64> {
     variances
 }
 
-/// Moves each turning point to a straight line through those around it over their number, with an offset
-/// between maxima and minima.
+/// Moves each turning point to a line through those around it, with an offset between maxima and minima.
 fn smooth(peaks: &mut [Peak]) {
     let line = |k: usize| {
         let here = &peaks[k];

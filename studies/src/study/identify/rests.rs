@@ -30,15 +30,13 @@ const BESIDE: usize = 4;
 
 /// Places at which the sign of the force is taken.
 const PLACES: u32 = 64;
-/// Halvings of a bisection.
 const HALVINGS: u32 = 60;
 
 /// An equilibrium of a measured curve.
 pub struct Rest {
     /// Where it is, in m, with its interval.
     pub x: (f64, [f64; 2]),
-    /// The slope of the force there in N/m, with its interval; of a kink that may be on either side of it,
-    /// that of both slopes.
+    /// The slope of the force there in N/m, with its interval; beside a kink that of both slopes.
     pub stiffness: (f64, [f64; 2]),
     /// A kink near it: its place in m, and the slopes on its left and right in N/m.
     pub kink: Option<[f64; 3]>,
@@ -48,13 +46,12 @@ pub struct Rest {
 }
 
 impl Rest {
-    /// The equilibrium of the mean of these pulls near a place where their mean changes sign; `range` is the
-    /// length of the whole curve.
+    /// The equilibrium of the mean of pulls near a place where it changes sign, in a curve of length `range`.
     ///
-    /// Over some part of the range on either side, of each direction: a cubic, or a cubic with another added
-    /// from a kink on, whose place is found by least squares. The largest part without a kink is taken unless
-    /// another halves the interval of the force there: if the force is known well, as without noise, a
-    /// smaller part is described better.
+    /// A cubic, or a cubic with another added from a kink on (whose place is found by least squares), is
+    /// fitted to each direction over some part of the range on either side. The largest part without a kink
+    /// is taken unless another halves the interval of the force: a force that is known well needs a smaller
+    /// part.
     pub fn near(place: f64, pulls: &[&Pull], range: f64) -> Option<Self> {
         let mut best: Option<Self> = None;
         let fitted = |reach: f64, kinked: bool| {
@@ -130,8 +127,8 @@ impl Rest {
         named.map(|(name, (value, interval))| Identity { name, value, interval: interval.into() })
     }
 
-    /// Integral of the force from this equilibrium to a place within the reach of its fits, in J, and force
-    /// and slope there.
+    /// Integral of the force in J from here to a place within the reach of the fits, and force and slope
+    /// there.
     pub fn work_to(&self, x: f64) -> Option<[Known; 3]> {
         let work = self.fits.iter().map(|fit| fit.work(self.x.0, x)).reduce(Known::and)?;
         Some([work, mean(&self.fits, x, 0)?, mean(&self.fits, x, 1)?])
@@ -211,8 +208,8 @@ impl Near {
         Known { value: value / unit, error: error / unit, freedom }
     }
 
-    /// Integral of the force in J: by Gauss's rule with two points, which is exact for cubics, on either side
-    /// of the kink.
+    /// Integral of the force in J: by Gauss's rule with two points, exact for cubics, on both sides of the
+    /// kink.
     fn work(&self, from: f64, to: f64) -> Known {
         let inner = self.kink.filter(|kink| (*kink - from) * (*kink - to) < 0.0);
         let ends: Vec<f64> = [Some(from), inner, Some(to)].into_iter().flatten().collect();
@@ -242,7 +239,6 @@ fn terms(u: f64, kink: f64, [a, b, c]: &[f64; 3], order: usize) -> Terms {
     })
 }
 
-/// The terms of a cubic with another from a kink on.
 fn joined_terms(u: f64, kink: f64) -> [f64; 7] {
     let all = terms(u, kink, &[0.0; 3], 0);
     std::array::from_fn(|k| all[k])

@@ -38,8 +38,8 @@ pub struct Lack {
     pub found: Value,
 }
 
-/// The first condition in the goal of a step that `subject` does not meet, `None` if the goal is met;
-/// `before` is the scene with which the step began. A step without a goal lacks nothing.
+/// The first condition in the goal of a step that `subject` does not meet, `None` without one; `before` is
+/// the scene with which the step began.
 pub fn goal_lack(step: &Step, subject: &Subject, before: &Subject) -> Result<Option<Lack>, Unjudged> {
     match step {
         Step::Do { goal, .. } => Judge { subject, before, from: None }.lack(goal),
@@ -47,8 +47,7 @@ pub fn goal_lack(step: &Step, subject: &Subject, before: &Subject) -> Result<Opt
     }
 }
 
-/// Which options of a prediction hold of `subject`; `before` is the scene with which the step began. Of other
-/// steps there are none.
+/// Which options of a prediction hold of `subject`; `before` is the scene with which the step began.
 pub fn options_that_hold(step: &Step, subject: &Subject, before: &Subject) -> Result<Vec<bool>, Unjudged> {
     match step {
         Step::Predict { options, .. } => {
@@ -58,7 +57,6 @@ pub fn options_that_hold(step: &Step, subject: &Subject, before: &Subject) -> Re
     }
 }
 
-/// Whether a condition holds.
 pub(super) fn holds(condition: &Condition, subject: &Subject, before: &Subject) -> Result<bool, Unjudged> {
     Judge { subject, before, from: None }.holds(condition)
 }

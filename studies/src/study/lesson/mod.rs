@@ -1,5 +1,4 @@
-//! Verdicts of lessons: whether a task is done, which option of a prediction holds, and whether a lesson is
-//! right from its first step to its last.
+//! Verdicts of lessons: whether a task is done, which option holds, and whether a whole lesson is right.
 
 mod check;
 mod judge;

@@ -70,12 +70,10 @@ impl<'a> Subject<'a> {
         self.scene
     }
 
-    /// Whether it is of this scene with these files.
     pub(super) fn is_of(&self, scene: &Scene, files: &Files) -> bool {
         *self.scene == *scene && *self.files == *files
     }
 
-    /// The run of the scene.
     pub(super) fn run(&self) -> Result<&Summary, Unjudged> {
         once(&self.run, || {
             let run = self.together(&[self.model(self.scene)?])?;
@@ -83,7 +81,6 @@ impl<'a> Subject<'a> {
         })
     }
 
-    /// The runs from these starts.
     pub(super) fn from(&self, starts: &[Start]) -> Result<Vec<Summary>, Unjudged> {
         let known = |start: &Start| self.from.borrow().iter().any(|entry| entry.0 == *start);
         let new: Vec<Start> = starts.iter().filter(|start| !known(start)).copied().collect();

@@ -58,8 +58,7 @@ pub(super) fn statistics(unit: &'static str, measured: &[f64], computed: &[f64])
     ]
 }
 
-/// The table of these rows, of which `rms_difference` is given; it and the largest difference are in percent
-/// of the RMS measured.
+/// The table of these rows; `rms_difference` and the largest difference are in percent of the RMS measured.
 pub(super) fn assembled(rows: &[Row], rms_difference: f64, of_measured: f64) -> Table {
     let difference = |row: &Row| if row.0 == "rms_difference" { rms_difference } else { row.3 - row.2 };
     let percent = |row: &Row| {
@@ -156,8 +155,7 @@ fn rebounds(model: &Model, times: &[f64], measured: &[f64], computed: &[f64]) ->
     rows
 }
 
-/// The heights of rebounds that belong together: nearest in time, and nearer than half of the shortest time
-/// between two measured ones.
+/// The heights of rebounds nearest in time, and nearer than half the shortest time between measured ones.
 fn paired(measured: &[Rebound], computed: &[Rebound]) -> Vec<(f64, f64)> {
     let apart = measured.windows(2).map(|pair| pair[1].t - pair[0].t).fold(f64::INFINITY, f64::min);
     let partner = |rebound: &Rebound| {

@@ -1,5 +1,4 @@
-//! Points of a branch of periodic motions, by Newton's method in a plane across it (pseudo-arclength; Keller
-//! 1977).
+//! Points of a branch of periodic motions, by Newton's method across it (pseudo-arclength; Keller 1977).
 
 use nalgebra::{Matrix3, Vector2, Vector3};
 
@@ -7,15 +6,12 @@ use super::{Orbit, SAME, allowed, map_of};
 use crate::dynamics::{Event, EventKind, Jacobian, Outcome, Passage, Side, StroboscopicMap};
 use crate::study::{Family, State};
 
-/// The most steps to a point.
 const MOST_STEPS: usize = 24;
 
-/// Half the distance over which the map is differenced by the field, as a share of its range, where it
-/// stretches what is near to it by less than that much. The direction of the branch is what is left of
-/// numbers as large as that: the error of the quotient grows with the square of the distance, that of the
-/// map's rounding with its inverse. Where the map stretches more the distance is less. Where the mass strikes
-/// a stop it is less only where the motions beside it do not strike all stops as hard: near a touch the map
-/// changes as the root of the distance.
+/// Half the distance over which the map is differenced by the field, as a share of its range: the error of
+/// the quotient grows with the square of the distance, that of the map's rounding with its inverse. It is
+/// less where the map stretches by more than `STRETCHED`, and where the motions beside it do not strike all
+/// stops as hard: near a touch the map changes as the root of the distance.
 const DIFFERENCE: f64 = 3e-8;
 const STRETCHED: f64 = 1e3;
 const AS_HARD: f64 = 0.1;
@@ -36,8 +32,8 @@ const LARGEST: f64 = 0.2;
 const CLOSE: f64 = 1e-10;
 const GOOD: Accuracy = Accuracy { change: 1e-12, step: 1e-10 };
 
-/// Where Newton's method ends: at a change of the point by the map, or at a step, in the units. At neither,
-/// it ends where steps become no shorter.
+/// Where Newton's method ends: at a change of the point or a step in the units, or where steps shrink no
+/// more.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Accuracy {
     pub change: f64,
@@ -57,7 +53,6 @@ pub(super) struct Units {
 pub(super) struct Point {
     /// Displacement, velocity and field in their units.
     pub at: Vector3<f64>,
-    /// Value of the field.
     pub value: f64,
     pub orbit: Orbit,
     /// Derivatives of the corrector's map by the state, and their determinant.
@@ -68,8 +63,7 @@ pub(super) struct Point {
 }
 
 impl Point {
-    /// Whether the mass rests on its way, which makes it forget its past: the motion is then a function of
-    /// the field alone.
+    /// Whether the mass rests on its way and so forgets its past: a motion that depends on the field alone.
     pub fn forgets(&self) -> bool {
         self.orbit.jacobian.rows == [[0.0; 2]; 2]
     }
@@ -121,9 +115,8 @@ pub(super) fn newton<T>(
 
 /// What all points of a branch share.
 ///
-/// A point is a fixed point of the corrector's map. Of motions that are their own mirror images half a period
-/// later that is the mirrored map over half a period: its multipliers are the roots of those over the period,
-/// and one of -1 breaks the symmetry.
+/// A point is a fixed point of the corrector's map: for motions that are their own mirror images the mirrored
+/// map over half a period. Its multipliers are roots of those over the period; -1 breaks the symmetry.
 pub(super) struct Corrector<'a> {
     pub family: &'a Family<'a>,
     pub phase: f64,
@@ -266,8 +259,7 @@ impl Corrector<'_> {
         [Vector3::new(a - 1.0, b, by_field[0]), Vector3::new(c, d - 1.0, by_field[1])]
     }
 
-    /// The point of the branch in the plane through `guess` across a direction; none where the method does
-    /// not converge.
+    /// The point of the branch in the plane through `guess` across a direction, if the method converges.
     pub fn correct(&self, guess: Vector3<f64>, across: &Vector3<f64>) -> Option<Point> {
         let look = |at: &Vector3<f64>| {
             let point = self.look(at)?;
@@ -290,8 +282,7 @@ impl Corrector<'_> {
         tangent.iter().all(|part| part.is_finite()).then_some(tangent)
     }
 
-    /// The motion through a state, which need not come back, with its derivatives; none where it ends early
-    /// or has none.
+    /// The motion through a state, which need not come back; none where it ends early or has no derivatives.
     pub fn look(&self, at: &Vector3<f64>) -> Option<Point> {
         let value = at.z * self.units.range;
         let map = self.map(value)?;

@@ -23,8 +23,7 @@ const SMALL_GAP: f64 = 0.1;
 /// The most turns and impacts of a motion that are looked at, the smallest gaps and speeds first.
 const MOST_LOOKED_AT: usize = 4;
 
-/// Half the distance over which a flight is differenced, in the units: its third derivatives are large, and
-/// Newton's method needs but few digits.
+/// Half the distance over which a flight is differenced, in the units; few digits are needed.
 const DIFFERENCE: f64 = 1e-7;
 
 /// The gap or speed in the units at which the rate is measured at which motions depart from the grazing one.
@@ -39,16 +38,13 @@ const DISTANCES: Range<f64> = 0.3..3.0;
 /// To rounding.
 const FINEST: Accuracy = Accuracy { change: 0.0, step: 1e-15 };
 
-/// How exact the grazing motion is: what it is off in the units where it meets the stop and after its period,
-/// and the last step to it.
+/// How exact the grazing motion is in the units: at the stop, after its period, and in the last step.
 pub(super) const EXACT: f64 = 1e-9;
 
 /// On which side of a grazing a motion is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Beside {
-    /// It misses the stop.
     Missing,
-    /// It touches it.
     Touching,
 }
 
@@ -64,7 +60,6 @@ impl Beside {
 /// A motion that touches a stop without speed.
 pub(super) struct Grazing<'a> {
     corrector: &'a Corrector<'a>,
-    /// The side of the stop.
     side: Side,
     /// Times in forcing periods after a strobe about which there are no stops, and for how long before and
     /// after; they come again with each flight.
@@ -81,8 +76,7 @@ struct Maps {
     without: StroboscopicMap,
 }
 
-/// The motions that graze a stop where a motion near to them turns back or strikes it gently, and on which
-/// side of them that is.
+/// The motions that graze a stop near one that turns back or strikes gently, and on which side that one is.
 pub(super) fn grazings<'a>(corrector: &'a Corrector<'a>, near: &Point) -> Vec<(Grazing<'a>, Beside)> {
     let contacts = near.orbit.contacts();
     if near.orbit.passage.misses.is_empty() && contacts.is_empty() {
@@ -252,8 +246,7 @@ impl Grazing<'_> {
         newton(guess, &Vector3::y(), FINEST, look).map(|((), at, left)| (at, left))
     }
 
-    /// The grazing motion from its state at a strobe, at a value of the field; none where it does not touch
-    /// the stop or does not come back.
+    /// The grazing motion from its state at a strobe; none where it does not touch the stop or come back.
     fn at_strobe(&self, maps: &Maps, state: State, value: f64) -> Option<Point> {
         let corrector = self.corrector;
         let flight = corrector.flight();
@@ -324,8 +317,8 @@ impl Grazing<'_> {
         (is_there && self.is_beside(&point, beside)).then_some(point)
     }
 
-    /// Whether a motion touches the stops as the grazing one does, and once more where it touches this one;
-    /// its mirror image then does so at the other stop.
+    /// Whether a motion touches the stops as the grazing one does, and once more where it touches this one
+    /// (its mirror image at the other stop).
     fn is_beside(&self, point: &Point, beside: Beside) -> bool {
         let touches = |point: &Point, side: Side| {
             let contacts = point.orbit.contacts();

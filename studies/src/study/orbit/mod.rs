@@ -1,12 +1,10 @@
-//! Periodic motions: found by Newton's method on the stroboscopic map, with their Floquet multipliers, and
-//! followed over a field of the scene.
+//! Periodic motions by Newton's method on the stroboscopic map, and their branches over a field.
 //!
 //! A periodic motion of n forcing periods is a fixed point of the map of a state to that n periods later
 //! ([`StroboscopicMap`]). Its multipliers are the eigenvalues of the map's derivative there; it is stable
 //! where both are inside the unit circle. A motion that rests on a stop forgets its past: both are 0.
 //!
-//! [`orbit`] finds the motion near that of a run, [`orbit_near`] one near a state, [`branch()`] follows it
-//! over a field.
+//! [`orbit`] finds the motion near that of a run, [`orbit_near`] near a state; [`branch()`] follows it.
 
 mod corrector;
 mod events;
@@ -33,8 +31,7 @@ const MOST_STEPS: usize = 40;
 /// The longest step, as a share of the scales: the method is for a guess near the motion.
 const LONGEST_STEP: f64 = 0.2;
 
-/// The change of a state, as a share of the scales, below which it has come back; and the step below which
-/// nothing is gained any more.
+/// The change of a state, as a share of the scales, that is none; and the step that gains nothing any more.
 const CLOSE: f64 = 1e-9;
 const SMALLEST_STEP: f64 = 1e-13;
 
@@ -63,48 +60,37 @@ pub struct Orbit {
 }
 
 /// Why there is no periodic motion near a state.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NoOrbit {
     /// Newton's method has not converged.
+    #[error("Newton's method finds no periodic motion near that of the run")]
     NotConverged,
     /// The motion touches a stop without speed, where the map has no derivative.
+    #[error("the motion touches a stop without speed, where it has no derivative; change the scene a little")]
     Grazing,
     /// The motion does not last for the period.
+    #[error("the motion ends early ({}){}", .0.name(), ended_at(*.0))]
     Ended(Outcome),
     /// None of the period that was asked for is there: the motion repeats after this many forcing periods.
+    #[error("near the motion of the run is only one of period {0}")]
     Shorter(u32),
     /// The run does not come to a motion that repeats.
+    #[error(
+        "the run comes to no motion that repeats after at most 12 forcing periods; name a period, or start \
+         elsewhere"
+    )]
     NotSettled,
     /// Its transducer has a state of its own.
+    #[error("{}", crate::study::ELECTRICAL_STATE)]
     ElectricalState,
     /// It was cancelled.
+    #[error("it was told to stop")]
     Cancelled,
 }
 
-impl fmt::Display for NoOrbit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotConverged => {
-                f.write_str("Newton's method finds no periodic motion near that of the run")
-            }
-            Self::Grazing => f.write_str(
-                "the motion touches a stop without speed, where it has no derivative; change the scene a \
-                 little",
-            ),
-            Self::Ended(outcome) => {
-                write!(f, "the motion ends early ({})", outcome.name())?;
-                outcome.ended_at().map_or(Ok(()), |at| write!(f, ", {at} s after the drive's phase 0"))
-            }
-            Self::Shorter(period) => write!(f, "near the motion of the run is only one of period {period}"),
-            Self::NotSettled => f.write_str(
-                "the run comes to no motion that repeats after at most 12 forcing periods; name a period, or \
-                 start elsewhere",
-            ),
-            Self::ElectricalState => f.write_str(crate::study::ELECTRICAL_STATE),
-            Self::Cancelled => f.write_str("it was told to stop"),
-        }
-    }
+fn ended_at(outcome: Outcome) -> String {
+    outcome.ended_at().map_or(String::new(), |at| format!(", {at} s after the drive's phase 0"))
 }
 
 impl Orbit {
@@ -140,8 +126,7 @@ impl Orbit {
         kept
     }
 
-    /// Speed in m/s of the slowest impact, those after the first of a chatter that ends in rest left out;
-    /// none without one.
+    /// Speed in m/s of the slowest of the [`contacts`](Self::contacts) that are impacts; `None` without one.
     pub fn gentlest_impact(&self) -> Option<f64> {
         let hits = |event: &Event| matches!(event.kind, EventKind::Impact | EventKind::Contact);
         let all = self.contacts().into_iter().filter(hits);
@@ -290,9 +275,8 @@ pub enum BranchEnd {
     Closed,
     /// The motion touches a stop without speed, and no motion near to it goes on.
     Grazing,
-    /// A motion that rests on its way leaps to another one: the mass, released as before, no longer goes
-    /// where it went, as where it just fails to pass the barrier; or its chatter no longer ends before it is
-    /// released.
+    /// A motion that rests on its way leaps to another one: the mass no longer goes where it went, as where
+    /// it just fails to pass the barrier, or its chatter no longer ends before it is released.
     Leap,
     /// Newton's method finds no motion near the last one: it leaps, changes too fast, or ends early.
     Lost,
@@ -330,8 +314,7 @@ pub struct Branch {
     pub events: Vec<Option<BranchEvent>>,
     /// Why the branch ended after the last.
     pub end: BranchEnd,
-    /// Pairs of values between which the motion touches the stops otherwise, or its stability changes, where
-    /// no event was found.
+    /// Pairs of values between which contacts with the stops or the stability change without a located event.
     pub unlocated: Vec<(f64, f64)>,
 }
 

@@ -24,20 +24,17 @@ pub(super) const ENOUGH: usize = 8;
 /// Restitution of the impacts in a record of displacement `x` in m over `times` in s, of a mass that is
 /// shaken between stops or bounces freely.
 ///
-/// A turning point is an impact where the velocity jumps, and a stop is where the outermost impacts lie,
-/// or where those near a place `given` (left, right) lie. On either side of an impact a polynomial is
-/// fitted to the flight; both meet at the impact, where their slopes are the speeds before and after it.
-/// If the `accelerations` of the base in m/s^2 are given, the displacement that they alone cause is
-/// subtracted first.
+/// A turning point is an impact where the velocity jumps, and a stop is where the outermost impacts lie, or
+/// those near a place `given` (left, right). On either side of an impact a polynomial is fitted to the
+/// flight; where both meet, their slopes are the speeds before and after it. The displacement that the
+/// `accelerations` of the base in m/s^2 alone cause is subtracted first.
 ///
-/// Window and degree are those with the narrowest interval, of which the differences from other windows and
-/// degrees are a part. Samples in flat tops, where a sensor or its converter was at its limit, are left out.
-/// The one number is of all impacts together. Where the stops differ by more than their
-/// intervals, its interval holds both of theirs; where the impacts of a stop differ by more than theirs, it
-/// is as much wider (Birge 1932).
+/// Window and degree have the narrowest interval, of which the differences from other windows and degrees are
+/// a part. Samples in flat tops, where a sensor or its converter was at its limit, are left out. Where the
+/// stops differ by more than their intervals, the interval of the one number holds both; where the impacts of
+/// a stop do, it is as much wider (Birge 1932).
 ///
-/// Rows, one an impact: `t_s,side`, then `v_in`, `v_out` in m/s and `restitution`, each with `_low`
-/// and `_high`.
+/// Rows, one an impact: `t_s,side`, then `v_in`, `v_out` in m/s and `restitution` with `_low` and `_high`.
 pub fn restitution(
     times: &[f64],
     x: &[f64],
@@ -139,8 +136,7 @@ fn spanning(one: Identity, other: Identity) -> Identity {
     Identity { name: "restitution", value: (a * one.value + b * other.value) / (a + b), interval }
 }
 
-/// Factor by which single impacts scatter about their common number beyond their intervals; `None` if they
-/// do not.
+/// Factor by which single impacts scatter beyond their intervals; `None` if they do not.
 fn scatter(common: Choice, singles: &[&Single]) -> Option<f64> {
     let count = singles.len() as f64;
     let apart = |single: &&Single| (single.ratio.value - common.value) / single.ratio.half.hypot(common.half);

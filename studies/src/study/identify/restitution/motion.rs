@@ -19,7 +19,6 @@ pub struct Motion {
     pub timing: Timing,
     /// Least and greatest displacement.
     pub extent: (f64, f64),
-    /// Noise of the displacements.
     pub noise: f64,
     /// How far noise alone moves them back.
     pub back: f64,

@@ -42,7 +42,6 @@ pub struct Trial {
 
 /// An impact alone.
 pub struct Single {
-    /// The number of its contact.
     pub contact: usize,
     pub impact: Meeting,
     pub ratio: Choice,
@@ -62,8 +61,8 @@ impl Trial {
     }
 }
 
-/// Fits the impacts of all contacts, which refines their instants and flights. A contact that has no fit is
-/// no longer an impact.
+/// Fits all impacts, which refines their instants and flights; a contact without a fit is no longer an
+/// impact.
 pub fn trials(motion: &Motion, contacts: &mut [Contact], stops: &[Option<f64>; 2]) -> Vec<Trial> {
     let mut best: Vec<Option<(f64, Impact)>> = vec![None; contacts.len()];
     for trial in all(motion, contacts, FIRST_TERMS..=FIRST_TERMS) {
@@ -139,8 +138,7 @@ fn trial(motion: &Motion, contacts: &[Contact], sides: &[(usize, Sides)], settin
     enough.then(|| Trial { setting, variance, student: student(freedom), impacts })
 }
 
-/// A number from those contacts that count, and from how many: `of` makes it and its variance from the
-/// impacts of one trial.
+/// The number that `of` makes, with its variance, of the contacts that count, and how many these are.
 pub fn together(
     trials: &[Trial],
     counts: impl Fn(usize) -> bool,
