@@ -64,15 +64,10 @@ pub struct Rated {
     pub sensitivity: Option<(f64, String)>,
 }
 
-enum Part {
-    Unchanged(usize),
-    Changed(usize, String, f64),
-}
-
-enum Done {
-    Unchanged(Box<Rated>),
-    /// The crossing threshold.
-    Changed(Option<f64>),
+/// A part of the work: to rate a scene, or to find its crossing threshold with a share added to one size.
+struct Part {
+    scene: usize,
+    change: Option<(String, f64)>,
 }
 
 /// How many parts the work has.
@@ -81,10 +76,11 @@ pub fn comparison_parts(scenes: &[Alternative]) -> u64 {
 }
 
 fn parts(scenes: &[Alternative]) -> Vec<Part> {
-    let unchanged = (0..scenes.len()).map(Part::Unchanged);
-    let changed = scenes.iter().enumerate().flat_map(|(i, alternative)| {
-        let sizes = sizes(&alternative.scene).into_iter();
-        sizes.flat_map(move |field| [-1.0, 1.0].map(|way| Part::Changed(i, field.clone(), way * SIZE_CHANGE)))
+    let unchanged = (0..scenes.len()).map(|scene| Part { scene, change: None });
+    let changed = scenes.iter().enumerate().flat_map(|(scene, alternative)| {
+        let change = |field: &String| [-1.0, 1.0].map(|way| Some((field.clone(), way * SIZE_CHANGE)));
+        let changes: Vec<_> = sizes(&alternative.scene).iter().flat_map(change).collect();
+        changes.into_iter().map(move |change| Part { scene, change })
     });
     unchanged.chain(changed).collect()
 }
@@ -109,27 +105,24 @@ pub fn alternatives(
     let silent = Task { tick: &|| (), cancel: task.cancel };
     let rating = Rating { until_settled, pool, task: &silent };
     let work = |_: &mut (), index: usize| {
-        let done = match &parts[index] {
-            Part::Unchanged(i) => rating.rate(&scenes[*i]).map(|rated| Done::Unchanged(Box::new(rated))),
-            Part::Changed(i, field, by) => rating.changed(&scenes[*i], field, *by).map(Done::Changed),
+        let Part { scene, change } = &parts[index];
+        let done = match change {
+            None => rating.rate(&scenes[*scene]).map(|rated| (Some(Box::new(rated)), None)),
+            Some((field, by)) => rating.changed(&scenes[*scene], field, *by).map(|found| (None, found)),
         };
         (task.tick)();
         task.go_on().and(done)
     };
     let done = pool.map(parts.len(), || (), work).ok()?;
     let mut rated: Vec<Rated> = Vec::new();
-    for (part, done) in parts.iter().zip(done) {
-        match (part, done) {
-            (Part::Changed(i, field, _), Done::Changed(threshold)) => {
-                let Some(before) = rated[*i].crossing_g() else { continue };
-                let change = threshold.map_or(f64::INFINITY, |after| (after - before).abs() / before);
-                let sensitivity = &mut rated[*i].sensitivity;
-                if sensitivity.as_ref().is_none_or(|(largest, _)| change > *largest) {
-                    *sensitivity = Some((change, field.clone()));
-                }
-            }
-            (_, Done::Unchanged(scene)) => rated.push(*scene),
-            _ => {}
+    for (Part { scene, change }, (unchanged, threshold)) in parts.into_iter().zip(done) {
+        rated.extend(unchanged.map(|unchanged| *unchanged));
+        let Some((field, _)) = change else { continue };
+        let Some(before) = rated[scene].crossing_g() else { continue };
+        let change = threshold.map_or(f64::INFINITY, |after| (after - before).abs() / before);
+        let sensitivity = &mut rated[scene].sensitivity;
+        if sensitivity.as_ref().is_none_or(|(largest, _)| change > *largest) {
+            *sensitivity = Some((change, field));
         }
     }
     Some(rated)

@@ -8,7 +8,7 @@ use super::contact::strikes_in_words;
 use super::small_amplitude_frequency;
 use crate::dynamics::Model;
 use crate::mechanics::flexure::{Accuracy, Geometry, Group};
-use crate::mechanics::{Equilibrium, Landscape, Mechanism};
+use crate::mechanics::{Equilibrium, ForceExtremum, Kink, Landscape, Mechanism};
 use crate::numeric::short;
 use crate::scene::{Damping, Fault, Scene};
 
@@ -201,19 +201,17 @@ fn landscape(landscape: &Landscape, mass: f64) -> Vec<String> {
             ));
         }
     }
-    let list = |items: Vec<String>| items.join(", ");
     if !landscape.extrema.is_empty() {
-        let extrema = landscape.extrema.iter();
-        let extrema = extrema.map(|e| format!("{} N at {} mm", short(e.force), short(e.x * 1e3))).collect();
-        lines.push(format!("force extrema: {}", list(extrema)));
+        let words = |e: &ForceExtremum| format!("{} N at {} mm", short(e.force), short(e.x * 1e3));
+        let extrema: Vec<String> = landscape.extrema.iter().map(words).collect();
+        lines.push(format!("force extrema: {}", extrema.join(", ")));
     }
     if !landscape.kinks.is_empty() {
         let sides = |left: f64, right: f64| format!("{} | {} N/m", short(left), short(right));
-        let kinks = landscape.kinks.iter();
-        let kinks = kinks
-            .map(|k| format!("{} mm ({})", short(k.x * 1e3), sides(k.stiffness_left, k.stiffness_right)))
-            .collect();
-        lines.push(format!("kinks, stiffness left | right: {}", list(kinks)));
+        let words =
+            |k: &Kink| format!("{} mm ({})", short(k.x * 1e3), sides(k.stiffness_left, k.stiffness_right));
+        let kinks: Vec<String> = landscape.kinks.iter().map(words).collect();
+        lines.push(format!("kinks, stiffness left | right: {}", kinks.join(", ")));
     }
     lines
 }

@@ -10,7 +10,6 @@ mod amplitudes;
 mod basins;
 mod best;
 mod bisection;
-mod cell;
 mod contact;
 mod curve;
 mod exponents;
@@ -48,7 +47,6 @@ pub use best::{
     BestDesign, BestQuestion, Constraint, DesignRange, Environment, INTERVALS, MOST_FIELDS, NoBest, Optimum,
     SAMPLES, Spread, Variation, best, scan_runs,
 };
-pub use cell::{Cell, CellFaults, SweepEnd, Tally};
 pub use contact::{Strikes, contact, strikes, yield_speed, yield_warning};
 pub use curve::{
     CURVE_PICTURE_POINTS, CURVE_POINTS, OutsideCurve, curve, default_positions, even_positions, metres,
@@ -84,7 +82,9 @@ pub use simulate::{
 };
 pub use slice::{Shard, Slice};
 pub use spectrum::{NoSpectrum, Signal, Spectrum, SpectrumOptions, spectrum};
-pub use sweep::{DIRECTION, STANDARD as STANDARD_COLUMNS, Sweep, SweepOptions};
+pub use sweep::{
+    Cell, CellFaults, DIRECTION, STANDARD as STANDARD_COLUMNS, Sweep, SweepEnd, SweepOptions, Tally,
+};
 pub use table::{Column, Table, Values, label_and_unit};
 pub use thresholds::{Found, NoThresholds, Onset, Scan, Verdict, threshold, threshold_table};
 pub use trace::{Trace, between, simulate_with_trace};

@@ -201,14 +201,9 @@ pub enum TimesError {
         /// The samples it would make, rounded where it is above 2^53.
         count: String,
     },
-    /// A time that the run does not have.
-    #[error("--at {time} is not within the run, which lasts from 0 to {duration} s")]
-    Outside {
-        /// The time asked for in s.
-        time: f64,
-        /// The duration in s.
-        duration: f64,
-    },
+    /// A time in s beyond the duration of the run.
+    #[error("--at {0} is not within the run, which lasts from 0 to {1} s")]
+    Outside(f64, f64),
 }
 
 /// A positive rational number: exactly what decimal text says, or a fraction of it.
@@ -316,7 +311,7 @@ fn even_times(step: SamplingStep, duration: f64) -> Result<Vec<f64>, TimesError>
 /// The given times, checked to lie within 0..=`duration`; -0 becomes 0.
 fn listed_times(times: &[f64], duration: f64) -> Result<Vec<f64>, TimesError> {
     match times.iter().find(|t| !(**t >= 0.0 && **t <= duration)) {
-        Some(&time) => Err(TimesError::Outside { time, duration }),
+        Some(time) => Err(TimesError::Outside(*time, duration)),
         None => Ok(times.iter().map(|t| t + 0.0).collect()),
     }
 }

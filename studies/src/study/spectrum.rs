@@ -104,14 +104,9 @@ pub enum NoSpectrum {
     /// It was told to stop.
     #[error("interrupted")]
     Cancelled,
-    /// The run ended before the settled window did.
-    #[error("the run ended early at {at} s ({outcome}), so it has no settled window to take a spectrum of")]
-    EndedEarly {
-        /// The word of the outcome.
-        outcome: &'static str,
-        /// When, in s.
-        at: f64,
-    },
+    /// The run ended at this time in s, before the settled window did, with an outcome of this name.
+    #[error("the run ended early at {0} s ({1}), so it has no settled window to take a spectrum of")]
+    EndedEarly(f64, &'static str),
     /// The settled window has no length.
     #[error("the settled window from {0} to {1} s has no length: lower run.settle_s")]
     NoWindow(f64, f64),
@@ -181,7 +176,7 @@ fn ended(outcome: Outcome) -> Result<(), NoSpectrum> {
     match outcome.ended_at() {
         None => Ok(()),
         Some(_) if matches!(outcome, Outcome::Cancelled { .. }) => Err(NoSpectrum::Cancelled),
-        Some(at) => Err(NoSpectrum::EndedEarly { outcome: outcome.name(), at }),
+        Some(at) => Err(NoSpectrum::EndedEarly(at, outcome.name())),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::design::{BestQuestion, DesignRange, NoBest, Optimum, apply};
+use super::{BestQuestion, DesignRange, NoBest, Optimum};
 use crate::dynamics::{Model, Outcome, Request, Run, Summary};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, FieldPath, Scene, check, is_whole};
@@ -168,5 +168,13 @@ impl<'a> Evaluator<'a> {
         let weights = self.question.environments.iter().map(|environment| environment.weight);
         let sum: f64 = of_each.iter().zip(weights.clone()).map(|(value, weight)| value * weight).sum();
         Judged::Value(sum / weights.sum::<f64>(), of_each)
+    }
+}
+
+/// Puts a design into a scene that has the fields.
+fn apply(paths: &[FieldPath], at: &[f64], scene: &mut Scene) {
+    for (path, value) in paths.iter().zip(at) {
+        let known = path.set(scene, *value);
+        debug_assert!(known, "a design belongs to a scene that has its fields");
     }
 }

@@ -1,8 +1,8 @@
 //! Scan of the whole range, ever smaller scans around its best places, and the distance from the best one to
 //! where its value falls or a constraint breaks.
 
-use super::design::{DesignRange, NoBest, Optimum};
 use super::evaluate::{Evaluator, Judged};
+use super::{DesignRange, NoBest, Optimum};
 use crate::numeric::round::{ONE_TWO_FIVE, round_down};
 use crate::study::bisection::multiple;
 

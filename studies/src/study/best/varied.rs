@@ -3,9 +3,9 @@
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use super::design::{NoBest, Optimum, Spread, Variation};
 use super::evaluate::{Design, Evaluator};
 use super::search::{Found, rounded};
+use super::{NoBest, Optimum, Spread, Variation};
 
 /// Samples of what varies.
 pub const SAMPLES: usize = 200;

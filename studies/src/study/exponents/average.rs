@@ -2,8 +2,8 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::result::{Estimate, Exponents, NoExponents};
 use super::tangent::Tangent;
+use super::{Estimate, Exponents, NoExponents};
 use crate::dynamics::Model;
 use crate::numeric::CompensatedSum;
 use crate::study::State;

@@ -1,7 +1,7 @@
 //! Exponents of a periodic motion, by its multipliers.
 
-use super::result::{Estimate, Exponents, NoExponents};
 use super::tangent::{Passed, Tangent};
+use super::{Estimate, Exponents, NoExponents};
 use crate::study::State;
 
 /// The farthest a motion that repeats is from itself a period later, in units of the scales.

@@ -1,6 +1,6 @@
 //! Map of a forcing period, with the growth of small changes of the motion.
 
-use super::result::NoExponents;
+use super::NoExponents;
 use crate::dynamics::{EventKind, Jacobian, Model, Outcome, Passage, Scales, Side, StroboscopicMap};
 use crate::study::State;
 

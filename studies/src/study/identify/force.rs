@@ -80,7 +80,7 @@ pub fn force(x: &[f64], force: &[f64], points: usize) -> Result<Identified, Unid
         return Err(Unidentified::Still);
     }
     let points = points.max(4);
-    let few = || Unidentified::FewSamples { samples: x.len(), points };
+    let few = || Unidentified::FewSamples(x.len(), points);
     let rough = Curve::of(&pulls, (low, high), points, &[]).ok_or_else(few)?;
     let rests = rough.equilibria(&pulls, high - low);
     let kinks: Vec<f64> = rests.iter().filter_map(|rest| rest.kink).map(|kink| kink[0]).collect();

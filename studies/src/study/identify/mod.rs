@@ -84,30 +84,18 @@ pub enum Unidentified {
         /// Noise of the values, in SI.
         noise: String,
     },
-    /// A swing has too few samples.
+    /// The swing at this time in s has too few samples.
     #[error(
-        "the swing at {at} s has {samples} samples near its turning point; {FEWEST_SAMPLES} are needed: \
+        "the swing at {0} s has {1} samples near its turning point; {FEWEST_SAMPLES} are needed: \
          sample faster"
     )]
-    Sparse {
-        /// When, in s.
-        at: String,
-        /// How many.
-        samples: usize,
-    },
-    /// Swings of unequal length.
+    Sparse(String, usize),
+    /// The swing at this time in s has another length in s than the median of those around it.
     #[error(
-        "the swing at {at} s takes {length} s where those around it take {usual} s: the record has a gap \
+        "the swing at {0} s takes {1} s where those around it take {2} s: the record has a gap \
          there or is no free decay in one well; cut it by --from and --to"
     )]
-    Uneven {
-        /// When, in s.
-        at: String,
-        /// Its length in s.
-        length: String,
-        /// The median length in s of those around it.
-        usual: String,
-    },
+    Uneven(String, String, String),
     /// Swings about places that differ, from this time in s on.
     #[error(
         "the middle of the swings moves at {0} s by more than a quarter of a swing: the motion changes \
@@ -163,17 +151,12 @@ pub enum Unidentified {
         /// The rate at which the longest rebound has enough.
         needed: String,
     },
-    /// The rebounds are lost in noise.
+    /// The rebounds of these contacts are lost in noise of this standard deviation, in SI.
     #[error(
-        "{found} contacts with a stop, but noise (of standard deviation {noise}) hides the velocities about \
+        "{0} contacts with a stop, but noise (of standard deviation {1}) hides the velocities about \
          them: record more impacts, harder ones, or with less noise"
     )]
-    Noisy {
-        /// Contacts.
-        found: usize,
-        /// Noise of the values, in SI.
-        noise: String,
-    },
+    Noisy(usize, String),
     /// Times of impacts that follow no bounces.
     #[error("{0} impact times follow no bounces of one restitution; at least 4 are needed: {1}")]
     NoBounces(usize, &'static str),
@@ -181,11 +164,6 @@ pub enum Unidentified {
     #[error("the position does not change")]
     Still,
     /// Too few samples for the points of a curve.
-    #[error("{samples} samples are too few for {points} points of a curve: take fewer by --points")]
-    FewSamples {
-        /// Samples.
-        samples: usize,
-        /// Points.
-        points: usize,
-    },
+    #[error("{0} samples are too few for {1} points of a curve: take fewer by --points")]
+    FewSamples(usize, usize),
 }

@@ -125,7 +125,7 @@ pub fn peaks(
         peaks = kept;
         if peaks.len() < FEWEST_TURNS {
             let few = Unidentified::FewSwings { found: peaks.len(), noise: short(noise) };
-            let too_few = |(at, samples)| Unidentified::Sparse { at: short(at), samples };
+            let too_few = |(at, samples)| Unidentified::Sparse(short(at), samples);
             return Err(sparse.map_or(few, too_few));
         }
         peaks.iter_mut().zip(&fits).for_each(|(peak, fit)| peak.point.value = fit.value);
@@ -142,11 +142,7 @@ fn periods(times: &[f64]) -> Result<Vec<f64>, Unidentified> {
     let even = |k: &usize| EVEN.contains(&(lengths[*k] / usual[*k]));
     match (0..lengths.len()).find(|k| !even(k)) {
         None => Ok((0..times.len()).map(|k| usual[k.saturating_sub(1).min(usual.len() - 1)]).collect()),
-        Some(k) => Err(Unidentified::Uneven {
-            at: short(times[k]),
-            length: short(lengths[k]),
-            usual: short(usual[k]),
-        }),
+        Some(k) => Err(Unidentified::Uneven(short(times[k]), short(lengths[k]), short(usual[k]))),
     }
 }
 

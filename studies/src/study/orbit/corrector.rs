@@ -176,8 +176,8 @@ impl Corrector<'_> {
     pub fn clear_phase(&self, point: &Point, also: &[f64]) -> Option<f64> {
         let map = self.map(point.value)?;
         let whole = f64::from(self.periods);
-        let events = point.orbit.passage.events.iter().filter(|event| event.kind != EventKind::Crossing);
-        let mut times: Vec<f64> = events.map(|event| (event.t - map.first_strobe()) / map.period()).collect();
+        let time = |event: &Event| (event.t - map.first_strobe()) / map.period();
+        let mut times: Vec<f64> = point.orbit.events_at_stops().map(time).collect();
         times.extend(also);
         let room = |later: f64| {
             let far = times.iter().map(|time| (time - later).rem_euclid(whole));

@@ -116,9 +116,8 @@ pub(super) fn grazings<'a>(corrector: &'a Corrector<'a>, near: &Point) -> Vec<(G
         far.min(flight - far)
     };
     let grazing = |((t, side, _), beside): ((f64, Side, f64), Beside)| {
-        let others = near.orbit.passage.events.iter().filter(|event| event.kind != EventKind::Crossing);
-        let others: Vec<f64> =
-            others.map(|event| time(event.t)).filter(|other| apart(*other, t) > 1e-9).collect();
+        let others = near.orbit.events_at_stops().map(|event| time(event.t));
+        let others: Vec<f64> = others.filter(|other| apart(*other, t) > 1e-9).collect();
         let room = |at: f64| others.iter().map(|other| 0.5 * apart(at, *other)).fold(0.25 * flight, f64::min);
         let open = misses.iter().map(|miss| miss.0).chain([t]).map(|at| (at, room(at))).collect();
         let guess = Vector3::new(t, 0.0, near.at.z);

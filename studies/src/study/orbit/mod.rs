@@ -104,11 +104,14 @@ impl Orbit {
         self.passage.determinant.unwrap_or_else(|| self.jacobian.determinant())
     }
 
+    fn events_at_stops(&self) -> impl Iterator<Item = &Event> {
+        self.passage.events.iter().filter(|event| event.kind != EventKind::Crossing)
+    }
+
     /// Events at the stops in their order around the motion, without the impacts of a chatter that ends in
     /// rest but its first: of those there is no end, and how many are told from their sum means nothing.
     pub fn contacts(&self) -> Vec<Event> {
-        let mut all: Vec<Event> =
-            self.passage.events.iter().filter(|event| event.kind != EventKind::Crossing).copied().collect();
+        let mut all: Vec<Event> = self.events_at_stops().copied().collect();
         // so that no chatter is cut in two
         if let Some(place) = all.iter().position(|event| event.kind == EventKind::Release) {
             all.rotate_left(place);

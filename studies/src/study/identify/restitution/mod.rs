@@ -209,7 +209,7 @@ fn unresolved(motion: &Motion, found: usize) -> Unidentified {
             let [rate, needed] = [rate, rate * ENOUGH as f64 / longest as f64].map(short);
             Unidentified::Slow { longest, rate, needed }
         }
-        _ if found > 0 => Unidentified::Noisy { found, noise },
+        _ if found > 0 => Unidentified::Noisy(found, noise),
         _ => Unidentified::NoImpact(noise),
     }
 }
