@@ -91,9 +91,9 @@ fn sizes(scene: &Scene) -> Vec<String> {
     numeric_fields(scene).into_iter().filter(is_size).collect()
 }
 
-/// Rates the scenes on `pool`. Each run begins at rest and is followed until its motion repeats, or up to
-/// `until_settled` in s (by default 1000 forcing periods beyond the run). `None` if cancelled. The result
-/// does not depend on the number of threads.
+/// Rates the scenes on `pool`, the same for any number of threads. Each run begins at rest and is followed
+/// until its motion repeats, or up to `until_settled` in s (by default 1000 forcing periods beyond the run).
+/// `None` if cancelled.
 pub fn alternatives(
     scenes: &[Alternative],
     until_settled: Option<f64>,
@@ -232,8 +232,7 @@ fn decimal(value: f64) -> f64 {
     multiple(value, 10_f64.powi(decade(value) - 4))
 }
 
-/// A row for each scene: thresholds, numbers of the settled motion, band of frequencies, sensitivity to
-/// sizes.
+/// A row for each scene: thresholds, numbers of the settled motion, band of frequencies, sensitivity.
 pub fn comparison_table(rated: &[Rated]) -> Table {
     let mut table = Table::new()
         .each("scene", rated, |row| row.name.clone())

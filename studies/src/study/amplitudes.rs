@@ -25,9 +25,8 @@ fn third_digit(value: f64) -> f64 {
 pub struct Thresholds {
     /// The least amplitude that frees the mass from the stop it rests on, in closed form.
     pub frees_at: Option<f64>,
-    /// The least amplitude whose settled motion crosses, among those up to
-    /// [`searched_to`](Self::searched_to). Windows, gaps and the first amplitude known to cross are searched
-    /// up to 1.5 times it.
+    /// The least amplitude whose settled motion crosses, up to [`searched_to`](Self::searched_to); windows,
+    /// gaps and the first amplitude known to cross are searched up to 1.5 times it.
     pub crossing: Found,
     /// The largest amplitude searched.
     pub searched_to: f64,
@@ -63,9 +62,8 @@ pub(super) enum Above {
     Skipped,
 }
 
-/// The least amplitude of a sine whose settled motion from rest crosses, and the largest amplitude searched;
-/// each run is followed up to `until_settled` in s if given. `None` if the drive is no sine, or without a
-/// barrier.
+/// The least amplitude of a sine whose settled motion from rest crosses, each run followed up to
+/// `until_settled` in s if given, and the largest amplitude searched. `None` without a sine or a barrier.
 pub(super) fn crossing(
     scene: &Scene,
     mechanism: &Arc<Mechanism>,
@@ -113,8 +111,7 @@ pub(super) fn crossing(
     Ok(Some((found, searched_to)))
 }
 
-/// The amplitude in g whose push equals the largest force on the way from where the mass rests to the
-/// barrier.
+/// The amplitude in g whose push equals the largest force between where the mass rests and the barrier.
 fn holding_push(scene: &Scene, mechanism: &Mechanism) -> Option<f64> {
     let Landscape { barrier, extrema, .. } = &mechanism.landscape;
     let barrier = barrier.as_ref()?;

@@ -45,23 +45,17 @@ pub(super) fn check_positions(mechanism: &Mechanism, positions: &[f64]) -> Resul
     }
 }
 
-/// The range in mm that shows what matters: 1.15 times as far as the outermost equilibrium or stop (10 mm
-/// without one), rounded up to two digits, cut to where the curve is known.
-fn default_range_mm(scene: &Scene, mechanism: &Mechanism) -> (f64, f64) {
+/// `points` positions in m over the range that shows what matters: 1.15 times as far as the outermost
+/// equilibrium or stop (10 mm without one), rounded up to two digits, cut to where the curve is known.
+pub fn default_positions(scene: &Scene, mechanism: &Mechanism, points: usize) -> Vec<f64> {
     const MARGIN: f64 = 1.15;
     const PLAIN: f64 = 10.0;
     let equilibria = mechanism.landscape.equilibria.iter().map(|equilibrium| equilibrium.x.abs() * 1e3);
     let farthest = equilibria.chain(scene.stops.limits_mm().into_iter().flatten()).fold(0.0, f64::max);
     let reach = if farthest > 0.0 { two_digits_up(MARGIN * farthest) } else { PLAIN };
     let (left, right) = mechanism.curve.domain();
-    ((-reach).max(left * 1e3), reach.min(right * 1e3))
-}
-
-/// `points` positions in m over the range that shows what matters.
-pub fn default_positions(scene: &Scene, mechanism: &Mechanism, points: usize) -> Vec<f64> {
-    let (left, right) = mechanism.curve.domain();
-    let inside = |mm: f64| metres(mm).clamp(left, right);
-    even_positions(default_range_mm(scene, mechanism), points).into_iter().map(inside).collect()
+    let range_mm = ((-reach).max(left * 1e3), reach.min(right * 1e3));
+    even_positions(range_mm, points).into_iter().map(|mm| metres(mm).clamp(left, right)).collect()
 }
 
 /// `value` above 0 rounded up to two significant digits, as the double nearest to that decimal.

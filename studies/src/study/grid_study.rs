@@ -1,8 +1,7 @@
 //! One question asked of every cell of a grid, in parallel, many runs at once where the processor can.
 //!
-//! Rows leave in order, and few cells are begun ahead of them, so that memory does not grow with the number
-//! of cells. An answer depends on the scene of its cell alone, so the bytes are the same for any number of
-//! threads.
+//! Rows leave in order, and few cells are begun ahead of them, so that memory does not grow with the cells.
+//! An answer depends on the scene of its cell alone, so the bytes are the same for any number of threads.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;

@@ -11,6 +11,9 @@ use crate::scene::{Axis, Excitation, Scene, Start};
 /// The travel limit, over which the release is known in closed form.
 const LIMIT: &str = "stops.travel_limit_mm";
 
+/// Regimes of motions that cross at all.
+const CROSS: [&str; 3] = [Regime::Interwell.name(), Regime::Irregular.name(), Regime::Crossing.name()];
+
 /// Points of the line of releases.
 const POINTS: usize = 400;
 
@@ -60,7 +63,7 @@ pub fn first_crossing(grid: &Grid, rows: &Table) -> Option<Table> {
     values.dedup();
     let mut least = vec![f64::NAN; values.len()];
     for (i, other) in swept.iter().enumerate() {
-        let counts = regimes.get(i).is_some_and(|regime| crosses(regime)) && amplitudes[i] >= 0.0;
+        let counts = regimes.get(i).is_some_and(|regime| CROSS.contains(regime)) && amplitudes[i] >= 0.0;
         if let Ok(place) = values.binary_search_by(|value| value.total_cmp(other))
             && counts
         {
@@ -70,11 +73,6 @@ pub fn first_crossing(grid: &Grid, rows: &Table) -> Option<Table> {
     }
     let table = Table::new().with(&grid.columns()[other], Values::Numbers(values));
     Some(table.with(&grid.columns()[amplitude_axis], Values::Numbers(least)))
-}
-
-/// Whether a regime is one of motions that cross at all.
-fn crosses(regime: &str) -> bool {
-    [Regime::Interwell, Regime::Irregular, Regime::Crossing].iter().any(|known| known.name() == regime)
 }
 
 fn axis<'a>(grid: &'a Grid, field: &str) -> Option<&'a Axis> {

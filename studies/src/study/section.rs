@@ -206,8 +206,8 @@ impl SectionOptions {
 }
 
 /// The section of a run of `model`, which is that of `scene`: its [columns](SectionOptions::columns), of
-/// states also [`IMPACTS`], and the summary. A fault if the drive does not repeat, or the window has no or
-/// too many periods.
+/// states also [`IMPACTS`], and the summary. A fault if the drive does not repeat, or has no or too many
+/// periods.
 pub fn section(
     model: &Model,
     scene: &Scene,

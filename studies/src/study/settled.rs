@@ -31,8 +31,8 @@ pub fn widened(model: Model) -> Model {
     }
 }
 
-/// A model, and the request that follows its run until it repeats, or up to `until` ([`followed_until`]) in
-/// s.
+/// A model, and the request that follows its run until it repeats, or up to `until` in s
+/// ([`followed_until`]).
 pub(super) fn followed<'a>(model: Model, until: Option<f64>) -> (Model, Request<'a>) {
     let model = widened(model);
     let until_settled = until.or(Some(followed_until(&model)));

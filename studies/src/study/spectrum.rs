@@ -215,7 +215,11 @@ impl Plan {
         let rate = rate_hz.unwrap_or_else(|| (PER_CYCLE / shortest(model)).max(PLENTY / length));
         // a decimal rate may miss a whole number only by its rounding
         let least = (length / parts * rate - 1e-9).ceil().max(1.0);
-        let each = if rate_hz.is_some() || least > MAX_SAMPLES as f64 { least } else { round_up(least) };
+        // transforms of powers of two are the fastest
+        let each = match rate_hz.is_some() || least > MAX_SAMPLES as f64 {
+            true => least,
+            false => (least as u64).next_power_of_two() as f64,
+        };
         let samples = each * parts;
         if !(rate > 0.0 && (FEWEST..=MAX_SAMPLES as f64).contains(&samples)) {
             let remedy = if samples > MAX_SAMPLES as f64 {
@@ -233,12 +237,8 @@ impl Plan {
         Ok(Self { from, to, samples: samples as usize, periods, cycles })
     }
 
-    fn length(&self) -> f64 {
-        self.cycles.1 / self.cycles.0
-    }
-
     fn rate_hz(&self) -> f64 {
-        self.samples as f64 / self.length()
+        self.samples as f64 / (self.cycles.1 / self.cycles.0)
     }
 
     /// The time of sample `k` in s.
@@ -259,9 +259,4 @@ fn shortest(model: &Model) -> f64 {
     let chirps = drive.chirps.iter().map(|chirp| chirp.from.max(chirp.to));
     let fastest = tones.chain(chirps).map(|frequency| 1.0 / frequency);
     fastest.fold(model.characteristic_time().min(model.natural_time()), f64::min)
-}
-
-/// The least power of two that is no smaller than `count`, of which transforms are fastest.
-fn round_up(count: f64) -> f64 {
-    (count as u64).next_power_of_two() as f64
 }

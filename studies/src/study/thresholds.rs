@@ -42,8 +42,7 @@ pub struct Found {
     pub low: Option<f64>,
     /// The first value from it on, of those tried, that is known to do it.
     pub high: Option<f64>,
-    /// Whether the answer just below the value, or at it, is unknown; without a value, at the end of the
-    /// scan.
+    /// Whether the answer just below the value, or at it, is unknown; without a value, at the scan's end.
     pub undecided: bool,
     /// How often the answer changes above it, within the scan.
     pub windows: u64,
@@ -51,8 +50,7 @@ pub struct Found {
     pub without_gap: Option<f64>,
 }
 
-/// Runs the scan of `scene`, each run from rest, with its `mechanism` built from `files`. `None` if
-/// cancelled.
+/// Runs the scan of `scene` with its `mechanism` from `files`, each run from rest. `None` if cancelled.
 ///
 /// A value that makes no valid model does not do it. A release under one sine, over the amplitude, is known
 /// in closed form: exactly there the mass is not released yet, so that value is also the last one below.
@@ -152,7 +150,7 @@ fn faults(
     for value in &scan.values {
         let faults = match family.model(*value) {
             Ok(model) if onset != Onset::Interwell || model.repeats() => return None,
-            Ok(_) => vec![no_period(trial)],
+            Ok(_) => vec![excitation_fault(trial, NO_PERIOD.to_owned())],
             Err(NoModel::NoField | NoModel::Unsolved) => return None,
             Err(NoModel::Faults(faults)) => faults,
         };
@@ -161,11 +159,8 @@ fn faults(
     first
 }
 
-fn no_period(trial: &Scene) -> Fault {
-    let problem = "does not repeat, so no motion can be said to repeat with it (interwell): ask for \
-                   crossing, or take a Sine, or a Sum of sines whose frequencies have a common period";
-    excitation_fault(trial, problem.into())
-}
+const NO_PERIOD: &str = "does not repeat, so no motion can be said to repeat with it (interwell): ask for \
+                         crossing, or take a Sine, or a Sum of sines whose frequencies have a common period";
 
 /// A value of the field and the verdict of its run; `None` while it is not known.
 type Answer = (f64, Option<Verdict>);

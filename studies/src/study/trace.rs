@@ -16,8 +16,7 @@ pub struct Trace {
     pub impacts: Table,
     /// `from_s,to_s,side` of every span at rest on a stop.
     pub rests: Table,
-    /// Time in s from which on the phase portrait is shown: the last forcing periods, or a `window` asked
-    /// for.
+    /// Time in s from which on the phase portrait is shown: the last forcing periods, or a window asked for.
     pub portrait_from: f64,
     /// Time in s from which on the motion is shown: all of it, or the last forcing periods of a long run.
     pub shown_from: f64,

@@ -83,8 +83,7 @@ impl Watch {
         self.ledgers.len()
     }
 
-    /// Goes on to the time `to` in s. False if the run ended before, or impacts crowd so that it needs more
-    /// calls.
+    /// Goes on to the time `to` in s. False if the run ended before, or if crowded impacts need more calls.
     pub fn advance(&mut self, to: f64) -> bool {
         let from = self.live.time();
         let step = self.step.max((to - from) / MOST_AT_ONCE);
@@ -132,8 +131,7 @@ impl Watch {
         self.jump(|live, passage| live.place(x, v, passage));
     }
 
-    /// Changes the motion at the present instant. The state before is remembered, so that the path jumps
-    /// there.
+    /// Changes the motion at the present instant, before which the state is remembered: the path jumps there.
     fn jump(&mut self, change: impl FnOnce(&mut Live, &mut LiveOutput)) {
         if self.samples.back().is_none_or(|last| last.t < self.now.t) {
             self.samples.push_back(self.now);
@@ -383,8 +381,8 @@ pub fn watched_events(watch: &Watch, which: Range<usize>) -> Table {
 }
 
 /// `scene` with the start and the phases of `here`, the model of a motion that goes on from its present state
-/// ([`Watch::from_here`]). `None` if no scene can express it: noise begins at its
-/// seed, and no scene starts with a compliant stop pressed in.
+/// ([`Watch::from_here`]). `None` for noise, which begins at its seed, and where a compliant stop is pressed
+/// in.
 pub fn continued_scene(scene: &Scene, here: &Model) -> Option<Scene> {
     let (x, v) = here.start();
     if !here.excitation().noises.is_empty() || here.compliant().is_some() && here.pressed_depth(x).is_some() {

@@ -209,8 +209,7 @@ fn loses_energy(scene: &Scene) -> bool {
         }
 }
 
-/// The excitation of a scene that is constant with a sine of amplitude 0 added, so that it has a period: that
-/// of small oscillations.
+/// The excitation of a constant scene and a sine of amplitude 0, with the period of small oscillations.
 fn shaken(scene: &Scene, model: &Model) -> Option<Excitation> {
     if model.forcing_period().is_some() || !model.excitation().is_constant() {
         return None;

@@ -84,8 +84,7 @@ fn of_period(scope: &Stroboscope, period: u32, state: State) -> Result<Found, Ca
     Ok(Found::Stable(captures))
 }
 
-/// The ellipse around a fixed point of the map of `period` forcing periods, by the least multiple that has
-/// one.
+/// The ellipse around a fixed point of the map of `period` forcing periods, by the least multiple with one.
 ///
 /// Where a motion passes a kink of the force the map bends sharply, so near an orbit it need not shrink at
 /// once in the norm of its derivative; after some more periods it does.
@@ -133,8 +132,7 @@ fn newton(scope: &Stroboscope, period: u32, from: Point) -> Option<Point> {
     None
 }
 
-/// The image of a point and the derivative of the map, in units of the scales; `None` if the motion ends
-/// early.
+/// The image of a point and the map's derivative, in units of the scales; `None` if the motion ends early.
 fn jacobian(scope: &Stroboscope, period: u32, at: Point) -> Option<(Point, Matrix)> {
     let ((length, speed), map) =
         (scope.units(), scope.model.stroboscopic_map(scope.model.drive_phase(0.0)?)?);

@@ -29,8 +29,7 @@ const MOST_CELLS: usize = 20_000;
 /// Rounds in which cells may be added.
 const ROUNDS: usize = 40;
 
-/// A region around the irregular motion through `state`; `None` if there is none or it comes to a known
-/// orbit.
+/// A region around the irregular motion through `state`; `None` without one, or if it comes to a known orbit.
 pub(super) fn absorbing(
     scope: &Stroboscope,
     state: State,

@@ -86,8 +86,7 @@ fn within((from, to): (f64, f64)) -> Result<(), StartsError> {
 pub struct Starts {
     x_mm: Vec<f64>,
     v: Vec<f64>,
-    /// Whether they are all pairs of the values, displacement the slower; else values of one index are a
-    /// start.
+    /// Whether they are all pairs of the values, displacement the slower; else one for each index.
     product: bool,
 }
 

@@ -35,8 +35,7 @@ impl Basins {
         settled.filter(|row| is_line || !alike(row)).collect()
     }
 
-    /// Marks which answers are sure, with a tick for each start that is followed once more; false if
-    /// cancelled.
+    /// Marks which answers are sure, with a tick for each start followed once more; false if cancelled.
     ///
     /// A start is sure if it goes to the same attractor at ten times the tolerance, after as many crossings
     /// of the barrier and, unless that is the only attractor in one of two wells, as many periods; or if
@@ -127,8 +126,7 @@ impl Basins {
         Ok(items.iter().zip(&all).map(|(item, end)| self.rounds.known_fate(item, end, scope)).collect())
     }
 
-    /// Whether a motion does the same again after the way `before`; `alone` in its well, equal crossings
-    /// suffice.
+    /// Whether a motion does the same again after `before`; if `alone` in its well, equal crossings suffice.
     fn is_same(&self, first: Fate, before: Way, again: Option<Fate>, alone: bool) -> bool {
         match (first, again) {
             (Fate::Kind(kind, way), Some(Fate::Kind(other, now))) if kind == other => {

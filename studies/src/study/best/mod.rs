@@ -92,8 +92,7 @@ pub struct BestQuestion {
     pub vary: Vec<Variation>,
     /// Seed of the samples of what varies.
     pub seed: u64,
-    /// Time in s up to which runs are followed until they repeat; by default 1000 forcing periods beyond the
-    /// run.
+    /// Time in s up to which runs are followed until they repeat; by default 1000 periods beyond the run.
     pub until_settled: Option<f64>,
 }
 

@@ -139,8 +139,7 @@ fn with_columns(table: Table, found: &[Found]) -> Table {
 pub struct ExponentOptions {
     /// Forcing periods over which a motion without a period is averaged.
     pub periods: u32,
-    /// Time in s up to which a motion is followed until it repeats; by default 1000 forcing periods beyond
-    /// the run.
+    /// Time in s up to which a motion is followed until it repeats; by default 1000 periods beyond the run.
     pub until_settled: Option<f64>,
 }
 
@@ -160,8 +159,7 @@ impl Default for ExponentOptions {
 pub struct Estimate {
     /// The value in 1/s; minus infinity where nothing is left of a change, NaN where it is not known.
     pub per_s: f64,
-    /// Its standard error in 1/s: 0 where the value is that of a periodic motion or minus infinity, NaN if
-    /// there are too few periods.
+    /// Its standard error in 1/s: 0 of a periodic motion or of minus infinity, NaN of too few periods.
     pub error: f64,
 }
 
@@ -183,8 +181,7 @@ pub struct Exponents {
     /// Their sum in 1/s by the determinants of the derivatives. NaN where a forcing period shrinks areas so
     /// much that a determinant, the difference of two products, has lost its digits.
     pub sum: f64,
-    /// Their sum in 1/s by damping and impacts; `None` with compliant stops, whose loss depends on the
-    /// motion.
+    /// Their sum in 1/s by damping and impacts; `None` with compliant stops, whose loss varies.
     pub exact_sum: Option<f64>,
     /// Forcing periods after which the motion repeats, where they are those of a periodic motion.
     pub period: Option<u32>,

@@ -160,7 +160,10 @@ impl Decay {
             return None;
         }
         let late = student(line.freedom) * line.covariance[(1, 1)].sqrt();
-        let of_rate = |rate: f64| if rate.is_finite() { ratio(rate * step) } else { rate.signum() };
+        let of_rate = |rate: f64| match rate * step {
+            d if rate.is_finite() => d / PI.hypot(d),
+            _ => rate.signum(),
+        };
         let damping = Identity {
             name: "damping_ratio",
             value: of_rate(envelope.rate),
@@ -198,11 +201,6 @@ impl Decay {
         let table = Table::new().each("t_s", &places, |t| *t);
         table.each("upper", &places, line(1.0)).each("lower", &places, line(-1.0))
     }
-}
-
-/// The damping ratio of an oscillation whose amplitude falls by a factor e^-d in half a period.
-fn ratio(d: f64) -> f64 {
-    d / PI.hypot(d)
 }
 
 /// The frequency f without the damping of ratio z, f/sqrt(1 - z^2), with the interval of independent errors.

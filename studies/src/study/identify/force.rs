@@ -302,8 +302,7 @@ fn directions(x: &[f64], force: &[f64]) -> [Pull; 2] {
     pulls
 }
 
-/// Whether the directions are still near each other after the turn at `end` of a range of signed length
-/// `range`.
+/// Whether the directions are still near each other after the turn at `end`, over a part of `range`.
 fn turning(before: &Pull, after: &Pull, (end, range): (f64, f64)) -> bool {
     let apart = |(x, force): &(f64, f64)| -> Option<f64> {
         let next = before.partition_point(|sample| sample.0 < *x);

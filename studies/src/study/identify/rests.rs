@@ -48,10 +48,9 @@ pub struct Rest {
 impl Rest {
     /// The equilibrium of the mean of pulls near a place where it changes sign, in a curve of length `range`.
     ///
-    /// A cubic, or a cubic with another added from a kink on (whose place is found by least squares), is
-    /// fitted to each direction over some part of the range on either side. The largest part without a kink
-    /// is taken unless another halves the interval of the force: a force that is known well needs a smaller
-    /// part.
+    /// To each direction a cubic, or a cubic with another added from a kink on (whose place is found by least
+    /// squares), is fitted over some part of the range on either side: the largest without a kink, unless
+    /// another halves the interval of the force, as where the force is known well.
     pub fn near(place: f64, pulls: &[&Pull], range: f64) -> Option<Self> {
         let mut best: Option<Self> = None;
         let fitted = |reach: f64, kinked: bool| {
@@ -127,8 +126,7 @@ impl Rest {
         named.map(|(name, (value, interval))| Identity { name, value, interval: interval.into() })
     }
 
-    /// Integral of the force in J from here to a place within the reach of the fits, and force and slope
-    /// there.
+    /// Integral of the force in J from here to a place within reach of the fits, and force and slope there.
     pub fn work_to(&self, x: f64) -> Option<[Known; 3]> {
         let work = self.fits.iter().map(|fit| fit.work(self.x.0, x)).reduce(Known::and)?;
         Some([work, mean(&self.fits, x, 0)?, mean(&self.fits, x, 1)?])
@@ -177,12 +175,7 @@ impl Near {
         if samples.len() < FEWEST + 8 {
             return None;
         }
-        let joined = |kink: f64| {
-            let rows: Vec<([f64; 7], f64)> =
-                samples.iter().map(|(u, force)| (joined_terms(*u, kink), *force)).collect();
-            least_squares(&rows)
-        };
-        let cubics = joined(kink)?.coefficients;
+        let cubics = joined(samples.iter(), kink)?.coefficients;
         let beyond = [cubics[4], cubics[5], cubics[6]];
         let row = |(u, force): &(f64, f64)| (terms(*u, kink, &beyond, 0).into(), *force);
         // the place of the kink is that of least squares: its own term is for the errors
@@ -208,8 +201,8 @@ impl Near {
         Known { value: value / unit, error: error / unit, freedom }
     }
 
-    /// Integral of the force in J: by Gauss's rule with two points, exact for cubics, on both sides of the
-    /// kink.
+    /// Integral of the force in J: by Gauss's rule with two points on each side of the kink, exact for
+    /// cubics.
     fn work(&self, from: f64, to: f64) -> Known {
         let inner = self.kink.filter(|kink| (*kink - from) * (*kink - to) < 0.0);
         let ends: Vec<f64> = [Some(from), inner, Some(to)].into_iter().flatten().collect();
@@ -239,9 +232,13 @@ fn terms(u: f64, kink: f64, [a, b, c]: &[f64; 3], order: usize) -> Terms {
     })
 }
 
-fn joined_terms(u: f64, kink: f64) -> [f64; 7] {
-    let all = terms(u, kink, &[0.0; 3], 0);
-    std::array::from_fn(|k| all[k])
+/// The fit of a cubic with another added from a kink on.
+fn joined<'a>(samples: impl Iterator<Item = &'a (f64, f64)>, kink: f64) -> Option<Fit<7>> {
+    let row = |(u, force): &(f64, f64)| {
+        let all = terms(*u, kink, &[0.0; 3], 0);
+        (std::array::from_fn(|k| all[k]), *force)
+    };
+    least_squares(&samples.map(row).collect::<Vec<_>>())
 }
 
 /// The samples of a pull up to `reach` away from a place, over u.
@@ -256,9 +253,8 @@ fn kink_of(directions: &[Vec<(f64, f64)>]) -> Option<f64> {
     let stride = samples.div_ceil(LOOKED_AT).max(1);
     let square = |kink: f64| -> f64 {
         let left = |samples: &Vec<(f64, f64)>| {
-            let rows: Vec<([f64; 7], f64)> =
-                samples.iter().step_by(stride).map(|(u, force)| (joined_terms(*u, kink), *force)).collect();
-            least_squares(&rows).map_or(f64::INFINITY, |fit| fit.variance * fit.freedom as f64)
+            let fit = joined(samples.iter().step_by(stride), kink);
+            fit.map_or(f64::INFINITY, |fit| fit.variance * fit.freedom as f64)
         };
         directions.iter().map(left).sum()
     };

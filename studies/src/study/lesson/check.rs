@@ -30,8 +30,7 @@ pub struct LessonReport {
     pub predictions: usize,
     /// Tasks that were tried.
     pub tasks: usize,
-    /// What is wrong: a start that meets its goal, a solution that does not, a prediction without one right
-    /// option.
+    /// What is wrong: a start that meets its goal, a solution that does not, not one right option.
     pub wrong: Vec<LessonFinding>,
     /// Bounds that turn a verdict where they are moved by 1 %.
     pub warnings: Vec<LessonFinding>,

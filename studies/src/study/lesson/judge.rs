@@ -38,8 +38,8 @@ pub struct Lack {
     pub found: Value,
 }
 
-/// The first condition in the goal of a step that `subject` does not meet, `None` without one; `before` is
-/// the scene with which the step began.
+/// The first condition of the goal of a step that `subject` does not meet; `before` is the scene at its
+/// begin.
 pub fn goal_lack(step: &Step, subject: &Subject, before: &Subject) -> Result<Option<Lack>, Unjudged> {
     match step {
         Step::Do { goal, .. } => Judge { subject, before, from: None }.lack(goal),

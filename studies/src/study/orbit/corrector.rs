@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector2, Vector3};
 
-use super::{Orbit, SAME, allowed, map_of};
+use super::{Orbit, allowed, map_of};
 use crate::dynamics::{Event, EventKind, Jacobian, Outcome, Passage, Side, StroboscopicMap};
 use crate::study::{Family, State};
 
@@ -27,13 +27,12 @@ const QUARTERS: [f64; 3] = [0.25, 0.5, 0.75];
 /// The largest correction of a predicted point.
 const LARGEST: f64 = 0.2;
 
-/// The change of a point by the map, in its units, that is close to none; and with the smallest step, where a
-/// point is as good as the others of a branch.
+/// The change of a point by the map, in its units, that is close to none; and how good all points are.
 const CLOSE: f64 = 1e-10;
 const GOOD: Accuracy = Accuracy { change: 1e-12, step: 1e-10 };
 
-/// Where Newton's method ends: at a change of the point or a step in the units, or where steps shrink no
-/// more.
+/// Where Newton's method ends: at a change of the point or a step, in the units, or where steps stop
+/// shrinking.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Accuracy {
     pub change: f64,
@@ -139,11 +138,6 @@ impl Corrector<'_> {
     /// A state after that many forcing periods as the corrector's map has it.
     pub fn image(&self, (x, v): State) -> State {
         if self.mirrored { (-x, -v) } else { (x, v) }
-    }
-
-    /// Whether a motion is its own mirror image half its period later.
-    pub fn is_mirrored(map: &StroboscopicMap, orbit: &Orbit) -> bool {
-        Self::asymmetry(map, orbit).is_some_and(|off| off.amax() <= SAME)
     }
 
     /// Difference of a motion from its mirror image half its period later, relative to the scales; `None` if

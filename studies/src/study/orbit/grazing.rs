@@ -61,8 +61,7 @@ impl Beside {
 pub(super) struct Grazing<'a> {
     corrector: &'a Corrector<'a>,
     side: Side,
-    /// Times in forcing periods after a strobe about which there are no stops, and for how long before and
-    /// after; they come again with each flight.
+    /// Times in forcing periods after a strobe around which stops are left out, with half the length of each.
     open: Vec<(f64, f64)>,
     /// Time in forcing periods after a strobe, 0, and field in its unit.
     solution: Vector3<f64>,
@@ -316,8 +315,7 @@ impl Grazing<'_> {
         (is_there && self.is_beside(&point, beside)).then_some(point)
     }
 
-    /// Whether a motion touches the stops as the grazing one does, and once more where it touches this one
-    /// (its mirror image at the other stop).
+    /// Whether a motion touches the stops as the grazing one does, once more where it touches this one.
     fn is_beside(&self, point: &Point, beside: Beside) -> bool {
         let touches = |point: &Point, side: Side| {
             let contacts = point.orbit.contacts();

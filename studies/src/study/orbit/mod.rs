@@ -348,7 +348,7 @@ pub fn branch(
     let scales = model.scales();
     let units = Units { length: scales.length, speed: scales.speed, range: (to - from).abs() };
     let map = map_of(&model, phase).ok_or(NoOrbit::NotConverged)?;
-    let mirrored = Corrector::is_mirrored(&map, &first);
+    let mirrored = Corrector::asymmetry(&map, &first).is_some_and(|off| off.amax() <= SAME);
     let corrector = Corrector { family, phase, periods: first.period, mirrored, units };
     let upwards = Vector3::new(0.0, 0.0, (to - from).signum());
     let point = corrector.correct(corrector.at(first.state, from), &upwards).ok_or(NoOrbit::NotConverged)?;

@@ -219,8 +219,7 @@ impl<'a> Walk<'a> {
         far.fold(0.0, f64::max) <= CHANGE * self.room
     }
 
-    /// Whether a motion touches the stops otherwise than the last one; between two rests that is no
-    /// bifurcation.
+    /// Whether a motion touches the stops otherwise than the last one; between rests this is no bifurcation.
     fn touches_otherwise(&self, next: &Point) -> bool {
         let point = &self.at.0;
         differ(point, next) && !(point.forgets() && next.forgets())
@@ -333,8 +332,7 @@ impl<'a> Walk<'a> {
         true
     }
 
-    /// Adds a row, with its state at the phase of the rows if known; without its event at a motion met
-    /// before.
+    /// Adds a row, with its state at the phase of the rows if known; without an event at a motion met before.
     fn add(&mut self, event: Option<BranchEvent>, point: &Point, state: Option<State>) {
         let orbit = match state {
             Some(state) => Orbit { state, ..point.orbit.clone() },

@@ -22,8 +22,7 @@ const NARROWEST: f64 = 3.5;
 /// Ratio of each further window to the one before.
 const WIDER: f64 = SQRT_2;
 
-/// Standard errors of its speed towards the stop from which on an impact counts: the instant of a slower one
-/// is so unsure that both speeds are biased.
+/// Standard errors of its speed from which on an impact counts: a slower one has too unsure an instant.
 const FAST: f64 = 12.0;
 
 /// Degrees of freedom that the residuals of a trial need.
@@ -61,8 +60,7 @@ impl Trial {
     }
 }
 
-/// Fits all impacts, which refines their instants and flights; a contact without a fit is no longer an
-/// impact.
+/// Fits all impacts, which refines their instants and flights; a contact without a fit is no impact.
 pub fn trials(motion: &Motion, contacts: &mut [Contact], stops: &[Option<f64>; 2]) -> Vec<Trial> {
     let mut best: Vec<Option<(f64, Impact)>> = vec![None; contacts.len()];
     for trial in all(motion, contacts, FIRST_TERMS..=FIRST_TERMS) {
