@@ -188,19 +188,12 @@ pub enum TimesError {
     /// The step is not a number above 0.
     #[error("the sampling step is {0} s: it must be a finite number above 0")]
     SamplingStep(f64),
-    /// More samples than [`MAX_SAMPLES`].
+    /// A step in s over a duration in s makes too many samples, rounded where they are above 2^53.
     #[error(
-        "a step of {step} s over {duration} s makes {count} samples; at most {MAX_SAMPLES} fit: \
+        "a step of {0} s over {1} s makes {2} samples; at most {MAX_SAMPLES} fit: \
          take a longer step (--dt) or name the times (--at)"
     )]
-    TooMany {
-        /// The step in s.
-        step: f64,
-        /// The duration in s.
-        duration: f64,
-        /// The samples it would make, rounded where it is above 2^53.
-        count: String,
-    },
+    TooMany(f64, f64, String),
     /// A time in s beyond the duration of the run.
     #[error("--at {0} is not within the run, which lasts from 0 to {1} s")]
     Outside(f64, f64),
@@ -302,7 +295,7 @@ fn even_times(step: SamplingStep, duration: f64) -> Result<Vec<f64>, TimesError>
         + 1.0;
     if count > MAX_SAMPLES as f64 {
         let count = if count < 9e15 { format!("{count}") } else { format!("{count:.3e}") };
-        return Err(TimesError::TooMany { step: dt, duration, count });
+        return Err(TimesError::TooMany(dt, duration, count));
     }
     let time = |k: u64| exact.map_or(k as f64 * dt, |ratio| ratio.times(k)).min(duration);
     Ok((0..count as u64).map(time).collect())

@@ -197,16 +197,9 @@ fn loses_energy(scene: &Scene) -> bool {
         Damping::Ratio(xi) => xi > 0.0,
         Damping::Coefficient { c_n_s_per_m } => c_n_s_per_m > 0.0,
     };
-    let loses = |restitution: Option<f64>| restitution.is_some_and(|value| value < 1.0);
     damped
-        || match &scene.stops {
-            Stops::None => false,
-            Stops::Rigid { restitution, .. } => *restitution < 1.0,
-            Stops::Uneven { restitution_left, restitution_right, .. } => {
-                loses(*restitution_left) || loses(*restitution_right)
-            }
-            Stops::Hertz { loss_s_per_m, .. } => *loss_s_per_m > 0.0,
-        }
+        || scene.stops.restitutions().into_iter().flatten().any(|restitution| restitution < 1.0)
+        || matches!(scene.stops, Stops::Hertz { loss_s_per_m, .. } if loss_s_per_m > 0.0)
 }
 
 /// The excitation of a constant scene and a sine of amplitude 0, with the period of small oscillations.

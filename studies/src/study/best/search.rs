@@ -5,6 +5,7 @@ use super::evaluate::{Evaluator, Judged};
 use super::{DesignRange, NoBest, Optimum};
 use crate::numeric::round::{ONE_TWO_FIVE, round_down};
 use crate::study::bisection::multiple;
+use crate::study::grid::places;
 
 /// Stride of the coarse scan before the full one.
 const COARSE: usize = 4;
@@ -47,13 +48,9 @@ pub(super) fn rounded(range: &DesignRange, value: f64) -> f64 {
 }
 
 /// All indices of the scan, the first field slowest.
-fn indices(over: &[DesignRange]) -> Vec<Vec<usize>> {
-    over.iter().fold(vec![Vec::new()], |before, range| {
-        let longer = |prefix: &Vec<usize>| {
-            (0..=range.intervals).map(|i| [prefix.as_slice(), &[i]].concat()).collect::<Vec<_>>()
-        };
-        before.iter().flat_map(longer).collect()
-    })
+fn indices(lengths: &[usize]) -> Vec<Vec<usize>> {
+    let count: usize = lengths.iter().product();
+    (0..count).map(|index| places(lengths.iter().copied(), index as u64).collect()).collect()
 }
 
 /// The best of some places that were judged, the first of equal ones.
@@ -64,7 +61,7 @@ fn highest(places: &[Vec<f64>], judged: &[Judged]) -> Option<Optimum> {
 
 pub(super) fn search(evaluator: &Evaluator, preview: &mut dyn FnMut(&Optimum)) -> Result<Found, NoBest> {
     let over = &evaluator.over;
-    let all = indices(over);
+    let all = indices(&over.iter().map(|range| range.intervals + 1).collect::<Vec<_>>());
     let coarse = |node: &Vec<usize>| node.iter().all(|index| index.is_multiple_of(COARSE));
     let (mut places, mut judged) = (Vec::new(), Vec::new());
     for first in [true, false] {
@@ -76,7 +73,7 @@ pub(super) fn search(evaluator: &Evaluator, preview: &mut dyn FnMut(&Optimum)) -
             preview(&best);
         }
     }
-    let Some(mut best) = highest(&places, &judged) else { return Err(none(&places, &judged)) };
+    let Some(best) = highest(&places, &judged) else { return Err(none(&places, &judged)) };
     let all_equal = judged.iter().all(|design| design.value() == Some(best.value));
     let mut order: Vec<usize> = (0..places.len()).filter(|i| judged[*i].value().is_some()).collect();
     order.sort_by(|a, b| judged[*b].value().partial_cmp(&judged[*a].value()).unwrap_or(a.cmp(b)));
@@ -96,11 +93,8 @@ pub(super) fn search(evaluator: &Evaluator, preview: &mut dyn FnMut(&Optimum)) -
         }
     }
     let starts = begins.iter().filter_map(|i| judged[*i].optimum(&places[*i])).collect();
-    for optimum in refine(evaluator, starts)? {
-        if optimum.value > best.value {
-            best = optimum;
-        }
-    }
+    let refined = refine(evaluator, starts)?.into_iter();
+    let best = refined.fold(best, |best, next| if next.value > best.value { next } else { best });
     preview(&best);
     Ok(Found { optimum: best, flat: all_equal })
 }
@@ -119,11 +113,7 @@ fn refine(evaluator: &Evaluator, starts: Vec<Optimum>) -> Result<Vec<Optimum>, N
     let mut half: Vec<f64> = over.iter().map(DesignRange::step).collect();
     let closer = |best: Optimum| Closer { tried: vec![best.at.clone()], best };
     let mut boxes: Vec<Closer> = starts.into_iter().map(closer).collect();
-    let grid: Vec<DesignRange> = over
-        .iter()
-        .map(|range| DesignRange { low: -1.0, high: 1.0, intervals: 2 * sides, ..range.clone() })
-        .collect();
-    let grid = indices(&grid);
+    let grid = indices(&vec![2 * sides + 1; over.len()]);
     loop {
         // all boxes together, so that no thread waits
         let places: Vec<Vec<Vec<f64>>> = boxes.iter().map(|area| around(area, over, &grid, &half)).collect();

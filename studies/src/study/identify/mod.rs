@@ -116,17 +116,12 @@ pub enum Unidentified {
         /// How many turning points are left.
         found: usize,
     },
-    /// Swings that are cut off hide the impacts.
+    /// So many swings that are cut off at displacements in mm hide the impacts.
     #[error(
-        "no impact is left: {swings} swings have flat tops at {limits} mm, at the limit of the sensor or its \
+        "no impact is left: {0} swings have flat tops at {1} mm, at the limit of the sensor or its \
          converter: widen its range so that it covers the stops"
     )]
-    CutOff {
-        /// How many are cut off.
-        swings: usize,
-        /// At which displacements, in mm.
-        limits: String,
-    },
+    CutOff(usize, String),
     /// The turning points follow no decay.
     #[error("the turning points follow no decaying oscillation: cut the record by --from and --to")]
     NoDecay,

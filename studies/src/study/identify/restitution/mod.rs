@@ -201,7 +201,7 @@ fn unresolved(motion: &Motion, found: usize) -> Unidentified {
     if found == 0
         && let Some((swings, limits)) = cut_off(motion)
     {
-        return Unidentified::CutOff { swings, limits };
+        return Unidentified::CutOff(swings, limits);
     }
     let (noise, rate) = (short(motion.noise), 1.0 / motion.timing.step);
     match contacts::longest_rebound(motion).or((found > 0).then_some(2)) {
