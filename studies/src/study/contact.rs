@@ -53,14 +53,12 @@ pub fn yield_speed(stop: &Hertz, mass: f64) -> Option<f64> {
 pub fn yield_warning(model: &Model, summary: &Summary) -> Option<String> {
     let material = model.compliant()?.material?;
     let pressure = summary.peak_contact_pressure.filter(|pressure| *pressure > material.yield_pressure())?;
-    let gpa = |pascal: f64| short(pascal / 1e9);
+    let force = short(summary.peak_contact_force.unwrap_or(f64::NAN));
+    let pascals = [pressure, material.yield_pressure(), material.yield_strength];
+    let [reached, yields, strength] = pascals.map(|pascal| short(pascal / 1e9));
     Some(format!(
-        "the contact with a stop reaches {} GPa ({} N) and yields from {} GPa on, 1.6 times its yield \
-         strength of {} GPa (stops.yield_gpa); the model does not follow yielding",
-        gpa(pressure),
-        short(summary.peak_contact_force.unwrap_or(f64::NAN)),
-        gpa(material.yield_pressure()),
-        gpa(material.yield_strength)
+        "the contact with a stop reaches {reached} GPa ({force} N) and yields from {yields} GPa on, 1.6 times \
+         its yield strength of {strength} GPa (stops.yield_gpa); the model does not follow yielding"
     ))
 }
 

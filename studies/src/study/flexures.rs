@@ -89,15 +89,12 @@ pub fn stress_warning(flexures: &Flexures, states: &[State]) -> Option<String> {
     let worst = above.iter().max_by(|a, b| a.max_stress.total_cmp(&b.max_stress))?;
     let from = above.iter().fold(f64::INFINITY, |least, state| least.min(state.x.abs()));
     let to = above.iter().fold(0.0_f64, |largest, state| largest.max(state.x.abs()));
-    let (gpa, mm) = (|pascal: f64| short(pascal / 1e9), |metres: f64| short(metres * 1e3));
-    let end = if to < farthest { format!("to {} mm", mm(to)) } else { "on".to_owned() };
+    let end = if to < farthest { format!("to {} mm", short(to * 1e3)) } else { "on".to_owned() };
+    let [begin, place] = [from, worst.x].map(|metres| short(metres * 1e3));
+    let [limit, largest] = [limit, worst.max_stress].map(|pascal| short(pascal / 1e9));
     Some(format!(
-        "from |x| = {} mm {end} the bending stress exceeds mechanism.yield_gpa = {}: {} GPa at x = {} mm; \
-         the model does not follow yielding",
-        mm(from),
-        gpa(limit),
-        gpa(worst.max_stress),
-        mm(worst.x)
+        "from |x| = {begin} mm {end} the bending stress exceeds mechanism.yield_gpa = {limit}: {largest} GPa \
+         at x = {place} mm; the model does not follow yielding"
     ))
 }
 

@@ -168,13 +168,11 @@ fn fewer_steps(model: &Model, at: f64) -> String {
 fn short_contact(model: &Model) -> Option<String> {
     let (speed, time) = (model.scales().speed, model.scales().time);
     let contact = model.compliant()?.contact_time(model.mass(), speed);
+    let [lasts, at, motion] = [contact, speed, time].map(short);
     (contact * SHORT < time).then(|| {
         format!(
-            "a contact with a stop lasts {} s at {} m/s and takes steps of its own, where the motion takes \
-             {} s; softer stops, rigid ones (`Rigid`) or a shorter run take fewer",
-            short(contact),
-            short(speed),
-            short(time)
+            "a contact with a stop lasts {lasts} s at {at} m/s and takes steps of its own, where the motion \
+             takes {motion} s; softer stops, rigid ones (`Rigid`) or a shorter run take fewer"
         )
     })
 }

@@ -90,22 +90,18 @@ fn remarks(
     let unit = ending.trim_start_matches('_');
     let mut remarks = Vec::new();
     if let Some(Clipped { tops, limit, .. }) = flat {
+        let [limit, begin] = [limit, times[0]].map(short);
         remarks.push(format!(
             "clipped: {tops} swings have flat tops, at the limit of the sensor or its converter (the last at \
-             {} {unit}); what was recorded before {} s is left out",
-            short(limit),
-            short(times[0])
+             {limit} {unit}); what was recorded before {begin} s is left out"
         ));
     }
     if let Some(at) = sparse {
         remarks.push(format!("from {} s on the swings have too few samples and are left out", short(at)));
     }
     if let Some((first, last)) = rows.first().zip(rows.last()) {
-        remarks.push(format!(
-            "the rows go from an amplitude of {} to one of {} {unit} ({quantity})",
-            short(first.amplitude),
-            short(last.amplitude),
-        ));
+        let [from, to] = [first, last].map(|row| short(row.amplitude));
+        remarks.push(format!("the rows go from an amplitude of {from} to one of {to} {unit} ({quantity})"));
     }
     let changes = |of: fn(&Decay) -> Identity| differ(rows.iter().map(of), of(whole).value);
     let changing: Vec<&str> = [

@@ -188,13 +188,10 @@ impl Curve {
         }
         for rest in rests {
             if let Some([x, left, right]) = rest.kink {
+                let [mm, um, left, right] = [1e3 * x, 1e6 * (x - rest.x.0).abs(), left, right].map(short);
                 remarks.push(format!(
-                    "kink at {} mm, {} um from an equilibrium: the slope of the force jumps from {} to {} \
-                     N/m, and a swing over both sides has neither stiffness",
-                    short(1e3 * x),
-                    short(1e6 * (x - rest.x.0).abs()),
-                    short(left),
-                    short(right)
+                    "kink at {mm} mm, {um} um from an equilibrium: the slope of the force jumps from {left} to \
+                     {right} N/m, and a swing over both sides has neither stiffness"
                 ));
             }
         }

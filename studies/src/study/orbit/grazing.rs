@@ -14,7 +14,7 @@ use nalgebra::Vector3;
 
 use super::corrector::{Accuracy, Corrector, Equations, Point, newton};
 use super::{Orbit, map_of};
-use crate::dynamics::{EventKind, Jacobian, Miss, Outcome, Passage, Side, StroboscopicMap};
+use crate::dynamics::{Event, EventKind, Jacobian, Miss, Outcome, Passage, Side, StroboscopicMap};
 use crate::study::State;
 
 /// The share of the length scale that a gap is below where its stop may be touched near by.
@@ -85,43 +85,35 @@ pub(super) fn grazings<'a>(corrector: &'a Corrector<'a>, near: &Point) -> Vec<(G
     let units = &corrector.units;
     let whole = f64::from(corrector.periods);
     let time = |t: f64| ((t - map.first_strobe()) / map.period()).rem_euclid(whole);
-    let misses: Vec<(f64, Side, f64)> = near
-        .orbit
-        .passage
-        .misses
-        .iter()
-        .map(|miss| (time(miss.t), miss.side, miss.gap / units.length))
-        .filter(|miss| miss.2 < SMALL_GAP)
-        .collect();
+    let misses = near.orbit.passage.misses.iter();
+    let misses = misses.map(|miss| (time(miss.t), miss.side, miss.gap / units.length, Beside::Missing));
+    let misses = misses.filter(|miss| miss.2 < SMALL_GAP);
     let impacts = contacts.iter().filter(|event| event.kind == EventKind::Impact);
-    let impacts = impacts.map(|event| (time(event.t), event.side, event.v_in.abs() / units.speed));
-    let mut turns: Vec<_> = misses
-        .iter()
-        .map(|miss| (*miss, Beside::Missing))
-        .chain(impacts.map(|impact| (impact, Beside::Touching)))
-        .collect();
+    let speed = |event: &Event| event.v_in.abs() / units.speed;
+    let impacts = impacts.map(|event| (time(event.t), event.side, speed(event), Beside::Touching));
+    // times, sides, gaps or speeds
+    let mut turns: Vec<(f64, Side, f64, Beside)> = misses.clone().chain(impacts).collect();
     // a gap goes as the square of a speed
-    let depth = |((_, _, size), beside): &((f64, Side, f64), Beside)| match beside {
+    let depth = |(_, _, size, beside): &(f64, Side, f64, Beside)| match beside {
         Beside::Missing => *size,
         Beside::Touching => size * size,
     };
     let flight = corrector.flight();
     // of a motion that is its own mirror image the first half has all
-    turns.retain(|((t, ..), _)| *t < flight);
+    turns.retain(|turn| turn.0 < flight);
     turns.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
     turns.truncate(MOST_LOOKED_AT);
     let apart = |a: f64, b: f64| {
         let far = (a - b).rem_euclid(flight);
         far.min(flight - far)
     };
-    let grazing = |((t, side, _), beside): ((f64, Side, f64), Beside)| {
+    let grazing = |(t, side, _, beside): (f64, Side, f64, Beside)| {
         let others = near.orbit.events_at_stops().map(|event| time(event.t));
         let others: Vec<f64> = others.filter(|other| apart(*other, t) > 1e-9).collect();
         let room = |at: f64| others.iter().map(|other| 0.5 * apart(at, *other)).fold(0.25 * flight, f64::min);
-        let open = misses.iter().map(|miss| miss.0).chain([t]).map(|at| (at, room(at))).collect();
-        let guess = Vector3::new(t, 0.0, near.at.z);
-        let point = near.clone();
-        let unsolved = Grazing { corrector, side, open, solution: guess, point };
+        let open = misses.clone().map(|miss| miss.0).chain([t]).map(|at| (at, room(at))).collect();
+        let solution = Vector3::new(t, 0.0, near.at.z);
+        let unsolved = Grazing { corrector, side, open, solution, point: near.clone() };
         Some((unsolved.solved()?, beside))
     };
     turns.into_iter().filter_map(grazing).collect()
