@@ -110,18 +110,9 @@ pub enum NoSpectrum {
     /// The settled window has no length.
     #[error("the settled window from {0} to {1} s has no length: lower run.settle_s")]
     NoWindow(f64, f64),
-    /// A rate that is no number above 0, or makes too few samples or too many.
-    #[error("{rate_hz} samples a second make {samples} in the {length} s of the settled window: {remedy}")]
-    Rate {
-        /// Samples a second.
-        rate_hz: f64,
-        /// Number of samples at that rate.
-        samples: String,
-        /// Length of the window in s.
-        length: f64,
-        /// How to correct it.
-        remedy: String,
-    },
+    /// A rate that is no number above 0, or makes too few samples or too many, as the sentence says.
+    #[error("{0}")]
+    Rate(String),
 }
 
 /// Samples in the shortest period of excitation and mechanism.
@@ -227,7 +218,10 @@ impl Plan {
             } else {
                 format!("take at least {}", short(FEWEST / length))
             };
-            return Err(NoSpectrum::Rate { rate_hz: rate, samples: short(samples), length, remedy });
+            return Err(NoSpectrum::Rate(format!(
+                "{rate} samples a second make {} in the {length} s of the settled window: {remedy}",
+                short(samples)
+            )));
         }
         let cycles = match (whole, model.excitation().fastest()) {
             (Some((period, count)), Some(fastest)) => (fastest, (period * fastest).round() * count as f64),

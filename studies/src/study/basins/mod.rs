@@ -28,7 +28,7 @@ use std::sync::Arc;
 use crate::dynamics::{Model, Request};
 use crate::mechanics::Mechanism;
 use crate::scene::{Damping, Excitation, Fault, Scene, Start, Stops};
-use crate::study::{Levels, STRIDES, State};
+use crate::study::{Levels, STRIDES};
 pub use answer::{Answer, Attractor, Shares};
 use rounds::{PATIENCE, Rounds};
 pub use starts::{EvenRange, MAX_STARTS, Starts, StartsError};
@@ -128,7 +128,7 @@ impl Basins {
         let rounds = Rounds::new(starts.count());
         let effort = Effort::of_starts(starts.count());
         let basins = Self { model, starts, levels, done: 0, room, rounds, effort };
-        if (0..basins.starts.count()).all(|row| basins.start(row).is_none()) {
+        if !(0..basins.starts.count()).any(|row| is_inside(room, basins.starts.at(row).0)) {
             return Err(basins.beyond());
         }
         Ok(basins)
@@ -181,13 +181,11 @@ impl Basins {
     pub fn is_whole(&self) -> bool {
         self.done == STRIDES.len()
     }
+}
 
-    /// Start `row` in m and m/s; `None` outside the room.
-    fn start(&self, row: usize) -> Option<State> {
-        let (x_mm, v) = self.starts.at(row);
-        let x = x_mm / 1e3;
-        (x >= self.room.0 && x <= self.room.1).then_some((x, v))
-    }
+/// Whether a displacement in mm lies in a room in m.
+fn is_inside(room: (f64, f64), x_mm: f64) -> bool {
+    (room.0..=room.1).contains(&(x_mm / 1e3))
 }
 
 /// Whether damping or a stop takes energy.

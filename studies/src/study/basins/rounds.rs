@@ -3,7 +3,7 @@
 use super::orbit::{Found, find};
 use super::region::absorbing;
 use super::stroboscopic::Stroboscope;
-use super::{Basins, Starts};
+use super::{Basins, Starts, is_inside};
 use crate::dynamics::{
     Arrival, Capture, Outcome, Place, Pursued, Pursuit, Regime, Region, ReleaseIdentity, Side, Summary,
 };
@@ -416,8 +416,7 @@ impl Basins {
             rounds.next_round = (2 * rounds.next_round).min(LONGEST_ROUND);
             let mut items = Vec::with_capacity(last - begin);
             for row in levels.order[begin..last].iter().map(|row| *row as usize) {
-                let x = starts.at(row).0 / 1e3;
-                if x >= room.0 && x <= room.1 {
+                if is_inside(*room, starts.at(row).0) {
                     items.push(Item::of_start(row));
                 } else {
                     rounds.fates[row] = Fate::Outside;

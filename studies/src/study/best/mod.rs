@@ -9,7 +9,7 @@ mod evaluate;
 mod search;
 mod varied;
 
-use super::{SummaryField, Table, Task, Values};
+use super::{SummaryField, Table, Task};
 use crate::scene::{Fault, Files, Scene, column_names};
 use crate::system::threads::Pool;
 use evaluate::Evaluator;
@@ -166,31 +166,29 @@ impl BestDesign {
     pub fn table(&self, question: &BestQuestion) -> Table {
         let fields: Vec<&str> = question.over.iter().map(|range| range.field.as_str()).collect();
         let names = column_names(&fields);
-        let one = |value: f64| Values::Numbers(vec![value]);
-        let margin = |side: Option<f64>| one(side.unwrap_or(f64::NAN));
+        let (row, back) = ([self], [self.stepped_back.as_ref()]);
         let mut table = Table::new();
         for (name, value) in names.iter().zip(&self.optimum.at) {
-            table = table.with(name, one(*value));
+            table = table.each(name, &row, |_| *value);
         }
         table = table
-            .with("maximised", Values::Words(vec![question.maximise.name]))
-            .with("value", one(self.optimum.value))
-            .with("margin_low", margin(self.margins[0][0]))
-            .with("margin_high", margin(self.margins[0][1]))
-            .with("worst", one(self.spread.worst))
-            .with("quantile_5", one(self.spread.quantile_5));
+            .each("maximised", &row, |_| question.maximise.name)
+            .each("value", &row, |best| best.optimum.value)
+            .each("margin_low", &row, |best| best.margins[0][0])
+            .each("margin_high", &row, |best| best.margins[0][1])
+            .each("worst", &row, |best| best.spread.worst)
+            .each("quantile_5", &row, |best| best.spread.quantile_5);
         for (name, [low, high]) in names.iter().zip(&self.margins).skip(1) {
-            table = table.with(format!("margin_low.{name}"), margin(*low));
-            table = table.with(format!("margin_high.{name}"), margin(*high));
+            table = table.each(&format!("margin_low.{name}"), &row, |_| *low);
+            table = table.each(&format!("margin_high.{name}"), &row, |_| *high);
         }
-        let back = self.stepped_back.as_ref();
         table = table
-            .with("back_to", one(back.map_or(f64::NAN, |back| back.0.at[0])))
-            .with("back_value", one(back.map_or(f64::NAN, |back| back.0.value)))
-            .with("back_worst", one(back.map_or(f64::NAN, |back| back.1.worst)))
-            .with("back_quantile_5", one(back.map_or(f64::NAN, |back| back.1.quantile_5)));
+            .each("back_to", &back, |back| Some((*back)?.0.at[0]))
+            .each("back_value", &back, |back| Some((*back)?.0.value))
+            .each("back_worst", &back, |back| Some((*back)?.1.worst))
+            .each("back_quantile_5", &back, |back| Some((*back)?.1.quantile_5));
         let each = self.optimum.of_each.iter().enumerate().filter(|_| question.environments.len() > 1);
-        each.fold(table, |table, (i, value)| table.with(format!("value_{}", i + 1), one(*value)))
+        each.fold(table, |table, (i, value)| table.each(&format!("value_{}", i + 1), &row, |_| *value))
     }
 }
 

@@ -209,9 +209,7 @@ pub struct ForceComparison {
     domain.0, domain.1
 )]
 pub struct OffTheCurve {
-    /// How many lie on it.
     on: usize,
-    /// Of how many.
     samples: usize,
     /// Its ends in mm.
     domain: (String, String),
