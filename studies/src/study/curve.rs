@@ -71,7 +71,7 @@ pub fn metres(mm: f64) -> f64 {
     shifted.map_or(mm / 1e3, |decimal| decimal.value().copysign(mm))
 }
 
-/// Positions in m of the left and the right stop; NaN where there is none.
+/// Positions in m of the left and the right stop; NaN without one.
 pub fn stop_positions(scene: &Scene) -> (f64, f64) {
     let [left, right] = scene.stops.limits_mm().map(|stop| stop.map_or(f64::NAN, metres));
     (-left, right)

@@ -89,7 +89,7 @@ pub struct GridStudy<Q> {
     question: Q,
 }
 
-/// Walks that may be begun in any case, however long they are: as many as a thread has under way.
+/// Walks that may be begun however long they are: those that a thread has under way.
 const WALKS: u64 = 64;
 
 /// Mechanisms kept for the whole study; with more of them each cell builds its own.

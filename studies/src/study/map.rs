@@ -43,8 +43,8 @@ pub fn release_line(scene: &Scene, mechanism: &Mechanism, grid: &Grid) -> Option
     Some(table.with("amplitude_g", Values::Numbers(amplitudes)))
 }
 
-/// For each value of the other field the least amplitude, 0 or above, whose cell crosses; NaN
-/// where there is none. The two columns are called as in the sweep, the other field first.
+/// For each value of the other field the least amplitude, 0 or above, whose cell crosses, or NaN. The two
+/// columns are called as in the sweep, the other field first.
 ///
 /// Only for a grid over two fields of which one is an amplitude. `rows` are all rows of the sweep.
 pub fn first_crossing(grid: &Grid, rows: &Table) -> Option<Table> {

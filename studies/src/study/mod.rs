@@ -13,7 +13,6 @@ mod bisection;
 mod contact;
 mod curve;
 mod exponents;
-mod family;
 mod fields;
 mod flexures;
 mod grid;
@@ -27,7 +26,6 @@ mod models;
 mod orbit;
 mod section;
 mod settled;
-mod shared_runs;
 mod simulate;
 mod slice;
 mod spectrum;
@@ -56,7 +54,6 @@ pub use exponents::{
     Estimate, ExponentCells, ExponentOptions, Exponents, NoExponents, average_exponents, drive_fault,
     exponents, exponents_row,
 };
-pub use family::{Family, NoModel};
 pub use fields::{InJson, RMS_VELOCITY, Read, SUMMARY_FIELDS, SummaryField};
 pub use flexures::{StatesError, flexures_at, full_curve, shapes, states, stress_warning};
 pub use grid::{Grid, GridError, Levels, MAX_CELLS, STRIDES};
@@ -88,7 +85,7 @@ pub use sweep::{
 pub use table::{Column, Table, Values, label_and_unit};
 pub use thresholds::{Found, NoThresholds, Onset, Scan, Verdict, threshold, threshold_table};
 pub use trace::{Trace, between, simulate_with_trace};
-pub use walk::{Carry, Direction, Visit, up_and_down};
+pub use walk::{Carry, Direction, Family, NoModel, Visit, up_and_down};
 pub use watch::{Watch, continued_scene, distances, watched_events};
 
 /// Progress and cancellation of a long study.

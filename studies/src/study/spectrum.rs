@@ -1,7 +1,7 @@
 //! Spectrum of a settled motion: amplitude and power spectral density over frequency.
 //!
-//! A run is sampled evenly over its settled window. Under a drive with a period that holds a whole number of
-//! forcing periods, and of its own of a motion that repeats, which then lies in lines and needs no taper.
+//! A run is sampled evenly over its settled window. Under a drive with a period the window holds whole
+//! forcing periods, and whole periods of a motion that repeats, which then lies in lines and needs no taper.
 //! Every other motion is tapered by the window of von Hann.
 
 use super::simulate::MAX_SAMPLES;

@@ -24,7 +24,7 @@ pub struct Trace {
     pub shown_to: f64,
     /// Whether that is a window that was asked for.
     pub is_section: bool,
-    /// Positions of the left and the right stop in m; NaN where there is none.
+    /// Positions of the left and the right stop in m; NaN without one.
     pub stops: (f64, f64),
     /// Time in s at which the run ended.
     pub end: f64,
@@ -36,7 +36,7 @@ const OVERVIEW: (f64, f64) = (8_000.0, 400_000.0);
 /// Samples in a period of the drive and in one of small oscillations.
 const PER_PERIOD: f64 = 80.0;
 
-/// Forcing periods in a phase portrait: as many as a period of the response may have.
+/// Forcing periods in a phase portrait: the longest period of a response that is recognised.
 const PORTRAIT_PERIODS: f64 = 12.0;
 
 /// A run of more forcing periods than this is a filled band over time.

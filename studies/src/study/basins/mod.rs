@@ -69,7 +69,7 @@ pub enum NoBasins {
     },
 }
 
-/// Small oscillations over which the cost of a forcing period is measured: some thousand steps.
+/// Small oscillations over which the cost of a forcing period is measured.
 const MEASURED: f64 = 300.0;
 
 /// A map of basins, coarse first.

@@ -7,8 +7,7 @@ use crate::dynamics::{Model, Outcome, Request, Run, Summary};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, FieldPath, Scene, check, is_whole};
 use crate::study::Task;
-use crate::study::settled::followed;
-use crate::study::shared_runs::shared_runs;
+use crate::study::settled::{followed, shared_runs};
 use crate::system::threads::Pool;
 
 /// Result of one design.

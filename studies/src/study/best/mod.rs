@@ -24,7 +24,7 @@ pub struct DesignRange {
     pub low: f64,
     /// Largest value, above the least.
     pub high: f64,
-    /// Intervals of the scan; at least 1, and of whole numbers at most as many as there are.
+    /// Intervals of the scan: at least 1, and of whole numbers no more than the range holds.
     pub intervals: usize,
     /// Whether only whole numbers are tried: as the field of the scene has it.
     whole: bool,

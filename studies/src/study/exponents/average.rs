@@ -15,7 +15,7 @@ const TURNING: u32 = 20;
 /// from 0 to 1, over `periods` forcing periods, without waiting for a transient or looking for a periodic
 /// motion. Without a drive a period is the natural time of the mechanism. At least one period.
 ///
-/// The standard errors are those of the means of batches, as many as the root of the number of periods
+/// The standard errors are those of the means of batches, whose number is the root of that of the periods
 /// (Flegal and Jones 2010): they cover the scatter of a motion whose correlations decay within a batch.
 pub fn average_exponents(
     model: &Model,

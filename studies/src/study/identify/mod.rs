@@ -25,7 +25,7 @@ pub struct Identity {
     pub name: &'static str,
     /// The estimate.
     pub value: f64,
-    /// The 95 % interval; NaN where there is none.
+    /// The 95 % interval; NaN for a count.
     pub interval: (f64, f64),
 }
 

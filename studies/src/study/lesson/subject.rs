@@ -8,7 +8,7 @@ use crate::dynamics::{Model, Request, Run, Summary};
 use crate::mechanics::Mechanism;
 use crate::scene::lesson::{Condition, Lesson};
 use crate::scene::{Axis, Excitation, FieldPath, Files, Scene, Start};
-use crate::study::shared_runs::shared_runs;
+use crate::study::settled::shared_runs;
 use crate::study::walk::walk_over;
 use crate::study::{Family, SummaryField, Task};
 use crate::system::threads::Pool;

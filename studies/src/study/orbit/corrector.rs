@@ -80,7 +80,7 @@ pub(super) struct Equations<T> {
 }
 
 /// The solution of two equations in the plane through a guess of three numbers across a direction, by
-/// Newton's method, with the length of the step that was left; none where it does not converge.
+/// Newton's method, with the length of the step that was left; `None` if it does not converge.
 pub(super) fn newton<T>(
     guess: Vector3<f64>,
     across: &Vector3<f64>,
@@ -125,7 +125,7 @@ pub(super) struct Corrector<'a> {
 }
 
 impl Corrector<'_> {
-    /// The map at a value of the field; none where that is no scene.
+    /// The map at a value of the field; `None` if that is no scene.
     pub fn map(&self, value: f64) -> Option<StroboscopicMap> {
         map_of(&self.family.model(value).ok()?, self.phase)
     }
@@ -156,7 +156,7 @@ impl Corrector<'_> {
         (half.outcome == Outcome::Done).then_some(off)
     }
 
-    /// The same motion at another phase of the drive; none where it ends early.
+    /// The same motion at another phase of the drive; `None` if it ends early.
     pub fn at_phase(&self, orbit: &Orbit, value: f64, phase: f64) -> Option<Orbit> {
         if phase == self.phase {
             return Some(orbit.clone());
@@ -185,7 +185,7 @@ impl Corrector<'_> {
         (room(best) > 2.0 * room(0.0)).then_some(best)
     }
 
-    /// Displacements in m at the quarters of each forcing period of a motion; none where it ends early.
+    /// Displacements in m at the quarters of each forcing period of a motion; `None` if it ends early.
     pub fn displacements(&self, point: &Point) -> Option<Vec<f64>> {
         let map = self.map(point.value)?;
         let done = |passage: Passage| (passage.outcome == Outcome::Done).then_some(passage.state);
@@ -276,7 +276,7 @@ impl Corrector<'_> {
         tangent.iter().all(|part| part.is_finite()).then_some(tangent)
     }
 
-    /// The motion through a state, which need not come back; none where it ends early or has no derivatives.
+    /// The motion through a state, which need not come back; `None` if it ends early or has no derivatives.
     pub fn look(&self, at: &Vector3<f64>) -> Option<Point> {
         let value = at.z * self.units.range;
         let map = self.map(value)?;

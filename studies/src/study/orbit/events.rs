@@ -134,7 +134,7 @@ fn is_at(point: &Point, unit: f64) -> bool {
 }
 
 /// Where a quantity of different signs at two points of the branch is 0, as a share of their distance, by the
-/// secant method kept in its bracket (Illinois); none where the signs just beside it are equal.
+/// secant method kept in its bracket (Illinois); `None` if the signs just beside it are equal.
 fn root(
     corrector: &Corrector,
     (from, to): (&Point, &Point),

@@ -128,7 +128,7 @@ impl Maps {
 }
 
 impl Grazing<'_> {
-    /// The same at the motion that grazes; none where Newton's method does not find it near by.
+    /// The same at the motion that grazes; `None` if Newton's method does not find it near by.
     fn solved(mut self) -> Option<Self> {
         let guess = self.solution;
         let (solution, left) = self.solve(guess, Beside::Missing)?;
@@ -236,7 +236,7 @@ impl Grazing<'_> {
         newton(guess, &Vector3::y(), FINEST, look).map(|((), at, left)| (at, left))
     }
 
-    /// The grazing motion from its state at a strobe; none where it does not touch the stop or come back.
+    /// The grazing motion from its state at a strobe; `None` if it does not touch the stop or come back.
     fn at_strobe(&self, maps: &Maps, state: State, value: f64) -> Option<Point> {
         let corrector = self.corrector;
         let flight = corrector.flight();
@@ -267,8 +267,8 @@ impl Grazing<'_> {
         misses.push(Miss { t, side, gap });
         let units = &corrector.units;
         let off = corrector.change(state, corrector.image(at));
-        let most = [off[0], off[1], gap / units.length, v / units.speed].map(f64::abs);
-        if !most.iter().all(|part| *part <= EXACT) {
+        let offsets = [off[0], off[1], gap / units.length, v / units.speed].map(f64::abs);
+        if !offsets.iter().all(|part| *part <= EXACT) {
             return None;
         }
         let mut passage = Passage { state: at, events, determinant, misses, outcome: Outcome::Done, impacts };

@@ -108,8 +108,8 @@ impl Orbit {
         self.passage.events.iter().filter(|event| event.kind != EventKind::Crossing)
     }
 
-    /// Events at the stops in their order around the motion, without the impacts of a chatter that ends in
-    /// rest but its first: of those there is no end, and how many are told from their sum means nothing.
+    /// Events at the stops in their order around the motion. Of a chatter that ends in rest only the first
+    /// impact is kept: the number of the others says nothing, since they are summed.
     pub fn contacts(&self) -> Vec<Event> {
         let mut all: Vec<Event> = self.events_at_stops().copied().collect();
         // so that no chatter is cut in two
@@ -147,7 +147,7 @@ pub(super) fn allowed(model: &Model, state: State) -> State {
     model.held_within(state, if model.compliant().is_some() { f64::INFINITY } else { 0.0 })
 }
 
-/// The stroboscopic map of a model, exact enough for its derivatives; none where the drive has no period.
+/// The stroboscopic map of a model, exact enough for its derivatives; `None` if the drive has no period.
 pub(super) fn map_of(model: &Model, phase: f64) -> Option<StroboscopicMap> {
     model.with_tolerance(model.tolerance().min(TOLERANCE)).stroboscopic_map(phase)
 }

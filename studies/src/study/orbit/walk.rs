@@ -43,7 +43,7 @@ type Events = Vec<(BranchEvent, Point, Option<State>)>;
 /// A stretch of the branch from the last point on.
 struct Stretch {
     events: Events,
-    /// The point at its end; none where the branch ends at the last event.
+    /// The point at its end; `None` if the branch ends at the last event.
     next: Option<Directed>,
     is_last: bool,
 }
@@ -276,7 +276,7 @@ impl<'a> Walk<'a> {
         Some(Stretch { events, next, is_last })
     }
 
-    /// The events up to a grazing; none where the branch does not lead to it.
+    /// The events up to a grazing; `None` if the branch does not lead to it.
     fn up_to(&self, grazing: &Grazing, beside: Beside) -> Option<Events> {
         let (point, along) = &self.at;
         let least = least(beside);
