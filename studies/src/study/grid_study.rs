@@ -240,9 +240,7 @@ impl<Q: Question> GridStudy<Q> {
         task: &Task,
     ) -> Result<(), CellFaults> {
         let faults = |scene: &mut Scene, place: u64| {
-            if task.is_cancelled() {
-                return None;
-            }
+            task.go_on().ok()?;
             let index = self.cell(slice.row(from + place));
             let faults = match self.cells.model(index, scene, task)? {
                 Ok(model) => vec![self.question.fault(&self.question.model(model), scene)?],
@@ -348,9 +346,7 @@ impl<Q: Question> GridStudy<Q> {
         };
         let mut next = |under_way: UnderWay| loop {
             // checked before waiting for more, since there may be none left
-            if task.is_cancelled() {
-                return None;
-            }
+            task.go_on().ok()?;
             let kept = ready.borrow_mut().pop();
             let (number, begun) = kept.or_else(|| take(under_way).map(|number| (number, walk(number))))?;
             let answer = match (self.cells.model(begun.cell(), &mut scene, task), request) {

@@ -242,9 +242,7 @@ impl Basins {
         }
         let window = self.model.with_start(start).with_duration(settle + f64::from(WINDOW) * period, settle);
         let summary = window.run(&Request { cancel: Some(task.cancel), ..Request::default() }).summary;
-        if task.is_cancelled() {
-            return None;
-        }
+        task.go_on().ok()?;
         let state = (summary.final_x, summary.final_v);
         let states = states(&self.model, state, summary.period.unwrap_or(1), period);
         (!task.is_cancelled()).then_some((summary, states))

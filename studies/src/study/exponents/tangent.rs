@@ -1,7 +1,7 @@
 //! Map of a forcing period, with the growth of small changes of the motion.
 
 use super::NoExponents;
-use crate::dynamics::{EventKind, Jacobian, Model, Outcome, Passage, Scales, Side, StroboscopicMap};
+use crate::dynamics::{Event, EventKind, Jacobian, Model, Outcome, Passage, Scales, Side, StroboscopicMap};
 use crate::study::State;
 
 /// Below this share of its two products a determinant has lost its digits: rounding is some 1e-15 of them.
@@ -92,9 +92,8 @@ impl Tangent {
         }
         let rested = derivative.rows == [[0.0; 2]; 2];
         let impacts = |side: Side| {
-            let hits =
-                passage.events.iter().filter(|event| event.kind == EventKind::Impact && event.side == side);
-            hits.count() as f64
+            let hits = |event: &&Event| (event.kind, event.side) == (EventKind::Impact, side);
+            passage.events.iter().filter(hits).count() as f64
         };
         let exact = self.struck.map(|[left, right]| match rested {
             true => f64::NEG_INFINITY,

@@ -57,7 +57,7 @@ impl Rest {
             let reach = reach * range;
             let samples: Vec<_> = pulls.iter().map(|pull| samples(pull, place, reach)).collect();
             let kink = if kinked { Some(kink_of(&samples)?) } else { None };
-            let fit = |samples: &Vec<(f64, f64)>| Near::fit(samples, place, reach, kink);
+            let fit = |samples: &Pull| Near::fit(samples, place, reach, kink);
             Self::of(place, reach, samples.iter().map(fit).collect::<Option<Vec<_>>>()?)
         };
         for reach in REACHES {
@@ -242,24 +242,23 @@ fn joined<'a>(samples: impl Iterator<Item = &'a (f64, f64)>, kink: f64) -> Optio
 }
 
 /// The samples of a pull up to `reach` away from a place, over u.
-fn samples(pull: &Pull, centre: f64, reach: f64) -> Vec<(f64, f64)> {
+fn samples(pull: &Pull, centre: f64, reach: f64) -> Pull {
     let inside = within(pull, centre - reach, centre + reach);
     inside.iter().map(|(x, force)| ((x - centre) / reach, *force)).collect()
 }
 
 /// The place of a kink that all directions have, which leaves the least squares.
-fn kink_of(directions: &[Vec<(f64, f64)>]) -> Option<f64> {
+fn kink_of(directions: &[Pull]) -> Option<f64> {
     let samples = directions.iter().map(Vec::len).max()?;
     let stride = samples.div_ceil(LOOKED_AT).max(1);
     let square = |kink: f64| -> f64 {
-        let left = |samples: &Vec<(f64, f64)>| {
+        let left = |samples: &Pull| {
             let fit = joined(samples.iter().step_by(stride), kink);
             fit.map_or(f64::INFINITY, |fit| fit.variance * fit.freedom as f64)
         };
         directions.iter().map(left).sum()
     };
-    let ends =
-        |samples: &Vec<(f64, f64)>| Some((samples.get(BESIDE)?.0, samples.iter().rev().nth(BESIDE)?.0));
+    let ends = |samples: &Pull| Some((samples.get(BESIDE)?.0, samples.iter().rev().nth(BESIDE)?.0));
     let ends = directions.iter().map(ends).collect::<Option<Vec<_>>>()?;
     let (first, last) = ends.into_iter().reduce(|all, ends| (all.0.max(ends.0), all.1.min(ends.1)))?;
     let step = (last - first) / TRIED as f64;
