@@ -14,7 +14,6 @@ mod contact;
 mod curve;
 mod exponents;
 mod fields;
-mod flexures;
 mod grid;
 mod grid_study;
 mod identify;
@@ -47,15 +46,15 @@ pub use best::{
 };
 pub use contact::{Strikes, contact, strikes, yield_speed, yield_warning};
 pub use curve::{
-    CURVE_PICTURE_POINTS, CURVE_POINTS, OutsideCurve, curve, default_positions, even_positions, metres,
-    small_amplitude_frequency, stop_positions,
+    CURVE_PICTURE_POINTS, CURVE_POINTS, OutsideCurve, StatesError, curve, default_positions, even_positions,
+    flexures_at, full_curve, metres, shapes, small_amplitude_frequency, states, stop_positions,
+    stress_warning,
 };
 pub use exponents::{
     Estimate, ExponentCells, ExponentOptions, Exponents, NoExponents, average_exponents, drive_fault,
     exponents, exponents_row,
 };
 pub use fields::{InJson, RMS_VELOCITY, Read, SUMMARY_FIELDS, SummaryField};
-pub use flexures::{StatesError, flexures_at, full_curve, shapes, states, stress_warning};
 pub use grid::{Grid, GridError, Levels, MAX_CELLS, STRIDES};
 pub use grid_study::{GridStudy, Question, Row};
 pub use identify::{

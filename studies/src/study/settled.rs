@@ -1,5 +1,5 @@
-//! Settled motion of a scene, the time it is waited for, the place of an undriven mass in the landscape, and runs
-//! that the threads of a pool take from each other.
+//! Settled motion of a scene, the time it is waited for, the place of an undriven mass in the landscape, and
+//! runs that the threads of a pool take from each other.
 
 use std::cell::RefCell;
 use std::sync::atomic::AtomicBool;

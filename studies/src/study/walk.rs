@@ -1,5 +1,5 @@
-//! Models that differ in one field of their scene, and walks over it: runs each of which goes on from where the
-//! one before was.
+//! Models that differ in one field of their scene, and walks over it: runs each of which goes on from where
+//! the one before was.
 
 use std::sync::Arc;
 
