@@ -57,8 +57,8 @@ pub fn yield_warning(model: &Model, summary: &Summary) -> Option<String> {
     let pascals = [pressure, material.yield_pressure(), material.yield_strength];
     let [reached, yields, strength] = pascals.map(|pascal| short(pascal / 1e9));
     Some(format!(
-        "the contact with a stop reaches {reached} GPa ({force} N) and yields from {yields} GPa on, 1.6 times \
-         its yield strength of {strength} GPa (stops.yield_gpa); the model does not follow yielding"
+        "the contact with a stop reaches {reached} GPa ({force} N) and yields from {yields} GPa on, 1.6 \
+         times its yield strength of {strength} GPa (stops.yield_gpa); the model does not follow yielding"
     ))
 }
 

@@ -190,8 +190,8 @@ impl Curve {
             if let Some([x, left, right]) = rest.kink {
                 let [mm, um, left, right] = [1e3 * x, 1e6 * (x - rest.x.0).abs(), left, right].map(short);
                 remarks.push(format!(
-                    "kink at {mm} mm, {um} um from an equilibrium: the slope of the force jumps from {left} to \
-                     {right} N/m, and a swing over both sides has neither stiffness"
+                    "kink at {mm} mm, {um} um from an equilibrium: the slope of the force jumps from {left} \
+                     to {right} N/m, and a swing over both sides has neither stiffness"
                 ));
             }
         }

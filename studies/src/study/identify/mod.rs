@@ -105,8 +105,8 @@ pub enum Unidentified {
     /// Too few swings are left beside those with flat tops.
     #[error(
         "{tops} swings have flat tops, at the limit {limit} of the sensor or its converter, and after them \
-         {found} turning points stand out from the noise; the damping ratio needs {FEWEST_TURNS}: pluck less, \
-         widen the range, or record longer"
+         {found} turning points stand out from the noise; the damping ratio needs {FEWEST_TURNS}: pluck \
+         less, widen the range, or record longer"
     )]
     Clipped {
         /// How many are cut off.
