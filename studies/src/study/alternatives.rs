@@ -5,17 +5,11 @@ use std::sync::Arc;
 
 use super::amplitudes::{Above, crossing, frees_at};
 use super::bisection::multiple;
-use super::family::Family;
-use super::fields::SummaryField;
 use super::grid::{is_of_mechanism, name_of};
-use super::onset::Onset;
-use super::settled::{followed, settled_within};
-use super::shared_runs::shared_runs;
-use super::table::{Table, Values};
-use super::thresholds::Found;
-use super::{Cancelled, Task};
+use super::settled::{followed, settled_within, shared_runs};
+use super::{Cancelled, Family, Found, Onset, SummaryField, Table, Task};
 use crate::dynamics::{Model, Run, Summary};
-use crate::mechanics::{BuildError, Mechanism};
+use crate::mechanics::Mechanism;
 use crate::numeric::round::decade;
 use crate::scene::{Excitation, FieldPath, Files, Scene, Start, numeric_fields};
 use crate::system::threads::Pool;
@@ -34,7 +28,7 @@ pub struct Alternative {
 }
 
 /// Relative change of each size.
-pub const SIZE_CHANGE: f64 = 0.01;
+const SIZE_CHANGE: f64 = 0.01;
 
 /// Crossings are searched from the drive's frequency divided by this to its multiple by this.
 pub const SEARCHED_SPAN: f64 = 10.0;
@@ -69,16 +63,10 @@ pub struct Rated {
     pub sensitivity: Option<(f64, String)>,
 }
 
-enum Part {
-    Unchanged(usize),
-    Changed(usize, String, f64),
-}
-
-/// Result of a part.
-enum Done {
-    Unchanged(Box<Rated>),
-    /// The crossing threshold.
-    Changed(Option<f64>),
+/// A part of the work: to rate a scene, or to find its crossing threshold with a share added to one size.
+struct Part {
+    scene: usize,
+    change: Option<(String, f64)>,
 }
 
 /// How many parts the work has.
@@ -87,10 +75,11 @@ pub fn comparison_parts(scenes: &[Alternative]) -> u64 {
 }
 
 fn parts(scenes: &[Alternative]) -> Vec<Part> {
-    let unchanged = (0..scenes.len()).map(Part::Unchanged);
-    let changed = scenes.iter().enumerate().flat_map(|(i, alternative)| {
-        let sizes = sizes(&alternative.scene).into_iter();
-        sizes.flat_map(move |field| [-1.0, 1.0].map(|way| Part::Changed(i, field.clone(), way * SIZE_CHANGE)))
+    let unchanged = (0..scenes.len()).map(|scene| Part { scene, change: None });
+    let changed = scenes.iter().enumerate().flat_map(|(scene, alternative)| {
+        let change = |field: &String| [-1.0, 1.0].map(|way| Some((field.clone(), way * SIZE_CHANGE)));
+        let changes: Vec<_> = sizes(&alternative.scene).iter().flat_map(change).collect();
+        changes.into_iter().map(move |change| Part { scene, change })
     });
     unchanged.chain(changed).collect()
 }
@@ -101,9 +90,9 @@ fn sizes(scene: &Scene) -> Vec<String> {
     numeric_fields(scene).into_iter().filter(is_size).collect()
 }
 
-/// Rates the scenes on `pool`. Each run begins at rest and is followed until its motion repeats, or up to
-/// `until_settled` in s (by default 1000 forcing periods beyond the run). `None` if cancelled. The result
-/// does not depend on the number of threads.
+/// Rates the scenes on `pool`, the same for any number of threads. Each run begins at rest and is followed
+/// until its motion repeats, or up to `until_settled` in s (by default 1000 forcing periods beyond the run).
+/// `None` if cancelled.
 pub fn alternatives(
     scenes: &[Alternative],
     until_settled: Option<f64>,
@@ -115,33 +104,29 @@ pub fn alternatives(
     let silent = Task { tick: &|| (), cancel: task.cancel };
     let rating = Rating { until_settled, pool, task: &silent };
     let work = |_: &mut (), index: usize| {
-        let done = match &parts[index] {
-            Part::Unchanged(i) => rating.rate(&scenes[*i]).map(|rated| Done::Unchanged(Box::new(rated))),
-            Part::Changed(i, field, by) => rating.changed(&scenes[*i], field, *by).map(Done::Changed),
+        let Part { scene, change } = &parts[index];
+        let done = match change {
+            None => rating.rate(&scenes[*scene]).map(|rated| (Some(Box::new(rated)), None)),
+            Some((field, by)) => rating.changed(&scenes[*scene], field, *by).map(|found| (None, found)),
         };
         (task.tick)();
         task.go_on().and(done)
     };
     let done = pool.map(parts.len(), || (), work).ok()?;
     let mut rated: Vec<Rated> = Vec::new();
-    for (part, done) in parts.iter().zip(done) {
-        match (part, done) {
-            (Part::Changed(i, field, _), Done::Changed(threshold)) => {
-                let Some(before) = rated[*i].crossing_g() else { continue };
-                let change = threshold.map_or(f64::INFINITY, |after| (after - before).abs() / before);
-                let sensitivity = &mut rated[*i].sensitivity;
-                if sensitivity.as_ref().is_none_or(|(largest, _)| change > *largest) {
-                    *sensitivity = Some((change, field.clone()));
-                }
-            }
-            (_, Done::Unchanged(scene)) => rated.push(*scene),
-            _ => {}
+    for (Part { scene, change }, (unchanged, threshold)) in parts.into_iter().zip(done) {
+        rated.extend(unchanged.map(|unchanged| *unchanged));
+        let Some((field, _)) = change else { continue };
+        let Some(before) = rated[scene].crossing_g() else { continue };
+        let change = threshold.map_or(f64::INFINITY, |after| (after - before).abs() / before);
+        let sensitivity = &mut rated[scene].sensitivity;
+        if sensitivity.as_ref().is_none_or(|(largest, _)| change > *largest) {
+            *sensitivity = Some((change, field));
         }
     }
     Some(rated)
 }
 
-/// How scenes are rated.
 struct Rating<'a> {
     until_settled: Option<f64>,
     pool: &'a Pool,
@@ -171,7 +156,6 @@ impl Rating<'_> {
         })
     }
 
-    /// The crossing threshold.
     fn crossing(
         &self,
         trial: &Scene,
@@ -189,15 +173,13 @@ impl Rating<'_> {
         // the scene has the field, which is one of its sizes
         path.get(&trial).filter(|value| path.set(&mut trial, value * (1.0 + by))).ok_or(Cancelled)?;
         let built = Mechanism::build_unless(&trial.mechanism, &scene.files, self.task.cancel);
-        let mechanism = match built.ok_or(Cancelled)? {
-            Ok(mechanism) => Arc::new(mechanism),
-            Err(BuildError::Wrong(_) | BuildError::Unsolved(_)) => return Ok(None),
-        };
-        Ok(self.crossing(&trial, &mechanism, Above::Skipped)?.and_then(|found| found.value))
+        let Ok(mechanism) = built.ok_or(Cancelled)? else { return Ok(None) };
+        let found = self.crossing(&trial, &Arc::new(mechanism), Above::Skipped)?;
+        Ok(found.and_then(|found| found.value))
     }
 
-    /// The band of frequencies that cross. All steps of a scan are run, and only the ends of the band are
-    /// bisected: a gap or band narrower than a step may be missed.
+    /// The band of frequencies that cross, by a scan whose ends alone are bisected: a gap or a band narrower
+    /// than a step of the scan may be missed.
     fn band(&self, scene: &Alternative, trial: &Scene) -> Result<Option<(f64, f64)>, Cancelled> {
         let Excitation::Sine { frequency_hz, .. } = trial.excitation else { return Ok(None) };
         let family = Family::new(trial, &scene.files, &scene.mechanism, FREQUENCY);
@@ -249,33 +231,24 @@ fn decimal(value: f64) -> f64 {
     multiple(value, 10_f64.powi(decade(value) - 4))
 }
 
-/// A row for each scene: name, thresholds, numbers of the settled motion, band of frequencies, and
-/// sensitivity of the threshold to sizes.
+/// A row for each scene: thresholds, numbers of the settled motion, band of frequencies, sensitivity.
 pub fn comparison_table(rated: &[Rated]) -> Table {
-    let number =
-        |of: fn(&Rated) -> Option<f64>| rated.iter().map(|row| of(row).unwrap_or(f64::NAN)).collect();
-    let names = |of: fn(&Rated) -> String| Values::Names(rated.iter().map(of).collect());
     let mut table = Table::new()
-        .with("scene", names(|row| row.name.clone()))
-        .with("release_g", number(|row| row.release_g))
-        .with("crossing_g", number(Rated::crossing_g))
-        .with("crossing_low_g", number(|rated| rated.crossing?.low))
-        .with("crossing_high_g", number(|rated| rated.crossing?.high))
-        .each("crossing_undecided", rated, |row| match row.crossing {
-            Some(found) if found.undecided => "true",
-            Some(_) => "false",
-            None => "",
-        });
+        .each("scene", rated, |row| row.name.clone())
+        .each("release_g", rated, |row| row.release_g)
+        .each("crossing_g", rated, Rated::crossing_g)
+        .each("crossing_low_g", rated, |row| row.crossing?.low)
+        .each("crossing_high_g", rated, |row| row.crossing?.high)
+        .each("crossing_undecided", rated, |row| row.crossing.map(|found| found.undecided));
     let summary = ["rms_velocity_m_per_s", "mean_load_power_w", "max_abs_x_m", "impact_speed_max_m_per_s"];
     for field in summary.into_iter().filter_map(SummaryField::find) {
         table = table.with(field.name, field.column(rated.iter().map(|row| Some(&row.summary))));
     }
     table
-        .with("crosses_from_hz", number(|row| row.crosses_hz.map(|band| band.0)))
-        .with("crosses_to_hz", number(|row| row.crosses_hz.map(|band| band.1)))
-        .with("threshold_sensitivity", number(|row| row.sensitivity.as_ref().map(|(change, _)| *change)))
-        .with(
-            "most_sensitive_to",
-            names(|row| row.sensitivity.as_ref().map_or(String::new(), |(_, size)| size.clone())),
-        )
+        .each("crosses_from_hz", rated, |row| row.crosses_hz.map(|band| band.0))
+        .each("crosses_to_hz", rated, |row| row.crosses_hz.map(|band| band.1))
+        .each("threshold_sensitivity", rated, |row| Some(row.sensitivity.as_ref()?.0))
+        .each("most_sensitive_to", rated, |row| {
+            row.sensitivity.clone().map_or(String::new(), |(_, size)| size)
+        })
 }

@@ -3,11 +3,9 @@
 use std::sync::Arc;
 
 use super::bisection::multiple;
-use super::family::Family;
-use super::onset::{Onset, Verdict};
 use super::settled::followed;
-use super::thresholds::{Answers, Found, Search};
-use super::{Cancelled, Task};
+use super::thresholds::{Answers, Search};
+use super::{Cancelled, Family, Found, Onset, Task, Verdict};
 use crate::dynamics::{Model, Request, STANDARD_GRAVITY};
 use crate::mechanics::{Landscape, Mechanism};
 use crate::numeric::round::{ONE_TWO_FIVE, decade, round_down};
@@ -22,15 +20,13 @@ fn third_digit(value: f64) -> f64 {
     10_f64.powi(decade(value) - 2)
 }
 
-/// Threshold amplitudes in g of motions from rest at the scene's frequency, whatever the scene's
-/// amplitude is.
+/// Threshold amplitudes in g of motions from rest at the frequency of the scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Thresholds {
     /// The least amplitude that frees the mass from the stop it rests on, in closed form.
     pub frees_at: Option<f64>,
-    /// The least amplitude whose settled motion crosses; without a value if none does up to
-    /// [`searched_to`](Self::searched_to). Windows, gaps and the first amplitude known to cross are searched
-    /// up to one and a half times it.
+    /// The least amplitude whose settled motion crosses, up to [`searched_to`](Self::searched_to); windows,
+    /// gaps and the first amplitude known to cross are searched up to 1.5 times it.
     pub crossing: Found,
     /// The largest amplitude searched.
     pub searched_to: f64,
@@ -52,8 +48,7 @@ const GAP_STEPS: u32 = 50;
 /// Length of such a step, as a share of that amplitude.
 const GAP_STEP: f64 = 0.01;
 
-/// Searches the amplitudes of a sine. `None` if the drive is no sine, there is no barrier, or the search
-/// was cancelled.
+/// Searches the amplitudes of a sine. `None` if the drive is no sine, without a barrier, or if cancelled.
 pub fn thresholds(scene: &Scene, mechanism: &Arc<Mechanism>, task: &Task) -> Option<Thresholds> {
     let found = crossing(scene, mechanism, None, None, Above::Searched, task);
     let (crossing, searched_to) = found.ok().flatten()?;
@@ -67,9 +62,8 @@ pub(super) enum Above {
     Skipped,
 }
 
-/// The least amplitude of a sine whose settled motion from rest crosses, and the largest amplitude searched;
-/// on a pool if given, each run followed up to `until_settled` in s if given. `None` if the drive is no sine,
-/// or there is no barrier.
+/// The least amplitude of a sine whose settled motion from rest crosses, each run followed up to
+/// `until_settled` in s if given, and the largest amplitude searched. `None` without a sine or a barrier.
 pub(super) fn crossing(
     scene: &Scene,
     mechanism: &Arc<Mechanism>,
@@ -117,8 +111,7 @@ pub(super) fn crossing(
     Ok(Some((found, searched_to)))
 }
 
-/// The amplitude in g whose push equals the largest force against which the mechanism must be moved from
-/// where the mass rests to the barrier.
+/// The amplitude in g whose push equals the largest force between where the mass rests and the barrier.
 fn holding_push(scene: &Scene, mechanism: &Mechanism) -> Option<f64> {
     let Landscape { barrier, extrema, .. } = &mechanism.landscape;
     let barrier = barrier.as_ref()?;
@@ -136,8 +129,7 @@ fn right_stop(scene: &Scene) -> Option<f64> {
     scene.stops.limits_mm()[1].map(|mm| mm / 1e3)
 }
 
-/// The amplitude in g at which the base's push reaches the force that presses the mass on the stop that it
-/// rests on.
+/// The amplitude in g whose push equals the force that presses a resting mass on its stop.
 pub(super) fn frees_at(scene: &Scene, mechanism: &Mechanism) -> Option<f64> {
     let Excitation::Sine { .. } = scene.excitation else { return None };
     let right = right_stop(scene)?;
@@ -146,16 +138,14 @@ pub(super) fn frees_at(scene: &Scene, mechanism: &Mechanism) -> Option<f64> {
     (right < well && press > 0.0).then(|| press / (scene.mass_g / 1e3) / STANDARD_GRAVITY)
 }
 
-/// Least number of steps of the search for stops from the well to the middle; it makes up to two and a half
-/// times as many.
+/// Least number of steps from the well to the middle in the search for stops; at most 2.5 times as many.
 const FEWEST_STOPS: f64 = 50.0;
 
 /// The largest travel limit in mm inside the wells, the same on both sides, whose motion from rest is
 /// known to be interwell under the scene's excitation; `None` if there is none.
 ///
-/// The limits that cross form no interval, so every step is run instead of a bisection. A step is 1, 2 or 5
-/// of a decimal place: a tenth of a millimetre if the wells are some 7 mm away. `restitution` is that of the
-/// stops that are tried.
+/// The limits that cross form no interval, so every step is run: 1, 2 or 5 of a decimal place, a tenth of a
+/// millimetre if the wells are some 7 mm away. The stops that are tried have this `restitution`.
 pub fn stops_that_cross(
     scene: &Scene,
     mechanism: &Arc<Mechanism>,

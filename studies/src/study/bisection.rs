@@ -5,7 +5,6 @@ use std::collections::VecDeque;
 /// What is known of a value of a bisection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Trial {
-    /// It has not been begun.
     NotBegun,
     /// It is being evaluated.
     UnderWay,

@@ -3,7 +3,8 @@
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use super::table::Table;
+use super::Table;
+use super::identify::median;
 use crate::dynamics::{EventKind, Model, Outcome, Request, Summary};
 use crate::mechanics::Hertz;
 use crate::numeric::round::{ONE_TWO_FIVE, round_up};
@@ -14,9 +15,8 @@ use crate::system::threads;
 /// Positions of the speed on a table: more than a picture needs.
 const SPEEDS: usize = 401;
 
-/// A single impact on the model's compliant stop over the impact speed, in even steps from 0 to twice
-/// the speed scale of the scene, rounded up to 1, 2 or 5 times a power of ten; `None` if the stops are
-/// not compliant.
+/// A single impact on the model's compliant stop over the impact speed, in even steps up to twice the speed
+/// scale, rounded up to 1, 2 or 5 times a power of ten; `None` if the stops are not compliant.
 ///
 /// Columns
 /// `speed_m_per_s,restitution,rigid_restitution,contact_time_s,depth_m,peak_force_n,peak_pressure_pa`; the
@@ -28,7 +28,7 @@ pub fn contact(model: &Model, rigid: f64) -> Option<Table> {
     let last = (SPEEDS - 1) as f64;
     let speeds: Vec<f64> = (0..SPEEDS).map(|i| top * i as f64 / last).collect();
     let force = |v: &f64| stop.peak_force(model.mass(), *v);
-    let time = |v: &f64| if *v > 0.0 { stop.contact_time(model.mass(), *v) } else { f64::NAN };
+    let time = |v: &f64| (*v > 0.0).then(|| stop.contact_time(model.mass(), *v));
     let table = Table::new()
         .each("speed_m_per_s", &speeds, |v| *v)
         .each("restitution", &speeds, |v| stop.restitution(*v))
@@ -36,13 +36,13 @@ pub fn contact(model: &Model, rigid: f64) -> Option<Table> {
         .each("contact_time_s", &speeds, time)
         .each("depth_m", &speeds, |v| stop.depth(model.mass(), *v))
         .each("peak_force_n", &speeds, force)
-        .each("peak_pressure_pa", &speeds, |v| stop.pressure(force(v)).unwrap_or(f64::NAN));
+        .each("peak_pressure_pa", &speeds, |v| stop.pressure(force(v)));
     Some(table)
 }
 
 /// The impact speed in m/s from which on the contact yields; `None` if its material is not known.
 ///
-/// By halving: the largest force grows with the speed, and the speed scale is within a factor of 1e30 of it.
+/// By halving: the force grows with the speed, and the speed scale is within a factor of 1e30.
 pub fn yield_speed(stop: &Hertz, mass: f64) -> Option<f64> {
     let material = stop.material?;
     let yields = |v: f64| material.pressure(stop.peak_force(mass, v)) > material.yield_pressure();
@@ -53,14 +53,12 @@ pub fn yield_speed(stop: &Hertz, mass: f64) -> Option<f64> {
 pub fn yield_warning(model: &Model, summary: &Summary) -> Option<String> {
     let material = model.compliant()?.material?;
     let pressure = summary.peak_contact_pressure.filter(|pressure| *pressure > material.yield_pressure())?;
-    let gpa = |pascal: f64| short(pascal / 1e9);
+    let force = short(summary.peak_contact_force.unwrap_or(f64::NAN));
+    let pascals = [pressure, material.yield_pressure(), material.yield_strength];
+    let [reached, yields, strength] = pascals.map(|pascal| short(pascal / 1e9));
     Some(format!(
-        "the contact with a stop reaches {} GPa ({} N) and yields from {} GPa on, 1.6 times its yield \
-         strength of {} GPa (stops.yield_gpa); the model does not follow yielding",
-        gpa(pressure),
-        short(summary.peak_contact_force.unwrap_or(f64::NAN)),
-        gpa(material.yield_pressure()),
-        gpa(material.yield_strength)
+        "the contact with a stop reaches {reached} GPa ({force} N) and yields from {yields} GPa on, 1.6 \
+         times its yield strength of {strength} GPa (stops.yield_gpa); the model does not follow yielding"
     ))
 }
 
@@ -75,9 +73,8 @@ pub struct Strikes {
     pub settled: bool,
 }
 
-/// The first impacts of flights in one run of `model`: those after a crossing, a release or an impact on the
-/// other stop. The rebounds that follow them, down to chatter, do not count. `None` if there is no impact or
-/// the run is cancelled.
+/// The first impacts of flights in one run: those after a crossing, a release or an impact on the other stop,
+/// without the rebounds that follow. `None` without an impact, or if cancelled.
 pub fn strikes(model: &Model, cancel: &AtomicBool) -> Option<Strikes> {
     let run = model.run(&Request { events: true, cancel: Some(cancel), ..Request::default() });
     if matches!(run.summary.outcome, Outcome::Cancelled { .. }) {
@@ -98,11 +95,9 @@ pub fn strikes(model: &Model, cancel: &AtomicBool) -> Option<Strikes> {
         }
     }
     let settled = first.iter().any(|(t, _)| *t >= model.settle());
-    let mut speeds: Vec<f64> =
-        first.into_iter().filter(|(t, _)| !settled || *t >= model.settle()).map(|(_, speed)| speed).collect();
-    speeds.sort_by(f64::total_cmp);
-    let speed = *speeds.get(speeds.len() / 2)?;
-    Some(Strikes { speed, count: speeds.len(), settled })
+    let counted = first.into_iter().filter(|(t, _)| !settled || *t >= model.settle());
+    let speeds: Vec<f64> = counted.map(|(_, speed)| speed).collect();
+    Some(Strikes { count: speeds.len(), speed: median(speeds)?, settled })
 }
 
 /// How long `check` runs a scene to see how fast its stops are struck.

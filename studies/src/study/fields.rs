@@ -1,13 +1,11 @@
-//! Table of the fields of a summary: the keys of `simulate`'s JSON, the columns of a sweep, the quantities of
-//! maps.
+//! Fields of a summary: the keys of `simulate`'s JSON, the columns of a sweep, the quantities of maps.
 
 use Read::{Count, Flag, Number, Word};
 
-use super::table::Values;
+use super::Values;
 use crate::dynamics::{First, Firsts, Outcome, Place, Regime, STANDARD_GRAVITY, Summary};
 
-/// What a field of a summary is, and how it is read. A number, count or flag of `None` and an empty word are
-/// missing values.
+/// How a field of a summary is read; `None` and an empty word are missing values.
 #[derive(Debug, Clone, Copy)]
 pub enum Read {
     /// A real number.
@@ -245,8 +243,8 @@ impl SummaryField {
     /// Its column over these summaries, of which some may be missing.
     pub fn column<'a>(&self, summaries: impl Iterator<Item = Option<&'a Summary>>) -> Values {
         match self.read {
-            Number(_) => summaries.map(|s| s.and_then(|s| self.number(s)).unwrap_or(f64::NAN)).collect(),
-            Count(of) => summaries.map(|s| s.and_then(of)).collect(),
+            Number(_) => summaries.map(|s| self.number(s?)).collect(),
+            Count(of) => summaries.map(|s| of(s?)).collect(),
             Word(_) | Flag(_) => {
                 summaries.map(|s| s.and_then(|s| self.word(s)).unwrap_or_default()).collect()
             }

@@ -1,20 +1,15 @@
 //! One question asked of every cell of a grid, in parallel, many runs at once where the processor can.
 //!
-//! Rows leave in order as soon as those before them have left, and few cells are begun ahead of them, so
-//! memory does not grow with the number of cells. What a cell gives depends on its own scene alone, so the
-//! bytes are the same for any number of threads.
+//! Rows leave in order, and few cells are begun ahead of them, so that memory does not grow with the cells.
+//! An answer depends on the scene of its cell alone, so the bytes are the same for any number of threads.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::Task;
-use super::cell::{Cell, CellFaults, SweepEnd, Tally};
-use super::grid::Grid;
-use super::slice::{Shard, Slice};
-use super::table::Table;
-use super::walk::{Carry, Direction, Walk};
+use super::walk::Walk;
+use super::{Carry, Cell, CellFaults, Direction, Grid, Shard, Slice, SweepEnd, Table, Tally, Task};
 use crate::dynamics::{Model, Request, Run};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, Files, Scene};
@@ -94,7 +89,7 @@ pub struct GridStudy<Q> {
     question: Q,
 }
 
-/// Walks that may be begun in any case, however long they are: as many as a thread has under way.
+/// Walks that may be begun however long they are: those that a thread has under way.
 const WALKS: u64 = 64;
 
 /// Mechanisms kept for the whole study; with more of them each cell builds its own.
@@ -127,8 +122,7 @@ impl Cells {
         place.clone()
     }
 
-    /// The model of a cell, or its faults; `None` if its mechanism was not solved, or the task was
-    /// cancelled meanwhile.
+    /// The model of a cell, or its faults; `None` if its mechanism was not solved, or if cancelled.
     fn model(&self, index: u64, scene: &mut Scene, task: &Task) -> Option<Result<Model, Vec<Fault>>> {
         match self.mechanism(index, scene, task.cancel)? {
             Ok(mechanism) => Some(Model::build(scene, mechanism)),
@@ -182,7 +176,6 @@ impl<Q: Question> GridStudy<Q> {
         Slice::new(self.rows(), self.unit(), shard)
     }
 
-    /// The walk that begins with a row.
     fn walk(&self, row: u64) -> Walk {
         let number = (row / self.unit() % self.ways()) as usize;
         let direction = self.question.carry().map(|carry| carry.directions()[number]);
@@ -194,8 +187,7 @@ impl<Q: Question> GridStudy<Q> {
         row / self.unit() / self.ways() * self.unit() + row % self.unit()
     }
 
-    /// Approximate upper bound of the bytes that a run of it keeps, however many cells there are. Walks are
-    /// kept while they go on.
+    /// Approximate upper bound of the bytes that a run keeps; walks are kept while they go on.
     pub fn memory(&self, threads: usize) -> u64 {
         let kept = self.cells.mechanisms.len() as u64;
         let mechanisms = if self.grid().changes_mechanism() { kept } else { 1 };
@@ -220,24 +212,21 @@ impl<Q: Question> GridStudy<Q> {
         self.question.table(self.grid(), &rows)
     }
 
-    /// The mechanism of the first cell, or why it has none. Where no axis changes the mechanism, it is that
-    /// of every cell.
+    /// The mechanism of the first cell, or why it has none; that of all cells if no axis changes it.
     pub fn first_mechanism(&self) -> Result<Arc<Mechanism>, BuildError> {
         let (mut scene, never) = (self.cells.base.clone(), AtomicBool::new(false));
         let built = self.cells.mechanism(0, &mut scene, &never);
         built.unwrap_or_else(|| Mechanism::build(&scene.mechanism, &self.cells.files).map(Arc::new))
     }
 
-    /// The model of the first cell as it is run; `None` if its scene has faults, or its mechanism was not
-    /// solved.
+    /// The model of the first cell as it is run; `None` if it has faults or its mechanism was not solved.
     pub fn first_model(&self, task: &Task) -> Option<Model> {
         let model = self.cells.model(0, &mut self.cells.base.clone(), task)?.ok()?;
         Some(self.question.model(model))
     }
 
-    /// Builds every cell without running it; the error is the first invalid one, with all its faults. In a
-    /// walk, a drive that does not repeat is one. A mechanism that is not solved is no fault but an outcome.
-    /// A cancelled check finds nothing.
+    /// Builds every cell without running it; the error is the first invalid one, with all its faults. A
+    /// mechanism that is not solved is an outcome and no fault. A cancelled check finds nothing.
     pub fn validate(&self, pool: &Pool, task: &Task) -> Result<(), CellFaults> {
         self.validate_rows(&self.slice(Shard::WHOLE), 0, pool, task)
     }
@@ -251,9 +240,7 @@ impl<Q: Question> GridStudy<Q> {
         task: &Task,
     ) -> Result<(), CellFaults> {
         let faults = |scene: &mut Scene, place: u64| {
-            if task.is_cancelled() {
-                return None;
-            }
+            task.go_on().ok()?;
             let index = self.cell(slice.row(from + place));
             let faults = match self.cells.model(index, scene, task)? {
                 Ok(model) => vec![self.question.fault(&self.question.model(model), scene)?],
@@ -281,8 +268,7 @@ impl<Q: Question> GridStudy<Q> {
         self.run_rows(&self.slice(Shard::WHOLE), 0, pool, task, |table, _| write(table))
     }
 
-    /// The same for the rows of a slice from `from` on, the first row of a unit; `write` also gets the tally
-    /// of the rows that it gets.
+    /// The same for the rows of a slice from `from` on, which begins a unit; `write` also gets their tally.
     pub fn run_rows<E>(
         &self,
         slice: &Slice,
@@ -319,7 +305,7 @@ impl<Q: Question> GridStudy<Q> {
     }
 
     /// Answers these cells on `pool`, none of them carried, begun in their order, and hands each over from
-    /// its thread as soon as it is there. Returns whether all of them were answered: false if cancelled.
+    /// its thread as soon as it is there. False if cancelled before all were answered.
     pub fn run_cells(
         &self,
         pool: &Pool,
@@ -360,9 +346,7 @@ impl<Q: Question> GridStudy<Q> {
         };
         let mut next = |under_way: UnderWay| loop {
             // checked before waiting for more, since there may be none left
-            if task.is_cancelled() {
-                return None;
-            }
+            task.go_on().ok()?;
             let kept = ready.borrow_mut().pop();
             let (number, begun) = kept.or_else(|| take(under_way).map(|number| (number, walk(number))))?;
             let answer = match (self.cells.model(begun.cell(), &mut scene, task), request) {
@@ -388,8 +372,7 @@ impl<Q: Question> GridStudy<Q> {
     }
 }
 
-/// The columns of the swept fields, and that of the direction where the cells were `walked`, with so many
-/// rows for each answer.
+/// The columns of the swept fields, and of the direction where `walked`, with so many rows for each answer.
 pub(super) fn fields<A>(grid: &Grid, rows: &[Row<A>], count: impl Fn(&A) -> usize, walked: bool) -> Table {
     let each = || rows.iter().flat_map(|row| std::iter::repeat_n(row, count(&row.answer)));
     let table = grid.table(|| each().map(|row| row.index));

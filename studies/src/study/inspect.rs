@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use super::amplitudes::frees_at;
 use super::contact::strikes_in_words;
-use super::curve::small_amplitude_frequency;
+use super::small_amplitude_frequency;
 use crate::dynamics::Model;
 use crate::mechanics::flexure::{Accuracy, Geometry, Group};
-use crate::mechanics::{Equilibrium, Landscape, Mechanism};
+use crate::mechanics::{Equilibrium, ForceExtremum, Kink, Landscape, Mechanism};
 use crate::numeric::short;
 use crate::scene::{Damping, Fault, Scene};
 
@@ -96,13 +96,11 @@ fn accuracy(mechanism: &Mechanism, accuracy: &Accuracy) -> String {
         true => ", which are all that there are: the flexures are too thin to be resolved where they bend",
         false => "",
     };
+    let Accuracy { solves, modes, .. } = accuracy;
+    let (pieces, parts) = (pieces_and_reach(mechanism), parts.join(", "));
     format!(
-        "force curve: {}, from {} solutions with {} modes a flexure{limit}; against fresh solutions off by \
-         at most {}",
-        pieces_and_reach(mechanism),
-        accuracy.solves,
-        accuracy.modes,
-        parts.join(", ")
+        "force curve: {pieces}, from {solves} solutions with {modes} modes a flexure{limit}; against fresh \
+         solutions off by at most {parts}"
     )
 }
 
@@ -124,19 +122,19 @@ fn force_curve(mechanism: &Mechanism) -> String {
     let pieces = pieces_and_reach(mechanism);
     match mechanism.curve.fit() {
         None => format!("force curve: {pieces}, exact"),
-        Some(fit) => format!(
-            "force curve: {pieces} through {} samples; off by at most {} N ({} of {} N) at x = {} mm",
-            fit.samples,
-            short(fit.worst_n),
-            short(fit.worst_n / fit.scale_n),
-            short(fit.scale_n),
-            short(fit.worst_at_m * 1e3),
-        ),
+        Some(fit) => {
+            let [worst, share] = [fit.worst_n, fit.worst_n / fit.scale_n].map(short);
+            let [scale, at] = [fit.scale_n, fit.worst_at_m * 1e3].map(short);
+            let samples = fit.samples;
+            format!(
+                "force curve: {pieces} through {samples} samples; off by at most {worst} N ({share} of \
+                 {scale} N) at x = {at} mm"
+            )
+        }
     }
 }
 
-/// k and c of a damping ratio: those that are used and, where the well lies beside a kink, those that other
-/// readings of the same ratio give.
+/// k and c of a damping ratio, and beside a kink those that other readings of the same ratio give.
 fn damping(scene: &Scene, model: &Model) -> Vec<String> {
     let Damping::Ratio(xi) = scene.damping else { return Vec::new() };
     let landscape = &model.mechanism().landscape;
@@ -144,18 +142,12 @@ fn damping(scene: &Scene, model: &Model) -> Vec<String> {
     let beside = landscape.kink_at_right_well();
     let kink = beside.map(|kink| kink.x).or(landscape.damping_kink().map(|kink| kink.x));
     let place = kink.zip(landscape.right_stable()).map(|(kink, well)| {
-        let away = short((well.x - kink).abs() * 1e6);
-        format!(
-            ", the slope just inside the kink at {} mm ({away} um from the equilibrium)",
-            short(kink * 1e3)
-        )
+        let [at, away] = [kink * 1e3, (well.x - kink).abs() * 1e6].map(short);
+        format!(", the slope just inside the kink at {at} mm ({away} um from the equilibrium)")
     });
-    let mut lines = vec![format!(
-        "damping ratio {xi}: with k = {} N/m{}, c = 2 xi sqrt(k m) = {} N s/m",
-        short(used),
-        place.unwrap_or_default(),
-        short(model.damping())
-    )];
+    let ([k, c], place) = ([used, model.damping()].map(short), place.unwrap_or_default());
+    let mut lines =
+        vec![format!("damping ratio {xi}: with k = {k} N/m{place}, c = 2 xi sqrt(k m) = {c} N s/m")];
     let Some(kink) = beside.filter(|kink| short(kink.inner) != short(kink.outer)) else { return lines };
     lines[0] += ", which is used";
     let coefficient = |stiffness: f64| 2.0 * xi * (stiffness * model.mass()).sqrt();
@@ -163,19 +155,13 @@ fn damping(scene: &Scene, model: &Model) -> Vec<String> {
         Equilibrium { x: kink.x, stable: true, stiffness_left: kink.inner, stiffness_right: kink.outer };
     let mixed = small_amplitude_frequency(model.mass(), &pluck).map(|frequency| {
         let stiffness = model.mass() * (std::f64::consts::TAU * frequency).powi(2);
-        format!(
-            "; with the mixed period of a small pluck over it ({} Hz, as of {} N/m) c = {} N s/m",
-            short(frequency),
-            short(stiffness),
-            short(coefficient(stiffness))
-        )
+        let [f, k, c] = [frequency, stiffness, coefficient(stiffness)].map(short);
+        format!("; with the mixed period of a small pluck over it ({f} Hz, as of {k} N/m) c = {c} N s/m")
     });
+    let ([k, c], mixed) = ([kink.outer, coefficient(kink.outer)].map(short), mixed.unwrap_or_default());
     lines.push(format!(
-        "the same ratio with the slope just outside the kink, {} N/m, would be c = {} N s/m{}; a \
-         `Coefficient` leaves no choice",
-        short(kink.outer),
-        short(coefficient(kink.outer)),
-        mixed.unwrap_or_default()
+        "the same ratio with the slope just outside the kink, {k} N/m, would be c = {c} N s/m{mixed}; a \
+         `Coefficient` leaves no choice"
     ));
     lines
 }
@@ -187,11 +173,10 @@ fn landscape(landscape: &Landscape, mass: f64) -> Vec<String> {
     }
     if let Some(barrier) = landscape.barrier {
         let mj = |joules: f64| short(joules * 1e3);
-        let height = if mj(barrier.from_left_j) == mj(barrier.from_right_j) {
-            format!("{} mJ above both wells", mj(barrier.from_left_j))
-        } else {
-            let (left, right) = (mj(barrier.from_left_j), mj(barrier.from_right_j));
-            format!("{left} mJ above the well left of it, {right} mJ above that right of it")
+        let (left, right) = (mj(barrier.from_left_j), mj(barrier.from_right_j));
+        let height = match left == right {
+            true => format!("{left} mJ above both wells"),
+            false => format!("{left} mJ above the well left of it, {right} mJ above that right of it"),
         };
         lines.push(format!("barrier at {} mm, {height}", short(barrier.x * 1e3)));
         let wells = landscape.equilibria.iter().filter(|place| place.stable).count();
@@ -202,19 +187,17 @@ fn landscape(landscape: &Landscape, mass: f64) -> Vec<String> {
             ));
         }
     }
-    let list = |items: Vec<String>| items.join(", ");
     if !landscape.extrema.is_empty() {
-        let extrema = landscape.extrema.iter();
-        let extrema = extrema.map(|e| format!("{} N at {} mm", short(e.force), short(e.x * 1e3))).collect();
-        lines.push(format!("force extrema: {}", list(extrema)));
+        let words = |e: &ForceExtremum| format!("{} N at {} mm", short(e.force), short(e.x * 1e3));
+        let extrema: Vec<String> = landscape.extrema.iter().map(words).collect();
+        lines.push(format!("force extrema: {}", extrema.join(", ")));
     }
     if !landscape.kinks.is_empty() {
         let sides = |left: f64, right: f64| format!("{} | {} N/m", short(left), short(right));
-        let kinks = landscape.kinks.iter();
-        let kinks = kinks
-            .map(|k| format!("{} mm ({})", short(k.x * 1e3), sides(k.stiffness_left, k.stiffness_right)))
-            .collect();
-        lines.push(format!("kinks, stiffness left | right: {}", list(kinks)));
+        let words =
+            |k: &Kink| format!("{} mm ({})", short(k.x * 1e3), sides(k.stiffness_left, k.stiffness_right));
+        let kinks: Vec<String> = landscape.kinks.iter().map(words).collect();
+        lines.push(format!("kinks, stiffness left | right: {}", kinks.join(", ")));
     }
     lines
 }

@@ -1,8 +1,8 @@
-//! Lines of a map at which motions begin to cross.
+//! Cells of a map, and the lines at which motions begin to cross.
 
 use super::amplitudes::AMPLITUDE;
-use super::grid::{Grid, name_of};
-use super::table::{Table, Values};
+use super::grid::name_of;
+use super::{Grid, Table, Values};
 use crate::dynamics::{Regime, STANDARD_GRAVITY};
 use crate::mechanics::Mechanism;
 use crate::numeric::extent;
@@ -11,15 +11,17 @@ use crate::scene::{Axis, Excitation, Scene, Start};
 /// The travel limit, over which the release is known in closed form.
 const LIMIT: &str = "stops.travel_limit_mm";
 
+/// Regimes of motions that cross at all.
+const CROSS: [&str; 3] = [Regime::Interwell.name(), Regime::Irregular.name(), Regime::Crossing.name()];
+
 /// Points of the line of releases.
 const POINTS: usize = 400;
 
-/// `travel_limit_mm,amplitude_g`: the least amplitude of a sine that frees a mass from the stop that it
-/// rests on, in closed form: mass times base acceleration reaches the force that presses it there,
-/// amplitude = |F(D)|/m.
+/// `travel_limit_mm,amplitude_g`: the least amplitude of a sine that frees a mass from the stop that it rests
+/// on: mass times base acceleration reaches the force that presses it there, amplitude = |F(D)|/m.
 ///
-/// Only for a grid over these two fields, from rest; only for travel limits inside the right-hand
-/// well, because further out the mass rests in the well and not on the stop.
+/// Only for a grid over these two fields, from rest, and for travel limits inside the right-hand well:
+/// further out the mass does not rest on the stop.
 pub fn release_line(scene: &Scene, mechanism: &Mechanism, grid: &Grid) -> Option<Table> {
     let applies = scene.stops.travel_limit_mm().is_some()
         && matches!(scene.excitation, Excitation::Sine { .. })
@@ -41,8 +43,8 @@ pub fn release_line(scene: &Scene, mechanism: &Mechanism, grid: &Grid) -> Option
     Some(table.with("amplitude_g", Values::Numbers(amplitudes)))
 }
 
-/// For each value of the other field the least amplitude, 0 or above, whose cell crosses; NaN
-/// where there is none. The two columns are called as in the sweep, the other field first.
+/// For each value of the other field the least amplitude, 0 or above, whose cell crosses, or NaN. The two
+/// columns are called as in the sweep, the other field first.
 ///
 /// Only for a grid over two fields of which one is an amplitude. `rows` are all rows of the sweep.
 pub fn first_crossing(grid: &Grid, rows: &Table) -> Option<Table> {
@@ -61,7 +63,7 @@ pub fn first_crossing(grid: &Grid, rows: &Table) -> Option<Table> {
     values.dedup();
     let mut least = vec![f64::NAN; values.len()];
     for (i, other) in swept.iter().enumerate() {
-        let counts = regimes.get(i).is_some_and(|regime| crosses(regime)) && amplitudes[i] >= 0.0;
+        let counts = regimes.get(i).is_some_and(|regime| CROSS.contains(regime)) && amplitudes[i] >= 0.0;
         if let Ok(place) = values.binary_search_by(|value| value.total_cmp(other))
             && counts
         {
@@ -73,11 +75,121 @@ pub fn first_crossing(grid: &Grid, rows: &Table) -> Option<Table> {
     Some(table.with(&grid.columns()[amplitude_axis], Values::Numbers(least)))
 }
 
-/// Whether a regime is one of motions that cross at all.
-fn crosses(regime: &str) -> bool {
-    [Regime::Interwell, Regime::Irregular, Regime::Crossing].iter().any(|known| known.name() == regime)
-}
-
 fn axis<'a>(grid: &'a Grid, field: &str) -> Option<&'a Axis> {
     grid.axes().iter().find(|axis| axis.field == field && grid.axes().len() == 2)
+}
+
+/// The values of one axis of a map in ascending order, each once, with the edges of their cells.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Edges {
+    /// The values.
+    pub values: Vec<f64>,
+    /// One more edge than there are values: half way between neighbours.
+    pub edges: Vec<f64>,
+}
+
+impl Edges {
+    /// The cells of these values; those that are not finite do not count.
+    pub fn new(all: &[f64]) -> Self {
+        let mut values: Vec<f64> = all.iter().copied().filter(|value| value.is_finite()).collect();
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+        let middle = |pair: &[f64]| 0.5 * pair[0] + 0.5 * pair[1];
+        let mut edges: Vec<f64> = values.windows(2).map(middle).collect();
+        match (values.first(), values.last()) {
+            // A cell at the end reaches as far outward as inward.
+            (Some(first), Some(last)) if edges.len() + 1 == values.len() && !edges.is_empty() => {
+                let (low, high) = (2.0 * first - edges[0], 2.0 * last - edges[edges.len() - 1]);
+                edges.insert(0, low);
+                edges.push(high);
+            }
+            (Some(only), _) => {
+                let half = if *only == 0.0 { 0.5 } else { 0.05 * only.abs() };
+                edges = vec![only - half, only + half];
+            }
+            _ => edges = vec![0.0, 1.0],
+        }
+        Self { values, edges }
+    }
+
+    /// The index of this value.
+    pub fn place(&self, value: f64) -> Option<usize> {
+        self.values.binary_search_by(|known| known.total_cmp(&value)).ok()
+    }
+
+    /// The cell in which a number lies; `None` outside all of them.
+    pub fn cell(&self, value: f64) -> Option<usize> {
+        let above = self.edges.partition_point(|edge| *edge <= value);
+        (1..=self.values.len()).contains(&above).then(|| above - 1)
+    }
+
+    /// The outermost edges.
+    pub fn ends(&self) -> (f64, f64) {
+        (self.edges[0], self.edges[self.edges.len() - 1])
+    }
+}
+
+/// The line of [`first_crossing`](super::first_crossing) over a map of `x` and `y`: along the edges of its
+/// cells, towards smaller amplitudes, in one part for each stretch without a gap.
+pub fn first_crossing_edge(
+    table: &Table,
+    (x, y): (&str, &str),
+    across: &Edges,
+    up: &Edges,
+) -> Vec<Vec<(f64, f64)>> {
+    let (Some(xs), Some(ys)) = (table.numbers(x), table.numbers(y)) else { return Vec::new() };
+    // the line spans the width of the other field's cells
+    let amplitude_up = table.columns().first().is_some_and(|column| column.name == x);
+    let mut parts: Vec<Vec<(f64, f64)>> = vec![Vec::new()];
+    for (px, py) in xs.iter().zip(ys) {
+        let place = across.place(*px).zip(up.place(*py));
+        match (place, parts.last_mut()) {
+            (Some((i, j)), Some(part)) => part.extend(if amplitude_up {
+                [(across.edges[i], up.edges[j]), (across.edges[i + 1], up.edges[j])]
+            } else {
+                [(across.edges[i], up.edges[j]), (across.edges[i], up.edges[j + 1])]
+            }),
+            _ => parts.push(Vec::new()),
+        }
+    }
+    parts.retain(|part| !part.is_empty());
+    parts
+}
+
+/// The other coordinate of the points of a line over a map whose first (`upright`) or second one is `value`.
+pub fn line_meets(line: &[(f64, f64)], value: f64, upright: bool) -> Vec<f64> {
+    let turned = |(a, b): (f64, f64)| if upright { (a, b) } else { (b, a) };
+    let meets = |pair: &[(f64, f64)]| {
+        let (from, to) = (turned(pair[0]), turned(pair[1]));
+        let (low, high) = (from.0.min(to.0), from.0.max(to.0));
+        let inside = low < high && (low..=high).contains(&value);
+        inside.then(|| from.1 + (value - from.0) / (to.0 - from.0) * (to.1 - from.1))
+    };
+    line.windows(2).filter_map(meets).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_lies_in_the_cell_of_the_nearest_value() {
+        let edges = Edges::new(&[3.0, 1.0, 2.0, f64::NAN]);
+        assert_eq!(edges.edges, [0.5, 1.5, 2.5, 3.5]);
+        assert_eq!(
+            [0.4, 0.5, 1.4, 2.6, 3.4, 3.6].map(|x| edges.cell(x)),
+            [None, Some(0), Some(0), Some(2), Some(2), None]
+        );
+        assert_eq!(Edges::new(&[0.0]).ends(), (-0.5, 0.5));
+        assert_eq!((edges.place(2.0), edges.cell(f64::NAN)), (Some(1), None));
+    }
+    #[test]
+    fn a_line_is_met_where_it_passes() {
+        let line = [(0.0, 0.0), (1.0, 2.0), (1.0, 3.0), (2.0, 1.0)];
+        assert_eq!(line_meets(&line, 0.25, true), [0.5]);
+        assert_eq!(line_meets(&line, 1.5, true), [2.0]);
+        assert_eq!(line_meets(&line, 1.5, false), [0.75, 1.75]);
+        assert_eq!(line_meets(&line, 1.0, true), [2.0, 3.0], "both ends of a step");
+        assert!(line_meets(&line, 2.5, true).is_empty());
+    }
 }

@@ -10,75 +10,52 @@ mod amplitudes;
 mod basins;
 mod best;
 mod bisection;
-mod cell;
 mod contact;
-mod continued;
 mod curve;
-mod dense_output;
-mod distance;
-mod edges;
-mod ended;
 mod exponents;
-mod family;
 mod fields;
-mod flexures;
 mod grid;
 mod grid_study;
 mod identify;
 mod inspect;
 mod lesson;
-mod levels;
 mod map;
 mod measured;
 mod models;
-mod onset;
 mod orbit;
 mod section;
 mod settled;
-mod shared_runs;
 mod simulate;
 mod slice;
 mod spectrum;
 mod sweep;
 mod table;
 mod thresholds;
-mod times;
 mod trace;
-mod up_and_down;
 mod walk;
 mod watch;
-mod watched_events;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-pub use alternatives::{
-    Alternative, Rated, SEARCHED_SPAN, SIZE_CHANGE, alternatives, comparison_parts, comparison_table,
-};
+pub use alternatives::{Alternative, Rated, SEARCHED_SPAN, alternatives, comparison_parts, comparison_table};
 pub use amplitudes::{Thresholds, stops_that_cross, thresholds};
 pub use basins::{Answer, Attractor, Basins, EvenRange, MAX_STARTS, NoBasins, Shares, Starts, StartsError};
 pub use best::{
     BestDesign, BestQuestion, Constraint, DesignRange, Environment, INTERVALS, MOST_FIELDS, NoBest, Optimum,
     SAMPLES, Spread, Variation, best, scan_runs,
 };
-pub use cell::{Cell, CellFaults, SweepEnd, Tally};
 pub use contact::{Strikes, contact, strikes, yield_speed, yield_warning};
-pub use continued::continued_scene;
 pub use curve::{
-    CURVE_PICTURE_POINTS, CURVE_POINTS, OutsideCurve, curve, default_positions, even_positions, metres,
-    small_amplitude_frequency, stop_positions,
+    CURVE_PICTURE_POINTS, CURVE_POINTS, OutsideCurve, StatesError, curve, default_positions, even_positions,
+    flexures_at, full_curve, metres, shapes, small_amplitude_frequency, states, stop_positions,
+    stress_warning,
 };
-pub use dense_output::between;
-pub use distance::distances;
-pub use edges::{Edges, first_crossing_edge, line_meets};
-pub use ended::ended_remedy;
 pub use exponents::{
     Estimate, ExponentCells, ExponentOptions, Exponents, NoExponents, average_exponents, drive_fault,
     exponents, exponents_row,
 };
-pub use family::{Family, NoModel};
 pub use fields::{InJson, RMS_VELOCITY, Read, SUMMARY_FIELDS, SummaryField};
-pub use flexures::{StatesError, flexures_at, full_curve, shapes, states, stress_warning};
-pub use grid::{Grid, GridError, MAX_CELLS};
+pub use grid::{Grid, GridError, Levels, MAX_CELLS, STRIDES};
 pub use grid_study::{GridStudy, Question, Row};
 pub use identify::{
     FORCE_POINTS, Identified, Identity, Unidentified, damping, force, restitution, restitution_of_times,
@@ -88,28 +65,27 @@ pub use lesson::{
     Lack, LessonFinding, LessonReport, Subject, Unjudged, Value, check_lesson, goal_lack, options_that_hold,
     result_fields,
 };
-pub use levels::{Levels, STRIDES};
-pub use map::{first_crossing, release_line};
+pub use map::{Edges, first_crossing, first_crossing_edge, line_meets, release_line};
 pub use measured::{
     Comparison, ForceComparison, MeasuredMotion, NoComparison, OffTheCurve, compare, compare_force,
 };
 pub use models::Held;
-pub use onset::{Onset, Verdict};
 pub use orbit::{Branch, BranchEnd, BranchEvent, NoOrbit, Orbit, branch, orbit, orbit_near, orbit_table};
 pub use section::{IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, section};
 pub use settled::{Standing, followed_until, lasts, settled, standing};
-pub use simulate::{Keep, Sampling, Simulation, events_table, sample_times, samples_table, simulate};
+pub use simulate::{
+    Keep, Sampling, Simulation, TimesError, ended_remedy, events_table, sample_times, samples_table, simulate,
+};
 pub use slice::{Shard, Slice};
 pub use spectrum::{NoSpectrum, Signal, Spectrum, SpectrumOptions, spectrum};
-pub use sweep::{DIRECTION, STANDARD as STANDARD_COLUMNS, Sweep, SweepOptions};
+pub use sweep::{
+    Cell, CellFaults, DIRECTION, STANDARD as STANDARD_COLUMNS, Sweep, SweepEnd, SweepOptions, Tally,
+};
 pub use table::{Column, Table, Values, label_and_unit};
-pub use thresholds::{Found, NoThresholds, Scan, threshold, threshold_table};
-pub use times::{MAX_SAMPLES, SamplingStep, TimesError, even_times, listed_times};
-pub use trace::{Trace, simulate_with_trace};
-pub use up_and_down::{Visit, up_and_down};
-pub use walk::{Carry, Direction};
-pub use watch::Watch;
-pub use watched_events::watched_events;
+pub use thresholds::{Found, NoThresholds, Onset, Scan, Verdict, threshold, threshold_table};
+pub use trace::{Trace, between, simulate_with_trace};
+pub use walk::{Carry, Direction, Family, NoModel, Visit, up_and_down};
+pub use watch::{Watch, continued_scene, distances, watched_events};
 
 /// Progress and cancellation of a long study.
 #[derive(Clone, Copy)]
@@ -131,6 +107,9 @@ impl Task<'_> {
         if self.is_cancelled() { Err(Cancelled) } else { Ok(()) }
     }
 }
+
+/// Displacement in m and velocity in m/s.
+type State = (f64, f64);
 
 /// A study was told to stop before it had its answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,8 +1,7 @@
 //! History of the models of a motion.
 //!
 //! While a slider is dragged there is another model with every frame. One that held too briefly to be seen
-//! gives way to the next, and of too many the one that held the shortest time is forgotten, so that memory
-//! stays bounded.
+//! gives way to the next; of too many the one that held the shortest time is forgotten.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -10,7 +9,7 @@ use std::sync::Arc;
 use crate::dynamics::Model;
 
 /// How many models of the past are remembered.
-pub(super) const MOST_MODELS: usize = 200;
+const MOST_MODELS: usize = 200;
 
 /// A stretch of time in s in which one model held, and that model.
 pub type Held<'a> = (f64, f64, &'a Arc<Model>);
@@ -77,12 +76,6 @@ impl Models {
             .map(move |(entry, end)| (entry.0.max(from), end.min(to), &entry.1))
             .filter(|span| span.1 > span.0)
     }
-
-    /// How many there are.
-    #[cfg(test)]
-    pub fn len(&self) -> usize {
-        self.before.len() + 1
-    }
 }
 
 #[cfg(test)]
@@ -119,13 +112,13 @@ mod tests {
         // one that held for no time, and one for too little of it, are gone
         models.change(5.0, of(4.0), 0.1);
         models.change(5.05, of(5.0), 0.1);
-        assert_eq!((models.len(), mass(&models, 5.0)), (3, 5.0));
+        assert_eq!((models.before.len(), mass(&models, 5.0)), (2, 5.0));
         models.forget(1.0);
-        assert_eq!(models.len(), 3);
+        assert_eq!(models.before.len(), 2);
         models.forget(2.0);
-        assert_eq!((models.len(), mass(&models, 0.0)), (2, 2.0));
+        assert_eq!((models.before.len(), mass(&models, 0.0)), (1, 2.0));
         models.forget(100.0);
-        assert_eq!((models.len(), mass(&models, 0.0)), (1, 5.0));
+        assert_eq!((models.before.len(), mass(&models, 0.0)), (0, 5.0));
     }
 
     #[test]
@@ -138,7 +131,7 @@ mod tests {
             models.change(t, Arc::clone(&brief), 0.1);
         }
         models.change(t + 5.0, last, 0.1);
-        assert_eq!(models.len(), MOST_MODELS + 1);
+        assert_eq!(models.before.len(), MOST_MODELS);
         assert_eq!((mass(&models, 4.0), mass(&models, t + 4.0), mass(&models, t + 5.0)), (1.0, 2.0, 3.0));
     }
 }

@@ -4,11 +4,9 @@
 
 use std::sync::atomic::AtomicBool;
 
-use super::cell::{Cell, Tally};
-use super::grid::Grid;
-use super::grid_study::{AHEAD, GridStudy, Question, Row, fields};
-use super::table::Table;
-use super::walk::{Carry, without_a_period};
+use super::grid_study::{AHEAD, fields};
+use super::walk::without_a_period;
+use super::{Carry, Cell, Grid, GridStudy, Question, Row, Table, Tally};
 use crate::dynamics::{EventKind, Model, Request, Run, SectionPoint, Side, Summary};
 use crate::scene::{Fault, Scene};
 
@@ -24,8 +22,7 @@ pub const IMPACTS: &str = "impacts";
 /// Where a section is taken.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SectionAt {
-    /// At this phase of the drive in degrees: the argument of its sine; of a sum, the share of the common
-    /// period since the start.
+    /// At this phase of the drive in degrees: of a sum, the share of the common period since the start.
     Phase(f64),
     /// At every impact that counts, contacts with a compliant stop among them.
     Impacts,
@@ -54,12 +51,12 @@ pub struct Sectioned {
     impacts: Vec<Struck>,
 }
 
-/// An impact: its time in s, the stop, the drive's phase in degrees, and the velocity in m/s before it.
+/// An impact: time in s, stop, phase in degrees of a drive that repeats, velocity in m/s before it.
 #[derive(Debug, Clone, Copy)]
 struct Struck {
     t: f64,
     side: Side,
-    phase: f64,
+    phase: Option<f64>,
     v_in: f64,
 }
 
@@ -133,7 +130,7 @@ impl Question for SectionOptions {
         let struck = strikes.map(|event| Struck {
             t: event.t,
             side: event.side,
-            phase: model.drive_phase(event.t).map_or(f64::NAN, |turns| 360.0 * turns),
+            phase: model.drive_phase(event.t).map(|turns| 360.0 * turns),
             v_in: event.v_in,
         });
         Sectioned { cell: Cell::Run(run.summary), impacts: struck.collect(), states: run.section }
@@ -209,8 +206,8 @@ impl SectionOptions {
 }
 
 /// The section of a run of `model`, which is that of `scene`: its [columns](SectionOptions::columns), of
-/// states also [`IMPACTS`], and the run's summary. A fault where the drive does not repeat, or the settled
-/// window holds no period or too many.
+/// states also [`IMPACTS`], and the summary. A fault if the drive does not repeat, or has no or too many
+/// periods.
 pub fn section(
     model: &Model,
     scene: &Scene,
@@ -227,6 +224,5 @@ pub fn section(
     Ok((options.table(&Grid::of_one(), &[row]), summary))
 }
 
-/// Sections of the cells of a grid: the bifurcation diagram. Its rows are the swept fields, the direction of
-/// a walk, then as of one [`section`].
+/// Sections of the cells of a grid: the swept fields, the direction of a walk, then as of one [`section`].
 pub type Sections = GridStudy<SectionOptions>;

@@ -1,16 +1,19 @@
-//! Settled motion of a scene, the time it is waited for, and the place of an undriven mass in the landscape.
+//! Settled motion of a scene, the time it is waited for, the place of an undriven mass in the landscape, and
+//! runs that the threads of a pool take from each other.
 
+use std::cell::RefCell;
 use std::sync::atomic::AtomicBool;
 
-use crate::dynamics::{Model, Outcome, Phase, Request, Sample, Summary};
+use super::Task;
+use crate::dynamics::{Model, Outcome, Phase, Request, Run, Sample, Summary};
+use crate::system::threads::{Pool, Queue, UnderWay, share_from};
 
 /// Forcing periods beyond the scene's own run for which a motion is followed until it repeats: five times
 /// what nearly all transients of the prototype take. Just above a threshold their length is unbounded:
 /// without stops, of 40 amplitudes within 1 % of it, five take between 1000 and 4500 periods.
 pub(super) const PATIENCE: u32 = 1000;
 
-/// Least number of forcing periods for which it is followed, for sums whose fastest sine is much faster than
-/// their common period.
+/// Least number of forcing periods, for sums whose fastest sine is much faster than their common period.
 const LEAST_PATIENCE: f64 = 16.0;
 
 /// The time in s up to which a run of `model` is followed until its motion repeats: 1000 periods of
@@ -21,8 +24,7 @@ pub fn followed_until(model: &Model) -> f64 {
     model.duration() + (f64::from(PATIENCE) * fastest).max(LEAST_PATIENCE * period)
 }
 
-/// Forcing periods of a settled window in place of one that holds less than two: with fewer a repetition
-/// cannot be seen.
+/// Forcing periods of a settled window in place of less than two, with which no repetition can be seen.
 const WINDOW: f64 = 8.0;
 
 /// The model with a settled window in which a motion can be seen to repeat, where its drive does.
@@ -33,8 +35,8 @@ pub fn widened(model: Model) -> Model {
     }
 }
 
-/// A model, and the request by which its run is followed until the motion repeats, or up to a time in s
-/// ([`followed_until`] if not given).
+/// A model, and the request that follows its run until it repeats, or up to `until` in s
+/// ([`followed_until`]).
 pub(super) fn followed<'a>(model: Model, until: Option<f64>) -> (Model, Request<'a>) {
     let model = widened(model);
     let until_settled = until.or(Some(followed_until(&model)));
@@ -93,4 +95,45 @@ pub fn standing(model: &Model, state: &Sample) -> Option<Standing> {
         energy_j: 0.5 * model.mass() * state.v * state.v + curve.potential(state.x) - floor,
         needed_j: top - floor,
     })
+}
+
+/// The answers of `count` runs in order. `model` gives the model and the request of a number, or its answer
+/// if there is nothing to run; `answer` reads it off the run. `None` if the task was cancelled.
+pub(super) fn shared_runs<'q, R: Send>(
+    pool: Option<&Pool>,
+    task: &'q Task,
+    count: usize,
+    model: impl Fn(usize) -> Result<(Model, Request<'q>), R> + Sync,
+    answer: impl Fn(&Run) -> R + Sync,
+) -> Option<Vec<R>> {
+    let queue = Queue::new(count, pool.map_or(1, Pool::count));
+    runs_from(pool, task, &|under_way| queue.take(under_way), model, |_, run| answer(run))
+}
+
+/// The same of the numbers that `take` gives, as of a [`Queue`]. `answer` also gets the number.
+pub(super) fn runs_from<'q, R: Send>(
+    pool: Option<&Pool>,
+    task: &'q Task,
+    take: &(dyn Fn(UnderWay) -> Option<usize> + Sync),
+    model: impl Fn(usize) -> Result<(Model, Request<'q>), R> + Sync,
+    answer: impl Fn(usize, &Run) -> R + Sync,
+) -> Option<Vec<R>> {
+    let work = |take: &dyn Fn(UnderWay) -> Option<usize>| {
+        let answers = RefCell::new(Vec::new());
+        let mut next = |under_way: UnderWay| loop {
+            let number = take(under_way).filter(|_| !task.is_cancelled())?;
+            match model(number) {
+                Ok((model, request)) => {
+                    return Some((number, model, Request { cancel: Some(task.cancel), ..request }));
+                }
+                Err(answer) => answers.borrow_mut().push((number, answer)),
+            }
+        };
+        let mut ended = |number: usize, _: &Model, run: Run| {
+            answers.borrow_mut().push((number, answer(number, &run)));
+        };
+        Model::run_from(&mut next, &mut ended);
+        if task.is_cancelled() { Err(()) } else { Ok(answers.into_inner()) }
+    };
+    share_from(pool, take, work).ok()
 }

@@ -1,11 +1,11 @@
-//! One run: its samples, events and summary.
+//! One run: the times of its samples, its samples, events and summary, and remedies where it ended early.
 
 use std::sync::atomic::AtomicBool;
 
-use super::table::Table;
-use super::times::{SamplingStep, TimesError, even_times, listed_times};
-use crate::dynamics::{Event, Model, Output, Request, Sample, Summary};
-use crate::scene::{Excitation, Scene};
+use super::Table;
+use crate::dynamics::{Event, Model, Outcome, Output, Request, Sample, Summary};
+use crate::numeric::{Decimal, greatest_common_divisor, short};
+use crate::scene::{Excitation, Scene, TOLERANCES};
 
 /// When to sample.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,8 +32,7 @@ pub struct Keep {
 /// One run, recorded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Simulation {
-    /// `t_s,x_m,v_m_per_s,base_accel_m_per_s2,phase`, with a transducer also `voltage_v,current_a,power_w`;
-    /// up to the end of the run.
+    /// `t_s,x_m,v_m_per_s,base_accel_m_per_s2,phase`, with a transducer also `voltage_v,current_a,power_w`.
     pub samples: Table,
     /// `t_s,kind,side,v_in_m_per_s,v_out_m_per_s` in order of time.
     pub events: Table,
@@ -51,13 +50,13 @@ pub fn sample_times(
     let duration = until_settled.unwrap_or(model.duration());
     let step = match sampling {
         Sampling::At(times) => return listed_times(times, duration),
-        Sampling::Every(dt) => SamplingStep::Seconds(*dt),
+        Sampling::Every(dt) => SamplingStep::part(*dt, 1),
         Sampling::Default => match (&scene.excitation, model.forcing_period()) {
             (Excitation::Sine { frequency_hz, .. } | Excitation::AmplitudeRamp { frequency_hz, .. }, _) => {
-                SamplingStep::PeriodOf(*frequency_hz)
+                SamplingStep::period_of(*frequency_hz)
             }
-            (_, Some(period)) => SamplingStep::Period(period),
-            _ => SamplingStep::Thousandth,
+            (_, Some(period)) => SamplingStep::part(period, 60),
+            _ => SamplingStep::part(duration, 1000),
         },
     };
     even_times(step, duration)
@@ -91,8 +90,7 @@ pub(super) fn in_order(times: &[f64], samples: &[Sample]) -> Vec<Sample> {
     times.iter().filter_map(find).collect()
 }
 
-/// Samples as the table `t_s,x_m,v_m_per_s,base_accel_m_per_s2,phase`; where any has an `output` of a
-/// transducer also `voltage_v,current_a,power_w`, which the others miss.
+/// Samples as the table of [`Simulation::samples`]; an `output` of a transducer may be missing.
 pub fn samples_table(samples: &[Sample], output: impl Fn(&Sample) -> Option<Output>) -> Table {
     let table = Table::new()
         .each("t_s", samples, |sample| sample.t)
@@ -104,7 +102,7 @@ pub fn samples_table(samples: &[Sample], output: impl Fn(&Sample) -> Option<Outp
     if outputs.iter().all(Option::is_none) {
         return table;
     }
-    let column = |of: fn(&Output) -> f64| move |output: &Option<Output>| output.as_ref().map_or(f64::NAN, of);
+    let column = |of: fn(&Output) -> f64| move |output: &Option<Output>| output.as_ref().map(of);
     table
         .each("voltage_v", &outputs, column(|output| output.voltage))
         .each("current_a", &outputs, column(|output| output.current))
@@ -119,4 +117,243 @@ pub fn events_table(events: &[Event]) -> Table {
         .each("side", events, |event| event.side.name())
         .each("v_in_m_per_s", events, |event| event.v_in)
         .each("v_out_m_per_s", events, |event| event.v_out)
+}
+
+/// A contact with a compliant stop is called short if the motion takes this many times as long.
+const SHORT: f64 = 100.0;
+
+/// A clause on how to make a run of `model` with this outcome last longer or be more accurate; `None` if it
+/// is done, was cancelled, or the outcome says it.
+pub fn ended_remedy(model: &Model, outcome: Outcome) -> Option<String> {
+    let tolerance = model.tolerance();
+    match outcome {
+        Outcome::StepBudget { at, .. } => Some(
+            model.fast_circuit().or_else(|| short_contact(model)).unwrap_or_else(|| fewer_steps(model, at)),
+        ),
+        Outcome::Inaccurate { .. } => {
+            Some(model.fast_circuit().unwrap_or_else(|| match tolerance > TOLERANCES.0 {
+                true => "use a smaller tolerance".to_owned(),
+                false => format!("{tolerance:e} is the smallest tolerance, so the cause lies elsewhere"),
+            }))
+        }
+        Outcome::NotFinite { .. } => Some(model.fast_circuit().unwrap_or_else(|| match model.stops() {
+            None => "stops, or a force that holds the mass, keep the motion within bounds".to_owned(),
+            Some(_) => "smaller numbers in the scene (stiffness, amplitude, speed) keep it finite".to_owned(),
+        })),
+        Outcome::Done
+        | Outcome::LeftTable { .. }
+        | Outcome::ImpactBudget { .. }
+        | Outcome::Cancelled { .. } => None,
+    }
+}
+
+/// A clause on how to keep a run within its steps, which it used up at `at` in s: shorter, with a larger
+/// tolerance if cheaper steps suffice, with fewer lines if most of the work is theirs.
+fn fewer_steps(model: &Model, at: f64) -> String {
+    let (step, of_drive) = model.cost_of_a_step(model.tolerance());
+    let (coarse, _) = model.cost_of_a_step(TOLERANCES.1);
+    let mut ways = vec![format!("a run of some {} s", short(at))];
+    if at * step as f64 / coarse as f64 >= model.duration() {
+        ways.push("a larger tolerance".to_owned());
+    }
+    if 2 * of_drive > step {
+        ways.push("an excitation of fewer lines".to_owned());
+    }
+    let last = ways.pop().unwrap_or_default();
+    let others = if ways.is_empty() { String::new() } else { format!("{} or ", ways.join(", ")) };
+    format!("{others}{last} would do")
+}
+
+/// Why steps are short with stops so stiff that a contact is far shorter than the motion.
+fn short_contact(model: &Model) -> Option<String> {
+    let (speed, time) = (model.scales().speed, model.scales().time);
+    let contact = model.compliant()?.contact_time(model.mass(), speed);
+    let [lasts, at, motion] = [contact, speed, time].map(short);
+    (contact * SHORT < time).then(|| {
+        format!(
+            "a contact with a stop lasts {lasts} s at {at} m/s and takes steps of its own, where the motion \
+             takes {motion} s; softer stops, rigid ones (`Rigid`) or a shorter run take fewer"
+        )
+    })
+}
+
+/// The largest number of samples of one run: they take 1 GB of memory.
+pub(super) const MAX_SAMPLES: u64 = 10_000_000;
+
+/// Why a run cannot be sampled as asked.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum TimesError {
+    /// The step is not a number above 0.
+    #[error("the sampling step is {0} s: it must be a finite number above 0")]
+    SamplingStep(f64),
+    /// A step in s over a duration in s makes too many samples, rounded where they are above 2^53.
+    #[error(
+        "a step of {0} s over {1} s makes {2} samples; at most {MAX_SAMPLES} fit: \
+         take a longer step (--dt) or name the times (--at)"
+    )]
+    TooMany(f64, f64, String),
+    /// A time in s beyond the duration of the run.
+    #[error("--at {0} is not within the run, which lasts from 0 to {1} s")]
+    Outside(f64, f64),
+}
+
+/// A positive rational number: exactly what decimal text says, or a fraction of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Fraction {
+    numerator: u128,
+    denominator: u128,
+}
+
+impl Fraction {
+    /// The decimal that the shortest text of `value` spells; `None` if not above 0 or above 38 digits.
+    fn decimal(value: f64) -> Option<Self> {
+        let Decimal { digits, exponent } = Decimal::shortest(value).filter(|decimal| decimal.digits > 0)?;
+        let digits = digits.unsigned_abs();
+        let power = 10_u128.checked_pow(exponent.unsigned_abs())?;
+        Some(if exponent >= 0 {
+            Self { numerator: digits.checked_mul(power)?, denominator: 1 }
+        } else {
+            Self { numerator: digits, denominator: power }
+        })
+    }
+
+    /// This divided by `n`.
+    fn over(self, n: u128) -> Option<Self> {
+        Some(Self { numerator: self.numerator, denominator: self.denominator.checked_mul(n)? })
+    }
+
+    /// 1 over this.
+    fn inverse(self) -> Self {
+        Self { numerator: self.denominator, denominator: self.numerator }
+    }
+
+    /// The double nearest to `k` times this.
+    fn times(self, k: u64) -> f64 {
+        const EXACT: u128 = 1 << 53;
+        let Some(mut numerator) = self.numerator.checked_mul(u128::from(k)) else {
+            return self.times(1) * k as f64;
+        };
+        let mut denominator = self.denominator;
+        if numerator >= EXACT || denominator >= EXACT {
+            let divisor = greatest_common_divisor(numerator, denominator);
+            (numerator, denominator) = (numerator / divisor, denominator / divisor);
+        }
+        // Both exact: one correctly rounded division. Beyond that the parser's rounding where the
+        // denominator is a power of ten, else an error of at most two units in the last place.
+        if (numerator >= EXACT || denominator >= EXACT) && denominator.is_multiple_of(10) {
+            let zeros = denominator.ilog10();
+            if 10_u128.checked_pow(zeros) == Some(denominator) {
+                return format!("{numerator}e-{zeros}").parse().unwrap_or(f64::NAN);
+            }
+        }
+        numerator as f64 / denominator as f64
+    }
+
+    /// How many times this fits into `whole`.
+    fn fits_into(self, whole: Self) -> Option<u64> {
+        let above = whole.numerator.checked_mul(self.denominator)?;
+        let below = whole.denominator.checked_mul(self.numerator)?;
+        u64::try_from(above / below).ok()
+    }
+}
+
+/// The step between even samples: in s, and its exact value where that is known.
+#[derive(Clone, Copy)]
+struct SamplingStep {
+    seconds: f64,
+    exact: Option<Fraction>,
+}
+
+impl SamplingStep {
+    /// One of `parts` equal parts of a number of seconds.
+    fn part(seconds: f64, parts: u32) -> Self {
+        let exact = Fraction::decimal(seconds).and_then(|whole| whole.over(parts.into()));
+        Self { seconds: seconds / f64::from(parts), exact }
+    }
+
+    /// A 60th of the period of a frequency in Hz.
+    fn period_of(frequency: f64) -> Self {
+        let exact = Fraction::decimal(frequency).and_then(|frequency| frequency.inverse().over(60));
+        Self { seconds: 1.0 / (60.0 * frequency), exact }
+    }
+}
+
+/// The times 0, dt, 2 dt, .. up to `duration` in s, which is among them where the step reaches it.
+///
+/// A step is the decimal that a person wrote: 0.1 makes 0.1, 0.2, 0.3, not 0.30000000000000004, and a 60th of
+/// a forcing period of 1/3 s the doubles nearest to k/180. So times ascend and none exceeds `duration`.
+fn even_times(step: SamplingStep, duration: f64) -> Result<Vec<f64>, TimesError> {
+    let SamplingStep { seconds: dt, exact } = step;
+    if !(dt.is_finite() && dt > 0.0) {
+        return Err(TimesError::SamplingStep(dt));
+    }
+    let count = exact
+        .and_then(|ratio| ratio.fits_into(Fraction::decimal(duration)?))
+        .map_or_else(|| (duration / dt * (1.0 + 4.0 * f64::EPSILON)).floor(), |fits| fits as f64)
+        + 1.0;
+    if count > MAX_SAMPLES as f64 {
+        let count = if count < 9e15 { format!("{count}") } else { format!("{count:.3e}") };
+        return Err(TimesError::TooMany(dt, duration, count));
+    }
+    let time = |k: u64| exact.map_or(k as f64 * dt, |ratio| ratio.times(k)).min(duration);
+    Ok((0..count as u64).map(time).collect())
+}
+
+/// The given times, checked to lie within 0..=`duration`; -0 becomes 0.
+fn listed_times(times: &[f64], duration: f64) -> Result<Vec<f64>, TimesError> {
+    match times.iter().find(|t| !(**t >= 0.0 && **t <= duration)) {
+        Some(time) => Err(TimesError::Outside(*time, duration)),
+        None => Ok(times.iter().map(|t| t + 0.0).collect()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_are_exact_in_decimals() {
+        let times = even_times(SamplingStep::part(0.1, 1), 1.0).unwrap();
+        assert_eq!(times, [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0]);
+        let times = even_times(SamplingStep::period_of(3.0), 10.0).unwrap();
+        assert_eq!(times.len(), 1801);
+        assert!(times.iter().enumerate().all(|(k, t)| *t == k as f64 / 180.0));
+        assert_eq!(times[1800], 10.0);
+        let times = even_times(SamplingStep::period_of(2.7), 10.0).unwrap();
+        assert!(times.iter().enumerate().all(|(k, t)| *t == (k * 10) as f64 / 1620.0));
+        assert_eq!(even_times(SamplingStep::part(0.3, 1000), 0.3).unwrap()[999], 0.2997);
+        assert_eq!(even_times(SamplingStep::part(1e-9, 1), 1e-9).unwrap(), [0.0, 1e-9]);
+        assert_eq!(even_times(SamplingStep::part(2.0, 1), 1.0).unwrap(), [0.0]);
+        let times = even_times(SamplingStep::part(0.3, 1), 1.0).unwrap();
+        assert_eq!(times, [0.0, 0.3, 0.6, 0.9]);
+    }
+
+    #[test]
+    fn times_ascend_and_stay_within_the_run() {
+        for (dt, duration) in [(1.0 / 3.0, 1.0), (1e-300, 5e-299), (0.123456789012345, 1e3), (7e290, 1e300)] {
+            let times = even_times(SamplingStep::part(dt, 1), duration);
+            let Ok(times) = times else { continue };
+            assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "{dt} {duration}");
+            assert!(times.last().is_some_and(|t| *t <= duration));
+        }
+    }
+
+    #[test]
+    fn too_many_samples_are_counted_not_made() {
+        let error = even_times(SamplingStep::period_of(3.0), 1e9).unwrap_err();
+        assert!(error.to_string().contains("180000000001"), "{error}");
+        let error = even_times(SamplingStep::part(1e-300, 1), 1e9).unwrap_err();
+        assert!(matches!(error, TimesError::TooMany { .. }), "{error}");
+        for dt in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(matches!(even_times(SamplingStep::part(dt, 1), 1.0), Err(TimesError::SamplingStep(_))));
+        }
+    }
+
+    #[test]
+    fn listed_times_lie_within_the_run() {
+        assert_eq!(listed_times(&[1.0, 0.0, -0.0], 1.0).unwrap(), [1.0, 0.0, 0.0]);
+        for time in [-1e-9, 1.000001, f64::NAN, f64::INFINITY] {
+            assert!(listed_times(&[0.5, time], 1.0).is_err());
+        }
+    }
 }

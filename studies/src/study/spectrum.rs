@@ -1,13 +1,11 @@
 //! Spectrum of a settled motion: amplitude and power spectral density over frequency.
 //!
-//! A run is sampled evenly over its settled window. Under a drive with a period the samples are a whole
-//! number of forcing periods, and where the motion repeats a whole number of its own, so that all of a
-//! periodic motion lies in lines and no taper is needed. Every other motion is tapered by the window of
-//! von Hann.
+//! A run is sampled evenly over its settled window. Under a drive with a period the window holds whole
+//! forcing periods, and whole periods of a motion that repeats, which then lies in lines and needs no taper.
+//! Every other motion is tapered by the window of von Hann.
 
-use super::Task;
-use super::table::{Table, Values};
-use super::times::MAX_SAMPLES;
+use super::simulate::MAX_SAMPLES;
+use super::{Table, Task, Values};
 use crate::dynamics::{Model, Outcome, Request, Sample};
 use crate::numeric::{Taper, periodogram, short};
 
@@ -49,8 +47,7 @@ impl Signal {
 pub struct SpectrumOptions {
     /// The signal.
     pub signal: Signal,
-    /// How the samples are weighted; by default not at all if the motion repeats, else by the window of
-    /// von Hann.
+    /// How the samples are weighted; by default not if the motion repeats, else by the window of von Hann.
     pub taper: Option<Taper>,
     /// Samples a second, raised until a whole number falls into a forcing period; by default enough for 128
     /// in the shortest period of excitation and mechanism, and for 4096 in all.
@@ -107,29 +104,15 @@ pub enum NoSpectrum {
     /// It was told to stop.
     #[error("interrupted")]
     Cancelled,
-    /// The run ended before the settled window did.
-    #[error("the run ended early at {at} s ({outcome}), so it has no settled window to take a spectrum of")]
-    EndedEarly {
-        /// The word of the outcome.
-        outcome: &'static str,
-        /// When, in s.
-        at: f64,
-    },
+    /// The run ended at this time in s, before the settled window did, with an outcome of this name.
+    #[error("the run ended early at {0} s ({1}), so it has no settled window to take a spectrum of")]
+    EndedEarly(f64, &'static str),
     /// The settled window has no length.
     #[error("the settled window from {0} to {1} s has no length: lower run.settle_s")]
     NoWindow(f64, f64),
-    /// A rate that is no number above 0, or makes too few samples or too many.
-    #[error("{rate_hz} samples a second make {samples} in the {length} s of the settled window: {remedy}")]
-    Rate {
-        /// Samples a second.
-        rate_hz: f64,
-        /// Number of samples at that rate.
-        samples: String,
-        /// Length of the window in s.
-        length: f64,
-        /// How to correct it.
-        remedy: String,
-    },
+    /// A rate that is no number above 0, or makes too few samples or too many, as the sentence says.
+    #[error("{0}")]
+    Rate(String),
 }
 
 /// Samples in the shortest period of excitation and mechanism.
@@ -140,8 +123,7 @@ const FEWEST: f64 = 4.0;
 /// The fewest samples by default.
 const PLENTY: f64 = 4096.0;
 
-/// The spectrum of the settled motion of `model`. The motion is run twice: for its verdict, then for
-/// its samples.
+/// The spectrum of the settled motion of `model`, which is run twice: for its verdict and for its samples.
 ///
 /// Frequencies above half the rate are folded back below it. In a smooth motion that is negligible: its
 /// spectrum falls faster than any power of the frequency. Impacts are jumps of the velocity, whose amplitude
@@ -185,7 +167,7 @@ fn ended(outcome: Outcome) -> Result<(), NoSpectrum> {
     match outcome.ended_at() {
         None => Ok(()),
         Some(_) if matches!(outcome, Outcome::Cancelled { .. }) => Err(NoSpectrum::Cancelled),
-        Some(at) => Err(NoSpectrum::EndedEarly { outcome: outcome.name(), at }),
+        Some(at) => Err(NoSpectrum::EndedEarly(at, outcome.name())),
     }
 }
 
@@ -224,7 +206,11 @@ impl Plan {
         let rate = rate_hz.unwrap_or_else(|| (PER_CYCLE / shortest(model)).max(PLENTY / length));
         // a decimal rate may miss a whole number only by its rounding
         let least = (length / parts * rate - 1e-9).ceil().max(1.0);
-        let each = if rate_hz.is_some() || least > MAX_SAMPLES as f64 { least } else { round_up(least) };
+        // transforms of powers of two are the fastest
+        let each = match rate_hz.is_some() || least > MAX_SAMPLES as f64 {
+            true => least,
+            false => (least as u64).next_power_of_two() as f64,
+        };
         let samples = each * parts;
         if !(rate > 0.0 && (FEWEST..=MAX_SAMPLES as f64).contains(&samples)) {
             let remedy = if samples > MAX_SAMPLES as f64 {
@@ -232,7 +218,10 @@ impl Plan {
             } else {
                 format!("take at least {}", short(FEWEST / length))
             };
-            return Err(NoSpectrum::Rate { rate_hz: rate, samples: short(samples), length, remedy });
+            return Err(NoSpectrum::Rate(format!(
+                "{rate} samples a second make {} in the {length} s of the settled window: {remedy}",
+                short(samples)
+            )));
         }
         let cycles = match (whole, model.excitation().fastest()) {
             (Some((period, count)), Some(fastest)) => (fastest, (period * fastest).round() * count as f64),
@@ -242,12 +231,8 @@ impl Plan {
         Ok(Self { from, to, samples: samples as usize, periods, cycles })
     }
 
-    fn length(&self) -> f64 {
-        self.cycles.1 / self.cycles.0
-    }
-
     fn rate_hz(&self) -> f64 {
-        self.samples as f64 / self.length()
+        self.samples as f64 / (self.cycles.1 / self.cycles.0)
     }
 
     /// The time of sample `k` in s.
@@ -268,9 +253,4 @@ fn shortest(model: &Model) -> f64 {
     let chirps = drive.chirps.iter().map(|chirp| chirp.from.max(chirp.to));
     let fastest = tones.chain(chirps).map(|frequency| 1.0 / frequency);
     fastest.fold(model.characteristic_time().min(model.natural_time()), f64::min)
-}
-
-/// The least power of two that is no smaller than `count`, of which transforms are fastest.
-fn round_up(count: f64) -> f64 {
-    (count as u64).next_power_of_two() as f64
 }

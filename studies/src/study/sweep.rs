@@ -1,15 +1,130 @@
-//! Sweep: a run for each cell of a grid, in parallel, a row a cell.
+//! Sweep: a run for each cell of a grid, in parallel, a row a cell; and the tally of the cells of any grid.
 
+use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 
-use super::cell::{Cell, Tally};
-use super::fields::SummaryField;
-use super::grid::Grid;
-use super::grid_study::{GridStudy, Question, Row, fields};
-use super::table::{Table, Values};
-use super::walk::{Carry, without_a_period};
-use crate::dynamics::{Model, Request, Run};
+use serde::{Deserialize, Serialize};
+
+use super::grid_study::fields;
+use super::walk::without_a_period;
+use super::{Carry, Grid, GridStudy, Question, Row, SummaryField, Table, Values};
+use crate::dynamics::{Model, Outcome, Request, Run, Summary};
 use crate::scene::{Fault, Scene};
+
+/// Result of one cell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "nearly all cells are run")]
+pub enum Cell {
+    /// It has not been run.
+    NotRun,
+    /// Its mechanism is valid but was not solved.
+    Unsolved,
+    /// It was run.
+    Run(Summary),
+}
+
+impl Cell {
+    /// The summary of its run.
+    pub fn summary(&self) -> Option<&Summary> {
+        if let Self::Run(summary) = self { Some(summary) } else { None }
+    }
+
+    /// The word in the CSV; empty where the cell was not run.
+    pub fn outcome(&self) -> &'static str {
+        match self {
+            Self::NotRun => "",
+            Self::Unsolved => "not_converged",
+            Self::Run(summary) => summary.outcome.name(),
+        }
+    }
+
+    /// Whether its run lasted to its end.
+    pub fn is_done(&self) -> bool {
+        self.summary().is_some_and(|summary| summary.outcome == Outcome::Done)
+    }
+
+    /// The summary of a run that reached its settled window: in others counts of 0 would mislead.
+    pub fn settled(&self) -> Option<&Summary> {
+        self.summary().filter(|summary| summary.rms_velocity.is_some())
+    }
+}
+
+/// What is wrong with one cell.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CellFaults {
+    /// The cell in words.
+    pub cell: String,
+    /// Its faults.
+    pub faults: Vec<Fault>,
+}
+
+/// How a sweep ended short of its last cell; `E` is the writer's error.
+#[derive(Debug)]
+pub enum SweepEnd<E> {
+    /// It was told to stop.
+    Cancelled,
+    /// The rows could not be written.
+    Write(E),
+}
+
+/// Counts of the results of the cells of a grid.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Tally {
+    /// Cells run, those without a solved mechanism among them.
+    pub cells: u64,
+    /// Cells whose run ended early, as their outcome says.
+    pub ended_early: u64,
+    /// Cells whose mechanism was not solved.
+    pub not_converged: u64,
+    /// Cells whose motion rests on a stop, so that both exponents are minus infinity.
+    #[serde(skip)]
+    pub resting: u64,
+    /// Cells without exponents: ended early, touched a stop without speed, or with flexures not solved.
+    #[serde(skip)]
+    pub without_exponents: u64,
+    /// Cells in which the contact with a compliant stop was pressed beyond what its material bears.
+    pub yielding: u64,
+    /// Mechanisms built: one for each combination of the swept fields of the mechanism.
+    #[serde(skip)]
+    pub mechanisms: u64,
+    /// Cells by outcome.
+    pub outcomes: BTreeMap<Box<str>, u64>,
+    /// Cells by regime; those that ended before their settled window, and those of one well, have none.
+    pub regimes: BTreeMap<Box<str>, u64>,
+}
+
+fn add(counts: &mut BTreeMap<Box<str>, u64>, word: &str, n: u64) {
+    match counts.get_mut(word) {
+        Some(count) => *count += n,
+        None => drop(counts.insert(word.into(), n)),
+    }
+}
+
+impl Tally {
+    /// Counts one more cell by how it ended and what it was.
+    pub(super) fn count(&mut self, cell: &Cell) {
+        self.cells += 1;
+        self.ended_early += u64::from(cell.summary().is_some_and(|row| row.outcome.ended_at().is_some()));
+        self.not_converged += u64::from(*cell == Cell::Unsolved);
+        self.yielding += u64::from(cell.summary().is_some_and(|row| row.contact_yields));
+        add(&mut self.outcomes, cell.outcome(), 1);
+        if let Some(row) = cell.settled().filter(|row| !row.regime.name().is_empty()) {
+            add(&mut self.regimes, row.regime.name(), 1);
+        }
+    }
+
+    /// Adds the counts of `other`, except its mechanisms, which may be the same ones.
+    pub fn add(&mut self, other: &Self) {
+        self.cells += other.cells;
+        self.ended_early += other.ended_early;
+        self.not_converged += other.not_converged;
+        self.resting += other.resting;
+        self.without_exponents += other.without_exponents;
+        self.yielding += other.yielding;
+        other.outcomes.iter().for_each(|(word, n)| add(&mut self.outcomes, word, *n));
+        other.regimes.iter().for_each(|(word, n)| add(&mut self.regimes, word, *n));
+    }
+}
 
 /// The columns that every sweep has after those of its fields.
 pub const STANDARD: [&str; 7] =
@@ -24,8 +139,7 @@ pub const DIRECTION: &str = "direction";
 /// What a sweep does beyond running each cell for its duration.
 #[derive(Debug, Clone, Default)]
 pub struct SweepOptions {
-    /// More columns than the [standard](STANDARD) ones. One that needs the energy ledger has the cells run
-    /// one by one.
+    /// More columns than the [standard](STANDARD) ones; one of the energy ledger has cells run one by one.
     pub columns: Vec<&'static SummaryField>,
     /// Each run goes on until its motion repeats, or up to this time in s.
     pub until_settled: Option<f64>,

@@ -7,8 +7,7 @@ use crate::scene::unit_ending;
 /// Values of one column, all of one type.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Values {
-    /// Real numbers. NaN and plus infinity stand for a missing value; minus infinity is the logarithm
-    /// of nothing.
+    /// Real numbers. NaN and plus infinity are missing values; minus infinity is the logarithm of nothing.
     Numbers(Vec<f64>),
     /// Whole numbers; `None` is a missing value.
     Counts(Vec<Option<u64>>),
@@ -45,22 +44,24 @@ impl Values {
     }
 }
 
-impl FromIterator<f64> for Values {
-    fn from_iter<I: IntoIterator<Item = f64>>(values: I) -> Self {
-        Self::Numbers(values.into_iter().collect())
-    }
+/// What the values of the rows make as a column; `None` is a missing one.
+macro_rules! collected {
+    ($($value:ty: $variant:ident, $row:pat => $cell:expr;)*) => {$(
+        impl FromIterator<$value> for Values {
+            fn from_iter<I: IntoIterator<Item = $value>>(values: I) -> Self {
+                Self::$variant(values.into_iter().map(|$row| $cell).collect())
+            }
+        }
+    )*};
 }
 
-impl FromIterator<Option<u64>> for Values {
-    fn from_iter<I: IntoIterator<Item = Option<u64>>>(values: I) -> Self {
-        Self::Counts(values.into_iter().collect())
-    }
-}
-
-impl FromIterator<&'static str> for Values {
-    fn from_iter<I: IntoIterator<Item = &'static str>>(values: I) -> Self {
-        Self::Words(values.into_iter().collect())
-    }
+collected! {
+    f64: Numbers, number => number;
+    Option<f64>: Numbers, number => number.unwrap_or(f64::NAN);
+    Option<u64>: Counts, count => count;
+    &'static str: Words, word => word;
+    Option<bool>: Words, flag => flag.map_or("", |flag| if flag { "true" } else { "false" });
+    String: Names, name => name;
 }
 
 /// One column: what it is called and what it holds.

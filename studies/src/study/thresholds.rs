@@ -10,17 +10,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::amplitudes::{AMPLITUDE, frees_at};
 use super::bisection::{Trial, between, next_between};
-use super::cell::CellFaults;
-use super::family::{Family, NoModel};
-use super::grid::Grid;
 use super::grid_study::Cells;
-use super::onset::{Onset, Verdict};
-use super::settled::followed;
-use super::shared_runs::runs_from;
-use super::table::Table;
+use super::settled::{followed, runs_from};
 use super::walk::excitation_fault;
-use super::{Cancelled, Task};
-use crate::dynamics::Run;
+use super::{Cancelled, CellFaults, Family, Grid, NoModel, Table, Task};
+use crate::dynamics::{Outcome, Regime, Run, Summary};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, Files, Scene, Start};
 use crate::system::threads::{Pool, Queue, UnderWay};
@@ -34,8 +28,7 @@ pub struct Scan {
     pub values: Vec<f64>,
     /// The threshold is located among the multiples of this, in the field's unit.
     pub resolution: f64,
-    /// Time in s up to which a run goes on until its motion repeats; 1000 forcing periods beyond the run
-    /// where there is none.
+    /// Time in s up to which runs go on until they repeat; by default 1000 forcing periods beyond the run.
     pub until_settled: Option<f64>,
 }
 
@@ -48,22 +41,18 @@ pub struct Found {
     pub low: Option<f64>,
     /// The first value from it on, of those tried, that is known to do it.
     pub high: Option<f64>,
-    /// Whether the answer just below the value, or at it, is not known; without a value, that at the end of
-    /// the scan.
+    /// Whether the answer just below the value, or at it, is unknown; without a value, at the scan's end.
     pub undecided: bool,
     /// How often the answer changes above it, within the scan.
     pub windows: u64,
-    /// The value of the last change upward, from which on the answer does not change; `None` if the scan ends
-    /// with the answer no.
+    /// The value from which on the answer stays yes; `None` if the scan ends with no.
     pub without_gap: Option<f64>,
 }
 
-/// Runs the scan of `scene`, each run from rest. `mechanism` is that of the scene, built from `files`. `None`
-/// if cancelled.
+/// Runs the scan of `scene` with its `mechanism` from `files`, each run from rest. `None` if cancelled.
 ///
-/// A value that makes no valid model does not do it. A release under one sine that moves a mass from the stop
-/// it is pressed on, over the amplitude, is known in closed form: exactly there the mass is not released yet,
-/// so that a value within the scan is also the last one that does not do it.
+/// A value that makes no valid model does not do it. A release under one sine, over the amplitude, is known
+/// in closed form: exactly there the mass is not released yet, so that value is also the last one below.
 pub fn threshold(
     scene: &Scene,
     mechanism: &Arc<Mechanism>,
@@ -87,10 +76,9 @@ pub enum NoThresholds {
     Wrong(Vec<CellFaults>),
 }
 
-/// The thresholds of every cell of `grid` over `scene`, in order: the swept fields, then
-/// `of,value,low,high,undecided,windows`. A value that is not found is missing, as is that of a cell whose
-/// mechanism is not solved. Ticks for each value of the scan in each cell. If cells are wrong, nothing has
-/// been run.
+/// The thresholds of every cell of `grid`: the swept fields, then `of,value,low,high,undecided,windows`. A
+/// value is missing if it is not found or the mechanism is not solved. Ticks for each value of the scan in
+/// each cell. If cells are wrong, nothing has been run.
 pub fn threshold_table(
     scene: &Scene,
     files: &Files,
@@ -137,10 +125,10 @@ pub fn threshold_table(
     Ok(grid
         .table(|| 0..grid.cells())
         .each("of", &found, |_| onset.name())
-        .each("value", &found, |found| found.value.unwrap_or(f64::NAN))
-        .each("low", &found, |found| found.low.unwrap_or(f64::NAN))
-        .each("high", &found, |found| found.high.unwrap_or(f64::NAN))
-        .each("undecided", &found, |found| if found.undecided { "true" } else { "false" })
+        .each("value", &found, |found| found.value)
+        .each("low", &found, |found| found.low)
+        .each("high", &found, |found| found.high)
+        .each("undecided", &found, |found| Some(found.undecided))
         .each("windows", &found, |found| found.value.map(|_| found.windows)))
 }
 
@@ -161,7 +149,7 @@ fn faults(
     for value in &scan.values {
         let faults = match family.model(*value) {
             Ok(model) if onset != Onset::Interwell || model.repeats() => return None,
-            Ok(_) => vec![no_period(trial)],
+            Ok(_) => vec![excitation_fault(trial, NO_PERIOD.to_owned())],
             Err(NoModel::NoField | NoModel::Unsolved) => return None,
             Err(NoModel::Faults(faults)) => faults,
         };
@@ -170,11 +158,8 @@ fn faults(
     first
 }
 
-fn no_period(trial: &Scene) -> Fault {
-    let problem = "does not repeat, so no motion can be said to repeat with it (interwell): ask for \
-                   crossing, or take a Sine, or a Sum of sines whose frequencies have a common period";
-    excitation_fault(trial, problem.into())
-}
+const NO_PERIOD: &str = "does not repeat, so no motion can be said to repeat with it (interwell): ask for \
+                         crossing, or take a Sine, or a Sum of sines whose frequencies have a common period";
 
 /// A value of the field and the verdict of its run; `None` while it is not known.
 type Answer = (f64, Option<Verdict>);
@@ -342,4 +327,62 @@ impl Search<'_> {
             }
         }
     }
+}
+
+/// What begins at a threshold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Onset {
+    /// The mass leaves the stop on which it rests.
+    Release,
+    /// The settled motion crosses the barrier at all.
+    Crossing,
+    /// The settled motion crosses, and its crossings repeat.
+    Interwell,
+}
+
+/// Verdict of a run on an onset.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Verdict {
+    /// Whether the motion does it in the last window of the run.
+    pub does: bool,
+    /// Whether it goes on so: the motion repeats or rests. A motion that does not, up to the end of the time
+    /// for which it is followed, may be a transient: one that crosses may stay in one well later, and one in
+    /// one well may cross later. Under a drive that does not repeat, the verdict is about the run itself.
+    pub known: bool,
+}
+
+impl Verdict {
+    /// Of a value that makes no valid model.
+    pub(super) const NO_MODEL: Self = Self { does: false, known: false };
+}
+
+impl Onset {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Release, Self::Crossing, Self::Interwell];
+
+    /// The word on the command line and in the CSV.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Release => "release",
+            Self::Crossing => "crossing",
+            Self::Interwell => "interwell",
+        }
+    }
+
+    /// The verdict of the run with this summary.
+    pub fn verdict(self, summary: &Summary) -> Verdict {
+        let does = match self {
+            Self::Release => summary.releases > 0,
+            Self::Crossing => summary.crossings > 0 && summary.regime != Regime::OneWell,
+            Self::Interwell => summary.regime == Regime::Interwell,
+        };
+        Verdict { does, known: goes_on_so(summary) }
+    }
+}
+
+/// Whether what a run did in its last window is what the motion does from then on: it repeats or rests, or
+/// the drive has no period and nothing is asked beyond the run.
+fn goes_on_so(summary: &Summary) -> bool {
+    let within_the_run = summary.settled.is_none() || summary.periods == 0;
+    summary.outcome == Outcome::Done && (summary.settled == Some(true) || within_the_run)
 }

@@ -1,10 +1,9 @@
 //! Samples of a run for a picture: its path, every jump of the velocity, and the spans at rest.
 //!
-//! A picture must be right however sparse the requested samples are, so it has separate ones; a single run
-//! gives both.
+//! A picture must be right however sparse the requested samples are, so it has its own, from the same run.
 
-use super::simulate::{Keep, Simulation, events_table, in_order, samples_table};
-use super::table::Table;
+use super::simulate::in_order;
+use super::{Keep, Simulation, Table, events_table, samples_table};
 use crate::dynamics::{Event, EventKind, Model, Outcome, Phase, Request, Sample, Side};
 
 /// One run as a picture shows it.
@@ -17,17 +16,15 @@ pub struct Trace {
     pub impacts: Table,
     /// `from_s,to_s,side` of every span at rest on a stop.
     pub rests: Table,
-    /// Time in s from which on the phase portrait is shown: the settled window, but no more than
-    /// some forcing periods of it; or a window that was asked for.
+    /// Time in s from which on the phase portrait is shown: the last forcing periods, or a window asked for.
     pub portrait_from: f64,
-    /// Time in s from which on the motion is shown over time: of a long run under a drive that repeats, its
-    /// last forcing periods, since all of it would be a filled band.
+    /// Time in s from which on the motion is shown: all of it, or the last forcing periods of a long run.
     pub shown_from: f64,
     /// Time in s up to which motion and phase portrait are shown.
     pub shown_to: f64,
     /// Whether that is a window that was asked for.
     pub is_section: bool,
-    /// Positions of the left and the right stop in m; NaN where there is none.
+    /// Positions of the left and the right stop in m; NaN without one.
     pub stops: (f64, f64),
     /// Time in s at which the run ended.
     pub end: f64,
@@ -39,7 +36,7 @@ const OVERVIEW: (f64, f64) = (8_000.0, 400_000.0);
 /// Samples in a period of the drive and in one of small oscillations.
 const PER_PERIOD: f64 = 80.0;
 
-/// Forcing periods in a phase portrait: as many as a period of the response may have.
+/// Forcing periods in a phase portrait: the longest period of a response that is recognised.
 const PORTRAIT_PERIODS: f64 = 12.0;
 
 /// A run of more forcing periods than this is a filled band over time.
@@ -53,8 +50,7 @@ const PORTRAIT: f64 = 24_000.0;
 /// The most rows in a phase portrait; more of them, as from a million impacts, only blacken it.
 const MOST_PORTRAIT: usize = 60_000;
 
-/// Runs `model` once and keeps, besides what `keep` says, what a picture needs; a `window` in s, which lies
-/// within the run, is all that is shown.
+/// Runs `model` once, with what `keep` says and what a picture needs; a `window` in s is all that it shows.
 pub fn simulate_with_trace(
     model: &Model,
     keep: &Keep,
@@ -71,10 +67,8 @@ pub fn simulate_with_trace(
     let mut seen = picture_times(model, close, span.1);
     let times = ascending(seen.iter().chain(&keep.times).copied().collect());
     let run = model.run(&Request { sample_times: &times, events: true, ledger: true, ..request });
-    let stop = |side: Option<f64>| side.unwrap_or(f64::NAN);
-    let stops = model.stops().map_or((f64::NAN, f64::NAN), |pair| {
-        (stop(pair.left.map(|stop| stop.x)), stop(pair.right.map(|stop| stop.x)))
-    });
+    let (left, right) = model.stop_positions();
+    let stops = (left.unwrap_or(f64::NAN), right.unwrap_or(f64::NAN));
     let end = run.summary.outcome.ended_at().unwrap_or(span.1);
     let mut shown = in_order(&seen, &run.samples);
     if end < span.1 && !matches!(run.summary.outcome, Outcome::Cancelled { .. }) {
@@ -197,9 +191,81 @@ fn rests(events: &[Event], first: Option<&Sample>, end: f64) -> Table {
         }
     }
     spans.extend(open.map(|(from, side)| (from, end, side)));
-    Table::new().each("from_s", &spans, |span| span.0).each("to_s", &spans, |span| span.1).each(
-        "side",
-        &spans,
-        |span| span.2.name(),
-    )
+    let table = Table::new().each("from_s", &spans, |span| span.0).each("to_s", &spans, |span| span.1);
+    table.each("side", &spans, |span| span.2.name())
+}
+
+/// Displacements in m and velocities in m/s at `count` - 1 times, even between two samples of a flight,
+/// neither of them included. Empty between samples at the same time or at rest.
+///
+/// For pictures: samples that are dense enough for an oscillation are too few where taut flexures turn the
+/// mass round in a hundredth of it. The classical Runge-Kutta method goes from one sample towards the next,
+/// with the acceleration of the base linear between them; its error at the next one is spread over the way.
+pub fn between(model: &Model, from: &Sample, to: &Sample, count: usize) -> Vec<(f64, f64)> {
+    let whole = to.t - from.t;
+    if !(whole > 0.0) || from.phase != Phase::Free || count < 2 {
+        return Vec::new();
+    }
+    let h = whole / count as f64;
+    let rate = |share: f64, (x, v): (f64, f64)| {
+        let base = from.base_accel + share * (to.base_accel - from.base_accel);
+        (v, model.acceleration(x, v, base))
+    };
+    let mut at = (from.x, from.v);
+    let mut way = Vec::with_capacity(count);
+    for i in 0..count {
+        let share = |part: f64| (i as f64 + part) / count as f64;
+        let ahead = |k: (f64, f64), part: f64| (at.0 + part * h * k.0, at.1 + part * h * k.1);
+        let k1 = rate(share(0.0), at);
+        let k2 = rate(share(0.5), ahead(k1, 0.5));
+        let k3 = rate(share(0.5), ahead(k2, 0.5));
+        let k4 = rate(share(1.0), ahead(k3, 1.0));
+        let mean = |a: f64, b: f64, c: f64, d: f64| (a + 2.0 * (b + c) + d) / 6.0;
+        at = (at.0 + h * mean(k1.0, k2.0, k3.0, k4.0), at.1 + h * mean(k1.1, k2.1, k3.1, k4.1));
+        way.push(at);
+    }
+    let missed = (to.x - at.0, to.v - at.1);
+    if !(missed.0.is_finite() && missed.1.is_finite()) {
+        // it left the known curve on the way: no points in between
+        return Vec::new();
+    }
+    way.pop();
+    for (i, point) in (1..).zip(way.iter_mut()) {
+        let share = f64::from(i) / count as f64;
+        *point = (point.0 + share * missed.0, point.1 + share * missed.1);
+    }
+    way
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::mechanics::Mechanism;
+    use crate::scene::Document;
+
+    #[test]
+    fn a_quarter_of_a_swing_is_round() {
+        let mut document = Document::load("monostable").unwrap();
+        for change in ["mechanism.cubic_n_per_m3=0", "damping=None", "excitation=None"] {
+            document.set(change).unwrap();
+        }
+        let mechanism = Mechanism::build(&document.scene.mechanism, &document.files).unwrap();
+        let model = Model::build(&document.scene, Arc::new(mechanism)).unwrap();
+        let w = (40.0_f64 / 15.2e-3).sqrt();
+        let quarter = 0.25 * TAU / w;
+        let sample =
+            |t: f64, x: f64, v: f64| Sample { t, x, v, base_accel: 0.0, phase: Phase::Free, electrical: 0.0 };
+        let way = between(&model, &sample(0.0, 0.0, w * 1e-3), &sample(quarter, 1e-3, 0.0), 9);
+        assert_eq!(way.len(), 8);
+        for (i, (x, v)) in (1..).zip(&way) {
+            let (sine, cosine) = (0.25 * TAU * f64::from(i) / 9.0).sin_cos();
+            assert!((x - 1e-3 * sine).abs() < 1e-7 && (v - w * 1e-3 * cosine).abs() < 1e-5, "{i} {x} {v}");
+        }
+        assert!(between(&model, &sample(1.0, 0.0, 1.0), &sample(1.0, 0.0, -1.0), 9).is_empty());
+        let rests = Sample { phase: Phase::LeftStop, ..sample(0.0, 0.0, 0.0) };
+        assert!(between(&model, &rests, &sample(1.0, 0.0, 0.0), 9).is_empty());
+    }
 }

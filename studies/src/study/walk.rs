@@ -1,7 +1,57 @@
-//! Walks over the last field of a grid: each cell goes on from where the motion of the one before was.
+//! Models that differ in one field of their scene, and walks over it: runs each of which goes on from where
+//! the one before was.
 
-use crate::dynamics::{Model, Run};
-use crate::scene::{Fault, FieldPath, Scene};
+use std::sync::Arc;
+
+use super::{State, Task};
+use crate::dynamics::{Model, Request, Run, Summary};
+use crate::mechanics::{BuildError, Mechanism};
+use crate::scene::{Fault, FieldPath, Files, Scene};
+use crate::system::threads::Pool;
+
+/// A scene, the field that changes, and the mechanism of the scene as it is.
+#[derive(Debug)]
+pub struct Family<'a> {
+    scene: &'a Scene,
+    files: &'a Files,
+    mechanism: &'a Arc<Mechanism>,
+    path: FieldPath,
+}
+
+impl<'a> Family<'a> {
+    /// Of a scene with its mechanism, built from `files`, over the numeric field called `field`.
+    pub fn new(scene: &'a Scene, files: &'a Files, mechanism: &'a Arc<Mechanism>, field: &str) -> Self {
+        Self { scene, files, mechanism, path: FieldPath::new(field) }
+    }
+
+    /// The model where the field has this value, or why there is none.
+    pub fn model(&self, value: f64) -> Result<Model, NoModel> {
+        let mut scene = self.scene.clone();
+        if !self.path.set(&mut scene, value) {
+            return Err(NoModel::NoField);
+        }
+        let mechanism = match scene.mechanism == self.scene.mechanism {
+            true => Arc::clone(self.mechanism),
+            false => match Mechanism::build(&scene.mechanism, self.files) {
+                Ok(mechanism) => Arc::new(mechanism),
+                Err(BuildError::Wrong(fault)) => return Err(NoModel::Faults(vec![fault])),
+                Err(BuildError::Unsolved(_)) => return Err(NoModel::Unsolved),
+            },
+        };
+        Model::build(&scene, mechanism).map_err(NoModel::Faults)
+    }
+}
+
+/// Why a value of a field makes no model.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NoModel {
+    /// The scene does not have the field.
+    NoField,
+    /// The scene has faults.
+    Faults(Vec<Fault>),
+    /// Its mechanism is valid but not solved.
+    Unsolved,
+}
 
 /// The direction in which the values of a field are gone through.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,8 +109,7 @@ impl Carry {
 }
 
 /// Cells that are answered one after the other. The first begins at its scene's start, each further one in
-/// the state of the one before at the last instant of its run that is a whole number of forcing periods after
-/// its start. A cell alone is a walk of length 1 without a direction.
+/// the state of the one before after whole forcing periods. A cell alone is a walk of length 1.
 pub(super) struct Walk {
     /// The first of its cells in the order of the grid.
     begin: u64,
@@ -74,7 +123,7 @@ pub(super) struct Walk {
 
 /// The model of the last run of a walk, and the state from which the next one goes on.
 #[derive(Default)]
-pub(super) struct Carried(Option<(Model, (f64, f64))>);
+pub(super) struct Carried(Option<(Model, State)>);
 
 impl Carried {
     /// The next model, which goes on from the run before.
@@ -98,7 +147,6 @@ impl Walk {
         Self { begin, length, direction, done: 0, carried: Carried::default() }
     }
 
-    /// The next cell.
     pub fn cell(&self) -> u64 {
         match self.direction {
             Some(Direction::Down) => self.begin + self.length - 1 - self.done,
@@ -120,4 +168,75 @@ pub(super) fn without_a_period(model: &Model, scene: &Scene, what: &str) -> Opti
 pub(super) fn excitation_fault(scene: &Scene, problem: String) -> Fault {
     let kind = FieldPath::new("excitation").word(scene);
     Fault { field: "excitation".into(), value: kind.unwrap_or_else(|| "None".to_owned()), problem }
+}
+
+/// The most stroboscopic states that are kept of one run.
+const MOST_STROBES: usize = 60;
+
+/// A run of a walk.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Visit {
+    /// The direction of its walk.
+    pub direction: Direction,
+    /// The value of the field.
+    pub value: f64,
+    /// Its summary.
+    pub summary: Summary,
+    /// Displacements in m at the drive's phase 0, once a forcing period: the last 60 of the settled window.
+    pub strobes: Vec<f64>,
+}
+
+/// Walks a family over `values`, ascending, upwards and downwards side by side, and hands over each run as
+/// soon as it is known. A value that makes no model is skipped. False if cancelled.
+pub fn up_and_down(
+    family: &Family,
+    values: &[f64],
+    pool: &Pool,
+    task: &Task,
+    each: &(dyn Fn(Visit) + Sync),
+) -> bool {
+    let request =
+        Request { section: Some(0.0), carry: true, cancel: Some(task.cancel), ..Request::default() };
+    let walk = |_: &mut (), number: usize| {
+        let direction = [Direction::Up, Direction::Down][number];
+        let mut values: Vec<f64> = values.to_vec();
+        if direction == Direction::Down {
+            values.reverse();
+        }
+        walk_over(family, &values, &request, |value, run| {
+            let skipped = run.section.len().saturating_sub(MOST_STROBES);
+            let strobes = run.section[skipped..].iter().map(|point| point.x).collect();
+            if !task.is_cancelled() {
+                each(Visit { direction, value, summary: run.summary, strobes });
+                (task.tick)();
+            }
+            !task.is_cancelled()
+        });
+        if task.is_cancelled() { Err(()) } else { Ok(()) }
+    };
+    pool.map(2, || (), walk).is_ok()
+}
+
+/// Runs the family at one value after the other, each from the state in which the one before ended, until
+/// `each` returns false. Values that make no model are skipped; returns their number.
+pub(super) fn walk_over(
+    family: &Family,
+    values: &[f64],
+    request: &Request,
+    mut each: impl FnMut(f64, &Run) -> bool,
+) -> usize {
+    let (mut carried, mut unfit) = (Carried::default(), 0);
+    for value in values {
+        let Ok(model) = family.model(*value) else {
+            unfit += 1;
+            continue;
+        };
+        let model = carried.on(model);
+        let run = model.run(request);
+        if !each(*value, &run) {
+            break;
+        }
+        carried.keep(&model, &run);
+    }
+    unfit
 }

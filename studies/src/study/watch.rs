@@ -1,16 +1,17 @@
 //! Live run with a memory of its path.
 //!
-//! The path is sampled for the eye: some eighty times a period, and at every event, so that rebounds
-//! are corners and rests are flat. The energy ledger is kept at the end of every forcing period
-//! while somebody looks at it. The oldest part is forgotten. The models of the motion are kept with
-//! it ([`models`](super::models)).
+//! The path is sampled for the eye: some eighty times a period, and at every event, so that rebounds are
+//! corners and rests are flat. The energy ledger is kept at the end of every forcing period while somebody
+//! looks at it. The oldest part is forgotten. The models are kept with it ([`models`](super::models)).
 
 use std::collections::VecDeque;
+use std::ops::Range;
 use std::sync::Arc;
 
+use super::models::Models;
+use super::{Held, Table, events_table};
 use crate::dynamics::{Event, EventKind, Live, LiveLedger, LiveOutput, Model, Outcome, Phase, Sample, Side};
-
-use super::models::{Held, Models};
+use crate::scene::{Excitation, Scene, Start};
 
 /// Samples in a period of the drive or of small oscillations, whichever is shorter.
 const PER_PERIOD: f64 = 80.0;
@@ -67,8 +68,7 @@ impl Watch {
         watch
     }
 
-    /// Whether from now on a ledger is kept at the end of every forcing period: each repeats the last step.
-    /// Ledgers already kept stay, and the present one is always available.
+    /// Whether from now on a ledger is kept at the end of every forcing period, which repeats the last step.
     pub fn keep_ledgers(&mut self, keep: bool) {
         self.keeps_ledgers = keep;
     }
@@ -83,8 +83,7 @@ impl Watch {
         self.ledgers.len()
     }
 
-    /// Goes on to the time `to` in s. False where it did not get there: the run has ended, or impacts
-    /// crowd so that it needs more calls.
+    /// Goes on to the time `to` in s. False if the run ended before, or if crowded impacts need more calls.
     pub fn advance(&mut self, to: f64) -> bool {
         let from = self.live.time();
         let step = self.step.max((to - from) / MOST_AT_ONCE);
@@ -122,30 +121,25 @@ impl Watch {
 
     /// From now on the mass moves as `model` says; see [`Live::change`].
     pub fn change(&mut self, model: &Model) {
-        self.leave();
-        let mut passage = LiveOutput::default();
-        self.live.change(model, &mut passage);
         self.step = sampling_step(model);
         self.models.change(self.now.t, Arc::new(model.clone()), self.step);
-        self.take(passage);
-        self.now = self.live.state();
+        self.jump(|live, passage| live.change(model, passage));
     }
 
     /// Puts the mass to `x` in m with velocity `v` in m/s.
     pub fn place(&mut self, x: f64, v: f64) {
-        self.leave();
-        let mut passage = LiveOutput::default();
-        self.live.place(x, v, &mut passage);
-        self.take(passage);
-        self.now = self.live.state();
+        self.jump(|live, passage| live.place(x, v, passage));
     }
 
-    /// Remembers the present state, so that a change is a jump at its instant and not a way from the
-    /// last sample.
-    fn leave(&mut self) {
+    /// Changes the motion at the present instant, before which the state is remembered: the path jumps there.
+    fn jump(&mut self, change: impl FnOnce(&mut Live, &mut LiveOutput)) {
         if self.samples.back().is_none_or(|last| last.t < self.now.t) {
             self.samples.push_back(self.now);
         }
+        let mut passage = LiveOutput::default();
+        change(&mut self.live, &mut passage);
+        self.take(passage);
+        self.now = self.live.state();
     }
 
     /// The present time in s.
@@ -257,13 +251,8 @@ impl Watch {
             phase: Phase::Free,
             electrical: match b.electrical - a.electrical {
                 // (corners have no electrical state)
-                change if change.is_nan() => {
-                    if a.electrical.is_nan() {
-                        b.electrical
-                    } else {
-                        a.electrical
-                    }
-                }
+                change if change.is_nan() && a.electrical.is_nan() => b.electrical,
+                change if change.is_nan() => a.electrical,
                 change => a.electrical + s * change,
             },
         }
@@ -300,13 +289,9 @@ impl Watch {
         }
         events.for_each(|event| self.corner(event));
         self.events.extend(passage.events);
-        let spare = self.samples.len().saturating_sub(MOST_SAMPLES);
-        self.samples.drain(..spare);
-        let spare = self.events.len().saturating_sub(MOST_EVENTS);
-        self.events.drain(..spare);
-        self.forgotten += spare;
-        let spare = self.ledgers.len().saturating_sub(MOST_LEDGERS);
-        self.ledgers.drain(..spare);
+        keep_last(&mut self.samples, MOST_SAMPLES);
+        self.forgotten += keep_last(&mut self.events, MOST_EVENTS);
+        keep_last(&mut self.ledgers, MOST_LEDGERS);
         self.models.forget(self.begin());
     }
 
@@ -317,28 +302,121 @@ impl Watch {
         // Events do not carry it: a missing number in a table.
         let electrical = if self.live.model().has_electrical_state() { f64::NAN } else { 0.0 };
         let sample = |v: f64, phase: Phase| Sample { t: event.t, x, v, base_accel, phase, electrical };
+        let on_stop = if event.side == Side::Left { Phase::LeftStop } else { Phase::RightStop };
         match event.kind {
             EventKind::Impact => {
-                self.samples.push_back(sample(event.v_in, Phase::Free));
-                self.samples.push_back(sample(event.v_out, Phase::Free));
+                self.samples.extend([event.v_in, event.v_out].map(|v| sample(v, Phase::Free)));
             }
-            EventKind::Rest => {
-                let phase = if event.side == Side::Left { Phase::LeftStop } else { Phase::RightStop };
-                self.samples.push_back(sample(0.0, phase));
-            }
+            EventKind::Rest => self.samples.push_back(sample(0.0, on_stop)),
             EventKind::Release => self.samples.push_back(sample(0.0, Phase::Free)),
             EventKind::Crossing => {}
             // The path has no corner there, only an end of the stretch in contact.
-            EventKind::Contact => {
-                let phase = if event.side == Side::Left { Phase::LeftStop } else { Phase::RightStop };
-                self.samples.push_back(sample(event.v_in, phase));
-            }
+            EventKind::Contact => self.samples.push_back(sample(event.v_in, on_stop)),
             EventKind::Separate => self.samples.push_back(sample(event.v_out, Phase::Free)),
         }
     }
 }
 
+/// Forgets all but the last `most` entries; returns how many it forgot.
+fn keep_last<T>(entries: &mut VecDeque<T>, most: usize) -> usize {
+    let spare = entries.len().saturating_sub(most);
+    entries.drain(..spare);
+    spare
+}
+
 fn sampling_step(model: &Model) -> f64 {
     let swing = model.natural_time();
     model.forcing_period().map_or(swing, |period| period.min(swing)) / PER_PERIOD
+}
+
+/// Least share of samples at common times for which these alone are compared.
+const ENOUGH: f64 = 0.25;
+
+/// Times in s from `from` to `to` and the distance in m of two motions at each: at most some `limit` of them.
+///
+/// Motions that are sampled in the same steps are compared at their common samples, which are exact; others
+/// between samples, where the distance is good to a millionth of the way between two of these.
+pub fn distances(a: &Watch, b: &Watch, (from, to): (f64, f64), limit: usize) -> Vec<(f64, f64)> {
+    let (samples, other) = (a.samples(), b.samples());
+    let to = to.min(a.time()).min(b.time());
+    let from = from.max(a.begin()).max(b.begin());
+    let first = samples.partition_point(|sample| sample.t < from);
+    let last = samples.partition_point(|sample| sample.t <= to);
+    // a power of two, so that the samples taken stay the same while others are added
+    let stride = (last.saturating_sub(first) / limit.max(1)).max(1).next_power_of_two();
+    let first = first.next_multiple_of(stride);
+    let taken = || (first..last).step_by(stride).map(|i| &samples[i]);
+    let mut found: Vec<(f64, f64)> = taken()
+        .filter_map(|sample| {
+            let at = other.partition_point(|twin| twin.t < sample.t);
+            let twin = other.get(at).filter(|twin| twin.t == sample.t)?;
+            Some((sample.t, (sample.x - twin.x).abs()))
+        })
+        .collect();
+    if (found.len() as f64) < ENOUGH * taken().count() as f64 {
+        found = taken().map(|sample| (sample.t, (sample.x - b.state_at(sample.t).x).abs())).collect();
+    }
+    if to > from {
+        found.push((to, (a.state_at(to).x - b.state_at(to).x).abs()));
+    }
+    found
+}
+
+/// Some of the events that are remembered, by their places, in the columns of
+/// [`events_table`](super::events_table) and two more: `phase_deg`, the phase of the drive, missing where it
+/// does not repeat; and `lost_j`, the kinetic energy that an event takes, m (v_in^2 - v_out^2) / 2 with the
+/// mass at that time. That is missing for a touch of a compliant stop, whose loss is spread over the contact.
+pub fn watched_events(watch: &Watch, which: Range<usize>) -> Table {
+    let count = watch.events().len();
+    let which = which.start.min(count)..which.end.min(count);
+    let events: Vec<Event> = watch.events().range(which).copied().collect();
+    let phase = |event: &Event| watch.model_at(event.t).drive_phase(event.t).map(|turns| 360.0 * turns);
+    let lost = |event: &Event| {
+        let mass = watch.model_at(event.t).mass();
+        let is_spread = matches!(event.kind, EventKind::Contact | EventKind::Separate);
+        // the sum of the speeds times their difference: exact where they are nearly equal
+        (!is_spread).then_some(0.5 * mass * (event.v_in + event.v_out) * (event.v_in - event.v_out))
+    };
+    events_table(&events).each("phase_deg", &events, phase).each("lost_j", &events, lost)
+}
+
+/// `scene` with the start and the phases of `here`, the model of a motion that goes on from its present state
+/// ([`Watch::from_here`]). `None` for noise, which begins at its seed, and where a compliant stop is pressed
+/// in.
+pub fn continued_scene(scene: &Scene, here: &Model) -> Option<Scene> {
+    let (x, v) = here.start();
+    if !here.excitation().noises.is_empty() || here.compliant().is_some() && here.pressed_depth(x).is_some() {
+        return None;
+    }
+    let mut scene = scene.clone();
+    scene.start = Start::At { x_mm: millimetres(x), v_m_per_s: v, electrical: here.start_electrical() };
+    let mut turns = here.excitation().tones.iter().map(|tone| {
+        let half = if tone.amplitude < 0.0 { 0.5 } else { 0.0 };
+        (tone.phase + if tone.quarter { 0.25 } else { 0.0 }, half)
+    });
+    put_phases(&mut scene.excitation, &mut turns).then_some(scene)
+}
+
+/// Gives every sine of an excitation its phase, from turns and half turns; false if another part has one.
+fn put_phases(excitation: &mut Excitation, turns: &mut impl Iterator<Item = (f64, f64)>) -> bool {
+    match excitation {
+        Excitation::None | Excitation::Constant { .. } => true,
+        Excitation::Sine { amplitude_g, phase_deg, .. } => {
+            let Some((turn, half)) = turns.next() else { return false };
+            let half = if *amplitude_g < 0.0 { 0.5 - half } else { half };
+            *phase_deg = 360.0 * (turn + half);
+            true
+        }
+        Excitation::Sum(terms) => terms.iter_mut().all(|term| put_phases(term, turns)),
+        Excitation::AmplitudeRamp { .. }
+        | Excitation::Chirp { .. }
+        | Excitation::Noise { .. }
+        | Excitation::Recorded { .. } => false,
+    }
+}
+
+/// The number of millimetres that is read back as `x` in m, where there is one.
+fn millimetres(x: f64) -> f64 {
+    let mm = x * 1e3;
+    [mm, mm.next_up(), mm.next_down()].into_iter().find(|mm| mm / 1e3 == x).unwrap_or(mm)
 }

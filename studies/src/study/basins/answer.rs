@@ -1,17 +1,14 @@
 //! Answer of a map of basins: its attractors, numbered by the first start that goes to each, and the rows.
 
 use super::Basins;
-use super::item::Way;
-use super::rounds::{Fate, Kind};
+use super::rounds::{Fate, Kind, Way};
 use crate::dynamics::{Model, Outcome, Place, Regime, Request, Side, Summary};
-use crate::study::Task;
-use crate::study::table::Table;
+use crate::study::{State, Table, Task};
 
 /// The quantile of the normal distribution that leaves 95 % within.
 const NORMAL_95: f64 = 1.959_963_984_540_054;
 
-/// Forcing periods of the window over which an attractor is described: two of the longest period that
-/// is recognised.
+/// Forcing periods over which an attractor is described: two of the longest period that is recognised.
 const WINDOW: u32 = 24;
 
 /// A share with its 95 % interval (Wilson 1927).
@@ -47,8 +44,7 @@ pub struct Attractor {
     pub side: Option<Place>,
     /// Its RMS velocity in m/s.
     pub rms_velocity: Option<f64>,
-    /// Its states once a period at the starts' phase of the drive, in m and m/s: as many as it has periods,
-    /// else one.
+    /// Its states in m and m/s at the starts' phase of the drive: one for each of its periods, else one.
     pub states: Vec<(f64, f64)>,
     /// The number of starts that go to it.
     pub starts: u64,
@@ -105,11 +101,7 @@ impl Answer {
             .each("v_m_per_s", &rows, |row| basins.starts().at(*row).1)
             .each("attractor", &rows, |row| self.rows[*row].map(|(number, _)| u64::from(number)))
             .each("periods", &rows, |row| self.rows[*row].map(|(_, periods)| u64::from(periods)))
-            .each("sure", &rows, |row| match self.rows[*row].and_then(|_| self.sure.get(*row)) {
-                Some(true) => "true",
-                Some(false) => "false",
-                None => "",
-            })
+            .each("sure", &rows, |row| self.rows[*row].and_then(|_| self.sure.get(*row).copied()))
     }
 
     /// How many rows have an answer that is not sure.
@@ -126,7 +118,7 @@ impl Answer {
             .each("regime", all, |attractor| attractor.regime.name())
             .each("period", all, |attractor| attractor.period.map(u64::from))
             .each("side", all, |attractor| attractor.side.map_or("", Place::name))
-            .each("rms_velocity_m_per_s", all, |attractor| attractor.rms_velocity.unwrap_or(f64::NAN))
+            .each("rms_velocity_m_per_s", all, |attractor| attractor.rms_velocity)
             .each("x_m", all, |attractor| attractor.states[0].0)
             .each("v_m_per_s", all, |attractor| attractor.states[0].1)
             .each("starts", all, |attractor| Some(attractor.starts))
@@ -149,7 +141,8 @@ impl Basins {
     pub fn answer(&self, task: &Task) -> Option<Answer> {
         let after: Vec<Option<(Key, Way)>> =
             (0..self.rounds.releases.len()).map(|place| self.after(place as u32)).collect();
-        let (mut keys, mut counts): (Vec<(Key, usize)>, Vec<u64>) = (Vec::new(), Vec::new());
+        // each with the first row that goes to it, and how many do
+        let mut keys: Vec<(Key, usize, u64)> = Vec::new();
         let (mut outside, mut lost, mut spent, mut undecided) = (0, 0, 0, 0);
         let mut rows = Vec::with_capacity(self.rounds.fates.len());
         for (row, fate) in self.rounds.fates.iter().enumerate() {
@@ -167,20 +160,19 @@ impl Basins {
             spent += u64::from(end == Fate::Lost { spent: true });
             undecided += u64::from(end == Fate::Undecided);
             rows.push(key.map(|(key, way)| {
-                let known = keys.iter().position(|(known, _)| *known == key);
+                let known = keys.iter().position(|(known, ..)| *known == key);
                 let place = known.unwrap_or_else(|| {
-                    keys.push((key, row));
-                    counts.push(0);
+                    keys.push((key, row, 0));
                     keys.len() - 1
                 });
-                counts[place] += 1;
+                keys[place].2 += 1;
                 (place as u32 + 1, way.periods)
             }));
         }
         let run = self.rounds.fates.iter().filter(|fate| **fate != Fate::NotRun).count() as u64;
         let inside = (run - outside).max(1);
         let mut attractors = Vec::with_capacity(keys.len());
-        for ((key, row), starts) in keys.into_iter().zip(counts) {
+        for (key, row, starts) in keys {
             let settled = rows[row].map_or(0, |(_, periods)| periods);
             let (summary, states) = self.describe(key, row, settled, task)?;
             attractors.push(Attractor {
@@ -196,8 +188,7 @@ impl Basins {
         Some(Answer { attractors, rows, sure: Vec::new(), outside, lost, spent, undecided })
     }
 
-    /// The releases that follow each other from `release` on, and the first fate that is no release or
-    /// repeats one.
+    /// The releases that follow each other from `release` on, and the first fate that is none or repeats one.
     pub(super) fn chain(&self, release: u32) -> (Vec<(u32, Way)>, Fate) {
         let (mut passed, mut at, mut way) = (Vec::new(), release, Way::default());
         loop {
@@ -226,19 +217,14 @@ impl Basins {
         }
     }
 
-    /// The summary of an attractor, and its states: of an orbit from one of its states, else from the start
+    /// The summary and the states of an attractor: of an orbit from one of its states, else from the start
     /// `row`, which settles after `settled` periods.
-    fn describe(
-        &self,
-        key: Key,
-        row: usize,
-        settled: u32,
-        task: &Task,
-    ) -> Option<(Summary, Vec<(f64, f64)>)> {
+    fn describe(&self, key: Key, row: usize, settled: u32, task: &Task) -> Option<(Summary, Vec<State>)> {
         let period = self.model.forcing_period().unwrap_or(1.0);
         let (x_mm, v) = self.starts.at(row);
-        let mut start = (x_mm / 1e3, v);
+        let (mut start, mut settle) = ((x_mm / 1e3, v), 0.0);
         match key {
+            Key::Cycle(_) => settle = f64::from(settled) * period,
             Key::Kind(kind) => match &self.rounds.kinds[kind as usize] {
                 Kind::Orbit(orbit) => {
                     let first = self.rounds.orbit_of.iter().position(|number| number == orbit)?;
@@ -253,31 +239,26 @@ impl Basins {
                     return Some((**summary, vec![(summary.final_x, summary.final_v)]));
                 }
             },
-            Key::Cycle(_) => {}
         }
-        let settle = if let Key::Cycle(_) = key { f64::from(settled) * period } else { 0.0 };
         let window = self.model.with_start(start).with_duration(settle + f64::from(WINDOW) * period, settle);
         let summary = window.run(&Request { cancel: Some(task.cancel), ..Request::default() }).summary;
-        if task.is_cancelled() {
-            return None;
-        }
+        task.go_on().ok()?;
         let state = (summary.final_x, summary.final_v);
         let states = states(&self.model, state, summary.period.unwrap_or(1), period);
         (!task.is_cancelled()).then_some((summary, states))
     }
 }
 
-/// The state of a settled motion after each of `count` forcing periods, that with the largest
-/// displacement first.
-fn states(model: &Model, state: (f64, f64), count: u32, period: f64) -> Vec<(f64, f64)> {
+/// The state of a settled motion after each of `count` forcing periods, the one farthest right first.
+fn states(model: &Model, state: State, count: u32, period: f64) -> Vec<State> {
     let times: Vec<f64> = (0..count).map(|number| f64::from(number) * period).collect();
     let request = Request { sample_times: &times, ..Request::default() };
     let run = model.with_start(state).with_duration(f64::from(count) * period, 0.0).run(&request);
     if run.summary.outcome != Outcome::Done || run.samples.len() != times.len() {
         return vec![state];
     }
-    let mut states: Vec<(f64, f64)> = run.samples.iter().map(|sample| (sample.x, sample.v)).collect();
-    let by_state = |a: &(f64, f64), b: &(f64, f64)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1));
+    let mut states: Vec<State> = run.samples.iter().map(|sample| (sample.x, sample.v)).collect();
+    let by_state = |a: &State, b: &State| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1));
     let first = (0..states.len()).max_by(|a, b| by_state(&states[*a], &states[*b])).unwrap_or(0);
     states.rotate_left(first);
     states

@@ -12,12 +12,10 @@
 //!   first such motions a region is looked for that no motion leaves (see `region`); later ones that enter it
 //!   need not be followed on.
 //!
-//! The scales of all starts are those of the one farthest from the barrier, and what is known grows between
-//! rounds of starts alone, so neither batches nor threads change a bit.
+//! All starts have the scales of the one farthest from the barrier, and what is known grows between rounds
+//! alone, so that neither batches nor threads change a bit.
 
 mod answer;
-mod effort;
-mod item;
 mod orbit;
 mod region;
 mod rounds;
@@ -30,12 +28,11 @@ use std::sync::Arc;
 use crate::dynamics::{Model, Request};
 use crate::mechanics::Mechanism;
 use crate::scene::{Damping, Excitation, Fault, Scene, Start, Stops};
-use crate::study::levels::{Levels, STRIDES};
+use crate::study::{Levels, STRIDES};
 pub use answer::{Answer, Attractor, Shares};
-use effort::Effort;
-use item::PATIENCE;
-use rounds::Rounds;
+use rounds::{PATIENCE, Rounds};
 pub use starts::{EvenRange, MAX_STARTS, Starts, StartsError};
+use stroboscopic::Effort;
 
 /// Why a scene has no basins.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -72,7 +69,7 @@ pub enum NoBasins {
     },
 }
 
-/// Small oscillations over which the cost of a forcing period is measured: some thousand steps.
+/// Small oscillations over which the cost of a forcing period is measured.
 const MEASURED: f64 = 300.0;
 
 /// A map of basins, coarse first.
@@ -92,8 +89,8 @@ impl Basins {
     /// Forcing periods after which a motion that reaches no known attractor is judged.
     pub const PATIENCE: u64 = PATIENCE;
 
-    /// The map of a scene from these starts, none of which has been run; the scene's own start is ignored.
-    /// States are taken once a period of the excitation; without one, once a period of small oscillations.
+    /// The map of a scene from these starts, none of which has been run; the start of the scene is ignored.
+    /// States are taken once a period of the excitation; without one, of small oscillations.
     pub fn new(scene: &Scene, mechanism: Arc<Mechanism>, starts: Starts) -> Result<Self, NoBasins> {
         if scene.transducer.has_state() {
             return Err(NoBasins::ElectricalState);
@@ -131,7 +128,7 @@ impl Basins {
         let rounds = Rounds::new(starts.count());
         let effort = Effort::of_starts(starts.count());
         let basins = Self { model, starts, levels, done: 0, room, rounds, effort };
-        if (0..basins.starts.count()).all(|row| basins.start(row).is_none()) {
+        if !(0..basins.starts.count()).any(|row| is_inside(room, basins.starts.at(row).0)) {
             return Err(basins.beyond());
         }
         Ok(basins)
@@ -184,13 +181,11 @@ impl Basins {
     pub fn is_whole(&self) -> bool {
         self.done == STRIDES.len()
     }
+}
 
-    /// Start `row` in m and m/s; `None` outside the room.
-    fn start(&self, row: usize) -> Option<(f64, f64)> {
-        let (x_mm, v) = self.starts.at(row);
-        let x = x_mm / 1e3;
-        (x >= self.room.0 && x <= self.room.1).then_some((x, v))
-    }
+/// Whether a displacement in mm lies in a room in m.
+fn is_inside(room: (f64, f64), x_mm: f64) -> bool {
+    (room.0..=room.1).contains(&(x_mm / 1e3))
 }
 
 /// Whether damping or a stop takes energy.
@@ -200,20 +195,12 @@ fn loses_energy(scene: &Scene) -> bool {
         Damping::Ratio(xi) => xi > 0.0,
         Damping::Coefficient { c_n_s_per_m } => c_n_s_per_m > 0.0,
     };
-    let loses = |restitution: Option<f64>| restitution.is_some_and(|value| value < 1.0);
     damped
-        || match &scene.stops {
-            Stops::None => false,
-            Stops::Rigid { restitution, .. } => *restitution < 1.0,
-            Stops::Uneven { restitution_left, restitution_right, .. } => {
-                loses(*restitution_left) || loses(*restitution_right)
-            }
-            Stops::Hertz { loss_s_per_m, .. } => *loss_s_per_m > 0.0,
-        }
+        || scene.stops.restitutions().into_iter().flatten().any(|restitution| restitution < 1.0)
+        || matches!(scene.stops, Stops::Hertz { loss_s_per_m, .. } if loss_s_per_m > 0.0)
 }
 
-/// An equivalent excitation with a period, if the scene's has none because it is constant: with a sine of
-/// amplitude 0 added, at the frequency of small oscillations.
+/// The excitation of a constant scene and a sine of amplitude 0, with the period of small oscillations.
 fn shaken(scene: &Scene, model: &Model) -> Option<Excitation> {
     if model.forcing_period().is_some() || !model.excitation().is_constant() {
         return None;

@@ -1,5 +1,4 @@
-//! Stable periodic orbits of the stroboscopic map, and ellipses around their states from which all motions go
-//! to them.
+//! Stable periodic orbits of the stroboscopic map, and ellipses around their states that all lead to them.
 //!
 //! A proposal comes from a motion whose states repeat. Newton's method on the map of `period` forcing periods
 //! finds the orbit near by, and the Lyapunov equation M = J^T M J + I gives a norm in which the linear map
@@ -8,17 +7,12 @@
 //! which all do is the ellipse: every motion that enters it goes to the orbit. If there is none, the map over
 //! multiples of the period is tried.
 
-use super::stroboscopic::Stroboscope;
+use super::stroboscopic::{Point, Stroboscope};
 use crate::dynamics::{Capture, Jacobian, Outcome};
-use crate::study::Cancelled;
+use crate::study::{Cancelled, State};
 
-/// A displacement and a velocity in units of the scene's scales.
-type Point = [f64; 2];
-
-/// Two rows.
 type Matrix = [[f64; 2]; 2];
 
-/// Most steps of Newton's method.
 const MOST_STEPS: usize = 12;
 /// The longest step of it, in units of the scales.
 const LONGEST_STEP: f64 = 0.1;
@@ -30,7 +24,6 @@ const SAME: f64 = 1e-6;
 
 /// The least radius that is measured, in the norm, which is never less than the distance.
 const LEAST_RADIUS: f64 = 2e-5;
-/// Number of radii.
 const RADII: usize = 34;
 /// Ratio of each radius to the one before.
 const GROWTH: f64 = std::f64::consts::SQRT_2;
@@ -52,13 +45,13 @@ pub(super) enum Found {
     /// A stable one: its states, each with its ellipse.
     Stable(Vec<Capture>),
     /// An unstable one, through this state in m and m/s.
-    Unstable((f64, f64)),
+    Unstable(State),
     /// No orbit, or none with an ellipse from which all motions go to it.
     Nothing,
 }
 
 /// The orbit of the proposed period, or twice that, near a state in m and m/s.
-pub(super) fn find(scope: &Stroboscope, period: u32, state: (f64, f64)) -> Result<Found, Cancelled> {
+pub(super) fn find(scope: &Stroboscope, period: u32, state: State) -> Result<Found, Cancelled> {
     let first = of_period(scope, period, state)?;
     // Soon after a period doubling the two halves of the doubled orbit are nearly equal.
     if let Found::Unstable(_) = first
@@ -69,7 +62,7 @@ pub(super) fn find(scope: &Stroboscope, period: u32, state: (f64, f64)) -> Resul
     Ok(first)
 }
 
-fn of_period(scope: &Stroboscope, period: u32, state: (f64, f64)) -> Result<Found, Cancelled> {
+fn of_period(scope: &Stroboscope, period: u32, state: State) -> Result<Found, Cancelled> {
     let Some(root) = newton(scope, period, scope.point(state)) else { return Ok(Found::Nothing) };
     let after: Vec<(Point, u32)> = (1..=period).map(|periods| (root, periods)).collect();
     let Some(states) = scope.map(&after)?.into_iter().collect::<Option<Vec<Point>>>() else {
@@ -91,8 +84,7 @@ fn of_period(scope: &Stroboscope, period: u32, state: (f64, f64)) -> Result<Foun
     Ok(Found::Stable(captures))
 }
 
-/// The ellipse around a fixed point of the map of `period` forcing periods, by the map over the least
-/// multiple of it that has one.
+/// The ellipse around a fixed point of the map of `period` forcing periods, by the least multiple with one.
 ///
 /// Where a motion passes a kink of the force the map bends sharply, so near an orbit it need not shrink at
 /// once in the norm of its derivative; after some more periods it does.
@@ -112,7 +104,6 @@ fn ellipse(
     Ok(None)
 }
 
-/// The product of a matrix with itself.
 fn squared([[p, q], [r, s]]: &Matrix) -> Matrix {
     [[p * p + q * r, p * q + q * s], [r * p + s * r, r * q + s * s]]
 }
@@ -141,8 +132,7 @@ fn newton(scope: &Stroboscope, period: u32, from: Point) -> Option<Point> {
     None
 }
 
-/// The image of a point and the derivative of the map there, in units of the scales; `None` if the motion
-/// ends early.
+/// The image of a point and the map's derivative, in units of the scales; `None` if the motion ends early.
 fn jacobian(scope: &Stroboscope, period: u32, at: Point) -> Option<(Point, Matrix)> {
     let ((length, speed), map) =
         (scope.units(), scope.model.stroboscopic_map(scope.model.drive_phase(0.0)?)?);

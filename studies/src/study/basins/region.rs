@@ -9,7 +9,8 @@ use std::collections::BTreeSet;
 
 use super::stroboscopic::Stroboscope;
 use crate::dynamics::{Capture, Region};
-use crate::study::Cancelled;
+use crate::numeric::extent;
+use crate::study::{Cancelled, State};
 
 /// Motions that are followed to find an attractor.
 const MOTIONS: usize = 16;
@@ -23,21 +24,19 @@ const APART: f64 = 1e-6;
 
 /// Cells along each side of the extent of an attractor, coarse ones first.
 const ALONG: [f64; 3] = [48.0, 96.0, 192.0];
-/// Most cells of a region.
 const MOST_CELLS: usize = 20_000;
 
 /// Rounds in which cells may be added.
 const ROUNDS: usize = 40;
 
-/// A region around the irregular motion through `state` in m and m/s; `None` if there is none or a state of
-/// it comes to a known orbit.
+/// A region around the irregular motion through `state`; `None` without one, or if it comes to a known orbit.
 pub(super) fn absorbing(
     scope: &Stroboscope,
-    state: (f64, f64),
+    state: State,
     known: &[Capture],
 ) -> Result<Option<Region>, Cancelled> {
     let [x, v] = scope.point(state);
-    let starts: Vec<(f64, f64)> = (0..MOTIONS)
+    let starts: Vec<State> = (0..MOTIONS)
         .map(|number| [x, v + APART * number as f64])
         .filter(|point| scope.has(*point))
         .map(|point| scope.state(point))
@@ -46,11 +45,8 @@ pub(super) fn absorbing(
     if states.iter().any(|state| known.iter().any(|other| other.holds(*state))) {
         return Ok(None);
     }
-    let ends = |of: &dyn Fn(&(f64, f64)) -> f64| {
-        let fold = |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
-        states.iter().map(of).fold((f64::INFINITY, f64::NEG_INFINITY), fold)
-    };
-    let ((left, right), (low, high)) = (ends(&|state| state.0), ends(&|state| state.1));
+    let (left, right) = extent(states.iter().map(|state| state.0));
+    let (low, high) = extent(states.iter().map(|state| state.1));
     if !(right > left && high > low) {
         return Ok(None);
     }
@@ -68,7 +64,7 @@ pub(super) fn absorbing(
 fn closed(
     scope: &Stroboscope,
     region: Region,
-    states: &[(f64, f64)],
+    states: &[State],
     known: &[Capture],
 ) -> Result<Option<Region>, Cancelled> {
     let mut cells: BTreeSet<(i32, i32)> = BTreeSet::new();

@@ -1,16 +1,85 @@
 //! Rounds of a map of basins: starts are followed in rounds, and what is known grows between them.
 
-use super::Basins;
-use super::item::{Item, PATIENCE, Way};
 use super::orbit::{Found, find};
 use super::region::absorbing;
-use super::starts::Starts;
 use super::stroboscopic::Stroboscope;
+use super::{Basins, Starts, is_inside};
 use crate::dynamics::{
     Arrival, Capture, Outcome, Place, Pursued, Pursuit, Regime, Region, ReleaseIdentity, Side, Summary,
 };
-use crate::study::{Cancelled, Task};
+use crate::study::{Cancelled, State, Task, settled};
 use crate::system::threads::Pool;
+
+/// Forcing periods after which a motion that reaches no known attractor is judged.
+pub(super) const PATIENCE: u64 = settled::PATIENCE as u64;
+
+/// Length of a motion until its attractor is known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Way {
+    pub periods: u32,
+    pub crossings: u32,
+}
+
+impl Way {
+    /// These counts less those of `before`.
+    pub fn since(self, before: Self) -> Self {
+        Self {
+            periods: self.periods.saturating_sub(before.periods),
+            crossings: self.crossings.saturating_sub(before.crossings),
+        }
+    }
+
+    /// This way followed by another.
+    pub fn and(self, next: Self) -> Self {
+        Self {
+            periods: self.periods.saturating_add(next.periods),
+            crossings: self.crossings.saturating_add(next.crossings),
+        }
+    }
+}
+
+/// A motion to follow: a start, or what comes after a release, as the start's motion past some releases.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Item {
+    pub row: usize,
+    pub releases: u32,
+    /// The release that it continues, and the way up to there.
+    pub after: Option<(u32, Way)>,
+    pub repeats_from: u64,
+}
+
+impl Item {
+    pub fn of_start(row: usize) -> Self {
+        Self { row, releases: 0, after: None, repeats_from: 0 }
+    }
+
+    /// The way of a pursuit, counted from where it continues another one.
+    pub fn way(&self, periods: u64, crossings: u64) -> Way {
+        let count = |number: u64| u32::try_from(number).unwrap_or(u32::MAX);
+        let whole = Way { periods: count(periods), crossings: count(crossings) };
+        whole.since(self.after.map_or(Way::default(), |(_, before)| before))
+    }
+
+    /// The item as a pursuit of at most `most_work` units.
+    pub fn pursuit<'a>(
+        &self,
+        starts: &Starts,
+        known: &'a [Capture],
+        regions: &'a [Region],
+        most_work: u64,
+    ) -> Pursuit<'a> {
+        let (x_mm, v) = starts.at(self.row);
+        Pursuit {
+            start: (x_mm / 1e3, v),
+            known,
+            regions,
+            repeats_from: self.repeats_from,
+            most_periods: PATIENCE,
+            releases: self.releases,
+            most_work,
+        }
+    }
+}
 
 /// Starts of the first round of a map: while little is known, rounds are short.
 const FIRST_ROUND: usize = 64;
@@ -33,9 +102,7 @@ const ON_ORBIT: f64 = 1e-6;
 pub(super) enum Verdict {
     /// A settled motion: all with the same regime, side and period (if any) are one attractor.
     Settled {
-        /// See [`Regime`].
         regime: Regime,
-        /// Where it is.
         side: Option<Place>,
         /// Its period, where no ellipse could be found around it.
         period: Option<u32>,
@@ -47,12 +114,11 @@ pub(super) enum Verdict {
 }
 
 /// The verdict by the summary of a pursuit, whose window is its last hundred forcing periods, and whether it
-/// ended on an orbit that is unstable. A verdict without a period is confirmed by the exponent of one motion
-/// of its kind.
+/// ended on an unstable orbit. The exponent of one motion of a kind confirms a verdict without a period.
 ///
-/// An exponent tells irregular motion from a motion that is slow to settle, but not from a long transient:
-/// the transients of a double well are themselves irregular, and end by chance. So a motion is called
-/// irregular only after a thousand periods in which it found no other.
+/// An exponent tells irregular motion from motion that is slow to settle, but not from a long transient,
+/// which is itself irregular in a double well and ends by chance. So a motion is called irregular only after
+/// a thousand periods in which it found no other.
 pub(super) fn verdict(summary: &Summary, on_unstable: bool) -> Verdict {
     match summary.outcome {
         Outcome::Done if on_unstable || summary.steady != Some(true) => Verdict::Undecided,
@@ -84,7 +150,6 @@ pub(super) enum Fate {
 pub(super) enum Kind {
     /// A stable orbit, by its number.
     Orbit(u32),
-    /// Rest on a stop.
     Rest(Side),
     /// What [`verdict`] says, and the summary of the first one.
     Judged(Verdict, Box<Summary>),
@@ -109,7 +174,7 @@ pub(super) struct Release {
 }
 
 /// What is known of a map.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Rounds {
     pub fates: Vec<Fate>,
     pub kinds: Vec<Kind>,
@@ -119,9 +184,9 @@ pub(super) struct Rounds {
     /// The orbit of each capture.
     pub orbit_of: Vec<u32>,
     /// States that proposed no stable orbit.
-    rejected: Vec<(f64, f64)>,
+    rejected: Vec<State>,
     /// States of unstable orbits.
-    unstable: Vec<(f64, f64)>,
+    unstable: Vec<State>,
     /// Regions around irregular motions.
     pub regions: Vec<Region>,
     /// The kind of each region.
@@ -137,29 +202,14 @@ pub(super) struct Rounds {
 
 impl Rounds {
     pub fn new(starts: usize) -> Self {
-        Self {
-            fates: vec![Fate::NotRun; starts],
-            kinds: Vec::new(),
-            releases: Vec::new(),
-            captures: Vec::new(),
-            orbit_of: Vec::new(),
-            rejected: Vec::new(),
-            unstable: Vec::new(),
-            regions: Vec::new(),
-            region_of: Vec::new(),
-            searches: Vec::new(),
-            doubted: Vec::new(),
-            next_round: FIRST_ROUND,
-            remaining: starts,
-        }
+        let fates = vec![Fate::NotRun; starts];
+        Self { fates, next_round: FIRST_ROUND, remaining: starts, ..Self::default() }
     }
 
-    /// The place of a kind that is known.
     fn known_kind(&self, kind: &Kind) -> Option<u32> {
         self.kinds.iter().position(|known| known.is_same(kind)).map(|place| place as u32)
     }
 
-    /// The place of a kind.
     fn kind(&mut self, kind: Kind) -> u32 {
         self.known_kind(&kind).unwrap_or_else(|| {
             self.kinds.push(kind);
@@ -176,7 +226,6 @@ impl Rounds {
         (place.unwrap_or(self.releases.len() as u32 - 1), place.is_none())
     }
 
-    /// The place of a release that is known.
     fn known_release(&self, identity: ReleaseIdentity) -> Option<u32> {
         self.releases.iter().position(|release| release.identity == identity).map(|place| place as u32)
     }
@@ -255,7 +304,7 @@ impl Rounds {
     }
 
     /// Looks for an orbit near a state that proposed one.
-    fn propose(&mut self, scope: &Stroboscope, period: u32, state: (f64, f64)) -> Result<(), Cancelled> {
+    fn propose(&mut self, scope: &Stroboscope, period: u32, state: State) -> Result<(), Cancelled> {
         let known = self.captures.iter().any(|capture| capture.holds(state));
         let tried = self.rejected.iter().any(|rejected| is_near(scope, *rejected, state, SAME_PROPOSAL));
         if known || tried {
@@ -282,7 +331,7 @@ impl Rounds {
     }
 
     /// Looks for a region around the irregular motion to which an item goes and which passes `state`.
-    fn surround(&mut self, scope: &Stroboscope, item: Item, state: (f64, f64)) -> Result<(), Cancelled> {
+    fn surround(&mut self, scope: &Stroboscope, item: Item, state: State) -> Result<(), Cancelled> {
         let fate = item.after.map_or(self.fates[item.row], |after| self.releases[after.0 as usize].next);
         let Fate::Kind(kind, _) = fate else { return Ok(()) };
         let irregular = match &self.kinds[kind as usize] {
@@ -302,12 +351,12 @@ impl Rounds {
     }
 
     /// Whether a state lies in a region.
-    fn is_surrounded(&self, state: (f64, f64)) -> bool {
+    fn is_surrounded(&self, state: State) -> bool {
         self.regions.iter().any(|region| region.holds(state))
     }
 }
 
-fn is_near(scope: &Stroboscope, a: (f64, f64), b: (f64, f64), share: f64) -> bool {
+fn is_near(scope: &Stroboscope, a: State, b: State, share: f64) -> bool {
     let (length, speed) = scope.units();
     (a.0 - b.0).abs() <= share * length && (a.1 - b.1).abs() <= share * speed
 }
@@ -356,8 +405,7 @@ fn round(
 }
 
 impl Basins {
-    /// Runs the starts of the next level, with a tick of the task for each start. Returns false if cancelled;
-    /// the map is then unusable.
+    /// Runs the starts of the next level, each with a tick. False if cancelled; the map is then unusable.
     pub fn run_level(&mut self, pool: &Pool, task: &Task) -> bool {
         let Self { model, starts, levels, done, room, rounds, effort } = self;
         let scope = Stroboscope { model, room: *room, pool, cancel: task.cancel, effort };
@@ -368,8 +416,7 @@ impl Basins {
             rounds.next_round = (2 * rounds.next_round).min(LONGEST_ROUND);
             let mut items = Vec::with_capacity(last - begin);
             for row in levels.order[begin..last].iter().map(|row| *row as usize) {
-                let x = starts.at(row).0 / 1e3;
-                if x >= room.0 && x <= room.1 {
+                if is_inside(*room, starts.at(row).0) {
                     items.push(Item::of_start(row));
                 } else {
                     rounds.fates[row] = Fate::Outside;

@@ -3,12 +3,10 @@
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use crate::numeric::Decimal;
-use crate::study::curve::even_positions;
-use crate::study::levels::Levels;
+use crate::numeric::{Decimal, extent};
+use crate::study::{Levels, even_positions};
 
-/// The most starts of one map: some minutes of a core where the mass comes to rest on stops, and many hours
-/// where it does not.
+/// The most starts of one map: minutes of a core where the mass comes to rest on stops, many hours elsewhere.
 pub const MAX_STARTS: u64 = 10_000_000;
 
 /// The largest displacement in mm and velocity in m/s, those of a scene.
@@ -88,8 +86,7 @@ fn within((from, to): (f64, f64)) -> Result<(), StartsError> {
 pub struct Starts {
     x_mm: Vec<f64>,
     v: Vec<f64>,
-    /// Whether they are all pairs of the values, displacement the slower; else values of the same index are
-    /// a start.
+    /// Whether they are all pairs of the values, displacement the slower; else one for each index.
     product: bool,
 }
 
@@ -155,10 +152,7 @@ impl Starts {
 
     /// Displacements in mm and largest velocity in m/s either way.
     pub(super) fn extent(&self) -> ((f64, f64), f64) {
-        let ends = |values: &[f64]| {
-            let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-            (low, values.iter().copied().fold(f64::NEG_INFINITY, f64::max))
-        };
+        let ends = |values: &[f64]| extent(values.iter().copied());
         let (slow, fast) = ends(&self.v);
         (ends(&self.x_mm), if -slow > fast { slow } else { fast })
     }

@@ -1,15 +1,13 @@
-//! The stroboscopic map of a model by runs of whole forcing periods.
+//! The stroboscopic map of a model by runs of whole forcing periods, and the work that a map of basins takes.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use super::effort::Effort;
 use crate::dynamics::{Arrival, Model, Outcome, Pursued, Pursuit, Request};
-use crate::study::Cancelled;
-use crate::study::exponents::{ExponentOptions, average_exponents};
+use crate::study::{Cancelled, ExponentOptions, State, average_exponents};
 use crate::system::threads::{Pool, UnderWay, share};
 
 /// A displacement and a velocity in units of the scene's scales.
-type Point = [f64; 2];
+pub(super) type Point = [f64; 2];
 
 /// Cost of a forcing period with its derivatives, in periods without.
 const WITH_DERIVATIVES: u64 = 4;
@@ -32,13 +30,12 @@ impl Stroboscope<'_> {
     }
 
     /// A state in m and m/s as a point.
-    pub fn point(&self, (x, v): (f64, f64)) -> Point {
+    pub fn point(&self, (x, v): State) -> Point {
         let (length, speed) = self.units();
         [x / length, v / speed]
     }
 
-    /// A point as a state in m and m/s.
-    pub fn state(&self, [x, v]: Point) -> (f64, f64) {
+    pub fn state(&self, [x, v]: Point) -> State {
         let (length, speed) = self.units();
         (x * length, v * speed)
     }
@@ -49,9 +46,8 @@ impl Stroboscope<'_> {
         x >= self.room.0 && x <= self.room.1 && v.is_finite()
     }
 
-    /// The images of points after a number of forcing periods each: `None` for those that begin outside the
-    /// room, end early, or come to rest on the way, after which the map has no inverse, and for all if they
-    /// take more work than is left.
+    /// The images of points after a number of forcing periods each; `None` for those that begin outside the
+    /// room, end early or come to rest, and for all if they take more work than is left.
     pub fn map(&self, starts: &[(Point, u32)]) -> Result<Vec<Option<Point>>, Cancelled> {
         let mut images = vec![None; starts.len()];
         if !self.effort.has_room_for(starts.iter().map(|(_, periods)| u64::from(*periods)).sum()) {
@@ -85,10 +81,10 @@ impl Stroboscope<'_> {
     /// ends early or they take more work than is left.
     pub fn paths(
         &self,
-        starts: &[(f64, f64)],
+        starts: &[State],
         periods: u32,
         skipped: usize,
-    ) -> Result<Option<Vec<(f64, f64)>>, Cancelled> {
+    ) -> Result<Option<Vec<State>>, Cancelled> {
         if !self.effort.has_room_for(starts.len() as u64 * u64::from(periods)) {
             return Ok(None);
         }
@@ -110,9 +106,8 @@ impl Stroboscope<'_> {
         Ok(all.map(|paths| paths.iter().flatten().map(|sample| (sample.x, sample.v)).collect()))
     }
 
-    /// Whether the motion through a stroboscopic state in m and m/s is irregular by its exponent; false if
-    /// too little work is left.
-    pub fn is_irregular(&self, state: (f64, f64)) -> bool {
+    /// Whether the motion through a state is irregular by its exponent; false if too little work is left.
+    pub fn is_irregular(&self, state: State) -> bool {
         if !self.effort.has_room_for(WITH_DERIVATIVES * u64::from(ExponentOptions::PERIODS)) {
             return false;
         }
@@ -149,5 +144,90 @@ impl Stroboscope<'_> {
 
     fn is_cancelled(&self) -> bool {
         self.cancel.load(Ordering::Relaxed)
+    }
+}
+
+/// Units of the orbits and regions of a map: some ellipses of an orbit of 12 periods past a kink take that.
+const OF_THE_MAP: u64 = 20_000_000_000;
+
+/// Units of each start: four times those of the prototype followed for 1000 forcing periods.
+const OF_A_START: u64 = 20_000_000;
+
+/// Starts differ in work: one may take this many times its share of what is left.
+const SHARES: u64 = 4;
+/// Units that a start may take in any case.
+const LEAST: u64 = 2_000_000;
+
+/// Work of one map, in the units of a [`Pursuit`].
+///
+/// A well may swing ten thousand times in a forcing period, and a map would then take days. How far a start
+/// is followed depends on what is left between rounds, and so not on the number of threads.
+#[derive(Debug)]
+pub(super) struct Effort {
+    budget: u64,
+    done: AtomicU64,
+    /// Forcing periods that were followed for it.
+    periods: AtomicU64,
+}
+
+impl Effort {
+    pub fn of_starts(count: usize) -> Self {
+        let budget = OF_THE_MAP + OF_A_START.saturating_mul(count as u64);
+        Self { budget, done: AtomicU64::new(0), periods: AtomicU64::new(0) }
+    }
+
+    /// Adds a pursuit whose forcing period in s is given.
+    pub fn add(&self, pursuit: &Pursuit, pursued: &Pursued, period: f64) {
+        let ended = || match &pursued.arrival {
+            Arrival::Unsettled(summary) => summary.outcome.ended_at().map(|at| (at / period) as u64),
+            _ => None,
+        };
+        let periods = pursued.arrival.periods().or_else(ended).unwrap_or(pursuit.most_periods);
+        self.done.fetch_add(pursued.work, Ordering::Relaxed);
+        self.periods.fetch_add(periods, Ordering::Relaxed);
+    }
+
+    fn left(&self) -> u64 {
+        self.budget.saturating_sub(self.done.load(Ordering::Relaxed))
+    }
+
+    /// Units that each start may take while `remaining` starts are still to be followed.
+    pub fn of_one(&self, remaining: usize) -> u64 {
+        (SHARES * (self.left() / remaining.max(1) as u64)).max(LEAST)
+    }
+
+    /// Whether `periods` more forcing periods of the mean work fit into what is left.
+    pub fn has_room_for(&self, periods: u64) -> bool {
+        let (done, before) = (self.done.load(Ordering::Relaxed), self.periods.load(Ordering::Relaxed));
+        done as f64 / before.max(1) as f64 * periods as f64 <= self.left() as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_start_may_take_some_shares_of_what_is_left_and_a_search_what_fits() {
+        let effort = Effort::of_starts(100);
+        assert_eq!(effort.of_one(100), SHARES * (OF_THE_MAP / 100 + OF_A_START));
+        assert!(effort.has_room_for(u64::MAX), "nothing is known of the work of a period yet");
+        let pursuit = Pursuit {
+            start: (0.0, 0.0),
+            known: &[],
+            regions: &[],
+            repeats_from: 0,
+            most_periods: 1000,
+            releases: 0,
+            most_work: u64::MAX,
+        };
+        let arrival = Arrival::Captured { which: 0, periods: 1000 };
+        let pursued = |work| Pursued { arrival: arrival.clone(), crossings: 0, work };
+        effort.add(&pursuit, &pursued(OF_THE_MAP), 1.0);
+        // 2e7 units a period, and 2e9 are left
+        assert!(effort.has_room_for(100) && !effort.has_room_for(101));
+        effort.add(&pursuit, &pursued(OF_THE_MAP), 1.0);
+        assert!(!effort.has_room_for(1));
+        assert_eq!(effort.of_one(3), LEAST);
     }
 }

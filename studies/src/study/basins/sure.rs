@@ -6,24 +6,20 @@
 
 use std::collections::BTreeMap;
 
-use super::Basins;
-use super::answer::Answer;
-use super::item::{Item, PATIENCE, Way};
-use super::rounds::{Fate, Kind, LONGEST_ROUND};
+use super::rounds::{Fate, Item, Kind, LONGEST_ROUND, PATIENCE, Way};
 use super::stroboscopic::Stroboscope;
+use super::{Answer, Basins};
 use crate::dynamics::{Place, Pursuit};
 use crate::scene::TOLERANCES;
 use crate::study::{Cancelled, Task};
 use crate::system::threads::Pool;
 
-/// Factor on the map's tolerance at which starts are followed once more; its inverse if that would exceed the
-/// largest tolerance of a scene.
+/// Factor on the tolerance at which starts are followed once more; its inverse beyond the largest tolerance.
 const FACTOR: f64 = 10.0;
 
 impl Basins {
-    /// The rows that [`check`](Self::check) follows once more: those whose neighbours in the grid, up to
-    /// eight, do not all go to the same attractor in as many periods; of a grid of one line, and of random
-    /// starts, all. Precondition: the map is whole.
+    /// The rows that [`check`](Self::check) follows once more: those of a grid whose up to eight neighbours
+    /// do not all go to the same attractor in as many periods, else all. Precondition: the map is whole.
     pub fn rows_to_check(&self, answer: &Answer) -> Vec<usize> {
         let rows = &answer.rows;
         let settled = (0..rows.len()).filter(|row| rows[*row].is_some());
@@ -39,8 +35,7 @@ impl Basins {
         settled.filter(|row| is_line || !alike(row)).collect()
     }
 
-    /// Marks in `answer` which answers are sure; returns false if cancelled. The task's tick is called for
-    /// each start that is followed once more.
+    /// Marks which answers are sure, with a tick for each start followed once more; false if cancelled.
     ///
     /// A start is sure if it goes to the same attractor at ten times the tolerance, after as many crossings
     /// of the barrier and, unless that is the only attractor in one of two wells, as many periods; or if
@@ -131,8 +126,7 @@ impl Basins {
         Ok(items.iter().zip(&all).map(|(item, end)| self.rounds.known_fate(item, end, scope)).collect())
     }
 
-    /// Whether a motion does the same again after the way `before`; if its attractor is the only one in its
-    /// well, equal crossings suffice.
+    /// Whether a motion does the same again after `before`; if `alone` in its well, equal crossings suffice.
     fn is_same(&self, first: Fate, before: Way, again: Option<Fate>, alone: bool) -> bool {
         match (first, again) {
             (Fate::Kind(kind, way), Some(Fate::Kind(other, now))) if kind == other => {

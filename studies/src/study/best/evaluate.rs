@@ -2,13 +2,12 @@
 
 use std::sync::Arc;
 
-use super::design::{BestQuestion, DesignRange, NoBest, Optimum, apply};
+use super::{BestQuestion, DesignRange, NoBest, Optimum};
 use crate::dynamics::{Model, Outcome, Request, Run, Summary};
 use crate::mechanics::{BuildError, Mechanism};
 use crate::scene::{Fault, FieldPath, Scene, check, is_whole};
 use crate::study::Task;
-use crate::study::settled::followed;
-use crate::study::shared_runs::shared_runs;
+use crate::study::settled::{followed, shared_runs};
 use crate::system::threads::Pool;
 
 /// Result of one design.
@@ -20,12 +19,10 @@ pub(super) enum Judged {
     Missing,
     /// Constraints are broken: the sum of the excesses, each relative to its limit, and the results.
     Broken(f64, Vec<f64>),
-    /// It has a value.
     Value(f64, Vec<f64>),
 }
 
 impl Judged {
-    /// The value, where there is one.
     pub fn value(&self) -> Option<f64> {
         if let Self::Value(value, _) = self { Some(*value) } else { None }
     }
@@ -43,7 +40,6 @@ pub(super) type Design = (Vec<f64>, Vec<f64>);
 /// The summary of a run, or what is wrong with its scene.
 type Ran = Result<Box<Summary>, Vec<Fault>>;
 
-/// Evaluator of designs.
 pub(super) struct Evaluator<'a> {
     pub question: &'a BestQuestion,
     /// The ranges of the question, with the fields of whole numbers marked.
@@ -92,7 +88,6 @@ impl<'a> Evaluator<'a> {
         self.varied.iter().map(|path| path.get(&scene).unwrap_or(f64::NAN)).collect()
     }
 
-    /// Results of these designs, in their order.
     pub fn judge(&self, designs: &[Vec<f64>]) -> Result<Vec<Judged>, NoBest> {
         let designs: Vec<Design> = designs.iter().map(|at| (at.clone(), Vec::new())).collect();
         self.judge_varied(&designs)
@@ -172,5 +167,13 @@ impl<'a> Evaluator<'a> {
         let weights = self.question.environments.iter().map(|environment| environment.weight);
         let sum: f64 = of_each.iter().zip(weights.clone()).map(|(value, weight)| value * weight).sum();
         Judged::Value(sum / weights.sum::<f64>(), of_each)
+    }
+}
+
+/// Puts a design into a scene that has the fields.
+fn apply(paths: &[FieldPath], at: &[f64], scene: &mut Scene) {
+    for (path, value) in paths.iter().zip(at) {
+        let known = path.set(scene, *value);
+        debug_assert!(known, "a design belongs to a scene that has its fields");
     }
 }

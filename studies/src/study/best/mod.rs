@@ -5,21 +5,192 @@
 //! scanned first, coarsely and then finely; around each of the best places the scan is repeated in an ever
 //! smaller box. What lies between two places of the scan and is narrower than its step may be missed.
 
-mod design;
 mod evaluate;
-mod margin;
 mod search;
 mod varied;
 
-use super::Task;
+use super::{SummaryField, Table, Task};
+use crate::scene::{Fault, Files, Scene, column_names};
 use crate::system::threads::Pool;
-
-pub use design::{
-    BestDesign, BestQuestion, Constraint, DesignRange, Environment, INTERVALS, MOST_FIELDS, NoBest, Optimum,
-    Spread, Variation,
-};
 use evaluate::Evaluator;
 pub use varied::SAMPLES;
+
+/// A field that the design may change, and between which values, in its own unit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DesignRange {
+    /// Dotted path of the field.
+    pub field: String,
+    /// Least value.
+    pub low: f64,
+    /// Largest value, above the least.
+    pub high: f64,
+    /// Intervals of the scan: at least 1, and of whole numbers no more than the range holds.
+    pub intervals: usize,
+    /// Whether only whole numbers are tried: as the field of the scene has it.
+    whole: bool,
+}
+
+impl DesignRange {
+    /// Of a field called `field`, from `low` to `high`.
+    pub fn new(field: impl Into<String>, (low, high): (f64, f64), intervals: usize) -> Self {
+        Self { field: field.into(), low, high, intervals, whole: false }
+    }
+
+    /// Distance of two places of the scan.
+    pub fn step(&self) -> f64 {
+        (self.high - self.low) / self.intervals as f64
+    }
+}
+
+/// A bound on a result.
+#[derive(Debug, Clone, Copy)]
+pub struct Constraint {
+    /// The result.
+    pub of: &'static SummaryField,
+    /// Whether it must be at most the limit; else at least.
+    pub at_most: bool,
+    /// The limit, in the unit of the result.
+    pub limit: f64,
+}
+
+/// A scene in one environment.
+#[derive(Debug, Clone)]
+pub struct Environment {
+    /// What it is called.
+    pub name: String,
+    /// How much it counts, above 0.
+    pub weight: f64,
+    /// The scene under its excitation.
+    pub scene: Scene,
+    /// The files that the scene names.
+    pub files: Files,
+}
+
+/// A field that varies uniformly within a tolerance to both sides of its design value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Variation {
+    /// Dotted path of the field.
+    pub field: String,
+    /// The tolerance: a share of the value, or in the field's unit.
+    pub by: f64,
+    /// Whether it is a share.
+    pub relative: bool,
+}
+
+/// A search for the best design.
+#[derive(Debug, Clone)]
+pub struct BestQuestion {
+    /// The fields of the design, 1 to [`MOST_FIELDS`].
+    pub over: Vec<DesignRange>,
+    /// The result whose mean over the environments is to be largest; a number or a count.
+    pub maximise: &'static SummaryField,
+    /// Constraints in every environment.
+    pub subject_to: Vec<Constraint>,
+    /// At least one.
+    pub environments: Vec<Environment>,
+    /// Fields that vary about the design.
+    pub vary: Vec<Variation>,
+    /// Seed of the samples of what varies.
+    pub seed: u64,
+    /// Time in s up to which runs are followed until they repeat; by default 1000 periods beyond the run.
+    pub until_settled: Option<f64>,
+}
+
+/// The most fields of a design: the scan grows exponentially with them.
+pub const MOST_FIELDS: usize = 4;
+
+/// Intervals of the scan for one field, two, three and four.
+pub const INTERVALS: [usize; MOST_FIELDS] = [256, 32, 12, 8];
+
+/// A design and its results.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Optimum {
+    /// The fields' values.
+    pub at: Vec<f64>,
+    /// The mean of the maximised result.
+    pub value: f64,
+    /// The result in each environment.
+    pub of_each: Vec<f64>,
+}
+
+/// The value under variation. Missing (NaN) where a sample has none.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spread {
+    /// The worst of the samples.
+    pub worst: f64,
+    /// The 5 % quantile of the samples.
+    pub quantile_5: f64,
+}
+
+/// The best design.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BestDesign {
+    /// The place.
+    pub optimum: Optimum,
+    /// For each field, the distance below and above at which the value has fallen by a tenth or a constraint
+    /// is broken, with the other fields fixed; `None` if that is nowhere in its range.
+    pub margins: Vec<[Option<f64>; 2]>,
+    /// Which fields are best at an end of their range.
+    pub at_border: Vec<bool>,
+    /// How closely each field is located.
+    pub resolution: Vec<f64>,
+    /// The value under variation; if nothing varies, the value itself.
+    pub spread: Spread,
+    /// The place with the largest worst case of those inward of the optimum along the first field.
+    pub stepped_back: Option<(Optimum, Spread)>,
+    /// Whether every place that was tried gives the same value.
+    pub flat: bool,
+}
+
+/// Why there is no best design.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NoBest {
+    /// It was told to stop.
+    Cancelled,
+    /// No design of the scan makes a valid scene; what is wrong with the first.
+    Invalid(Vec<Fault>),
+    /// No design has the result and those of the constraints.
+    NoValue,
+    /// No design meets the constraints; the nearest one, and its results in the environment furthest off.
+    NoneMeets {
+        /// The fields' values.
+        nearest: Vec<f64>,
+        /// The results, one for each constraint.
+        results: Vec<f64>,
+    },
+}
+
+impl BestDesign {
+    /// One row: the fields, `maximised,value,margin_low,margin_high,worst,quantile_5`, the margins of further
+    /// fields, the design stepped back in the first field, and the value in each of several environments.
+    pub fn table(&self, question: &BestQuestion) -> Table {
+        let fields: Vec<&str> = question.over.iter().map(|range| range.field.as_str()).collect();
+        let names = column_names(&fields);
+        let (row, back) = ([self], [self.stepped_back.as_ref()]);
+        let mut table = Table::new();
+        for (name, value) in names.iter().zip(&self.optimum.at) {
+            table = table.each(name, &row, |_| *value);
+        }
+        table = table
+            .each("maximised", &row, |_| question.maximise.name)
+            .each("value", &row, |best| best.optimum.value)
+            .each("margin_low", &row, |best| best.margins[0][0])
+            .each("margin_high", &row, |best| best.margins[0][1])
+            .each("worst", &row, |best| best.spread.worst)
+            .each("quantile_5", &row, |best| best.spread.quantile_5);
+        for (name, [low, high]) in names.iter().zip(&self.margins).skip(1) {
+            table = table.each(&format!("margin_low.{name}"), &row, |_| *low);
+            table = table.each(&format!("margin_high.{name}"), &row, |_| *high);
+        }
+        table = table
+            .each("back_to", &back, |back| Some((*back)?.0.at[0]))
+            .each("back_value", &back, |back| Some((*back)?.0.value))
+            .each("back_worst", &back, |back| Some((*back)?.1.worst))
+            .each("back_quantile_5", &back, |back| Some((*back)?.1.quantile_5));
+        let each = self.optimum.of_each.iter().enumerate().filter(|_| question.environments.len() > 1);
+        each.fold(table, |table, (i, value)| table.each(&format!("value_{}", i + 1), &row, |_| *value))
+    }
+}
 
 /// Searches for the best design. `preview` gets the best place of the coarse scan, and the best place when it
 /// is found, before margins and samples. The result is the same for any number of threads.
@@ -31,7 +202,7 @@ pub fn best(
 ) -> Result<BestDesign, NoBest> {
     let evaluator = Evaluator::new(question, pool, task)?;
     let found = search::search(&evaluator, preview)?;
-    let margins = margin::margins(&evaluator, &found)?;
+    let margins = search::margins(&evaluator, &found)?;
     let (spread, stepped_back) = varied::robust(&evaluator, &found, &margins)?;
     let border = |(range, at): (&DesignRange, &f64)| *at <= range.low || *at >= range.high;
     Ok(BestDesign {

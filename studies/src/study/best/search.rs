@@ -1,15 +1,16 @@
-//! Scan of the whole range, and ever smaller scans around its best places.
+//! Scan of the whole range, ever smaller scans around its best places, and the distance from the best one to
+//! where its value falls or a constraint breaks.
 
-use super::design::{DesignRange, NoBest, Optimum};
 use super::evaluate::{Evaluator, Judged};
+use super::{DesignRange, NoBest, Optimum};
 use crate::numeric::round::{ONE_TWO_FIVE, round_down};
 use crate::study::bisection::multiple;
+use crate::study::grid::places;
 
 /// Stride of the coarse scan before the full one.
 const COARSE: usize = 4;
 
-/// How many of the best places of the scan are refined: beside the highest there may be a higher one in a
-/// window that the scan has only grazed.
+/// How many of the best places are refined: a window that the scan has only grazed may hold a higher one.
 const REFINED: usize = 5;
 
 /// Intervals to each side of the middle in a refinement, for one field, two, three and four.
@@ -32,7 +33,6 @@ pub(super) fn resolution(range: &DesignRange) -> f64 {
     if range.whole { parts.max(1.0) } else { parts }
 }
 
-/// The place of the scan with these indices.
 fn place(over: &[DesignRange], indices: &[usize]) -> Vec<f64> {
     let at = |(range, index): (&DesignRange, &usize)| match *index {
         0 => range.low,
@@ -48,13 +48,9 @@ pub(super) fn rounded(range: &DesignRange, value: f64) -> f64 {
 }
 
 /// All indices of the scan, the first field slowest.
-fn indices(over: &[DesignRange]) -> Vec<Vec<usize>> {
-    over.iter().fold(vec![Vec::new()], |before, range| {
-        let longer = |prefix: &Vec<usize>| {
-            (0..=range.intervals).map(|i| [prefix.as_slice(), &[i]].concat()).collect::<Vec<_>>()
-        };
-        before.iter().flat_map(longer).collect()
-    })
+fn indices(lengths: &[usize]) -> Vec<Vec<usize>> {
+    let count: usize = lengths.iter().product();
+    (0..count).map(|index| places(lengths.iter().copied(), index as u64).collect()).collect()
 }
 
 /// The best of some places that were judged, the first of equal ones.
@@ -65,7 +61,7 @@ fn highest(places: &[Vec<f64>], judged: &[Judged]) -> Option<Optimum> {
 
 pub(super) fn search(evaluator: &Evaluator, preview: &mut dyn FnMut(&Optimum)) -> Result<Found, NoBest> {
     let over = &evaluator.over;
-    let all = indices(over);
+    let all = indices(&over.iter().map(|range| range.intervals + 1).collect::<Vec<_>>());
     let coarse = |node: &Vec<usize>| node.iter().all(|index| index.is_multiple_of(COARSE));
     let (mut places, mut judged) = (Vec::new(), Vec::new());
     for first in [true, false] {
@@ -77,7 +73,7 @@ pub(super) fn search(evaluator: &Evaluator, preview: &mut dyn FnMut(&Optimum)) -
             preview(&best);
         }
     }
-    let Some(mut best) = highest(&places, &judged) else { return Err(none(&places, &judged)) };
+    let Some(best) = highest(&places, &judged) else { return Err(none(&places, &judged)) };
     let all_equal = judged.iter().all(|design| design.value() == Some(best.value));
     let mut order: Vec<usize> = (0..places.len()).filter(|i| judged[*i].value().is_some()).collect();
     order.sort_by(|a, b| judged[*b].value().partial_cmp(&judged[*a].value()).unwrap_or(a.cmp(b)));
@@ -97,11 +93,8 @@ pub(super) fn search(evaluator: &Evaluator, preview: &mut dyn FnMut(&Optimum)) -
         }
     }
     let starts = begins.iter().filter_map(|i| judged[*i].optimum(&places[*i])).collect();
-    for optimum in refine(evaluator, starts)? {
-        if optimum.value > best.value {
-            best = optimum;
-        }
-    }
+    let refined = refine(evaluator, starts)?.into_iter();
+    let best = refined.fold(best, |best, next| if next.value > best.value { next } else { best });
     preview(&best);
     Ok(Found { optimum: best, flat: all_equal })
 }
@@ -113,19 +106,14 @@ struct Closer {
     tried: Vec<Vec<f64>>,
 }
 
-/// Scans a box around each of some places, moves each to the best in it and halves it or less, until the
-/// resolution of every field is reached.
+/// Scans a box around each place, moves it to the best in it and halves it or less, down to the resolution.
 fn refine(evaluator: &Evaluator, starts: Vec<Optimum>) -> Result<Vec<Optimum>, NoBest> {
     let over = &evaluator.over;
     let sides = SIDES[over.len() - 1];
     let mut half: Vec<f64> = over.iter().map(DesignRange::step).collect();
     let closer = |best: Optimum| Closer { tried: vec![best.at.clone()], best };
     let mut boxes: Vec<Closer> = starts.into_iter().map(closer).collect();
-    let grid: Vec<DesignRange> = over
-        .iter()
-        .map(|range| DesignRange { low: -1.0, high: 1.0, intervals: 2 * sides, ..range.clone() })
-        .collect();
-    let grid = indices(&grid);
+    let grid = indices(&vec![2 * sides + 1; over.len()]);
     loop {
         // all boxes together, so that no thread waits
         let places: Vec<Vec<Vec<f64>>> = boxes.iter().map(|area| around(area, over, &grid, &half)).collect();
@@ -186,4 +174,66 @@ fn none(places: &[Vec<f64>], judged: &[Judged]) -> NoBest {
         }
         _ => NoBest::NoValue,
     }
+}
+
+/// Relative fall of the value that ends the margin.
+const FALL: f64 = 0.1;
+
+/// Steps of the walk outward in one step of the scan.
+const FINER: f64 = 4.0;
+
+/// Places that are tried together.
+const TOGETHER: usize = 16;
+
+/// Of each field, the distance below and above.
+pub(super) fn margins(evaluator: &Evaluator, found: &Found) -> Result<Vec<[Option<f64>; 2]>, NoBest> {
+    let fields = 0..evaluator.over.len();
+    fields
+        .map(|field| Ok([side(evaluator, found, field, -1.0)?, side(evaluator, found, field, 1.0)?]))
+        .collect()
+}
+
+/// The least distance in direction `way` at which the value has fallen; every finer step is tried.
+fn side(evaluator: &Evaluator, found: &Found, field: usize, way: f64) -> Result<Option<f64>, NoBest> {
+    let range = &evaluator.over[field];
+    let (best, middle) = (&found.optimum, found.optimum.at[field]);
+    let floor = best.value - FALL * best.value.abs();
+    let holds = |judged: &Judged| judged.value().is_some_and(|value| value >= floor);
+    let at = |value: f64| {
+        let mut at = best.at.clone();
+        at[field] = value;
+        at
+    };
+    let (step, end) = (range.step() / FINER, if way > 0.0 { range.high } else { range.low });
+    let mut values: Vec<f64> = Vec::new();
+    for i in 1.. {
+        let value = rounded(range, middle + way * step * f64::from(i));
+        if values.last() != Some(&value) && value != middle {
+            values.push(value);
+        }
+        if (end - value) * way <= 0.0 {
+            break;
+        }
+    }
+    let mut inside = middle;
+    for part in values.chunks(TOGETHER) {
+        let judged = evaluator.judge(&part.iter().map(|value| at(*value)).collect::<Vec<_>>())?;
+        for (value, design) in part.iter().zip(&judged) {
+            if holds(design) {
+                inside = *value;
+                continue;
+            }
+            let mut outside = *value;
+            while (outside - inside).abs() > 1.5 * resolution(range) {
+                let middle = rounded(range, 0.5 * (inside + outside));
+                match holds(&evaluator.judge(&[at(middle)])?[0]) {
+                    true => inside = middle,
+                    false => outside = middle,
+                }
+            }
+            // a multiple of the resolution, except at an end of the range
+            return Ok(Some(multiple((outside - middle).abs(), resolution(range))));
+        }
+    }
+    Ok(None)
 }

@@ -3,9 +3,9 @@
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use super::design::{NoBest, Optimum, Spread, Variation};
 use super::evaluate::{Design, Evaluator};
 use super::search::{Found, rounded};
+use super::{NoBest, Optimum, Spread, Variation};
 
 /// Samples of what varies.
 pub const SAMPLES: usize = 200;
@@ -87,7 +87,6 @@ struct Sampled {
     varied: Vec<Vec<f64>>,
     /// Values of the known samples, minus infinity if missing; infinity for unknown ones.
     values: Vec<f64>,
-    /// How many are known.
     known: usize,
 }
 
@@ -107,12 +106,10 @@ impl Sampled {
         Self { at, varied, values: vec![f64::INFINITY; SAMPLES], known: 0 }
     }
 
-    /// The worst that is known.
     fn worst(&self) -> f64 {
         self.values.iter().copied().fold(f64::INFINITY, f64::min)
     }
 
-    /// The spread, where all are known.
     fn spread(&self) -> Spread {
         let mut values = self.values.clone();
         values.sort_by(f64::total_cmp);
@@ -122,7 +119,6 @@ impl Sampled {
     }
 }
 
-/// Evaluates these samples at all places.
 fn evaluate(evaluator: &Evaluator, places: &mut [Sampled], samples: &[usize]) -> Result<(), NoBest> {
     let of = |place: &Sampled, sample: usize| (place.at.at.clone(), place.varied[sample].clone());
     let designs: Vec<Design> =

@@ -2,10 +2,11 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::result::{Estimate, Exponents, NoExponents};
 use super::tangent::Tangent;
+use super::{Estimate, Exponents, NoExponents};
 use crate::dynamics::Model;
 use crate::numeric::CompensatedSum;
+use crate::study::State;
 
 /// Forcing periods in which a change turns into the direction that grows most, before anything is averaged.
 const TURNING: u32 = 20;
@@ -14,11 +15,11 @@ const TURNING: u32 = 20;
 /// from 0 to 1, over `periods` forcing periods, without waiting for a transient or looking for a periodic
 /// motion. Without a drive a period is the natural time of the mechanism. At least one period.
 ///
-/// The standard errors are those of the means of batches, as many as the root of the number of periods
+/// The standard errors are those of the means of batches, whose number is the root of that of the periods
 /// (Flegal and Jones 2010): they cover the scatter of a motion whose correlations decay within a batch.
 pub fn average_exponents(
     model: &Model,
-    state: (f64, f64),
+    state: State,
     phase: f64,
     periods: u32,
     cancel: &AtomicBool,
@@ -29,7 +30,7 @@ pub fn average_exponents(
 /// The same of a map.
 pub(super) fn average(
     tangent: &Tangent,
-    mut state: (f64, f64),
+    mut state: State,
     periods: u32,
     cancel: &AtomicBool,
 ) -> Result<Exponents, NoExponents> {

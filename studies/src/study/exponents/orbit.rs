@@ -1,7 +1,8 @@
 //! Exponents of a periodic motion, by its multipliers.
 
-use super::result::{Estimate, Exponents, NoExponents};
 use super::tangent::{Passed, Tangent};
+use super::{Estimate, Exponents, NoExponents};
+use crate::study::State;
 
 /// The farthest a motion that repeats is from itself a period later, in units of the scales.
 const NEAR: f64 = 1e-2;
@@ -21,7 +22,7 @@ const NEUTRAL: f64 = 1e-6;
 /// settled on. `None` if there is none near it, or if it is unstable and the motion is not exactly on it.
 pub(super) fn of_orbit(
     tangent: &Tangent,
-    start: (f64, f64),
+    start: State,
     periods: u32,
 ) -> Result<Option<Exponents>, NoExponents> {
     let Some((orbit, distance, moved)) = find(tangent, start, periods)? else { return Ok(None) };
@@ -49,11 +50,7 @@ pub(super) fn of_orbit(
 
 /// The periodic motion near a state, how far it is from itself a period later, and whether the state had to
 /// be moved; `None` if Newton's method finds none.
-fn find(
-    tangent: &Tangent,
-    start: (f64, f64),
-    periods: u32,
-) -> Result<Option<(Passed, f64, bool)>, NoExponents> {
+fn find(tangent: &Tangent, start: State, periods: u32) -> Result<Option<(Passed, f64, bool)>, NoExponents> {
     let mut state = start;
     let mut best: Option<(Passed, f64, bool)> = None;
     for step in 0..STEPS {
@@ -82,7 +79,7 @@ fn find(
 }
 
 /// Whether the mass can have this state.
-fn has_room(tangent: &Tangent, (x, v): (f64, f64)) -> bool {
+fn has_room(tangent: &Tangent, (x, v): State) -> bool {
     let model = tangent.model();
     let (low, high) = model.mechanism().curve.domain();
     let (left, right) = model.stop_positions();

@@ -1,7 +1,8 @@
 //! Map of a forcing period, with the growth of small changes of the motion.
 
-use super::result::NoExponents;
-use crate::dynamics::{EventKind, Jacobian, Model, Outcome, Passage, Scales, Side, StroboscopicMap};
+use super::NoExponents;
+use crate::dynamics::{Event, EventKind, Jacobian, Model, Outcome, Passage, Scales, Side, StroboscopicMap};
+use crate::study::State;
 
 /// Below this share of its two products a determinant has lost its digits: rounding is some 1e-15 of them.
 /// (The error of the integration is a share of the areas themselves, of the size of the tolerance.)
@@ -10,7 +11,6 @@ const LOST: f64 = 1e-12;
 /// Below this share the determinant of a period is the product of those of its parts. A mass that lingers
 /// near the top of a barrier turns all changes into the one that grows there, up to 1e6-fold in a period.
 const FEW_LEFT: f64 = 1e-4;
-/// Number of these parts.
 const PARTS: u32 = 8;
 
 /// The stroboscopic map of a model, with changes of a state in units of its scales.
@@ -27,7 +27,7 @@ pub(super) struct Tangent {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Passed {
     /// The state at their end, in m and m/s.
-    pub state: (f64, f64),
+    pub state: State,
     /// Derivatives of it by that at the start, in units of the scales.
     pub jacobian: Jacobian,
     /// Logarithm of their determinant; NaN where its digits are lost.
@@ -49,8 +49,7 @@ impl Passed {
 }
 
 impl Tangent {
-    /// The map from a phase of the drive on, in forcing periods; without a drive over the natural time of
-    /// the mechanism.
+    /// The map from a phase of the drive on, in forcing periods; without a drive over the natural time.
     pub fn of(model: &Model, phase: f64) -> Result<Self, NoExponents> {
         if model.has_electrical_state() {
             return Err(NoExponents::ElectricalState);
@@ -70,7 +69,6 @@ impl Tangent {
         Ok(Self { scales: model.scales(), map, damped, struck })
     }
 
-    /// The model.
     pub fn model(&self) -> &Model {
         self.map.model()
     }
@@ -81,7 +79,7 @@ impl Tangent {
     }
 
     /// The next period of the motion from a state in m and m/s.
-    pub fn pass(&self, state: (f64, f64)) -> Result<Passed, NoExponents> {
+    pub fn pass(&self, state: State) -> Result<Passed, NoExponents> {
         let (passage, derivative) = self.map.pass_with_jacobian(state, 1);
         if passage.outcome != Outcome::Done {
             return Err(NoExponents::EndedEarly(passage.outcome));
@@ -94,9 +92,8 @@ impl Tangent {
         }
         let rested = derivative.rows == [[0.0; 2]; 2];
         let impacts = |side: Side| {
-            let hits =
-                passage.events.iter().filter(|event| event.kind == EventKind::Impact && event.side == side);
-            hits.count() as f64
+            let hits = |event: &&Event| (event.kind, event.side) == (EventKind::Impact, side);
+            passage.events.iter().filter(hits).count() as f64
         };
         let exact = self.struck.map(|[left, right]| match rested {
             true => f64::NEG_INFINITY,
@@ -111,8 +108,7 @@ impl Tangent {
         Ok(Passed { state: passage.state, jacobian, measured, exact })
     }
 
-    /// Logarithm of the determinant of a share of a period; `None` if it is less than `least` of
-    /// its products.
+    /// Logarithm of the determinant of a share of a period; `None` if less than `least` of its products.
     fn logarithm(&self, passage: &Passage, derivative: &Jacobian, share: f64, least: f64) -> Option<f64> {
         let determinant = derivative.determinant().abs();
         let exact = passage.determinant.unwrap_or_else(|| (self.damped * share).exp());
@@ -120,7 +116,7 @@ impl Tangent {
     }
 
     /// The same of a period from its parts, NaN where one has lost its digits.
-    fn by_parts(&self, mut state: (f64, f64)) -> f64 {
+    fn by_parts(&self, mut state: State) -> f64 {
         let share = 1.0 / f64::from(PARTS);
         let parts = (0..PARTS).map(|part| {
             let span = (f64::from(part) * share, f64::from(part + 1) * share);
@@ -131,8 +127,7 @@ impl Tangent {
         parts.sum()
     }
 
-    /// The result of `periods` forcing periods.
-    pub fn pass_many(&self, state: (f64, f64), periods: u32) -> Result<Passed, NoExponents> {
+    pub fn pass_many(&self, state: State, periods: u32) -> Result<Passed, NoExponents> {
         let mut all =
             Passed { state, jacobian: Jacobian::IDENTITY, measured: 0.0, exact: self.struck.map(|_| 0.0) };
         for _ in 0..periods {
@@ -148,12 +143,12 @@ impl Tangent {
     }
 
     /// A change of the state in units of the scales, from `from` to `to`.
-    pub fn scaled(&self, from: (f64, f64), to: (f64, f64)) -> [f64; 2] {
+    pub fn scaled(&self, from: State, to: State) -> [f64; 2] {
         [(to.0 - from.0) / self.scales.length, (to.1 - from.1) / self.scales.speed]
     }
 
     /// A state changed so much, in units of the scales.
-    pub fn changed(&self, (x, v): (f64, f64), by: [f64; 2]) -> (f64, f64) {
+    pub fn changed(&self, (x, v): State, by: [f64; 2]) -> State {
         (x + by[0] * self.scales.length, v + by[1] * self.scales.speed)
     }
 }

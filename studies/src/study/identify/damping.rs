@@ -5,11 +5,11 @@ use std::f64::consts::PI;
 use super::clipped::{Clipped, clipped};
 use super::peaks::{Peak, peaks};
 use super::turns::{noise, reach, turns};
-use super::{Identified, Identity, Unidentified};
+use super::{Identified, Identity, Unidentified, with_interval};
 use crate::numeric::regression::{least_squares, student};
 use crate::numeric::{Envelope, FEWEST_TURNS, TurningPoint, short};
 use crate::scene::Channel;
-use crate::study::table::{Table, Values};
+use crate::study::Table;
 
 /// Pieces of the line that is drawn as an envelope.
 const ENVELOPE: u32 = 400;
@@ -23,8 +23,7 @@ const NEGLIGIBLE: f64 = 1e-3;
 /// Swings count down to this many times the reach of the noise.
 const CLEAR: f64 = 1.5;
 
-/// Damping ratio, decay and frequency of a free decay, over the whole record and as they change with
-/// the amplitude.
+/// Damping ratio, decay and frequency of a free decay, over the record and as they change with amplitude.
 ///
 /// Each turning point is fitted separately (see `peaks`) and an exponential envelope through them by weighted
 /// least squares (see [`Envelope`]), whose rate r is the decay of the amplitude a second. Over half a period
@@ -47,10 +46,8 @@ pub fn damping(times: &[f64], channel: &Channel) -> Result<Identified, Unidentif
     let back = reach(values, noise);
     let all = turns(values, back);
     let few = |found: usize| match flat {
-        None => Unidentified::FewSwings { found, least: FEWEST_TURNS, noise: short(noise) },
-        Some(Clipped { tops, limit, .. }) => {
-            Unidentified::Clipped { tops, limit: short(limit), found, least: FEWEST_TURNS }
-        }
+        None => Unidentified::FewSwings { found, noise: short(noise) },
+        Some(Clipped { tops, limit, .. }) => Unidentified::Clipped { tops, limit: short(limit), found },
     };
     let swing = |k: usize| (values[all[k + 1].at] - values[all[k].at]).abs();
     let swings = all.len().saturating_sub(1);
@@ -75,7 +72,7 @@ pub fn damping(times: &[f64], channel: &Channel) -> Result<Identified, Unidentif
     Ok(Identified {
         rows: table(&rows, &format!("amplitude{}", channel.quantity.ending())),
         fitted: whole.lines(),
-        summary: whole.summary(),
+        summary: vec![whole.ratio, whole.frequency, whole.natural, whole.rate],
         remarks: remarks(&rows, &whole, channel, times, flat, sparse),
     })
 }
@@ -93,22 +90,18 @@ fn remarks(
     let unit = ending.trim_start_matches('_');
     let mut remarks = Vec::new();
     if let Some(Clipped { tops, limit, .. }) = flat {
+        let [limit, begin] = [limit, times[0]].map(short);
         remarks.push(format!(
             "clipped: {tops} swings have flat tops, at the limit of the sensor or its converter (the last at \
-             {} {unit}); what was recorded before {} s is left out",
-            short(limit),
-            short(times[0])
+             {limit} {unit}); what was recorded before {begin} s is left out"
         ));
     }
     if let Some(at) = sparse {
         remarks.push(format!("from {} s on the swings have too few samples and are left out", short(at)));
     }
     if let Some((first, last)) = rows.first().zip(rows.last()) {
-        remarks.push(format!(
-            "the rows go from an amplitude of {} to one of {} {unit} ({quantity})",
-            short(first.amplitude),
-            short(last.amplitude),
-        ));
+        let [from, to] = [first, last].map(|row| short(row.amplitude));
+        remarks.push(format!("the rows go from an amplitude of {from} to one of {to} {unit} ({quantity})"));
     }
     let changes = |of: fn(&Decay) -> Identity| differ(rows.iter().map(of), of(whole).value);
     let changing: Vec<&str> = [
@@ -163,7 +156,10 @@ impl Decay {
             return None;
         }
         let late = student(line.freedom) * line.covariance[(1, 1)].sqrt();
-        let of_rate = |rate: f64| if rate.is_finite() { ratio(rate * step) } else { rate.signum() };
+        let of_rate = |rate: f64| match rate * step {
+            d if rate.is_finite() => d / PI.hypot(d),
+            _ => rate.signum(),
+        };
         let damping = Identity {
             name: "damping_ratio",
             value: of_rate(envelope.rate),
@@ -187,10 +183,6 @@ impl Decay {
         })
     }
 
-    fn summary(&self) -> Vec<Identity> {
-        vec![self.ratio, self.frequency, self.natural, self.rate]
-    }
-
     /// The lines on which the maxima and the minima lie.
     fn lines(&self) -> Table {
         let (from, to) = self.span;
@@ -202,21 +194,12 @@ impl Decay {
                 centre + side * swing
             }
         };
-        Table::new().each("t_s", &places, |t| *t).each("upper", &places, line(1.0)).each(
-            "lower",
-            &places,
-            line(-1.0),
-        )
+        let table = Table::new().each("t_s", &places, |t| *t);
+        table.each("upper", &places, line(1.0)).each("lower", &places, line(-1.0))
     }
 }
 
-/// The damping ratio of an oscillation whose amplitude falls by a factor e^-d in half a period.
-fn ratio(d: f64) -> f64 {
-    d / PI.hypot(d)
-}
-
-/// The frequency without the damping, f/sqrt(1 - z^2) of a frequency f and a damping ratio z; its interval is
-/// that of independent errors.
+/// The frequency f without the damping of ratio z, f/sqrt(1 - z^2), with the interval of independent errors.
 fn natural(frequency: Identity, damping: Identity) -> Identity {
     let slower = (1.0 - damping.value.powi(2)).sqrt();
     let value = frequency.value / slower;
@@ -230,8 +213,7 @@ fn natural(frequency: Identity, damping: Identity) -> Identity {
     Identity { name: "natural_frequency_hz", value, interval: (value - low, value + high) }
 }
 
-/// Whether the numbers of the rows differ from that of the whole by more than their intervals explain, and by
-/// more than counts.
+/// Whether the numbers of the rows differ from the whole by more than intervals explain and than counts.
 fn differ(rows: impl ExactSizeIterator<Item = Identity>, whole: f64) -> bool {
     let chance = 1 + rows.len() / 5;
     let apart = |row: &Identity| (row.value - whole).abs() > NEGLIGIBLE * whole.abs();
@@ -240,21 +222,15 @@ fn differ(rows: impl ExactSizeIterator<Item = Identity>, whole: f64) -> bool {
 }
 
 fn table(rows: &[Decay], amplitude: &str) -> Table {
-    let turns = rows.iter().map(|row| Some(row.turns as u64)).collect();
-    let with = |table: Table, of: fn(&Decay) -> Identity, names: [&str; 3]| {
-        table.each(names[0], rows, |row| of(row).value).each(names[1], rows, |row| of(row).interval.0).each(
-            names[2],
-            rows,
-            |row| of(row).interval.1,
-        )
-    };
     let table = Table::new()
-        .with("turns", Values::Counts(turns))
+        .each("turns", rows, |row| Some(row.turns as u64))
         .each("from_s", rows, |row| row.span.0)
         .each("to_s", rows, |row| row.span.1)
         .each(amplitude, rows, |row| row.amplitude);
     let ratios = ["damping_ratio", "damping_ratio_low", "damping_ratio_high"];
-    let table = with(table, |row| row.ratio, ratios);
-    let table = with(table, |row| row.frequency, ["frequency_hz", "frequency_low_hz", "frequency_high_hz"]);
-    with(table, |row| row.rate, ["decay_per_s", "decay_low_per_s", "decay_high_per_s"])
+    let frequencies = ["frequency_hz", "frequency_low_hz", "frequency_high_hz"];
+    let decays = ["decay_per_s", "decay_low_per_s", "decay_high_per_s"];
+    let table = with_interval(table, ratios, rows, |row| row.ratio);
+    let table = with_interval(table, frequencies, rows, |row| row.frequency);
+    with_interval(table, decays, rows, |row| row.rate)
 }

@@ -1,11 +1,11 @@
 //! Force curve from a slow pull, with its hysteresis, equilibria and barrier.
 
 use super::rests::Rest;
-use super::turns::{noise, turns};
-use super::{Identified, Identity, Unidentified};
+use super::turns::{median, noise, turns};
+use super::{Identified, Identity, Unidentified, with_interval};
 use crate::numeric::regression::{Fit, least_squares, powers, student};
 use crate::numeric::{extent, short};
-use crate::study::table::{Table, Values};
+use crate::study::{Table, Values};
 
 /// Default number of points of a curve.
 pub const FORCE_POINTS: usize = 101;
@@ -63,14 +63,13 @@ struct Curve {
 /// The force curve of a slow pull: force `force` in N over position `x` in m, in the order in which they were
 /// measured, in one direction or in both, any number of times.
 ///
-/// The curve has `points` even positions over the range that all directions cover. At each of them a cubic is
-/// fitted by least squares to the samples of one direction up to the neighbouring points, or up to a kink
-/// beside an equilibrium. The force of the curve is the mean of both directions, and half their difference
-/// the friction. The equilibria are fitted separately (see `Rest::near`). Intervals are 95 %, from the
-/// residuals of the fits.
+/// The curve has `points` even positions over the range that all directions cover. At each a cubic is fitted
+/// by least squares to the samples of one direction up to the neighbouring points, or up to a kink beside an
+/// equilibrium. The force is the mean of both directions, half their difference the friction. The equilibria
+/// are fitted separately (see `Rest::near`). Intervals are 95 %, from the residuals of the fits.
 ///
-/// Rows: `x_m,force_n,force_low_n,force_high_n,force_rising_n,force_falling_n`, as a table mechanism
-/// reads them.
+/// Rows, as a table mechanism reads them:
+/// `x_m,force_n,force_low_n,force_high_n,force_rising_n,force_falling_n`.
 pub fn force(x: &[f64], force: &[f64], points: usize) -> Result<Identified, Unidentified> {
     let [rising, falling] = directions(x, force);
     let pulls: Vec<&Pull> = [&rising, &falling].into_iter().filter(|pull| !pull.is_empty()).collect();
@@ -81,7 +80,7 @@ pub fn force(x: &[f64], force: &[f64], points: usize) -> Result<Identified, Unid
         return Err(Unidentified::Still);
     }
     let points = points.max(4);
-    let few = || Unidentified::FewSamples { samples: x.len(), points };
+    let few = || Unidentified::FewSamples(x.len(), points);
     let rough = Curve::of(&pulls, (low, high), points, &[]).ok_or_else(few)?;
     let rests = rough.equilibria(&pulls, high - low);
     let kinks: Vec<f64> = rests.iter().filter_map(|rest| rest.kink).map(|kink| kink[0]).collect();
@@ -93,13 +92,12 @@ pub fn force(x: &[f64], force: &[f64], points: usize) -> Result<Identified, Unid
             false => curve.directions[which].iter().map(|row| row.0.value).collect(),
         }
     };
-    let rows = Table::new()
-        .with("x_m", Values::Numbers(curve.positions.clone()))
-        .each("force_n", &curve.mean, |row| row.0.value)
-        .each("force_low_n", &curve.mean, |row| row.0.value - row.0.half())
-        .each("force_high_n", &curve.mean, |row| row.0.value + row.0.half())
-        .with("force_rising_n", which(&rising, 0))
-        .with("force_falling_n", which(&falling, pulls.len() - 1));
+    let rows = Table::new().each("x_m", &curve.positions, |x| *x);
+    let rows = with_interval(rows, ["force_n", "force_low_n", "force_high_n"], &curve.mean, |(force, _)| {
+        Identity::new("force_n", force.value, force.half())
+    })
+    .with("force_rising_n", which(&rising, 0))
+    .with("force_falling_n", which(&falling, pulls.len() - 1));
     let (mut summary, mut remarks) = curve.landscape(&rests);
     if let [one, other] = &curve.directions[..] {
         summary.extend(hysteresis(one, other, high - low));
@@ -190,21 +188,18 @@ impl Curve {
         }
         for rest in rests {
             if let Some([x, left, right]) = rest.kink {
+                let [mm, um, left, right] = [1e3 * x, 1e6 * (x - rest.x.0).abs(), left, right].map(short);
                 remarks.push(format!(
-                    "kink at {} mm, {} um from an equilibrium: the slope of the force jumps from {} to {} \
-                     N/m, and a swing over both sides has neither stiffness",
-                    short(1e3 * x),
-                    short(1e6 * (x - rest.x.0).abs()),
-                    short(left),
-                    short(right)
+                    "kink at {mm} mm, {um} um from an equilibrium: the slope of the force jumps from {left} \
+                     to {right} N/m, and a swing over both sides has neither stiffness"
                 ));
             }
         }
         (summary, remarks)
     }
 
-    /// Integral of the force from one equilibrium to another: near them that of their fits, and by cubics
-    /// between the points of the curve (the trapezoidal rule with its end correction) from one to the other.
+    /// Integral of the force from one equilibrium to another: near them that of their fits, elsewhere by
+    /// cubics between the points of the curve (the trapezoidal rule with its end correction).
     fn work(&self, one: &Rest, other: &Rest) -> Option<Known> {
         let (low, high) = if one.x.0 < other.x.0 { (one, other) } else { (other, one) };
         let apart = high.x.0 - low.x.0;
@@ -242,9 +237,8 @@ impl Curve {
         };
         let inside = self.positions.iter().zip(&self.mean).filter(|point| between(point.0));
         let largest = inside.map(|point| point.1.0.value.abs()).fold(0.0, f64::max);
-        let mut halves: Vec<f64> = self.mean.iter().map(|row| row.0.half()).collect();
-        halves.sort_by(f64::total_cmp);
-        let share = halves[halves.len() / 2] / largest;
+        let half = median(self.mean.iter().map(|row| row.0.half()).collect());
+        let share = half.unwrap_or(f64::NAN) / largest;
         format!(
             "the curve is known to {} % of its force{}; as a mechanism: Table(path: \"FILE\", tolerance: {})",
             short(100.0 * share),
@@ -305,8 +299,7 @@ fn directions(x: &[f64], force: &[f64]) -> [Pull; 2] {
     pulls
 }
 
-/// Whether the two directions are still near each other after the turn at `end`, from which the range extends
-/// by `range`.
+/// Whether the directions are still near each other after the turn at `end`, over a part of `range`.
 fn turning(before: &Pull, after: &Pull, (end, range): (f64, f64)) -> bool {
     let apart = |(x, force): &(f64, f64)| -> Option<f64> {
         let next = before.partition_point(|sample| sample.0 < *x);
@@ -323,11 +316,13 @@ fn turning(before: &Pull, after: &Pull, (end, range): (f64, f64)) -> bool {
     count > 0 && near.abs() < 0.5 * usual.abs()
 }
 
+/// The samples of a pull between two places.
+pub fn within(pull: &Pull, from: f64, to: f64) -> &[(f64, f64)] {
+    &pull[pull.partition_point(|sample| sample.0 < from)..pull.partition_point(|sample| sample.0 <= to)]
+}
+
 /// The cubic in (x - `at`)/`unit` through the samples between two places.
 fn near(pull: &Pull, at: f64, (from, to): (f64, f64), unit: f64) -> Option<Fit<4>> {
-    let inside =
-        pull.partition_point(|sample| sample.0 < from)..pull.partition_point(|sample| sample.0 <= to);
-    let rows: Vec<([f64; 4], f64)> =
-        pull[inside].iter().map(|(x, force)| (powers((x - at) / unit), *force)).collect();
-    least_squares(&rows)
+    let row = |(x, force): &(f64, f64)| (powers((x - at) / unit), *force);
+    least_squares(&within(pull, from, to).iter().map(row).collect::<Vec<_>>())
 }

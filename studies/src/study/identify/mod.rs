@@ -11,10 +11,12 @@ mod turns;
 pub use damping::damping;
 pub use force::{FORCE_POINTS, force};
 pub use restitution::{restitution, restitution_of_times};
-pub(super) use turns::{Turn, noise, reach, turns};
+pub(super) use turns::{Turn, median, noise, reach, turns};
 
-use super::table::{Table, label_and_unit};
-use crate::numeric::short;
+use super::{Table, label_and_unit};
+use crate::numeric::{FEWEST_TURNS, short};
+use peaks::FEWEST_SAMPLES;
+use restitution::ENOUGH;
 
 /// A number with its interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,7 +25,7 @@ pub struct Identity {
     pub name: &'static str,
     /// The estimate.
     pub value: f64,
-    /// The 95 % interval; NaN where there is none.
+    /// The 95 % interval; NaN for a count.
     pub interval: (f64, f64),
 }
 
@@ -42,6 +44,15 @@ impl Identity {
             false => format!("{} (95 % interval {low} to {high})", text.trim_end()),
         }
     }
+}
+
+/// The table with three more columns: a number of each row, and the ends of its interval.
+fn with_interval<R>(table: Table, names: [&str; 3], rows: &[R], of: impl Fn(&R) -> Identity) -> Table {
+    table.each(names[0], rows, |row| of(row).value).each(names[1], rows, |row| of(row).interval.0).each(
+        names[2],
+        rows,
+        |row| of(row).interval.1,
+    )
 }
 
 /// What was identified from a record.
@@ -65,55 +76,37 @@ pub enum Unidentified {
     /// Too few swings stand out from the noise.
     #[error(
         "{found} turning points stand out from the noise (of standard deviation {noise}); the damping ratio \
-         needs {least} of a free decay: record longer, pluck harder, or widen --from and --to"
+         needs {FEWEST_TURNS} of a free decay: record longer, pluck harder, or widen --from and --to"
     )]
     FewSwings {
         /// How many were found.
         found: usize,
-        /// The least that is needed.
-        least: usize,
         /// Noise of the values, in SI.
         noise: String,
     },
-    /// A swing has too few samples.
+    /// The swing at this time in s has too few samples.
     #[error(
-        "the swing at {at} s has {samples} samples near its turning point; {least} are needed: sample faster"
+        "the swing at {0} s has {1} samples near its turning point; {FEWEST_SAMPLES} are needed: \
+         sample faster"
     )]
-    Sparse {
-        /// When, in s.
-        at: String,
-        /// How many.
-        samples: usize,
-        /// The least that is needed.
-        least: usize,
-    },
-    /// Swings of unequal length.
+    Sparse(String, usize),
+    /// The swing at this time in s has another length in s than the median of those around it.
     #[error(
-        "the swing at {at} s takes {length} s where those around it take {usual} s: the record has a gap \
+        "the swing at {0} s takes {1} s where those around it take {2} s: the record has a gap \
          there or is no free decay in one well; cut it by --from and --to"
     )]
-    Uneven {
-        /// When, in s.
-        at: String,
-        /// Its length in s.
-        length: String,
-        /// The median length in s of those around it.
-        usual: String,
-    },
-    /// Swings about places that differ.
+    Uneven(String, String, String),
+    /// Swings about places that differ, from this time in s on.
     #[error(
-        "the middle of the swings moves at {at} s by more than a quarter of a swing: the motion changes \
+        "the middle of the swings moves at {0} s by more than a quarter of a swing: the motion changes \
          wells there, or the sensor moved; cut the record by --from and --to"
     )]
-    Moved {
-        /// When, in s.
-        at: String,
-    },
+    Moved(String),
     /// Too few swings are left beside those with flat tops.
     #[error(
         "{tops} swings have flat tops, at the limit {limit} of the sensor or its converter, and after them \
-         {found} turning points stand out from the noise; the damping ratio needs {least}: pluck less, widen \
-         the range, or record longer"
+         {found} turning points stand out from the noise; the damping ratio needs {FEWEST_TURNS}: pluck \
+         less, widen the range, or record longer"
     )]
     Clipped {
         /// How many are cut off.
@@ -122,39 +115,27 @@ pub enum Unidentified {
         limit: String,
         /// How many turning points are left.
         found: usize,
-        /// The least that is needed.
-        least: usize,
     },
-    /// Swings that are cut off hide the impacts.
+    /// So many swings that are cut off at displacements in mm hide the impacts.
     #[error(
-        "no impact is left: {swings} swings have flat tops at {limits} mm, at the limit of the sensor or its \
+        "no impact is left: {0} swings have flat tops at {1} mm, at the limit of the sensor or its \
          converter: widen its range so that it covers the stops"
     )]
-    CutOff {
-        /// How many are cut off.
-        swings: usize,
-        /// At which displacements, in mm.
-        limits: String,
-    },
+    CutOff(usize, String),
     /// The turning points follow no decay.
     #[error("the turning points follow no decaying oscillation: cut the record by --from and --to")]
     NoDecay,
-    /// No impact was found.
+    /// No impact was found in values with this noise, in SI.
     #[error(
         "no turning point is an impact: at none does the velocity jump by more than noise (of standard \
-         deviation {noise}) and a smooth turn explain. Impacts show where the flights after them hold \
-         {enough} samples: sample faster, cut the record by --from and --to, or give the places of the stops \
+         deviation {0}) and a smooth turn explain. Impacts show where the flights after them hold \
+         {ENOUGH} samples: sample faster, cut the record by --from and --to, or give the places of the stops \
          by --left-mm and --right-mm"
     )]
-    NoImpact {
-        /// Noise of the values, in SI.
-        noise: String,
-        /// Samples that a rebound should have.
-        enough: usize,
-    },
+    NoImpact(String),
     /// The rebounds are too short.
     #[error(
-        "the rebounds hold at most {longest} samples at {rate} a second, and {enough} are needed: take \
+        "the rebounds hold at most {longest} samples at {rate} a second, and {ENOUGH} are needed: take \
          {needed} samples a second or more"
     )]
     Slow {
@@ -164,20 +145,13 @@ pub enum Unidentified {
         rate: String,
         /// The rate at which the longest rebound has enough.
         needed: String,
-        /// Samples that it should have.
-        enough: usize,
     },
-    /// The rebounds are lost in noise.
+    /// The rebounds of these contacts are lost in noise of this standard deviation, in SI.
     #[error(
-        "{found} contacts with a stop, but noise (of standard deviation {noise}) hides the velocities about \
+        "{0} contacts with a stop, but noise (of standard deviation {1}) hides the velocities about \
          them: record more impacts, harder ones, or with less noise"
     )]
-    Noisy {
-        /// Contacts.
-        found: usize,
-        /// Noise of the values, in SI.
-        noise: String,
-    },
+    Noisy(usize, String),
     /// Times of impacts that follow no bounces.
     #[error("{0} impact times follow no bounces of one restitution; at least 4 are needed: {1}")]
     NoBounces(usize, &'static str),
@@ -185,11 +159,6 @@ pub enum Unidentified {
     #[error("the position does not change")]
     Still,
     /// Too few samples for the points of a curve.
-    #[error("{samples} samples are too few for {points} points of a curve: take fewer by --points")]
-    FewSamples {
-        /// Samples.
-        samples: usize,
-        /// Points.
-        points: usize,
-    },
+    #[error("{0} samples are too few for {1} points of a curve: take fewer by --points")]
+    FewSamples(usize, usize),
 }

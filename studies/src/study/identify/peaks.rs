@@ -1,11 +1,12 @@
 //! Turning points of a free decay, each fitted to the samples around it, with their weights.
 
 use std::f64::consts::{FRAC_PI_4, TAU};
+use std::ops::Range;
 
 use nalgebra::SVector;
 
 use super::Unidentified;
-use super::turns::Turn;
+use super::turns::{Turn, median};
 use crate::numeric::regression::{Fit, least_squares};
 use crate::numeric::{Envelope, FEWEST_TURNS, TurningPoint, short};
 
@@ -38,7 +39,7 @@ const EVEN: std::ops::RangeInclusive<f64> = 0.6..=1.6;
 const MOVED: f64 = 0.25;
 
 /// The fewest samples of a fit.
-const FEWEST_SAMPLES: usize = 5;
+pub const FEWEST_SAMPLES: usize = 5;
 /// The fewest samples of a fit with the second harmonic.
 const FEWEST_OF_HARMONICS: usize = 9;
 
@@ -83,8 +84,8 @@ struct Local {
 /// the times found improves each, and the value is read there: the extreme of a noisy curve lies too far out,
 /// the value at a time that hardly depends on the same noise does not.
 ///
-/// The variance of each value follows from that of the samples, which is one part for all and one that grows
-/// with the square of the amplitude, as errors of the times make it; both from the residuals of the fits.
+/// The variance of each value follows from that of the samples: a part for all, and one that grows with the
+/// square of the amplitude, as errors of the times make it; both from the residuals of the fits.
 pub fn peaks(
     times: &[f64],
     values: &[f64],
@@ -123,10 +124,8 @@ pub fn peaks(
         }
         peaks = kept;
         if peaks.len() < FEWEST_TURNS {
-            let few =
-                Unidentified::FewSwings { found: peaks.len(), least: FEWEST_TURNS, noise: short(noise) };
-            let too_few =
-                |(at, samples)| Unidentified::Sparse { at: short(at), samples, least: FEWEST_SAMPLES };
+            let few = Unidentified::FewSwings { found: peaks.len(), noise: short(noise) };
+            let too_few = |(at, samples)| Unidentified::Sparse(short(at), samples);
             return Err(sparse.map_or(few, too_few));
         }
         peaks.iter_mut().zip(&fits).for_each(|(peak, fit)| peak.point.value = fit.value);
@@ -136,30 +135,25 @@ pub fn peaks(
     Ok((peaks, sparse.map(|(at, _)| at)))
 }
 
-/// The period about each of the times of turning points, which are half of one apart: the median of those
-/// around it.
+/// The period about each turning point: the median of those around, each from the turn before to that after.
 fn periods(times: &[f64]) -> Result<Vec<f64>, Unidentified> {
     let lengths: Vec<f64> = times.windows(3).map(|turns| turns[2] - turns[0]).collect();
     let usual: Vec<f64> = (0..lengths.len()).map(|k| around(&lengths, k)).collect();
     let even = |k: &usize| EVEN.contains(&(lengths[*k] / usual[*k]));
     match (0..lengths.len()).find(|k| !even(k)) {
         None => Ok((0..times.len()).map(|k| usual[k.saturating_sub(1).min(usual.len() - 1)]).collect()),
-        Some(k) => Err(Unidentified::Uneven {
-            at: short(times[k]),
-            length: short(lengths[k]),
-            usual: short(usual[k]),
-        }),
+        Some(k) => Err(Unidentified::Uneven(short(times[k]), short(lengths[k]), short(usual[k]))),
     }
 }
 
-/// The median of the values around one.
 fn around(values: &[f64], k: usize) -> f64 {
-    median(values[k.saturating_sub(NEIGHBOURS)..(k + NEIGHBOURS + 1).min(values.len())].to_vec())
+    let near = k.saturating_sub(NEIGHBOURS)..(k + NEIGHBOURS + 1).min(values.len());
+    median(values[near].to_vec()).unwrap_or(f64::NAN)
 }
 
-fn median(mut values: Vec<f64>) -> f64 {
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+/// The samples from one time to another.
+fn within(times: &[f64], from: f64, to: f64) -> Range<usize> {
+    times.partition_point(|t| *t < from)..times.partition_point(|t| *t <= to)
 }
 
 /// Checks that the swings stay about one place, as they do in one well.
@@ -170,7 +164,7 @@ fn stays(times: &[f64], values: &[f64]) -> Result<(), Unidentified> {
         |k: &usize| (middles[*k + 2] - middles[*k]).abs() > MOVED * (values[*k + 1] - values[*k]).abs();
     match (0..middles.len().saturating_sub(2)).find(moved) {
         None => Ok(()),
-        Some(k) => Err(Unidentified::Moved { at: short(times[k]) }),
+        Some(k) => Err(Unidentified::Moved(short(times[k]))),
     }
 }
 
@@ -181,8 +175,7 @@ fn narrow(times: &[f64], values: &[f64], turns: &[Turn], periods: &[f64], noise:
         let last = turns.len() - 1;
         let depth = DEPTH * swing(k.saturating_sub(1)).min(swing(k.min(last - 1)));
         let (value, t, reach) = (values[turns[k].at], times[turns[k].at], 2.0 * REACH * periods[k]);
-        let range =
-            times.partition_point(|time| *time < t - reach)..times.partition_point(|time| *time <= t + reach);
+        let range = within(times, t - reach, t + reach);
         let inside = t - reach >= times[0] && t + reach <= times[times.len() - 1];
         if !inside || range.len() < 2 || depth < CLEAR * noise {
             return None;
@@ -196,14 +189,11 @@ fn narrow(times: &[f64], values: &[f64], turns: &[Turn], periods: &[f64], noise:
     for first in [0, 1] {
         let known: Vec<(usize, f64)> =
             (first..turns.len()).step_by(2).filter_map(|k| Some((k, widths[k]?))).collect();
-        if known.is_empty() {
-            continue;
-        }
         for k in (first..turns.len()).step_by(2) {
             let at = known.partition_point(|width| width.0 < k);
             let begin = at.saturating_sub(WIDTHS / 2).min(known.len().saturating_sub(WIDTHS));
             let near = &known[begin..(begin + WIDTHS).min(known.len())];
-            let usual = median(near.iter().map(|width| width.1).collect());
+            let usual = median(near.iter().map(|width| width.1).collect()).unwrap_or(1.0);
             narrow[k] = if usual > NARROW { 1.0 } else { usual };
         }
     }
@@ -221,8 +211,7 @@ fn local(times: &[f64], values: &[f64], peak: &Peak, rate: f64) -> Result<Option
         if !(centre - reach >= times[0] && centre + reach <= times[times.len() - 1]) {
             return Ok(None);
         }
-        let range =
-            times.partition_point(|t| *t < centre - reach)..times.partition_point(|t| *t <= centre + reach);
+        let range = within(times, centre - reach, centre + reach);
         samples = range.len();
         let near = times[range.clone()].iter().map(|t| t - centre).zip(values[range].iter().copied());
         if samples >= FEWEST_OF_HARMONICS {
@@ -344,8 +333,7 @@ fn variances(fits: &[Local], sizes: &[f64]) -> Vec<f64> {
     variances
 }
 
-/// Moves each turning point to a straight line through those around it over their number, with an offset
-/// between maxima and minima.
+/// Moves each turning point to a line through those around it, with an offset between maxima and minima.
 fn smooth(peaks: &mut [Peak]) {
     let line = |k: usize| {
         let here = &peaks[k];

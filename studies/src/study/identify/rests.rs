@@ -3,7 +3,7 @@
 use nalgebra::SVector;
 
 use super::Identity;
-use super::force::{Known, Pull};
+use super::force::{Known, Pull, within};
 use crate::numeric::regression::{Fit, least_squares};
 use crate::numeric::{bisect, golden_section};
 
@@ -30,15 +30,13 @@ const BESIDE: usize = 4;
 
 /// Places at which the sign of the force is taken.
 const PLACES: u32 = 64;
-/// Halvings of a bisection.
 const HALVINGS: u32 = 60;
 
 /// An equilibrium of a measured curve.
 pub struct Rest {
     /// Where it is, in m, with its interval.
     pub x: (f64, [f64; 2]),
-    /// The slope of the force there in N/m, with its interval; of a kink that may be on either side of it,
-    /// that of both slopes.
+    /// The slope of the force there in N/m, with its interval; beside a kink that of both slopes.
     pub stiffness: (f64, [f64; 2]),
     /// A kink near it: its place in m, and the slopes on its left and right in N/m.
     pub kink: Option<[f64; 3]>,
@@ -48,21 +46,18 @@ pub struct Rest {
 }
 
 impl Rest {
-    /// The equilibrium of the mean of these pulls near a place where their mean changes sign; `range` is the
-    /// length of the whole curve.
+    /// The equilibrium of the mean of pulls near a place where it changes sign, in a curve of length `range`.
     ///
-    /// Over some part of the range on either side, of each direction: a cubic, or a cubic with another added
-    /// from a kink on, whose place is found by least squares. The largest part without a kink is taken unless
-    /// another halves the interval of the force there: if the force is known well, as without noise, a
-    /// smaller part is described better.
+    /// To each direction a cubic, or a cubic with another added from a kink on (whose place is found by least
+    /// squares), is fitted over some part of the range on either side: the largest without a kink, unless
+    /// another halves the interval of the force, as where the force is known well.
     pub fn near(place: f64, pulls: &[&Pull], range: f64) -> Option<Self> {
         let mut best: Option<Self> = None;
         let fitted = |reach: f64, kinked: bool| {
             let reach = reach * range;
-            let samples: Vec<Vec<(f64, f64)>> =
-                pulls.iter().map(|pull| samples(pull, place, reach)).collect();
+            let samples: Vec<_> = pulls.iter().map(|pull| samples(pull, place, reach)).collect();
             let kink = if kinked { Some(kink_of(&samples)?) } else { None };
-            let fit = |samples: &Vec<(f64, f64)>| Near::fit(samples, place, reach, kink);
+            let fit = |samples: &Pull| Near::fit(samples, place, reach, kink);
             Self::of(place, reach, samples.iter().map(fit).collect::<Option<Vec<_>>>()?)
         };
         for reach in REACHES {
@@ -77,9 +72,7 @@ impl Rest {
 
     /// The equilibrium of the mean of these fits.
     fn of(place: f64, reach: f64, fits: Vec<Near>) -> Option<Self> {
-        let at = |x: f64, order: usize| {
-            fits.iter().map(|fit| fit.known(&fit.terms(x, order), order)).reduce(Known::and)
-        };
+        let at = |x: f64, order: usize| mean(&fits, x, order);
         let force = |x: f64| at(x, 0).map_or(f64::NAN, |known| known.value);
         let (low, high) = (place - reach, place + reach);
         let step = (high - low) / f64::from(PLACES);
@@ -128,25 +121,26 @@ impl Rest {
     }
 
     /// Place and stiffness under these names.
-    pub fn identities(&self, [place, stiffness]: [&'static str; 2]) -> [Identity; 2] {
-        let identity =
-            |name, (value, [low, high]): (f64, [f64; 2])| Identity { name, value, interval: (low, high) };
-        [identity(place, self.x), identity(stiffness, self.stiffness)]
+    pub fn identities(&self, names: [&'static str; 2]) -> [Identity; 2] {
+        let named = [(names[0], self.x), (names[1], self.stiffness)];
+        named.map(|(name, (value, interval))| Identity { name, value, interval: interval.into() })
     }
 
-    /// Integral of the force from this equilibrium to a place within the reach of its fits, in J, and force
-    /// and slope there.
+    /// Integral of the force in J from here to a place within reach of the fits, and force and slope there.
     pub fn work_to(&self, x: f64) -> Option<[Known; 3]> {
         let work = self.fits.iter().map(|fit| fit.work(self.x.0, x)).reduce(Known::and)?;
-        let at =
-            |order| self.fits.iter().map(|fit| fit.known(&fit.terms(x, order), order)).reduce(Known::and);
-        Some([work, at(0)?, at(1)?])
+        Some([work, mean(&self.fits, x, 0)?, mean(&self.fits, x, 1)?])
     }
 
     /// How far the fits reach to either side, in m.
     pub fn reach(&self) -> f64 {
         self.fits.first().map_or(0.0, |fit| fit.reach - (self.x.0 - fit.centre).abs())
     }
+}
+
+/// The mean force of some fits at a place in m, or with an order of 1 its slope.
+fn mean(fits: &[Near], x: f64, order: usize) -> Option<Known> {
+    fits.iter().map(|fit| fit.known(&fit.terms(x, order), order)).reduce(Known::and)
 }
 
 /// Terms of a fit: four of a cubic, three of another beyond the kink, and what moves the kink.
@@ -181,12 +175,7 @@ impl Near {
         if samples.len() < FEWEST + 8 {
             return None;
         }
-        let joined = |kink: f64| {
-            let rows: Vec<([f64; 7], f64)> =
-                samples.iter().map(|(u, force)| (joined_terms(*u, kink), *force)).collect();
-            least_squares(&rows)
-        };
-        let cubics = joined(kink)?.coefficients;
+        let cubics = joined(samples.iter(), kink)?.coefficients;
         let beyond = [cubics[4], cubics[5], cubics[6]];
         let row = |(u, force): &(f64, f64)| (terms(*u, kink, &beyond, 0).into(), *force);
         // the place of the kink is that of least squares: its own term is for the errors
@@ -212,8 +201,8 @@ impl Near {
         Known { value: value / unit, error: error / unit, freedom }
     }
 
-    /// Integral of the force in J: by Gauss's rule with two points, which is exact for cubics, on either side
-    /// of the kink.
+    /// Integral of the force in J: by Gauss's rule with two points on each side of the kink, exact for
+    /// cubics.
     fn work(&self, from: f64, to: f64) -> Known {
         let inner = self.kink.filter(|kink| (*kink - from) * (*kink - to) < 0.0);
         let ends: Vec<f64> = [Some(from), inner, Some(to)].into_iter().flatten().collect();
@@ -243,33 +232,33 @@ fn terms(u: f64, kink: f64, [a, b, c]: &[f64; 3], order: usize) -> Terms {
     })
 }
 
-/// The terms of a cubic with another from a kink on.
-fn joined_terms(u: f64, kink: f64) -> [f64; 7] {
-    let all = terms(u, kink, &[0.0; 3], 0);
-    std::array::from_fn(|k| all[k])
+/// The fit of a cubic with another added from a kink on.
+fn joined<'a>(samples: impl Iterator<Item = &'a (f64, f64)>, kink: f64) -> Option<Fit<7>> {
+    let row = |(u, force): &(f64, f64)| {
+        let all = terms(*u, kink, &[0.0; 3], 0);
+        (std::array::from_fn(|k| all[k]), *force)
+    };
+    least_squares(&samples.map(row).collect::<Vec<_>>())
 }
 
 /// The samples of a pull up to `reach` away from a place, over u.
-fn samples(pull: &Pull, centre: f64, reach: f64) -> Vec<(f64, f64)> {
-    let inside = pull.partition_point(|sample| sample.0 < centre - reach)
-        ..pull.partition_point(|sample| sample.0 <= centre + reach);
-    pull[inside].iter().map(|(x, force)| ((x - centre) / reach, *force)).collect()
+fn samples(pull: &Pull, centre: f64, reach: f64) -> Pull {
+    let inside = within(pull, centre - reach, centre + reach);
+    inside.iter().map(|(x, force)| ((x - centre) / reach, *force)).collect()
 }
 
 /// The place of a kink that all directions have, which leaves the least squares.
-fn kink_of(directions: &[Vec<(f64, f64)>]) -> Option<f64> {
+fn kink_of(directions: &[Pull]) -> Option<f64> {
     let samples = directions.iter().map(Vec::len).max()?;
     let stride = samples.div_ceil(LOOKED_AT).max(1);
     let square = |kink: f64| -> f64 {
-        let left = |samples: &Vec<(f64, f64)>| {
-            let rows: Vec<([f64; 7], f64)> =
-                samples.iter().step_by(stride).map(|(u, force)| (joined_terms(*u, kink), *force)).collect();
-            least_squares(&rows).map_or(f64::INFINITY, |fit| fit.variance * fit.freedom as f64)
+        let left = |samples: &Pull| {
+            let fit = joined(samples.iter().step_by(stride), kink);
+            fit.map_or(f64::INFINITY, |fit| fit.variance * fit.freedom as f64)
         };
         directions.iter().map(left).sum()
     };
-    let ends =
-        |samples: &Vec<(f64, f64)>| Some((samples.get(BESIDE)?.0, samples.iter().rev().nth(BESIDE)?.0));
+    let ends = |samples: &Pull| Some((samples.get(BESIDE)?.0, samples.iter().rev().nth(BESIDE)?.0));
     let ends = directions.iter().map(ends).collect::<Option<Vec<_>>>()?;
     let (first, last) = ends.into_iter().reduce(|all, ends| (all.0.max(ends.0), all.1.min(ends.1)))?;
     let step = (last - first) / TRIED as f64;

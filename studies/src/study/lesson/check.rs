@@ -30,16 +30,15 @@ pub struct LessonReport {
     pub predictions: usize,
     /// Tasks that were tried.
     pub tasks: usize,
-    /// What is wrong: a start that meets its goal, a solution that does not, a prediction of which not
-    /// exactly one option holds.
+    /// What is wrong: a start that meets its goal, a solution that does not, not one right option.
     pub wrong: Vec<LessonFinding>,
     /// Bounds that turn a verdict where they are moved by 1 %.
     pub warnings: Vec<LessonFinding>,
 }
 
 /// Runs a lesson: the start of every task must fail, its solution must pass, of the options of every
-/// prediction exactly one must hold; then once more with each bound moved by 1 % up and down. Bounds on
-/// fields of the scene that no control of the lesson changes are not moved: they are settings, and exact.
+/// prediction exactly one must hold; then with each bound moved by 1 % up and down, except bounds on fields
+/// of the scene that no control of the lesson changes: they are exact settings.
 pub fn check_lesson(
     document: &LessonDocument,
     pool: Option<&Pool>,

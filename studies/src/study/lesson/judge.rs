@@ -1,10 +1,11 @@
 //! Evaluation of the conditions of lessons.
 
-use super::fields::{Value, value};
-use super::subject::Subject;
+use super::Subject;
 use crate::dynamics::Summary;
-use crate::scene::lesson::{Condition, Step};
+use crate::numeric::extent;
+use crate::scene::lesson::{Condition, ResultField, Step};
 use crate::scene::{FieldPath, Start};
+use crate::study::{SUMMARY_FIELDS, SummaryField};
 
 /// Why there is no verdict.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -37,8 +38,8 @@ pub struct Lack {
     pub found: Value,
 }
 
-/// The first condition in the goal of a step that `subject` does not meet, `None` if the goal is met;
-/// `before` is the scene with which the step began. A step without a goal lacks nothing.
+/// The first condition of the goal of a step that `subject` does not meet; `before` is the scene at its
+/// begin.
 pub fn goal_lack(step: &Step, subject: &Subject, before: &Subject) -> Result<Option<Lack>, Unjudged> {
     match step {
         Step::Do { goal, .. } => Judge { subject, before, from: None }.lack(goal),
@@ -46,8 +47,7 @@ pub fn goal_lack(step: &Step, subject: &Subject, before: &Subject) -> Result<Opt
     }
 }
 
-/// Which options of a prediction hold of `subject`; `before` is the scene with which the step began. Of other
-/// steps there are none.
+/// Which options of a prediction hold of `subject`; `before` is the scene with which the step began.
 pub fn options_that_hold(step: &Step, subject: &Subject, before: &Subject) -> Result<Vec<bool>, Unjudged> {
     match step {
         Step::Predict { options, .. } => {
@@ -57,7 +57,6 @@ pub fn options_that_hold(step: &Step, subject: &Subject, before: &Subject) -> Re
     }
 }
 
-/// Whether a condition holds.
 pub(super) fn holds(condition: &Condition, subject: &Subject, before: &Subject) -> Result<bool, Unjudged> {
     Judge { subject, before, from: None }.holds(condition)
 }
@@ -71,9 +70,8 @@ struct Judge<'a> {
 
 impl Judge<'_> {
     fn holds(&self, condition: &Condition) -> Result<bool, Unjudged> {
-        let compare = |field: &str, of: &dyn Fn(f64) -> bool| {
-            Ok(matches!(self.value(field)?, Value::Number(number) if of(number)))
-        };
+        let compare =
+            |field: &str, of: &dyn Fn(f64) -> bool| Ok(self.value(field)?.as_number().is_some_and(of));
         match condition {
             Condition::Is(field, text) => Ok(match self.value(field)? {
                 Value::Number(number) => text.trim().parse() == Ok(number),
@@ -90,27 +88,14 @@ impl Judge<'_> {
             Condition::All(parts) => self.count(parts).map(|count| count == parts.len()),
             Condition::Any(parts) => self.count(parts).map(|count| count > 0),
             Condition::Not(part) => self.holds(part).map(|holds| !holds),
-            Condition::Every(starts, part) => {
-                self.over_starts(starts, part).map(|all| all.into_iter().all(|holds| holds))
-            }
-            Condition::ForSome(starts, part) => {
-                self.over_starts(starts, part).map(|all| all.into_iter().any(|holds| holds))
-            }
+            Condition::Every(starts, part) => Ok(!self.over_starts(starts, part)?.contains(&false)),
+            Condition::ForSome(starts, part) => Ok(self.over_starts(starts, part)?.contains(&true)),
             Condition::Same(field, within, starts) => {
                 let name = field.split_once('.').map_or("", |(_, name)| name);
                 let runs = self.subject.from(starts)?;
-                let values: Option<Vec<f64>> = runs
-                    .iter()
-                    .map(|run| match value(run, name) {
-                        Value::Number(number) => Some(number),
-                        _ => None,
-                    })
-                    .collect();
+                let values: Option<Vec<f64>> = runs.iter().map(|run| value(run, name).as_number()).collect();
                 Ok(values.is_some_and(|values| {
-                    let (low, high) =
-                        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), number| {
-                            (a.min(*number), b.max(*number))
-                        });
+                    let (low, high) = extent(values);
                     high - low <= within * low.abs().max(high.abs())
                 }))
             }
@@ -167,10 +152,7 @@ impl Judge<'_> {
             }
             "mean" | "error" => {
                 let runs = self.subject.over_seeds()?;
-                let number = |run: &Summary| match value(run, name) {
-                    Value::Number(number) => number,
-                    _ => f64::NAN,
-                };
+                let number = |run: &Summary| value(run, name).as_number().unwrap_or(f64::NAN);
                 let (mean, error) = mean(&runs.iter().map(number).collect::<Vec<_>>());
                 Value::number(if of == "mean" { mean } else { error })
             }
@@ -185,4 +167,47 @@ fn mean(values: &[f64]) -> (f64, f64) {
     let mean = values.iter().sum::<f64>() / count;
     let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
     (mean, (squares / (count - 1.0) / count).sqrt())
+}
+
+/// Value of a field.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Value {
+    /// A number.
+    Number(f64),
+    /// A word.
+    Word(String),
+    /// Nothing.
+    Missing,
+}
+
+impl Value {
+    /// A number, missing if it is not finite.
+    pub fn number(value: f64) -> Self {
+        if value.is_finite() { Self::Number(value) } else { Self::Missing }
+    }
+
+    fn as_number(&self) -> Option<f64> {
+        if let Self::Number(number) = self { Some(*number) } else { None }
+    }
+}
+
+/// Forcing periods after which the motion repeats, 0 where no period was found.
+const PERIOD_MULTIPLE: &str = "period_multiple";
+
+/// The fields of a summary that conditions may name: those of `simulate` and `period_multiple`.
+pub fn result_fields() -> Vec<ResultField> {
+    let of_summary = SUMMARY_FIELDS.iter().map(|field| ResultField { name: field.name, words: field.words });
+    of_summary.chain([ResultField { name: PERIOD_MULTIPLE, words: &[] }]).collect()
+}
+
+/// The field called `name` of a summary.
+pub(super) fn value(summary: &Summary, name: &str) -> Value {
+    if name == PERIOD_MULTIPLE {
+        return Value::Number(summary.period.map_or(0.0, f64::from));
+    }
+    let field = SummaryField::find(name);
+    if let Some(number) = field.and_then(|field| field.number(summary)) {
+        return Value::Number(number);
+    }
+    field.and_then(|field| field.word(summary)).map_or(Value::Missing, |word| Value::Word(word.to_owned()))
 }

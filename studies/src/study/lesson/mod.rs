@@ -1,13 +1,9 @@
-//! Verdicts of lessons: whether a task is done, which option of a prediction holds, and whether a lesson is
-//! right from its first step to its last.
+//! Verdicts of lessons: whether a task is done, which option holds, and whether a whole lesson is right.
 
 mod check;
-mod fields;
 mod judge;
 mod subject;
 
 pub use check::{LessonFinding, LessonReport, check_lesson};
-pub use fields::Value;
-pub use fields::result_fields;
-pub use judge::{Lack, Unjudged, goal_lack, options_that_hold};
+pub use judge::{Lack, Unjudged, Value, goal_lack, options_that_hold, result_fields};
 pub use subject::Subject;

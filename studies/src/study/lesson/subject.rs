@@ -8,10 +8,9 @@ use crate::dynamics::{Model, Request, Run, Summary};
 use crate::mechanics::Mechanism;
 use crate::scene::lesson::{Condition, Lesson};
 use crate::scene::{Axis, Excitation, FieldPath, Files, Scene, Start};
-use crate::study::fields::SummaryField;
-use crate::study::shared_runs::shared_runs;
-use crate::study::up_and_down::walk_over;
-use crate::study::{Family, Task};
+use crate::study::settled::shared_runs;
+use crate::study::walk::walk_over;
+use crate::study::{Family, SummaryField, Task};
 use crate::system::threads::Pool;
 
 /// What is judged: a scene, and what it is compared with.
@@ -71,12 +70,10 @@ impl<'a> Subject<'a> {
         self.scene
     }
 
-    /// Whether it is of this scene with these files.
     pub(super) fn is_of(&self, scene: &Scene, files: &Files) -> bool {
         *self.scene == *scene && *self.files == *files
     }
 
-    /// The run of the scene.
     pub(super) fn run(&self) -> Result<&Summary, Unjudged> {
         once(&self.run, || {
             let run = self.together(&[self.model(self.scene)?])?;
@@ -84,7 +81,6 @@ impl<'a> Subject<'a> {
         })
     }
 
-    /// The runs from these starts.
     pub(super) fn from(&self, starts: &[Start]) -> Result<Vec<Summary>, Unjudged> {
         let known = |start: &Start| self.from.borrow().iter().any(|entry| entry.0 == *start);
         let new: Vec<Start> = starts.iter().filter(|start| !known(start)).copied().collect();
@@ -107,10 +103,8 @@ impl<'a> Subject<'a> {
                 }
                 self.model(&scene)
             };
-            let models = (1..=u64::from(self.lesson.seeds.unwrap_or(0)))
-                .map(of_seed)
-                .collect::<Result<Vec<_>, _>>()?;
-            self.together(&models)
+            let seeds = 1..=u64::from(self.lesson.seeds.unwrap_or(0));
+            self.together(&seeds.map(of_seed).collect::<Result<Vec<_>, _>>()?)
         });
         runs.map(Vec::as_slice)
     }
@@ -123,11 +117,9 @@ impl<'a> Subject<'a> {
             let present = path
                 .get(self.scene)
                 .ok_or_else(|| Unjudged::of(&axis.field, "the scene has no such field"))?;
-            let mut before: Vec<f64> = axis.values.iter().copied().filter(|value| *value < present).collect();
-            let mut after: Vec<f64> =
-                axis.values.iter().rev().copied().filter(|value| *value > present).collect();
-            before.push(present);
-            after.push(present);
+            let values = axis.values.iter().copied();
+            let before = values.clone().filter(|value| *value < present).chain([present]).collect();
+            let after = values.rev().filter(|value| *value > present).chain([present]).collect();
             let [up, down] = self.walks(&axis.field, [before, after], |_, last, _, summary| {
                 *last = Some(*summary);
                 true
@@ -208,11 +200,8 @@ impl<'a> Subject<'a> {
     /// The model of a scene that differs from the subject's in a few fields.
     fn model(&self, scene: &Scene) -> Result<Model, Unjudged> {
         Model::build(scene, self.mechanism_of(scene)?).map_err(|faults| {
-            let fault = faults.into_iter().next();
-            fault.map_or_else(
-                || Unjudged::of("", "cannot be run"),
-                |fault| Unjudged::of(&fault.field, &fault.problem),
-            )
+            let first = faults.first().map_or(("", "cannot be run"), |fault| (&fault.field, &fault.problem));
+            Unjudged::of(first.0, first.1)
         })
     }
 

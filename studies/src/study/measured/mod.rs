@@ -1,17 +1,16 @@
 //! Comparison of a measured motion with the computed one, and of a measured force with the force curve.
 
-mod force;
 mod numbers;
-
-pub use force::{ForceComparison, OffTheCurve, compare_force};
 
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 
-use super::table::Table;
+use super::Table;
 use crate::dynamics::{Model, Outcome, Request, Sample};
+use crate::mechanics::Mechanism;
 use crate::numeric::{alignment, short};
 use crate::scene::{Channel, Quantity, Scene, Timing};
+use numbers::{assembled, rms, statistics};
 
 /// A measured motion, and how it is laid over a run.
 #[derive(Debug, Clone, Copy)]
@@ -165,15 +164,14 @@ pub fn compare(
         return Err(NoComparison::Apart { samples: samples.len(), from, to, end });
     }
     let measured = values[range.clone()].to_vec();
-    let rms = square(&range, &samples).sqrt();
-    let of_measured = (measured.iter().map(|m| m * m).sum::<f64>() / measured.len() as f64).sqrt();
+    let rms_apart = square(&range, &samples).sqrt();
     if samples.len() < motion.times.len() {
         let outside = motion.times.len() - samples.len();
         remarks.push(format!("{outside} of {} samples lie outside the run", motion.times.len()));
     }
     let computed: Vec<f64> = samples.iter().map(of).collect();
     let table = numbers::table(scene, model, motion.channel.quantity, &times, &measured, &computed);
-    let rms = (rms, 100.0 * rms / of_measured);
+    let rms = (rms_apart, 100.0 * rms_apart / rms(&measured));
     Ok(Comparison { table, times, measured, computed, shift, rms, remarks })
 }
 
@@ -182,4 +180,82 @@ fn between(times: &[f64], values: &[f64], t: f64) -> f64 {
     let after = times.partition_point(|time| *time <= t).clamp(1, times.len() - 1);
     let share = ((t - times[after - 1]) / (times[after] - times[after - 1])).clamp(0.0, 1.0);
     values[after - 1] + share * (values[after] - values[after - 1])
+}
+
+/// A measured force beside the computed one, at the measured positions on the force curve.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ForceComparison {
+    /// `quantity,unit,measured,computed,difference,difference_percent`.
+    pub table: Table,
+    /// Positions in m, in the order in which they were measured.
+    pub positions: Vec<f64>,
+    /// The measured force there, N.
+    pub measured: Vec<f64>,
+    /// The computed one.
+    pub computed: Vec<f64>,
+    /// RMS of the difference in N, and in percent of the RMS of what was measured.
+    pub rms: (f64, f64),
+    /// Where the two differ most: the position in m, and computed less measured there in N.
+    pub largest: (f64, f64),
+    /// Remarks, each a sentence.
+    pub remarks: Vec<String>,
+}
+
+/// Too few positions lie on the force curve.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error(
+    "{on} of {samples} positions lie on the force curve, which reaches from {} to {} mm; at least 2 are \
+     needed: check the unit and the zero of the positions",
+    domain.0, domain.1
+)]
+pub struct OffTheCurve {
+    on: usize,
+    samples: usize,
+    /// Its ends in mm.
+    domain: (String, String),
+}
+
+/// Compares the force `force` in N that was measured at `x` in m with the one that holds the mass there.
+pub fn compare_force(
+    mechanism: &Mechanism,
+    x: &[f64],
+    force: &[f64],
+) -> Result<ForceComparison, OffTheCurve> {
+    let curve = &mechanism.curve;
+    let domain = curve.domain();
+    let on = |sample: &(&f64, &f64)| (domain.0..=domain.1).contains(sample.0);
+    let (positions, measured): (Vec<f64>, Vec<f64>) = x.iter().zip(force).filter(on).unzip();
+    if positions.len() < 2 {
+        let domain = (short(domain.0 * 1e3), short(domain.1 * 1e3));
+        return Err(OffTheCurve { on: positions.len(), samples: x.len(), domain });
+    }
+    let computed: Vec<f64> = positions.iter().map(|x| curve.force(*x)).collect();
+    let apart: Vec<f64> = measured.iter().zip(&computed).map(|(m, c)| c - m).collect();
+    let by_size = |a: &usize, b: &usize| apart[*a].abs().total_cmp(&apart[*b].abs());
+    let worst = (0..apart.len()).max_by(by_size).unwrap_or(0);
+    let (of_measured, rms_apart) = (rms(&measured), rms(&apart));
+    let mut rows = vec![
+        ("rms_difference", "N", f64::NAN, f64::NAN),
+        ("largest_difference", "N", measured[worst], computed[worst]),
+        ("largest_difference_at", "m", positions[worst], positions[worst]),
+    ];
+    rows.extend(statistics("N", &measured, &computed));
+    let mut remarks = Vec::new();
+    if positions.len() < x.len() {
+        let outside = x.len() - positions.len();
+        let [low, high] = [domain.0, domain.1].map(|end| short(end * 1e3));
+        remarks.push(format!(
+            "{outside} of {} samples lie beyond the force curve, which reaches from {low} to {high} mm",
+            x.len()
+        ));
+    }
+    Ok(ForceComparison {
+        table: assembled(&rows, rms_apart, of_measured),
+        rms: (rms_apart, 100.0 * rms_apart / of_measured),
+        largest: (positions[worst], apart[worst]),
+        positions,
+        measured,
+        computed,
+        remarks,
+    })
 }

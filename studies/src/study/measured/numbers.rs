@@ -3,7 +3,7 @@
 use crate::dynamics::Model;
 use crate::scene::{Excitation, Quantity, Scene};
 use crate::study::identify::{Turn, noise, reach, turns};
-use crate::study::table::{Table, Values};
+use crate::study::{Table, Values};
 
 /// The part of the way between the stops within which a turning point is an impact.
 const AT_STOP: f64 = 0.1;
@@ -25,23 +25,20 @@ pub fn table(
         Quantity::Acceleration => "m/s2",
         _ => "m",
     };
-    let mean = |values: &[f64], of: &dyn Fn(f64) -> f64| {
-        values.iter().map(|value| of(*value)).sum::<f64>() / values.len() as f64
-    };
-    let both = |name, of: &dyn Fn(&[f64]) -> f64| (name, unit, of(measured), of(computed));
-    let fold = |values: &[f64], of: fn(f64, f64) -> f64| values.iter().copied().fold(f64::NAN, of);
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let [rms_of_each, minimum, maximum] = statistics(unit, measured, computed);
     let mut rows = vec![
-        both("rms", &rms),
-        both("mean", &|values| mean(values, &|value| value)),
-        both("minimum", &|values| fold(values, f64::min)),
-        both("maximum", &|values| fold(values, f64::max)),
+        ("rms_difference", unit, f64::NAN, f64::NAN),
+        rms_of_each,
+        ("mean", unit, mean(measured), mean(computed)),
+        minimum,
+        maximum,
     ];
     if quantity == Quantity::Displacement {
         rows.extend(crossing(scene, model, times, measured, computed));
         rows.extend(rebounds(model, times, measured, computed));
     }
     let apart: Vec<f64> = measured.iter().zip(computed).map(|(m, c)| c - m).collect();
-    rows.insert(0, ("rms_difference", unit, f64::NAN, f64::NAN));
     assembled(&rows, rms(&apart), rms(measured))
 }
 
@@ -50,8 +47,18 @@ pub(super) fn rms(values: &[f64]) -> f64 {
     (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// The table of these rows, of which `rms_difference` is given; it and the largest difference are in percent
-/// of the RMS measured.
+/// RMS, minimum and maximum of measured and computed values.
+pub(super) fn statistics(unit: &'static str, measured: &[f64], computed: &[f64]) -> [Row; 3] {
+    let fold = |values: &[f64], of: fn(f64, f64) -> f64| values.iter().copied().fold(f64::NAN, of);
+    let both = |name, of: &dyn Fn(&[f64]) -> f64| (name, unit, of(measured), of(computed));
+    [
+        both("rms", &rms),
+        both("minimum", &|values| fold(values, f64::min)),
+        both("maximum", &|values| fold(values, f64::max)),
+    ]
+}
+
+/// The table of these rows; `rms_difference` and the largest difference are in percent of the RMS measured.
 pub(super) fn assembled(rows: &[Row], rms_difference: f64, of_measured: f64) -> Table {
     let difference = |row: &Row| if row.0 == "rms_difference" { rms_difference } else { row.3 - row.2 };
     let percent = |row: &Row| {
@@ -142,18 +149,13 @@ fn rebounds(model: &Model, times: &[f64], measured: &[f64], computed: &[f64]) ->
         rows.push((height, "m", mean(|pair| pair.0), mean(|pair| pair.1)));
         let error = |pair: &&(f64, f64)| (pair.1 / pair.0 - 1.0).abs();
         let largest = pairs.iter().max_by(|a, b| error(a).total_cmp(&error(b)));
-        rows.push((
-            worst,
-            "m",
-            largest.map_or(f64::NAN, |pair| pair.0),
-            largest.map_or(f64::NAN, |pair| pair.1),
-        ));
+        let (seen, expected) = largest.copied().unwrap_or((f64::NAN, f64::NAN));
+        rows.push((worst, "m", seen, expected));
     }
     rows
 }
 
-/// The heights of rebounds that belong together: nearest in time, and nearer than half of the shortest time
-/// between two measured ones.
+/// The heights of rebounds nearest in time, and nearer than half the shortest time between measured ones.
 fn paired(measured: &[Rebound], computed: &[Rebound]) -> Vec<(f64, f64)> {
     let apart = measured.windows(2).map(|pair| pair[1].t - pair[0].t).fold(f64::INFINITY, f64::min);
     let partner = |rebound: &Rebound| {

@@ -1,21 +1,17 @@
-//! Points of a branch of periodic motions, by Newton's method in a plane across it (pseudo-arclength; Keller
-//! 1977).
+//! Points of a branch of periodic motions, by Newton's method across it (pseudo-arclength; Keller 1977).
 
 use nalgebra::{Matrix3, Vector2, Vector3};
 
-use super::{Orbit, SAME, allowed, map_of};
+use super::{Orbit, allowed, map_of};
 use crate::dynamics::{Event, EventKind, Jacobian, Outcome, Passage, Side, StroboscopicMap};
-use crate::study::family::Family;
+use crate::study::{Family, State};
 
-/// The most steps to a point.
 const MOST_STEPS: usize = 24;
 
-/// Half the distance over which the map is differenced by the field, as a share of its range, where it
-/// stretches what is near to it by less than that much. The direction of the branch is what is left of
-/// numbers as large as that: the error of the quotient grows with the square of the distance, that of the
-/// map's rounding with its inverse. Where the map stretches more the distance is less. Where the mass strikes
-/// a stop it is less only where the motions beside it do not strike all stops as hard: near a touch the map
-/// changes as the root of the distance.
+/// Half the distance over which the map is differenced by the field, as a share of its range: the error of
+/// the quotient grows with the square of the distance, that of the map's rounding with its inverse. It is
+/// less where the map stretches by more than `STRETCHED`, and where the motions beside it do not strike all
+/// stops as hard: near a touch the map changes as the root of the distance.
 const DIFFERENCE: f64 = 3e-8;
 const STRETCHED: f64 = 1e3;
 const AS_HARD: f64 = 0.1;
@@ -31,13 +27,12 @@ const QUARTERS: [f64; 3] = [0.25, 0.5, 0.75];
 /// The largest correction of a predicted point.
 const LARGEST: f64 = 0.2;
 
-/// The change of a point by the map, in its units, that is close to none; and with the smallest step, where a
-/// point is as good as the others of a branch.
+/// The change of a point by the map, in its units, that is close to none; and how good all points are.
 const CLOSE: f64 = 1e-10;
 const GOOD: Accuracy = Accuracy { change: 1e-12, step: 1e-10 };
 
-/// Where Newton's method ends: at a change of the point by the map, or at a step, in the units. At neither,
-/// it ends where steps become no shorter.
+/// Where Newton's method ends: at a change of the point or a step, in the units, or where steps stop
+/// shrinking.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Accuracy {
     pub change: f64,
@@ -57,7 +52,6 @@ pub(super) struct Units {
 pub(super) struct Point {
     /// Displacement, velocity and field in their units.
     pub at: Vector3<f64>,
-    /// Value of the field.
     pub value: f64,
     pub orbit: Orbit,
     /// Derivatives of the corrector's map by the state, and their determinant.
@@ -68,8 +62,7 @@ pub(super) struct Point {
 }
 
 impl Point {
-    /// Whether the mass rests on its way, which makes it forget its past: the motion is then a function of
-    /// the field alone.
+    /// Whether the mass rests on its way and so forgets its past: a motion that depends on the field alone.
     pub fn forgets(&self) -> bool {
         self.orbit.jacobian.rows == [[0.0; 2]; 2]
     }
@@ -87,7 +80,7 @@ pub(super) struct Equations<T> {
 }
 
 /// The solution of two equations in the plane through a guess of three numbers across a direction, by
-/// Newton's method, with the length of the step that was left; none where it does not converge.
+/// Newton's method, with the length of the step that was left; `None` if it does not converge.
 pub(super) fn newton<T>(
     guess: Vector3<f64>,
     across: &Vector3<f64>,
@@ -121,9 +114,8 @@ pub(super) fn newton<T>(
 
 /// What all points of a branch share.
 ///
-/// A point is a fixed point of the corrector's map. Of motions that are their own mirror images half a period
-/// later that is the mirrored map over half a period: its multipliers are the roots of those over the period,
-/// and one of -1 breaks the symmetry.
+/// A point is a fixed point of the corrector's map: for motions that are their own mirror images the mirrored
+/// map over half a period. Its multipliers are roots of those over the period; -1 breaks the symmetry.
 pub(super) struct Corrector<'a> {
     pub family: &'a Family<'a>,
     pub phase: f64,
@@ -133,7 +125,7 @@ pub(super) struct Corrector<'a> {
 }
 
 impl Corrector<'_> {
-    /// The map at a value of the field; none where that is no scene.
+    /// The map at a value of the field; `None` if that is no scene.
     pub fn map(&self, value: f64) -> Option<StroboscopicMap> {
         map_of(&self.family.model(value).ok()?, self.phase)
     }
@@ -144,13 +136,8 @@ impl Corrector<'_> {
     }
 
     /// A state after that many forcing periods as the corrector's map has it.
-    pub fn image(&self, (x, v): (f64, f64)) -> (f64, f64) {
+    pub fn image(&self, (x, v): State) -> State {
         if self.mirrored { (-x, -v) } else { (x, v) }
-    }
-
-    /// Whether a motion is its own mirror image half its period later.
-    pub fn is_mirrored(map: &StroboscopicMap, orbit: &Orbit) -> bool {
-        Self::asymmetry(map, orbit).is_some_and(|off| off.amax() <= SAME)
     }
 
     /// Difference of a motion from its mirror image half its period later, relative to the scales; `None` if
@@ -169,7 +156,7 @@ impl Corrector<'_> {
         (half.outcome == Outcome::Done).then_some(off)
     }
 
-    /// The same motion at another phase of the drive; none where it ends early.
+    /// The same motion at another phase of the drive; `None` if it ends early.
     pub fn at_phase(&self, orbit: &Orbit, value: f64, phase: f64) -> Option<Orbit> {
         if phase == self.phase {
             return Some(orbit.clone());
@@ -183,8 +170,8 @@ impl Corrector<'_> {
     pub fn clear_phase(&self, point: &Point, also: &[f64]) -> Option<f64> {
         let map = self.map(point.value)?;
         let whole = f64::from(self.periods);
-        let events = point.orbit.passage.events.iter().filter(|event| event.kind != EventKind::Crossing);
-        let mut times: Vec<f64> = events.map(|event| (event.t - map.first_strobe()) / map.period()).collect();
+        let time = |event: &Event| (event.t - map.first_strobe()) / map.period();
+        let mut times: Vec<f64> = point.orbit.events_at_stops().map(time).collect();
         times.extend(also);
         let room = |later: f64| {
             let far = times.iter().map(|time| (time - later).rem_euclid(whole));
@@ -198,7 +185,7 @@ impl Corrector<'_> {
         (room(best) > 2.0 * room(0.0)).then_some(best)
     }
 
-    /// Displacements in m at the quarters of each forcing period of a motion; none where it ends early.
+    /// Displacements in m at the quarters of each forcing period of a motion; `None` if it ends early.
     pub fn displacements(&self, point: &Point) -> Option<Vec<f64>> {
         let map = self.map(point.value)?;
         let done = |passage: Passage| (passage.outcome == Outcome::Done).then_some(passage.state);
@@ -215,29 +202,23 @@ impl Corrector<'_> {
     }
 
     /// The coordinates of a state at a value of the field.
-    pub fn at(&self, state: (f64, f64), value: f64) -> Vector3<f64> {
+    pub fn at(&self, state: State, value: f64) -> Vector3<f64> {
         let Units { length, speed, range } = self.units;
         Vector3::new(state.0 / length, state.1 / speed, value / range)
     }
 
-    fn state(&self, at: &Vector3<f64>) -> (f64, f64) {
+    fn state(&self, at: &Vector3<f64>) -> State {
         (at.x * self.units.length, at.y * self.units.speed)
     }
 
     /// Change from one state to another in the units.
-    pub fn change(&self, from: (f64, f64), to: (f64, f64)) -> [f64; 2] {
+    pub fn change(&self, from: State, to: State) -> [f64; 2] {
         [(to.0 - from.0) / self.units.length, (to.1 - from.1) / self.units.speed]
     }
 
     /// The derivative of the map by the field at a passage from a state, in the units; from one side where
     /// the other is no scene. `by_state` are its derivatives by the state.
-    fn by_field(
-        &self,
-        state: (f64, f64),
-        passage: &Passage,
-        by_state: &Jacobian,
-        value: f64,
-    ) -> Option<[f64; 2]> {
+    fn by_field(&self, state: State, passage: &Passage, by_state: &Jacobian, value: f64) -> Option<[f64; 2]> {
         let stretch = match passage.strikes() {
             false => self.slopes(by_state, [0.0; 2]).iter().map(|row| row.amax()).fold(0.0, f64::max),
             true => 0.0,
@@ -272,8 +253,7 @@ impl Corrector<'_> {
         [Vector3::new(a - 1.0, b, by_field[0]), Vector3::new(c, d - 1.0, by_field[1])]
     }
 
-    /// The point of the branch in the plane through `guess` across a direction; none where the method does
-    /// not converge.
+    /// The point of the branch in the plane through `guess` across a direction, if the method converges.
     pub fn correct(&self, guess: Vector3<f64>, across: &Vector3<f64>) -> Option<Point> {
         let look = |at: &Vector3<f64>| {
             let point = self.look(at)?;
@@ -296,8 +276,7 @@ impl Corrector<'_> {
         tangent.iter().all(|part| part.is_finite()).then_some(tangent)
     }
 
-    /// The motion through a state, which need not come back, with its derivatives; none where it ends early
-    /// or has none.
+    /// The motion through a state, which need not come back; `None` if it ends early or has no derivatives.
     pub fn look(&self, at: &Vector3<f64>) -> Option<Point> {
         let value = at.z * self.units.range;
         let map = self.map(value)?;

@@ -1,5 +1,4 @@
-//! Events of a branch: their names, and those between two points in which the map is smooth, located to some
-//! 1e-9 of the range.
+//! Events of a branch, and those between two points of a smooth map, located to some 1e-9 of the range.
 
 use nalgebra::Vector3;
 
@@ -46,7 +45,6 @@ const OPPOSITE: f64 = 0.5;
 /// Halvings of the step between two points, in units of which a breaking of the symmetry is bracketed.
 const HALVINGS: i32 = 20;
 
-/// The most points for it.
 const MOST_POINTS: usize = 80;
 
 /// Whether two motions touch the stops in another order or number.
@@ -65,9 +63,8 @@ fn characteristic(point: &Point, at: f64) -> f64 {
     1.0 - at * point.by_state.trace() + point.determinant
 }
 
-/// The events between two points that follow each other, with motions between them that touch the stops as
-/// they do; in order, each with its point. `along` and `onward` are the directions of the
-/// branch at them. None where something changes between them whose place was not found.
+/// The events between two points that follow each other, in order, each with its point; `along` and `onward`
+/// are the directions of the branch there. None where the place of a change was not found.
 pub(super) fn between(
     corrector: &Corrector,
     from: &Point,
@@ -99,9 +96,9 @@ pub(super) fn between(
     Some(found.into_iter().map(|(_, event, point)| (event, point)).collect())
 }
 
-/// The motion that is its own mirror image at which a branch of motions that are not turns to their mirror
-/// images between two points; `None` if it does not. The map over the period is singular there, so the motion
-/// is found by the mirrored map over half of it.
+/// The motion that is its own mirror image at which a branch of motions that are not turns back as that of
+/// their mirror images, if it does. The map over the period is singular there, so the motion is found by the
+/// mirrored map over half of it.
 fn symmetry_breaking(corrector: &Corrector, from: &Point, to: &Point) -> Option<(f64, Point)> {
     let asymmetry = |point: &Point| {
         let map = corrector.map(point.value)?;
@@ -136,9 +133,8 @@ fn is_at(point: &Point, unit: f64) -> bool {
     multipliers.iter().any(|multiplier| (multiplier.re - unit).hypot(multiplier.im) <= AT_UNIT)
 }
 
-/// Where on the branch between two points a quantity of different signs at them is 0, as a share of their
-/// distance, by the secant method kept in its bracket (Illinois); none where the signs just before and after
-/// it are not different ones.
+/// Where a quantity of different signs at two points of the branch is 0, as a share of their distance, by the
+/// secant method kept in its bracket (Illinois); `None` if the signs just beside it are equal.
 fn root(
     corrector: &Corrector,
     (from, to): (&Point, &Point),

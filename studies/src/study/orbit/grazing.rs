@@ -14,7 +14,8 @@ use nalgebra::Vector3;
 
 use super::corrector::{Accuracy, Corrector, Equations, Point, newton};
 use super::{Orbit, map_of};
-use crate::dynamics::{EventKind, Jacobian, Miss, Outcome, Passage, Side, StroboscopicMap};
+use crate::dynamics::{Event, EventKind, Jacobian, Miss, Outcome, Passage, Side, StroboscopicMap};
+use crate::study::State;
 
 /// The share of the length scale that a gap is below where its stop may be touched near by.
 const SMALL_GAP: f64 = 0.1;
@@ -22,8 +23,7 @@ const SMALL_GAP: f64 = 0.1;
 /// The most turns and impacts of a motion that are looked at, the smallest gaps and speeds first.
 const MOST_LOOKED_AT: usize = 4;
 
-/// Half the distance over which a flight is differenced, in the units: its third derivatives are large, and
-/// Newton's method needs but few digits.
+/// Half the distance over which a flight is differenced, in the units; few digits are needed.
 const DIFFERENCE: f64 = 1e-7;
 
 /// The gap or speed in the units at which the rate is measured at which motions depart from the grazing one.
@@ -38,16 +38,13 @@ const DISTANCES: Range<f64> = 0.3..3.0;
 /// To rounding.
 const FINEST: Accuracy = Accuracy { change: 0.0, step: 1e-15 };
 
-/// How exact the grazing motion is: what it is off in the units where it meets the stop and after its period,
-/// and the last step to it.
+/// How exact the grazing motion is in the units: at the stop, after its period, and in the last step.
 pub(super) const EXACT: f64 = 1e-9;
 
 /// On which side of a grazing a motion is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Beside {
-    /// It misses the stop.
     Missing,
-    /// It touches it.
     Touching,
 }
 
@@ -63,10 +60,8 @@ impl Beside {
 /// A motion that touches a stop without speed.
 pub(super) struct Grazing<'a> {
     corrector: &'a Corrector<'a>,
-    /// The side of the stop.
     side: Side,
-    /// Times in forcing periods after a strobe about which there are no stops, and for how long before and
-    /// after; they come again with each flight.
+    /// Times in forcing periods after a strobe around which stops are left out, with half the length of each.
     open: Vec<(f64, f64)>,
     /// Time in forcing periods after a strobe, 0, and field in its unit.
     solution: Vector3<f64>,
@@ -80,8 +75,7 @@ struct Maps {
     without: StroboscopicMap,
 }
 
-/// The motions that graze a stop where a motion near to them turns back or strikes it gently, and on which
-/// side of them that is.
+/// The motions that graze a stop near one that turns back or strikes gently, and on which side that one is.
 pub(super) fn grazings<'a>(corrector: &'a Corrector<'a>, near: &Point) -> Vec<(Grazing<'a>, Beside)> {
     let contacts = near.orbit.contacts();
     if near.orbit.passage.misses.is_empty() && contacts.is_empty() {
@@ -91,44 +85,35 @@ pub(super) fn grazings<'a>(corrector: &'a Corrector<'a>, near: &Point) -> Vec<(G
     let units = &corrector.units;
     let whole = f64::from(corrector.periods);
     let time = |t: f64| ((t - map.first_strobe()) / map.period()).rem_euclid(whole);
-    let misses: Vec<(f64, Side, f64)> = near
-        .orbit
-        .passage
-        .misses
-        .iter()
-        .map(|miss| (time(miss.t), miss.side, miss.gap / units.length))
-        .filter(|miss| miss.2 < SMALL_GAP)
-        .collect();
+    let misses = near.orbit.passage.misses.iter();
+    let misses = misses.map(|miss| (time(miss.t), miss.side, miss.gap / units.length, Beside::Missing));
+    let misses = misses.filter(|miss| miss.2 < SMALL_GAP);
     let impacts = contacts.iter().filter(|event| event.kind == EventKind::Impact);
-    let impacts = impacts.map(|event| (time(event.t), event.side, event.v_in.abs() / units.speed));
-    let mut turns: Vec<_> = misses
-        .iter()
-        .map(|miss| (*miss, Beside::Missing))
-        .chain(impacts.map(|impact| (impact, Beside::Touching)))
-        .collect();
+    let speed = |event: &Event| event.v_in.abs() / units.speed;
+    let impacts = impacts.map(|event| (time(event.t), event.side, speed(event), Beside::Touching));
+    // times, sides, gaps or speeds
+    let mut turns: Vec<(f64, Side, f64, Beside)> = misses.clone().chain(impacts).collect();
     // a gap goes as the square of a speed
-    let depth = |((_, _, size), beside): &((f64, Side, f64), Beside)| match beside {
+    let depth = |(_, _, size, beside): &(f64, Side, f64, Beside)| match beside {
         Beside::Missing => *size,
         Beside::Touching => size * size,
     };
     let flight = corrector.flight();
     // of a motion that is its own mirror image the first half has all
-    turns.retain(|((t, ..), _)| *t < flight);
+    turns.retain(|turn| turn.0 < flight);
     turns.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
     turns.truncate(MOST_LOOKED_AT);
     let apart = |a: f64, b: f64| {
         let far = (a - b).rem_euclid(flight);
         far.min(flight - far)
     };
-    let grazing = |((t, side, _), beside): ((f64, Side, f64), Beside)| {
-        let others = near.orbit.passage.events.iter().filter(|event| event.kind != EventKind::Crossing);
-        let others: Vec<f64> =
-            others.map(|event| time(event.t)).filter(|other| apart(*other, t) > 1e-9).collect();
+    let grazing = |(t, side, _, beside): (f64, Side, f64, Beside)| {
+        let others = near.orbit.events_at_stops().map(|event| time(event.t));
+        let others: Vec<f64> = others.filter(|other| apart(*other, t) > 1e-9).collect();
         let room = |at: f64| others.iter().map(|other| 0.5 * apart(at, *other)).fold(0.25 * flight, f64::min);
-        let open = misses.iter().map(|miss| miss.0).chain([t]).map(|at| (at, room(at))).collect();
-        let guess = Vector3::new(t, 0.0, near.at.z);
-        let point = near.clone();
-        let unsolved = Grazing { corrector, side, open, solution: guess, point };
+        let open = misses.clone().map(|miss| miss.0).chain([t]).map(|at| (at, room(at))).collect();
+        let solution = Vector3::new(t, 0.0, near.at.z);
+        let unsolved = Grazing { corrector, side, open, solution, point: near.clone() };
         Some((unsolved.solved()?, beside))
     };
     turns.into_iter().filter_map(grazing).collect()
@@ -143,7 +128,7 @@ impl Maps {
 }
 
 impl Grazing<'_> {
-    /// The same at the motion that grazes; none where Newton's method does not find it near by.
+    /// The same at the motion that grazes; `None` if Newton's method does not find it near by.
     fn solved(mut self) -> Option<Self> {
         let guess = self.solution;
         let (solution, left) = self.solve(guess, Beside::Missing)?;
@@ -195,7 +180,7 @@ impl Grazing<'_> {
     }
 
     /// The state in m and m/s to which a motion comes over a time without stops near the grazing.
-    fn fly(&self, maps: &Maps, state: (f64, f64), span: (f64, f64)) -> Option<(f64, f64)> {
+    fn fly(&self, maps: &Maps, state: State, span: (f64, f64)) -> Option<State> {
         self.parts(span).into_iter().try_fold(state, |state, (stops, span)| {
             let map = if stops { &maps.with } else { &maps.without };
             let passage = map.pass_between(state, span);
@@ -204,7 +189,7 @@ impl Grazing<'_> {
     }
 
     /// Displacement and velocity at the grazing, and those to which they must come after the flight.
-    fn ends(&self, maps: &Maps, size: f64, beside: Beside) -> Option<[(f64, f64); 2]> {
+    fn ends(&self, maps: &Maps, size: f64, beside: Beside) -> Option<[State; 2]> {
         let (stop, restitution) = self.stop(maps)?;
         let units = &self.corrector.units;
         let toward = if self.side == Side::Left { -size } else { size };
@@ -251,9 +236,8 @@ impl Grazing<'_> {
         newton(guess, &Vector3::y(), FINEST, look).map(|((), at, left)| (at, left))
     }
 
-    /// The grazing motion from its state at a strobe, at a value of the field; none where it does not touch
-    /// the stop or does not come back.
-    fn at_strobe(&self, maps: &Maps, state: (f64, f64), value: f64) -> Option<Point> {
+    /// The grazing motion from its state at a strobe; `None` if it does not touch the stop or come back.
+    fn at_strobe(&self, maps: &Maps, state: State, value: f64) -> Option<Point> {
         let corrector = self.corrector;
         let flight = corrector.flight();
         let (mut at, mut by_state) = (state, Jacobian::IDENTITY);
@@ -283,8 +267,8 @@ impl Grazing<'_> {
         misses.push(Miss { t, side, gap });
         let units = &corrector.units;
         let off = corrector.change(state, corrector.image(at));
-        let most = [off[0], off[1], gap / units.length, v / units.speed].map(f64::abs);
-        if !most.iter().all(|part| *part <= EXACT) {
+        let offsets = [off[0], off[1], gap / units.length, v / units.speed].map(f64::abs);
+        if !offsets.iter().all(|part| *part <= EXACT) {
             return None;
         }
         let mut passage = Passage { state: at, events, determinant, misses, outcome: Outcome::Done, impacts };
@@ -300,7 +284,7 @@ impl Grazing<'_> {
     }
 
     /// Its state in m and m/s at another phase of the drive.
-    pub fn at_phase(&self, phase: f64) -> Option<(f64, f64)> {
+    pub fn at_phase(&self, phase: f64) -> Option<State> {
         let maps = Maps::of(self.corrector, self.point.value)?;
         self.fly(&maps, self.point.orbit.state, (0.0, (phase - self.corrector.phase).rem_euclid(1.0)))
     }
@@ -323,8 +307,7 @@ impl Grazing<'_> {
         (is_there && self.is_beside(&point, beside)).then_some(point)
     }
 
-    /// Whether a motion touches the stops as the grazing one does, and once more where it touches this one;
-    /// its mirror image then does so at the other stop.
+    /// Whether a motion touches the stops as the grazing one does, once more where it touches this one.
     fn is_beside(&self, point: &Point, beside: Beside) -> bool {
         let touches = |point: &Point, side: Side| {
             let contacts = point.orbit.contacts();

@@ -1,14 +1,11 @@
-//! Periodic motions: found by Newton's method on the stroboscopic map, with their Floquet multipliers, and
-//! followed over a field of the scene.
+//! Periodic motions by Newton's method on the stroboscopic map, and their branches over a field.
 //!
 //! A periodic motion of n forcing periods is a fixed point of the map of a state to that n periods later
 //! ([`StroboscopicMap`]). Its multipliers are the eigenvalues of the map's derivative there; it is stable
 //! where both are inside the unit circle. A motion that rests on a stop forgets its past: both are 0.
 //!
-//! [`orbit`] finds the motion near that of a run, [`orbit_near`] one near a state, [`branch()`] follows it
-//! over a field.
+//! [`orbit`] finds the motion near that of a run, [`orbit_near`] near a state; [`branch()`] follows it.
 
-mod branch;
 mod corrector;
 mod events;
 mod grazing;
@@ -17,14 +14,16 @@ mod walk;
 use std::fmt;
 use std::sync::atomic::AtomicBool;
 
-use super::settled::settled;
-use super::table::Table;
+use nalgebra::Vector3;
+
+use super::{Family, State, Table, Task, settled};
 use crate::dynamics::{
     Event, EventKind, Jacobian, Model, Multiplier, Outcome, Passage, Regime, StroboscopicMap,
 };
-
-pub use branch::{Branch, BranchEnd, branch};
+use crate::scene::column_names;
+use corrector::{Corrector, Units};
 pub use events::BranchEvent;
+use walk::Walk;
 
 /// The most steps of Newton's method.
 const MOST_STEPS: usize = 40;
@@ -32,8 +31,7 @@ const MOST_STEPS: usize = 40;
 /// The longest step, as a share of the scales: the method is for a guess near the motion.
 const LONGEST_STEP: f64 = 0.2;
 
-/// The change of a state, as a share of the scales, below which it has come back; and the step below which
-/// nothing is gained any more.
+/// The change of a state, as a share of the scales, that is none; and the step that gains nothing any more.
 const CLOSE: f64 = 1e-9;
 const SMALLEST_STEP: f64 = 1e-13;
 
@@ -62,48 +60,37 @@ pub struct Orbit {
 }
 
 /// Why there is no periodic motion near a state.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NoOrbit {
     /// Newton's method has not converged.
+    #[error("Newton's method finds no periodic motion near that of the run")]
     NotConverged,
     /// The motion touches a stop without speed, where the map has no derivative.
+    #[error("the motion touches a stop without speed, where it has no derivative; change the scene a little")]
     Grazing,
     /// The motion does not last for the period.
+    #[error("the motion ends early ({}){}", .0.name(), ended_at(*.0))]
     Ended(Outcome),
     /// None of the period that was asked for is there: the motion repeats after this many forcing periods.
+    #[error("near the motion of the run is only one of period {0}")]
     Shorter(u32),
     /// The run does not come to a motion that repeats.
+    #[error(
+        "the run comes to no motion that repeats after at most 12 forcing periods; name a period, or start \
+         elsewhere"
+    )]
     NotSettled,
     /// Its transducer has a state of its own.
+    #[error("{}", crate::study::ELECTRICAL_STATE)]
     ElectricalState,
     /// It was cancelled.
+    #[error("it was told to stop")]
     Cancelled,
 }
 
-impl fmt::Display for NoOrbit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotConverged => {
-                f.write_str("Newton's method finds no periodic motion near that of the run")
-            }
-            Self::Grazing => f.write_str(
-                "the motion touches a stop without speed, where it has no derivative; change the scene a \
-                 little",
-            ),
-            Self::Ended(outcome) => {
-                write!(f, "the motion ends early ({})", outcome.name())?;
-                outcome.ended_at().map_or(Ok(()), |at| write!(f, ", {at} s after the drive's phase 0"))
-            }
-            Self::Shorter(period) => write!(f, "near the motion of the run is only one of period {period}"),
-            Self::NotSettled => f.write_str(
-                "the run comes to no motion that repeats after at most 12 forcing periods; name a period, or \
-                 start elsewhere",
-            ),
-            Self::ElectricalState => f.write_str(crate::study::ELECTRICAL_STATE),
-            Self::Cancelled => f.write_str("it was told to stop"),
-        }
-    }
+fn ended_at(outcome: Outcome) -> String {
+    outcome.ended_at().map_or(String::new(), |at| format!(", {at} s after the drive's phase 0"))
 }
 
 impl Orbit {
@@ -117,11 +104,14 @@ impl Orbit {
         self.passage.determinant.unwrap_or_else(|| self.jacobian.determinant())
     }
 
-    /// Events at the stops in their order around the motion, without the impacts of a chatter that ends in
-    /// rest but its first: of those there is no end, and how many are told from their sum means nothing.
+    fn events_at_stops(&self) -> impl Iterator<Item = &Event> {
+        self.passage.events.iter().filter(|event| event.kind != EventKind::Crossing)
+    }
+
+    /// Events at the stops in their order around the motion. Of a chatter that ends in rest only the first
+    /// impact is kept: the number of the others says nothing, since they are summed.
     pub fn contacts(&self) -> Vec<Event> {
-        let mut all: Vec<Event> =
-            self.passage.events.iter().filter(|event| event.kind != EventKind::Crossing).copied().collect();
+        let mut all: Vec<Event> = self.events_at_stops().copied().collect();
         // so that no chatter is cut in two
         if let Some(place) = all.iter().position(|event| event.kind == EventKind::Release) {
             all.rotate_left(place);
@@ -139,8 +129,7 @@ impl Orbit {
         kept
     }
 
-    /// Speed in m/s of the slowest impact, those after the first of a chatter that ends in rest left out;
-    /// none without one.
+    /// Speed in m/s of the slowest of the [`contacts`](Self::contacts) that are impacts; `None` without one.
     pub fn gentlest_impact(&self) -> Option<f64> {
         let hits = |event: &Event| matches!(event.kind, EventKind::Impact | EventKind::Contact);
         let all = self.contacts().into_iter().filter(hits);
@@ -154,11 +143,11 @@ impl Orbit {
 }
 
 /// A state between rigid stops and on the curve, with the mass held at the one that it lies beyond.
-pub(super) fn allowed(model: &Model, state: (f64, f64)) -> (f64, f64) {
+pub(super) fn allowed(model: &Model, state: State) -> State {
     model.held_within(state, if model.compliant().is_some() { f64::INFINITY } else { 0.0 })
 }
 
-/// The stroboscopic map of a model, exact enough for its derivatives; none where the drive has no period.
+/// The stroboscopic map of a model, exact enough for its derivatives; `None` if the drive has no period.
 pub(super) fn map_of(model: &Model, phase: f64) -> Option<StroboscopicMap> {
     model.with_tolerance(model.tolerance().min(TOLERANCE)).stroboscopic_map(phase)
 }
@@ -167,7 +156,7 @@ pub(super) fn map_of(model: &Model, phase: f64) -> Option<StroboscopicMap> {
 /// method. Its period is `periods` or a divisor of it.
 pub fn orbit_near(map: &StroboscopicMap, guess: (f64, f64), periods: u32) -> Result<Orbit, NoOrbit> {
     let scales = map.model().scales();
-    let size = |change: (f64, f64)| (change.0 / scales.length).abs().max((change.1 / scales.speed).abs());
+    let size = |change: State| (change.0 / scales.length).abs().max((change.1 / scales.speed).abs());
     let mut state = allowed(map.model(), guess);
     let mut best = f64::INFINITY;
     for _ in 0..MOST_STEPS {
@@ -244,16 +233,15 @@ pub fn orbit(model: &Model, phase: f64, period: Option<u32>, cancel: &AtomicBool
 }
 
 /// Of the states that follow one strobe by strobe, that which comes back the closest after `periods`.
-fn closest_return(map: &StroboscopicMap, from: (f64, f64), periods: u32) -> (f64, f64) {
+fn closest_return(map: &StroboscopicMap, from: State, periods: u32) -> State {
     let scales = map.model().scales();
-    let next = |state: &(f64, f64)| {
+    let next = |state: &State| {
         let passage = map.pass(*state, 1);
         (passage.outcome == Outcome::Done).then_some(passage.state)
     };
     let states: Vec<_> = std::iter::successors(Some(from), next).take(STROBES + periods as usize).collect();
     let returns = states.iter().zip(states.iter().skip(periods as usize));
-    let far =
-        |(a, b): (&(f64, f64), &(f64, f64))| ((a.0 - b.0) / scales.length).hypot((a.1 - b.1) / scales.speed);
+    let far = |(a, b): (&State, &State)| ((a.0 - b.0) / scales.length).hypot((a.1 - b.1) / scales.speed);
     returns.min_by(|a, b| far(*a).total_cmp(&far(*b))).map_or(from, |(state, _)| *state)
 }
 
@@ -273,9 +261,107 @@ fn with_orbits(table: Table, orbits: &[Orbit]) -> Table {
         .each("multiplier_1_im", orbits, part(0, |multiplier| multiplier.im))
         .each("multiplier_2_re", orbits, part(1, |multiplier| multiplier.re))
         .each("multiplier_2_im", orbits, part(1, |multiplier| multiplier.im))
-        .each("stable", orbits, |orbit| if orbit.is_stable() { "true" } else { "false" })
+        .each("stable", orbits, |orbit| Some(orbit.is_stable()))
         .each("impacts", orbits, |orbit| Some(orbit.passage.impacts))
         .each("rests", orbits, |orbit| Some(orbit.passage.rests()))
-        .each("gentlest_impact_m_per_s", orbits, |orbit| orbit.gentlest_impact().unwrap_or(f64::NAN))
-        .each("nearest_miss_m", orbits, |orbit| orbit.passage.nearest_miss().unwrap_or(f64::NAN))
+        .each("gentlest_impact_m_per_s", orbits, |orbit| orbit.gentlest_impact())
+        .each("nearest_miss_m", orbits, |orbit| orbit.passage.nearest_miss())
+}
+
+/// Why a branch ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum BranchEnd {
+    /// At an end of the range.
+    Range,
+    /// It came back to where it had been.
+    Closed,
+    /// The motion touches a stop without speed, and no motion near to it goes on.
+    Grazing,
+    /// A motion that rests on its way leaps to another one: the mass no longer goes where it went, as where
+    /// it just fails to pass the barrier, or its chatter no longer ends before it is released.
+    Leap,
+    /// Newton's method finds no motion near the last one: it leaps, changes too fast, or ends early.
+    Lost,
+    /// At the most points.
+    Points,
+}
+
+impl fmt::Display for BranchEnd {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Range => "at an end of the range",
+            Self::Closed => "where it had been before",
+            Self::Grazing => "where the motion touches a stop without speed, and none near to it goes on",
+            Self::Leap => "where the motion leaps to another one",
+            Self::Lost => {
+                "where no motion near the last one was found: it may leap to another, change too \
+                 fast, or end early"
+            }
+            Self::Points => "after 5000 motions",
+        })
+    }
+}
+
+/// A branch: its motions in order, each with the value of the field and what happens there.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Branch {
+    /// The field that changes.
+    pub field: String,
+    /// Its value at each motion.
+    pub values: Vec<f64>,
+    /// The motions.
+    pub orbits: Vec<Orbit>,
+    /// What happens there.
+    pub events: Vec<Option<BranchEvent>>,
+    /// Why the branch ended after the last.
+    pub end: BranchEnd,
+    /// Pairs of values between which contacts with the stops or the stability change without a located event.
+    pub unlocated: Vec<(f64, f64)>,
+}
+
+impl Branch {
+    /// A row a motion: the field, what [`orbit_table`](super::orbit_table) has, and `event`.
+    pub fn table(&self) -> Table {
+        let column = column_names(&[&self.field]).concat();
+        let table = Table::new().with(column, self.values.iter().copied().collect());
+        let name = |event: &Option<BranchEvent>| event.map_or("", BranchEvent::name);
+        with_orbits(table, &self.orbits).each("event", &self.events, name)
+    }
+}
+
+/// The branch of periodic motions of a family over `field` from one value towards another, on from the motion
+/// that a run comes to at the first; `phase` in forcing periods, `period` where one is asked for.
+///
+/// Ticks once a motion. An error is one of the first motion.
+pub fn branch(
+    family: &Family,
+    field: &str,
+    (from, to): (f64, f64),
+    phase: f64,
+    period: Option<u32>,
+    task: &Task,
+) -> Result<Branch, NoOrbit> {
+    let model = family.model(from).map_err(|_| NoOrbit::NotConverged)?;
+    let first = orbit(&model, phase, period, task.cancel)?;
+    let scales = model.scales();
+    let units = Units { length: scales.length, speed: scales.speed, range: (to - from).abs() };
+    let map = map_of(&model, phase).ok_or(NoOrbit::NotConverged)?;
+    let mirrored = Corrector::asymmetry(&map, &first).is_some_and(|off| off.amax() <= SAME);
+    let corrector = Corrector { family, phase, periods: first.period, mirrored, units };
+    let upwards = Vector3::new(0.0, 0.0, (to - from).signum());
+    let point = corrector.correct(corrector.at(first.state, from), &upwards).ok_or(NoOrbit::NotConverged)?;
+    let along = corrector.tangent(&point, &upwards).ok_or(NoOrbit::Grazing)?;
+    let branch = Branch {
+        field: field.to_owned(),
+        values: Vec::new(),
+        orbits: Vec::new(),
+        events: Vec::new(),
+        end: BranchEnd::Points,
+        unlocated: Vec::new(),
+    };
+    let mut walk = Walk::new(corrector, branch, (from, to), &model, (point, along));
+    walk.branch.end = walk.run_out(task)?;
+    Ok(walk.branch)
 }

@@ -1,18 +1,15 @@
-//! Walk along a branch of periodic motions, through folds by pseudo-arclength (Keller 1977) and over
-//! grazings.
+//! Walk along a branch of periodic motions, through folds by pseudo-arclength and over grazings.
 
 use nalgebra::Vector3;
 
-use super::branch::{Branch, BranchEnd};
 use super::corrector::{Corrector, Point};
 use super::events::{BranchEvent, between, differ};
 use super::grazing::{Beside, Grazing, grazings};
-use super::{NoOrbit, Orbit, SAME};
+use super::{Branch, BranchEnd, NoOrbit, Orbit, SAME};
 use crate::dynamics::Model;
-use crate::study::Task;
+use crate::study::{State, Task};
 
-/// Steps of the walk in the units of the branch: the first, the longest, and the one below which it does not
-/// go on.
+/// The first and the longest step of the walk in the units of the branch, and the one below which it ends.
 const FIRST: f64 = 2e-3;
 const LONGEST: f64 = 1e-2;
 const SHORTEST: f64 = 1e-9;
@@ -28,9 +25,8 @@ const CHANGE: f64 = 0.1;
 
 const MOST_POINTS: usize = 5000;
 
-/// Distances from a grazing at which the branch goes on, in the order in which they are tried; and the least
-/// of motions that miss and that touch the stop. Nearer to it, what is left of the map's derivatives is
-/// rounding.
+/// Distances from a grazing at which the branch goes on, in the order of trial; and the least of motions that
+/// miss and that touch the stop, since nearer to it the map's derivatives are rounding.
 const PAST_A_GRAZING: [f64; 6] = [1e-4, 3e-4, 1e-3, 3e-3, 3e-5, 1e-5];
 const LEAST_MISSING: f64 = 1e-6;
 const LEAST_TOUCHING: f64 = 1e-5;
@@ -42,12 +38,12 @@ const AT_AN_END: f64 = 1e-12;
 pub(super) type Directed = (Point, Vector3<f64>);
 
 /// Events in order, each with its point and the state at the phase of the rows where that is known.
-type Events = Vec<(BranchEvent, Point, Option<(f64, f64)>)>;
+type Events = Vec<(BranchEvent, Point, Option<State>)>;
 
 /// A stretch of the branch from the last point on.
 struct Stretch {
     events: Events,
-    /// The point at its end; none where the branch ends at the last event.
+    /// The point at its end; `None` if the branch ends at the last event.
     next: Option<Directed>,
     is_last: bool,
 }
@@ -104,13 +100,10 @@ impl<'a> Walk<'a> {
         walk
     }
 
-    /// Goes on until the branch ends.
     pub fn run_out(&mut self, task: &Task) -> Result<BranchEnd, NoOrbit> {
         let mut step = FIRST;
         while self.branch.values.len() < MOST_POINTS {
-            if task.is_cancelled() {
-                return Err(NoOrbit::Cancelled);
-            }
+            task.go_on().map_err(|_| NoOrbit::Cancelled)?;
             (task.tick)();
             self.keep_clear(&[]);
             let (found, beyond) = self.predicted(step);
@@ -212,8 +205,7 @@ impl<'a> Walk<'a> {
         step.dot(along) > STRAIGHT * step.norm()
     }
 
-    /// Whether a motion that rests on its way, which begins anew at each release whatever it was before, is
-    /// where the last one was all the time.
+    /// Whether a motion that rests on its way, and begins anew at each release, is where the last one was.
     fn is_near(&self, next: &Point) -> bool {
         let point = &self.at.0;
         if !point.forgets() && !next.forgets() {
@@ -225,8 +217,7 @@ impl<'a> Walk<'a> {
         far.fold(0.0, f64::max) <= CHANGE * self.room
     }
 
-    /// Whether a motion touches the stops otherwise than the last one; what a mass does between two rests
-    /// changes without a bifurcation.
+    /// Whether a motion touches the stops otherwise than the last one; between rests this is no bifurcation.
     fn touches_otherwise(&self, next: &Point) -> bool {
         let point = &self.at.0;
         differ(point, next) && !(point.forgets() && next.forgets())
@@ -283,7 +274,7 @@ impl<'a> Walk<'a> {
         Some(Stretch { events, next, is_last })
     }
 
-    /// The events up to a grazing; none where the branch does not lead to it.
+    /// The events up to a grazing; `None` if the branch does not lead to it.
     fn up_to(&self, grazing: &Grazing, beside: Beside) -> Option<Events> {
         let (point, along) = &self.at;
         let least = least(beside);
@@ -339,9 +330,8 @@ impl<'a> Walk<'a> {
         true
     }
 
-    /// Adds a row, with its state at the phase of the rows where it is known; without its event where the
-    /// branch had been at this motion before.
-    fn add(&mut self, event: Option<BranchEvent>, point: &Point, state: Option<(f64, f64)>) {
+    /// Adds a row, with its state at the phase of the rows if known; without an event at a motion met before.
+    fn add(&mut self, event: Option<BranchEvent>, point: &Point, state: Option<State>) {
         let orbit = match state {
             Some(state) => Orbit { state, ..point.orbit.clone() },
             None => {
@@ -388,8 +378,7 @@ impl<'a> Walk<'a> {
         self.corrector.look(&(point.at + Vector3::z() * along.z.signum() * UNLOCATED)).is_some()
     }
 
-    /// Goes on from the present motion without the condition that motions are their own mirror images; false
-    /// where that finds none.
+    /// Goes on from the present motion without the mirror condition; false where that finds none.
     fn forgets_its_mirror_image(&mut self) -> bool {
         let (point, along) = &self.at;
         let corrector = Corrector { mirrored: false, ..self.corrector };

@@ -41,7 +41,7 @@ pub fn scene_table(tolerances: &Tolerances, stepped: &[StepSize]) -> Table {
         .each("impacts", runs, |run| Some(run.statistics.impacts))
         .each("late_s", runs, |_| f64::NAN)
         .each("latest_s", runs, |_| f64::NAN)
-        .each("arrivals", runs, |_| None)
+        .each("arrivals", runs, |_| None::<u64>)
         .each("outcome", runs, |run| run.outcome.name());
     let outcome = |run: &StepSize| if run.stepped.ended_at.is_some() { "ended_early" } else { "done" };
     let in_steps = Table::new()

@@ -2,10 +2,9 @@
 
 use std::ops::Range;
 
-use crate::study::identify::turns::{Turn, turns};
-
 use super::meeting::{Meeting, Sides};
-use super::motion::{Motion, median};
+use super::{Motion, median};
+use crate::study::identify::turns::{Turn, turns};
 
 /// A turning point at a stop.
 #[derive(Debug, Clone)]
@@ -41,8 +40,7 @@ const FEWEST: usize = 4;
 /// Standard deviations by whose square two polynomials that meet must fit better than one across.
 const CLEAR: f64 = 6.0;
 
-/// Impacts count as those of one stop where their places differ by less than this part of the range of the
-/// record, besides six standard errors.
+/// Impacts are on one stop where they differ by less than this part of the range and six standard errors.
 const SAME_STOP: f64 = 0.005;
 
 /// Impacts count as those of a given stop where they lie nearer to it than this part of the range.
@@ -144,8 +142,7 @@ fn stop(motion: &Motion, contacts: &[Contact], right: bool, given: Option<f64>) 
     median(outer.map(|impact| impact.x).collect())
 }
 
-/// Samples of the longest flight that goes from one turning point to another of its kind without reaching
-/// half of the way to the other side.
+/// Samples of the longest flight from a turning point to the next of its kind, less than half way across.
 pub fn longest_rebound(motion: &Motion) -> Option<usize> {
     let rebound = |turns: &[Turn]| {
         let [first, top, last] = [turns[0].at, turns[1].at, turns[2].at];

@@ -1,8 +1,7 @@
 //! Meeting of two polynomials: the instant and the place of an impact, and the speeds on both sides of it.
 
+use super::{Motion, median};
 use crate::numeric::orthogonal::Orthogonal;
-
-use super::motion::{Motion, median};
 
 /// The motion before an impact and after it, as polynomials.
 pub struct Sides {

@@ -1,44 +1,40 @@
 //! Coefficient of restitution from a record of displacement, or from the times of impacts.
 
-mod choice;
 mod contacts;
 mod meeting;
 mod motion;
-mod times;
 mod trials;
 
-use self::choice::Choice;
 use self::contacts::{Contact, contacts};
 use self::meeting::{place, restitution as ratio};
 use self::motion::Motion;
-pub(super) use self::motion::median;
-use self::trials::{Single, Trial, each, together, trials};
-use super::{Identified, Identity, Unidentified};
+use self::trials::{Choice, Single, Trial, each, together, trials};
+pub(super) use super::turns::median;
+use super::{Identified, Identity, Unidentified, with_interval};
+use crate::numeric::regression::{geometric, student};
 use crate::numeric::short;
-use crate::study::table::Table;
+use crate::study::Table;
 
-pub use times::restitution_of_times;
+/// Columns of the restitution with its interval.
+const RESTITUTION: [&str; 3] = ["restitution", "restitution_low", "restitution_high"];
 
 /// Samples that a rebound should have.
-const ENOUGH: usize = 8;
+pub(super) const ENOUGH: usize = 8;
 
 /// Restitution of the impacts in a record of displacement `x` in m over `times` in s, of a mass that is
 /// shaken between stops or bounces freely.
 ///
-/// A turning point is an impact where the velocity jumps, and a stop is where the outermost impacts lie,
-/// or where those near a place `given` (left, right) lie. On either side of an impact a polynomial is
-/// fitted to the flight; both meet at the impact, where their slopes are the speeds before and after it.
-/// If the `accelerations` of the base in m/s^2 are given, the displacement that they alone cause is
-/// subtracted first.
+/// A turning point is an impact where the velocity jumps, and a stop is where the outermost impacts lie, or
+/// those near a place `given` (left, right). On either side of an impact a polynomial is fitted to the
+/// flight; where both meet, their slopes are the speeds before and after it. The displacement that the
+/// `accelerations` of the base in m/s^2 alone cause is subtracted first.
 ///
-/// Window and degree are those with the narrowest interval, of which the differences from other windows and
-/// degrees are a part. Samples in flat tops, where a sensor or its converter was at its limit, are left out.
-/// The one number is of all impacts together. Where the stops differ by more than their
-/// intervals, its interval holds both of theirs; where the impacts of a stop differ by more than theirs, it
-/// is as much wider (Birge 1932).
+/// Window and degree have the narrowest interval, of which the differences from other windows and degrees are
+/// a part. Samples in flat tops, where a sensor or its converter was at its limit, are left out. Where the
+/// stops differ by more than their intervals, the interval of the one number holds both; where the impacts of
+/// a stop do, it is as much wider (Birge 1932).
 ///
-/// Rows, one an impact: `t_s,side`, then `v_in`, `v_out` in m/s and `restitution`, each with `_low`
-/// and `_high`.
+/// Rows, one an impact: `t_s,side`, then `v_in`, `v_out` in m/s and `restitution` with `_low` and `_high`.
 pub fn restitution(
     times: &[f64],
     x: &[f64],
@@ -140,8 +136,7 @@ fn spanning(one: Identity, other: Identity) -> Identity {
     Identity { name: "restitution", value: (a * one.value + b * other.value) / (a + b), interval }
 }
 
-/// Factor by which single impacts scatter about their common number beyond their intervals; `None` if they
-/// do not.
+/// Factor by which single impacts scatter beyond their intervals; `None` if they do not.
 fn scatter(common: Choice, singles: &[&Single]) -> Option<f64> {
     let count = singles.len() as f64;
     let apart = |single: &&Single| (single.ratio.value - common.value) / single.ratio.half.hypot(common.half);
@@ -206,16 +201,16 @@ fn unresolved(motion: &Motion, found: usize) -> Unidentified {
     if found == 0
         && let Some((swings, limits)) = cut_off(motion)
     {
-        return Unidentified::CutOff { swings, limits };
+        return Unidentified::CutOff(swings, limits);
     }
     let (noise, rate) = (short(motion.noise), 1.0 / motion.timing.step);
     match contacts::longest_rebound(motion).or((found > 0).then_some(2)) {
         Some(longest) if longest < ENOUGH => {
             let [rate, needed] = [rate, rate * ENOUGH as f64 / longest as f64].map(short);
-            Unidentified::Slow { longest, rate, needed, enough: ENOUGH }
+            Unidentified::Slow { longest, rate, needed }
         }
-        _ if found > 0 => Unidentified::Noisy { found, noise },
-        _ => Unidentified::NoImpact { noise, enough: ENOUGH },
+        _ if found > 0 => Unidentified::Noisy(found, noise),
+        _ => Unidentified::NoImpact(noise),
     }
 }
 
@@ -223,29 +218,18 @@ fn rows(contacts: &[Contact], singles: &[Single]) -> Table {
     let right = |single: &Single| contacts[single.contact].right;
     let outward = |single: &Single| if right(single) { 1.0 } else { -1.0 };
     let side = |single: &Single| if right(single) { "right" } else { "left" };
-    let v_in = |single: &Single| (outward(single) * single.impact.towards, single.halves[0]);
-    let v_out = |single: &Single| (-outward(single) * single.impact.away, single.halves[1]);
-    let ratio = |single: &Single| (single.ratio.value, single.ratio.half);
+    let v_in = ["v_in_m_per_s", "v_in_low_m_per_s", "v_in_high_m_per_s"];
+    let v_out = ["v_out_m_per_s", "v_out_low_m_per_s", "v_out_high_m_per_s"];
     let table = Table::new().each("t_s", singles, |single| single.impact.t).each("side", singles, side);
-    let table =
-        with_interval(table, singles, ["v_in_m_per_s", "v_in_low_m_per_s", "v_in_high_m_per_s"], v_in);
-    let table =
-        with_interval(table, singles, ["v_out_m_per_s", "v_out_low_m_per_s", "v_out_high_m_per_s"], v_out);
-    with_interval(table, singles, ["restitution", "restitution_low", "restitution_high"], ratio)
-}
-
-/// The table with a value, of which half of the interval is known, and the ends of the interval.
-fn with_interval(
-    table: Table,
-    singles: &[Single],
-    names: [&str; 3],
-    of: impl Fn(&Single) -> (f64, f64),
-) -> Table {
-    let end = |single: &Single, sign: f64| of(single).0 + sign * of(single).1;
-    table
-        .each(names[0], singles, |single| of(single).0)
-        .each(names[1], singles, |single| end(single, -1.0))
-        .each(names[2], singles, |single| end(single, 1.0))
+    let table = with_interval(table, v_in, singles, |single| {
+        Identity::new(v_in[0], outward(single) * single.impact.towards, single.halves[0])
+    });
+    let table = with_interval(table, v_out, singles, |single| {
+        Identity::new(v_out[0], -outward(single) * single.impact.away, single.halves[1])
+    });
+    with_interval(table, RESTITUTION, singles, |single| {
+        Identity::new(RESTITUTION[0], single.ratio.value, single.ratio.half)
+    })
 }
 
 /// The impacts, and how far each flight goes after it.
@@ -256,10 +240,43 @@ fn fitted(motion: &Motion, contacts: &[Contact], singles: &[Single]) -> Table {
         flight.max_by(|a, b| away(a).total_cmp(&away(b)))
     };
     let ends: Vec<Option<usize>> = singles.iter().map(farthest).collect();
-    let at = |values: &[f64], end: &Option<usize>| end.map_or(f64::NAN, |i| values[i]);
+    let at = |values: &[f64], end: &Option<usize>| end.map(|i| values[i]);
     Table::new()
         .each("t_s", singles, |single| single.impact.t)
         .each("x_m", singles, |single| single.impact.x)
         .each("rebound_t_s", &ends, |end| at(&motion.times, end))
         .each("rebound_x_m", &ends, |end| at(&motion.x, end))
+}
+
+/// Restitution of the impacts at these `times` in s of a body that bounces on one stop under a constant
+/// acceleration: then each flight is as much shorter than the one before, and the times follow
+/// c + a e^k, which is fitted by least squares.
+///
+/// Rows, one for each impact between two flights: `t_s,restitution,restitution_low,restitution_high`.
+pub fn restitution_of_times(times: &[f64]) -> Result<Identified, Unidentified> {
+    let none = |why| Unidentified::NoBounces(times.len(), why);
+    let law = geometric(times).ok_or_else(|| none("give more, or such as lie between bounces alone"))?;
+    let e = law.coefficients[2];
+    if !(e > 0.0 && law.coefficients[1] < 0.0) {
+        return Err(none("the flights do not become shorter; give such as lie between bounces alone"));
+    }
+    let misfit =
+        |(k, t): (usize, &f64)| (t - law.coefficients[0] - law.coefficients[1] * e.powi(k as i32)).powi(2);
+    let noise = (times.iter().enumerate().map(misfit).sum::<f64>() / law.freedom as f64).sqrt();
+    let row = |times: &[f64]| {
+        let flight = times[1] - times[0];
+        let ratio = (times[2] - times[1]) / flight;
+        let error = noise / flight * (1.0 + ratio.powi(2) + (1.0 + ratio).powi(2)).sqrt();
+        (times[1], Identity::new(RESTITUTION[0], ratio, student(law.freedom) * error))
+    };
+    let rows: Vec<(f64, Identity)> = times.windows(3).map(row).collect();
+    let rows = with_interval(Table::new().each("t_s", &rows, |row| row.0), RESTITUTION, &rows, |row| row.1);
+    let half = student(law.freedom) * law.covariance[(2, 2)].sqrt();
+    let remarks = vec![
+        "of impact times: the ratio of successive flights, which is the restitution where the acceleration \
+         of the flights is constant"
+            .to_owned(),
+    ];
+    let summary = vec![Identity::new("restitution", e, half)];
+    Ok(Identified { rows, fitted: Table::new(), summary, remarks })
 }

@@ -19,7 +19,6 @@ pub struct Motion {
     pub timing: Timing,
     /// Least and greatest displacement.
     pub extent: (f64, f64),
-    /// Noise of the displacements.
     pub noise: f64,
     /// How far noise alone moves them back.
     pub back: f64,
@@ -121,10 +120,4 @@ fn integrated(times: &[f64], accelerations: &[f64]) -> Vec<[f64; 3]> {
         [y, v, a]
     };
     times.iter().zip(accelerations).map(next).collect()
-}
-
-/// The median of some values; the greater of two middle ones.
-pub fn median(mut values: Vec<f64>) -> Option<f64> {
-    let middle = values.len() / 2;
-    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
