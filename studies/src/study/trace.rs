@@ -16,6 +16,9 @@ pub struct Trace {
     pub impacts: Table,
     /// `from_s,to_s,side` of every span at rest on a stop.
     pub rests: Table,
+    /// `t_s,x_m,v_m_per_s` once a forcing period, where the drive has its phase of time 0, over the times of the
+    /// phase portrait.
+    pub strobes: Table,
     /// Time in s from which on the phase portrait is shown: the last forcing periods, or a window asked for.
     pub portrait_from: f64,
     /// Time in s from which on the motion is shown: all of it, or the last forcing periods of a long run.
@@ -44,6 +47,9 @@ const BAND_PERIODS: f64 = 60.0;
 /// The last forcing periods that are then shown.
 const SHOWN_PERIODS: f64 = 24.0;
 
+/// The most states once a period.
+const MOST_STROBES: u32 = 300;
+
 /// Samples in a phase portrait.
 const PORTRAIT: f64 = 24_000.0;
 
@@ -64,7 +70,9 @@ pub fn simulate_with_trace(
         None => (model.settle(), model.duration()),
     };
     let mut close = window.unwrap_or((portrait_from(model, span), span.1));
-    let mut seen = picture_times(model, close, span.1);
+    let mut strobes = strobe_times(model, close);
+    let mut seen =
+        ascending(picture_times(model, close, span.1).into_iter().chain(strobes.clone()).collect());
     let times = ascending(seen.iter().chain(&keep.times).copied().collect());
     let run = model.run(&Request { sample_times: &times, events: true, ledger: true, ..request });
     let (left, right) = model.stop_positions();
@@ -74,7 +82,8 @@ pub fn simulate_with_trace(
     if end < span.1 && !matches!(run.summary.outcome, Outcome::Cancelled { .. }) {
         // it ended where there are few samples: the same run again, with samples up to its end
         close = window.filter(|(from, _)| *from < end).map_or((0.0, end), |(from, to)| (from, to.min(end)));
-        seen = picture_times(model, close, end);
+        strobes = strobe_times(model, close);
+        seen = ascending(picture_times(model, close, end).into_iter().chain(strobes.clone()).collect());
         shown = model.run(&Request { sample_times: &seen, ..request }).samples;
     }
     let path = path(&shown, &run.events, stops);
@@ -89,8 +98,15 @@ pub fn simulate_with_trace(
         None if end < span.1 => 0.0,
         None => shown_from(model, end),
     };
+    let is_strobe = |sample: &&Sample| sample.t >= portrait_from && strobes.contains(&sample.t);
+    let strobes: Vec<&Sample> = shown.iter().filter(is_strobe).collect();
+    let strobes = Table::new()
+        .each("t_s", &strobes, |sample| sample.t)
+        .each("x_m", &strobes, |sample| sample.x)
+        .each("v_m_per_s", &strobes, |sample| sample.v);
     let trace = Trace {
         path,
+        strobes,
         impacts: impacts(&run.events),
         rests: rests(&run.events, run.samples.first(), end),
         portrait_from,
@@ -119,6 +135,15 @@ fn shown_from(model: &Model, end: f64) -> f64 {
         Some(period) if repeats && end > BAND_PERIODS * period => end - SHOWN_PERIODS * period,
         _ => 0.0,
     }
+}
+
+/// The last whole forcing periods in s up to the end of a range; none without a period.
+fn strobe_times(model: &Model, (from, to): (f64, f64)) -> Vec<f64> {
+    let Some(period) = model.forcing_period() else { return Vec::new() };
+    let last = (to / period).floor();
+    let first = (from / period).ceil().max(last - f64::from(MOST_STROBES) + 1.0);
+    let numbers = (0..MOST_STROBES).map(|i| first + f64::from(i));
+    numbers.take_while(|number| *number <= last).map(|number| number * period).collect()
 }
 
 fn ascending(mut times: Vec<f64>) -> Vec<f64> {

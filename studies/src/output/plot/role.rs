@@ -30,6 +30,8 @@ pub enum Role {
     Kink,
     /// States with the energy of the top of the barrier.
     Separatrix,
+    /// States once a forcing period.
+    Strobe,
     /// A line to compare with, such as 0.
     Reference,
     /// A measured record.
@@ -138,6 +140,7 @@ impl Theme {
             Role::Unstable => Look { hollow: true, size: style::MARKER + 2.0, ..of(self.ink) },
             Role::Kink => Look { marker: Marker::Diamond, ..dotted(self.soft) },
             Role::Separatrix => Look { width: style::FINE_LINE, ..dashed(self.soft) },
+            Role::Strobe => Look { hollow: true, size: 4.9, ..of(self.shaking) },
             Role::Reference => Look { width: style::THIN, ..of(self.soft) },
             Role::Measured => Look { size: 4.0, width: style::LINE + 1.0, ..of(self.regimes[2]) },
             Role::Rebound => Look { size: 6.0, ..marked(self.second, Marker::Triangle) },

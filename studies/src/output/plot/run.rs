@@ -274,6 +274,13 @@ impl Seen<'_> {
         panel
     }
 
+    /// Time, displacement and velocity once a forcing period, in SI.
+    fn strobes(&self) -> impl Iterator<Item = [f64; 3]> {
+        let column = |name: &str| self.trace.strobes.numbers(name).unwrap_or_default();
+        let [t, x, v] = ["t_s", "x_m", "v_m_per_s"].map(column);
+        t.iter().zip(x).zip(v).map(|((t, x), v)| [*t, *x, *v])
+    }
+
     /// Velocity over displacement.
     fn portrait(&self) -> Panel {
         let Self { trace, .. } = *self;
@@ -295,6 +302,10 @@ impl Seen<'_> {
         }
         let path = x.iter().zip(v).map(|(x, v)| (x * 1e3, v * self.speed.0)).collect();
         panel.draw(Role::Motion, Marks::Path(path));
+        let strobes = self.strobes().map(|[_, x, v]| (x * 1e3, v * self.speed.0)).collect::<Vec<_>>();
+        if !strobes.is_empty() {
+            panel.layer(Role::Strobe, "once a period", Marks::Points(strobes));
+        }
         if let (Some(x), true, true) = (x.first(), is_still(x), is_still(v)) {
             panel.layer(Role::Drive, "the mass at rest", Marks::Points(vec![(x * 1e3, 0.0)]));
         }
@@ -322,6 +333,8 @@ impl Seen<'_> {
         for i in self.rows(trace.portrait_from).filter(|_| self.has(RunPanel::Portrait)) {
             drawn.put("portrait", &[t[i], x[i], v[i]], &[]);
         }
+        let strobes = self.strobes().filter(|_| self.has(RunPanel::Portrait));
+        strobes.for_each(|strobe| drawn.put("once_a_period", &strobe, &[]));
         for layer in portrait.iter().flat_map(|panel| &panel.layers) {
             let name = match layer.role {
                 Role::Separatrix => "separatrix",
