@@ -186,9 +186,9 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// duration; `bound`: a bound of the displacement; `end`: the state at the end.
     fn record_contact<P: InStop<T>>(&mut self, path: &P, lengths: (T, T, T), bound: T, end: (T, T)) {
         self.steps += 1;
-        let view = self.stepper.view(&self.state, path, lengths, bound, end);
-        self.record.step(&view, self.state.segment);
-        self.record.contact(&view);
+        let step = self.stepper.step_data(&self.state, lengths, bound, end);
+        self.record.step(path, None, &step, self.state.segment);
+        self.record.contact(path, &step);
     }
 
     /// The mass leaves the stop: the root of the depth is 0 again.

@@ -1,5 +1,6 @@
 //! Rest on a rigid stop, and the release that ends it.
 
+use super::first_rate;
 use crate::dynamics::clock::Instant;
 use crate::dynamics::drive::{ContactAcceleration, Drive, ReleaseRoot, Span};
 use crate::dynamics::equation::End;
@@ -16,22 +17,17 @@ const TOUCH_SKIP: f64 = 1e-6;
 
 impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// The touch with which a mass that stands at the stop of `end` with no speed leaves it, or `None` if it
-    /// is pressed onto the stop. The first derivative of the contact acceleration that is not 0 (to the
-    /// rounding of its terms) decides; if all are 0, the mass stays at the stop in free flight.
+    /// is pressed onto the stop. The first of the contact acceleration and its derivatives that is not 0
+    /// decides; if all are 0, the mass stays at the stop in free flight.
     pub fn leaves(&mut self, end: End) -> Option<Touch> {
         let rates = self.stepper.contact_acceleration(&self.state, end);
         let rounding = self.stepper.contact_acceleration_rounding(end);
         self.state.v = T::zero();
-        for (multiplicity, rate) in (BY_ACCELERATION..).zip(rates) {
-            let size = if multiplicity == BY_ACCELERATION { rounding } else { T::zero() };
-            if rate > size {
-                return None;
-            }
-            if rate < -size {
-                return Some(Touch { end, multiplicity });
-            }
+        match first_rate(rates, rounding) {
+            Some((_, pressed)) if pressed => None,
+            Some((multiplicity, _)) => Some(Touch { end, multiplicity }),
+            None => Some(Touch { end, multiplicity: UNDECIDED }),
         }
-        Some(Touch { end, multiplicity: UNDECIDED })
     }
 
     /// The mass stands at the stop of `end` with no speed: it rests or leaves.

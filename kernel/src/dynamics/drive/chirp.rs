@@ -13,8 +13,8 @@ pub(crate) struct Chirp<T> {
     pub to: f64,
     /// Length in s.
     pub over: f64,
-    /// The segment of the drive that begins where the chirp ends.
-    pub holds_from_segment: usize,
+    /// The segment of the drive that begins where the chirp ends; `None` if it outlasts the run.
+    pub holds_from_segment: Option<usize>,
 }
 
 impl<T: Scalar> Chirp<T> {
@@ -24,7 +24,7 @@ impl<T: Scalar> Chirp<T> {
         let dd = DoubleDouble::of;
         let time = clock.exact_seconds(at);
         let growth = (dd(self.to) - dd(self.from)) / dd(self.over);
-        let holding = segment >= self.holds_from_segment;
+        let holding = self.holds_from_segment.is_some_and(|first| segment >= first);
         let (turns, frequency, growth) = if holding {
             let before = (dd(self.from) + dd(self.to)) * dd(self.over) * dd(0.5);
             (before + (time - dd(self.over)) * dd(self.to), dd(self.to), dd(0.0))

@@ -13,7 +13,7 @@ use super::release::{Decaying, Search};
 use super::tone::{LastValue, Sine, Tone};
 use super::{Base, ContactAcceleration, Drive, ReleaseRoot, Span};
 use crate::dynamics::clock::{Clock, Instant};
-use crate::dynamics::series::{ROOM, SEEDED, Tail};
+use crate::dynamics::series::{ROOM, SEEDED, Series, Tail};
 use crate::numeric::Scalar;
 
 /// Maximum number of tones that the check of a step evaluates one by one. The series of more tones cannot
@@ -75,8 +75,8 @@ impl<T: Scalar> Tail<T> for General<T> {
     type Cursor = Cursor<T>;
 
     #[inline(always)]
-    fn zero_from(&self) -> usize {
-        if self.still { 1 } else { usize::MAX }
+    fn zero_from(&self) -> Option<usize> {
+        self.still.then_some(1)
     }
 
     #[inline(always)]
@@ -306,10 +306,17 @@ impl<T: Scalar> General<T> {
         acceleration: ContactAcceleration<T>,
         segment: usize,
     ) -> Search<'a, T, Self> {
-        let mut search = Search::new(self, clock, acceleration, segment);
-        (search.fastest, search.reach) = (self.fastest, self.reach);
-        search.common_cycles = self.common_cycles.filter(|_| segment >= self.segment_ends.len());
-        search.parts = self.tones.len() + self.lines.count() / 8 + 4 * self.chirps.len() + self.records.len();
-        search
+        Search {
+            drive: self,
+            clock,
+            acceleration,
+            segment,
+            fastest: self.fastest,
+            reach: self.reach,
+            common_cycles: self.common_cycles.filter(|_| segment >= self.segment_ends.len()),
+            parts: self.tones.len() + self.lines.count() / 8 + 4 * self.chirps.len() + self.records.len(),
+            decaying: None,
+            series: Series::new(0),
+        }
     }
 }

@@ -86,7 +86,10 @@ pub(crate) trait Drive<T: Scalar>: Tail<T> + Base<T> {
     ) -> T;
 
     /// The instant at which segment `segment` ends, if another one follows.
-    fn segment_end(&self, segment: usize) -> Option<Instant<T>>;
+    #[inline]
+    fn segment_end(&self, _segment: usize) -> Option<Instant<T>> {
+        None
+    }
 
     /// The next instant in the span at which the contact acceleration, positive now, changes sign, and the
     /// work of finding it. The span lies within one segment.
@@ -151,8 +154,8 @@ impl<T: Scalar> Tail<T> for Still<T> {
     type Cursor = ();
 
     #[inline(always)]
-    fn zero_from(&self) -> usize {
-        1
+    fn zero_from(&self) -> Option<usize> {
+        Some(1)
     }
 
     #[inline]
@@ -173,9 +176,6 @@ impl<T: Scalar> Drive<T> for Still<T> {
     #[inline]
     fn value(&self, _: &Clock<T>, _: &Instant<T>, _: usize, _: impl Fn() -> T, (): &mut ()) -> T {
         self.acceleration
-    }
-    fn segment_end(&self, _: usize) -> Option<Instant<T>> {
-        None
     }
     fn next_release(
         &self,

@@ -12,8 +12,8 @@ pub(crate) struct Ramp<T> {
     pub from: T,
     /// Growth per kernel time unit.
     pub rate: T,
-    /// The segment of the drive that begins where the ramp ends.
-    pub holds_from_segment: usize,
+    /// The segment of the drive that begins where the ramp ends; `None` if it outlasts the run.
+    pub holds_from_segment: Option<usize>,
 }
 
 /// amplitude sin(2 pi (frequency t) + phase).
@@ -82,7 +82,7 @@ impl<T: Scalar> Tone<T> {
     /// Amplitude and its growth at an instant.
     pub fn amplitude_at(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize) -> (T, T) {
         match &self.ramp {
-            Some(ramp) if segment < ramp.holds_from_segment => {
+            Some(ramp) if ramp.holds_from_segment.is_none_or(|first| segment < first) => {
                 let start = Instant { cycle: 0, phase: T::zero() };
                 (ramp.from + ramp.rate * clock.between(&start, at), ramp.rate)
             }
@@ -194,10 +194,6 @@ impl<T: Scalar> Drive<T> for Sine<T> {
         let unit = self.unit(at);
         *last = Some((*at, unit));
         self.tone.amplitude * unit.0
-    }
-
-    fn segment_end(&self, _: usize) -> Option<Instant<T>> {
-        None
     }
 
     fn next_release(

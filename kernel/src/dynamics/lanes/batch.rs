@@ -163,7 +163,7 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         let (model, request) = (run.model, run.request);
         let motion = Motion::new(model, request, model.tolerance, run.equation, clock, run.drive);
         let mut motion = Box::new(match run.pursuit {
-            Some(pursuit) => motion.pursuing(pursuit, model),
+            Some(pursuit) => motion.pursuing(pursuit),
             None => motion.with_recurrence(model.recurrence, model),
         });
         let start = motion.begin(model);
@@ -348,10 +348,9 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         let mode = motion.stepper.mode(&motion.state);
         let (length, end) = (trial.length.0[lane], trial.end(lane));
         let state = (end.y + mode.origin, end.v);
-        let path = &motion.stepper.series;
-        let view = motion.stepper.view(&motion.state, path, (length, length, length), end.bound, state);
+        let step = motion.stepper.step_data(&motion.state, (length, length, length), end.bound, state);
         if let Some(log) = &mut motion.log {
-            log.add_step(&view);
+            log.add_step(&motion.stepper.series, &step);
         }
         group.columns.copy_state(lane, motion);
         motion.mark();

@@ -48,7 +48,7 @@ impl Model {
 
     /// The same with `request` for each. With a ledger, events or samples they are run one by one.
     pub fn run_together(models: &[Self], request: &Request) -> Vec<Run> {
-        run_all(models, request, usize::MAX)
+        run_all(models, request, MAX_LANES)
     }
 
     /// The same with models that are requested while others are under way, so that several threads can share
@@ -59,7 +59,7 @@ impl Model {
         next: &mut dyn FnMut(UnderWay) -> Option<(usize, Self, Request<'q>)>,
         ended: &mut dyn FnMut(usize, &Self, Run),
     ) {
-        run_from(usize::MAX, next, ended);
+        run_from(MAX_LANES, next, ended);
     }
 
     /// Pursues motions of this model from given starts, many at once if the processor can. `next` gives the
@@ -74,7 +74,7 @@ impl Model {
         next: &mut dyn FnMut(UnderWay) -> Option<usize>,
         ended: &mut dyn FnMut(usize, Pursued),
     ) {
-        pursue(self, pursuits, &Request { cancel, ..Request::default() }, usize::MAX, (next, ended));
+        pursue(self, pursuits, &Request { cancel, ..Request::default() }, MAX_LANES, (next, ended));
     }
 
     /// [`pursue`](Self::pursue) one by one or in 4, 8 or 16 lanes, for tests; `None` if the processor does

@@ -135,7 +135,7 @@ impl Live {
         // the rest of the step that has already been taken
         let head_time = self.kernel.seconds(&self.head);
         let known = times.partition_point(|t| *t < head_time);
-        self.kernel.resample(&self.model, &self.tail, &self.head, &times[..known], &mut into.samples);
+        into.samples.extend(self.kernel.resample(&self.model, &self.tail, &self.head, &times[..known]));
         if self.ended.is_none() {
             let stretch = self.kernel.proceed(&self.model, &self.head, to, &times[known..]);
             into.samples.extend(stretch.samples);
@@ -197,6 +197,12 @@ impl Live {
             .map_or(0.0, |circuit| circuit.amount * carried.state.circuit / self.kernel.unit())
     }
 
+    /// Energy in J of a state: kinetic, potential, and that stored in the transducer.
+    fn energy(&self, carried: &Checkpoint<f64>) -> f64 {
+        let v = carried.state.v / self.kernel.unit();
+        energy(&self.model, (carried.state.x, v)) + self.model.electrical_energy(self.electrical(carried))
+    }
+
     /// The state at the present time and the energies from the tail to there.
     fn present(&self) -> (Checkpoint<f64>, Sums) {
         self.kernel.present(&self.model, &self.tail, &self.head, self.now).unwrap_or((self.head, self.ahead))
@@ -207,10 +213,7 @@ impl Live {
         let (carried, sums) = self.present();
         let mut ledger = self.past;
         ledger.add(&sums, &self.model);
-        let v = carried.state.v / self.kernel.unit();
-        let now = energy(&self.model, (carried.state.x, v))
-            + self.model.electrical_energy(self.electrical(&carried));
-        ledger.stored_j = now - self.start_energy;
+        ledger.stored_j = self.energy(&carried) - self.start_energy;
         ledger
     }
 
@@ -243,8 +246,7 @@ impl Live {
 
     fn go_on(&mut self, mut next: Model, wanted: (f64, f64), previous: Phase, into: &mut LiveOutput) {
         let (carried, sums) = self.present();
-        let before = energy(&self.model, (carried.state.x, carried.state.v / self.kernel.unit()))
-            + self.model.electrical_energy(self.electrical(&carried));
+        let before = self.energy(&carried);
         self.past.add(&sums, &self.model);
         // A stop that was pressed in stays so: the mass is carried along only as far as a stop is moved
         // over it.
@@ -284,8 +286,7 @@ impl Live {
     /// since the start.
     pub fn from_here(&self) -> Option<Model> {
         let drive = &self.model.excitation;
-        let repeats = drive.chirps.is_empty() && drive.records.is_empty();
-        if !repeats || drive.tones.iter().any(|tone| tone.ramp.is_some()) {
+        if !drive.has_only_tones() || drive.tones.iter().any(|tone| tone.ramp.is_some()) {
             return None;
         }
         let mut model = self.model.clone();

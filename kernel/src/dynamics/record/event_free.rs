@@ -59,22 +59,21 @@ impl<T: Scalar> Recorder<'_, T> {
         }
     }
 
-    /// Ends the sequence: takes over what its steps have changed.
+    /// Ends the sequence: takes over what its steps have changed, the side of the barrier after them and the
+    /// number of crossings, all of them outside the settled window.
     pub fn end_event_free(
         &mut self,
         (low, high): (T, T),
         squared: CompensatedSum<T>,
         covered: CompensatedSum<T>,
+        side: i8,
+        crossings: u64,
     ) {
         (self.low, self.high) = (low, high);
         self.settled.squared_velocity = squared;
         self.covered = covered;
-    }
-
-    /// The same for crossings of the barrier before the settled window, and the side after them.
-    pub fn end_event_free_crossings(&mut self, side: i8, count: u64) {
         self.barrier_side = side;
-        self.counts.total_crossings += count;
+        self.counts.total_crossings += crossings;
     }
 
     /// Quadrature rule for integrals over a full step.

@@ -8,7 +8,7 @@ use super::recorder::Recorder;
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::series::{Integrals, Series};
 use crate::dynamics::state::{Checkpoint, Label, MotionState};
-use crate::dynamics::step::path::StepView;
+use crate::dynamics::step::path::StepData;
 use crate::numeric::Scalar;
 
 /// Maximum number of entries of a log: a motion with more in a period would hardly repeat within a run.
@@ -24,14 +24,7 @@ enum Entry<T: Copy> {
 /// A step of flight; its coefficients lie in the log.
 #[derive(Debug, Clone)]
 struct KeptStep<T: Copy> {
-    origin: T,
-    at: Instant<T>,
-    whole: T,
-    length: T,
-    bound: T,
-    limits: (T, T),
-    x: T,
-    v: T,
+    data: StepData<T>,
     /// Index of its first coefficient in the log.
     first: usize,
     /// Number of coefficients of the displacement.
@@ -93,20 +86,13 @@ impl<T: Scalar> Log<T> {
     }
 
     /// Keeps a step of free flight.
-    pub fn add_step(&mut self, step: &StepView<T, Series<T>>) {
-        let (y, a) = (step.path.coefficients(), step.path.base_coefficients());
+    pub fn add_step(&mut self, series: &Series<T>, step: &StepData<T>) {
+        let (y, a) = (series.coefficients(), series.base_coefficients());
         let first = self.coefficients.len();
         self.coefficients.extend_from_slice(y);
         self.coefficients.extend_from_slice(a);
         self.entries.push(Entry::Step(KeptStep {
-            origin: step.origin,
-            at: step.at,
-            whole: step.whole,
-            length: step.length,
-            bound: step.bound,
-            limits: step.limits,
-            x: step.x,
-            v: step.v,
+            data: *step,
             first,
             known: y.len(),
             base: a.len(),
@@ -182,20 +168,8 @@ impl<T: Scalar> Log<T> {
                     series.known = y.len();
                     let integrals = &self.integrals[step.integrals];
                     series.measured.set(integrals.get());
-                    let view = StepView {
-                        path: &*series,
-                        circuit: None,
-                        origin: step.origin,
-                        at: later.instant(&step.at),
-                        whole: step.whole,
-                        length: step.length,
-                        duration: step.length,
-                        bound: step.bound,
-                        limits: step.limits,
-                        x: step.x,
-                        v: step.v,
-                    };
-                    record.step(&view, segment);
+                    let data = StepData { at: later.instant(&step.data.at), ..step.data };
+                    record.step(&*series, None, &data, segment);
                     integrals.set(series.measured.get());
                 }
                 Entry::Call(call) => {
@@ -232,15 +206,16 @@ impl<T: Scalar> Log<T> {
                     let first = self.coefficients.len();
                     self.coefficients.extend_from_within(step.first..step.first + step.known + step.base);
                     self.coefficients[first..].iter_mut().for_each(|c| *c = minus(*c));
-                    Entry::Step(KeptStep {
-                        origin: minus(step.origin),
-                        at: instant(&step.at),
-                        limits: (minus(step.limits.1), minus(step.limits.0)),
-                        x: minus(step.x),
-                        v: minus(step.v),
-                        first,
-                        ..step
-                    })
+                    let StepData { origin, at, limits: (low, high), x, v, .. } = step.data;
+                    let data = StepData {
+                        origin: minus(origin),
+                        at: instant(&at),
+                        limits: (minus(high), minus(low)),
+                        x: minus(x),
+                        v: minus(v),
+                        ..step.data
+                    };
+                    Entry::Step(KeptStep { data, first, ..step })
                 }
                 Entry::Call(call) => Entry::Call(call.when(instant).mirrored()),
             };

@@ -57,7 +57,7 @@ pub(crate) struct Recorder<'a, T: Copy> {
     pub period_cycles: i64,
     /// Number of stroboscopic states that may still be recorded one by one.
     pub strobes_left: u32,
-    /// Forcing periods in the window.
+    /// Whole forcing periods in the settled window; 0 if it holds none.
     pub periods: u64,
     /// Speed of the fastest impact in the window.
     pub impact_speed: T,

@@ -63,10 +63,9 @@ impl<T: Scalar> Recorder<'_, T> {
         let impact_share =
             (self.ledger && seen && work.abs() > 0.0).then(|| value(&self.settled.impact) / work);
         let done = outcome == Outcome::Done;
-        let origin = self.origin();
         let strobed = |number: u64| {
-            let cycle = origin.cycle + number as i64 * self.period_cycles;
-            self.clock.seconds(&Instant { cycle, phase: origin.phase })
+            let cycle = self.origin.cycle + number as i64 * self.period_cycles;
+            self.clock.seconds(&Instant { cycle, ..self.origin })
         };
         let (low, high) = (self.low.to_f64(), self.high.to_f64());
         let level = self.model.crossing_level.filter(|_| seen && !self.model.one_well);
@@ -97,7 +96,7 @@ impl<T: Scalar> Recorder<'_, T> {
                 mean_x: (self.ledger && seen).then(|| value(&self.settled.displacement) / covered),
                 side,
                 window: self.window_seconds(&end),
-                periods: self.periods(),
+                periods: self.periods,
                 crossing_periods,
                 release_periods,
                 settled: self.judge.settled(rests).map(|settled| settled && done),

@@ -7,7 +7,7 @@ use super::repeats::Strobe;
 use super::sums::Sums;
 use crate::dynamics::clock::Instant;
 use crate::dynamics::result::SectionPoint;
-use crate::dynamics::step::path::{Path, StepView};
+use crate::dynamics::step::path::{Path, StepData};
 use crate::numeric::{CompensatedSum, Scalar};
 
 /// Number of stroboscopic states of a mass at rest that are recorded one by one before some are skipped: more
@@ -15,16 +15,14 @@ use crate::numeric::{CompensatedSum, Scalar};
 pub(crate) const STILL: u32 = 32;
 
 impl<T: Scalar> Recorder<'_, T> {
-    pub(crate) fn strobes<P: Path<T>>(&mut self, step: &StepView<T, P>) {
+    pub(crate) fn strobes<P: Path<T>>(&mut self, path: &P, step: &StepData<T>) {
         while let Some(strobe) = self.next_strobe {
             let into = self.clock.between(&step.at, &strobe);
             if into >= step.duration {
                 return;
             }
-            let into = step.path.parameter(into, step.length);
-            let x = step.x_at(into);
-            let v = step.path.velocity(into);
-            self.strobe(x, v);
+            let into = path.parameter(into, step.length);
+            self.strobe(step.x_at(path, into), path.velocity(into));
         }
     }
 
@@ -68,16 +66,6 @@ impl<T: Scalar> Recorder<'_, T> {
         }
     }
 
-    /// The first instant of the run at the window's phase.
-    pub(crate) fn origin(&self) -> Instant<T> {
-        self.origin
-    }
-
-    /// Whole forcing periods in the settled window; 0 if it holds none.
-    pub(crate) fn periods(&self) -> u64 {
-        self.periods
-    }
-
     /// Begin and end of the settled window in s, as far as a run that ended at `end` reached it.
     pub(crate) fn window_seconds(&self, end: &Instant<T>) -> (f64, f64) {
         let (from, to) = &self.window;
@@ -90,11 +78,6 @@ impl<T: Scalar> Recorder<'_, T> {
         };
         let (from, reached) = (seconds(from), seconds(reached));
         (from, reached.max(from))
-    }
-
-    /// The end of the settled window.
-    pub fn window_end(&self) -> Instant<T> {
-        self.window.1
     }
 
     /// Begins another settled window at the end of the last one, where the run is. Returns its end, or `None`
@@ -119,15 +102,15 @@ impl<T: Scalar> Recorder<'_, T> {
     }
 
     /// Lists the states within a step.
-    pub(crate) fn list_states<P: Path<T>>(&mut self, step: &StepView<T, P>) {
+    pub(crate) fn list_states<P: Path<T>>(&mut self, path: &P, step: &StepData<T>) {
         for listing in self.listings.each() {
             while let Some(next) = listing.due() {
                 let into = self.clock.between(&step.at, &next).larger(T::zero());
                 if into >= step.duration {
                     break;
                 }
-                let into = step.path.parameter(into, step.length);
-                listing.add((step.x_at(into).to_f64(), step.path.velocity(into).to_f64() / self.unit));
+                let into = path.parameter(into, step.length);
+                listing.add((step.x_at(path, into).to_f64(), path.velocity(into).to_f64() / self.unit));
             }
         }
     }

@@ -130,8 +130,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         if steps > 0 {
             state.turned_back = false;
             (state.at, state.x, state.v) = (at, x, v);
-            record.end_event_free((now.low, now.high), now.squared, now.covered);
-            record.end_event_free_crossings(now.side, crossed);
+            record.end_event_free((now.low, now.high), now.squared, now.covered, now.side, crossed);
         }
         self.steps += steps;
         work.add(steps * costs.step);

@@ -1,28 +1,24 @@
 //! Pursuit of a motion from a given start, until it is known what it goes to.
 
 use super::ending::Initial;
+use crate::dynamics::clock::Instant;
 use crate::dynamics::drive::Drive;
 use crate::dynamics::drive::form::{clock, form, with_drive};
 use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
-use crate::dynamics::record::barrier::side_of;
 use crate::dynamics::record::goal::Goal;
 use crate::dynamics::result::{Arrival, Outcome, Pursued, Pursuit, Request};
-use crate::dynamics::state::{Contact, MotionState};
 use crate::numeric::Scalar;
 
 impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
     /// Puts the motion at the start of a pursuit and sets the end of the pursuit. A release from rest ends
     /// it, so it is never completed from a recurrence.
-    pub fn pursuing(mut self, pursuit: &Pursuit<'a>, model: &Model) -> Self {
-        let Self { stepper, record, state, .. } = &mut self;
-        let (x, v) = (T::of(pursuit.start.0), T::of(pursuit.start.1 * stepper.equation.unit));
-        let mode = stepper.equation.mode_at(x, model.mechanism.curve.piece_index(pursuit.start.0));
-        *state = MotionState::new((x, v), mode, Contact::Free);
-        record.barrier_side = record.barrier.map_or(0, |barrier| side_of(x, barrier));
-        stepper.work.limit(pursuit.most_work);
-        stepper.end = record.pursue(Goal::new(*pursuit), pursuit.most_periods);
+    pub fn pursuing(mut self, pursuit: &Pursuit<'a>) -> Self {
+        let start = (T::of(pursuit.start.0), T::of(pursuit.start.1 * self.stepper.equation.unit));
+        self.put(start, Instant { cycle: 0, phase: T::zero() });
+        self.stepper.work.limit(pursuit.most_work);
+        self.stepper.end = self.record.pursue(Goal::new(*pursuit), pursuit.most_periods);
         (self.recurs, self.until_settled) = (true, None);
         self
     }
@@ -42,7 +38,7 @@ pub(crate) fn pursue_alone(model: &Model, pursuit: &Pursuit, request: &Request) 
     let (equation, clock) = (Equation::<f64>::new(model, unit), clock(model, unit));
     with_drive!(&form(model, &clock), drive => {
         let motion = Motion::new(model, request, model.tolerance, &equation, clock, drive);
-        let mut motion = motion.pursuing(pursuit, model);
+        let mut motion = motion.pursuing(pursuit);
         let start = motion.begin(model);
         let outcome = motion.go_on();
         motion.arrived(model, &start, outcome)

@@ -286,7 +286,7 @@ fn recur<T: Number, D: Tail<T>, const SIMPLE: bool>(
             if k >= SEEDED {
                 drive.extend(k, a, inverse, cursor);
             }
-            let base = if k < drive.zero_from() { Some(a[k]) } else { None };
+            let base = if drive.zero_from().is_none_or(|zero| k < zero) { Some(a[k]) } else { None };
             let drag = damping * T::whole(k + 1) * y[k + 1];
             let drag = match drive.couple(k, y, cursor) {
                 Some(push) => drag + push,

@@ -53,7 +53,8 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let tolerances = (T::of(tolerance) * share, T::of(RESIDUAL * self.settings.tolerance) * share);
         let found = path.solve(speed, tolerances)?;
         let depth = path.max_root * path.max_root;
-        let missed = neglected(&path.series.a, DRIVE_TERMS, (&path.about, FORCE_TERMS), (found.time, depth));
+        let base = (&path.series.a[DRIVE_TERMS..], DRIVE_TERMS);
+        let missed = neglected(base, (&path.about, FORCE_TERMS), (found.time, depth));
         let before = |border| found.time < self.clock.between(&state.at, &border);
         let in_time = found.time < left && self.drive.segment_end(state.segment).is_none_or(before);
         let clear = |at: T| !((at - level).abs() <= depth + depth);

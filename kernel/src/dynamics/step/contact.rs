@@ -113,7 +113,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
                     self.work.add(self.costs.contact);
                     terms = match terms {
                         Terms::Few => Terms::More,
-                        _ => Terms::All(order.min(self.drive.zero_from())),
+                        _ => Terms::All(self.drive.zero_from().map_or(order, |zero| order.min(zero))),
                     };
                     path.extend_drive(terms.of_drive(), self.drive, &mut self.cursor);
                     path.expand(&start, (order, terms), force, damping);

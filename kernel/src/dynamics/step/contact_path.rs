@@ -112,7 +112,7 @@ impl<T: Scalar> Penetration<T> {
     /// the stop.
     fn forces(&self, at: &ContactState<T>, force: T) -> (T, T, T) {
         let levels = self.known_drive.min(self.terms.of_drive());
-        let base = self.inner.a[..levels].iter().rev().fold(T::zero(), |sum, c| sum * at.time + *c);
+        let base = polynomial::value(&self.inner.a[..levels], at.time);
         let pushed = if self.clipped { T::zero() } else { self.stop.force(at.root, at.speed) };
         (force, base, pushed)
     }
@@ -124,15 +124,12 @@ impl<T: Scalar> InStop<T> for Penetration<T> {
         if self.clipped {
             return self.stop.stored(self.root_at(from)) - self.stop.stored(self.root_at(to));
         }
-        let length = to - from;
-        let mut sum = T::zero();
-        for (node, weight) in rule.nodes().iter().zip(rule.weights()) {
-            let s = from + length * *node;
+        let lost = polynomial::integral(rule, from, to, |s| {
             let (u, w) = (self.root_at(s), self.speed_at(s));
             let square = u * u;
-            sum += square * square * (w * w) * *weight;
-        }
-        self.stop.stiffness * self.stop.loss * (sum * length)
+            square * square * (w * w)
+        });
+        self.stop.stiffness * self.stop.loss * lost
     }
 
     fn peak(&self, h: T, until: T, known: T) -> T {
@@ -152,12 +149,9 @@ impl<T: Scalar> InStop<T> for Penetration<T> {
             push[k] = cube[k] + self.stop.loss * convolve(&cube, &self.speed, k);
         }
         let scaled = self.powers(&push, h);
-        let value = |s: T| scaled[..n].iter().rev().fold(T::zero(), |sum, c| sum * s + *c);
+        let value = |s: T| polynomial::value(&scaled[..n], s);
         let mut peak = value(T::zero()).larger(value(until));
-        let mut slope = [T::zero(); ROOM];
-        for k in 1..n {
-            slope[k - 1] = scaled[k] * T::of(k as f64);
-        }
+        let slope = polynomial::derivative(&scaled[..n]);
         PolynomialRoots::new(&slope[..n - 1]).each_sign_change(&mut |s| {
             if s < until {
                 peak = peak.larger(value(s));
@@ -238,12 +232,6 @@ impl<T: Scalar> Path<T> for Penetration<T> {
         (squared * length, power * length)
     }
     fn moment(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T {
-        let length = to - from;
-        let parts = rule.nodes().iter().zip(rule.weights());
-        let moment = parts.fold(T::zero(), |sum, (node, weight)| {
-            let s = from + length * *node;
-            sum + self.position(s) * self.root_at(s) * *weight
-        });
-        moment * length
+        polynomial::integral(rule, from, to, |s| self.position(s) * self.root_at(s))
     }
 }

@@ -51,12 +51,10 @@ pub(crate) trait InStop<T: Scalar>: Path<T> {
     fn peak(&self, h: T, until: T, known: T) -> T;
 }
 
-/// One accepted step, as the recorder sees it.
-pub(crate) struct StepView<'a, T, P> {
-    pub path: &'a P,
-    /// Coefficients of a circuit's state in free flight, if there is a circuit.
-    pub circuit: Option<&'a [T]>,
-    /// Origin of the series.
+/// An accepted step without its path, as the recorder sees it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct StepData<T> {
+    /// Origin of the piece.
     pub origin: T,
     /// When the step starts.
     pub at: Instant<T>,
@@ -76,10 +74,10 @@ pub(crate) struct StepView<'a, T, P> {
     pub v: T,
 }
 
-impl<T: Scalar, P: Path<T>> StepView<'_, T, P> {
-    /// Displacement at a parameter of the step, limited to the mode, since its origin is rounded.
-    pub fn x_at(&self, t: T) -> T {
-        let x = self.path.position(t) + self.origin;
+impl<T: Scalar> StepData<T> {
+    /// Displacement at a parameter of the step's path, limited to the mode, since its origin is rounded.
+    pub fn x_at<P: Path<T>>(&self, path: &P, parameter: T) -> T {
+        let x = path.position(parameter) + self.origin;
         x.larger(self.limits.0).smaller(self.limits.1)
     }
 }
@@ -138,6 +136,6 @@ impl<T: Scalar> Path<T> for Series<T> {
         (squared, work)
     }
     fn moment(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T {
-        polynomial::moment(self.coefficients(), rule, from, to)
+        polynomial::integral(rule, from, to, |t| self.position(t))
     }
 }

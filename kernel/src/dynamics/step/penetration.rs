@@ -22,7 +22,7 @@
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::Compliant;
 use crate::dynamics::equation::force::PieceForce;
-use crate::dynamics::series::{MAX_ORDER, ROOM, SEEDED, Series, convolve, each_order, square};
+use crate::dynamics::series::{MAX_ORDER, ROOM, SEEDED, Series, convolve, each_order, polynomial, square};
 use crate::numeric::{Scalar, fast_exp2, fast_log2};
 
 /// One step of contact, in the parameter s, and the workspace.
@@ -285,17 +285,17 @@ impl<T: Scalar> Penetration<T> {
     /// Speed that the neglected terms of drive and force would cause in this time, up to this depth.
     pub fn neglected<D: Drive<T>>(&mut self, drive: &D, cursor: &mut D::Cursor, whole: (T, T)) -> T {
         let levels = self.terms.of_drive();
-        let zero_from = drive.zero_from();
-        if levels < zero_from {
+        let all_used = drive.zero_from().is_some_and(|zero| levels >= zero);
+        if !all_used {
             self.extend_drive(levels + 2, drive, cursor);
         }
         let first = if self.terms == Terms::Few { 3 } else { 5 };
-        let levels = if levels < zero_from { levels } else { ROOM };
-        neglected(&self.inner.a, levels, (&self.about, first), whole)
+        let base = if all_used { &[][..] } else { &self.inner.a[levels..] };
+        neglected((base, levels), (&self.about, first), whole)
     }
 
     pub(super) fn at(&self, c: &[T; ROOM], s: T) -> T {
-        c[..=self.order].iter().rev().fold(T::zero(), |sum, c| sum * s + *c)
+        polynomial::value(&c[..=self.order], s)
     }
 
     /// Root of the depth at `s`.
@@ -320,17 +320,17 @@ impl<T: Scalar> Penetration<T> {
     }
 }
 
-/// Speed that neglected terms would cause over `time`, up to the depth `deepest`: the first two terms of the
-/// drive `a` over time from `levels` on, and all terms of the force over depth from `first` on.
+/// Speed that neglected terms would cause over `time`, up to the depth `deepest`: the first two of the terms
+/// `base` of the drive over time, which begin with order `levels`, and all terms of the force over depth from
+/// `first` on.
 pub(super) fn neglected<T: Scalar>(
-    a: &[T],
-    levels: usize,
+    (base, levels): (&[T], usize),
     (about, first): (&[T], usize),
     (time, deepest): (T, T),
 ) -> T {
     let mut made = T::zero();
     let mut power = (0..levels).fold(T::of(1.0), |power, _| power * time);
-    for (k, a) in (levels..levels + 2).zip(a.iter().skip(levels)) {
+    for (k, a) in (levels..levels + 2).zip(base) {
         power = power * time;
         made = made.larger(a.abs() * power / T::of((k + 1) as f64));
     }

@@ -1,7 +1,7 @@
 //! Stepper: equation, drive and clock, and the series of the present step.
 
 use super::impact::Impact;
-use super::path::StepView;
+use super::path::StepData;
 use super::penetration::Penetration;
 use super::quasi_static::QuasiStatic;
 use super::settings::Settings;
@@ -84,20 +84,18 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
         D::begin_circuit(&mut self.cursor, state.circuit);
     }
 
-    /// A step along a path from this state, as the recorder sees it: the chosen and the kept length, the
-    /// duration, a bound of the displacement, and the state at its end.
+    /// The data of a step from this state: the chosen and the kept length, the duration, a bound of the
+    /// displacement, and the state at its end.
     #[inline]
-    pub fn view<'p, P>(
+    pub fn step_data(
         &self,
         state: &MotionState<T>,
-        path: &'p P,
         (whole, length, duration): (T, T, T),
         bound: T,
         (x, v): (T, T),
-    ) -> StepView<'p, T, P> {
+    ) -> StepData<T> {
         let Mode { origin, low, high, .. } = *self.mode(state);
-        let (at, limits) = (state.at, (low, high));
-        StepView { path, circuit: None, origin, at, whole, length, duration, bound, limits, x, v }
+        StepData { origin, at: state.at, whole, length, duration, bound, limits: (low, high), x, v }
     }
 
     /// The time to the end of the run.
