@@ -27,11 +27,9 @@ pub(crate) const HELD: usize = usize::MAX;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Contact {
     Free,
-    /// At rest on the stop of this end.
     Resting(End),
     /// At rest in an equilibrium that nothing disturbs.
     Motionless,
-    /// In contact with the compliant stop of this end.
     Compressing(End),
     /// In clipped contact with it: behind its untouched surface, which does not follow the mass, since the
     /// stop would have to pull.
@@ -57,7 +55,6 @@ pub(crate) struct MotionState<T> {
     /// State of the circuit of a transducer; 0 without one.
     pub circuit: T,
     pub mode: usize,
-    /// Segment of the drive.
     pub segment: usize,
     pub touch: Option<Touch>,
     pub contact: Contact,
@@ -86,7 +83,6 @@ impl<T: Scalar> MotionState<T> {
         }
     }
 
-    /// The phase of a sample in this state.
     pub fn phase(&self) -> Phase {
         match self.contact {
             Contact::Resting(End::Low) | Contact::Compressing(End::Low) | Contact::Clipped(End::Low) => {

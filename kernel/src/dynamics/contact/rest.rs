@@ -40,13 +40,11 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         }
     }
 
-    /// The mass rests on the stop of `end` from now on.
     pub fn begin_rest(&mut self, end: End) {
         self.state.contact = Contact::Resting(end);
         self.report(Call::Rest { at: self.state.at, side: end.side() });
     }
 
-    /// The mass stands still until `until`.
     pub fn stand(&mut self, until: Instant<T>, phase: Phase) {
         let MotionState { at, x, v, circuit: state, .. } = self.state;
         let samples = self.record.samples.len();
@@ -67,7 +65,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         let mut from = self.state.at;
         if self.state.refused == Some(self.state.at) {
             // The contact acceleration only touched 0 here, to rounding: search beyond this instant.
-            from = self.stepper.clock.advance(&from, self.stepper.clock.period() * T::of(TOUCH_SKIP));
+            from = self.stepper.clock.advance(&from, self.stepper.clock.period * T::of(TOUCH_SKIP));
         }
         let threshold = self.stepper.equation.stop(end).map_or(T::zero(), |s| s.acceleration);
         let circuit = self.stepper.drive.circuit().map_or(T::zero(), |circuit| {

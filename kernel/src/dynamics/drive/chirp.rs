@@ -11,7 +11,6 @@ pub(crate) struct Chirp<T> {
     pub from: f64,
     /// Frequency from the end of the chirp on in Hz.
     pub to: f64,
-    /// Length in s.
     pub over: f64,
     /// The segment of the drive that begins where the chirp ends; `None` if it outlasts the run.
     pub holds_from_segment: Option<usize>,
@@ -33,7 +32,7 @@ impl<T: Scalar> Chirp<T> {
             (time * (dd(self.from) + growth * time * dd(0.5)), frequency, growth)
         };
         let (s, c) = T::sin_cos_turns(T::of_pair(turns - turns.floor()));
-        let unit = clock.unit();
+        let unit = clock.unit;
         let omega = T::tau() * T::of_pair(frequency * dd(unit));
         (s, c, omega, T::tau() * T::of_pair(growth * dd(unit * unit)))
     }

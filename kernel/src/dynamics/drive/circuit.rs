@@ -12,7 +12,6 @@
 use crate::dynamics::series::ROOM;
 use crate::numeric::Scalar;
 
-/// A circuit in kernel units.
 #[derive(Debug, Clone)]
 pub(crate) struct Circuit<T> {
     /// g.

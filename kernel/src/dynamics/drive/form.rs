@@ -61,7 +61,7 @@ pub(crate) use with_drive;
 
 /// This model's drive in the type that is fastest for it.
 pub(crate) fn form<T: Scalar>(model: &Model, clock: &Clock<T>) -> Form<T> {
-    let (drive, unit) = (&model.excitation, clock.unit());
+    let (drive, unit) = (&model.excitation, clock.unit);
     let alone = drive.has_only_tones() && model.circuit().is_none();
     match drive.tones.as_slice() {
         [] if alone => Form::Still(Still { acceleration: T::of(drive.constant * (unit * unit)) }),
@@ -128,7 +128,7 @@ fn tone<T: Scalar>(
 
 /// The sum of a drive's parts, and the circuit.
 fn sum<T: Scalar>(model: &Model, clock: &Clock<T>) -> General<T> {
-    let (drive, unit) = (&model.excitation, clock.unit());
+    let (drive, unit) = (&model.excitation, clock.unit);
     let square = unit * unit;
     let ramps = drive.tones.iter().filter_map(|t| t.ramp.map(|r| r.1));
     let chirps = drive.chirps.iter().map(|c| c.over);
@@ -196,7 +196,7 @@ fn record<T: Scalar>(
     clock: &Clock<T>,
     segment: impl Fn(f64) -> usize,
 ) -> Record<T> {
-    let (times, values, unit) = (&source.times, &source.accelerations, clock.unit());
+    let (times, values, unit) = (&source.times, &source.accelerations, clock.unit);
     let square = unit * unit;
     let zero_time = Instant { cycle: 0, phase: T::zero() };
     let mut lines = Vec::new();

@@ -20,7 +20,6 @@ use crate::numeric::Scalar;
 /// cancel by chance. More steady tones than this are advanced side by side.
 pub(super) const FEW_TONES: usize = 8;
 
-/// A constant and any number of tones, chirps and records, and a circuit.
 #[derive(Debug, Clone)]
 pub(crate) struct General<T> {
     /// The sine, if the drive is nothing else; the other parts are then not evaluated.
@@ -285,7 +284,6 @@ impl<T: Scalar> Drive<T> for General<T> {
 }
 
 impl<T: Scalar> General<T> {
-    /// The next release where no circuit pushes.
     fn next_release_without_push(
         &self,
         clock: &Clock<T>,
@@ -299,7 +297,6 @@ impl<T: Scalar> General<T> {
         self.search(clock, acceleration, span.segment).first(span, cursor)
     }
 
-    /// A search for a release in one segment of the drive.
     fn search<'a>(
         &'a self,
         clock: &'a Clock<T>,

@@ -38,19 +38,16 @@ pub(crate) trait Drive<T: Scalar>: Tail<T> + Base<T> {
         0
     }
 
-    /// The circuit, if there is one.
     #[inline(always)]
     fn circuit(&self) -> Option<&Circuit<T>> {
         None
     }
 
-    /// Coefficients of the circuit's state.
     #[inline(always)]
     fn circuit_state<'a>(&self, _: &'a Self::Cursor) -> Option<&'a [T; ROOM]> {
         None
     }
 
-    /// Begins the series of the circuit's state.
     #[inline(always)]
     fn begin_circuit(_: &mut Self::Cursor, _state: T) {}
 
@@ -108,7 +105,6 @@ pub(crate) enum ReleaseRoot<T> {
     /// At this instant. If the drive repeats and the root was computed from the drive alone, the clock's
     /// cycle within the common period comes with it: roots of equal cycle and phase are the same.
     At(Instant<T>, Option<i64>),
-    /// Not within the span.
     Never,
     /// Not before this instant, from which the search goes on. (It is interrupted regularly, so that its work
     /// is counted.)

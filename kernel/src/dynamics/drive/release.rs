@@ -33,7 +33,6 @@ pub(super) struct Search<'a, T: Scalar, D: Drive<T>> {
     pub segment: usize,
     /// Angular frequency of the fastest part of the drive that moves; 0 without one.
     pub fastest: T,
-    /// Bound of the acceleration of the drive.
     pub reach: T,
     /// Cycles of the clock after which the drive repeats from this segment on, if it does.
     pub common_cycles: Option<i64>,
@@ -149,7 +148,7 @@ impl<T: Scalar, D: Drive<T>> Search<'_, T, D> {
         }
         // Quarters of the cycle: strides that do not depend on the search and are alike in each cycle.
         let clock = self.clock;
-        let stride = clock.period() * T::of(0.25);
+        let stride = clock.period * T::of(0.25);
         let quarter = (root.phase / stride).floor().smaller(T::of(3.0));
         let start = Instant { cycle: root.cycle, phase: quarter * stride };
         let Stride { g, order } = self.stride(&start, stride, cursor);

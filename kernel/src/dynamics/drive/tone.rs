@@ -225,12 +225,12 @@ impl<T: Scalar> Drive<T> for Sine<T> {
         let mut turns = (turns - quarter) - self.tone.phase;
         turns -= turns.floor();
         let mut phase = turns / self.tone.frequency;
-        if phase >= clock.period() {
+        if phase >= clock.period {
             phase = T::zero();
         }
         let behind = from.phase - phase;
         // A root that lies in the past by no more than rounding counts as now.
-        let slack = clock.period() * T::of(8.0 * T::EPSILON);
+        let slack = clock.period * T::of(8.0 * T::EPSILON);
         // There is one root in each cycle; "now" only approximates it.
         let (root, turn) = if behind <= T::zero() {
             (Instant { cycle: from.cycle, phase }, Some(0))

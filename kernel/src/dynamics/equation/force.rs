@@ -14,7 +14,6 @@ impl<T: Number> PieceForce<T> {
         Self { coefficients }
     }
 
-    /// One of the coefficients.
     #[inline]
     pub fn coefficient_mut(&mut self, degree: usize) -> &mut T {
         &mut self.coefficients[degree]
@@ -26,7 +25,6 @@ impl<T: Number> PieceForce<T> {
         &self.coefficients
     }
 
-    /// Degree of the polynomial.
     pub fn degree(&self) -> usize {
         self.coefficients.len() - 1
     }

@@ -19,7 +19,6 @@ pub(crate) struct Stop<T> {
 }
 
 impl<T: Scalar> Stop<T> {
-    /// The speed after an impact at this speed.
     pub fn rebound(&self, speed: T) -> T {
         self.restitution * speed
     }

@@ -34,7 +34,6 @@ pub(super) struct Prepared<'a> {
     pub request: &'a Request<'a>,
     pub equation: &'a Equation<f64>,
     pub drive: &'a Sine<f64>,
-    /// The pursuit, if the motion is pursued.
     pub pursuit: Option<&'a Pursuit<'a>>,
     pub place: usize,
 }
@@ -65,9 +64,7 @@ struct Group<const W: usize> {
     rule: GaussLegendre<Lanes<W>>,
     columns: Box<Columns<W>>,
     series: Box<Series<Lanes<W>>>,
-    /// The last step.
     trial: Box<Trial<W>>,
-    /// The motion in each lane.
     lanes: [Option<usize>; W],
     /// Motions that wait for a lane, first come first served.
     waiting: VecDeque<usize>,
@@ -86,7 +83,6 @@ pub(super) struct Batch<'a, 'r, const W: usize> {
     /// Number of runs started so far.
     started: usize,
     members: Vec<Option<Member<'a>>>,
-    /// Free places among the members.
     free: Vec<usize>,
     groups: Vec<Group<W>>,
 }
@@ -128,7 +124,6 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         }
     }
 
-    /// Runs each motion alone to its end.
     #[inline(never)] // once a batch
     fn finish_alone(&mut self) {
         for group in 0..self.groups.len() {
@@ -173,7 +168,6 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         true
     }
 
-    /// Ends the run of a member.
     fn end(&mut self, place: usize, outcome: Outcome) {
         if let Some(Member { run, motion, start, .. }) = self.members[place].take() {
             self.source.ended(&run, *motion, &start, outcome);
@@ -270,7 +264,6 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         }
     }
 
-    /// Loads waiting motions into free lanes.
     fn fill(&mut self, group: usize) {
         for lane in 0..W {
             if self.groups[group].lanes[lane].is_none() {
@@ -331,7 +324,6 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         }
     }
 
-    /// Loads a motion into a lane.
     fn load(&mut self, group: usize, lane: usize, place: usize) {
         if let Some(member) = &self.members[place] {
             self.groups[group].columns.load(lane, member.index, &member.motion);
@@ -339,7 +331,6 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         }
     }
 
-    /// Logs the step that a lane has just taken.
     fn log_step(&mut self, group: usize, lane: usize) {
         let Some((_, group, member)) = self.member(group, lane) else { return };
         let trial = &group.trial;
@@ -357,7 +348,6 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         group.columns.logged[lane] = motion.log.is_some();
     }
 
-    /// Checks budgets and the cancel flag.
     fn check_budgets(&mut self, group: usize) {
         for lane in 0..W {
             let Some((place, group, member)) = self.member(group, lane) else { continue };
@@ -374,7 +364,6 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
     }
 }
 
-/// Copies the series of one lane to that of a single motion.
 fn copy_lane<const W: usize>(all: &Series<Lanes<W>>, lane: usize, order: usize, single: &mut Series<f64>) {
     for k in 0..=order {
         single.y[k] = all.y[k].0[lane];

@@ -25,7 +25,7 @@ use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::result::{Outcome, Pursued, Pursuit, Request, Run};
 use crate::dynamics::run::ending::Initial;
-use crate::dynamics::run::pursue::pursue_alone;
+use crate::dynamics::run::pursue_alone;
 use crate::system::clock::ThreadClock;
 use crate::system::threads::UnderWay;
 use batch::{Batch, Prepared, Source};
@@ -127,7 +127,6 @@ fn run_from<'q>(
     }
 }
 
-/// A model and the data of its run.
 struct PreparedRun<'q> {
     model: Model,
     request: Request<'q>,
@@ -168,10 +167,8 @@ impl<'a> Source<'a> for Runs<'a, '_, '_> {
     }
 }
 
-/// The callback that gives the places of pursuits, and the one that gets their results.
 type Callbacks<'r> = (&'r mut dyn FnMut(UnderWay) -> Option<usize>, &'r mut dyn FnMut(usize, Pursued));
 
-/// Pursues motions of one model.
 fn pursue(
     model: &Model,
     pursuits: &[Pursuit],
@@ -201,7 +198,6 @@ fn pursue(
     }
 }
 
-/// Pursuits by their place.
 struct Pursuits<'r, P> {
     prepared: P,
     next: &'r mut dyn FnMut(UnderWay) -> Option<usize>,
@@ -218,7 +214,6 @@ impl<'a, P: Fn(usize) -> Prepared<'a>> Source<'a> for Pursuits<'_, P> {
     }
 }
 
-/// Whether the processor has this many lanes.
 fn has_lanes(width: usize) -> bool {
     match width {
         4 => true,

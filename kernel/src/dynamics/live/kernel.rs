@@ -38,7 +38,6 @@ impl Sums {
     }
 }
 
-/// Equation, clock and drive of one model.
 #[derive(Debug, Clone)]
 pub(crate) struct Kernel {
     equation: Equation<f64>,
@@ -46,7 +45,6 @@ pub(crate) struct Kernel {
     drive: std::sync::Arc<Form<f64>>,
 }
 
-/// Result of stepping forward.
 pub(crate) struct Stretch {
     pub samples: Vec<Sample>,
     pub events: Vec<Event>,
@@ -92,7 +90,6 @@ impl Kernel {
         with_drive!(&*self.drive, drive => base_at(drive, &self.clock, segment, at, self.unit()))
     }
 
-    /// The segment of the drive at an instant.
     fn segment<D: Drive<f64>>(&self, drive: &D, at: &Instant<f64>) -> usize {
         let mut segment = 0;
         while drive.segment_end(segment).is_some_and(|end| self.clock.between(at, &end) <= 0.0) {
@@ -137,7 +134,7 @@ impl Kernel {
             let (mut last, mut ended) = (None, None);
             while ended.is_none()
                 && self.clock.between(&motion.state.at, &until) >= 0.0
-                && motion.stepper.work.done() < WORK_PER_CALL
+                && motion.stepper.work.done < WORK_PER_CALL
             {
                 let left = motion.stepper.left(&motion.state);
                 if !(left > 0.0) {
@@ -178,7 +175,7 @@ impl Kernel {
         with_drive!(&*self.drive, drive => {
             let mut motion = self.motion(model, drive, &request, Some(tail));
             while self.clock.between(&motion.state.at, &head.state.at) > 0.0
-                && motion.stepper.work.done() < WORK_PER_CALL
+                && motion.stepper.work.done < WORK_PER_CALL
             {
                 let left = motion.stepper.left(&motion.state);
                 if motion.proceed(left).is_some() {
@@ -218,7 +215,7 @@ impl Kernel {
         with_drive!(&*self.drive, drive => {
             let mut motion = self.motion(model, drive, &request, Some(tail));
             motion.stepper.end = at;
-            while motion.stepper.work.done() < WORK_PER_CALL {
+            while motion.stepper.work.done < WORK_PER_CALL {
                 let left = motion.stepper.left(&motion.state);
                 if !(left > 0.0) || motion.proceed(left).is_some() {
                     break;

@@ -9,7 +9,7 @@ use crate::dynamics::record::recorder::Recorder;
 use crate::dynamics::result::{Event, EventKind, Outcome, Request, Side};
 use crate::dynamics::series::Series;
 use crate::dynamics::state::{Contact, HELD, MotionState};
-use crate::dynamics::step::settings::ROUNDINGS;
+use crate::dynamics::step::stepper::ROUNDINGS;
 use crate::dynamics::step::stepper::Stepper;
 use crate::numeric::{PolynomialRoots, Scalar};
 
@@ -170,8 +170,9 @@ fn traced<T: Scalar>(
 
 /// The product of the squared restitution of each impact.
 fn squared_restitutions(model: &Model, events: &[Event]) -> f64 {
+    let (left, right) = model.sides();
     let restitution = |side: Side| {
-        let stop = model.stops.and_then(|pair| if side == Side::Left { pair.left } else { pair.right });
+        let stop = if side == Side::Left { left } else { right };
         stop.map_or(1.0, |stop| stop.restitution)
     };
     let impacts = events.iter().filter(|event| event.kind == EventKind::Impact);

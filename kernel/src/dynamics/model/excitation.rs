@@ -20,11 +20,9 @@ const NOISE_PEAK: f64 = 3.0;
 /// Whether the drive repeats.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Rhythm {
-    /// The drive repeats.
     Periodic,
     /// The drive has no period, or its amplitude changes from one period to the next.
     Changing,
-    /// There is no drive.
     Absent,
 }
 

@@ -203,8 +203,13 @@ impl Model {
 
     /// Positions of the left and the right stop in m, if there are any.
     pub fn stop_positions(&self) -> (Option<f64>, Option<f64>) {
-        let at = |stop: Option<StopAt>| stop.map(|stop| stop.x);
-        self.stops.map_or((None, None), |pair| (at(pair.left), at(pair.right)))
+        let (left, right) = self.sides();
+        (left.map(|stop| stop.x), right.map(|stop| stop.x))
+    }
+
+    /// The left and the right stop, if there are any.
+    pub(in crate::dynamics) fn sides(&self) -> (Option<StopAt>, Option<StopAt>) {
+        self.stops.map_or((None, None), |pair| (pair.left, pair.right))
     }
 
     /// Kinetic and potential energy in J at a displacement in m and a velocity in m/s. The potential is 0 at
@@ -226,8 +231,7 @@ impl Model {
     /// Whether the mirror image of a free motion is a motion of the same model with mirrored crossings: an
     /// odd curve, equal stops on both sides.
     pub(crate) fn is_symmetric(&self) -> bool {
-        let (left, right) = self.stops.map_or((None, None), |pair| (pair.left, pair.right));
-        let alike = match (left, right) {
+        let alike = match self.sides() {
             (Some(left), Some(right)) => right == StopAt { x: -left.x, ..left },
             (None, None) => true,
             _ => false,

@@ -36,7 +36,6 @@ pub(crate) struct Circuit {
     pub decay: f64,
     /// State at w = 1 m/s, whose energy is that of the mass at this speed.
     pub amount: f64,
-    /// Whether the state is a voltage.
     is_voltage: bool,
 }
 

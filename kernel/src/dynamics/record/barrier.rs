@@ -14,7 +14,6 @@ pub(crate) fn side_of<T: Scalar>(x: T, barrier: T) -> i8 {
     }
 }
 
-/// The crossings of the barrier within one step.
 pub(crate) struct StepCrossings<'a, T> {
     /// The side from which the mass comes.
     pub from: i8,
@@ -22,7 +21,6 @@ pub(crate) struct StepCrossings<'a, T> {
     pub at_once: usize,
     /// The further crossings are its sign changes.
     pub roots: PolynomialRoots<'a, T>,
-    /// The side on which the step ends.
     end: i8,
 }
 
@@ -42,7 +40,6 @@ impl<'a, T: Scalar> StepCrossings<'a, T> {
         Some(Self { from, at_once: usize::from(departs != from), roots: PolynomialRoots::new(g), end })
     }
 
-    /// Number of crossings.
     pub fn count(&self) -> usize {
         self.corrected_count(self.at_once + self.roots.count_sign_changes())
     }
@@ -57,7 +54,6 @@ impl<'a, T: Scalar> StepCrossings<'a, T> {
         }
     }
 
-    /// The side after `count` crossings.
     pub fn side_after(&self, count: usize) -> i8 {
         if count % 2 == 1 { -self.from } else { self.from }
     }

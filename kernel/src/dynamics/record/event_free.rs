@@ -17,9 +17,7 @@ pub(crate) struct EventFree<T> {
     pub inside: bool,
     /// Whether the instant of every crossing is needed.
     pub listed: bool,
-    /// The barrier whose crossings are counted.
     pub barrier: Option<T>,
-    /// The side of the barrier.
     pub side: i8,
     pub low: T,
     pub high: T,

@@ -39,7 +39,6 @@ pub(crate) enum Call<T> {
 }
 
 impl<T: Scalar> Call<T> {
-    /// The same call at other instants.
     pub fn when(self, instant: impl Fn(&Instant<T>) -> Instant<T>) -> Self {
         match self {
             Self::Stand { at, until, state, phase } => {
@@ -52,7 +51,6 @@ impl<T: Scalar> Call<T> {
         }
     }
 
-    /// Its mirror image.
     pub fn mirrored(self) -> Self {
         let minus = |value: T| T::zero() - value;
         let other = |phase: Phase| match phase {
@@ -75,7 +73,6 @@ impl<T: Scalar> Call<T> {
 }
 
 impl<T: Scalar> Recorder<'_, T> {
-    /// Records a call in this segment of the drive.
     #[inline(always)]
     pub fn report(&mut self, call: &Call<T>, segment: usize) {
         match call {

@@ -40,7 +40,7 @@ impl<T: Scalar> Recorder<'_, T> {
     /// Whether the time from `start` to `end` lies wholly inside the settled window (true) or wholly outside
     /// it (false); `None` if it does neither, or ends within rounding of a border.
     pub fn lies_inside(&self, start: &Instant<T>, end: &Instant<T>) -> Option<bool> {
-        let clear = self.clock.period() * T::of(CLEAR);
+        let clear = self.clock.period * T::of(CLEAR);
         let (from, to) = &self.window;
         let between = |a: &Instant<T>, b: &Instant<T>| self.clock.between(a, b);
         if between(from, start) >= T::zero() && between(end, to) > clear {

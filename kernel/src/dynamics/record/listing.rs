@@ -15,7 +15,6 @@ pub(crate) const MAX_STROBES: u32 = 1 << 22;
 /// States listed once a forcing period.
 #[derive(Debug, Clone)]
 pub(crate) struct Listing<T> {
-    /// The instant of the next state.
     next: Instant<T>,
     /// Number of states still to be listed; `None` if only the last state is kept, of any number.
     left: Option<u64>,
@@ -41,7 +40,6 @@ pub(crate) struct Listed<T> {
 }
 
 impl<T: Scalar> Listing<T> {
-    /// Adds the state at the next instant.
     pub fn add(&mut self, (x, v): (f64, f64)) {
         match &mut self.left {
             Some(left) => *left -= 1,
@@ -95,8 +93,8 @@ impl<T: Scalar> Listings<T> {
         let section = request.section.map(|phase| {
             let turns = (phase - start).rem_euclid(1.0) * cycles as f64;
             let whole = turns.floor();
-            let mut first = Instant { cycle: whole as i64, phase: T::of(turns - whole) * clock.period() };
-            let same = T::of(SAME * cycles as f64) * clock.period();
+            let mut first = Instant { cycle: whole as i64, phase: T::of(turns - whole) * clock.period };
+            let same = T::of(SAME * cycles as f64) * clock.period;
             first.cycle += (from.cycle - first.cycle).div_euclid(cycles) * cycles;
             while clock.between(&from, &first) < -same {
                 first.cycle += cycles;
@@ -110,7 +108,6 @@ impl<T: Scalar> Listings<T> {
         Self { section, carried: request.carry.then(|| listing(start, None)) }
     }
 
-    /// Whether there are no listings.
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.section.is_none() && self.carried.is_none()
@@ -120,7 +117,6 @@ impl<T: Scalar> Listings<T> {
         self.section.iter_mut().chain(&mut self.carried)
     }
 
-    /// The next instants of the listings.
     #[inline]
     pub fn due(&self) -> impl Iterator<Item = Instant<T>> {
         self.section.iter().chain(&self.carried).filter_map(Listing::due)

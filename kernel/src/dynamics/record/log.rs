@@ -27,9 +27,7 @@ struct KeptStep<T: Copy> {
     data: StepData<T>,
     /// Index of its first coefficient in the log.
     first: usize,
-    /// Number of coefficients of the displacement.
     known: usize,
-    /// Number of coefficients of the base's acceleration.
     base: usize,
     /// Index of its integrals in the log; a step and its mirror image share them.
     integrals: usize,
@@ -39,7 +37,6 @@ struct KeptStep<T: Copy> {
 #[derive(Debug, Clone, Copy)]
 struct Mark<T> {
     point: Checkpoint<T>,
-    /// Number of entries before it.
     entries: usize,
 }
 
@@ -76,7 +73,6 @@ impl<T: Scalar> Log<T> {
         }
     }
 
-    /// Whether there is room for more entries.
     pub fn has_room(&self) -> bool {
         self.entries.len() < MAX_ENTRIES
     }
@@ -85,7 +81,6 @@ impl<T: Scalar> Log<T> {
         self.entries.push(Entry::Call(call));
     }
 
-    /// Keeps a step of free flight.
     pub fn add_step(&mut self, series: &Series<T>, step: &StepData<T>) {
         let (y, a) = (series.coefficients(), series.base_coefficients());
         let first = self.coefficients.len();
@@ -122,12 +117,10 @@ impl<T: Scalar> Log<T> {
         self.labels.iter().find(|(label, ..)| wanted(label)).map(|(_, mark, totals)| (*mark, *totals))
     }
 
-    /// Number of marks.
     pub fn marks(&self) -> usize {
         self.marks.len()
     }
 
-    /// The instant of a mark.
     pub fn at(&self, mark: usize) -> Instant<T> {
         self.marks[mark].point.state.at
     }
@@ -138,7 +131,6 @@ impl<T: Scalar> Log<T> {
         first + self.marks[first + 1..].partition_point(reached)
     }
 
-    /// The checkpoint of a mark, shifted by `later`.
     pub fn point_later(&self, mark: usize, later: CycleShift) -> Checkpoint<T> {
         let Checkpoint { state, barrier_side } = self.marks[mark].point;
         let state = MotionState { at: later.instant(&state.at), refused: None, ..state };
@@ -184,7 +176,7 @@ impl<T: Scalar> Log<T> {
     /// Appends the mirror image of everything from mark `first` on, later by half a cycle and `cycles` whole
     /// cycles of the clock; `modes` is the number of modes.
     pub fn append_mirrored(&mut self, first: usize, cycles: i64, modes: usize, clock: &Clock<T>) {
-        let half = clock.period() * T::of(0.5);
+        let half = clock.period * T::of(0.5);
         let instant = |at: &Instant<T>| {
             let at = clock.advance(at, half);
             Instant { cycle: at.cycle + cycles, phase: at.phase }

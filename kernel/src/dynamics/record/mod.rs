@@ -8,7 +8,6 @@ pub(crate) mod goal;
 pub(crate) mod laps;
 mod listing;
 pub(crate) mod log;
-mod pursuit;
 pub(crate) mod recorder;
 mod regime;
 mod repeats;

@@ -47,7 +47,6 @@ pub(crate) struct Recorder<'a, T: Copy> {
     /// -1, 0 (on it since the start) or 1.
     pub barrier_side: i8,
     pub judge: Judge,
-    /// The goal of the motion, if it is pursued.
     pub goal: Option<Goal<'a>>,
     /// The first instant of the run at the window's phase.
     pub origin: Instant<T>,
@@ -64,7 +63,6 @@ pub(crate) struct Recorder<'a, T: Copy> {
     pub counts: Counts,
     /// Largest force of a compliant stop over mass, kernel units.
     pub peak_contact: T,
-    /// Order of the series.
     pub order: usize,
 }
 
@@ -109,7 +107,7 @@ impl<'a, T: Scalar> Recorder<'a, T> {
             samples,
             events: request.events.then(Vec::new),
             window: (from, to),
-            period: clock.period() * T::of(cycles as f64),
+            period: clock.period * T::of(cycles as f64),
             whole: Sums::new(),
             settled: Sums::new(),
             low: T::of(f64::INFINITY),
@@ -159,12 +157,10 @@ impl<'a, T: Scalar> Recorder<'a, T> {
         (self.clock.between(&self.origin, at) / self.period).to_f64()
     }
 
-    /// Whether the instant of every crossing is needed.
     pub(crate) fn lists_crossings(&self) -> bool {
         self.events.is_some() || self.judge.times_all_crossings()
     }
 
-    /// Lists an event, if events are listed.
     #[inline]
     pub fn event(&mut self, at: &Instant<T>, kind: EventKind, side: Side, v_in: f64, v_out: f64) {
         if let Some(events) = &mut self.events {

@@ -11,7 +11,6 @@ const MIN_PERIODS_TO_COMPARE: u64 = 8;
 /// Number of standard errors by which the means of two halves may differ.
 const STANDARD_ERRORS: f64 = 3.0;
 
-/// An observation of the judge, kept for replay.
 #[derive(Debug, Clone, Copy)]
 enum Observation {
     Strobe(Strobe, Gain),
@@ -42,7 +41,6 @@ impl Half {
         self.sum / self.count
     }
 
-    /// Square of the mean's standard error.
     fn error_squared(&self) -> f64 {
         let mean = self.mean();
         (self.squares / self.count - mean * mean).max(0.0) / (self.count - 1.0)
@@ -73,11 +71,10 @@ impl PeriodsWith {
 #[derive(Debug, Clone)]
 pub(crate) struct Judge {
     rhythm: Rhythm,
-    /// Forcing periods in the window.
     periods: u64,
     /// Number of the forcing period at which the window begins.
     from: u64,
-    strobes: Strobes,
+    pub strobes: Strobes,
     crossings: Crossings,
     crossing_periods: PeriodsWith,
     release_periods: PeriodsWith,
@@ -120,11 +117,6 @@ impl Judge {
         Self { periods, from, strobes, crossings: Crossings::new(periods), ..self.clone() }
     }
 
-    /// The stroboscopic states so far.
-    pub fn strobes(&self) -> &Strobes {
-        &self.strobes
-    }
-
     /// Whether the instants of crossings outside the window are needed too: under a drive that changes, the
     /// first ones are reported.
     pub fn times_all_crossings(&self) -> bool {
@@ -143,7 +135,7 @@ impl Judge {
         let gain = (total.0 - self.last.0, total.1 - self.last.1);
         self.last = total;
         self.keep(Observation::Strobe(state, gain));
-        self.gain(self.strobes.seen(), gain);
+        self.gain(self.strobes.seen, gain);
         self.strobes.add(state);
     }
 
@@ -188,7 +180,6 @@ impl Judge {
         }
     }
 
-    /// Adds a release from rest on a stop.
     pub fn release(&mut self, time: f64, seconds: f64) {
         self.keep(Observation::Release { time, seconds });
         if self.rhythm == Rhythm::Changing {
@@ -210,12 +201,10 @@ impl Judge {
         self.tape = Some(Vec::with_capacity(64));
     }
 
-    /// Stops keeping observations.
     pub fn end_tape(&mut self) {
         self.tape = None;
     }
 
-    /// The number of observations kept.
     pub fn taped(&self) -> usize {
         self.tape.as_ref().map_or(0, Vec::len)
     }
@@ -238,7 +227,7 @@ impl Judge {
         }
         self.last = (self.last.0 + total.0 * laps as f64, self.last.1 + total.1.saturating_mul(laps));
         // Replay as many laps as any classification looks back, and one more to see what a lap adds.
-        let replayed = laps.min(2 * self.strobes.longest() as u64 / periods.max(1) + 4);
+        let replayed = laps.min(2 * self.strobes.longest as u64 / periods.max(1) + 4);
         let mut before = (0, 0);
         for number in 1..=replayed {
             before = (self.crossing_periods.count, self.release_periods.count);
@@ -247,7 +236,7 @@ impl Judge {
                 match *entry {
                     Observation::Strobe(..) => {
                         let Some((state, gain)) = next.next() else { continue };
-                        self.gain(self.strobes.seen(), *gain);
+                        self.gain(self.strobes.seen, *gain);
                         self.strobes.add(*state);
                     }
                     Observation::Crossing { time, side, seconds } => {
@@ -267,7 +256,7 @@ impl Judge {
             more(&mut self.crossing_periods, before.0);
             more(&mut self.release_periods, before.1);
             if strobes.len() as u64 == periods {
-                for (number, (_, gain)) in (self.strobes.seen()..).zip(&strobes) {
+                for (number, (_, gain)) in (self.strobes.seen..).zip(&strobes) {
                     self.gain_repeated(number, left, periods, *gain);
                 }
                 self.strobes.skip(later, periods, |place| strobes[place as usize].0);
@@ -281,7 +270,7 @@ impl Judge {
     /// Adds `more` stroboscopic states equal to `state`, the last one; none of them is beyond the next border
     /// of the window.
     pub fn skip_still(&mut self, more: u64, state: Strobe) {
-        self.gain_repeated(self.strobes.seen(), more, 1, (0.0, 0));
+        self.gain_repeated(self.strobes.seen, more, 1, (0.0, 0));
         self.strobes.skip(more, 1, |_| state);
     }
 
@@ -296,7 +285,6 @@ impl Judge {
         self.strobes.period().filter(|_| self.rhythm == Rhythm::Periodic)
     }
 
-    /// The period of the motion in forcing periods.
     pub fn period(&self) -> Option<u32> {
         self.repeats().map(|(period, _)| period)
     }
@@ -407,7 +395,7 @@ mod tests {
                 assert_eq!(long.period(), all.then_some(period as u32), "{case}");
                 assert_eq!(long.periods_with(), short.periods_with());
                 assert_eq!(long.crossings_repeat(), short.crossings_repeat());
-                assert_eq!(long.strobes.seen(), short.strobes.seen());
+                assert_eq!(long.strobes.seen, short.strobes.seen);
                 assert_eq!(long.settles_at(|at| at as f64), short.settles_at(|at| at as f64));
                 // whole numbers, whose sums are exact
                 let halves = |judge: &Judge| format!("{:?} {:?}", judge.speed, judge.crossed);

@@ -45,9 +45,9 @@ impl Strobe {
 pub(crate) struct Strobes {
     /// Length and speed to which differences of states are relative.
     scales: (f64, f64),
-    /// The longest period that is searched for.
-    longest: usize,
-    seen: u64,
+    pub longest: usize,
+    /// The number of states so far.
+    pub seen: u64,
     /// The last states, each at its number modulo [`LONGEST`].
     recent: [Strobe; LONGEST],
     /// For each period up to [`LONGEST`], the number of the state from which on all states have come back
@@ -57,9 +57,7 @@ pub(crate) struct Strobes {
     periods: u64,
     /// Number of the first state of the window.
     from: u64,
-    /// The first states of the window.
     opening: [Strobe; 2 * LONGEST],
-    /// The states around the middle of the window.
     middle: [Strobe; 2 * LONGEST],
 }
 
@@ -94,11 +92,6 @@ impl Strobes {
         })
     }
 
-    /// The number of states so far.
-    pub fn seen(&self) -> u64 {
-        self.seen
-    }
-
     /// Adds a state; those after the window are ignored.
     pub fn add(&mut self, state: Strobe) {
         if self.is_complete() {
@@ -116,7 +109,6 @@ impl Strobes {
         self.seen += 1;
     }
 
-    /// Whether all states of the window have been seen.
     fn is_complete(&self) -> bool {
         self.seen > self.from + self.periods
     }
@@ -159,11 +151,6 @@ impl Strobes {
         }
         self.recent.rotate_right((more % LONGEST as u64) as usize);
         self.seen += more;
-    }
-
-    /// The longest period that is searched for.
-    pub fn longest(&self) -> usize {
-        self.longest
     }
 
     /// The smallest number of states after which all states of the window have come back and stay where they
@@ -215,10 +202,8 @@ impl Strobes {
     }
 }
 
-/// The crossings of the settled window.
 #[derive(Debug, Clone)]
 pub(crate) struct Crossings {
-    /// Forcing periods in the window.
     periods: f64,
     /// Crossings that may still get a partner: time in forcing periods since the start of the window, and the
     /// well entered.
@@ -429,7 +414,7 @@ mod tests {
                 skipped.skip(more, lap, |place| state(enough + place));
                 (enough + more..=from + periods).for_each(|i| skipped.add(state(i)));
                 (0..=from + periods).for_each(|i| full.add(state(i)));
-                assert_eq!(skipped.seen(), full.seen());
+                assert_eq!(skipped.seen, full.seen);
                 assert_eq!(skipped.period(), full.period(), "{lap} {from} {periods}");
                 let expected = (lap <= 12 && 2 * lap <= periods).then_some(lap as u32);
                 assert_eq!(full.period().map(|period| period.0), expected, "{lap} {from} {periods}");

@@ -20,7 +20,6 @@ pub(crate) struct Ending<T> {
     /// State of the circuit at time 0 and at the end.
     pub circuit: (T, T),
     pub phase: Phase,
-    /// Segment of the drive.
     pub segment: usize,
     /// Change of the potential over the run in J.
     pub potential: f64,
@@ -32,7 +31,6 @@ fn value<T: Scalar>(sum: &CompensatedSum<T>) -> f64 {
 }
 
 impl<T: Scalar> Recorder<'_, T> {
-    /// Closes the record.
     pub fn finish(mut self, ending: &Ending<T>) -> Run {
         let &Ending { at: end, state: (x, v), outcome, .. } = ending;
         let final_x = x.to_f64();

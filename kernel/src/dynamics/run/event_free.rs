@@ -58,7 +58,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
             stepper;
         let (damping, segment) = (equation.damping, state.segment);
         let allowed = settings.residual_of_a_full_step();
-        let margin = T::of(MARGIN) * clock.period();
+        let margin = T::of(MARGIN) * clock.period;
         let rule = record.rule_of_steps();
         let (mut at, mut x, mut v) = (state.at, state.x, state.v);
         let mut ended = FastPath::Paused;

@@ -1,23 +1,25 @@
-//! Run from event to event, up to its end.
+//! Run from event to event, up to its end or until it is known what the motion goes to.
 
 mod balance;
 pub(crate) mod ending;
 pub(crate) mod event_free;
 mod flight;
-pub(crate) mod pursue;
 mod recurrence;
 
+use crate::dynamics::clock::Instant;
 use crate::dynamics::drive::Drive;
 use crate::dynamics::drive::form::{clock, form, general, with_drive};
 use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
-use crate::dynamics::result::{Outcome, Request, Run};
+use crate::dynamics::record::goal::Goal;
+use crate::dynamics::result::{Arrival, Outcome, Pursued, Pursuit, Request, Run};
 use crate::dynamics::state::{Contact, Flow};
-use crate::dynamics::step::settings::Settings;
+use crate::dynamics::step::stepper::Settings;
 use crate::dynamics::step::work::{Costs, IMPACT_BUDGET};
 use crate::numeric::{DoubleDouble, Scalar};
 use crate::system::clock::ThreadClock;
+use ending::Initial;
 use event_free::FastPath;
 
 impl Model {
@@ -140,8 +142,8 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         if cancelled {
             return Some(Outcome::Cancelled { at: at() });
         }
-        if self.stepper.work.impacts() >= IMPACT_BUDGET {
-            return Some(Outcome::ImpactBudget { at: at(), count: self.stepper.work.impacts() });
+        if self.stepper.work.impacts >= IMPACT_BUDGET {
+            return Some(Outcome::ImpactBudget { at: at(), count: self.stepper.work.impacts });
         }
         if self.stepper.work.is_done() {
             return Some(Outcome::StepBudget { at: at(), count: self.steps });
@@ -165,4 +167,38 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
             Contact::Compressing(end) | Contact::Clipped(end) => self.contact_step(end, left),
         }
     }
+}
+
+impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
+    /// Puts the motion at the start of a pursuit and sets the end of the pursuit. A release from rest ends
+    /// it, so it is never completed from a recurrence.
+    pub fn pursuing(mut self, pursuit: &Pursuit<'a>) -> Self {
+        let start = (T::of(pursuit.start.0), T::of(pursuit.start.1 * self.stepper.equation.unit));
+        self.put(start, Instant { cycle: 0, phase: T::zero() });
+        self.stepper.work.limit(pursuit.most_work);
+        self.stepper.end = self.record.pursue(Goal::new(*pursuit), pursuit.most_periods);
+        (self.recurs, self.until_settled) = (true, None);
+        self
+    }
+
+    /// Result of the pursuit.
+    pub fn arrived(mut self, model: &Model, start: &Initial<T>, outcome: Outcome) -> Pursued {
+        let (crossings, work) = (self.record.counts.total_crossings, self.stepper.work.done);
+        let arrival = self.record.arrival().filter(|_| outcome == Outcome::Done);
+        let unsettled = || Arrival::Unsettled(Box::new(self.finish(model, start, outcome).summary));
+        Pursued { arrival: arrival.unwrap_or_else(unsettled), crossings, work }
+    }
+}
+
+/// Pursues a motion alone.
+pub(crate) fn pursue_alone(model: &Model, pursuit: &Pursuit, request: &Request) -> Pursued {
+    let unit = model.scales.unit();
+    let (equation, clock) = (Equation::<f64>::new(model, unit), clock(model, unit));
+    with_drive!(&form(model, &clock), drive => {
+        let motion = Motion::new(model, request, model.tolerance, &equation, clock, drive);
+        let mut motion = motion.pursuing(pursuit);
+        let start = motion.begin(model);
+        let outcome = motion.go_on();
+        motion.arrived(model, &start, outcome)
+    })
 }

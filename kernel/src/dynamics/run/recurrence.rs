@@ -110,7 +110,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// The number of half cycles of the clock since `at`, if it is odd and whole.
     fn half_cycles_since(&self, at: &Instant<T>) -> Option<i64> {
         let halves =
-            self.stepper.clock.between(at, &self.state.at) / (self.stepper.clock.period() * T::of(0.5));
+            self.stepper.clock.between(at, &self.state.at) / (self.stepper.clock.period * T::of(0.5));
         let whole = (halves + T::of(0.5)).floor();
         let close = (halves - whole).abs() <= T::of(CLEAR);
         let count = whole.to_f64() as i64;
@@ -183,7 +183,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         self.record.next_strobe = None;
         let listings = std::mem::take(&mut self.record.listings);
         let start = self.state.at;
-        let length = self.stepper.clock.period() * T::of(lap.cycles as f64);
+        let length = self.stepper.clock.period * T::of(lap.cycles as f64);
         let begin =
             |lap_before: i64| Instant { cycle: start.cycle + lap_before * lap.cycles, phase: start.phase };
         let mut done = 0;
@@ -220,8 +220,8 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
 
     /// Number of laps from here on that are on the same side of the window's borders as the last one.
     fn laps_on_this_side(&self, lap: &Lap<T>, inside: bool) -> i64 {
-        let clear = self.stepper.clock.period() * T::of(CLEAR);
-        let length = self.stepper.clock.period() * T::of(lap.cycles as f64);
+        let clear = self.stepper.clock.period * T::of(CLEAR);
+        let length = self.stepper.clock.period * T::of(lap.cycles as f64);
         let until = self.record.same_side_until(&self.state.at, &self.stepper.end, inside);
         let laps = ((self.stepper.clock.between(&self.state.at, &until) - clear) / length).floor();
         laps.larger(T::zero()).to_f64() as i64

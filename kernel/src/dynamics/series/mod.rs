@@ -23,11 +23,8 @@ pub(crate) use order::{MAX_ORDER, ROOM, SEEDED, Tail};
 pub(crate) struct Series<T: Copy> {
     /// Displacement from the piece's origin: y\[k\] is the coefficient of (time since the step's start)^k.
     pub y: [T; ROOM],
-    /// Acceleration of the base.
     pub a: [T; ROOM],
-    /// Number of coefficients of y that are known.
     pub known: usize,
-    /// The integrals computed last, if any.
     pub measured: Cell<Option<Integrals<T>>>,
     forces: ForceSeries<T>,
     inverse: [T; ROOM],
@@ -38,7 +35,6 @@ pub(crate) struct Series<T: Copy> {
 pub(crate) struct Integrals<T> {
     /// Time since the step's start up to which they are taken.
     pub until: T,
-    /// Integral of the squared velocity.
     pub squared: T,
     /// Integral of base acceleration times velocity; 0 in a run without a ledger.
     pub work: T,
@@ -47,7 +43,6 @@ pub(crate) struct Integrals<T> {
 /// The state at the end of a step's polynomial.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Endpoint<T> {
-    /// Displacement from the piece's origin.
     pub y: T,
     pub v: T,
     pub acceleration: T,
@@ -83,7 +78,6 @@ impl<T: Number> Series<T> {
         self.measured.set(None);
     }
 
-    /// Adds coefficients up to `order`.
     #[inline(always)]
     pub fn extend_to<D: Tail<T>>(
         &mut self,
@@ -193,7 +187,6 @@ impl<T: Number> Series<T> {
         Endpoint { y: self.y[0] + (term + y), v, acceleration, bound: term.abs() + bound }
     }
 
-    /// The known coefficients of the displacement.
     #[inline(always)]
     pub fn coefficients(&self) -> &[T] {
         &self.y[..self.known]

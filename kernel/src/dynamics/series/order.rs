@@ -2,14 +2,12 @@
 
 use crate::numeric::Number;
 
-/// The highest order of a step.
 pub(crate) const MAX_ORDER: usize = 32;
 /// Room for coefficients 0..=MAX_ORDER.
 pub(crate) const ROOM: usize = MAX_ORDER + 2;
 /// Number of coefficients of the drive that are known from the start.
 pub(crate) const SEEDED: usize = 4;
 
-/// Continuation of the series of a drive.
 pub(crate) trait Tail<T: Number> {
     /// State carried along a series.
     type Cursor: Default;

@@ -2,8 +2,7 @@
 //! series holds.
 
 use super::quasi_static::QuasiStatic;
-use super::settings::RESIDUAL;
-use super::stepper::Stepper;
+use super::stepper::{RESIDUAL, Stepper};
 use crate::dynamics::clock::Instant;
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::End;
@@ -44,7 +43,6 @@ pub(crate) struct QuasiStaticStep<T> {
     pub arrival: Option<Instant<T>>,
     /// Root of the depth and inward speed at its end.
     pub end: (T, T),
-    /// Bound of the change of the depth.
     pub bound: T,
 }
 

@@ -9,7 +9,6 @@ use crate::dynamics::series::polynomial::{self, at_four_times};
 use crate::dynamics::series::{ROOM, convolve};
 use crate::numeric::{GaussLegendre, PolynomialRoots, Scalar};
 
-/// Bounds of the changes over a step of contact.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Changes<T> {
     pub root: T,
@@ -76,7 +75,6 @@ impl<T: Scalar> Penetration<T> {
         if g[from] > T::zero() { PolynomialRoots::new(&g[from..n]).first() } else { None }
     }
 
-    /// The state at `s`.
     pub fn state(&self, s: T) -> ContactState<T> {
         let zero = T::zero();
         let (mut root, mut speed, mut slope, mut time) = (zero, zero, zero, zero);
@@ -95,7 +93,6 @@ impl<T: Scalar> Penetration<T> {
         at.slope + at.root * (damping * at.speed + self.sign * (f + base) + pushed)
     }
 
-    /// Bound of the rounding of the residual.
     pub fn residual_rounding(&self, at: &ContactState<T>, force: &PieceForce<T>, damping: T) -> T {
         let (f, _, rounding) = force.value(self.displacement(at));
         let (f, base, pushed) = self.forces(at, f);

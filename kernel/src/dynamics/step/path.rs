@@ -10,7 +10,8 @@ use crate::dynamics::series::polynomial;
 use crate::dynamics::series::{Integrals, ROOM, Series};
 use crate::numeric::{GaussLegendre, Scalar};
 
-/// The motion over one step, in a parameter that is 0 at the step's start and grows with time.
+/// The motion over one step, in a parameter that is 0 at the step's start and grows with time. Unless a path
+/// says otherwise, the parameter is the time.
 pub(crate) trait Path<T: Scalar> {
     /// Whether it runs in contact with a compliant stop.
     const IN_CONTACT: bool;
@@ -29,20 +30,26 @@ pub(crate) trait Path<T: Scalar> {
     fn scaled(&self, h: T) -> [T; ROOM];
     /// Displacement from the piece's origin.
     fn position(&self, parameter: T) -> T;
-    /// Velocity.
     fn velocity(&self, parameter: T) -> T;
     /// Time since the step's start.
-    fn time(&self, parameter: T) -> T;
+    #[inline]
+    fn time(&self, parameter: T) -> T {
+        parameter
+    }
     /// The parameter, up to `length`, at a time since the step's start.
-    fn parameter(&self, time: T, length: T) -> T;
+    #[inline]
+    fn parameter(&self, time: T, _length: T) -> T {
+        time
+    }
     /// Integrals over time between two parameters: of the squared velocity and, if `WORK`, of base
     /// acceleration times velocity.
     fn integrals<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T);
     /// Integral over time between two parameters of the displacement from the piece's origin.
-    fn moment(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T;
+    fn moment(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T {
+        polynomial::integral(rule, from, to, |t| self.position(t))
+    }
 }
 
-/// Further methods of a step within a compliant stop.
 pub(crate) trait InStop<T: Scalar>: Path<T> {
     /// Energy over mass that the stop dissipates over (from, to) in the path's parameter.
     fn loss(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T;
@@ -56,13 +63,11 @@ pub(crate) trait InStop<T: Scalar>: Path<T> {
 pub(crate) struct StepData<T> {
     /// Origin of the piece.
     pub origin: T,
-    /// When the step starts.
     pub at: Instant<T>,
     /// Length of the step as it was chosen, in the path's parameter.
     pub whole: T,
     /// Length that is kept, at most `whole`.
     pub length: T,
-    /// Duration of the kept length.
     pub duration: T,
     /// Bound of |x - x(start)| over the step.
     pub bound: T,
@@ -115,14 +120,6 @@ impl<T: Scalar> Path<T> for Series<T> {
         polynomial::slope(self.coefficients(), parameter)
     }
     #[inline]
-    fn time(&self, parameter: T) -> T {
-        parameter
-    }
-    #[inline]
-    fn parameter(&self, time: T, _: T) -> T {
-        time
-    }
-    #[inline]
     fn integrals<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T) {
         let whole = from == T::zero();
         if let Some(known) = self.measured.get().filter(|known| whole && known.until == to) {
@@ -134,8 +131,5 @@ impl<T: Scalar> Path<T> for Series<T> {
             self.measured.set(Some(Integrals { until: to, squared, work }));
         }
         (squared, work)
-    }
-    fn moment(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T {
-        polynomial::integral(rule, from, to, |t| self.position(t))
     }
 }

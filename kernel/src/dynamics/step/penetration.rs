@@ -30,21 +30,17 @@ use crate::numeric::{Scalar, fast_exp2, fast_log2};
 pub(crate) struct Penetration<T: Copy> {
     /// Displacement from the piece's origin over s, and the base's acceleration over *time*.
     pub inner: Series<T>,
-    /// Root of the depth.
     pub root: [T; ROOM],
-    /// Speed into the stop.
     pub speed: [T; ROOM],
     /// Time since the step's start.
     pub(super) time: [T; ROOM],
     pub(super) depth: [T; ROOM],
-    /// Square of the depth.
     square: [T; ROOM],
     /// Outward acceleration by everything but stop and damping.
     outward: [T; ROOM],
     /// The terms of the force beyond the first ones, over the square of the depth.
     beyond: [T; ROOM],
     time_square: [T; ROOM],
-    /// The base's acceleration.
     pub(super) base: [T; ROOM],
     /// Its nested form in powers of the time, from the second level on.
     nested: [[T; ROOM]; ROOM],
@@ -56,7 +52,6 @@ pub(crate) struct Penetration<T: Copy> {
     about: Vec<T>,
     /// The mode of that force.
     about_mode: Option<usize>,
-    /// 1/k.
     inverse: [T; ROOM],
     pub(super) order: usize,
     pub(super) stop: Compliant<T>,
@@ -80,7 +75,6 @@ pub(crate) enum Terms {
 }
 
 impl Terms {
-    /// Terms of the drive.
     pub fn of_drive(self) -> usize {
         match self {
             Self::Few => 3,
@@ -100,7 +94,6 @@ pub(crate) struct Start<T> {
     pub clipped: bool,
 }
 
-/// The constants of the recurrence.
 struct Constants<T> {
     force: [T; 5],
     stiffness: T,
@@ -298,12 +291,10 @@ impl<T: Scalar> Penetration<T> {
         polynomial::value(&c[..=self.order], s)
     }
 
-    /// Root of the depth at `s`.
     pub fn root_at(&self, s: T) -> T {
         self.at(&self.root, s)
     }
 
-    /// Speed into the stop at `s`.
     pub fn speed_at(&self, s: T) -> T {
         self.at(&self.speed, s)
     }

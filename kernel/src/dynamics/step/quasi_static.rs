@@ -178,22 +178,8 @@ impl<T: Scalar> Path<T> for QuasiStatic<T> {
     fn velocity(&self, parameter: T) -> T {
         polynomial::slope(self.series.coefficients(), parameter)
     }
-    fn time(&self, parameter: T) -> T {
-        parameter
-    }
-    fn parameter(&self, time: T, _: T) -> T {
-        time
-    }
     fn integrals<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T) {
-        polynomial::integrals::<_, WORK>(
-            self.series.coefficients(),
-            self.series.base_coefficients(),
-            rule,
-            from,
-            to,
-        )
-    }
-    fn moment(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T {
-        polynomial::integral(rule, from, to, |t| self.position(t))
+        let (y, a) = (self.series.coefficients(), self.series.base_coefficients());
+        polynomial::integrals::<_, WORK>(y, a, rule, from, to)
     }
 }

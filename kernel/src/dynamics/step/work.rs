@@ -34,13 +34,11 @@ pub(crate) const REPLAYED: u64 = 10;
 /// Costs of the parts of a run, in units of work.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Costs {
-    /// A step of free flight.
     pub step: u64,
     /// Another check of a step, after it was halved.
     pub check: u64,
     /// An expansion in contact with a compliant stop, or an impact on it as one step.
     pub contact: u64,
-    /// A sample of the motion and the base.
     sample: u64,
 }
 
@@ -58,7 +56,6 @@ impl Costs {
         }
     }
 
-    /// Samples between two checks of the cancel flag.
     pub fn samples_per_check(&self) -> u64 {
         (CHECK_INTERVAL / self.sample).max(1)
     }
@@ -67,9 +64,9 @@ impl Costs {
 /// Work done, its limit, and the next check of the cancel flag.
 #[derive(Debug, Clone)]
 pub(crate) struct Work<'a> {
-    done: u64,
+    pub done: u64,
     max_units: u64,
-    impacts: u64,
+    pub impacts: u64,
     next_check: u64,
     cancel: Option<&'a AtomicBool>,
 }
@@ -79,19 +76,8 @@ impl<'a> Work<'a> {
         Self { done: 0, max_units: WORK_BUDGET, impacts: 0, next_check: CHECK_INTERVAL, cancel }
     }
 
-    /// Limits the work to this many units.
     pub fn limit(&mut self, max_units: u64) {
         self.max_units = self.max_units.min(max_units);
-    }
-
-    /// Units of work done.
-    pub fn done(&self) -> u64 {
-        self.done
-    }
-
-    /// Number of impacts computed one by one.
-    pub fn impacts(&self) -> u64 {
-        self.impacts
     }
 
     #[inline]
@@ -109,12 +95,10 @@ impl<'a> Work<'a> {
         self.done + units < self.max_units && self.impacts < IMPACT_BUDGET
     }
 
-    /// Whether the limit of work is reached.
     pub fn is_done(&self) -> bool {
         self.done >= self.max_units
     }
 
-    /// Whether a budget is spent.
     pub fn is_spent(&self) -> bool {
         !self.has_room_for(0)
     }

@@ -18,7 +18,6 @@ pub(super) struct Arrivals<const W: usize> {
     pub unit: (Lanes<W>, Lanes<W>),
 }
 
-/// Three columns.
 type Three<const W: usize> = (Lanes<W>, Lanes<W>, Lanes<W>);
 
 impl<const W: usize> Columns<W> {

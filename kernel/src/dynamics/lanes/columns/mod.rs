@@ -12,12 +12,10 @@ use crate::dynamics::state::{BY_SPEED, Touch};
 use crate::dynamics::step::work::ARRIVAL;
 use crate::numeric::Lanes;
 
-/// One motion under a sine.
 pub(super) type LaneMotion<'a> = Motion<'a, f64, Sine<f64>>;
 
 /// The lanes, in columns.
 pub(crate) struct Columns<const W: usize> {
-    /// Which lanes are active.
     pub active: [bool; W],
     /// Steps taken since a lane was loaded.
     steps: Lanes<W>,
@@ -49,7 +47,6 @@ pub(crate) struct Columns<const W: usize> {
     // constant over event-free steps
     /// The barrier whose crossings are counted; NaN without one.
     barrier: Lanes<W>,
-    /// The side of the barrier.
     side: Lanes<W>,
     border: Clocks<W>,
     /// Whether each step is logged, in case the motion recurs.
@@ -118,7 +115,6 @@ impl<const W: usize> Columns<W> {
         }
     }
 
-    /// Whether a force has the degree of the lanes.
     pub fn takes(&self, force: &PieceForce<f64>) -> bool {
         self.force.degree() == force.degree()
     }
@@ -139,7 +135,7 @@ impl<const W: usize> Columns<W> {
             self.speed_log2[lane] = settings.speed_log2;
             self.longest[lane] = settings.longest;
             self.allowed.0[lane] = settings.residual_of_a_full_step();
-            self.period.0[lane] = motion.stepper.clock.period();
+            self.period.0[lane] = motion.stepper.clock.period;
         }
         self.barrier.0[lane] = record.barrier.unwrap_or(f64::NAN);
         self.side.0[lane] = f64::from(record.side);
@@ -205,7 +201,6 @@ impl<const W: usize> Columns<W> {
         motion.record.barrier_side = self.side.0[lane] as i8;
     }
 
-    /// Stores a lane back to its motion.
     pub fn store(&mut self, lane: usize, motion: &mut LaneMotion) {
         self.active[lane] = false;
         let steps = self.steps.0[lane] as u64;
