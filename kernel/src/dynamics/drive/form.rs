@@ -2,14 +2,11 @@
 
 use std::sync::Arc;
 
-use super::Still;
-use super::base_at;
-use super::chirp::Chirp;
-use super::circuit::Circuit;
 use super::general::{FEW_TONES, General};
 use super::lines::Lines;
 use super::record::{Line, Record};
-use super::tone::{Ramp, Sine, Tone, TurnsPerCycle};
+use super::tone::{Chirp, Ramp, Sine, Tone, TurnsPerCycle};
+use super::{Circuit, Still, base_at};
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::model::Model;
 use crate::dynamics::model::excitation::TonePart;

@@ -5,13 +5,11 @@
 //! double-double arithmetic every drive is of the general type; a constant or a sine alone has the same
 //! arithmetic here as there.
 
-use super::chirp::{Chirp, ChirpState, next_chirp};
-use super::circuit::Circuit;
 use super::lines::{Lines, LinesCursor};
 use super::record::{Record, RecordSeries};
 use super::release::{Decaying, Search};
-use super::tone::{LastValue, Sine, Tone};
-use super::{Base, ContactAcceleration, Drive, ReleaseRoot, Span};
+use super::tone::{Chirp, ChirpState, LastValue, Sine, Tone, next_chirp};
+use super::{Base, Circuit, ContactAcceleration, Drive, ReleaseRoot, Span};
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::series::{ROOM, SEEDED, Series, Tail};
 use crate::numeric::Scalar;
@@ -20,7 +18,7 @@ use crate::numeric::Scalar;
 /// cancel by chance. More steady tones than this are advanced side by side.
 pub(super) const FEW_TONES: usize = 8;
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct General<T> {
     /// The sine, if the drive is nothing else; the other parts are then not evaluated.
     pub sine: Option<Sine<T>>,

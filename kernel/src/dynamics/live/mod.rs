@@ -10,11 +10,12 @@
 //! dragged over the mass, a new potential, a mass put elsewhere) is in the ledger as moved by hand.
 
 mod kernel;
-mod phase;
 
 use crate::dynamics::model::Model;
+use crate::dynamics::model::excitation::{ExcitationParts, TonePart};
 use crate::dynamics::result::{Event, EventKind, Outcome, Phase, Sample, Side};
 use crate::dynamics::state::{Checkpoint, Contact};
+use crate::numeric::{DoubleDouble, Scalar};
 use kernel::{Kernel, Sums};
 
 /// Longest live run in kernel time units: some years for the prototype. The clock of an undriven scene is
@@ -223,10 +224,10 @@ impl Live {
     /// even if their frequency changes. The mass keeps its place and speed; a stop that now lies on the other
     /// side of it carries it along and takes its speed, as does the end of the known curve.
     pub fn change(&mut self, model: &Model, into: &mut LiveOutput) {
-        self.shifts = phase::shifts(&self.model, model, &self.shifts, self.now);
+        self.shifts = phase_shifts(&self.model, model, &self.shifts, self.now);
         self.scene_times = (model.duration, model.settle);
         let mut next = without_end(model.clone());
-        phase::shift(&mut next.excitation, &self.shifts);
+        shift_phases(&mut next.excitation, &self.shifts);
         let state = self.state();
         self.go_on(next, (state.x, state.v), state.phase, into);
     }
@@ -291,7 +292,7 @@ impl Live {
         }
         let mut model = self.model.clone();
         (model.duration, model.settle) = self.scene_times;
-        phase::advance(&mut model.excitation, self.now);
+        advance_phases(&mut model.excitation, self.now);
         let turns = model.forcing_period.map_or(0.0, |period| self.now / period);
         model.start_phase = (model.start_phase + turns).rem_euclid(1.0);
         let (carried, _) = self.present();
@@ -362,4 +363,46 @@ fn without_end(mut model: Model) -> Model {
 fn energy(model: &Model, (x, v): (f64, f64)) -> f64 {
     let (kinetic, potential) = model.energies(x, v);
     kinetic + potential
+}
+
+/// The turns by which each tone of `new` has to be ahead of its scene from `now` in s on, if the tones of
+/// `old` were ahead by `shifts`. Tones correspond by their order; a drive with another number of tones begins
+/// as its scene says.
+fn phase_shifts(old: &Model, new: &Model, shifts: &[f64], now: f64) -> Vec<f64> {
+    let (from, to) = (&old.excitation.tones, &new.excitation.tones);
+    if from.len() != to.len() {
+        return vec![0.0; to.len()];
+    }
+    from.iter().zip(to).zip(shifts).map(|((from, to), shift)| shifted(from, to, *shift, now)).collect()
+}
+
+/// The turns by which a tone that follows another one is ahead. A change of amplitude needs no correction; if
+/// the frequency f becomes f' at time t, the phase has to grow by (f - f') t turns.
+fn shifted(from: &TonePart, to: &TonePart, shift: f64, now: f64) -> f64 {
+    if from.frequency == to.frequency {
+        return shift;
+    }
+    let turns = DoubleDouble::product(from.frequency, now) - DoubleDouble::product(to.frequency, now);
+    fraction(shift + (turns - turns.floor()).to_f64())
+}
+
+/// Advances every tone by its shift.
+fn shift_phases(drive: &mut ExcitationParts, shifts: &[f64]) {
+    for (tone, shift) in drive.tones.iter_mut().zip(shifts).filter(|(_, shift)| **shift != 0.0) {
+        tone.phase = fraction(tone.phase + shift);
+    }
+}
+
+/// Makes `now` in s the time 0 of every tone.
+fn advance_phases(drive: &mut ExcitationParts, now: f64) {
+    for tone in &mut drive.tones {
+        let turns = DoubleDouble::product(tone.frequency, now);
+        tone.phase = fraction(tone.phase + (turns - turns.floor()).to_f64());
+    }
+}
+
+/// Fraction of a turn, 0 <= fraction < 1.
+fn fraction(turns: f64) -> f64 {
+    let fraction = turns - turns.floor();
+    if fraction < 1.0 { fraction } else { 0.0 }
 }

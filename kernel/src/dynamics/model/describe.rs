@@ -15,25 +15,21 @@ impl Model {
         } else {
             absent.push("damping");
         }
-        match &self.stops {
-            _ if self.compliant.is_some() => {
-                lines.extend(self.compliant.iter().flat_map(|stop| compliant(self, stop)))
+        match (&self.compliant, self.sides()) {
+            (_, (None, None)) => absent.push("stops"),
+            (Some(hertz), (Some(left), Some(right))) => {
+                lines.extend(compliant(self, hertz, [left.x, right.x]));
             }
-            Some(pair) => {
-                let stop = |side: &str, at: Option<StopAt>| match at {
-                    Some(s) => {
-                        let restitution = number_text(s.restitution);
-                        format!("{side} at {} mm with restitution {restitution}", short(s.x * 1e3))
+            (_, (left, right)) => {
+                let [left, right] = [("left", left), ("right", right)].map(|(side, stop)| match stop {
+                    Some(StopAt { x, restitution }) => {
+                        let restitution = number_text(restitution);
+                        format!("{side} at {} mm with restitution {restitution}", short(x * 1e3))
                     }
                     None => format!("{side} open"),
-                };
-                lines.push(format!(
-                    "rigid stops: {}; {}",
-                    stop("left", pair.left),
-                    stop("right", pair.right)
-                ));
+                });
+                lines.push(format!("rigid stops: {left}; {right}"));
             }
-            None => absent.push("stops"),
         }
         let excitation = self.describe_excitation();
         if excitation.is_empty() {
@@ -129,14 +125,12 @@ const SPEEDS: [f64; 2] = [0.1, 0.5];
 const STEPS_PER_PERIOD: (f64, f64) = (1.5, 36.0);
 
 /// Description of a compliant stop, of an impact on it, and of the cost of a rest on it.
-fn compliant(model: &Model, stop: &Hertz) -> Vec<String> {
-    let place = |at: Option<f64>| short(at.unwrap_or(f64::NAN) * 1e3);
-    let (left, right) = model.stop_positions();
+fn compliant(model: &Model, stop: &Hertz, [left, right]: [f64; 2]) -> Vec<String> {
     let mut lines = vec![format!(
         "compliant stops at {} and {} mm: contact by Hertz, k = {} N/m^1.5, loss by Hunt and Crossley, \
          a = {} s/m",
-        place(left),
-        place(right),
+        short(left * 1e3),
+        short(right * 1e3),
         short(stop.stiffness),
         short(stop.loss)
     )];
@@ -159,7 +153,7 @@ fn compliant(model: &Model, stop: &Hertz) -> Vec<String> {
         ));
     }
     // Pressed by the mechanism alone, at the right-hand stop.
-    let pressed = right.map_or(0.0, |at| -model.mechanism.curve.force(at));
+    let pressed = -model.mechanism.curve.force(right);
     if pressed > 0.0 {
         let depth = stop.static_depth(pressed);
         let stiffness = 1.5 * stop.stiffness * depth.sqrt();

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
+use super::start::fault;
 use crate::numeric::{Ratio, greatest_common_divisor};
 use crate::scene::{Excitation, Fault, Record};
 
@@ -154,11 +155,8 @@ impl ExcitationParts {
             Excitation::Recorded { path: file, record } => match record {
                 Some(record) => self.records.push(Arc::clone(record)),
                 None => {
-                    return Err(Fault {
-                        field: format!("{path}.path"),
-                        value: file.clone(),
-                        problem: "has not been read: take the scene from a document".into(),
-                    });
+                    let problem = "has not been read: take the scene from a document";
+                    return Err(fault(&format!("{path}.path"), file, problem));
                 }
             },
             Excitation::Sum(terms) => {
@@ -183,14 +181,8 @@ impl ExcitationParts {
             let phase = uniform();
             // a line at 0 Hz would be a constant
             let frequency = frequency.max(f64::MIN_POSITIVE);
-            self.tones.push(TonePart {
-                amplitude,
-                frequency,
-                phase,
-                quarter: false,
-                ramp: None,
-                noise: true,
-            });
+            let line = TonePart { amplitude, frequency, phase, quarter: false, ramp: None, noise: true };
+            self.tones.push(line);
         }
         self.noises.push(noise);
     }

@@ -103,18 +103,15 @@ impl Model {
         });
         let transducer = Transducer::of(&scene.transducer, mass);
         if transducer.is_some_and(|transducer| !transducer.is_finite()) {
-            let value = match scene.transducer {
-                scene::Transducer::Piezoelectric { .. } => "Piezoelectric(..)",
-                _ => "Electromagnetic(..)",
-            };
+            let piezoelectric = matches!(scene.transducer, scene::Transducer::Piezoelectric { .. });
+            let value = if piezoelectric { "Piezoelectric(..)" } else { "Electromagnetic(..)" };
             let problem = "its numbers make no finite rates, damping and power with this mass; give some \
                            nearer to those of a real one";
             faults.push(fault("transducer", value, problem));
         }
         let stops = StopPair::of(&scene.stops);
         let compliant = Hertz::of(&scene.stops);
-        let start = start_state(scene, &mechanism, stops.as_ref(), compliant.as_ref());
-        let start = start.unwrap_or_else(|found| {
+        let start = start_state(scene, &mechanism, stops, compliant).unwrap_or_else(|found| {
             faults.push(found);
             (0.0, 0.0)
         });
@@ -124,14 +121,11 @@ impl Model {
         });
         let periods = drive.fastest().unwrap_or(0.0) * scene.run.duration_s;
         if periods > MAX_PERIODS {
-            faults.push(fault(
-                "run.duration_s",
-                scene.run.duration_s,
-                format!(
-                    "makes {periods:e} periods of the excitation; at most {MAX_PERIODS:e} can be counted: \
-                     shorten the run or lower the frequency"
-                ),
-            ));
+            let problem = format!(
+                "makes {periods:e} periods of the excitation; at most {MAX_PERIODS:e} can be counted: \
+                 shorten the run or lower the frequency"
+            );
+            faults.push(fault("run.duration_s", scene.run.duration_s, problem));
         }
         if !faults.is_empty() {
             // a number that is not finite may have caused them: report it first
@@ -149,8 +143,8 @@ impl Model {
         // A charge can give the mass as much energy as a speed does.
         let fastest = (start.0, start.1.abs().max(charged.abs()));
         let scales = scales(scene, mass, &mechanism, &drive, fastest, (stops, compliant));
-        let (left, right) = (stops.and_then(|s| s.left), stops.and_then(|s| s.right));
-        let on_a_stop = left.is_some_and(|s| s.x == start.0) || right.is_some_and(|s| s.x == start.0);
+        let on_a_stop = stops
+            .is_some_and(|pair| [pair.left, pair.right].into_iter().flatten().any(|stop| stop.x == start.0));
         let motionless = scene.start == Start::Rest && !on_a_stop && drive.is_still();
         let mut model = Self {
             mass,

@@ -80,19 +80,15 @@ impl Scales {
         let stiff = l.stiffness_over_mass.sqrt();
         let usable = |x: f64| x.is_finite() && x > 0.0;
         let driven: f64 = l.drive.iter().map(|part| part.0).sum();
+        let reach = |rate: f64| -> f64 { l.drive.iter().map(|(a, w)| a / (rate * rate.max(*w))).sum() };
         let fastest = l.drive.iter().map(|part| part.1).fold(0.0, f64::max);
         let acceleration = l.start_acceleration.max(driven);
         let rated = usable(stiff) || usable(fastest);
         let (length, rate) = if rated {
             let rate = if usable(stiff) { stiff } else { fastest };
-            let driven: f64 = l.drive.iter().map(|(a, w)| a / (rate * rate.max(*w))).sum();
-            let length = l
-                .half_distance
-                .max(l.start_distance)
-                .max(l.start_speed / rate)
-                .max(driven)
-                .max(if usable(stiff) { 0.0 } else { l.start_acceleration / (rate * rate) });
-            (length, rate)
+            let by_start = if usable(stiff) { 0.0 } else { l.start_acceleration / (rate * rate) };
+            let length = l.half_distance.max(l.start_distance).max(l.start_speed / rate);
+            (length.max(reach(rate)).max(by_start), rate)
         } else if usable(acceleration) {
             let length = l.start_distance.max(l.start_speed * l.start_speed / acceleration);
             let length = if usable(length) { length } else { acceleration * l.duration * l.duration };
@@ -112,10 +108,7 @@ impl Scales {
             None => (length, rate),
             Some(room) => {
                 let within = room.max(FAR * room * (FAR * room / length));
-                let driven: f64 = match rated {
-                    true => l.drive.iter().map(|(a, w)| a / (rate * rate.max(*w))).sum(),
-                    false => acceleration / (rate * rate),
-                };
+                let driven = if rated { reach(rate) } else { acceleration / (rate * rate) };
                 let faster = (driven / within).sqrt().max(l.start_speed / rate / within);
                 (within, rate * faster.max(1.0))
             }
@@ -138,11 +131,8 @@ pub(crate) fn scales(
     start: (f64, f64),
     (stops, compliant): (Option<StopPair>, Option<Hertz>),
 ) -> Scales {
-    let landscape = &mechanism.landscape;
-    let curve = &mechanism.curve;
-    let mut stiffness: f64 = 0.0;
-    let mut reference = 0.0;
-    let mut half_distance = 0.0;
+    let Mechanism { landscape, curve, .. } = mechanism;
+    let (mut stiffness, mut reference, mut half_distance) = (0.0_f64, 0.0, 0.0);
     match (&landscape.barrier, landscape.equilibria.as_slice()) {
         (Some(barrier), equilibria) => {
             reference = barrier.x;

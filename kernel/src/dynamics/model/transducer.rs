@@ -99,15 +99,15 @@ impl Transducer {
             Electromagnetic { coupling_v_s_per_m, coil_ohm, load_ohm, inductance_mh } => {
                 let (resistance, inductance) = (coil_ohm + load_ohm, inductance_mh / 1e3);
                 // per unit current: the current is the signal or is proportional to it
-                let (gain, circuit) = match transducer.has_state() {
-                    true => {
-                        let (k, decay) = (coupling_v_s_per_m, resistance / inductance);
-                        (1.0, Some(Circuit::new(k, inductance, decay, mass, false)))
-                    }
-                    false => (coupling_v_s_per_m / resistance, None),
+                let (gain, damping, circuit) = if transducer.has_state() {
+                    let (k, decay) = (coupling_v_s_per_m, resistance / inductance);
+                    (1.0, 0.0, Some(Circuit::new(k, inductance, decay, mass, false)))
+                } else {
+                    let gain = coupling_v_s_per_m / resistance;
+                    (gain, coupling_v_s_per_m * gain, None)
                 };
                 Self {
-                    damping: if circuit.is_none() { coupling_v_s_per_m * gain } else { 0.0 },
+                    damping,
                     circuit,
                     voltage: load_ohm * gain,
                     current: gain,
@@ -137,11 +137,8 @@ impl Transducer {
     /// Output at a velocity in m/s and an electrical state in A or V.
     pub fn output(&self, v: f64, electrical: f64) -> Output {
         let signal = if self.circuit.is_some() { electrical } else { v };
-        Output {
-            voltage: self.voltage * signal,
-            current: self.current * signal,
-            power: self.load * signal * signal,
-        }
+        let power = self.load * signal * signal;
+        Output { voltage: self.voltage * signal, current: self.current * signal, power }
     }
 
     /// Energies in J into the load and lost in the coil, from the time integral of the squared signal; from

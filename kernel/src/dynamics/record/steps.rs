@@ -5,7 +5,7 @@ use std::sync::atomic::Ordering;
 use super::barrier::side_of;
 use super::recorder::Recorder;
 use crate::dynamics::clock::Instant;
-use crate::dynamics::drive::circuit::Circuit;
+use crate::dynamics::drive::Circuit;
 use crate::dynamics::result::Sample;
 use crate::dynamics::series::polynomial;
 use crate::dynamics::step::chord::Chord;

@@ -1,6 +1,5 @@
 //! Run from event to event, up to its end or until it is known what the motion goes to.
 
-mod balance;
 pub(crate) mod ending;
 pub(crate) mod event_free;
 mod flight;

@@ -232,16 +232,16 @@ impl<T: Scalar> Impact<T> {
         if self.pressing > T::zero() {
             m += power(self.pressing / fifth, 1.0 / 3.0) * T::of(0.5);
         }
-        for _ in 0..20 {
+        let newton = |m: T| {
             let cube = fifth * m * m * m;
             let value = (cube - self.pressing) * (m * m) - stored;
-            let slope = m * (T::of(5.0) * cube - T::of(2.0) * self.pressing);
-            let change = value / slope;
+            value / (m * (T::of(5.0) * cube - T::of(2.0) * self.pressing))
+        };
+        for _ in 0..20 {
+            let change = newton(m);
             m -= change;
             if change.abs() <= m * T::of(T::ROUGH) {
-                let cube = fifth * m * m * m;
-                let value = (cube - self.pressing) * (m * m) - stored;
-                return Some(m - value / (m * (T::of(5.0) * cube - T::of(2.0) * self.pressing)));
+                return Some(m - newton(m));
             }
         }
         None

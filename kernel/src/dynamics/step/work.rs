@@ -129,7 +129,7 @@ mod tests {
     use super::*;
     use crate::dynamics::drive::Still;
     use crate::dynamics::drive::general::General;
-    use crate::dynamics::drive::lines::Lines;
+    use crate::dynamics::drive::tone::{Tone, TurnsPerCycle};
 
     #[test]
     fn a_simple_scene_may_take_twenty_million_steps_at_any_tolerance() {
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn looks_are_as_much_work_apart_whatever_a_piece_costs() {
+    fn checks_are_equally_far_apart_whatever_a_piece_costs() {
         let cancel = AtomicBool::new(true);
         for cost in [1, 30, 9_999, 10_000, 3_000_000] {
             let mut work = Work::new(Some(&cancel));
@@ -157,30 +157,9 @@ mod tests {
 
     #[test]
     fn every_part_of_a_drive_costs_its_share() {
-        let drive = |lines: usize| {
-            let tone = crate::dynamics::drive::tone::Tone {
-                amplitude: 1.0,
-                frequency: 1.0,
-                ratio: crate::dynamics::drive::tone::TurnsPerCycle::Rounded(1.0),
-                phase: 0.0,
-                quarter: false,
-                ramp: None,
-            };
-            General {
-                sine: None,
-                still: false,
-                circuit: None,
-                constant: 0.0,
-                tones: vec![tone; lines],
-                lines: Lines::default(),
-                chirps: vec![],
-                records: vec![],
-                segment_ends: vec![],
-                common_cycles: None,
-                reach: 1.0,
-                fastest: 1.0,
-            }
-        };
+        let ratio = TurnsPerCycle::Rounded(1.0);
+        let tone = Tone { amplitude: 1.0, frequency: 1.0, ratio, phase: 0.0, quarter: false, ramp: None };
+        let drive = |lines: usize| General { tones: vec![tone.clone(); lines], ..General::default() };
         let step = |lines| Costs::new(16, 3, &drive(lines)).step;
         assert!(step(4096) > 500 * step(1) && step(64) > 5 * step(1));
         assert_eq!(Costs::new(16, 3, &drive(4096)).samples_per_check(), 1);
