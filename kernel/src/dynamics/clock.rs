@@ -16,7 +16,7 @@ pub(crate) struct Instant<T> {
     pub phase: T,
 }
 
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Clock<T> {
     /// Cycles per second.
     frequency: f64,

@@ -76,8 +76,8 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         let since = self.searched.take().filter(|(segment, _)| *segment == self.state.segment);
         let since = since.map_or(from, |(_, since)| since);
         let span = Span { from, until, segment: self.state.segment, since };
-        let Stepper { drive, clock, cursor, .. } = &mut self.stepper;
-        let (root, work) = drive.next_release(clock, &span, acceleration, cursor);
+        let Stepper { drive, cursor, .. } = &mut self.stepper;
+        let (root, work) = drive.next_release(&span, acceleration, cursor);
         self.stepper.work.add(self.stepper.costs.check + work);
         match root {
             ReleaseRoot::At(root, turn) => {

@@ -95,7 +95,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         let height = speed * speed / acceleration;
         let push = mode.force.steepest((level - mode.origin).abs() + height) * height;
         let drag = stepper.equation.damping * two * speed;
-        let base = stepper.drive.acceleration(&stepper.clock, &until, state.segment);
+        let base = stepper.drive.acceleration(&until, state.segment);
         let last = stop.acceleration - end.sign::<T>() * base;
         let variation = bend * whole * whole * T::of(0.125) + push;
         let low = acceleration.smaller(last) - (variation + drag);

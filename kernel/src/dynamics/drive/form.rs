@@ -32,7 +32,7 @@ impl Model {
         let drive = sum(self, &clock);
         let at = clock.at(t);
         let segment = drive.segment_ends.iter().filter(|end| clock.between(end, &at) >= 0.0).count();
-        base_at(&drive, &clock, segment, &at, unit)
+        base_at(&drive, segment, &at, unit)
     }
 }
 
@@ -63,7 +63,7 @@ pub(crate) fn form<T: Scalar>(model: &Model, clock: &Clock<T>) -> Form<T> {
     match drive.tones.as_slice() {
         [] if alone => Form::Still(Still { acceleration: T::of(drive.constant * (unit * unit)) }),
         [part] if alone && drive.constant == 0.0 && part.ramp.is_none() => {
-            Form::Sine(Sine { tone: tone(part, part.frequency, unit, |_| None) })
+            Form::Sine(Sine { tone: tone(part, part.frequency, unit, |_| None), clock: *clock })
         }
         _ => Form::General(sum(model, clock)),
     }
@@ -160,6 +160,7 @@ fn sum<T: Scalar>(model: &Model, clock: &Clock<T>) -> General<T> {
     let sweeping = drive.chirps.iter().filter(|c| c.amplitude != 0.0).map(|c| c.from.max(c.to));
     let fastest = moving.chain(sweeping).fold(0.0, f64::max) * unit;
     General {
+        clock: *clock,
         sine: None,
         still: false,
         circuit: circuit(model, unit),

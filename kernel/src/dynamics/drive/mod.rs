@@ -19,7 +19,7 @@ use crate::numeric::Scalar;
 /// Acceleration of the base at any instant, in kernel units: all that a recorder needs of a drive.
 pub(crate) trait Base<T> {
     /// a(t) at `at`.
-    fn acceleration(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize) -> T;
+    fn acceleration(&self, at: &Instant<T>, segment: usize) -> T;
 }
 
 /// Acceleration of the base, in kernel units.
@@ -59,20 +59,12 @@ pub(crate) trait Drive<T: Scalar>: Tail<T> + Base<T> {
     }
 
     /// Fills the first `SEEDED` coefficients of `a`, at `at`.
-    fn seed(
-        &self,
-        clock: &Clock<T>,
-        at: &Instant<T>,
-        segment: usize,
-        a: &mut [T; ROOM],
-        cursor: &mut Self::Cursor,
-    );
+    fn seed(&self, at: &Instant<T>, segment: usize, a: &mut [T; ROOM], cursor: &mut Self::Cursor);
 
     /// a(t) at `at`, computed directly and not by the series: a step is checked against it. A drive of many
     /// tones may return `by_series`, the value of its series.
     fn value(
         &self,
-        clock: &Clock<T>,
         at: &Instant<T>,
         segment: usize,
         by_series: impl Fn() -> T,
@@ -89,7 +81,6 @@ pub(crate) trait Drive<T: Scalar>: Tail<T> + Base<T> {
     /// work of finding it. The span lies within one segment.
     fn next_release(
         &self,
-        clock: &Clock<T>,
         span: &Span<T>,
         acceleration: ContactAcceleration<T>,
         cursor: &mut Self::Cursor,
@@ -195,38 +186,26 @@ impl<T: Scalar> Tail<T> for Still<T> {
 }
 
 impl<T: Scalar> Base<T> for Still<T> {
-    fn acceleration(&self, _: &Clock<T>, _: &Instant<T>, _: usize) -> T {
+    fn acceleration(&self, _: &Instant<T>, _: usize) -> T {
         self.acceleration
     }
 }
 
 impl<T: Scalar> Drive<T> for Still<T> {
     #[inline]
-    fn seed(&self, _: &Clock<T>, _: &Instant<T>, _: usize, a: &mut [T; ROOM], (): &mut ()) {
+    fn seed(&self, _: &Instant<T>, _: usize, a: &mut [T; ROOM], (): &mut ()) {
         a[0] = self.acceleration; // the others stay 0
     }
     #[inline]
-    fn value(&self, _: &Clock<T>, _: &Instant<T>, _: usize, _: impl Fn() -> T, (): &mut ()) -> T {
+    fn value(&self, _: &Instant<T>, _: usize, _: impl Fn() -> T, (): &mut ()) -> T {
         self.acceleration
     }
-    fn next_release(
-        &self,
-        _: &Clock<T>,
-        _: &Span<T>,
-        _: ContactAcceleration<T>,
-        (): &mut (),
-    ) -> (ReleaseRoot<T>, u64) {
+    fn next_release(&self, _: &Span<T>, _: ContactAcceleration<T>, (): &mut ()) -> (ReleaseRoot<T>, u64) {
         (ReleaseRoot::Never, 0)
     }
 }
 
 /// Acceleration of the base in m/s^2 at an instant; `unit` is the length of the kernel's time unit in s.
-pub(crate) fn base_at<T: Scalar>(
-    drive: &dyn Base<T>,
-    clock: &Clock<T>,
-    segment: usize,
-    at: &Instant<T>,
-    unit: f64,
-) -> f64 {
-    drive.acceleration(clock, at, segment).to_f64() / (unit * unit)
+pub(crate) fn base_at<T: Scalar>(drive: &dyn Base<T>, segment: usize, at: &Instant<T>, unit: f64) -> f64 {
+    drive.acceleration(at, segment).to_f64() / (unit * unit)
 }

@@ -115,7 +115,7 @@ impl<T: Scalar, D: Drive<T>> Search<'_, T, D> {
     /// The contact acceleration over a stride of length `h` from `at`.
     fn stride(&mut self, at: &Instant<T>, h: T, cursor: &mut D::Cursor) -> Stride<T> {
         let Self { drive, series, acceleration: ContactAcceleration { threshold, sign, .. }, .. } = self;
-        drive.seed(self.clock, at, self.segment, &mut series.a, cursor);
+        drive.seed(at, self.segment, &mut series.a, cursor);
         let order = if self.fastest > T::zero() { STRIDE_ORDER } else { 1 };
         for k in SEEDED..=order {
             series.extend_drive(k, *drive, cursor);

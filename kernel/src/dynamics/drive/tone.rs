@@ -96,6 +96,7 @@ impl<T: Scalar> Tone<T> {
 #[derive(Debug, Clone)]
 pub(crate) struct Sine<T> {
     pub tone: Tone<T>,
+    pub clock: Clock<T>,
 }
 
 /// Where a tone was evaluated last, with its value and time derivative per unit amplitude.
@@ -155,7 +156,7 @@ impl<T: Scalar> Tail<T> for Sine<T> {
 }
 
 impl<T: Scalar> Base<T> for Sine<T> {
-    fn acceleration(&self, _: &Clock<T>, at: &Instant<T>, _: usize) -> T {
+    fn acceleration(&self, at: &Instant<T>, _: usize) -> T {
         self.tone.amplitude * self.unit(at).0
     }
 }
@@ -170,7 +171,7 @@ impl<T: Scalar> Drive<T> for Sine<T> {
     }
 
     #[inline(always)]
-    fn seed(&self, _: &Clock<T>, at: &Instant<T>, _: usize, a: &mut [T; ROOM], last: &mut Self::Cursor) {
+    fn seed(&self, at: &Instant<T>, _: usize, a: &mut [T; ROOM], last: &mut Self::Cursor) {
         let (s, d) = match last {
             Some((when, unit)) if when == at => *unit,
             _ => {
@@ -184,14 +185,7 @@ impl<T: Scalar> Drive<T> for Sine<T> {
     }
 
     #[inline(always)]
-    fn value(
-        &self,
-        _: &Clock<T>,
-        at: &Instant<T>,
-        _: usize,
-        _: impl Fn() -> T,
-        last: &mut Self::Cursor,
-    ) -> T {
+    fn value(&self, at: &Instant<T>, _: usize, _: impl Fn() -> T, last: &mut Self::Cursor) -> T {
         let unit = self.unit(at);
         *last = Some((*at, unit));
         self.tone.amplitude * unit.0
@@ -199,7 +193,6 @@ impl<T: Scalar> Drive<T> for Sine<T> {
 
     fn next_release(
         &self,
-        clock: &Clock<T>,
         &Span { from, until, .. }: &Span<T>,
         ContactAcceleration { threshold, sign, .. }: ContactAcceleration<T>,
         _: &mut Self::Cursor,
@@ -226,12 +219,12 @@ impl<T: Scalar> Drive<T> for Sine<T> {
         let mut turns = (turns - quarter) - self.tone.phase;
         turns -= turns.floor();
         let mut phase = turns / self.tone.frequency;
-        if phase >= clock.period {
+        if phase >= self.clock.period {
             phase = T::zero();
         }
         let behind = from.phase - phase;
         // A root that lies in the past by no more than rounding counts as now.
-        let slack = clock.period * T::of(8.0 * T::EPSILON);
+        let slack = self.clock.period * T::of(8.0 * T::EPSILON);
         // There is one root in each cycle; "now" only approximates it.
         let (root, turn) = if behind <= T::zero() {
             (Instant { cycle: from.cycle, phase }, Some(0))
@@ -240,7 +233,7 @@ impl<T: Scalar> Drive<T> for Sine<T> {
         } else {
             (Instant { cycle: from.cycle + 1, phase }, Some(0))
         };
-        (ReleaseRoot::within(clock, root, turn, &until), 0)
+        (ReleaseRoot::within(&self.clock, root, turn, &until), 0)
     }
 }
 

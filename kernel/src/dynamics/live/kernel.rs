@@ -87,7 +87,7 @@ impl Kernel {
 
     /// Acceleration of the base in m/s^2 at an instant within a segment of the drive.
     fn base_within(&self, segment: usize, at: &Instant<f64>) -> f64 {
-        with_drive!(&*self.drive, drive => base_at(drive, &self.clock, segment, at, self.unit()))
+        with_drive!(&*self.drive, drive => base_at(drive, segment, at, self.unit()))
     }
 
     fn segment<D: Drive<f64>>(&self, drive: &D, at: &Instant<f64>) -> usize {

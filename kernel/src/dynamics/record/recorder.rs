@@ -135,7 +135,7 @@ impl<'a, T: Scalar> Recorder<'a, T> {
 
     /// Acceleration of the base in m/s^2 at an instant in this segment of the drive.
     pub(crate) fn base(&self, at: &Instant<T>, segment: usize) -> f64 {
-        base_at(self.base, &self.clock, segment, at, self.unit)
+        base_at(self.base, segment, at, self.unit)
     }
 
     /// The part of \[at, at + length) inside the settled window, relative to `at`.

@@ -64,7 +64,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         let mut ended = FastPath::Paused;
         let (mut steps, mut crossed) = (0, 0);
         for _ in 0..max_steps {
-            drive.seed(clock, &at, segment, &mut series.a, cursor);
+            drive.seed(&at, segment, &mut series.a, cursor);
             series.begin(x - origin, v);
             series.extend(settings.order, &mode.force, damping, *drive, cursor);
             let length =
@@ -76,7 +76,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
             }
             let end = series.state(length);
             let next = clock.advance(&at, length);
-            let base = drive.value(clock, &next, segment, || series.base(length), cursor);
+            let base = drive.value(&next, segment, || series.base(length), cursor);
             let sum = (end.acceleration + damping * end.v) + base;
             let residual = (mode.force.at(end.y) + sum).abs() * length;
             if !(residual <= allowed) {

@@ -151,7 +151,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let mode = self.mode(state);
         let at = self.clock.advance(&state.at, h);
         let series = &self.series;
-        let base = self.drive.value(&self.clock, &at, state.segment, || series.base(h), &mut self.cursor);
+        let base = self.drive.value(&at, state.segment, || series.base(h), &mut self.cursor);
         let sum = (acceleration + self.equation.damping * v) + base;
         let push = self.drive.circuit().and_then(|circuit| Some(circuit.coupling * self.circuit_at(h)?));
         let sum = push.map_or(sum, |push| sum + push);

@@ -68,7 +68,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         // Does the mass ring? The first term of its quasi-static motion shows whether the series is
         // worth computing.
         let a = &mut path.series.a;
-        self.drive.seed(&self.clock, &state.at, state.segment, a, &mut self.cursor);
+        self.drive.seed(&state.at, state.segment, a, &mut self.cursor);
         let (jerk, snap) = (-(sign * a[1]), a[2].abs() * T::of(2.0));
         let stiffness = T::of(1.5) * stop.stiffness * root;
         if !((speed * stiffness - jerk).abs() <= ring * stiffness + jerk.abs() * T::of(FIRST_TERM_ROUGH)) {

@@ -82,7 +82,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             surface: self.equation.surface(end)? - mode.origin,
             clipped: matches!(state.contact, Contact::Clipped(_)),
         };
-        self.drive.seed(&self.clock, &state.at, state.segment, path.seeded(), &mut self.cursor);
+        self.drive.seed(&state.at, state.segment, path.seeded(), &mut self.cursor);
         self.evaluations += 1;
         self.work.add(self.costs.contact);
         // At most as far as the initial speed would lead in the longest time.
@@ -223,7 +223,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let mode = self.mode(state);
         let level = self.equation.surface(end)?;
         let (scale, tolerance) = self.contact_tolerance(state)?;
-        self.drive.seed(&self.clock, &state.at, state.segment, &mut path.series.a, &mut self.cursor);
+        self.drive.seed(&state.at, state.segment, &mut path.series.a, &mut self.cursor);
         for k in SEEDED..DRIVE_TERMS + 2 {
             path.series.extend_drive(k, self.drive, &mut self.cursor);
         }

@@ -127,7 +127,7 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
     /// Fills the first coefficients of the drive.
     #[inline]
     pub fn seed(&mut self, state: &MotionState<T>) {
-        self.drive.seed(&self.clock, &state.at, state.segment, &mut self.series.a, &mut self.cursor);
+        self.drive.seed(&state.at, state.segment, &mut self.series.a, &mut self.cursor);
         D::begin_circuit(&mut self.cursor, state.circuit);
     }
 
