@@ -5,24 +5,26 @@ use super::equation::End;
 use super::result::{Outcome, Phase};
 use crate::numeric::Scalar;
 
-/// A surface that the mass touches at the start of a step, and the multiplicity of the root of the gap there:
-/// how many of its leading coefficients are 0 by definition.
+/// A surface that the mass touches at the start of a step, and what opens the gap to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Touch {
     pub end: End,
-    pub multiplicity: usize,
+    pub opening: Opening,
 }
 
-/// Multiplicity of a touch whose gap opens with the speed.
-pub(crate) const BY_SPEED: usize = 1;
-/// Multiplicity of a touch whose gap opens with the acceleration.
-pub(crate) const BY_ACCELERATION: usize = 2;
-/// Multiplicity of a touch whose gap opens with the jerk.
-pub(crate) const BY_JERK: usize = 3;
-/// No coefficient up to the fourth opens the gap; the next ones decide.
-pub(crate) const UNDECIDED: usize = 5;
-/// The surface is ignored for one step: the mass leaves a break on neither side.
-pub(crate) const HELD: usize = usize::MAX;
+/// The derivative of the motion that opens the gap to a touched surface. As a number it is the multiplicity of
+/// the root of the gap there: how many of its leading coefficients are 0 by definition.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+pub(crate) enum Opening {
+    Speed = 1,
+    Acceleration,
+    Jerk,
+    Snap,
+    /// None of these; the next coefficients decide.
+    Undecided,
+    /// The surface is ignored for one step: the mass leaves a break on neither side.
+    Held,
+}
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Contact {

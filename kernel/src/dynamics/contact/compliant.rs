@@ -17,7 +17,7 @@ use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::{Compliant, End, EndKind};
 use crate::dynamics::motion::Motion;
 use crate::dynamics::result::Outcome;
-use crate::dynamics::state::{BY_SPEED, Contact, Depth, Flow, HELD, Touch};
+use crate::dynamics::state::{Contact, Depth, Flow, Opening, Touch};
 use crate::dynamics::step::choose_quasi_static::QuasiStaticStep;
 use crate::dynamics::step::contact::{ContactStep, Reached};
 use crate::dynamics::step::impact::{Impact, Separation};
@@ -63,7 +63,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         }
         self.state.contact = Contact::Free;
         if outward < T::zero() {
-            self.state.touch = Some(Touch { end, multiplicity: BY_SPEED });
+            self.state.touch = Some(Touch { end, opening: Opening::Speed });
             return;
         }
         match self.leaves(end) {
@@ -202,7 +202,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         self.state.contact = Contact::Free;
         let outward = sign * self.state.v;
         if outward < T::zero() {
-            self.state.touch = Some(Touch { end, multiplicity: BY_SPEED });
+            self.state.touch = Some(Touch { end, opening: Opening::Speed });
         } else {
             self.meet(end, T::zero()); // it has come to rest right at the surface
         }
@@ -217,7 +217,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         if outward > T::zero() {
             self.enter_neighbour(at);
         } else {
-            self.state.touch = Some(Touch { end: at, multiplicity: HELD });
+            self.state.touch = Some(Touch { end: at, opening: Opening::Held });
         }
         None
     }

@@ -8,7 +8,7 @@ use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::{End, EndKind, FAR};
 use crate::dynamics::motion::Motion;
 use crate::dynamics::result::Outcome;
-use crate::dynamics::state::{BY_ACCELERATION, BY_SPEED, Contact, Flow, HELD, Touch};
+use crate::dynamics::state::{Contact, Flow, Opening, Touch};
 use crate::numeric::Scalar;
 
 impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
@@ -30,7 +30,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
             match kind {
                 EndKind::Compliant => self.meet(end, outward),
                 _ if outward < T::zero() => {
-                    self.state.touch = Some(Touch { end, multiplicity: BY_SPEED });
+                    self.state.touch = Some(Touch { end, opening: Opening::Speed });
                 }
                 EndKind::Stop if outward > T::zero() => self.strike(end, outward),
                 EndKind::Stop => self.settle(end),
@@ -64,11 +64,11 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
                 if !at_once {
                     self.balance(end);
                 } else if self.state.turned_back {
-                    self.state.touch = Some(Touch { end, multiplicity: HELD });
+                    self.state.touch = Some(Touch { end, opening: Opening::Held });
                 } else {
                     self.state.turned_back = true;
                     self.enter_neighbour(end);
-                    self.state.touch = Some(Touch { end: end.other(), multiplicity: BY_ACCELERATION });
+                    self.state.touch = Some(Touch { end: end.other(), opening: Opening::Acceleration });
                 }
             }
             EndKind::Unknown if level.abs() >= T::of(FAR) => {
@@ -82,7 +82,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// The mass passes the break at `end` of its mode.
     pub fn enter_neighbour(&mut self, end: End) {
         self.state.enter(end);
-        self.state.touch = Some(Touch { end: end.other(), multiplicity: BY_SPEED });
+        self.state.touch = Some(Touch { end: end.other(), opening: Opening::Speed });
     }
 
     /// The mass stands on the break at `end` of its mode with no speed. The first derivative of its
@@ -104,23 +104,26 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
             None => (rates, rounding),
         };
         self.state.v += T::zero(); // makes a 0 of -0
-        let (end, multiplicity) = match first_rate(rates, rounding) {
-            Some((multiplicity, outward)) if outward => {
+        let (end, opening) = match first_rate(rates, rounding) {
+            Some((opening, outward)) if outward => {
                 self.state.enter(end);
-                (end.other(), multiplicity)
+                (end.other(), opening)
             }
-            Some((multiplicity, _)) => (end, multiplicity),
-            None => (end, HELD),
+            Some((opening, _)) => (end, opening),
+            None => (end, Opening::Held),
         };
-        self.state.touch = Some(Touch { end, multiplicity });
+        self.state.touch = Some(Touch { end, opening });
     }
 }
 
-/// The first of an acceleration, known to `rounding`, and its first two derivatives that is not 0: the
-/// multiplicity of a touch that it opens, and whether it is positive.
-fn first_rate<T: Scalar>(rates: [T; 3], rounding: T) -> Option<(usize, bool)> {
-    (BY_ACCELERATION..).zip(rates).find_map(|(multiplicity, rate)| {
-        let size = if multiplicity == BY_ACCELERATION { rounding } else { T::zero() };
-        (rate > size || rate < -size).then_some((multiplicity, rate > size))
-    })
+/// Which of an acceleration, known to `rounding`, and its first two derivatives is the first that is not 0, and
+/// whether it is positive.
+fn first_rate<T: Scalar>(rates: [T; 3], rounding: T) -> Option<(Opening, bool)> {
+    let openings = [Opening::Acceleration, Opening::Jerk, Opening::Snap];
+    let sizes = [rounding, T::zero(), T::zero()];
+    openings
+        .into_iter()
+        .zip(rates)
+        .zip(sizes)
+        .find_map(|((opening, rate), size)| (rate > size || rate < -size).then_some((opening, rate > size)))
 }

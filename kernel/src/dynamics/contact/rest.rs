@@ -7,7 +7,7 @@ use crate::dynamics::equation::End;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::record::events::Call;
 use crate::dynamics::result::Phase;
-use crate::dynamics::state::{BY_ACCELERATION, BY_JERK, Contact, Label, MotionState, Touch, UNDECIDED};
+use crate::dynamics::state::{Contact, Label, MotionState, Opening, Touch};
 use crate::dynamics::step::stepper::Stepper;
 use crate::numeric::{Scalar, decay};
 
@@ -25,8 +25,8 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         self.state.v = T::zero();
         match first_rate(rates, rounding) {
             Some((_, pressed)) if pressed => None,
-            Some((multiplicity, _)) => Some(Touch { end, multiplicity }),
-            None => Some(Touch { end, multiplicity: UNDECIDED }),
+            Some((opening, _)) => Some(Touch { end, opening }),
+            None => Some(Touch { end, opening: Opening::Undecided }),
         }
     }
 
@@ -82,7 +82,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         match root {
             ReleaseRoot::At(root, turn) => {
                 self.stand(root, phase);
-                self.release(end, BY_JERK);
+                self.release(end, Opening::Jerk);
                 self.label = turn.filter(|_| self.recurs).map(|turn| Label { end, turn, phase: root.phase });
             }
             ReleaseRoot::NotBefore(later) => {
@@ -97,16 +97,16 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
                 if self.stepper.pass_segment_end(&mut self.state) {
                     let acceleration = self.stepper.contact_acceleration(&self.state, end)[0];
                     if acceleration < -self.stepper.contact_acceleration_rounding(end) {
-                        self.release(end, BY_ACCELERATION);
+                        self.release(end, Opening::Acceleration);
                     }
                 }
             }
         }
     }
 
-    fn release(&mut self, end: End, multiplicity: usize) {
+    fn release(&mut self, end: End, opening: Opening) {
         self.report(Call::Release { at: self.state.at, side: end.side() });
         self.state.contact = Contact::Free;
-        self.state.touch = Some(Touch { end, multiplicity });
+        self.state.touch = Some(Touch { end, opening });
     }
 }

@@ -7,7 +7,7 @@ use crate::dynamics::model::scales::LEAST_IMPACT;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::record::events::Call;
 use crate::dynamics::result::Phase;
-use crate::dynamics::state::{BY_SPEED, Touch};
+use crate::dynamics::state::{Opening, Touch};
 use crate::numeric::Scalar;
 
 impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
@@ -21,7 +21,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         self.report(Call::Impact { at: self.state.at, side: end.side(), v_in, v_out });
         if rebound > T::zero() {
             self.state.v = -(sign * rebound);
-            self.state.touch = Some(Touch { end, multiplicity: BY_SPEED });
+            self.state.touch = Some(Touch { end, opening: Opening::Speed });
         } else {
             self.settle(end);
         }

@@ -58,7 +58,7 @@ impl<T: Scalar> Equation<T> {
                 end(left, index == 0, rigid(left_stop), left_stop.is_some_and(|s| s.x >= left));
             let (high, high_kind) =
                 end(right, last, rigid(right_stop), right_stop.is_some_and(|s| s.x <= right));
-            let (origin, force) = (T::of(piece.origin), PieceForce::new(coefficients));
+            let (origin, force) = (T::of(piece.origin), PieceForce { coefficients });
             let about = [Vec::new(), Vec::new()];
             modes.push(Mode { piece: index, force, origin, low, high, low_kind, high_kind, about });
         }

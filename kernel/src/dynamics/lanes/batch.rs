@@ -297,7 +297,8 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
                 Integrals { until: trial.length.0[lane], squared: trial.squared.0[lane], work: 0.0 };
             single.measured.set(trial.measured[lane].then_some(measured));
             motion.stepper.evaluations += 1;
-            motion.stepper.cursor = Some(trial.drive_at_end(lane));
+            let unit = (trial.unit.0.0[lane], trial.unit.1.0[lane]);
+            motion.stepper.cursor = Some((trial.at.get(lane), unit));
             motion.take(&Step { length: trial.length.0[lane], arrival: None, end: trial.end(lane) })
         } else {
             motion.fly(left)

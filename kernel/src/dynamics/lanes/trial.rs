@@ -102,9 +102,4 @@ impl<const W: usize> Trial<W> {
         let Endpoint { y, v, acceleration, bound } = &self.end;
         Endpoint { y: y.0[lane], v: v.0[lane], acceleration: acceleration.0[lane], bound: bound.0[lane] }
     }
-
-    /// The end of the step of a lane, and the drive and its time derivative there.
-    pub fn drive_at_end(&self, lane: usize) -> (Instant<f64>, (f64, f64)) {
-        (self.at.get(lane), (self.unit.0.0[lane], self.unit.1.0[lane]))
-    }
 }

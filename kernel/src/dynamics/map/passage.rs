@@ -8,7 +8,7 @@ use crate::dynamics::motion::Motion;
 use crate::dynamics::record::recorder::Recorder;
 use crate::dynamics::result::{Event, EventKind, Outcome, Request, Side};
 use crate::dynamics::series::Series;
-use crate::dynamics::state::{Contact, HELD, MotionState};
+use crate::dynamics::state::{Contact, MotionState, Opening};
 use crate::dynamics::step::stepper::ROUNDINGS;
 use crate::dynamics::step::stepper::Stepper;
 use crate::numeric::{PolynomialRoots, Scalar};
@@ -194,8 +194,8 @@ fn add_misses<T: Scalar>(
     }
     let length = clock.between(&before.at, &until).to_f64();
     // where it leaves a surface, coefficients that are 0 by definition may differ from 0 by rounding
-    let multiplicity =
-        before.touch.map_or(1, |touch| if touch.multiplicity == HELD { 1 } else { touch.multiplicity });
+    let opening = before.touch.map(|touch| touch.opening).filter(|opening| *opening != Opening::Held);
+    let multiplicity = opening.map_or(1, |opening| opening as usize);
     let (mut velocity, mut power) = (Vec::with_capacity(series.known), 1.0);
     for (k, c) in series.coefficients().iter().enumerate().skip(1) {
         velocity.push(if k < multiplicity { 0.0 } else { k as f64 * c.to_f64() * power });

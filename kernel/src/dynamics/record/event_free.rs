@@ -26,12 +26,6 @@ pub(crate) struct EventFree<T> {
 }
 
 impl<T: Scalar> Recorder<'_, T> {
-    /// Whether no samples are left to take, so that event-free steps need not be recorded one by one.
-    #[inline]
-    pub fn needs_no_samples(&self) -> bool {
-        self.next_time >= self.times.len()
-    }
-
     /// Begins a sequence of event-free steps at `at`, which ends at `end` at the latest.
     pub fn begin_event_free(&self, at: &Instant<T>, end: &Instant<T>) -> EventFree<T> {
         let until = |border: &Instant<T>| self.clock.between(at, border);

@@ -110,13 +110,6 @@ impl Judge {
         }
     }
 
-    /// A copy for another window, made before the run has begun.
-    pub fn for_window(&self, periods: u64, from: u64) -> Self {
-        let mut strobes = self.strobes.clone();
-        strobes.begin_window(periods, from);
-        Self { periods, from, strobes, crossings: Crossings::new(periods), ..self.clone() }
-    }
-
     /// Whether the instants of crossings outside the window are needed too: under a drive that changes, the
     /// first ones are reported.
     pub fn times_all_crossings(&self) -> bool {

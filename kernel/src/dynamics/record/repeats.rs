@@ -78,11 +78,6 @@ impl Strobes {
         }
     }
 
-    /// Changes the window, before the first state. All periods are searched for, however short the window is.
-    pub fn begin_window(&mut self, periods: u64, from: u64) {
-        *self = Self { longest: LONGEST, ..Self::new(self.scales, periods, from) };
-    }
-
     /// The smallest number of states after which those of the last two periods, and `more` states before
     /// them, have come back.
     pub fn repeats_for(&self, more: u64) -> Option<u32> {

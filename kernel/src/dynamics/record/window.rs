@@ -4,7 +4,8 @@
 use super::goal::Goal;
 use super::listing::SAME;
 use super::recorder::Recorder;
-use super::repeats::Strobe;
+use super::regime::Judge;
+use super::repeats::{LONGEST, Strobe};
 use super::sums::Sums;
 use crate::dynamics::clock::Instant;
 use crate::dynamics::result::{Arrival, ReleaseIdentity, SectionPoint, Side};
@@ -152,7 +153,9 @@ impl<'a, T: Scalar> Recorder<'a, T> {
         self.window = (at(from), at(max_periods));
         self.origin = at(0);
         self.next_strobe = Some(self.origin);
-        self.judge = self.judge.for_window(self.periods, from);
+        let scales = (self.model.scales.length, self.model.scales.speed);
+        self.judge = Judge::new(self.model.rhythm, scales, self.periods, from);
+        self.judge.strobes.longest = LONGEST; // however short the window is
         self.goal = Some(goal);
         self.window.1
     }

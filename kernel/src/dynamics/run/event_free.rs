@@ -35,7 +35,8 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     pub fn event_free_steps(&mut self) -> FastPath<T> {
         let free = self.state.contact == Contact::Free && self.state.touch.is_none();
         let alone = self.stepper.drive.circuit().is_none();
-        if self.record.ledger || !alone || !free || self.log.is_some() || !self.record.needs_no_samples() {
+        let samples = self.record.next_time < self.record.times.len();
+        if self.record.ledger || !alone || !free || self.log.is_some() || samples {
             return FastPath::NotTaken;
         }
         let max_steps = self.stepper.work.pieces_until_check(self.stepper.costs.step);

@@ -132,7 +132,7 @@ impl<T: Number> Series<T> {
                 )
             };
         }
-        match force.coefficients() {
+        match force.coefficients.as_slice() {
             [c0] => recur!(true, |k, _, more| force::constant(*c0, k, more)),
             [c0, c1] => recur!(true, |k, y, more| force::linear(*c0, *c1, y, k, more)),
             [c0, c1, c2] => {
@@ -348,7 +348,8 @@ mod tests {
     #[test]
     fn a_series_that_stops_early_and_goes_on_has_the_same_bits() {
         for degree in [0, 1, 2, 3, 9] {
-            let force = PieceForce::new((0..=degree).map(|k| 0.7 - 0.3 * f64::from(k)).collect());
+            let coefficients = (0..=degree).map(|k| 0.7 - 0.3 * f64::from(k)).collect();
+            let force = PieceForce { coefficients };
             let drive = crate::dynamics::drive::tone::Harmonic { curvature: -1.3 };
             let begun = || {
                 let mut series = Series::<f64>::new(force.degree());

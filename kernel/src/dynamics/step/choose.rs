@@ -7,7 +7,7 @@
 use super::stepper::{MAX_HALVINGS, RESIDUAL, ROUNDINGS, Step, Stepper};
 use crate::dynamics::drive::Drive;
 use crate::dynamics::series::{Endpoint, natural_steps, polynomial};
-use crate::dynamics::state::{BY_JERK, MotionState, Touch};
+use crate::dynamics::state::{MotionState, Opening};
 use crate::numeric::{Scalar, fast_log2};
 
 /// Order that is sufficient for the series of most rebounds.
@@ -84,24 +84,13 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
 
     #[inline]
     fn expand(&mut self, state: &MotionState<T>) {
-        if let (2, Some(Touch { multiplicity: BY_JERK.., .. })) = (self.series.known, state.touch) {
-            self.push(state);
+        let (mode, damping, order) = (self.mode(state), self.equation.damping, self.settings.order);
+        let Self { series, drive, cursor, .. } = self;
+        if series.known == 2 && state.touch.is_some_and(|touch| touch.opening >= Opening::Jerk) {
+            series.extend(2, &mode.force, damping, *drive, cursor);
+            series.y[2] = T::zero(); // a release: the net force is 0 by definition
         }
-        let mode = self.mode(state);
-        let order = self.settings.order;
-        self.series.extend(order, &mode.force, self.equation.damping, self.drive, &mut self.cursor);
-    }
-
-    #[inline]
-    fn push(&mut self, state: &MotionState<T>) {
-        let mode = self.mode(state);
-        let next = self.series.known;
-        self.series.extend(next, &mode.force, self.equation.damping, self.drive, &mut self.cursor);
-        if self.series.known == 3
-            && let Some(Touch { multiplicity: BY_JERK.., .. }) = state.touch
-        {
-            self.series.y[2] = T::zero(); // a release: the net force is 0 by definition
-        }
+        series.extend(order, &mode.force, damping, *drive, cursor);
     }
 
     /// Extends the series, just begun, until two consecutive terms are negligible over `flight` relative to

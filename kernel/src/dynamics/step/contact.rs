@@ -10,7 +10,7 @@ use crate::dynamics::clock::Instant;
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::{End, EndKind};
 use crate::dynamics::series::{MAX_ORDER, SEEDED};
-use crate::dynamics::state::{Contact, HELD, MotionState};
+use crate::dynamics::state::{Contact, MotionState, Opening};
 use crate::numeric::{Collocation, PolynomialRoots, Scalar, fast_log2};
 
 /// Minimum of the speed to which the tolerance in contact is relative, as a share of the scene's speed. The
@@ -181,7 +181,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         for at in [End::Low, End::High] {
             let (level, kind) = mode.end(at);
             let touch = state.touch.filter(|touch| touch.end == at);
-            if kind == EndKind::Compliant || touch.is_some_and(|touch| touch.multiplicity == HELD) {
+            if kind == EndKind::Compliant || touch.is_some_and(|touch| touch.opening == Opening::Held) {
                 continue;
             }
             let gap = at.sign::<T>() * (level - state.x);

@@ -292,7 +292,8 @@ impl<T: Scalar> Impact<T> {
         let none: Values<T> = [Lanes::zero(); MOST_GROUPS];
         let (mut passing, mut gains) = (none, none);
         for group in 0..self.rule.groups() {
-            let place = self.motion_at(group);
+            let (m, t, y) = (self.amplitude[group], self.time[group], self.rule.places(group));
+            let place = self.motion(Lanes::all, |value| value.map(T::sqrt), [m, t, y]);
             self.change[group] =
                 (place.amplitude_slope - self.amplitude_slope[group]).abs() * inverse_amplitude;
             self.amplitude_slope[group] = place.amplitude_slope;
@@ -311,13 +312,6 @@ impl<T: Scalar> Impact<T> {
             self.change[group] += (slope - self.time_slope[group]).abs() * inverse_time;
             self.time_slope[group] = slope;
         }
-    }
-
-    /// The motion at the points of a group.
-    #[inline(always)]
-    fn motion_at(&self, group: usize) -> Place<Lanes<GROUP, T>> {
-        let (m, t, y) = (self.amplitude[group], self.time[group], self.rule.places(group));
-        self.motion(Lanes::all, |value| value.map(T::sqrt), [m, t, y])
     }
 
     /// The motion at m, t and y.

@@ -24,11 +24,6 @@ impl<T: Scalar> Impact<T> {
         (all(self.first) + self.rule.integral(m, y, all).0, self.rule.integral(t, y, all))
     }
 
-    /// The time at `y` and its slope.
-    fn time_at(&self, y: T) -> (T, T) {
-        self.sums(y, |value| value).1
-    }
-
     /// Root of the depth at y = 0: m, which hardly changes.
     fn turn(&self) -> T {
         self.first + self.rule.half(&self.amplitude_slope)
@@ -146,7 +141,7 @@ impl<T: Scalar> Path<T> for Impact<T> {
         if time >= self.rule.total(&self.time_slope) {
             return length;
         }
-        let between = self.parameter_by(|y| self.time_at(y), time, length * T::of(0.5));
+        let between = self.parameter_by(|y| self.sums(y, |value| value).1, time, length * T::of(0.5));
         let exactly = |y: T| {
             let (point, time) = self.exactly_at(y);
             (time, point.time_slope)

@@ -10,7 +10,7 @@ use super::stepper::Stepper;
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::{End, EndKind};
 use crate::dynamics::series::Endpoint;
-use crate::dynamics::state::{BY_SPEED, MotionState, Touch};
+use crate::dynamics::state::{MotionState, Opening, Touch};
 use crate::numeric::Scalar;
 
 /// Maximum number of steps to the root; each takes the error to its third power.
@@ -21,7 +21,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     pub fn flies_freely(&mut self, state: &MotionState<T>) -> bool {
         match state.touch {
             None => true,
-            Some(Touch { multiplicity: BY_SPEED, .. }) => {
+            Some(Touch { opening: Opening::Speed, .. }) => {
                 self.seed(state);
                 self.pressed_rebound(state)
                     .is_none_or(|(end, rates)| self.short_flight(state, end, rates).is_none())
@@ -35,7 +35,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     /// be seeded.
     #[inline(always)]
     pub fn pressed_rebound(&self, state: &MotionState<T>) -> Option<(End, [T; 3])> {
-        let Some(Touch { end, multiplicity: BY_SPEED }) = state.touch else { return None };
+        let Some(Touch { end, opening: Opening::Speed }) = state.touch else { return None };
         if !matches!(self.mode(state).end(end).1, EndKind::Stop | EndKind::Compliant) {
             return None;
         }
@@ -65,7 +65,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     /// search. Expects the series to be extended far enough.
     #[inline(always)]
     pub fn rebound(&mut self, state: &MotionState<T>, flight: T, left: T) -> Option<(End, T, Endpoint<T>)> {
-        let Some(Touch { end, multiplicity: BY_SPEED }) = state.touch else { return None };
+        let Some(Touch { end, opening: Opening::Speed }) = state.touch else { return None };
         let (level, kind) = self.mode(state).end(end);
         let border = self.drive.segment_end(state.segment);
         let before = |border| flight < self.clock.between(&state.at, &border);

@@ -8,7 +8,7 @@ use crate::dynamics::drive::tone::Sine;
 use crate::dynamics::equation::force::PieceForce;
 use crate::dynamics::equation::{End, EndKind, Mode};
 use crate::dynamics::motion::Motion;
-use crate::dynamics::state::{BY_SPEED, Touch};
+use crate::dynamics::state::{Opening, Touch};
 use crate::dynamics::step::work::ARRIVAL;
 use crate::numeric::Lanes;
 
@@ -81,7 +81,7 @@ impl<const W: usize> Columns<W> {
             crossings: zero,
             run: [None; W],
             mode: [0; W],
-            force: PieceForce::new(vec![zero; force.coefficients().len()]),
+            force: PieceForce { coefficients: vec![zero; force.coefficients.len()] },
             origin: zero,
             low_end: zero,
             high_end: zero,
@@ -159,8 +159,8 @@ impl<const W: usize> Columns<W> {
     /// Loads a mode, whose force has the lanes' degree, into a lane; `index` is its number in the equation.
     fn load_mode(&mut self, lane: usize, index: usize, mode: &Mode<f64>) {
         self.mode[lane] = index;
-        for (degree, coefficient) in mode.force.coefficients().iter().enumerate() {
-            self.force.coefficient_mut(degree).0[lane] = *coefficient;
+        for (column, coefficient) in self.force.coefficients.iter_mut().zip(&mode.force.coefficients) {
+            column.0[lane] = *coefficient;
         }
         let at_break = |end: End| match mode.end(end) {
             (level, EndKind::Break) => level,
@@ -216,7 +216,7 @@ impl<const W: usize> Columns<W> {
         motion.stepper.cursor = Some((motion.state.at, (self.value.0[lane], self.slope.0[lane])));
         motion.state.turned_back = false;
         motion.state.mode = self.mode[lane];
-        let touched = |end: End| Touch { end, multiplicity: BY_SPEED };
+        let touched = |end: End| Touch { end, opening: Opening::Speed };
         let ends = [End::Low, End::High].into_iter();
         motion.state.touch = ends.map(touched).find(|touch| touch.end.sign::<f64>() == self.touch.0[lane]);
         motion.record.end_event_free(
