@@ -43,7 +43,7 @@ pub(crate) struct General<T> {
     pub fastest: T,
 }
 
-/// What continues the series of a drive and of a circuit's state.
+/// The state by which the series of a drive and of a circuit are continued.
 #[derive(Debug, Clone)]
 pub(crate) struct Cursor<T> {
     sine: LastValue<T>,
@@ -245,7 +245,7 @@ impl<T: Scalar> Drive<T> for General<T> {
         };
         let ContactAcceleration { threshold, sign, circuit } = acceleration;
         let (push, rate) = (*coupling * circuit, *rate);
-        // Time searched with the push says nothing of the search without it.
+        // A search with the push does not count for one without it.
         let span = Span { since: span.from, ..*span };
         let without = |threshold: T| ContactAcceleration { threshold, sign, circuit: T::zero() };
         if rate == T::zero() {

@@ -64,7 +64,7 @@ impl<T: Scalar> Tone<T> {
         self.after(at.phase, T::of(self.ratio.fraction(at.cycle)) + self.phase)
     }
 
-    /// The same where the tone is `start` turns in at phase 0 of the cycle.
+    /// The same for a tone that has made `start` turns at phase 0 of the cycle.
     #[inline(always)]
     fn after(&self, phase: T, start: T) -> (T, T) {
         let turns = phase * self.frequency + start;

@@ -96,10 +96,9 @@ impl<T: Scalar> Equation<T> {
         if self.compliant.is_none() {
             return piece;
         }
-        let surface = |end: End, mode: &Mode<T>| mode.end(end) == (x, EndKind::Compliant);
+        let side = if x < T::zero() { End::Low } else { End::High };
+        let outside = |mode: &Mode<T>| mode.end(side) == (x, EndKind::Compliant);
         let holds = |mode: &Mode<T>| mode.piece == piece && mode.low <= x && x <= mode.high;
-        let middle = x < T::zero();
-        let outside = |mode: &Mode<T>| surface(if middle { End::Low } else { End::High }, mode);
         let found = self.modes.iter().position(outside).or(self.modes.iter().position(holds));
         found.unwrap_or(piece)
     }

@@ -74,7 +74,7 @@ impl Model {
         next: &mut dyn FnMut(UnderWay) -> Option<usize>,
         ended: &mut dyn FnMut(usize, Pursued),
     ) {
-        pursue(self, pursuits, &Request { cancel, ..Request::default() }, MAX_LANES, (next, ended));
+        pursue(self, pursuits, &Request { cancel, ..Request::default() }, MAX_LANES, next, ended);
     }
 
     /// [`pursue`](Self::pursue) one by one or in 4, 8 or 16 lanes, for tests; `None` if the processor does
@@ -87,8 +87,7 @@ impl Model {
         }
         let (mut all, mut pursued) = (0..pursuits.len(), vec![None; pursuits.len()]);
         let mut ended = |place: usize, end| pursued[place] = Some(end);
-        has_lanes(width)
-            .then(|| pursue(self, pursuits, &request, width, (&mut |_| all.next(), &mut ended)))?;
+        has_lanes(width).then(|| pursue(self, pursuits, &request, width, &mut |_| all.next(), &mut ended))?;
         pursued.into_iter().collect()
     }
 
@@ -167,14 +166,13 @@ impl<'a> Source<'a> for Runs<'a, '_, '_> {
     }
 }
 
-type Callbacks<'r> = (&'r mut dyn FnMut(UnderWay) -> Option<usize>, &'r mut dyn FnMut(usize, Pursued));
-
 fn pursue(
     model: &Model,
     pursuits: &[Pursuit],
     request: &Request,
     max_lanes: usize,
-    (next, ended): Callbacks,
+    next: &mut dyn FnMut(UnderWay) -> Option<usize>,
+    ended: &mut dyn FnMut(usize, Pursued),
 ) {
     let unit = model.scales.unit();
     match form(model, &clock(model, unit)) {

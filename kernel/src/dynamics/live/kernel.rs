@@ -1,7 +1,7 @@
 //! Kernel of a live run: continues from a step's end, samples within a step, stops within one.
 //!
-//! It is built once for a model. Every call makes a [`Motion`] from it and drops it again; this costs some
-//! microseconds and keeps the integrator free of any provision for being continued.
+//! A kernel is built once for a model. Each call makes a [`Motion`] from it and drops it afterwards, which costs
+//! some microseconds; the integrator then needs no code for being continued.
 
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::drive::form::{Form, clock, form, with_drive};

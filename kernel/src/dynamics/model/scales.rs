@@ -7,8 +7,8 @@
 //!   the barrier (one well: at the well; none: at the start); without stiffness the drive's fastest tone;
 //!   without both, sqrt(acceleration over length), or speed over length. The inner side of a well that lies
 //!   beyond a kink is the slope just inside the kink, as for a damping ratio: flexures rest some um beyond
-//!   theirs, where the force is a wall of 30 times the stiffness, and the scales must not jump when a slider
-//!   moves the well across the kink;
+//!   their kink, where the stiffness is 30 times as large, and the scales must not jump when a slider moves
+//!   the well across the kink;
 //! - length L: the largest of half the distance between the wells, the start's distance from the barrier (or
 //!   the single equilibrium, or 0), start speed over w, and the sum over the parts of the drive of amplitude
 //!   over w and the larger of w and the rate of the part (the first kick of a fast part moves the mass as

@@ -152,8 +152,8 @@ impl<T: Scalar> Recorder<'_, T> {
         }
     }
 
-    /// The mass touches a compliant stop with this signed velocity in kernel units. `strikes`: it comes from
-    /// outside and has not been there since the start.
+    /// The mass touches a compliant stop with this signed velocity in kernel units. `strikes` is false for a
+    /// mass that is in the stop at the start of the run.
     pub fn touch(&mut self, at: &Instant<T>, side: Side, v: T, strikes: bool) {
         if strikes {
             self.count_impact(at, v);

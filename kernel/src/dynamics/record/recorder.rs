@@ -82,11 +82,13 @@ impl<'a, T: Scalar> Recorder<'a, T> {
         } else {
             clock.at(model.duration)
         };
-        let origin = match cycles {
-            0 => from,
-            _ => Instant { cycle: from.cycle.rem_euclid(cycles), phase: from.phase },
+        let (origin, first) = match cycles {
+            0 => (from, 0),
+            _ => (
+                Instant { cycle: from.cycle.rem_euclid(cycles), ..from },
+                from.cycle.div_euclid(cycles) as u64,
+            ),
         };
-        let first = if cycles == 0 { 0 } else { from.cycle.div_euclid(cycles) as u64 };
         let scales = (model.scales.length, model.scales.speed);
         let barrier = model.crossing_level.map(T::of);
         let side = barrier.map_or(0, |b| side_of(start.0, b));

@@ -360,7 +360,7 @@ mod tests {
     }
 
     #[test]
-    fn laps_that_are_not_told_count() {
+    fn laps_that_are_not_replayed_count() {
         for period in [1, 2, 5, 13] {
             let laps = 200;
             for more in [0, 1, 250] {
@@ -416,7 +416,7 @@ mod tests {
     }
 
     #[test]
-    fn of_a_drive_that_changes_it_is_told_what_happened_first() {
+    fn under_a_drive_that_changes_the_first_events_are_known() {
         let mut judge = Judge::new(Rhythm::Changing, (1.0, 1.0), 10, 0);
         judge.release(2.2, 2.2);
         for time in [3.5, 6.5, 7.5, 8.5, 9.5] {

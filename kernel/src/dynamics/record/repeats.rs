@@ -78,8 +78,7 @@ impl Strobes {
         }
     }
 
-    /// The smallest number of states after which those of the last two periods, and `more` states before
-    /// them, have come back.
+    /// The smallest period, in states, with which the last two periods and `more` states before them repeat.
     pub fn repeats_for(&self, more: u64) -> Option<u32> {
         (1..=self.longest as u64).find_map(|q| {
             let back = self.since[q as usize - 1] + q + 2 * q + more < self.seen;
@@ -148,8 +147,8 @@ impl Strobes {
         self.seen += more;
     }
 
-    /// The smallest number of states after which all states of the window have come back and stay where they
-    /// are over the window, and the number of the state since which they have come back.
+    /// The smallest period, in states, with which the whole window repeats without a drift, and the number of
+    /// the state from which on the states repeat.
     pub fn period(&self) -> Option<(u32, u64)> {
         let back = |q: &u64| self.since[*q as usize - 1] <= self.from;
         let q =
@@ -271,53 +270,50 @@ impl Crossings {
 
 #[cfg(test)]
 mod tests {
+    use std::ops::Range;
+
     use super::*;
 
-    fn repeat(periods: u64, times: &[f64]) -> bool {
-        let side = |i: usize| if i.is_multiple_of(2) { Side::Right } else { Side::Left };
+    /// Adds crossings at `time(i)`, alternately to the right and to the left.
+    fn add(crossings: &mut Crossings, numbers: Range<i32>, time: impl Fn(i32) -> f64) {
+        let sides = [Side::Right, Side::Left].into_iter().cycle();
+        numbers.map(time).zip(sides).for_each(|(t, side)| crossings.add(t, side));
+    }
+
+    fn repeat(periods: u64, numbers: Range<i32>, time: impl Fn(i32) -> f64) -> bool {
         let mut crossings = Crossings::new(periods);
-        times.iter().enumerate().for_each(|(i, t)| crossings.add(*t, side(i)));
+        add(&mut crossings, numbers, time);
         assert!(crossings.recent.len() <= 2 * LONGEST + 2);
         crossings.repeat()
     }
 
+    fn twice_a_period(i: i32) -> f64 {
+        0.25 + 0.5 * f64::from(i)
+    }
+
     #[test]
     fn twice_a_period_repeats() {
-        let times: Vec<f64> = (0..30).map(|i| 0.25 + 0.5 * f64::from(i)).collect();
-        assert!(repeat(15, &times));
-        let edge: Vec<f64> =
-            (0..30).map(|i| 0.5 * f64::from(i) + if i % 4 == 0 { 1e-4 } else { 0.0 }).collect();
-        assert!(repeat(15, &edge));
-        let before_the_edge: Vec<f64> =
-            (1..31).map(|i| 0.5 * f64::from(i) - if i % 4 == 0 { 1e-4 } else { 0.0 }).collect();
-        assert!(repeat(15, &before_the_edge));
+        assert!(repeat(15, 0..30, twice_a_period));
+        let off_the_edge = |i: i32| if i % 4 == 0 { 1e-4 } else { 0.0 };
+        assert!(repeat(15, 0..30, |i| 0.5 * f64::from(i) + off_the_edge(i)));
+        assert!(repeat(15, 1..31, |i| 0.5 * f64::from(i) - off_the_edge(i)));
     }
 
     #[test]
     fn a_lone_crossing_or_scatter_does_not() {
-        assert!(!repeat(15, &[]));
-        assert!(!repeat(15, &[6.1]));
-        assert!(!repeat(15, &[6.1, 7.3]));
-        let scattered: Vec<f64> =
-            (0..28).map(|i| 0.25 + 0.5 * f64::from(i) + 0.1 * f64::from(i * i % 7)).collect();
-        assert!(!repeat(15, &scattered));
+        for few in [&[][..], &[6.1], &[6.1, 7.3]] {
+            assert!(!repeat(15, 0..few.len() as i32, |i| few[i as usize]));
+        }
+        assert!(!repeat(15, 0..28, |i| twice_a_period(i) + 0.1 * f64::from(i * i % 7)));
         // stops crossing half way, or begins there
-        let dying: Vec<f64> = (0..14).map(|i| 0.25 + 0.5 * f64::from(i)).collect();
-        assert!(!repeat(15, &dying));
-        let rising: Vec<f64> = (14..30).map(|i| 0.25 + 0.5 * f64::from(i)).collect();
-        assert!(!repeat(15, &rising));
+        assert!(!repeat(15, 0..14, twice_a_period));
+        assert!(!repeat(15, 14..30, twice_a_period));
     }
 
     #[test]
-    fn crossings_that_are_skipped_are_as_if_told() {
-        let times = |from: i32, to: i32| (from..to).map(|i| 0.25 + 0.5 * f64::from(i));
-        let add_all = |crossings: &mut Crossings, from: i32, to: i32| {
-            times(from, to)
-                .zip([Side::Right, Side::Left].into_iter().cycle())
-                .for_each(|(t, side)| crossings.add(t, side));
-        };
+    fn skipped_crossings_are_as_if_added() {
         let mut crossings = Crossings::new(1_000_000);
-        add_all(&mut crossings, 0, 60);
+        add(&mut crossings, 0..60, twice_a_period);
         crossings.skip(1_000_000.0 - 30.0);
         assert!(crossings.repeat());
         // the last period is another
@@ -397,7 +393,7 @@ mod tests {
     }
 
     #[test]
-    fn states_that_are_skipped_are_as_if_told() {
+    fn skipped_states_are_as_if_added() {
         for lap in [1, 2, 5, 12, 13, 30] {
             for (from, periods) in [(0, 1200), (7, 41), (100, 23), (3, 1090), (600, 500)] {
                 let state = |i: u64| Strobe { x: (i % lap) as f64, v: 0.0 };

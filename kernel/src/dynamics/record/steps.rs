@@ -45,7 +45,7 @@ impl<T: Scalar> Recorder<'_, T> {
             self.circuit(state, step.length, rule, overlap);
         }
         if let Some((begin, end)) = overlap {
-            // (A time of contact is inverted to half its digits only; this must not affect a whole step.)
+            // (A time in contact can be inverted to half its digits only, so a whole step is not inverted.)
             let (from, to) = match full {
                 true => (T::zero(), step.length),
                 false => (path.parameter(begin, step.length), path.parameter(end, step.length)),
@@ -101,9 +101,9 @@ impl<T: Scalar> Recorder<'_, T> {
         }
     }
 
-    /// The time in s of the next sample, if it comes before `end`. A single step or rest may hold all
-    /// samples, and each sums the tones of the drive; so the cancel flag is checked here, and a cancelled run
-    /// takes no more.
+    /// The time in s of the next sample, if it comes before `end`. One step or rest may hold all samples, and
+    /// each sample sums the tones of the drive. So the cancel flag is checked here too, and a cancelled run
+    /// takes no further samples.
     pub fn next_sample(&mut self, end: f64) -> Option<f64> {
         let next = self.times.get(self.next_time).copied().filter(|t| *t < end)?;
         self.samples_since_check += 1;

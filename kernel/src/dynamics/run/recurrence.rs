@@ -148,7 +148,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
                 break;
             }
             if self.stepper.work.is_cancelled() || self.stepper.work.is_spent() {
-                return; // as it stands it goes on
+                return; // the rest of the run is integrated
             }
             if let Some(lap_totals) = lap.lap_totals {
                 let ahead = self.laps_on_this_side(&lap, lap_totals.inside);
@@ -186,7 +186,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         let length = self.stepper.clock.period * T::of(lap.cycles as f64);
         let begin =
             |lap_before: i64| Instant { cycle: start.cycle + lap_before * lap.cycles, phase: start.phase };
-        let mut done = 0;
+        let (mut done, mut covered) = (0, laps);
         while let Some(next) = self.record.next_listed(&begin(done)) {
             // (by rounding it may lie in the previous lap)
             let between = (self.stepper.clock.between(&start, &next) / length).floor().to_f64() as i64 - 1;
@@ -195,9 +195,8 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
                 break;
             }
             if self.stepper.work.is_cancelled() || self.stepper.work.is_spent() {
-                self.record.restore(&sums);
-                (self.record.judge, self.record.listings) = (judge, listings);
-                return done;
+                covered = done;
+                break;
             }
             if self.stepper.clock.between(&next, &begin(number)) >= T::zero() {
                 let impacts = self.replay(log, (lap.first, None), CycleShift(later + number * lap.cycles));
@@ -207,7 +206,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         }
         self.record.restore(&sums);
         (self.record.judge, self.record.listings) = (judge, listings);
-        laps
+        covered
     }
 
     /// Replays a part of the log. Returns the number of impacts in it.

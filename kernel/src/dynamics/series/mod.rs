@@ -317,8 +317,8 @@ fn each_order_while<T: Number, const UNROLLED: bool, const USUAL: usize>(
     mut next: impl FnMut(usize) -> bool,
 ) {
     let mut rest = orders.start;
-    // Each condition is a constant of its own: what does not hold is then not compiled at all, and twenty
-    // copies of a body in double-double arithmetic take long.
+    // Each condition is constant, so that a branch that is never taken is not compiled: twenty copies of a
+    // body in double-double arithmetic take long to compile.
     if UNROLLED && T::QUICK && orders.start == USUAL {
         macro_rules! each {
             ($($k:literal)*) => {

@@ -48,7 +48,6 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     /// The step of up to length `h` that ends before the borders and satisfies the equation of motion.
     #[inline(always)]
     pub fn shorten(&mut self, state: &MotionState<T>, mut h: T, left: T) -> Option<Step<T>> {
-        let border = self.drive.segment_end(state.segment);
         for attempt in 0..MAX_HALVINGS {
             if !(h > T::zero()) {
                 return None;
@@ -56,18 +55,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             if attempt > 0 {
                 self.work.add(self.costs.check);
             }
-            let mut arrival = None;
-            if left <= h {
-                h = left;
-                arrival = Some(self.end);
-            }
-            if let Some(border) = border {
-                let to_border = self.clock.between(&state.at, &border);
-                if to_border <= h {
-                    h = to_border;
-                    arrival = Some(border);
-                }
-            }
+            let arrival = self.arrival(state, left, &mut h);
             let end = self.series.state(h);
             if self.step_holds(state, h, &end) {
                 return Some(Step { length: h, arrival, end });

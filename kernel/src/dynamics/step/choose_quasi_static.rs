@@ -121,18 +121,8 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             &[self.settings.longest],
         );
         let mut length = T::of(natural);
-        let border = self.drive.segment_end(state.segment);
         for _ in 0..MAX_HALVINGS {
-            let mut arrival = None;
-            let mut until = |time: T, instant| {
-                if time <= length {
-                    (length, arrival) = (time, Some(instant));
-                }
-            };
-            until(left, self.end);
-            if let Some(border) = border {
-                until(self.clock.between(&state.at, &border), border);
-            }
+            let arrival = self.arrival(state, left, &mut length);
             if !(length * ringing > T::of(MIN_RADIANS)) {
                 return None;
             }

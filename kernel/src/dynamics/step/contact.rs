@@ -85,7 +85,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         self.drive.seed(&state.at, state.segment, path.seeded(), &mut self.cursor);
         self.evaluations += 1;
         self.work.add(self.costs.contact);
-        // At most as far as the initial speed would lead in the longest time.
+        // The parameter that the mass would reach in the longest time at its initial speed.
         let (u, w) = (start.root.to_f64(), start.speed.abs().to_f64());
         let longest = self.settings.longest;
         let cap = 2.0 * longest / (u + (u * u + w * longest).sqrt());

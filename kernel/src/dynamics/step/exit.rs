@@ -121,7 +121,8 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             g[1..n].iter_mut().for_each(|c| *c = -*c);
         }
         g[0] = gap;
-        // Beyond the surface by rounding only, after it was held, and not moving outward: it is touched.
+        // The mass lies beyond a surface that the last step ignored, by rounding alone, and does not move
+        // outward: it touches the surface.
         let returns = touch.is_none() && gap < zero && sign * state.v <= zero;
         let opening = if returns { Some(Opening::Speed) } else { touch.map(|touch| touch.opening) };
         let mut from = opening.map_or(0, |opening| (opening as usize).min(n - 1));

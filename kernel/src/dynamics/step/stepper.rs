@@ -163,6 +163,23 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
         }
     }
 
+    /// Shortens a step in time to the end of the run, `left` away, or of the drive's segment. Returns the instant
+    /// at which it then ends.
+    #[inline(always)]
+    pub fn arrival(&self, state: &MotionState<T>, left: T, length: &mut T) -> Option<Instant<T>> {
+        let mut arrival = None;
+        if left <= *length {
+            (*length, arrival) = (left, Some(self.end));
+        }
+        if let Some(border) = self.drive.segment_end(state.segment) {
+            let to_border = self.clock.between(&state.at, &border);
+            if to_border <= *length {
+                (*length, arrival) = (to_border, Some(border));
+            }
+        }
+        arrival
+    }
+
     /// Enters the drive's next segment if the present one has ended. Returns whether it has.
     #[inline]
     pub fn pass_segment_end(&self, state: &mut MotionState<T>) -> bool {
