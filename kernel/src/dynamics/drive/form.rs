@@ -6,7 +6,7 @@ use super::general::{FEW_TONES, General};
 use super::lines::Lines;
 use super::record::{Line, Record};
 use super::tone::{Chirp, Ramp, Sine, Tone, TurnsPerCycle};
-use super::{Circuit, Still, base_at};
+use super::{Base, Circuit, Still};
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::model::Model;
 use crate::dynamics::model::excitation::TonePart;
@@ -32,7 +32,7 @@ impl Model {
         let drive = sum(self, &clock);
         let at = clock.at(t);
         let segment = drive.segment_ends.iter().filter(|end| clock.between(end, &at) >= 0.0).count();
-        base_at(&drive, segment, &at, unit)
+        drive.in_si(&at, segment, unit)
     }
 }
 

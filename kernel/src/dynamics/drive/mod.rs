@@ -17,9 +17,14 @@ use crate::dynamics::series::{ROOM, Tail};
 use crate::numeric::Scalar;
 
 /// Acceleration of the base at any instant, in kernel units: all that a recorder needs of a drive.
-pub(crate) trait Base<T> {
+pub(crate) trait Base<T: Scalar> {
     /// a(t) at `at`.
     fn acceleration(&self, at: &Instant<T>, segment: usize) -> T;
+
+    /// The same in m/s^2; `unit` is the length of the kernel's time unit in s.
+    fn in_si(&self, at: &Instant<T>, segment: usize, unit: f64) -> f64 {
+        self.acceleration(at, segment).to_f64() / (unit * unit)
+    }
 }
 
 /// Acceleration of the base, in kernel units.
@@ -203,9 +208,4 @@ impl<T: Scalar> Drive<T> for Still<T> {
     fn next_release(&self, _: &Span<T>, _: ContactAcceleration<T>, (): &mut ()) -> (ReleaseRoot<T>, u64) {
         (ReleaseRoot::Never, 0)
     }
-}
-
-/// Acceleration of the base in m/s^2 at an instant; `unit` is the length of the kernel's time unit in s.
-pub(crate) fn base_at<T: Scalar>(drive: &dyn Base<T>, segment: usize, at: &Instant<T>, unit: f64) -> f64 {
-    drive.acceleration(at, segment).to_f64() / (unit * unit)
 }

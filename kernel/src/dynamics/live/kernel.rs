@@ -5,7 +5,7 @@
 
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::drive::form::{Form, clock, form, with_drive};
-use crate::dynamics::drive::{Drive, base_at};
+use crate::dynamics::drive::{Base, Drive};
 use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
@@ -87,7 +87,7 @@ impl Kernel {
 
     /// Acceleration of the base in m/s^2 at an instant within a segment of the drive.
     fn base_within(&self, segment: usize, at: &Instant<f64>) -> f64 {
-        with_drive!(&*self.drive, drive => base_at(drive, segment, at, self.unit()))
+        with_drive!(&*self.drive, drive => drive.in_si(at, segment, self.unit()))
     }
 
     fn segment<D: Drive<f64>>(&self, drive: &D, at: &Instant<f64>) -> usize {

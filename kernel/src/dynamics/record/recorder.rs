@@ -8,7 +8,7 @@ use super::listing::{Listings, MAX_STROBES};
 use super::regime::Judge;
 use super::sums::{Counts, Sums};
 use crate::dynamics::clock::{Clock, Instant};
-use crate::dynamics::drive::{Base, base_at};
+use crate::dynamics::drive::Base;
 use crate::dynamics::model::Model;
 use crate::dynamics::result::{Event, EventKind, Request, Sample, Side};
 use crate::numeric::{CompensatedSum, Scalar};
@@ -137,7 +137,7 @@ impl<'a, T: Scalar> Recorder<'a, T> {
 
     /// Acceleration of the base in m/s^2 at an instant in this segment of the drive.
     pub(crate) fn base(&self, at: &Instant<T>, segment: usize) -> f64 {
-        base_at(self.base, segment, at, self.unit)
+        self.base.in_si(at, segment, self.unit)
     }
 
     /// The part of \[at, at + length) inside the settled window, relative to `at`.

@@ -128,26 +128,21 @@ impl Judge {
         let gain = (total.0 - self.last.0, total.1 - self.last.1);
         self.last = total;
         self.keep(Observation::Strobe(state, gain));
-        self.gain(self.strobes.seen, gain);
+        self.gain(self.strobes.seen, 1, 1, gain);
         self.strobes.add(state);
     }
 
-    /// Adds the gain of the period before the stroboscopic state of this number.
-    fn gain(&mut self, number: u64, gain: Gain) {
-        if number > self.from && number <= self.from + self.periods {
-            let half = usize::from(2 * (number - self.from) > self.periods);
-            self.speed[half].add(gain.0, 1);
-            self.crossed[half].add(gain.1 as f64, 1);
-        }
-    }
-
-    /// The same for `times` states, `lap` periods apart.
-    fn gain_repeated(&mut self, number: u64, times: u64, lap: u64, gain: Gain) {
+    /// Adds the gain of the period before the stroboscopic state of this number, and of `times` states in all,
+    /// `lap` periods apart.
+    fn gain(&mut self, number: u64, times: u64, lap: u64, gain: Gain) {
         let up_to = |end: u64| (end + 1).saturating_sub(number).div_ceil(lap).min(times);
         let ends = [self.from, self.from + self.periods / 2, self.from + self.periods].map(up_to);
-        for (half, pair) in ends.windows(2).enumerate() {
-            self.speed[half].add(gain.0, pair[1] - pair[0]);
-            self.crossed[half].add(gain.1 as f64, pair[1] - pair[0]);
+        for half in [0, 1] {
+            let inside = ends[half + 1] - ends[half];
+            if inside > 0 {
+                self.speed[half].add(gain.0, inside);
+                self.crossed[half].add(gain.1 as f64, inside);
+            }
         }
     }
 
@@ -229,7 +224,7 @@ impl Judge {
                 match *entry {
                     Observation::Strobe(..) => {
                         let Some((state, gain)) = next.next() else { continue };
-                        self.gain(self.strobes.seen, *gain);
+                        self.gain(self.strobes.seen, 1, 1, *gain);
                         self.strobes.add(*state);
                     }
                     Observation::Crossing { time, side, seconds } => {
@@ -250,7 +245,7 @@ impl Judge {
             more(&mut self.release_periods, before.1);
             if strobes.len() as u64 == periods {
                 for (number, (_, gain)) in (self.strobes.seen..).zip(&strobes) {
-                    self.gain_repeated(number, left, periods, *gain);
+                    self.gain(number, left, periods, *gain);
                 }
                 self.strobes.skip(later, periods, |place| strobes[place as usize].0);
             }
@@ -263,7 +258,7 @@ impl Judge {
     /// Adds `more` stroboscopic states equal to `state`, the last one; none of them is beyond the next border
     /// of the window.
     pub fn skip_still(&mut self, more: u64, state: Strobe) {
-        self.gain_repeated(self.strobes.seen, more, 1, (0.0, 0));
+        self.gain(self.strobes.seen, more, 1, (0.0, 0));
         self.strobes.skip(more, 1, |_| state);
     }
 

@@ -4,7 +4,8 @@ use super::recorder::Recorder;
 use super::sums::Sums;
 use crate::dynamics::clock::Instant;
 use crate::dynamics::model::excitation::Rhythm;
-use crate::dynamics::result::{Harvest, Ledger, Outcome, Phase, Place, Regime, Run, Sample, Summary};
+use crate::dynamics::result::{Harvest, Ledger, Outcome, Place, Regime, Run, Sample, Summary};
+use crate::dynamics::state::MotionState;
 use crate::numeric::{CompensatedSum, Scalar};
 
 /// Share of the length scale below which a motion is rounding: the mass has not moved.
@@ -12,15 +13,11 @@ const STILL: f64 = 1e-12;
 
 /// The end of a run, as the recorder needs it.
 pub(crate) struct Ending<T> {
-    pub at: Instant<T>,
-    /// Displacement and velocity, kernel units.
-    pub state: (T, T),
+    pub state: MotionState<T>,
     /// Velocity at time 0, kernel units.
     pub start_v: T,
-    /// State of the circuit at time 0 and at the end.
-    pub circuit: (T, T),
-    pub phase: Phase,
-    pub segment: usize,
+    /// State of the circuit at time 0.
+    pub start_circuit: T,
     /// Change of the potential over the run in J.
     pub potential: f64,
     pub outcome: Outcome,
@@ -32,9 +29,9 @@ fn value<T: Scalar>(sum: &CompensatedSum<T>) -> f64 {
 
 impl<T: Scalar> Recorder<'_, T> {
     pub fn finish(mut self, ending: &Ending<T>) -> Run {
-        let &Ending { at: end, state: (x, v), outcome, .. } = ending;
+        let &Ending { state: MotionState { at: end, x, v, .. }, outcome, .. } = ending;
         let (final_x, final_v) = (x.to_f64(), v.to_f64() / self.unit);
-        self.sample_the_end(ending, (final_x, final_v));
+        self.sample_the_end(&ending.state);
         self.last_strobe(&end, (x, v));
         let (section, carried) = self.listed(&end, (final_x, final_v));
         let covered = value(&self.covered);
@@ -114,19 +111,19 @@ impl<T: Scalar> Recorder<'_, T> {
     }
 
     /// Records the samples requested at the very end (to rounding), which are the final state.
-    fn sample_the_end(&mut self, ending: &Ending<T>, (x, v): (f64, f64)) {
-        let last = self.clock.seconds(&ending.at);
+    fn sample_the_end(&mut self, state: &MotionState<T>) {
+        let last = self.clock.seconds(&state.at);
         while let Some(t) = self.times.get(self.next_time).copied() {
             if t > last * (1.0 + 4.0 * f64::EPSILON) {
                 break;
             }
             self.samples.push(Sample {
                 t,
-                x,
-                v,
-                base_accel: self.base(&self.clock.at(t), ending.segment),
-                phase: ending.phase,
-                electrical: self.electrical(ending.circuit.1),
+                x: state.x.to_f64(),
+                v: state.v.to_f64() / self.unit,
+                base_accel: self.base(&self.clock.at(t), state.segment),
+                phase: state.phase(),
+                electrical: self.electrical(state.circuit),
             });
             self.next_time += 1;
         }
@@ -139,13 +136,13 @@ impl<T: Scalar> Recorder<'_, T> {
 
     /// The energies of the whole run, and what they leave unexplained.
     fn energy_ledger(&self, ending: &Ending<T>) -> Ledger {
-        let &Ending { state: (_, v), start_v, circuit, potential, .. } = ending;
+        let &Ending { state: MotionState { v, circuit, .. }, start_v, start_circuit, potential, .. } = ending;
         let (energy, transducer) = (self.energy_unit(), self.model.transducer);
         let kinetic = |v: T| (v * v).to_f64() * 0.5;
         let work_j = value(&self.whole.work) * energy;
         let damping_j = self.model.damping * value(&self.whole.squared_velocity) / self.unit;
         let impact_j = value(&self.whole.impact) * energy;
-        let charged = transducer.map_or(0.0, |_| kinetic(circuit.1) - kinetic(circuit.0));
+        let charged = transducer.map_or(0.0, |_| kinetic(circuit) - kinetic(start_circuit));
         let stored_j = (kinetic(v) - kinetic(start_v) + charged) * energy + potential;
         let (taken, moved) = ((work_j - damping_j) - impact_j, self.work_moved + self.peak_kinetic);
         let moved = moved * energy + damping_j + impact_j.abs() + stored_j.abs();

@@ -60,16 +60,9 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         let Self { stepper, state, record, steps, .. } = self;
         let places = record.places;
         let speed = (2.0 * record.peak_kinetic).sqrt() / stepper.equation.unit;
-        let mut run = record.finish(&Ending {
-            at: state.at,
-            state: (state.x, state.v),
-            start_v: start.v,
-            circuit: (start.circuit, state.circuit),
-            phase: state.phase(),
-            segment: state.segment,
-            potential: potential_change(model, stepper.equation, start, &state),
-            outcome,
-        });
+        let potential = potential_change(model, stepper.equation, start, &state);
+        let (start_v, start_circuit) = (start.v, start.circuit);
+        let mut run = record.finish(&Ending { state, start_v, start_circuit, potential, outcome });
         run.summary.steps = steps;
         run.summary.evaluations = stepper.evaluations;
         run.summary.outcome = checked_outcome(model, &run, places, speed);
