@@ -3,9 +3,8 @@
 //! A run is a chain of free flights in one mode each and of rests on a stop. A step of a flight is a Taylor
 //! series (`series`). Its polynomial is also the dense output; contacts, breaks and crossings are its roots,
 //! and none is missed. This is the reason for the method, together with its cost: on the nominal cubic
-//! without stops six more digits cost 1.8 times the time (`benches/work_precision.rs` prints error and
-//! cost), whereas a Runge-Kutta method of order 5 needs 16 times the time and a separate dense output to
-//! find contacts.
+//! without stops six more digits cost 1.8 times the time (`benches/work_precision.rs`); a Runge-Kutta method
+//! of order 5 needs 16 times the time and a separate dense output to find contacts.
 //!
 //! Three rules keep events reliable:
 //!

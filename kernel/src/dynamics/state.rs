@@ -12,8 +12,8 @@ pub(crate) struct Touch {
     pub opening: Opening,
 }
 
-/// The derivative of the motion that opens the gap to a touched surface. As a number it is the multiplicity of
-/// the root of the gap there: how many of its leading coefficients are 0 by definition.
+/// The derivative of the motion that opens the gap to a touched surface. As a number it is the multiplicity
+/// of the root of the gap there: how many of its leading coefficients are 0 by definition.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 pub(crate) enum Opening {
     Speed = 1,
@@ -136,8 +136,7 @@ pub(crate) struct Checkpoint<T> {
     pub barrier_side: i8,
 }
 
-/// Identity of a release from rest, computed from the drive alone: equal labels are followed by
-/// equal motions.
+/// Identity of a release from rest, computed from the drive alone: equal motions follow equal labels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Label<T> {
     pub end: End,

@@ -32,8 +32,7 @@ use crate::numeric::Scalar;
 const MIN_TOUCH_SPEED: f64 = 1.0;
 
 impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
-    /// Puts the mass into contact if the run begins with it beyond the surface of a stop. Returns whether
-    /// it does.
+    /// Puts the mass into contact if the run begins beyond the surface of a stop. Returns whether it does.
     pub fn start_inside_a_stop(&mut self) -> bool {
         for end in [End::Low, End::High] {
             let (sign, level) = (end.sign::<T>(), self.stepper.equation.surface(end));
@@ -55,8 +54,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         false
     }
 
-    /// The mass is at the surface of the compliant stop of `end`. Its outward speed may be 0 or of
-    /// either sign.
+    /// The mass is at the surface of the compliant stop of `end`; its outward speed may have either sign.
     pub fn meet(&mut self, end: End, outward: T) {
         if outward > T::zero() {
             return self.enter_stop(end, outward);

@@ -48,8 +48,8 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         match kind {
             EndKind::Stop if outward > T::zero() => self.strike(end, outward),
             EndKind::Stop if at_once => {
-                // It was released where the contact acceleration is 0 to rounding, and does not leave, so the
-                // rest goes on.
+                // It was released where the contact acceleration is 0 to rounding, and does not leave: it
+                // rests on.
                 self.state.refused = Some(self.state.at);
                 self.state.v = T::zero();
                 self.begin_rest(end);
@@ -116,7 +116,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     }
 }
 
-/// Which of an acceleration, known to `rounding`, and its first two derivatives is the first that is not 0, and
+/// The first of an acceleration, known to `rounding`, and its first two derivatives that is not 0, and
 /// whether it is positive.
 fn first_rate<T: Scalar>(rates: [T; 3], rounding: T) -> Option<(Opening, bool)> {
     let openings = [Opening::Acceleration, Opening::Jerk, Opening::Snap];

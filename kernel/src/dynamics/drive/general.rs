@@ -107,8 +107,7 @@ impl<T: Scalar> Tail<T> for General<T> {
 }
 
 impl<T: Scalar> Base<T> for General<T> {
-    /// As the first coefficient, with the same order of sums, except that records are evaluated by
-    /// their lines.
+    /// As the first coefficient, with the same order of sums, but records are evaluated by their lines.
     fn acceleration(&self, at: &Instant<T>, segment: usize) -> T {
         if let Some(sine) = &self.sine {
             return sine.acceleration(at, segment);

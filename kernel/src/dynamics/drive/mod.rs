@@ -99,8 +99,7 @@ pub(crate) enum ReleaseRoot<T> {
     /// cycle within the common period comes with it: roots of equal cycle and phase are the same.
     At(Instant<T>, Option<i64>),
     Never,
-    /// Not before this instant, from which the search goes on. (It is interrupted regularly, so that its work
-    /// is counted.)
+    /// Not before this instant, from which the search goes on: it is interrupted so that its work is counted.
     NotBefore(Instant<T>),
 }
 

@@ -25,8 +25,7 @@ pub(crate) struct Line<T> {
     pub piece: Option<usize>,
 }
 
-/// The lines of one record in order of time; the last one is zero. Before the first line the record is
-/// zero too.
+/// The lines of one record in order of time; the last one is zero, as is the record before the first.
 #[derive(Debug, Clone)]
 pub(crate) struct Record<T> {
     pub lines: Vec<Line<T>>,

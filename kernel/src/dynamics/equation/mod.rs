@@ -1,8 +1,7 @@
 //! Equation of motion in kernel units: time in a power of two of a second, mass 1.
 //!
 //! Each piece of the force curve becomes a *mode*: the interval in which the mass moves under one polynomial,
-//! and what stands at its two ends (a stop, a break behind which the next piece begins, the end of the known
-//! curve).
+//! and what stands at its ends (a stop, a break before the next piece, the end of the known curve).
 
 pub(crate) mod force;
 mod mode;

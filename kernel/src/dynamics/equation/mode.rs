@@ -73,8 +73,7 @@ impl<T: Scalar> Mode<T> {
         }
     }
 
-    /// Coefficients of force over mass about `x`, if that is the stop at an end and they are known; otherwise
-    /// an empty slice.
+    /// Coefficients of force over mass about `x`, if that is a stop and they are known; otherwise empty.
     #[inline]
     pub fn about(&self, end: End, x: T) -> &[T] {
         match end {
@@ -93,8 +92,7 @@ impl<T: Scalar> Mode<T> {
     }
 }
 
-/// Cuts the modes at the surface of a compliant stop at `x`. A curve that ends at or before `x` has no
-/// stop there.
+/// Cuts the modes at the surface of a compliant stop at `x`. A curve that ends by `x` has no stop there.
 pub(super) fn cut<T: Scalar>(modes: Vec<Mode<T>>, x: T) -> Vec<Mode<T>> {
     let mut parts = Vec::with_capacity(modes.len() + 1);
     let last = modes.len() - 1;

@@ -32,8 +32,7 @@ pub(crate) struct Compliant<T> {
 }
 
 impl<T: Scalar> Compliant<T> {
-    /// Force over mass at the root `u` of the depth and the inward speed `w`, where the contact is not
-    /// clipped.
+    /// Force over mass at the root `u` of the depth and the inward speed `w`, if it is not clipped.
     pub fn force(&self, u: T, w: T) -> T {
         self.stiffness * (u * u * u) * (T::of(1.0) + self.loss * w)
     }

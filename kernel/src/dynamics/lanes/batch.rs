@@ -40,8 +40,7 @@ pub(super) struct Prepared<'a> {
 
 /// Supplier of runs and receiver of their results.
 pub(super) trait Source<'a> {
-    /// The next run. Returns `None` if there is none at present; if no run is under way, `None` means that
-    /// there will be no more.
+    /// The next run; `None` if there is none at present, or no more at all if no run is under way.
     fn next(&mut self, under_way: UnderWay) -> Option<Prepared<'a>>;
 
     /// Takes a motion that has ended, its initial values, and its outcome.
@@ -182,8 +181,8 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         }
     }
 
-    /// Runs a motion alone until its steps are event-free. Returns the group of its force then, or `None` if
-    /// the run has ended.
+    /// Runs a motion alone until its steps are event-free. Returns the group of its force, or `None` at its
+    /// end.
     fn prepare(&mut self, place: usize) -> Option<usize> {
         while let Some(member) = &mut self.members[place] {
             let left = match member.motion.left() {

@@ -31,8 +31,7 @@ use crate::system::threads::UnderWay;
 use batch::{Batch, Prepared, Source};
 use columns::LaneMotion;
 
-/// Lanes if registers hold eight numbers: two registers a column, so that one addition need not wait for the
-/// previous one.
+/// Lanes if registers hold eight numbers: two registers a column, so that additions need not wait for others.
 const MAX_LANES: usize = 16;
 
 /// Runs whose data is kept together, and freed when all of them have ended.
@@ -77,8 +76,7 @@ impl Model {
         pursue(self, pursuits, &Request { cancel, ..Request::default() }, MAX_LANES, next, ended);
     }
 
-    /// [`pursue`](Self::pursue) one by one or in 4, 8 or 16 lanes, for tests; `None` if the processor does
-    /// not have as many.
+    /// [`pursue`](Self::pursue) one by one or in 4, 8 or 16 lanes, for tests; `None` without such lanes.
     #[doc(hidden)]
     pub fn pursue_in_lanes(&self, pursuits: &[Pursuit], width: usize) -> Option<Vec<Pursued>> {
         let request = Request::default();
@@ -91,8 +89,7 @@ impl Model {
         pursued.into_iter().collect()
     }
 
-    /// [`run_all`](Self::run_all) in 4, 8 or 16 lanes, for tests; `None` if the processor does not have
-    /// as many.
+    /// [`run_all`](Self::run_all) in 4, 8 or 16 lanes, for tests; `None` if the processor lacks them.
     #[doc(hidden)]
     pub fn run_all_in_lanes(models: &[Self], width: usize) -> Option<Vec<Run>> {
         has_lanes(width).then(|| run_all(models, &Request::default(), width))

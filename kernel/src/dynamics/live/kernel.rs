@@ -1,7 +1,7 @@
 //! Kernel of a live run: continues from a step's end, samples within a step, stops within one.
 //!
-//! A kernel is built once for a model. Each call makes a [`Motion`] from it and drops it afterwards, which costs
-//! some microseconds; the integrator then needs no code for being continued.
+//! A kernel is built once for a model. Each call makes a [`Motion`] from it and drops it afterwards, which
+//! costs some microseconds; the integrator then needs no code for being continued.
 
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::drive::form::{Form, clock, form, with_drive};
@@ -198,8 +198,7 @@ impl Kernel {
         Sample { t, x: state.x, v: 0.0, base_accel, phase: state.phase(), electrical }
     }
 
-    /// The state at `now` in s and the energies from the tail to there, if `now` lies between `tail`
-    /// and `head`.
+    /// The state at `now` in s and the energies from the tail to there, if `now` is between tail and head.
     pub fn present(
         &self,
         model: &Model,

@@ -249,8 +249,7 @@ impl Live {
         let (carried, sums) = self.present();
         let before = self.energy(&carried);
         self.past.add(&sums, &self.model);
-        // A stop that was pressed in stays so: the mass is carried along only as far as a stop is moved
-        // over it.
+        // A stop that was pressed in stays so: a mass is carried along only as far as a stop moves over it.
         let depth = self.model.pressed_depth(wanted.0).filter(|_| previous != Phase::Free);
         let depth = depth.filter(|_| next.compliant.is_some()).map_or(0.0, |depth| depth.0);
         next.start = next.held_within(wanted, depth);
@@ -365,9 +364,8 @@ fn energy(model: &Model, (x, v): (f64, f64)) -> f64 {
     kinetic + potential
 }
 
-/// The turns by which each tone of `new` has to be ahead of its scene from `now` in s on, if the tones of
-/// `old` were ahead by `shifts`. Tones correspond by their order; a drive with another number of tones begins
-/// as its scene says.
+/// The turns by which each tone of `new` has to be ahead of its scene from `now` in s on, if those of `old`
+/// were ahead by `shifts`. Tones correspond by their order; 0 if there is another number of them.
 fn phase_shifts(old: &Model, new: &Model, shifts: &[f64], now: f64) -> Vec<f64> {
     let (from, to) = (&old.excitation.tones, &new.excitation.tones);
     if from.len() != to.len() {

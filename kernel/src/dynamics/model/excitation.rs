@@ -238,8 +238,8 @@ impl ExcitationParts {
         }
     }
 
-    /// Amplitude in m/s^2 and angular frequency in 1/s of each part, for the scales; a constant and a record
-    /// have the rate 0.
+    /// Amplitude in m/s^2 and angular frequency in 1/s (a constant, a record: 0) of each part, for the
+    /// scales.
     pub(crate) fn parts(&self) -> Vec<(f64, f64)> {
         let mut parts = vec![(self.constant.abs(), 0.0)];
         for tone in self.tones.iter().filter(|t| !t.noise) {

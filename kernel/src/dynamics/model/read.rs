@@ -96,8 +96,7 @@ impl Model {
         self.circuit().map_or(0.0, |circuit| 0.5 * self.mass * circuit.state(electrical).powi(2))
     }
 
-    /// The electrical state of this model when it takes over a run from another model in the
-    /// state `electrical`.
+    /// The electrical state of this model when it takes over from another one in the state `electrical`.
     pub(in crate::dynamics) fn electrical_after(&self, before: &Self, electrical: f64) -> f64 {
         let pair = self.transducer.as_ref().zip(before.transducer.as_ref());
         pair.map_or(0.0, |(present, previous)| present.electrical_after(previous, electrical))

@@ -25,8 +25,7 @@ use crate::mechanics::{Hertz, Mechanism};
 use crate::scene::Scene;
 
 /// Impacts slower than this share of the speed scale are not counted and may be part of a chatter that is
-/// summed in closed form. The share is far above rounding and far below the slowest impact that is visible in
-/// a trace.
+/// summed in closed form. It is far above rounding and far below the slowest impact visible in a trace.
 pub(in crate::dynamics) const LEAST_IMPACT: f64 = 1e-6;
 
 /// Length in m, speed in m/s, time in s; all above 0 and finite.
@@ -47,8 +46,7 @@ pub struct Scales {
 /// The longest step in units of the time scale, at high and at low order. It limits only motions far smaller
 /// than the length, since the tolerance is relative to the length. At high order a longer step would add
 /// rounding errors. At low order the limit keeps the series of an oscillation accurate relative to its size
-/// (at order 16 to 3^17/17! = 4e-7), so that small motions are as accurate as others and not noise of the
-/// size of the tolerance.
+/// (at order 16 to 3^17/17! = 4e-7), so that small motions are accurate too and not noise.
 const LONGEST_STEP: (f64, f64) = (8.0, 3.0);
 
 /// Largest ratio of the length to the room between the stops.

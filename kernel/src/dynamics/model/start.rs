@@ -48,9 +48,8 @@ pub(crate) fn start_state(
 }
 
 /// Displacement in m of a mass at rest that the mechanism presses onto the compliant stop at `surface`,
-/// towards the equilibrium at `equilibrium` beyond it: the point at which the forces of stop and mechanism
-/// are equal. It lies between the surface, where only the mechanism acts, and the equilibrium, where its
-/// force is 0.
+/// towards the equilibrium at `equilibrium` beyond it: where the forces of stop and mechanism are equal. It
+/// lies between the surface, where only the mechanism acts, and the equilibrium, where its force is 0.
 fn pressed_in(mechanism: &Mechanism, hertz: &Hertz, surface: f64, equilibrium: f64) -> f64 {
     let sign = (equilibrium - surface).signum();
     let pressed = |depth: f64| -sign * mechanism.curve.force(surface + sign * depth);

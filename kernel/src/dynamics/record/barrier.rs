@@ -26,8 +26,8 @@ pub(crate) struct StepCrossings<'a, T> {
 
 impl<'a, T: Scalar> StepCrossings<'a, T> {
     /// From the coefficients of the displacement from the barrier over a step of length 1. If `from` is 0,
-    /// the motion started on the barrier and counts as coming from the side to which it leaves. `None` if it
-    /// stays on the barrier.
+    /// the motion started on the barrier and counts as coming from the side to which it leaves; `None` if it
+    /// stays.
     pub fn new(g: &'a mut [T], from: i8, end: i8) -> Option<Self> {
         // A step that starts on the barrier leaves it by its first coefficient that is not 0.
         let first = g.iter().position(|c| *c != T::zero())?;

@@ -10,7 +10,7 @@ use crate::dynamics::step::path::{Path, StepData};
 use crate::numeric::Scalar;
 
 impl<T: Scalar> Recorder<'_, T> {
-    /// Records the crossings of the barrier within a step that starts `gap` to the right of it and ends on
+    /// Records the crossings within a step that starts `gap` to the right of the barrier and ends on
     /// `end_side`.
     pub fn crossings<P: Path<T>>(&mut self, path: &P, step: &StepData<T>, gap: T, end_side: i8) {
         // If the velocity keeps its sign, the ends decide.

@@ -4,8 +4,7 @@ use super::recorder::Recorder;
 use crate::dynamics::clock::Instant;
 use crate::numeric::{CompensatedSum, GaussLegendre, Scalar};
 
-/// Share of the clock's cycle by which an event-free step must end before the next border: more
-/// than rounding.
+/// Share of the clock's cycle by which an event-free step must end before a border: more than rounding.
 pub(crate) const MARGIN: f64 = 1e-9;
 
 /// The part of a record that event-free steps change, and the instant up to which they may be taken.

@@ -52,8 +52,7 @@ impl<T: Scalar> Recorder<'_, T> {
         }
     }
 
-    /// The instant up to which the time after `at` is on the same side of the window's borders, at
-    /// most `end`.
+    /// The instant up to which the time after `at` is on one side of the window's borders, at most `end`.
     pub fn same_side_until(&self, at: &Instant<T>, end: &Instant<T>, inside: bool) -> Instant<T> {
         let (from, to) = self.window;
         let border =

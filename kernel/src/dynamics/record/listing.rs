@@ -71,8 +71,8 @@ impl<T> Default for Listings<T> {
 
 impl<T: Scalar> Listings<T> {
     /// The listings that `request` asks for, in a run whose settled window begins at `from` and holds
-    /// `periods` forcing periods of `cycles` cycles of the clock each; `start` is the drive's phase at the
-    /// start in turns.
+    /// `periods` forcing periods of `cycles` cycles of the clock; `start` is the drive's phase at the start
+    /// in turns.
     pub fn new(
         request: &Request,
         clock: &Clock<T>,

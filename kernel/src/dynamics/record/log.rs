@@ -137,9 +137,8 @@ impl<T: Scalar> Log<T> {
         Checkpoint { state, barrier_side }
     }
 
-    /// Replays the recorder calls between two marks (up to the end if there is no second one), shifted by
-    /// `later`, in this segment of the drive, with each step in `series`. Returns the number of calls, and of
-    /// impacts among them.
+    /// Replays the recorder calls between two marks (up to the end without a second one), shifted by `later`,
+    /// in this segment of the drive, with each step in `series`. Returns the number of calls and of impacts.
     pub fn play(
         &self,
         (record, series): (&mut Recorder<T>, &mut Series<T>),

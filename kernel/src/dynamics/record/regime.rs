@@ -90,8 +90,7 @@ pub(crate) struct Judge {
 }
 
 impl Judge {
-    /// For a settled window of `periods` forcing periods that begins with the stroboscopic state
-    /// number `from`.
+    /// For a settled window of `periods` forcing periods that begins with stroboscopic state number `from`.
     pub fn new(rhythm: Rhythm, scales: (f64, f64), periods: u64, from: u64) -> Self {
         Self {
             rhythm,
@@ -132,8 +131,8 @@ impl Judge {
         self.strobes.add(state);
     }
 
-    /// Adds the gain of the period before the stroboscopic state of this number, and of `times` states in all,
-    /// `lap` periods apart.
+    /// Adds the gain before the stroboscopic state of this number, and before `times` in all, `lap` periods
+    /// apart.
     fn gain(&mut self, number: u64, times: u64, lap: u64, gain: Gain) {
         let up_to = |end: u64| (end + 1).saturating_sub(number).div_ceil(lap).min(times);
         let ends = [self.from, self.from + self.periods / 2, self.from + self.periods].map(up_to);
@@ -255,8 +254,7 @@ impl Judge {
         self.tape = Some(tape);
     }
 
-    /// Adds `more` stroboscopic states equal to `state`, the last one; none of them is beyond the next border
-    /// of the window.
+    /// Adds `more` stroboscopic states equal to `state`, the last one, up to the next border of the window.
     pub fn skip_still(&mut self, more: u64, state: Strobe) {
         self.gain(self.strobes.seen, more, 1, (0.0, 0));
         self.strobes.skip(more, 1, |_| state);
@@ -287,8 +285,8 @@ impl Judge {
         }
     }
 
-    /// Whether the averages of the window's halves agree, if this can be determined. They do if the motion
-    /// has settled.
+    /// Whether the averages of the window's halves agree, if that is known. They do once the motion has
+    /// settled.
     pub fn steady(&self, rests: bool) -> Option<bool> {
         match self.settled(rests)? {
             true => Some(true),
@@ -307,8 +305,8 @@ impl Judge {
         (self.crossing_periods.count, self.release_periods.count)
     }
 
-    /// The first crossing and release under a drive that changes; `end` is the end of the run in
-    /// forcing periods.
+    /// The first crossing and release under a drive that changes; `end` is that of the run in forcing
+    /// periods.
     pub fn firsts(&self, end: f64, amplitude: impl Fn(f64) -> Option<f64>) -> Option<Firsts> {
         let mut firsts = self.firsts;
         let lasting = |last: i64| last >= end.floor() as i64 - 1;

@@ -50,8 +50,7 @@ pub(crate) struct Strobes {
     pub seen: u64,
     /// The last states, each at its number modulo [`LONGEST`].
     recent: [Strobe; LONGEST],
-    /// For each period up to [`LONGEST`], the number of the state from which on all states have come back
-    /// after it.
+    /// For each period up to [`LONGEST`], the number of the state from which on all states repeat with it.
     since: [u64; LONGEST],
     /// Forcing periods in the settled window.
     periods: u64,
@@ -125,8 +124,8 @@ impl Strobes {
     }
 
     /// Adds `more` states of a motion that repeats exactly after every `lap` states, which divides `more`,
-    /// and has done so for four laps and twice as many states as are looked back at; `state` gives the states
-    /// of a lap.
+    /// and has done so for four laps and twice as many states as are looked back at; `state` gives those of a
+    /// lap.
     pub fn skip(&mut self, more: u64, lap: u64, state: impl Fn(u64) -> Strobe) {
         if self.is_complete() {
             return;
@@ -199,13 +198,12 @@ impl Strobes {
 #[derive(Debug, Clone)]
 pub(crate) struct Crossings {
     periods: f64,
-    /// Crossings that may still get a partner: time in forcing periods since the start of the window, and the
-    /// well entered.
+    /// Crossings that may still get a partner: time in forcing periods since the window's start, and well
+    /// entered.
     recent: VecDeque<(f64, Side)>,
     /// Number of crossings before the first of `recent`.
     gone: u64,
-    /// For each period, the first crossing without a partner one period later; `None` if a partner
-    /// was missing.
+    /// For each period, the first crossing without a partner one period later; `None` if one was missing.
     waiting: [Option<u64>; LONGEST],
     paired: [bool; LONGEST],
 }

@@ -161,8 +161,8 @@ impl<T: Scalar> Recorder<'_, T> {
         }
     }
 
-    /// Records the energy dissipated in a compliant stop, and its largest force, over a step of contact that
-    /// has been recorded.
+    /// Records the energy dissipated in a compliant stop, and its largest force, over a recorded step of
+    /// contact.
     pub fn contact<P: InStop<T>>(&mut self, path: &P, step: &StepData<T>) {
         if self.ledger {
             let rule = self.rule_of(path);

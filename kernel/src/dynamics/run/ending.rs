@@ -92,8 +92,8 @@ fn stop_energy<T: Scalar>(model: &Model, equation: &Equation<T>, state: &MotionS
     stop.stored(state.depth.root).to_f64() * model.mass / (equation.unit * equation.unit)
 }
 
-/// The outcome of a run after the check; `places` is the range of the motion in m, `speed` its largest speed
-/// in m/s.
+/// The outcome of a run after the check; `places` is the range of the motion in m, `speed` its largest in
+/// m/s.
 fn checked_outcome(model: &Model, run: &Run, places: (f64, f64), speed: f64) -> Outcome {
     let summary = &run.summary;
     if summary.outcome != Outcome::Done {

@@ -171,8 +171,8 @@ impl<T: Scalar> EventFree<T> {
     }
 
     /// Records a step inside the settled window of this length and integral of the squared velocity. Returns
-    /// false if a turning point within it may be an extreme. The deviations from the chords are only computed
-    /// if needed for that.
+    /// false if a turning point within it may be an extreme. The deviations from the chords are computed if
+    /// needed.
     #[inline(always)]
     fn record_step(
         &mut self,

@@ -175,8 +175,8 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     }
 
     /// Replays those of the next `laps` in which something is listed. The sums are restored afterwards, so
-    /// that they do not depend on what is listed. A replay counts as work: returns the number of laps for
-    /// which it was done.
+    /// that they do not depend on what is listed. Replays count as work: returns the number of laps that it
+    /// allows.
     fn list(&mut self, log: &Log<T>, lap: &Lap<T>, later: i64, laps: i64) -> i64 {
         let (sums, judge) = (self.record.totals(), self.record.judge.clone());
         // The stroboscopic states of these laps are added by multiplication.

@@ -208,9 +208,8 @@ pub(crate) fn square<T: Number>(a: &[T; ROOM], k: usize) -> T {
     if k == 0 { ends } else { inner_square(a, k) + (ends + ends) }
 }
 
-/// Sum of a\[i\] b\[k-i\] over i = 1..k, from the middle outwards: the terms of the highest orders, which
-/// have only just become known, come last. There are two running sums, since one addition waits for the
-/// previous one.
+/// Sum of a\[i\] b\[k-i\] over i = 1..k, from the middle outwards: the terms of the highest orders, which are
+/// known last, come last. There are two running sums, since an addition waits for the one before.
 #[inline(always)]
 fn inner_convolve<T: Number>(a: &[T; ROOM], b: &[T; ROOM], k: usize) -> T {
     if k < 2 {

@@ -167,8 +167,8 @@ impl<T: Number> Series<T> {
     pub fn state(&self, t: T) -> Endpoint<T> {
         let zero = T::zero();
         let (mut y, mut v, mut acceleration, mut bound) = (zero, self.y[1], zero, zero);
-        // Powers, and sums of terms: Horner's rule waits for a product and a sum at each coefficient, this
-        // only for one of them.
+        // Powers and sums of terms: Horner's rule waits for a product and a sum at each order, this for one
+        // of them.
         let (mut before, mut power) = (T::of(1.0), t);
         each_order::<T, true, 2>(
             2..self.known,
@@ -213,8 +213,8 @@ impl<T: Scalar> Series<T> {
         self.extend_to(order, force, damping, drive, cursor);
     }
 
-    /// The longest step whose first neglected term in the velocity stays below `tolerance` times `speed`, at
-    /// most `cap`.
+    /// The longest step, at most `cap`, whose first neglected term in the velocity is below `tolerance` times
+    /// `speed`.
     #[inline]
     pub fn natural_step(&self, speed_log2: f64, tolerance_log2: f64, cap: f64) -> f64 {
         let [step] =
@@ -293,8 +293,7 @@ fn recur<T: Number, D: Tail<T>, const SIMPLE: bool>(
 }
 
 /// Calls `next` for each of the orders. If `UNROLLED`, the first order is `USUAL` and the arithmetic of `T`
-/// is quick, the loop is unrolled with constant orders: the bookkeeping of a loop may cost as much as its
-/// body.
+/// is quick, the loop is unrolled with constant orders: its bookkeeping may cost as much as its body.
 #[inline(always)]
 pub(crate) fn each_order<T: Number, const UNROLLED: bool, const USUAL: usize>(
     orders: std::ops::Range<usize>,

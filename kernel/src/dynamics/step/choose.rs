@@ -157,8 +157,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         self.circuit_series().map(|state| polynomial::value(state, t))
     }
 
-    /// Effect of the circuit on a mass that moves little, as a stiffness over mass: the square of
-    /// the coupling.
+    /// Effect of the circuit on a mass that moves little, as a stiffness over mass: its squared coupling.
     #[inline(always)]
     pub fn circuit_stiffness(&self) -> Option<T> {
         self.drive.circuit().map(|circuit| circuit.coupling * circuit.coupling)

@@ -1,5 +1,4 @@
-//! Choice of a step of quasi-static motion: whether the mass rings, and the length over which the
-//! series holds.
+//! Choice of a step of quasi-static motion: whether the mass rings, and how long the series holds.
 
 use super::quasi_static::QuasiStatic;
 use super::stepper::{RESIDUAL, Stepper};
@@ -47,8 +46,8 @@ pub(crate) struct QuasiStaticStep<T> {
 }
 
 impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
-    /// A step of quasi-static motion; `None` if the mass rings by more than the tolerance, or if the load
-    /// changes too fast.
+    /// A step of quasi-static motion; `None` if the mass rings beyond the tolerance or the load changes too
+    /// fast.
     pub fn quasi_static_step(
         &mut self,
         state: &MotionState<T>,
@@ -65,8 +64,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         if !compressing || self.settings.tolerance < MIN_TOLERANCE {
             return None;
         }
-        // Does the mass ring? The first term of its quasi-static motion shows whether the series is
-        // worth computing.
+        // Does the mass ring? The first term of its quasi-static motion shows whether the series is worth it.
         let a = &mut path.series.a;
         self.drive.seed(&state.at, state.segment, a, &mut self.cursor);
         let (jerk, snap) = (-(sign * a[1]), a[2].abs() * T::of(2.0));

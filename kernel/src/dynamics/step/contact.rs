@@ -112,8 +112,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
                 let deepest = path.depth[0] + changes.depth;
                 let neglected = path.neglected(self.drive, &mut self.cursor, (duration, deepest));
                 if neglected > T::of(tolerance) * speed {
-                    // The drive is as fast as the contact, or the stop so soft that the force changes
-                    // during it.
+                    // The drive is as fast as the contact, or the stop so soft that the force changes.
                     self.work.add(self.costs.contact);
                     terms = match terms {
                         Terms::Few => Terms::More,

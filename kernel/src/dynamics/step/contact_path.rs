@@ -1,5 +1,4 @@
-//! Evaluation of a step of contact: bounds, events, residual, position, integrals, dissipation,
-//! largest force.
+//! Evaluation of a step of contact: bounds, events, residual, position, integrals, loss, largest force.
 
 use super::path::{InStop, Path};
 use super::penetration::Penetration;
@@ -70,8 +69,7 @@ impl<T: Scalar> Penetration<T> {
         }
         g[0] += if self.clipped { T::of(-1.0) } else { T::of(1.0) };
         let from = usize::from(passed);
-        // If the sign is wrong, it is so by rounding: the change was a mere touch, and the contact continues
-        // as it was.
+        // A wrong sign comes from rounding: the change was a mere touch, and the contact continues as it was.
         if g[from] > T::zero() { PolynomialRoots::new(&g[from..n]).first() } else { None }
     }
 
@@ -105,8 +103,7 @@ impl<T: Scalar> Penetration<T> {
         self.surface + self.sign * (at.root * at.root)
     }
 
-    /// Forces over mass in a state: the given one of the mechanism, that of the base by its series, that of
-    /// the stop.
+    /// Forces over mass in a state: the given one of the mechanism, the base's by its series, the stop's.
     fn forces(&self, at: &ContactState<T>, force: T) -> (T, T, T) {
         let levels = self.known_drive.min(self.terms.of_drive());
         let base = polynomial::value(&self.inner.a[..levels], at.time);

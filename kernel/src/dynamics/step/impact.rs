@@ -283,8 +283,7 @@ impl<T: Scalar> Impact<T> {
         None
     }
 
-    /// Computes m at all points from the slopes by the last m and t, and corrects the motion to first order
-    /// in the change of m.
+    /// Computes m at all points from the slopes by the last m and t; corrects the motion to first order in m.
     #[inline(always)]
     fn sweep(&mut self, (m, t): (T, T)) {
         let all = Lanes::<GROUP, T>::all;
@@ -348,8 +347,7 @@ impl<T: Scalar> Impact<T> {
         Place { root: u, speed: w, time_slope: two * slope * m * net, amplitude_slope: slope * w * b, gain }
     }
 
-    /// Change since touch of the inward acceleration by everything but the stop, at a time, a depth and
-    /// a speed.
+    /// Change since touch of the inward acceleration by all but the stop, at a time, a depth and a speed.
     #[inline(always)]
     pub fn changed<N: Number>(&self, all: impl Fn(T) -> N, [t, d, w]: [N; 3]) -> N {
         let outward =

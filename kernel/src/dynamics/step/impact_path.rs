@@ -81,8 +81,8 @@ impl<T: Scalar> Impact<T> {
         parameter
     }
 
-    /// The integral over time of a function of time, root of the depth and inward speed, between two
-    /// parameters.
+    /// The integral over time, between two parameters, of a function of time, root of the depth and inward
+    /// speed.
     fn integral(&self, (from, to): (T, T), of: impl Fn(Group<T>, Group<T>, Group<T>) -> Group<T>) -> T {
         let (one, whole) = (T::of(1.0), from == T::zero() && to == T::of(2.0));
         let half = if whole { one } else { (to - from) * T::of(0.5) };

@@ -1,5 +1,4 @@
-//! Steps in free flight and in contact with a compliant stop: their length, their first event, and
-//! their evaluation.
+//! Steps in free flight and in contact with a compliant stop: length, first event, and evaluation.
 
 mod choose;
 pub(crate) mod choose_quasi_static;

@@ -53,8 +53,8 @@ pub(crate) trait Path<T: Scalar> {
 pub(crate) trait InStop<T: Scalar>: Path<T> {
     /// Energy over mass that the stop dissipates over (from, to) in the path's parameter.
     fn loss(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T;
-    /// The larger of `known` and the largest force over mass within a step of length `h`, up to its
-    /// fraction `until`.
+    /// The larger of `known` and the largest force over mass in a step of length `h`, up to its fraction
+    /// `until`.
     fn peak(&self, h: T, until: T, known: T) -> T;
 }
 

@@ -311,8 +311,8 @@ impl<T: Scalar> Penetration<T> {
     }
 }
 
-/// Speed that neglected terms would cause over `time`, up to the depth `deepest`: the first two of the terms
-/// `base` of the drive over time, which begin with order `levels`, and all terms of the force over depth from
+/// Speed that neglected terms would cause over `time`, up to the depth `deepest`: the first two of the
+/// drive's terms `base` over time, of orders from `levels` on, and all terms of the force over depth from
 /// `first` on.
 pub(super) fn neglected<T: Scalar>(
     (base, levels): (&[T], usize),

@@ -3,8 +3,7 @@
 //! Before a mass comes to rest it bounces a dozen times, each time at a fraction of the speed; most impacts
 //! of a run are of this kind. Their flights are nearly parabolas, so their ends need no search: the gap is 0
 //! at the start by definition, and divided by time it is a polynomial with one root. A third-order method
-//! that starts from the end of the parabola finds the root to the last digit in two or three steps, however
-//! short the flight.
+//! that starts from the end of the parabola finds the root to the last digit in two or three steps.
 
 use super::stepper::Stepper;
 use crate::dynamics::drive::Drive;
@@ -30,9 +29,8 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         }
     }
 
-    /// The stop from which the mass has just rebounded, with the contact acceleration there and its first
-    /// two derivatives; `None` if there is none, or if the mass is not pressed back. Expects the drive to
-    /// be seeded.
+    /// The stop from which the mass has just rebounded, with the contact acceleration there and its first two
+    /// derivatives; `None` if there is none or the mass is not pressed back. Expects a seeded drive.
     #[inline(always)]
     pub fn pressed_rebound(&self, state: &MotionState<T>) -> Option<(End, [T; 3])> {
         let Some(Touch { end, opening: Opening::Speed }) = state.touch else { return None };

@@ -1,5 +1,5 @@
-//! Stepper: equation, drive and clock, settings that follow from the tolerance, and the series of the present
-//! step.
+//! Stepper: equation, drive and clock, settings that follow from the tolerance, and the present step's
+//! series.
 
 use super::impact::Impact;
 use super::path::StepData;
@@ -18,8 +18,7 @@ use crate::numeric::{Scalar, fast_log2};
 pub(super) const MAX_HALVINGS: u32 = 200;
 
 /// Tolerance of a step relative to that of the scene: the errors of some hundred steps add up, and even the
-/// energy of an undamped run of some hundred periods then stays within the tolerance. A fifth of this share
-/// costs a tenth more.
+/// energy of an undamped run of some hundred periods stays within the tolerance. A fifth costs a tenth more.
 const LOCAL_SHARE: f64 = 0.02;
 
 /// Largest permitted ratio of the residual at the end of a step to the neglected term for which the step was
@@ -163,8 +162,8 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
         }
     }
 
-    /// Shortens a step in time to the end of the run, `left` away, or of the drive's segment. Returns the instant
-    /// at which it then ends.
+    /// Shortens a step to the end of the run, `left` away, or of the drive's segment; returns the instant of
+    /// that.
     #[inline(always)]
     pub fn arrival(&self, state: &MotionState<T>, left: T, length: &mut T) -> Option<Instant<T>> {
         let mut arrival = None;

@@ -4,8 +4,8 @@
 //! with the order of its series, the degree of the force and each part of the drive; those of a step of
 //! contact with a compliant stop, a search for a release and the replay of a lap were measured. Laps that are
 //! added by multiplication cost nothing, so a run that recurs is completed however long it is. Samples,
-//! events and ledger are not counted: what is recorded does not affect how a run ends, unless laps have to be
-//! replayed for it.
+//! events and ledger are not counted: what is recorded does not affect how a run ends, unless laps are
+//! replayed.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 

@@ -176,8 +176,7 @@ impl<const W: usize> Columns<W> {
         if self.v.0[lane] > 0.0 { End::High } else { End::Low }
     }
 
-    /// Moves a lane that stands on a break into the neighbouring mode; returns false if the force has another
-    /// degree there.
+    /// Moves a lane that stands on a break into the next mode; returns false if the force has another degree.
     pub fn enter_neighbour(&mut self, lane: usize, modes: &[Mode<f64>]) -> bool {
         let exit = self.exit(lane);
         let index = match exit {
