@@ -30,8 +30,7 @@ use super::record::log::Log;
 use super::record::recorder::Recorder;
 use super::result::Request;
 use super::state::{Checkpoint, Contact, Label, MotionState};
-use super::step::stepper::Settings;
-use super::step::stepper::Stepper;
+use super::step::stepper::{Settings, Stepper};
 use super::step::work::Work;
 use crate::numeric::Scalar;
 

@@ -9,8 +9,7 @@ use crate::dynamics::record::recorder::Recorder;
 use crate::dynamics::result::{Event, EventKind, Outcome, Request, Side};
 use crate::dynamics::series::Series;
 use crate::dynamics::state::{Contact, MotionState, Opening};
-use crate::dynamics::step::stepper::ROUNDINGS;
-use crate::dynamics::step::stepper::Stepper;
+use crate::dynamics::step::stepper::{ROUNDINGS, Stepper};
 use crate::numeric::{PolynomialRoots, Scalar};
 
 /// The motion between two strobes.

@@ -181,11 +181,10 @@ impl Transducer {
         }
         let alternative = if circuit.is_voltage {
             let (load, force) = (1.0 / self.current, coupling * mass / circuit.amount);
+            let [coupling, load] = [force * load, load].map(short);
             format!(
-                "transducer=Electromagnetic(coupling_v_s_per_m: {}, coil_ohm: 0, load_ohm: {}) gives the \
-                 same voltage, current and power without a state of its own",
-                short(force * load),
-                short(load)
+                "transducer=Electromagnetic(coupling_v_s_per_m: {coupling}, coil_ohm: 0, load_ohm: {load}) \
+                 gives the same voltage, current and power without a state of its own"
             )
         } else if coupling * coupling / decay * time < OPEN_CIRCUIT_SHARE {
             "load_ohm: inf is the open circuit that this is".to_owned()
@@ -201,18 +200,16 @@ impl Transducer {
 
     /// Description in words, for `check`.
     pub fn describe(&self) -> String {
-        match &self.circuit {
-            None => format!(
-                "transducer: a damping of {} N s/m; {} V over the load and {} A through it at 1 m/s",
-                short(self.damping),
-                short(self.voltage),
-                short(self.current)
-            ),
-            Some(circuit) => format!(
-                "transducer: {} with a time constant of {} s beside the motion",
-                if circuit.is_voltage { "a voltage" } else { "a current" },
-                short(1.0 / circuit.decay)
-            ),
-        }
+        let Some(circuit) = &self.circuit else {
+            let [c, v, a] = [self.damping, self.voltage, self.current].map(short);
+            return format!(
+                "transducer: a damping of {c} N s/m; {v} V over the load and {a} A through it at 1 m/s"
+            );
+        };
+        let state = if circuit.is_voltage { "a voltage" } else { "a current" };
+        format!(
+            "transducer: {state} with a time constant of {} s beside the motion",
+            short(1.0 / circuit.decay)
+        )
     }
 }
