@@ -4,7 +4,7 @@
 use super::contact_path::{Changes, ContactState};
 use super::impact::{DRIVE_TERMS, FORCE_TERMS, Impact, Separation};
 use super::path::Path;
-use super::penetration::{Penetration, Start, Terms, neglected};
+use super::penetration::{Penetration, Terms, neglected};
 use super::stepper::{MAX_HALVINGS, RESIDUAL, ROUNDINGS, Stepper};
 use crate::dynamics::clock::Instant;
 use crate::dynamics::drive::Drive;
@@ -75,18 +75,14 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let damping = self.equation.damping;
         let order = (self.settings.order + CONTACT_ORDERS).min(MAX_ORDER);
         let sign = end.sign::<T>();
-        let start = Start {
-            root: state.depth.root,
-            speed: sign * state.v,
-            sign,
-            surface: self.equation.surface(end)? - mode.origin,
-            clipped: matches!(state.contact, Contact::Clipped(_)),
-        };
+        (path.root[0], path.speed[0]) = (state.depth.root, sign * state.v);
+        (path.sign, path.surface) = (sign, self.equation.surface(end)? - mode.origin);
+        path.clipped = matches!(state.contact, Contact::Clipped(_));
         self.drive.seed(&state.at, state.segment, path.seeded(), &mut self.cursor);
         self.evaluations += 1;
         self.work.add(self.costs.contact);
         // The parameter that the mass would reach in the longest time at its initial speed.
-        let (u, w) = (start.root.to_f64(), start.speed.abs().to_f64());
+        let (u, w) = (path.root[0].to_f64(), path.speed[0].abs().to_f64());
         let longest = self.settings.longest;
         let cap = 2.0 * longest / (u + (u * u + w * longest).sqrt());
         let (speed, tolerance) = self.contact_tolerance(state)?;
@@ -94,7 +90,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let few = fast && self.settings.tolerance > COARSE;
         let mut terms = if few { Terms::Few } else { Terms::More };
         let force = (&mode.force, state.mode);
-        path.expand(&start, (order, terms), force, damping);
+        path.expand((order, terms), force, damping);
         let settings = (fast_log2(speed.to_f64()), self.settings.tolerance_log2 + CONTACT_SHARE.log2());
         let mut whole = T::of(path.natural_step(settings.0, settings.1, cap));
         let border = self.drive.segment_end(state.segment);
@@ -119,7 +115,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
                         _ => Terms::All(self.drive.zero_from().map_or(order, |zero| order.min(zero))),
                     };
                     path.extend_drive(terms.of_drive(), self.drive, &mut self.cursor);
-                    path.expand(&start, (order, terms), force, damping);
+                    path.expand((order, terms), force, damping);
                     whole = T::of(path.natural_step(settings.0, settings.1, cap));
                     continue;
                 }

@@ -84,16 +84,6 @@ impl Terms {
     }
 }
 
-/// Initial values of a step of contact.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Start<T> {
-    pub root: T,
-    pub speed: T,
-    pub sign: T,
-    pub surface: T,
-    pub clipped: bool,
-}
-
 struct Constants<T> {
     force: [T; 5],
     stiffness: T,
@@ -145,30 +135,27 @@ impl<T: Scalar> Penetration<T> {
         }
     }
 
-    /// Expands the motion from `start` to `order` in s, with `terms` of the base's acceleration over time (no
-    /// more than are known) and of the force over depth; `mode` is the number of the force's mode.
+    /// Expands the motion to `order` in s, with `terms` of the base's acceleration over time (no more than are
+    /// known) and of the force over depth; `mode` is the number of the force's mode. The first coefficients of
+    /// root and speed, and all that describes the stop, must be set.
     pub fn expand(
         &mut self,
-        start: &Start<T>,
         (order, terms): (usize, Terms),
         (force, mode): (&PieceForce<T>, usize),
         damping: T,
     ) {
         let order = order.min(MAX_ORDER);
-        (self.order, self.terms, self.clipped) = (order, terms, start.clipped);
-        (self.sign, self.surface) = (start.sign, start.surface);
+        (self.order, self.terms) = (order, terms);
         if self.about_mode != Some(mode) {
             force.about(self.surface, &mut self.about);
             self.about.resize(self.about.len().max(5), T::zero());
             self.about_mode = Some(mode);
         }
-        self.root[0] = start.root;
-        self.speed[0] = start.speed;
         self.time[0] = T::zero();
-        self.depth[0] = start.root * start.root;
+        self.depth[0] = self.root[0] * self.root[0];
         let [f0, f1, f2, f3, f4] = [0, 1, 2, 3, 4].map(|k| self.about[k]);
         let sign = self.sign;
-        let stiffness = if start.clipped { T::zero() } else { self.stop.stiffness };
+        let stiffness = if self.clipped { T::zero() } else { self.stop.stiffness };
         let constants = Constants {
             // As forces outward of the stop over depth; the odd ones keep their sign.
             force: [sign * f0, f1, sign * f2, f3, sign * f4],
