@@ -149,9 +149,7 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
     /// Starts the next run; returns false if there is none, or no room. `full`: whether the lanes are full.
     fn start_next(&mut self, full: bool) -> bool {
         let Some(place) = self.free.last().copied() else { return false };
-        let Some(run) = self.source.next(UnderWay { runs: self.under_way(), full }) else {
-            return false;
-        };
+        let Some(run) = self.source.next(UnderWay { runs: self.under_way(), full }) else { return false };
         self.free.pop();
         let clock = clock(run.model, run.equation.unit);
         let (model, request) = (run.model, run.request);

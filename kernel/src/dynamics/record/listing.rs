@@ -83,13 +83,7 @@ impl<T: Scalar> Listings<T> {
         if cycles == 0 {
             return Self::default();
         }
-        let listing = |first: Instant<T>, left: Option<u64>| Listing {
-            next: first,
-            left,
-            cycles,
-            states: Vec::new(),
-            first,
-        };
+        let listing = |first, left| Listing { next: first, left, cycles, states: Vec::new(), first };
         let section = request.section.map(|phase| {
             let turns = (phase - start).rem_euclid(1.0) * cycles as f64;
             let whole = turns.floor();
