@@ -193,9 +193,8 @@ impl Live {
 
     /// Electrical state of the transducer, in A or V; 0 where it has none.
     fn electrical(&self, carried: &Checkpoint<f64>) -> f64 {
-        self.model
-            .circuit()
-            .map_or(0.0, |circuit| circuit.amount * carried.state.circuit / self.kernel.unit())
+        let (state, unit) = (carried.state.circuit, self.kernel.unit());
+        self.model.circuit().map_or(0.0, |circuit| circuit.amount * state / unit)
     }
 
     /// Energy in J of a state: kinetic, potential, and that stored in the transducer.

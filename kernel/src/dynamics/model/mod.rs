@@ -66,6 +66,14 @@ fn faults_of_check(scene: &Scene) -> Vec<Fault> {
     faults
 }
 
+/// The value, or 0 and the fault among the others.
+fn value_or_fault<T: Default>(value: Result<T, Fault>, faults: &mut Vec<Fault>) -> T {
+    value.unwrap_or_else(|fault| {
+        faults.push(fault);
+        T::default()
+    })
+}
+
 /// Damping coefficient in N s/m of the mechanism with this mass in kg.
 fn damping_coefficient(scene: &Scene, mechanism: &Mechanism, mass: f64) -> Result<f64, Fault> {
     let xi = match scene.damping {
@@ -97,10 +105,7 @@ impl Model {
         let mut faults = Vec::new();
         let mass = scene.mass_g / 1e3;
         let landscape = &mechanism.landscape;
-        let damping = damping_coefficient(scene, &mechanism, mass).unwrap_or_else(|found| {
-            faults.push(found);
-            0.0
-        });
+        let damping = value_or_fault(damping_coefficient(scene, &mechanism, mass), &mut faults);
         let transducer = Transducer::of(&scene.transducer, mass);
         if transducer.is_some_and(|transducer| !transducer.is_finite()) {
             let piezoelectric = matches!(scene.transducer, scene::Transducer::Piezoelectric { .. });
@@ -111,14 +116,8 @@ impl Model {
         }
         let stops = StopPair::of(&scene.stops);
         let compliant = Hertz::of(&scene.stops);
-        let start = start_state(scene, &mechanism, stops, compliant).unwrap_or_else(|found| {
-            faults.push(found);
-            (0.0, 0.0)
-        });
-        let drive = ExcitationParts::new(&scene.excitation).unwrap_or_else(|found| {
-            faults.push(found);
-            ExcitationParts::default()
-        });
+        let start = value_or_fault(start_state(scene, &mechanism, stops, compliant), &mut faults);
+        let drive = value_or_fault(ExcitationParts::new(&scene.excitation), &mut faults);
         let periods = drive.fastest().unwrap_or(0.0) * scene.run.duration_s;
         if periods > MAX_PERIODS {
             let problem = format!(

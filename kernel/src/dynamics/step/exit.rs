@@ -83,8 +83,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let mut first: Option<(T, End)> = None;
         if state.touch.is_none() {
             let limits = (mode.low, mode.high);
-            let near = !(state.x - limits.0 > bound && limits.1 - state.x > bound);
-            if !near {
+            if state.x - limits.0 > bound && limits.1 - state.x > bound {
                 return None;
             }
             let (y, to) = (self.series.coefficients(), end + mode.origin);
