@@ -135,9 +135,9 @@ impl<T: Scalar> Penetration<T> {
         }
     }
 
-    /// Expands the motion to `order` in s, with `terms` of the base's acceleration over time (no more than are
-    /// known) and of the force over depth; `mode` is the number of the force's mode. The first coefficients of
-    /// root and speed, and all that describes the stop, must be set.
+    /// Expands the motion to `order` in s, with `terms` of the base's acceleration over time (no more than
+    /// are known) and of the force over depth; `mode` is the number of the force's mode. The first
+    /// coefficients of root and speed, and all that describes the stop, must be set.
     pub fn expand(
         &mut self,
         (order, terms): (usize, Terms),
