@@ -8,6 +8,7 @@ use super::record::{Line, Record};
 use super::tone::{Chirp, Ramp, Sine, Tone, TurnsPerCycle};
 use super::{Base, Circuit, Still};
 use crate::dynamics::clock::{Clock, Instant};
+use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::model::excitation::TonePart;
 use crate::dynamics::model::scales::Scales;
@@ -33,6 +34,22 @@ impl Model {
         let at = clock.at(t);
         let segment = drive.segment_ends.iter().filter(|end| clock.between(end, &at) >= 0.0).count();
         drive.in_si(&at, segment, unit)
+    }
+}
+
+/// Equation, clock and drive of a model, in kernel units.
+#[derive(Debug)]
+pub(crate) struct Kernel<T> {
+    pub equation: Equation<T>,
+    pub clock: Clock<T>,
+    pub drive: Form<T>,
+}
+
+impl<T: Scalar> Kernel<T> {
+    pub fn new(model: &Model) -> Self {
+        let unit = model.scales.unit();
+        let clock = clock(model, unit);
+        Self { equation: Equation::new(model, unit), drive: form(model, &clock), clock }
     }
 }
 

@@ -4,7 +4,7 @@
 //! costs some microseconds; the integrator then needs no code for being continued.
 
 use crate::dynamics::clock::{Clock, Instant};
-use crate::dynamics::drive::form::{Form, clock, form, with_drive};
+use crate::dynamics::drive::form::{self, Form, with_drive};
 use crate::dynamics::drive::{Base, Drive};
 use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
@@ -59,10 +59,8 @@ pub(crate) struct Stretch {
 
 impl Kernel {
     pub fn new(model: &Model) -> Self {
-        let unit = model.scales.unit();
-        let clock = clock(model, unit);
-        let drive = std::sync::Arc::new(form(model, &clock));
-        Self { equation: Equation::new(model, unit), clock, drive }
+        let form::Kernel { equation, clock, drive } = form::Kernel::new(model);
+        Self { equation, clock, drive: std::sync::Arc::new(drive) }
     }
 
     /// Seconds per kernel time unit.

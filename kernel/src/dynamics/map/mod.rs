@@ -11,9 +11,8 @@ mod differences;
 mod jacobian;
 mod passage;
 
-use super::clock::{Clock, Instant};
-use super::drive::form::{Form, clock, form, with_drive};
-use super::equation::Equation;
+use super::clock::Instant;
+use super::drive::form::{Kernel, with_drive};
 use super::model::Model;
 use crate::numeric::{Dual, Scalar};
 
@@ -21,22 +20,6 @@ pub use jacobian::{Jacobian, Multiplier};
 pub use passage::Miss;
 pub use passage::Passage;
 use passage::Traced;
-
-/// Equation, clock and drive of a model in numbers of one type.
-#[derive(Debug)]
-struct Kernel<T> {
-    equation: Equation<T>,
-    clock: Clock<T>,
-    drive: Form<T>,
-}
-
-impl<T: Scalar> Kernel<T> {
-    fn new(model: &Model) -> Self {
-        let unit = model.scales.unit();
-        let clock = clock(model, unit);
-        Self { equation: Equation::new(model, unit), drive: form(model, &clock), clock }
-    }
-}
 
 /// Length of one application of the map.
 #[derive(Debug, Clone, Copy)]

@@ -7,7 +7,7 @@ mod recurrence;
 
 use crate::dynamics::clock::Instant;
 use crate::dynamics::drive::Drive;
-use crate::dynamics::drive::form::{clock, form, general, with_drive};
+use crate::dynamics::drive::form::{Kernel, clock, general, with_drive};
 use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
@@ -28,9 +28,8 @@ impl Model {
     /// The motion does not depend on what is requested or on threads.
     pub fn run(&self, request: &Request) -> Run {
         let watch = ThreadClock::start();
-        let unit = self.scales.unit();
-        let (equation, clock) = (Equation::<f64>::new(self, unit), clock(self, unit));
-        let mut run = with_drive!(&form(self, &clock), drive => {
+        let Kernel { equation, clock, drive } = Kernel::<f64>::new(self);
+        let mut run = with_drive!(&drive, drive => {
             Motion::new(self, request, self.tolerance, &equation, clock, drive)
                 .with_recurrence(self.recurrence, self)
                 .run(self)
@@ -42,13 +41,11 @@ impl Model {
     /// Cost of a step of free flight at a tolerance, and the part of it due to the excitation, in units
     /// of work.
     pub fn cost_of_a_step(&self, tolerance: f64) -> (u64, u64) {
-        let unit = self.scales.unit();
-        let order = Settings::<f64>::new(self, unit, tolerance).order;
-        let degree = Equation::<f64>::new(self, unit).degree();
-        fn of<D: Drive<f64>>(order: usize, degree: usize, drive: &D) -> (u64, u64) {
-            (Costs::new(order, degree, drive).step, drive.cost(order))
-        }
-        with_drive!(&form(self, &clock(self, unit)), drive => of(order, degree, drive))
+        let Kernel { equation, drive, .. } = Kernel::<f64>::new(self);
+        let order = Settings::<f64>::new(self, equation.unit, tolerance).order;
+        with_drive!(&drive, drive => {
+            (Costs::new::<f64, _>(order, equation.degree(), drive).step, drive.cost(order))
+        })
     }
 
     /// Runs the model once in double-double arithmetic, some 31 digits, at the given `tolerance` (1e-28 is
@@ -191,9 +188,8 @@ impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
 
 /// Pursues a motion alone.
 pub(crate) fn pursue_alone(model: &Model, pursuit: &Pursuit, request: &Request) -> Pursued {
-    let unit = model.scales.unit();
-    let (equation, clock) = (Equation::<f64>::new(model, unit), clock(model, unit));
-    with_drive!(&form(model, &clock), drive => {
+    let Kernel { equation, clock, drive } = Kernel::<f64>::new(model);
+    with_drive!(&drive, drive => {
         let motion = Motion::new(model, request, model.tolerance, &equation, clock, drive);
         let mut motion = motion.pursuing(pursuit);
         let start = motion.begin(model);
