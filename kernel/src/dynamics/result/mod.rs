@@ -28,9 +28,9 @@ pub struct Request<'a> {
     /// forcing periods.
     pub until_settled: Option<f64>,
     /// Phase of the drive in turns at which the states of the settled window are kept, one a forcing period
-    /// ([`Run::section`](Run::section)).
+    /// ([`Run::section`]).
     pub section: Option<f64>,
-    /// Whether to keep the state from which another run can continue ([`Run::carried`](Run::carried)).
+    /// Whether to keep the state from which another run can continue ([`Run::carried`]).
     pub carry: bool,
 }
 
