@@ -16,31 +16,20 @@ pub(crate) struct Instant<T> {
     pub phase: T,
 }
 
-/// Converts between seconds and instants.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Clock<T> {
     /// Cycles per second.
     frequency: f64,
     /// Seconds per kernel time unit, a power of two.
-    unit: f64,
+    pub unit: f64,
     /// Length of a cycle in kernel time units.
-    period: T,
+    pub period: T,
 }
 
 impl<T: Scalar> Clock<T> {
     /// Preconditions: `frequency` in Hz above 0, `unit` in s a power of two.
     pub fn new(frequency: f64, unit: f64) -> Self {
         Self { frequency, unit, period: T::of(1.0) / T::of(frequency * unit) }
-    }
-
-    /// Seconds per kernel time unit.
-    pub fn unit(&self) -> f64 {
-        self.unit
-    }
-
-    /// Length of a cycle in kernel time units.
-    pub fn period(&self) -> T {
-        self.period
     }
 
     /// The instant of `seconds` >= 0: the phase is that of the exact product of the two doubles.
@@ -113,7 +102,7 @@ mod tests {
         let clock = Clock::<f64>::new(3.0, 1.0 / 64.0);
         for t in [0.0, 0.1, 1.0, 1e3 + 0.125, 1e9] {
             let at = clock.at(t);
-            assert!(at.phase >= 0.0 && at.phase < clock.period());
+            assert!(at.phase >= 0.0 && at.phase < clock.period);
             assert!((clock.seconds(&at) - t).abs() <= t * f64::EPSILON, "{t}");
         }
         let late = clock.at(1e9); // 3e9 cycles exactly
@@ -121,7 +110,7 @@ mod tests {
         let later = clock.advance(&late, 1e-12);
         assert_eq!(later.phase, 1e-12);
         assert!((clock.between(&late, &later) - 1e-12).abs() < 1e-28);
-        let next = clock.advance(&late, clock.period() * 2.5);
+        let next = clock.advance(&late, clock.period * 2.5);
         assert_eq!(next.cycle, 3_000_000_002);
     }
 }

@@ -3,9 +3,8 @@
 //! A run is a chain of free flights in one mode each and of rests on a stop. A step of a flight is a Taylor
 //! series (`series`). Its polynomial is also the dense output; contacts, breaks and crossings are its roots,
 //! and none is missed. This is the reason for the method, together with its cost: on the nominal cubic
-//! without stops six more digits cost 1.8 times the time (`benches/work_precision.rs` prints error and
-//! cost), whereas a Runge-Kutta method of order 5 needs 16 times the time and a separate dense output to
-//! find contacts.
+//! without stops six more digits cost 1.8 times the time (`benches/work_precision.rs`); a Runge-Kutta method
+//! of order 5 needs 16 times the time and a separate dense output to find contacts.
 //!
 //! Three rules keep events reliable:
 //!
@@ -25,13 +24,13 @@ use super::clock::{Clock, Instant};
 use super::drive::Drive;
 use super::equation::Equation;
 use super::model::Model;
+use super::record::barrier::side_of;
 use super::record::events::Call;
 use super::record::log::Log;
 use super::record::recorder::Recorder;
 use super::result::Request;
 use super::state::{Checkpoint, Contact, Label, MotionState};
-use super::step::settings::Settings;
-use super::step::stepper::Stepper;
+use super::step::stepper::{Settings, Stepper};
 use super::step::work::Work;
 use crate::numeric::Scalar;
 
@@ -72,7 +71,7 @@ impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
         let settings = Settings::new(model, unit, tolerance);
         let mut record = Recorder::new(model, (clock, drive), unit, settings.order, request, (x, v));
         let until_settled = request.until_settled.filter(|_| model.can_settle());
-        let end = if until_settled.is_some() { record.window_end() } else { clock.at(model.duration) };
+        let end = if until_settled.is_some() { record.window.1 } else { clock.at(model.duration) };
         let mut state = MotionState::new((x, v), mode, contact);
         state.circuit =
             T::of(model.circuit().map_or(0.0, |circuit| circuit.state(model.start_electrical) * unit));
@@ -99,6 +98,14 @@ impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
         self.recurs = self.may_recur;
         self.symmetric = self.recurs && model.is_symmetric();
         self
+    }
+
+    /// Puts the mass, in free flight, at a displacement and a velocity at this instant.
+    pub fn put(&mut self, (x, v): (T, T), at: Instant<T>) {
+        let piece = self.record.model.mechanism.curve.piece_index(x.to_f64());
+        let mode = self.stepper.equation.mode_at(x, piece);
+        self.state = MotionState { at, ..MotionState::new((x, v), mode, Contact::Free) };
+        self.record.barrier_side = self.record.barrier.map_or(0, |barrier| side_of(x, barrier));
     }
 
     /// The present state, from which another motion of the same scene can go on.

@@ -5,33 +5,33 @@ use super::equation::End;
 use super::result::{Outcome, Phase};
 use crate::numeric::Scalar;
 
-/// A surface that the mass touches at the start of a step, and the multiplicity of the root of the gap there:
-/// how many of its leading coefficients are 0 by definition.
+/// A surface that the mass touches at the start of a step, and what opens the gap to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Touch {
     pub end: End,
-    pub multiplicity: usize,
+    pub opening: Opening,
 }
 
-/// Multiplicity of a touch whose gap opens with the speed.
-pub(crate) const BY_SPEED: usize = 1;
-/// Multiplicity of a touch whose gap opens with the acceleration.
-pub(crate) const BY_ACCELERATION: usize = 2;
-/// Multiplicity of a touch whose gap opens with the jerk.
-pub(crate) const BY_JERK: usize = 3;
-/// No coefficient up to the fourth opens the gap; the next ones decide.
-pub(crate) const UNDECIDED: usize = 5;
-/// The surface is ignored for one step: the mass leaves a break on neither side.
-pub(crate) const HELD: usize = usize::MAX;
+/// The derivative of the motion that opens the gap to a touched surface. As a number it is the multiplicity
+/// of the root of the gap there: how many of its leading coefficients are 0 by definition.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+pub(crate) enum Opening {
+    Speed = 1,
+    Acceleration,
+    Jerk,
+    Snap,
+    /// None of these; the next coefficients decide.
+    Undecided,
+    /// The surface is ignored for one step: the mass leaves a break on neither side.
+    Held,
+}
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Contact {
     Free,
-    /// At rest on the stop of this end.
     Resting(End),
     /// At rest in an equilibrium that nothing disturbs.
     Motionless,
-    /// In contact with the compliant stop of this end.
     Compressing(End),
     /// In clipped contact with it: behind its untouched surface, which does not follow the mass, since the
     /// stop would have to pull.
@@ -57,7 +57,6 @@ pub(crate) struct MotionState<T> {
     /// State of the circuit of a transducer; 0 without one.
     pub circuit: T,
     pub mode: usize,
-    /// Segment of the drive.
     pub segment: usize,
     pub touch: Option<Touch>,
     pub contact: Contact,
@@ -86,7 +85,6 @@ impl<T: Scalar> MotionState<T> {
         }
     }
 
-    /// The phase of a sample in this state.
     pub fn phase(&self) -> Phase {
         match self.contact {
             Contact::Resting(End::Low) | Contact::Compressing(End::Low) | Contact::Clipped(End::Low) => {
@@ -138,8 +136,7 @@ pub(crate) struct Checkpoint<T> {
     pub barrier_side: i8,
 }
 
-/// Identity of a release from rest, computed from the drive alone: equal labels are followed by
-/// equal motions.
+/// Identity of a release from rest, computed from the drive alone: equal motions follow equal labels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Label<T> {
     pub end: End,

@@ -17,7 +17,7 @@ use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::{Compliant, End, EndKind};
 use crate::dynamics::motion::Motion;
 use crate::dynamics::result::Outcome;
-use crate::dynamics::state::{BY_SPEED, Contact, Depth, Flow, HELD, Touch};
+use crate::dynamics::state::{Contact, Depth, Flow, Opening, Touch};
 use crate::dynamics::step::choose_quasi_static::QuasiStaticStep;
 use crate::dynamics::step::contact::{ContactStep, Reached};
 use crate::dynamics::step::impact::{Impact, Separation};
@@ -32,8 +32,7 @@ use crate::numeric::Scalar;
 const MIN_TOUCH_SPEED: f64 = 1.0;
 
 impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
-    /// Puts the mass into contact if the run begins with it beyond the surface of a stop. Returns whether
-    /// it does.
+    /// Puts the mass into contact if the run begins beyond the surface of a stop. Returns whether it does.
     pub fn start_inside_a_stop(&mut self) -> bool {
         for end in [End::Low, End::High] {
             let (sign, level) = (end.sign::<T>(), self.stepper.equation.surface(end));
@@ -55,15 +54,14 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         false
     }
 
-    /// The mass is at the surface of the compliant stop of `end`. Its outward speed may be 0 or of
-    /// either sign.
+    /// The mass is at the surface of the compliant stop of `end`; its outward speed may have either sign.
     pub fn meet(&mut self, end: End, outward: T) {
         if outward > T::zero() {
             return self.enter_stop(end, outward);
         }
         self.state.contact = Contact::Free;
         if outward < T::zero() {
-            self.state.touch = Some(Touch { end, multiplicity: BY_SPEED });
+            self.state.touch = Some(Touch { end, opening: Opening::Speed });
             return;
         }
         match self.leaves(end) {
@@ -186,9 +184,9 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// duration; `bound`: a bound of the displacement; `end`: the state at the end.
     fn record_contact<P: InStop<T>>(&mut self, path: &P, lengths: (T, T, T), bound: T, end: (T, T)) {
         self.steps += 1;
-        let view = self.stepper.view(&self.state, path, lengths, bound, end);
-        self.record.step(&view, self.state.segment);
-        self.record.contact(&view);
+        let step = self.stepper.step_data(&self.state, lengths, bound, end);
+        self.record.step(path, None, &step, self.state.segment);
+        self.record.contact(path, &step);
     }
 
     /// The mass leaves the stop: the root of the depth is 0 again.
@@ -202,7 +200,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         self.state.contact = Contact::Free;
         let outward = sign * self.state.v;
         if outward < T::zero() {
-            self.state.touch = Some(Touch { end, multiplicity: BY_SPEED });
+            self.state.touch = Some(Touch { end, opening: Opening::Speed });
         } else {
             self.meet(end, T::zero()); // it has come to rest right at the surface
         }
@@ -217,7 +215,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         if outward > T::zero() {
             self.enter_neighbour(at);
         } else {
-            self.state.touch = Some(Touch { end: at, multiplicity: HELD });
+            self.state.touch = Some(Touch { end: at, opening: Opening::Held });
         }
         None
     }

@@ -1,12 +1,13 @@
 //! Rest on a rigid stop, and the release that ends it.
 
+use super::first_rate;
 use crate::dynamics::clock::Instant;
 use crate::dynamics::drive::{ContactAcceleration, Drive, ReleaseRoot, Span};
 use crate::dynamics::equation::End;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::record::events::Call;
 use crate::dynamics::result::Phase;
-use crate::dynamics::state::{BY_ACCELERATION, BY_JERK, Contact, Label, MotionState, Touch, UNDECIDED};
+use crate::dynamics::state::{Contact, Label, MotionState, Opening, Touch};
 use crate::dynamics::step::stepper::Stepper;
 use crate::numeric::{Scalar, decay};
 
@@ -16,22 +17,17 @@ const TOUCH_SKIP: f64 = 1e-6;
 
 impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// The touch with which a mass that stands at the stop of `end` with no speed leaves it, or `None` if it
-    /// is pressed onto the stop. The first derivative of the contact acceleration that is not 0 (to the
-    /// rounding of its terms) decides; if all are 0, the mass stays at the stop in free flight.
+    /// is pressed onto the stop. The first of the contact acceleration and its derivatives that is not 0
+    /// decides; if all are 0, the mass stays at the stop in free flight.
     pub fn leaves(&mut self, end: End) -> Option<Touch> {
         let rates = self.stepper.contact_acceleration(&self.state, end);
         let rounding = self.stepper.contact_acceleration_rounding(end);
         self.state.v = T::zero();
-        for (multiplicity, rate) in (BY_ACCELERATION..).zip(rates) {
-            let size = if multiplicity == BY_ACCELERATION { rounding } else { T::zero() };
-            if rate > size {
-                return None;
-            }
-            if rate < -size {
-                return Some(Touch { end, multiplicity });
-            }
+        match first_rate(rates, rounding) {
+            Some((_, pressed)) if pressed => None,
+            Some((opening, _)) => Some(Touch { end, opening }),
+            None => Some(Touch { end, opening: Opening::Undecided }),
         }
-        Some(Touch { end, multiplicity: UNDECIDED })
     }
 
     /// The mass stands at the stop of `end` with no speed: it rests or leaves.
@@ -44,13 +40,11 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         }
     }
 
-    /// The mass rests on the stop of `end` from now on.
     pub fn begin_rest(&mut self, end: End) {
         self.state.contact = Contact::Resting(end);
         self.report(Call::Rest { at: self.state.at, side: end.side() });
     }
 
-    /// The mass stands still until `until`.
     pub fn stand(&mut self, until: Instant<T>, phase: Phase) {
         let MotionState { at, x, v, circuit: state, .. } = self.state;
         let samples = self.record.samples.len();
@@ -71,7 +65,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         let mut from = self.state.at;
         if self.state.refused == Some(self.state.at) {
             // The contact acceleration only touched 0 here, to rounding: search beyond this instant.
-            from = self.stepper.clock.advance(&from, self.stepper.clock.period() * T::of(TOUCH_SKIP));
+            from = self.stepper.clock.advance(&from, self.stepper.clock.period * T::of(TOUCH_SKIP));
         }
         let threshold = self.stepper.equation.stop(end).map_or(T::zero(), |s| s.acceleration);
         let circuit = self.stepper.drive.circuit().map_or(T::zero(), |circuit| {
@@ -82,13 +76,13 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         let since = self.searched.take().filter(|(segment, _)| *segment == self.state.segment);
         let since = since.map_or(from, |(_, since)| since);
         let span = Span { from, until, segment: self.state.segment, since };
-        let Stepper { drive, clock, cursor, .. } = &mut self.stepper;
-        let (root, work) = drive.next_release(clock, &span, acceleration, cursor);
+        let Stepper { drive, cursor, .. } = &mut self.stepper;
+        let (root, work) = drive.next_release(&span, acceleration, cursor);
         self.stepper.work.add(self.stepper.costs.check + work);
         match root {
             ReleaseRoot::At(root, turn) => {
                 self.stand(root, phase);
-                self.release(end, BY_JERK);
+                self.release(end, Opening::Jerk);
                 self.label = turn.filter(|_| self.recurs).map(|turn| Label { end, turn, phase: root.phase });
             }
             ReleaseRoot::NotBefore(later) => {
@@ -103,16 +97,16 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
                 if self.stepper.pass_segment_end(&mut self.state) {
                     let acceleration = self.stepper.contact_acceleration(&self.state, end)[0];
                     if acceleration < -self.stepper.contact_acceleration_rounding(end) {
-                        self.release(end, BY_ACCELERATION);
+                        self.release(end, Opening::Acceleration);
                     }
                 }
             }
         }
     }
 
-    fn release(&mut self, end: End, multiplicity: usize) {
+    fn release(&mut self, end: End, opening: Opening) {
         self.report(Call::Release { at: self.state.at, side: end.side() });
         self.state.contact = Contact::Free;
-        self.state.touch = Some(Touch { end, multiplicity });
+        self.state.touch = Some(Touch { end, opening });
     }
 }

@@ -7,7 +7,7 @@ use crate::dynamics::model::scales::LEAST_IMPACT;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::record::events::Call;
 use crate::dynamics::result::Phase;
-use crate::dynamics::state::{BY_SPEED, Touch};
+use crate::dynamics::state::{Opening, Touch};
 use crate::numeric::Scalar;
 
 impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
@@ -21,7 +21,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         self.report(Call::Impact { at: self.state.at, side: end.side(), v_in, v_out });
         if rebound > T::zero() {
             self.state.v = -(sign * rebound);
-            self.state.touch = Some(Touch { end, multiplicity: BY_SPEED });
+            self.state.touch = Some(Touch { end, opening: Opening::Speed });
         } else {
             self.settle(end);
         }
@@ -95,7 +95,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         let height = speed * speed / acceleration;
         let push = mode.force.steepest((level - mode.origin).abs() + height) * height;
         let drag = stepper.equation.damping * two * speed;
-        let base = stepper.drive.acceleration(&stepper.clock, &until, state.segment);
+        let base = stepper.drive.acceleration(&until, state.segment);
         let last = stop.acceleration - end.sign::<T>() * base;
         let variation = bend * whole * whole * T::of(0.125) + push;
         let low = acceleration.smaller(last) - (variation + drag);

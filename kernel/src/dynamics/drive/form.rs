@@ -2,15 +2,13 @@
 
 use std::sync::Arc;
 
-use super::Still;
-use super::base_at;
-use super::chirp::Chirp;
-use super::circuit::Circuit;
 use super::general::{FEW_TONES, General};
 use super::lines::Lines;
 use super::record::{Line, Record};
-use super::tone::{Ramp, Sine, Tone, TurnsPerCycle};
+use super::tone::{Chirp, Ramp, Sine, Tone, TurnsPerCycle};
+use super::{Base, Circuit, Still};
 use crate::dynamics::clock::{Clock, Instant};
+use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::model::excitation::TonePart;
 use crate::dynamics::model::scales::Scales;
@@ -32,10 +30,26 @@ impl Model {
     pub fn base_acceleration(&self, t: f64) -> f64 {
         let unit = self.scales.unit();
         let clock = clock::<f64>(self, unit);
-        let drive = sum(self, unit, &clock);
+        let drive = sum(self, &clock);
         let at = clock.at(t);
         let segment = drive.segment_ends.iter().filter(|end| clock.between(end, &at) >= 0.0).count();
-        base_at(&drive, &clock, segment, &at, unit)
+        drive.in_si(&at, segment, unit)
+    }
+}
+
+/// Equation, clock and drive of a model, in kernel units.
+#[derive(Debug)]
+pub(crate) struct Kernel<T> {
+    pub equation: Equation<T>,
+    pub clock: Clock<T>,
+    pub drive: Form<T>,
+}
+
+impl<T: Scalar> Kernel<T> {
+    pub fn new(model: &Model) -> Self {
+        let unit = model.scales.unit();
+        let clock = clock(model, unit);
+        Self { equation: Equation::new(model, unit), drive: form(model, &clock), clock }
     }
 }
 
@@ -59,44 +73,25 @@ macro_rules! with_drive {
 }
 pub(crate) use with_drive;
 
-/// The type of a drive.
-#[derive(PartialEq)]
-enum Kind {
-    Still,
-    Sine,
-    General,
-}
-
-impl Kind {
-    fn of(model: &Model) -> Self {
-        let drive = &model.excitation;
-        let alone = drive.chirps.is_empty() && drive.records.is_empty() && model.circuit().is_none();
-        match drive.tones.as_slice() {
-            [] if alone => Self::Still,
-            [tone] if alone && drive.constant == 0.0 && tone.ramp.is_none() => Self::Sine,
-            _ => Self::General,
-        }
-    }
-}
-
 /// This model's drive in the type that is fastest for it.
 pub(crate) fn form<T: Scalar>(model: &Model, clock: &Clock<T>) -> Form<T> {
-    let unit = clock.unit();
-    match Kind::of(model) {
-        Kind::Still => Form::Still(Still { acceleration: T::of(model.excitation.constant * (unit * unit)) }),
-        Kind::Sine => Form::Sine(sine(model, unit)),
-        Kind::General => Form::General(general(model, clock)),
+    let (drive, unit) = (&model.excitation, clock.unit);
+    let alone = drive.has_only_tones() && model.circuit().is_none();
+    match drive.tones.as_slice() {
+        [] if alone => Form::Still(Still { acceleration: T::of(drive.constant * (unit * unit)) }),
+        [part] if alone && drive.constant == 0.0 && part.ramp.is_none() => {
+            Form::Sine(Sine { tone: tone(part, part.frequency, unit, |_| None), clock: *clock })
+        }
+        _ => Form::General(sum(model, clock)),
     }
 }
 
 /// This model's drive as the general type, which any drive fits.
 pub(crate) fn general<T: Scalar>(model: &Model, clock: &Clock<T>) -> General<T> {
-    let (kind, unit) = (Kind::of(model), clock.unit());
-    General {
-        sine: (kind == Kind::Sine).then(|| sine(model, unit)),
-        still: kind == Kind::Still,
-        circuit: circuit(model, unit),
-        ..sum(model, unit, clock)
+    match form(model, clock) {
+        Form::Still(_) => General { still: true, ..sum(model, clock) },
+        Form::Sine(sine) => General { sine: Some(sine), ..sum(model, clock) },
+        Form::General(general) => general,
     }
 }
 
@@ -110,7 +105,7 @@ pub(crate) fn clock<T: Scalar>(model: &Model, unit: f64) -> Clock<T> {
     Clock::new(frequency, unit)
 }
 
-/// The circuit of the model's transducer, where that has a state.
+/// The circuit of the model's transducer, if that has a state.
 fn circuit<T: Scalar>(model: &Model, unit: f64) -> Option<Circuit<T>> {
     let circuit = model.circuit()?;
     let (coupling, decay) = (circuit.coupling * unit, circuit.decay * unit);
@@ -122,12 +117,13 @@ fn circuit<T: Scalar>(model: &Model, unit: f64) -> Option<Circuit<T>> {
     Some(Circuit::new(T::of(coupling), T::of(decay), T::of(scale.abs())))
 }
 
-fn sine<T: Scalar>(model: &Model, unit: f64) -> Sine<T> {
-    let drive = &model.excitation;
-    Sine { tone: tone(&drive.tones[0], drive.tones[0].frequency, unit, usize::MAX) }
-}
-
-fn tone<T: Scalar>(tone: &TonePart, fastest: f64, unit: f64, holds_from_segment: usize) -> Tone<T> {
+/// A tone; `holds_from` gives the segment of the drive that begins where a ramp of this length in s ends.
+fn tone<T: Scalar>(
+    tone: &TonePart,
+    fastest: f64,
+    unit: f64,
+    holds_from: impl Fn(f64) -> Option<usize>,
+) -> Tone<T> {
     let square = unit * unit;
     Tone {
         amplitude: T::of(tone.amplitude * square),
@@ -139,14 +135,14 @@ fn tone<T: Scalar>(tone: &TonePart, fastest: f64, unit: f64, holds_from_segment:
         ramp: tone.ramp.map(|(from, over)| Ramp {
             from: T::of(from * square),
             rate: T::of(tone.amplitude * square - from * square) / T::of(over / unit),
-            holds_from_segment,
+            holds_from_segment: holds_from(over),
         }),
     }
 }
 
-/// The sum of a drive's parts.
-fn sum<T: Scalar>(model: &Model, unit: f64, clock: &Clock<T>) -> General<T> {
-    let drive = &model.excitation;
+/// The sum of a drive's parts, and the circuit.
+fn sum<T: Scalar>(model: &Model, clock: &Clock<T>) -> General<T> {
+    let (drive, unit) = (&model.excitation, clock.unit);
     let square = unit * unit;
     let ramps = drive.tones.iter().filter_map(|t| t.ramp.map(|r| r.1));
     let chirps = drive.chirps.iter().map(|c| c.over);
@@ -159,13 +155,9 @@ fn sum<T: Scalar>(model: &Model, unit: f64, clock: &Clock<T>) -> General<T> {
     ends.dedup();
     // the segment that begins at a time
     let segment = |time: f64| ends.partition_point(|end| *end <= time);
-    let holds_from = |over: f64| if over > model.duration { usize::MAX } else { segment(over) };
+    let holds_from = |over: f64| (over <= model.duration).then(|| segment(over));
     let clocked = drive.fastest().unwrap_or(0.0);
-    let tones: Vec<Tone<T>> = drive
-        .tones
-        .iter()
-        .map(|part| tone(part, clocked, unit, part.ramp.map_or(0, |r| holds_from(r.1))))
-        .collect();
+    let tones: Vec<Tone<T>> = drive.tones.iter().map(|part| tone(part, clocked, unit, holds_from)).collect();
     let is_line = |tone: &Tone<T>| !tone.quarter && tone.ramp.is_none();
     let many = tones.iter().filter(|tone| is_line(tone)).count() > FEW_TONES;
     let (steady, tones): (Vec<_>, Vec<_>) = tones.into_iter().partition(|tone| many && is_line(tone));
@@ -178,17 +170,17 @@ fn sum<T: Scalar>(model: &Model, unit: f64, clock: &Clock<T>) -> General<T> {
     });
     let records =
         pieces.iter().map(|(source, pieces)| record((source, Arc::clone(pieces)), model, clock, segment));
-    let largest = |tone: &TonePart| tone.amplitude.abs().max(tone.ramp.map_or(0.0, |r| r.0.abs()));
-    let reach = drive.tones.iter().map(largest).sum::<f64>()
+    let reach = drive.tones.iter().map(TonePart::largest).sum::<f64>()
         + drive.chirps.iter().map(|c| c.amplitude.abs()).sum::<f64>()
         + drive.records.iter().map(|r| r.peak()).sum::<f64>();
-    let moving = drive.tones.iter().filter(|t| largest(t) > 0.0).map(|t| t.frequency);
+    let moving = drive.tones.iter().filter(|t| t.largest() > 0.0).map(|t| t.frequency);
     let sweeping = drive.chirps.iter().filter(|c| c.amplitude != 0.0).map(|c| c.from.max(c.to));
     let fastest = moving.chain(sweeping).fold(0.0, f64::max) * unit;
     General {
+        clock: *clock,
         sine: None,
         still: false,
-        circuit: None,
+        circuit: circuit(model, unit),
         constant: T::of(drive.constant * square),
         tones,
         lines: Lines::new(&steady),
@@ -219,7 +211,7 @@ fn record<T: Scalar>(
     clock: &Clock<T>,
     segment: impl Fn(f64) -> usize,
 ) -> Record<T> {
-    let (times, values, unit) = (&source.times, &source.accelerations, clock.unit());
+    let (times, values, unit) = (&source.times, &source.accelerations, clock.unit);
     let square = unit * unit;
     let zero_time = Instant { cycle: 0, phase: T::zero() };
     let mut lines = Vec::new();

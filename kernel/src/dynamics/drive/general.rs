@@ -5,24 +5,22 @@
 //! double-double arithmetic every drive is of the general type; a constant or a sine alone has the same
 //! arithmetic here as there.
 
-use super::chirp::{Chirp, ChirpState, next_chirp};
-use super::circuit::Circuit;
 use super::lines::{Lines, LinesCursor};
 use super::record::{Record, RecordSeries};
 use super::release::{Decaying, Search};
-use super::tone::{LastValue, Sine, Tone};
-use super::{Base, ContactAcceleration, Drive, ReleaseRoot, Span};
+use super::tone::{Chirp, ChirpState, LastValue, Sine, Tone, next_chirp};
+use super::{Base, Circuit, ContactAcceleration, Drive, ReleaseRoot, Span};
 use crate::dynamics::clock::{Clock, Instant};
-use crate::dynamics::series::{ROOM, SEEDED, Tail};
+use crate::dynamics::series::{ROOM, SEEDED, Series, Tail};
 use crate::numeric::Scalar;
 
 /// Maximum number of tones that the check of a step evaluates one by one. The series of more tones cannot
 /// cancel by chance. More steady tones than this are advanced side by side.
 pub(super) const FEW_TONES: usize = 8;
 
-/// A constant and any number of tones, chirps and records, and a circuit.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct General<T> {
+    pub clock: Clock<T>,
     /// The sine, if the drive is nothing else; the other parts are then not evaluated.
     pub sine: Option<Sine<T>>,
     pub constant: T,
@@ -45,7 +43,7 @@ pub(crate) struct General<T> {
     pub fastest: T,
 }
 
-/// What continues the series of a drive and of a circuit's state.
+/// The state by which the series of a drive and of a circuit are continued.
 #[derive(Debug, Clone)]
 pub(crate) struct Cursor<T> {
     sine: LastValue<T>,
@@ -75,8 +73,8 @@ impl<T: Scalar> Tail<T> for General<T> {
     type Cursor = Cursor<T>;
 
     #[inline(always)]
-    fn zero_from(&self) -> usize {
-        if self.still { 1 } else { usize::MAX }
+    fn zero_from(&self) -> Option<usize> {
+        self.still.then_some(1)
     }
 
     #[inline(always)]
@@ -109,14 +107,15 @@ impl<T: Scalar> Tail<T> for General<T> {
 }
 
 impl<T: Scalar> Base<T> for General<T> {
-    /// As the first coefficient, with the same order of sums, except that records are evaluated by
-    /// their lines.
-    fn acceleration(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize) -> T {
+    /// As the first coefficient, with the same order of sums, but records are evaluated by their lines.
+    fn acceleration(&self, at: &Instant<T>, segment: usize) -> T {
         if let Some(sine) = &self.sine {
-            return sine.acceleration(clock, at, segment);
+            return sine.acceleration(at, segment);
         }
-        let tones = self.tones.iter().map(|tone| tone.amplitude_at(clock, at, segment).0 * tone.unit(at).0);
-        let chirps = self.chirps.iter().map(|chirp| chirp.amplitude * chirp.state(clock, at, segment).0);
+        let tones =
+            self.tones.iter().map(|tone| tone.amplitude_at(&self.clock, at, segment).0 * tone.unit(at).0);
+        let chirps =
+            self.chirps.iter().map(|chirp| chirp.amplitude * chirp.state(&self.clock, at, segment).0);
         let tones = tones.fold(self.constant, |sum, a| sum + a) + self.lines.value(at);
         let records = self.records.iter().map(|record| record.exact(at, segment));
         chirps.fold(tones, |sum, a| sum + a) + records.fold(T::zero(), |sum, a| sum + a)
@@ -148,16 +147,9 @@ impl<T: Scalar> Drive<T> for General<T> {
         self.common_cycles.unwrap_or(1)
     }
 
-    fn seed(
-        &self,
-        clock: &Clock<T>,
-        at: &Instant<T>,
-        segment: usize,
-        a: &mut [T; ROOM],
-        cursor: &mut Self::Cursor,
-    ) {
+    fn seed(&self, at: &Instant<T>, segment: usize, a: &mut [T; ROOM], cursor: &mut Self::Cursor) {
         if let Some(sine) = &self.sine {
-            return sine.seed(clock, at, segment, a, &mut cursor.sine);
+            return sine.seed(at, segment, a, &mut cursor.sine);
         }
         // Clearing keeps the capacity: nothing is allocated after the first call.
         cursor.tones.clear();
@@ -167,7 +159,7 @@ impl<T: Scalar> Drive<T> for General<T> {
             let (s, d) = tone.unit(at);
             let w = tone.curvature();
             let unit = [s, d, w * s * T::of(0.5), w * d / T::of(6.0)];
-            let (amplitude, growth) = tone.amplitude_at(clock, at, segment);
+            let (amplitude, growth) = tone.amplitude_at(&self.clock, at, segment);
             for (k, sum) in sums.iter_mut().enumerate() {
                 *sum += amplitude * unit[k];
                 if k > 0 {
@@ -178,7 +170,7 @@ impl<T: Scalar> Drive<T> for General<T> {
         }
         self.lines.seed(at, &mut sums, &mut cursor.lines);
         for chirp in &self.chirps {
-            let (s, c, rate, growth) = chirp.state(clock, at, segment);
+            let (s, c, rate, growth) = chirp.state(&self.clock, at, segment);
             let zero = T::zero();
             let amplitude = chirp.amplitude;
             let mut state = ChirpState { sine: [zero, s], cosine: [zero, c], rate, growth, amplitude };
@@ -214,19 +206,19 @@ impl<T: Scalar> Drive<T> for General<T> {
 
     fn value(
         &self,
-        clock: &Clock<T>,
         at: &Instant<T>,
         segment: usize,
         by_series: impl Fn() -> T,
         cursor: &mut Self::Cursor,
     ) -> T {
         if let Some(sine) = &self.sine {
-            return sine.value(clock, at, segment, by_series, &mut cursor.sine);
+            return sine.value(at, segment, by_series, &mut cursor.sine);
         }
         if self.lines.count() > 0 || self.tones.len() > FEW_TONES || !self.chirps.is_empty() {
             return by_series();
         }
-        let tones = self.tones.iter().map(|tone| tone.amplitude_at(clock, at, segment).0 * tone.unit(at).0);
+        let tones =
+            self.tones.iter().map(|tone| tone.amplitude_at(&self.clock, at, segment).0 * tone.unit(at).0);
         let records = self.records.iter().map(|record| record.value(at, segment));
         tones.fold(self.constant + records.fold(T::zero(), |sum, a| sum + a), |sum, a| sum + a)
     }
@@ -240,39 +232,38 @@ impl<T: Scalar> Drive<T> for General<T> {
     /// goes on without the push. A push that does not decay is part of the threshold.
     fn next_release(
         &self,
-        clock: &Clock<T>,
         span: &Span<T>,
         acceleration: ContactAcceleration<T>,
         cursor: &mut Self::Cursor,
     ) -> (ReleaseRoot<T>, u64) {
         if let Some(sine) = &self.sine {
-            return sine.next_release(clock, span, acceleration, &mut cursor.sine);
+            return sine.next_release(span, acceleration, &mut cursor.sine);
         }
         let Some(Circuit { coupling, decay: rate, .. }) = &self.circuit else {
-            return self.next_release_without_push(clock, span, acceleration, cursor);
+            return self.next_release_without_push(span, acceleration, cursor);
         };
         let ContactAcceleration { threshold, sign, circuit } = acceleration;
         let (push, rate) = (*coupling * circuit, *rate);
-        // Time searched with the push says nothing of the search without it.
+        // A search with the push does not count for one without it.
         let span = Span { since: span.from, ..*span };
         let without = |threshold: T| ContactAcceleration { threshold, sign, circuit: T::zero() };
         if rate == T::zero() {
             let pressed = without(threshold - sign * push);
-            return self.next_release_without_push(clock, &span, pressed, cursor);
+            return self.next_release_without_push(&span, pressed, cursor);
         }
         let level = threshold.abs() + self.reach + self.constant.abs();
         let negligible = level * T::of(T::EPSILON / 16.0);
         if !(push.abs() > negligible) {
-            return self.next_release_without_push(clock, &span, without(threshold), cursor);
+            return self.next_release_without_push(&span, without(threshold), cursor);
         }
         if level == T::zero() {
             return (ReleaseRoot::Never, 0); // it keeps its sign
         }
         // (a little longer, so that it is negligible then)
         let lasts = T::of((push.abs() / negligible).to_f64().ln() + 1.0) / rate;
-        let fades = lasts < clock.between(&span.from, &span.until);
-        let until = if fades { clock.advance(&span.from, lasts) } else { span.until };
-        let mut search = self.search(clock, without(threshold), span.segment);
+        let fades = lasts < self.clock.between(&span.from, &span.until);
+        let until = if fades { self.clock.advance(&span.from, lasts) } else { span.until };
+        let mut search = self.search(without(threshold), span.segment);
         search.decaying = Some(Decaying { push, rate, since: span.from });
         search.fastest = search.fastest.larger(rate);
         search.reach += push.abs();
@@ -285,10 +276,8 @@ impl<T: Scalar> Drive<T> for General<T> {
 }
 
 impl<T: Scalar> General<T> {
-    /// The next release where no circuit pushes.
     fn next_release_without_push(
         &self,
-        clock: &Clock<T>,
         span: &Span<T>,
         acceleration: ContactAcceleration<T>,
         cursor: &mut Cursor<T>,
@@ -296,20 +285,21 @@ impl<T: Scalar> General<T> {
         if self.still || acceleration.threshold - acceleration.sign * self.constant > self.reach {
             return (ReleaseRoot::Never, 0);
         }
-        self.search(clock, acceleration, span.segment).first(span, cursor)
+        self.search(acceleration, span.segment).first(span, cursor)
     }
 
-    /// A search for a release in one segment of the drive.
-    fn search<'a>(
-        &'a self,
-        clock: &'a Clock<T>,
-        acceleration: ContactAcceleration<T>,
-        segment: usize,
-    ) -> Search<'a, T, Self> {
-        let mut search = Search::new(self, clock, acceleration, segment);
-        (search.fastest, search.reach) = (self.fastest, self.reach);
-        search.common_cycles = self.common_cycles.filter(|_| segment >= self.segment_ends.len());
-        search.parts = self.tones.len() + self.lines.count() / 8 + 4 * self.chirps.len() + self.records.len();
-        search
+    fn search(&self, acceleration: ContactAcceleration<T>, segment: usize) -> Search<'_, T, Self> {
+        Search {
+            drive: self,
+            clock: &self.clock,
+            acceleration,
+            segment,
+            fastest: self.fastest,
+            reach: self.reach,
+            common_cycles: self.common_cycles.filter(|_| segment >= self.segment_ends.len()),
+            parts: self.tones.len() + self.lines.count() / 8 + 4 * self.chirps.len() + self.records.len(),
+            decaying: None,
+            series: Series::new(0),
+        }
     }
 }

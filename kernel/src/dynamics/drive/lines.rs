@@ -8,7 +8,6 @@ use crate::dynamics::clock::Instant;
 use crate::dynamics::series::{ROOM, SEEDED};
 use crate::numeric::{Scalar, widest};
 
-/// Tones that are advanced together.
 const GROUP_SIZE: usize = 16;
 
 type Columns<T> = [T; GROUP_SIZE];
@@ -18,7 +17,6 @@ type Columns<T> = [T; GROUP_SIZE];
 struct Group<T> {
     amplitude: Columns<T>,
     frequency: Columns<T>,
-    /// Angular frequency.
     omega: Columns<T>,
     phase: Columns<T>,
     ratio: [TurnsPerCycle; GROUP_SIZE],
@@ -67,7 +65,6 @@ impl<T: Scalar> Lines<T> {
         Self { groups: tones.chunks(GROUP_SIZE).map(group).collect(), count: tones.len() }
     }
 
-    /// The number of tones.
     pub fn count(&self) -> usize {
         self.count
     }

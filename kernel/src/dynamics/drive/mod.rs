@@ -5,11 +5,9 @@
 //! phase at the start of a step and continued by its series, d\[k+2\] = -w^2 d\[k\] / ((k+1)(k+2)), so
 //! nothing drifts and no library function is called.
 
-mod chirp;
-pub(crate) mod circuit;
 pub(crate) mod form;
 pub(crate) mod general;
-pub(crate) mod lines;
+mod lines;
 mod record;
 mod release;
 pub(crate) mod tone;
@@ -17,12 +15,16 @@ pub(crate) mod tone;
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::series::{ROOM, Tail};
 use crate::numeric::Scalar;
-use circuit::Circuit;
 
 /// Acceleration of the base at any instant, in kernel units: all that a recorder needs of a drive.
-pub(crate) trait Base<T> {
+pub(crate) trait Base<T: Scalar> {
     /// a(t) at `at`.
-    fn acceleration(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize) -> T;
+    fn acceleration(&self, at: &Instant<T>, segment: usize) -> T;
+
+    /// The same in m/s^2; `unit` is the length of the kernel's time unit in s.
+    fn in_si(&self, at: &Instant<T>, segment: usize, unit: f64) -> f64 {
+        self.acceleration(at, segment).to_f64() / (unit * unit)
+    }
 }
 
 /// Acceleration of the base, in kernel units.
@@ -38,19 +40,16 @@ pub(crate) trait Drive<T: Scalar>: Tail<T> + Base<T> {
         0
     }
 
-    /// The circuit, if there is one.
     #[inline(always)]
     fn circuit(&self) -> Option<&Circuit<T>> {
         None
     }
 
-    /// Coefficients of the circuit's state.
     #[inline(always)]
     fn circuit_state<'a>(&self, _: &'a Self::Cursor) -> Option<&'a [T; ROOM]> {
         None
     }
 
-    /// Begins the series of the circuit's state.
     #[inline(always)]
     fn begin_circuit(_: &mut Self::Cursor, _state: T) {}
 
@@ -65,20 +64,12 @@ pub(crate) trait Drive<T: Scalar>: Tail<T> + Base<T> {
     }
 
     /// Fills the first `SEEDED` coefficients of `a`, at `at`.
-    fn seed(
-        &self,
-        clock: &Clock<T>,
-        at: &Instant<T>,
-        segment: usize,
-        a: &mut [T; ROOM],
-        cursor: &mut Self::Cursor,
-    );
+    fn seed(&self, at: &Instant<T>, segment: usize, a: &mut [T; ROOM], cursor: &mut Self::Cursor);
 
     /// a(t) at `at`, computed directly and not by the series: a step is checked against it. A drive of many
     /// tones may return `by_series`, the value of its series.
     fn value(
         &self,
-        clock: &Clock<T>,
         at: &Instant<T>,
         segment: usize,
         by_series: impl Fn() -> T,
@@ -86,13 +77,15 @@ pub(crate) trait Drive<T: Scalar>: Tail<T> + Base<T> {
     ) -> T;
 
     /// The instant at which segment `segment` ends, if another one follows.
-    fn segment_end(&self, segment: usize) -> Option<Instant<T>>;
+    #[inline]
+    fn segment_end(&self, _segment: usize) -> Option<Instant<T>> {
+        None
+    }
 
     /// The next instant in the span at which the contact acceleration, positive now, changes sign, and the
     /// work of finding it. The span lies within one segment.
     fn next_release(
         &self,
-        clock: &Clock<T>,
         span: &Span<T>,
         acceleration: ContactAcceleration<T>,
         cursor: &mut Self::Cursor,
@@ -105,10 +98,8 @@ pub(crate) enum ReleaseRoot<T> {
     /// At this instant. If the drive repeats and the root was computed from the drive alone, the clock's
     /// cycle within the common period comes with it: roots of equal cycle and phase are the same.
     At(Instant<T>, Option<i64>),
-    /// Not within the span.
     Never,
-    /// Not before this instant, from which the search goes on. (It is interrupted regularly, so that its work
-    /// is counted.)
+    /// Not before this instant, from which the search goes on: it is interrupted so that its work is counted.
     NotBefore(Instant<T>),
 }
 
@@ -141,6 +132,45 @@ pub(crate) struct ContactAcceleration<T> {
     pub circuit: T,
 }
 
+/// Circuit of a transducer that has a state of its own, in kernel units.
+///
+/// The state w of the circuit (a current or a voltage) is scaled so that w^2/2 is its energy over the mass.
+/// It then has the unit of a velocity, and the coupling is the same in both directions:
+///
+/// ```text
+/// x'' = .. - g w,    w' = g x' - d w.
+/// ```
+///
+/// Its Taylor coefficients follow from those of the motion by one product and one sum each.
+#[derive(Debug, Clone)]
+pub(crate) struct Circuit<T> {
+    /// g.
+    pub coupling: T,
+    /// d.
+    pub decay: T,
+    /// d/k, by which coefficient k follows from the one before.
+    pub rates: [T; ROOM],
+    /// Magnitude of the state to which the tolerance is relative.
+    pub scale: T,
+}
+
+impl<T: Scalar> Circuit<T> {
+    pub fn new(coupling: T, decay: T, scale: T) -> Self {
+        let mut rates = [T::zero(); ROOM];
+        for (k, rate) in rates.iter_mut().enumerate().skip(1) {
+            *rate = decay / T::whole(k);
+        }
+        Self { coupling, decay, rates, scale }
+    }
+
+    /// The acceleration that the state `w` takes from a mass held in place, and its first two derivatives.
+    pub fn push(&self, w: T) -> [T; 3] {
+        let push = self.coupling * w;
+        let falling = -(self.decay * push);
+        [push, falling, -(self.decay * falling)]
+    }
+}
+
 /// A constant acceleration, 0 included.
 #[derive(Debug, Clone)]
 pub(crate) struct Still<T> {
@@ -151,8 +181,8 @@ impl<T: Scalar> Tail<T> for Still<T> {
     type Cursor = ();
 
     #[inline(always)]
-    fn zero_from(&self) -> usize {
-        1
+    fn zero_from(&self) -> Option<usize> {
+        Some(1)
     }
 
     #[inline]
@@ -160,41 +190,21 @@ impl<T: Scalar> Tail<T> for Still<T> {
 }
 
 impl<T: Scalar> Base<T> for Still<T> {
-    fn acceleration(&self, _: &Clock<T>, _: &Instant<T>, _: usize) -> T {
+    fn acceleration(&self, _: &Instant<T>, _: usize) -> T {
         self.acceleration
     }
 }
 
 impl<T: Scalar> Drive<T> for Still<T> {
     #[inline]
-    fn seed(&self, _: &Clock<T>, _: &Instant<T>, _: usize, a: &mut [T; ROOM], (): &mut ()) {
+    fn seed(&self, _: &Instant<T>, _: usize, a: &mut [T; ROOM], (): &mut ()) {
         a[0] = self.acceleration; // the others stay 0
     }
     #[inline]
-    fn value(&self, _: &Clock<T>, _: &Instant<T>, _: usize, _: impl Fn() -> T, (): &mut ()) -> T {
+    fn value(&self, _: &Instant<T>, _: usize, _: impl Fn() -> T, (): &mut ()) -> T {
         self.acceleration
     }
-    fn segment_end(&self, _: usize) -> Option<Instant<T>> {
-        None
-    }
-    fn next_release(
-        &self,
-        _: &Clock<T>,
-        _: &Span<T>,
-        _: ContactAcceleration<T>,
-        (): &mut (),
-    ) -> (ReleaseRoot<T>, u64) {
+    fn next_release(&self, _: &Span<T>, _: ContactAcceleration<T>, (): &mut ()) -> (ReleaseRoot<T>, u64) {
         (ReleaseRoot::Never, 0)
     }
-}
-
-/// Acceleration of the base in m/s^2 at an instant; `unit` is the length of the kernel's time unit in s.
-pub(crate) fn base_at<T: Scalar>(
-    drive: &dyn Base<T>,
-    clock: &Clock<T>,
-    segment: usize,
-    at: &Instant<T>,
-    unit: f64,
-) -> f64 {
-    drive.acceleration(clock, at, segment).to_f64() / (unit * unit)
 }

@@ -16,7 +16,6 @@ use crate::scene;
 pub(crate) struct Line<T> {
     /// The segment of the drive in which this line begins, ascending.
     pub first_segment: usize,
-    /// When it begins.
     pub at: Instant<T>,
     /// Its value at `at`, kernel units.
     pub value: T,
@@ -26,8 +25,7 @@ pub(crate) struct Line<T> {
     pub piece: Option<usize>,
 }
 
-/// The lines of one record in order of time; the last one is zero. Before the first line the record is
-/// zero too.
+/// The lines of one record in order of time; the last one is zero, as is the record before the first.
 #[derive(Debug, Clone)]
 pub(crate) struct Record<T> {
     pub lines: Vec<Line<T>>,
@@ -70,7 +68,7 @@ impl<T: Scalar> Record<T> {
         let before = begin.min(0.0) / -half - 1.0;
         Place::Piece(
             piece,
-            T::of(before) + self.clock.between(&line.at, at) * T::of(self.clock.unit() / half),
+            T::of(before) + self.clock.between(&line.at, at) * T::of(self.clock.unit / half),
             half,
         )
     }
@@ -83,7 +81,7 @@ impl<T: Scalar> Record<T> {
             Place::Piece(piece, s, _) => {
                 let coefficients = piece.polynomial.iter().flat_map(|all| all.iter().rev());
                 let value = coefficients.fold(T::zero(), |sum, c| sum * s + T::of(*c));
-                value * T::of(self.clock.unit() * self.clock.unit())
+                value * T::of(self.clock.unit * self.clock.unit)
             }
         }
     }
@@ -93,7 +91,7 @@ impl<T: Scalar> Record<T> {
         match self.place(at, segment) {
             Place::Line(_) if self.is_last_sample(at) => {
                 T::of(self.source.accelerations.last().copied().unwrap_or_default())
-                    * T::of(self.clock.unit() * self.clock.unit())
+                    * T::of(self.clock.unit * self.clock.unit)
             }
             Place::Piece(piece, ..) => self.by_line(at, piece),
             _ => self.value(at, segment),
@@ -113,8 +111,8 @@ impl<T: Scalar> Record<T> {
         let sample = piece.first + begun.saturating_sub(1);
         let slope = T::of(values[sample + 1] - values[sample]) / T::of(times[sample + 1] - times[sample]);
         let begin = self.clock.at(times[sample].max(0.0));
-        let since = self.clock.between(&begin, at) * T::of(self.clock.unit()) - T::of(times[sample].min(0.0));
-        (T::of(values[sample]) + slope * since) * T::of(self.clock.unit() * self.clock.unit())
+        let since = self.clock.between(&begin, at) * T::of(self.clock.unit) - T::of(times[sample].min(0.0));
+        (T::of(values[sample]) + slope * since) * T::of(self.clock.unit * self.clock.unit)
     }
 
     /// Adds its coefficients to those of other records.
@@ -134,7 +132,7 @@ impl<T: Scalar> Record<T> {
                     }
                 }
                 let (mut scale, unit) =
-                    (T::of(self.clock.unit() * self.clock.unit()), T::of(self.clock.unit() / half));
+                    (T::of(self.clock.unit * self.clock.unit), T::of(self.clock.unit / half));
                 for (sum, c) in series.a.iter_mut().zip(about) {
                     *sum += c * scale;
                     scale = scale * unit;

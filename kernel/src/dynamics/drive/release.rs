@@ -5,7 +5,7 @@
 
 use super::{ContactAcceleration, Drive, ReleaseRoot, Span};
 use crate::dynamics::clock::{Clock, Instant};
-use crate::dynamics::series::{ROOM, SEEDED};
+use crate::dynamics::series::{SEEDED, Series};
 use crate::numeric::{PolynomialRoots, Scalar, decay};
 
 /// Length of a stride in radians of the fastest tone.
@@ -33,7 +33,6 @@ pub(super) struct Search<'a, T: Scalar, D: Drive<T>> {
     pub segment: usize,
     /// Angular frequency of the fastest part of the drive that moves; 0 without one.
     pub fastest: T,
-    /// Bound of the acceleration of the drive.
     pub reach: T,
     /// Cycles of the clock after which the drive repeats from this segment on, if it does.
     pub common_cycles: Option<i64>,
@@ -41,8 +40,8 @@ pub(super) struct Search<'a, T: Scalar, D: Drive<T>> {
     pub parts: usize,
     /// An acceleration that decays and adds to the drive's, if there is one.
     pub decaying: Option<Decaying<T>>,
-    a: [T; ROOM],
-    inverse: [T; ROOM],
+    /// The series of the drive over a stride.
+    pub series: Series<T>,
 }
 
 /// An acceleration that acts like the base's, `push` at first, and decays exponentially.
@@ -59,34 +58,7 @@ struct Stride<T> {
     order: usize,
 }
 
-impl<'a, T: Scalar, D: Drive<T>> Search<'a, T, D> {
-    pub fn new(
-        drive: &'a D,
-        clock: &'a Clock<T>,
-        acceleration: ContactAcceleration<T>,
-        segment: usize,
-    ) -> Self {
-        let zero = T::zero();
-        let mut inverse = [zero; ROOM];
-        for (k, slot) in inverse.iter_mut().enumerate().skip(2) {
-            *slot = T::of(1.0) / T::of((k * (k - 1)) as f64);
-        }
-        let a = [zero; ROOM];
-        Self {
-            drive,
-            clock,
-            acceleration,
-            segment,
-            fastest: zero,
-            reach: zero,
-            common_cycles: None,
-            parts: 0,
-            decaying: None,
-            a,
-            inverse,
-        }
-    }
-
+impl<T: Scalar, D: Drive<T>> Search<'_, T, D> {
     /// The first release in the span, and the work that it took to find it.
     pub fn first(&mut self, span: &Span<T>, cursor: &mut D::Cursor) -> (ReleaseRoot<T>, u64) {
         let Span { from, until, since, .. } = *span;
@@ -142,16 +114,16 @@ impl<'a, T: Scalar, D: Drive<T>> Search<'a, T, D> {
 
     /// The contact acceleration over a stride of length `h` from `at`.
     fn stride(&mut self, at: &Instant<T>, h: T, cursor: &mut D::Cursor) -> Stride<T> {
-        let Self { drive, a, inverse, acceleration: ContactAcceleration { threshold, sign, .. }, .. } = self;
-        drive.seed(self.clock, at, self.segment, a, cursor);
+        let Self { drive, series, acceleration: ContactAcceleration { threshold, sign, .. }, .. } = self;
+        drive.seed(at, self.segment, &mut series.a, cursor);
         let order = if self.fastest > T::zero() { STRIDE_ORDER } else { 1 };
         for k in SEEDED..=order {
-            drive.extend(k, a, inverse, cursor);
+            series.extend_drive(k, *drive, cursor);
         }
         let mut g = [T::zero(); STRIDE_ORDER + 1];
         let mut power = T::of(1.0);
         for (k, slot) in g[..=order].iter_mut().enumerate() {
-            *slot = -(*sign * a[k]) * power;
+            *slot = -(*sign * series.a[k]) * power;
             power = power * h;
         }
         g[0] += *threshold;
@@ -176,7 +148,7 @@ impl<'a, T: Scalar, D: Drive<T>> Search<'a, T, D> {
         }
         // Quarters of the cycle: strides that do not depend on the search and are alike in each cycle.
         let clock = self.clock;
-        let stride = clock.period() * T::of(0.25);
+        let stride = clock.period * T::of(0.25);
         let quarter = (root.phase / stride).floor().smaller(T::of(3.0));
         let start = Instant { cycle: root.cycle, phase: quarter * stride };
         let Stride { g, order } = self.stride(&start, stride, cursor);

@@ -1,4 +1,5 @@
-//! Tone: one sine with an optional amplitude ramp, its series, and its release root.
+//! Tone: one sine with an optional amplitude ramp, its series, and its release root. Chirp: a sine of growing
+//! frequency, and its series.
 
 use super::{Base, ContactAcceleration, Drive, ReleaseRoot, Span};
 use crate::dynamics::clock::{Clock, Instant};
@@ -12,8 +13,8 @@ pub(crate) struct Ramp<T> {
     pub from: T,
     /// Growth per kernel time unit.
     pub rate: T,
-    /// The segment of the drive that begins where the ramp ends.
-    pub holds_from_segment: usize,
+    /// The segment of the drive that begins where the ramp ends; `None` if it outlasts the run.
+    pub holds_from_segment: Option<usize>,
 }
 
 /// amplitude sin(2 pi (frequency t) + phase).
@@ -63,7 +64,7 @@ impl<T: Scalar> Tone<T> {
         self.after(at.phase, T::of(self.ratio.fraction(at.cycle)) + self.phase)
     }
 
-    /// The same where the tone is `start` turns in at phase 0 of the cycle.
+    /// The same for a tone that has made `start` turns at phase 0 of the cycle.
     #[inline(always)]
     fn after(&self, phase: T, start: T) -> (T, T) {
         let turns = phase * self.frequency + start;
@@ -82,7 +83,7 @@ impl<T: Scalar> Tone<T> {
     /// Amplitude and its growth at an instant.
     pub fn amplitude_at(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize) -> (T, T) {
         match &self.ramp {
-            Some(ramp) if segment < ramp.holds_from_segment => {
+            Some(ramp) if ramp.holds_from_segment.is_none_or(|first| segment < first) => {
                 let start = Instant { cycle: 0, phase: T::zero() };
                 (ramp.from + ramp.rate * clock.between(&start, at), ramp.rate)
             }
@@ -95,6 +96,7 @@ impl<T: Scalar> Tone<T> {
 #[derive(Debug, Clone)]
 pub(crate) struct Sine<T> {
     pub tone: Tone<T>,
+    pub clock: Clock<T>,
 }
 
 /// Where a tone was evaluated last, with its value and time derivative per unit amplitude.
@@ -154,7 +156,7 @@ impl<T: Scalar> Tail<T> for Sine<T> {
 }
 
 impl<T: Scalar> Base<T> for Sine<T> {
-    fn acceleration(&self, _: &Clock<T>, at: &Instant<T>, _: usize) -> T {
+    fn acceleration(&self, at: &Instant<T>, _: usize) -> T {
         self.tone.amplitude * self.unit(at).0
     }
 }
@@ -169,7 +171,7 @@ impl<T: Scalar> Drive<T> for Sine<T> {
     }
 
     #[inline(always)]
-    fn seed(&self, _: &Clock<T>, at: &Instant<T>, _: usize, a: &mut [T; ROOM], last: &mut Self::Cursor) {
+    fn seed(&self, at: &Instant<T>, _: usize, a: &mut [T; ROOM], last: &mut Self::Cursor) {
         let (s, d) = match last {
             Some((when, unit)) if when == at => *unit,
             _ => {
@@ -183,26 +185,14 @@ impl<T: Scalar> Drive<T> for Sine<T> {
     }
 
     #[inline(always)]
-    fn value(
-        &self,
-        _: &Clock<T>,
-        at: &Instant<T>,
-        _: usize,
-        _: impl Fn() -> T,
-        last: &mut Self::Cursor,
-    ) -> T {
+    fn value(&self, at: &Instant<T>, _: usize, _: impl Fn() -> T, last: &mut Self::Cursor) -> T {
         let unit = self.unit(at);
         *last = Some((*at, unit));
         self.tone.amplitude * unit.0
     }
 
-    fn segment_end(&self, _: usize) -> Option<Instant<T>> {
-        None
-    }
-
     fn next_release(
         &self,
-        clock: &Clock<T>,
         &Span { from, until, .. }: &Span<T>,
         ContactAcceleration { threshold, sign, .. }: ContactAcceleration<T>,
         _: &mut Self::Cursor,
@@ -229,12 +219,12 @@ impl<T: Scalar> Drive<T> for Sine<T> {
         let mut turns = (turns - quarter) - self.tone.phase;
         turns -= turns.floor();
         let mut phase = turns / self.tone.frequency;
-        if phase >= clock.period() {
+        if phase >= self.clock.period {
             phase = T::zero();
         }
         let behind = from.phase - phase;
         // A root that lies in the past by no more than rounding counts as now.
-        let slack = clock.period() * T::of(8.0 * T::EPSILON);
+        let slack = self.clock.period * T::of(8.0 * T::EPSILON);
         // There is one root in each cycle; "now" only approximates it.
         let (root, turn) = if behind <= T::zero() {
             (Instant { cycle: from.cycle, phase }, Some(0))
@@ -243,6 +233,61 @@ impl<T: Scalar> Drive<T> for Sine<T> {
         } else {
             (Instant { cycle: from.cycle + 1, phase }, Some(0))
         };
-        (ReleaseRoot::within(clock, root, turn, &until), 0)
+        (ReleaseRoot::within(&self.clock, root, turn, &until), 0)
     }
+}
+
+/// A sine whose frequency grows evenly up to an instant and then holds.
+#[derive(Debug, Clone)]
+pub(crate) struct Chirp<T> {
+    pub amplitude: T,
+    /// Frequency at time 0 in Hz.
+    pub from: f64,
+    /// Frequency from the end of the chirp on in Hz.
+    pub to: f64,
+    pub over: f64,
+    /// The segment of the drive that begins where the chirp ends; `None` if it outlasts the run.
+    pub holds_from_segment: Option<usize>,
+}
+
+impl<T: Scalar> Chirp<T> {
+    /// (sin, cos) at an instant, angular frequency there and its growth, in kernel units. The phase is
+    /// computed in double-double arithmetic; only its fraction of a turn is rounded.
+    pub fn state(&self, clock: &Clock<T>, at: &Instant<T>, segment: usize) -> (T, T, T, T) {
+        let dd = DoubleDouble::of;
+        let time = clock.exact_seconds(at);
+        let growth = (dd(self.to) - dd(self.from)) / dd(self.over);
+        let holding = self.holds_from_segment.is_some_and(|first| segment >= first);
+        let (turns, frequency, growth) = if holding {
+            let before = (dd(self.from) + dd(self.to)) * dd(self.over) * dd(0.5);
+            (before + (time - dd(self.over)) * dd(self.to), dd(self.to), dd(0.0))
+        } else {
+            let frequency = dd(self.from) + growth * time;
+            (time * (dd(self.from) + growth * time * dd(0.5)), frequency, growth)
+        };
+        let (s, c) = T::sin_cos_turns(T::of_pair(turns - turns.floor()));
+        let unit = clock.unit;
+        let omega = T::tau() * T::of_pair(frequency * dd(unit));
+        (s, c, omega, T::tau() * T::of_pair(growth * dd(unit * unit)))
+    }
+}
+
+/// The next coefficients of sine and cosine of a phase with rate w and growth b, from the last two of each:
+/// (k + 1) s\[k+1\] = w c\[k\] + b c\[k-1\], and the cosine likewise with the sign turned.
+pub(crate) fn next_chirp<T: Scalar>(last: &mut ChirpState<T>, share: T) {
+    let ChirpState { sine, cosine, rate, growth, .. } = *last;
+    let s = (rate * cosine[1] + growth * cosine[0]) * share;
+    let c = -((rate * sine[1] + growth * sine[0]) * share);
+    last.sine = [sine[1], s];
+    last.cosine = [cosine[1], c];
+}
+
+/// The last two coefficients of a chirp's sine and cosine, and what their recurrence needs.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ChirpState<T> {
+    pub sine: [T; 2],
+    pub cosine: [T; 2],
+    pub rate: T,
+    pub growth: T,
+    pub amplitude: T,
 }

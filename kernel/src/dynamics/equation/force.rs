@@ -5,28 +5,11 @@ use crate::numeric::{Number, Scalar};
 /// The force of one piece over mass, in kernel units, about the piece's origin.
 #[derive(Debug, Clone)]
 pub(crate) struct PieceForce<T> {
-    coefficients: Vec<T>,
+    /// From the constant up; never empty.
+    pub coefficients: Vec<T>,
 }
 
 impl<T: Number> PieceForce<T> {
-    /// Coefficients from the constant up, at least one.
-    pub fn new(coefficients: Vec<T>) -> Self {
-        Self { coefficients }
-    }
-
-    /// One of the coefficients.
-    #[inline]
-    pub fn coefficient_mut(&mut self, degree: usize) -> &mut T {
-        &mut self.coefficients[degree]
-    }
-
-    /// Coefficients from the constant up; never empty.
-    #[inline(always)]
-    pub fn coefficients(&self) -> &[T] {
-        &self.coefficients
-    }
-
-    /// Degree of the polynomial.
     pub fn degree(&self) -> usize {
         self.coefficients.len() - 1
     }

@@ -1,8 +1,7 @@
 //! Equation of motion in kernel units: time in a power of two of a second, mass 1.
 //!
 //! Each piece of the force curve becomes a *mode*: the interval in which the mass moves under one polynomial,
-//! and what stands at its two ends (a stop, a break behind which the next piece begins, the end of the known
-//! curve).
+//! and what stands at its ends (a stop, a break before the next piece, the end of the known curve).
 
 pub(crate) mod force;
 mod mode;
@@ -20,7 +19,6 @@ pub(crate) use stop::{Compliant, Stop};
 /// Stands for an end that does not exist: far away, yet safe to compute with.
 pub(crate) const FAR: f64 = 1e200;
 
-/// The equation of motion in kernel units.
 #[derive(Debug, Clone)]
 pub(crate) struct Equation<T> {
     /// c/m.
@@ -42,8 +40,7 @@ impl<T: Scalar> Equation<T> {
             stiffness: T::of(stop.stiffness) * square,
             loss: T::of(stop.loss) / T::of(unit),
         });
-        let left_stop = model.stops.as_ref().and_then(|s| s.left);
-        let right_stop = model.stops.as_ref().and_then(|s| s.right);
+        let (left_stop, right_stop) = model.sides();
         let rigid = |stop: Option<StopAt>| stop.filter(|_| compliant.is_none());
         let mut modes: Vec<Mode<T>> = Vec::with_capacity(curve.pieces().len());
         for (index, piece) in curve.pieces().iter().enumerate() {
@@ -56,10 +53,13 @@ impl<T: Scalar> Equation<T> {
                 _ => (T::of(x), EndKind::Break),
             };
             let last = index + 1 == curve.pieces().len();
-            let low = end(left, index == 0, rigid(left_stop), left_stop.is_some_and(|s| s.x >= left));
-            let high = end(right, last, rigid(right_stop), right_stop.is_some_and(|s| s.x <= right));
-            let (place, force) = ((index, T::of(piece.origin)), PieceForce::new(coefficients));
-            modes.push(Mode::new(place, force, low, high));
+            let (low, low_kind) =
+                end(left, index == 0, rigid(left_stop), left_stop.is_some_and(|s| s.x >= left));
+            let (high, high_kind) =
+                end(right, last, rigid(right_stop), right_stop.is_some_and(|s| s.x <= right));
+            let (origin, force) = (T::of(piece.origin), PieceForce { coefficients });
+            let about = [Vec::new(), Vec::new()];
+            modes.push(Mode { piece: index, force, origin, low, high, low_kind, high_kind, about });
         }
         let stop = |at: Option<StopAt>, sign: T| {
             at.map(|s| {
@@ -73,8 +73,7 @@ impl<T: Scalar> Equation<T> {
                 }
             })
         };
-        let left = stop(left_stop, T::of(-1.0));
-        let right = stop(right_stop, T::of(1.0));
+        let (left, right) = (stop(left_stop, T::of(-1.0)), stop(right_stop, T::of(1.0)));
         if compliant.is_some() {
             for at in [left_stop, right_stop].into_iter().flatten() {
                 modes = cut(modes, T::of(at.x));
@@ -96,10 +95,9 @@ impl<T: Scalar> Equation<T> {
         if self.compliant.is_none() {
             return piece;
         }
-        let surface = |end: End, mode: &Mode<T>| mode.end(end) == (x, EndKind::Compliant);
+        let side = if x < T::zero() { End::Low } else { End::High };
+        let outside = |mode: &Mode<T>| mode.end(side) == (x, EndKind::Compliant);
         let holds = |mode: &Mode<T>| mode.piece == piece && mode.low <= x && x <= mode.high;
-        let middle = x < T::zero();
-        let outside = |mode: &Mode<T>| surface(if middle { End::Low } else { End::High }, mode);
         let found = self.modes.iter().position(outside).or(self.modes.iter().position(holds));
         found.unwrap_or(piece)
     }
@@ -113,7 +111,6 @@ impl<T: Scalar> Equation<T> {
         self.modes.iter().find(surface).map(|mode| mode.end(end).0)
     }
 
-    /// The stop at an end.
     #[inline]
     pub fn stop(&self, end: End) -> Option<&Stop<T>> {
         match end {

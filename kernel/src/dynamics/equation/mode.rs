@@ -4,10 +4,8 @@ use super::force::PieceForce;
 use crate::dynamics::result::Side;
 use crate::numeric::Scalar;
 
-/// What stands at an end of a mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum EndKind {
-    /// A rigid stop.
     Stop,
     /// The surface of a compliant stop, free flight on one side and contact on the other.
     Compliant,
@@ -34,7 +32,6 @@ impl End {
         }
     }
 
-    /// The side that it is on.
     pub fn side(self) -> Side {
         match self {
             Self::Low => Side::Left,
@@ -63,21 +60,10 @@ pub(crate) struct Mode<T> {
     pub high_kind: EndKind,
     /// Coefficients of force over mass about its low and its high end, if that end is a stop and the degree
     /// of the force is 4 or more.
-    about: [Vec<T>; 2],
+    pub(super) about: [Vec<T>; 2],
 }
 
 impl<T: Scalar> Mode<T> {
-    /// Of a piece of the force curve, between two ends.
-    pub fn new(
-        (piece, origin): (usize, T),
-        force: PieceForce<T>,
-        (low, low_kind): (T, EndKind),
-        (high, high_kind): (T, EndKind),
-    ) -> Self {
-        Self { piece, force, origin, low, high, low_kind, high_kind, about: [Vec::new(), Vec::new()] }
-    }
-
-    /// Expands the force about the stops at its ends.
     pub(super) fn expand_about_stops(&mut self) {
         for (end, place) in [(End::Low, 0), (End::High, 1)] {
             let (level, kind) = self.end(end);
@@ -87,8 +73,7 @@ impl<T: Scalar> Mode<T> {
         }
     }
 
-    /// Coefficients of force over mass about `x`, if that is the stop at an end and they are known; otherwise
-    /// an empty slice.
+    /// Coefficients of force over mass about `x`, if that is a stop and they are known; otherwise empty.
     #[inline]
     pub fn about(&self, end: End, x: T) -> &[T] {
         match end {
@@ -107,8 +92,7 @@ impl<T: Scalar> Mode<T> {
     }
 }
 
-/// Cuts the modes at the surface of a compliant stop at `x`. A curve that ends at or before `x` has no
-/// stop there.
+/// Cuts the modes at the surface of a compliant stop at `x`. A curve that ends by `x` has no stop there.
 pub(super) fn cut<T: Scalar>(modes: Vec<Mode<T>>, x: T) -> Vec<Mode<T>> {
     let mut parts = Vec::with_capacity(modes.len() + 1);
     let last = modes.len() - 1;

@@ -19,7 +19,6 @@ pub(crate) struct Stop<T> {
 }
 
 impl<T: Scalar> Stop<T> {
-    /// The speed after an impact at this speed.
     pub fn rebound(&self, speed: T) -> T {
         self.restitution * speed
     }
@@ -33,8 +32,7 @@ pub(crate) struct Compliant<T> {
 }
 
 impl<T: Scalar> Compliant<T> {
-    /// Force over mass at the root `u` of the depth and the inward speed `w`, where the contact is not
-    /// clipped.
+    /// Force over mass at the root `u` of the depth and the inward speed `w`, if it is not clipped.
     pub fn force(&self, u: T, w: T) -> T {
         self.stiffness * (u * u * u) * (T::of(1.0) + self.loss * w)
     }

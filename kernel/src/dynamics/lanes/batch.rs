@@ -34,15 +34,13 @@ pub(super) struct Prepared<'a> {
     pub request: &'a Request<'a>,
     pub equation: &'a Equation<f64>,
     pub drive: &'a Sine<f64>,
-    /// The pursuit, if the motion is pursued.
     pub pursuit: Option<&'a Pursuit<'a>>,
     pub place: usize,
 }
 
 /// Supplier of runs and receiver of their results.
 pub(super) trait Source<'a> {
-    /// The next run. Returns `None` if there is none at present; if no run is under way, `None` means that
-    /// there will be no more.
+    /// The next run; `None` if there is none at present, or no more at all if no run is under way.
     fn next(&mut self, under_way: UnderWay) -> Option<Prepared<'a>>;
 
     /// Takes a motion that has ended, its initial values, and its outcome.
@@ -65,9 +63,7 @@ struct Group<const W: usize> {
     rule: GaussLegendre<Lanes<W>>,
     columns: Box<Columns<W>>,
     series: Box<Series<Lanes<W>>>,
-    /// The last step.
     trial: Box<Trial<W>>,
-    /// The motion in each lane.
     lanes: [Option<usize>; W],
     /// Motions that wait for a lane, first come first served.
     waiting: VecDeque<usize>,
@@ -86,7 +82,6 @@ pub(super) struct Batch<'a, 'r, const W: usize> {
     /// Number of runs started so far.
     started: usize,
     members: Vec<Option<Member<'a>>>,
-    /// Free places among the members.
     free: Vec<usize>,
     groups: Vec<Group<W>>,
 }
@@ -128,7 +123,6 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         }
     }
 
-    /// Runs each motion alone to its end.
     #[inline(never)] // once a batch
     fn finish_alone(&mut self) {
         for group in 0..self.groups.len() {
@@ -155,15 +149,13 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
     /// Starts the next run; returns false if there is none, or no room. `full`: whether the lanes are full.
     fn start_next(&mut self, full: bool) -> bool {
         let Some(place) = self.free.last().copied() else { return false };
-        let Some(run) = self.source.next(UnderWay { runs: self.under_way(), full }) else {
-            return false;
-        };
+        let Some(run) = self.source.next(UnderWay { runs: self.under_way(), full }) else { return false };
         self.free.pop();
         let clock = clock(run.model, run.equation.unit);
         let (model, request) = (run.model, run.request);
         let motion = Motion::new(model, request, model.tolerance, run.equation, clock, run.drive);
         let mut motion = Box::new(match run.pursuit {
-            Some(pursuit) => motion.pursuing(pursuit, model),
+            Some(pursuit) => motion.pursuing(pursuit),
             None => motion.with_recurrence(model.recurrence, model),
         });
         let start = motion.begin(model);
@@ -173,7 +165,6 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         true
     }
 
-    /// Ends the run of a member.
     fn end(&mut self, place: usize, outcome: Outcome) {
         if let Some(Member { run, motion, start, .. }) = self.members[place].take() {
             self.source.ended(&run, *motion, &start, outcome);
@@ -188,8 +179,8 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         }
     }
 
-    /// Runs a motion alone until its steps are event-free. Returns the group of its force then, or `None` if
-    /// the run has ended.
+    /// Runs a motion alone until its steps are event-free. Returns the group of its force, or `None` at its
+    /// end.
     fn prepare(&mut self, place: usize) -> Option<usize> {
         while let Some(member) = &mut self.members[place] {
             let left = match member.motion.left() {
@@ -270,7 +261,6 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         }
     }
 
-    /// Loads waiting motions into free lanes.
     fn fill(&mut self, group: usize) {
         for lane in 0..W {
             if self.groups[group].lanes[lane].is_none() {
@@ -304,7 +294,8 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
                 Integrals { until: trial.length.0[lane], squared: trial.squared.0[lane], work: 0.0 };
             single.measured.set(trial.measured[lane].then_some(measured));
             motion.stepper.evaluations += 1;
-            motion.stepper.cursor = Some(trial.drive_at_end(lane));
+            let unit = (trial.unit.0.0[lane], trial.unit.1.0[lane]);
+            motion.stepper.cursor = Some((trial.at.get(lane), unit));
             motion.take(&Step { length: trial.length.0[lane], arrival: None, end: trial.end(lane) })
         } else {
             motion.fly(left)
@@ -331,7 +322,6 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         }
     }
 
-    /// Loads a motion into a lane.
     fn load(&mut self, group: usize, lane: usize, place: usize) {
         if let Some(member) = &self.members[place] {
             self.groups[group].columns.load(lane, member.index, &member.motion);
@@ -339,7 +329,6 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         }
     }
 
-    /// Logs the step that a lane has just taken.
     fn log_step(&mut self, group: usize, lane: usize) {
         let Some((_, group, member)) = self.member(group, lane) else { return };
         let trial = &group.trial;
@@ -348,17 +337,15 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         let mode = motion.stepper.mode(&motion.state);
         let (length, end) = (trial.length.0[lane], trial.end(lane));
         let state = (end.y + mode.origin, end.v);
-        let path = &motion.stepper.series;
-        let view = motion.stepper.view(&motion.state, path, (length, length, length), end.bound, state);
+        let step = motion.stepper.step_data(&motion.state, (length, length, length), end.bound, state);
         if let Some(log) = &mut motion.log {
-            log.add_step(&view);
+            log.add_step(&motion.stepper.series, &step);
         }
         group.columns.copy_state(lane, motion);
         motion.mark();
         group.columns.logged[lane] = motion.log.is_some();
     }
 
-    /// Checks budgets and the cancel flag.
     fn check_budgets(&mut self, group: usize) {
         for lane in 0..W {
             let Some((place, group, member)) = self.member(group, lane) else { continue };
@@ -375,7 +362,6 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
     }
 }
 
-/// Copies the series of one lane to that of a single motion.
 fn copy_lane<const W: usize>(all: &Series<Lanes<W>>, lane: usize, order: usize, single: &mut Series<f64>) {
     for k in 0..=order {
         single.y[k] = all.y[k].0[lane];

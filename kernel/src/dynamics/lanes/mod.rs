@@ -25,14 +25,13 @@ use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::result::{Outcome, Pursued, Pursuit, Request, Run};
 use crate::dynamics::run::ending::Initial;
-use crate::dynamics::run::pursue::pursue_alone;
+use crate::dynamics::run::pursue_alone;
 use crate::system::clock::ThreadClock;
 use crate::system::threads::UnderWay;
 use batch::{Batch, Prepared, Source};
 use columns::LaneMotion;
 
-/// Lanes if registers hold eight numbers: two registers a column, so that one addition need not wait for the
-/// previous one.
+/// Lanes if registers hold eight numbers: two registers a column, so that additions need not wait for others.
 const MAX_LANES: usize = 16;
 
 /// Runs whose data is kept together, and freed when all of them have ended.
@@ -48,7 +47,7 @@ impl Model {
 
     /// The same with `request` for each. With a ledger, events or samples they are run one by one.
     pub fn run_together(models: &[Self], request: &Request) -> Vec<Run> {
-        run_all(models, request, usize::MAX)
+        run_all(models, request, MAX_LANES)
     }
 
     /// The same with models that are requested while others are under way, so that several threads can share
@@ -59,7 +58,7 @@ impl Model {
         next: &mut dyn FnMut(UnderWay) -> Option<(usize, Self, Request<'q>)>,
         ended: &mut dyn FnMut(usize, &Self, Run),
     ) {
-        run_from(usize::MAX, next, ended);
+        run_from(MAX_LANES, next, ended);
     }
 
     /// Pursues motions of this model from given starts, many at once if the processor can. `next` gives the
@@ -74,11 +73,10 @@ impl Model {
         next: &mut dyn FnMut(UnderWay) -> Option<usize>,
         ended: &mut dyn FnMut(usize, Pursued),
     ) {
-        pursue(self, pursuits, &Request { cancel, ..Request::default() }, usize::MAX, (next, ended));
+        pursue(self, pursuits, &Request { cancel, ..Request::default() }, MAX_LANES, next, ended);
     }
 
-    /// [`pursue`](Self::pursue) one by one or in 4, 8 or 16 lanes, for tests; `None` if the processor does
-    /// not have as many.
+    /// [`pursue`](Self::pursue) one by one or in 4, 8 or 16 lanes, for tests; `None` without such lanes.
     #[doc(hidden)]
     pub fn pursue_in_lanes(&self, pursuits: &[Pursuit], width: usize) -> Option<Vec<Pursued>> {
         let request = Request::default();
@@ -87,13 +85,11 @@ impl Model {
         }
         let (mut all, mut pursued) = (0..pursuits.len(), vec![None; pursuits.len()]);
         let mut ended = |place: usize, end| pursued[place] = Some(end);
-        has_lanes(width)
-            .then(|| pursue(self, pursuits, &request, width, (&mut |_| all.next(), &mut ended)))?;
+        has_lanes(width).then(|| pursue(self, pursuits, &request, width, &mut |_| all.next(), &mut ended))?;
         pursued.into_iter().collect()
     }
 
-    /// [`run_all`](Self::run_all) in 4, 8 or 16 lanes, for tests; `None` if the processor does not have
-    /// as many.
+    /// [`run_all`](Self::run_all) in 4, 8 or 16 lanes, for tests; `None` if the processor lacks them.
     #[doc(hidden)]
     pub fn run_all_in_lanes(models: &[Self], width: usize) -> Option<Vec<Run>> {
         has_lanes(width).then(|| run_all(models, &Request::default(), width))
@@ -127,7 +123,6 @@ fn run_from<'q>(
     }
 }
 
-/// A model and the data of its run.
 struct PreparedRun<'q> {
     model: Model,
     request: Request<'q>,
@@ -168,16 +163,13 @@ impl<'a> Source<'a> for Runs<'a, '_, '_> {
     }
 }
 
-/// The callback that gives the places of pursuits, and the one that gets their results.
-type Callbacks<'r> = (&'r mut dyn FnMut(UnderWay) -> Option<usize>, &'r mut dyn FnMut(usize, Pursued));
-
-/// Pursues motions of one model.
 fn pursue(
     model: &Model,
     pursuits: &[Pursuit],
     request: &Request,
     max_lanes: usize,
-    (next, ended): Callbacks,
+    next: &mut dyn FnMut(UnderWay) -> Option<usize>,
+    ended: &mut dyn FnMut(usize, Pursued),
 ) {
     let unit = model.scales.unit();
     match form(model, &clock(model, unit)) {
@@ -201,7 +193,6 @@ fn pursue(
     }
 }
 
-/// Pursuits by their place.
 struct Pursuits<'r, P> {
     prepared: P,
     next: &'r mut dyn FnMut(UnderWay) -> Option<usize>,
@@ -218,7 +209,6 @@ impl<'a, P: Fn(usize) -> Prepared<'a>> Source<'a> for Pursuits<'_, P> {
     }
 }
 
-/// Whether the processor has this many lanes.
 fn has_lanes(width: usize) -> bool {
     match width {
         4 => true,

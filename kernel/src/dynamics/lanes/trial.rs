@@ -35,7 +35,6 @@ impl<const W: usize> Clocks<W> {
     }
 }
 
-/// Compensated sums.
 #[derive(Clone, Copy)]
 pub(super) struct CompensatedSums<const W: usize> {
     pub sum: Lanes<W>,
@@ -65,7 +64,6 @@ impl<const W: usize> CompensatedSums<W> {
 pub(crate) struct Trial<const W: usize> {
     /// Active lanes that did not take the step, since an event is possible on it.
     pub stopped: [bool; W],
-    /// Lanes that took the step.
     pub taken: [bool; W],
     /// Lanes that took the step up to a break of the force curve and are to enter the neighbouring mode.
     pub passed: [bool; W],
@@ -79,7 +77,6 @@ pub(crate) struct Trial<const W: usize> {
     pub unit: (Lanes<W>, Lanes<W>),
     /// Integral of the squared velocity over the whole step, if `measured`.
     pub squared: Lanes<W>,
-    /// Whether `squared` is known.
     pub measured: [bool; W],
 }
 
@@ -104,10 +101,5 @@ impl<const W: usize> Trial<W> {
     pub fn end(&self, lane: usize) -> Endpoint<f64> {
         let Endpoint { y, v, acceleration, bound } = &self.end;
         Endpoint { y: y.0[lane], v: v.0[lane], acceleration: acceleration.0[lane], bound: bound.0[lane] }
-    }
-
-    /// The end of the step of a lane, and the drive and its time derivative there.
-    pub fn drive_at_end(&self, lane: usize) -> (Instant<f64>, (f64, f64)) {
-        (self.at.get(lane), (self.unit.0.0[lane], self.unit.1.0[lane]))
     }
 }

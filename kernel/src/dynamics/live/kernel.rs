@@ -1,16 +1,17 @@
 //! Kernel of a live run: continues from a step's end, samples within a step, stops within one.
 //!
-//! It is built once for a model. Every call makes a [`Motion`] from it and drops it again; this costs some
-//! microseconds and keeps the integrator free of any provision for being continued.
+//! A kernel is built once for a model. Each call makes a [`Motion`] from it and drops it afterwards, which
+//! costs some microseconds; the integrator then needs no code for being continued.
 
-use crate::dynamics::clock::Clock;
-use crate::dynamics::drive::form::{Form, clock, form, with_drive};
-use crate::dynamics::drive::{Drive, base_at};
+use crate::dynamics::clock::{Clock, Instant};
+use crate::dynamics::drive::form::{self, Form, with_drive};
+use crate::dynamics::drive::{Base, Drive};
 use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
+use crate::dynamics::record::recorder::Recorder;
 use crate::dynamics::result::{Event, Outcome, Request, Sample};
-use crate::dynamics::state::{Checkpoint, Contact, MotionState};
+use crate::dynamics::state::{Checkpoint, Contact};
 use crate::numeric::decay;
 
 /// Work of one call, in units of [`work`](crate::dynamics::step::work): some tens of milliseconds. Only a
@@ -37,7 +38,6 @@ impl Sums {
     }
 }
 
-/// Equation, clock and drive of one model.
 #[derive(Debug, Clone)]
 pub(crate) struct Kernel {
     equation: Equation<f64>,
@@ -45,7 +45,6 @@ pub(crate) struct Kernel {
     drive: std::sync::Arc<Form<f64>>,
 }
 
-/// Result of stepping forward.
 pub(crate) struct Stretch {
     pub samples: Vec<Sample>,
     pub events: Vec<Event>,
@@ -60,10 +59,8 @@ pub(crate) struct Stretch {
 
 impl Kernel {
     pub fn new(model: &Model) -> Self {
-        let unit = model.scales.unit();
-        let clock = clock(model, unit);
-        let drive = std::sync::Arc::new(form(model, &clock));
-        Self { equation: Equation::new(model, unit), clock, drive }
+        let form::Kernel { equation, clock, drive } = form::Kernel::new(model);
+        Self { equation, clock, drive: std::sync::Arc::new(drive) }
     }
 
     /// Seconds per kernel time unit.
@@ -75,25 +72,25 @@ impl Kernel {
         self.clock.seconds(&carried.state.at)
     }
 
-    /// Acceleration of the base in m/s^2.
+    /// Acceleration of the base in m/s^2 at the instant of a checkpoint.
     pub fn base(&self, carried: &Checkpoint<f64>) -> f64 {
-        let MotionState { at, segment, .. } = &carried.state;
-        with_drive!(&*self.drive, drive => base_at(drive, &self.clock, *segment, at, self.unit()))
+        self.base_within(carried.state.segment, &carried.state.at)
     }
 
     /// Acceleration of the base in m/s^2 at a time in s.
     pub fn base_at(&self, t: f64) -> f64 {
         let at = self.clock.at(t);
-        with_drive!(&*self.drive, drive => {
-            base_at(drive, &self.clock, self.segment(drive, t), &at, self.unit())
-        })
+        self.base_within(with_drive!(&*self.drive, drive => self.segment(drive, &at)), &at)
     }
 
-    /// The segment of the drive at a time in s.
-    fn segment<D: Drive<f64>>(&self, drive: &D, t: f64) -> usize {
-        let at = self.clock.at(t);
+    /// Acceleration of the base in m/s^2 at an instant within a segment of the drive.
+    fn base_within(&self, segment: usize, at: &Instant<f64>) -> f64 {
+        with_drive!(&*self.drive, drive => drive.in_si(at, segment, self.unit()))
+    }
+
+    fn segment<D: Drive<f64>>(&self, drive: &D, at: &Instant<f64>) -> usize {
         let mut segment = 0;
-        while drive.segment_end(segment).is_some_and(|end| self.clock.between(&at, &end) <= 0.0) {
+        while drive.segment_end(segment).is_some_and(|end| self.clock.between(at, &end) <= 0.0) {
             segment += 1;
         }
         segment
@@ -116,57 +113,45 @@ impl Kernel {
 
     /// The model's start at the time `now` in s, and the events that happen there at once.
     pub fn start(&self, model: &Model, now: f64) -> (Checkpoint<f64>, Vec<Event>) {
-        with_drive!(&*self.drive, drive => self.start_with(model, now, drive))
-    }
-
-    fn start_with<D: Drive<f64>>(&self, model: &Model, now: f64, drive: &D) -> (Checkpoint<f64>, Vec<Event>) {
         let request = Request { events: true, ..Request::default() };
-        let mut motion = self.motion(model, drive, &request, None);
-        motion.state.at = self.clock.at(now);
-        motion.state.segment = self.segment(drive, now);
-        motion.place_at_start();
-        (motion.checkpoint(), motion.record.events.take().unwrap_or_default())
+        with_drive!(&*self.drive, drive => {
+            let mut motion = self.motion(model, drive, &request, None);
+            motion.state.at = self.clock.at(now);
+            motion.state.segment = self.segment(drive, &motion.state.at);
+            motion.place_at_start();
+            (motion.checkpoint(), motion.record.events.unwrap_or_default())
+        })
     }
 
     /// Steps from `head` until a step has passed `to` in s.
     pub fn proceed(&self, model: &Model, head: &Checkpoint<f64>, to: f64, times: &[f64]) -> Stretch {
-        with_drive!(&*self.drive, drive => self.proceed_with(model, head, to, times, drive))
-    }
-
-    fn proceed_with<D: Drive<f64>>(
-        &self,
-        model: &Model,
-        head: &Checkpoint<f64>,
-        to: f64,
-        times: &[f64],
-        drive: &D,
-    ) -> Stretch {
         let request = Request { sample_times: times, events: true, ledger: true, ..Request::default() };
-        let mut motion = self.motion(model, drive, &request, Some(head));
         let until = self.clock.at(to);
-        let (mut last, mut ended) = (None, None);
-        while ended.is_none()
-            && self.clock.between(&motion.state.at, &until) >= 0.0
-            && motion.stepper.work.done() < WORK_PER_CALL
-        {
-            let left = motion.stepper.left(&motion.state);
-            if !(left > 0.0) {
-                ended = Some(Outcome::Done);
-                break;
+        with_drive!(&*self.drive, drive => {
+            let mut motion = self.motion(model, drive, &request, Some(head));
+            let (mut last, mut ended) = (None, None);
+            while ended.is_none()
+                && self.clock.between(&motion.state.at, &until) >= 0.0
+                && motion.stepper.work.done < WORK_PER_CALL
+            {
+                let left = motion.stepper.left(&motion.state);
+                if !(left > 0.0) {
+                    ended = Some(Outcome::Done);
+                    break;
+                }
+                last = Some((motion.checkpoint(), sums(&motion.record)));
+                ended = motion.proceed(left);
             }
-            last = Some((motion.checkpoint(), sums(&motion)));
-            ended = motion.proceed(left);
-        }
-        let exhausted = ended.is_none() && self.clock.between(&motion.state.at, &until) >= 0.0;
-        Stretch {
-            head: motion.checkpoint(),
-            sums: sums(&motion),
-            last,
-            ended,
-            exhausted,
-            events: motion.record.events.take().unwrap_or_default(),
-            samples: motion.record.samples,
-        }
+            Stretch {
+                head: motion.checkpoint(),
+                sums: sums(&motion.record),
+                last,
+                ended,
+                exhausted: ended.is_none() && self.clock.between(&motion.state.at, &until) >= 0.0,
+                events: motion.record.events.unwrap_or_default(),
+                samples: motion.record.samples,
+            }
+        })
     }
 
     /// Takes the steps from `tail` to `head` again for the samples at `times`, all before the head.
@@ -176,52 +161,42 @@ impl Kernel {
         tail: &Checkpoint<f64>,
         head: &Checkpoint<f64>,
         times: &[f64],
-        into: &mut Vec<Sample>,
-    ) {
-        if !times.is_empty() {
-            with_drive!(&*self.drive, drive => self.resample_with(model, tail, head, times, into, drive));
-        }
-    }
-
-    fn resample_with<D: Drive<f64>>(
-        &self,
-        model: &Model,
-        tail: &Checkpoint<f64>,
-        head: &Checkpoint<f64>,
-        times: &[f64],
-        into: &mut Vec<Sample>,
-        drive: &D,
-    ) {
+    ) -> Vec<Sample> {
         if matches!(tail.state.contact, Contact::Resting(_) | Contact::Motionless) {
             // It stands still; the search for its release need not be repeated.
-            let (x, phase) = (tail.state.x, tail.state.phase());
-            into.extend(times.iter().map(|&t| {
-                let base_accel =
-                    base_at(drive, &self.clock, tail.state.segment, &self.clock.at(t), self.unit());
-                let electrical = model.circuit().map_or(0.0, |circuit| {
-                    let time = self.clock.between(&tail.state.at, &self.clock.at(t)).max(0.0);
-                    let left = decay(circuit.decay * self.unit() * time).0;
-                    circuit.amount * (tail.state.circuit * left) / self.unit()
-                });
-                Sample { t, x, v: 0.0, base_accel, phase, electrical }
-            }));
-            return;
+            return times.iter().map(|t| self.standing(model, tail, *t)).collect();
+        }
+        if times.is_empty() {
+            return Vec::new();
         }
         let request = Request { sample_times: times, ..Request::default() };
-        let mut motion = self.motion(model, drive, &request, Some(tail));
-        while self.clock.between(&motion.state.at, &head.state.at) > 0.0
-            && motion.stepper.work.done() < WORK_PER_CALL
-        {
-            let left = motion.stepper.left(&motion.state);
-            if motion.proceed(left).is_some() {
-                break;
+        with_drive!(&*self.drive, drive => {
+            let mut motion = self.motion(model, drive, &request, Some(tail));
+            while self.clock.between(&motion.state.at, &head.state.at) > 0.0
+                && motion.stepper.work.done < WORK_PER_CALL
+            {
+                let left = motion.stepper.left(&motion.state);
+                if motion.proceed(left).is_some() {
+                    break;
+                }
             }
-        }
-        into.extend(motion.record.samples);
+            motion.record.samples
+        })
     }
 
-    /// The state at `now` in s and the energies from the tail to there, if `now` lies between `tail`
-    /// and `head`.
+    /// The sample at a time in s of a mass that has stood still since `tail`.
+    fn standing(&self, model: &Model, tail: &Checkpoint<f64>, t: f64) -> Sample {
+        let (at, state) = (self.clock.at(t), &tail.state);
+        let electrical = model.circuit().map_or(0.0, |circuit| {
+            let time = self.clock.between(&state.at, &at).max(0.0);
+            let left = decay(circuit.decay * self.unit() * time).0;
+            circuit.amount * (state.circuit * left) / self.unit()
+        });
+        let base_accel = self.base_within(state.segment, &at);
+        Sample { t, x: state.x, v: 0.0, base_accel, phase: state.phase(), electrical }
+    }
+
+    /// The state at `now` in s and the energies from the tail to there, if `now` is between tail and head.
     pub fn present(
         &self,
         model: &Model,
@@ -229,36 +204,27 @@ impl Kernel {
         head: &Checkpoint<f64>,
         now: f64,
     ) -> Option<(Checkpoint<f64>, Sums)> {
-        with_drive!(&*self.drive, drive => self.present_with(model, tail, head, now, drive))
-    }
-
-    fn present_with<D: Drive<f64>>(
-        &self,
-        model: &Model,
-        tail: &Checkpoint<f64>,
-        head: &Checkpoint<f64>,
-        now: f64,
-        drive: &D,
-    ) -> Option<(Checkpoint<f64>, Sums)> {
         let at = self.clock.at(now);
         if self.clock.between(&at, &head.state.at) <= 0.0 {
             return None;
         }
         let request = Request { ledger: true, ..Request::default() };
-        let mut motion = self.motion(model, drive, &request, Some(tail));
-        motion.stepper.end = at;
-        while motion.stepper.work.done() < WORK_PER_CALL {
-            let left = motion.stepper.left(&motion.state);
-            if !(left > 0.0) || motion.proceed(left).is_some() {
-                break;
+        with_drive!(&*self.drive, drive => {
+            let mut motion = self.motion(model, drive, &request, Some(tail));
+            motion.stepper.end = at;
+            while motion.stepper.work.done < WORK_PER_CALL {
+                let left = motion.stepper.left(&motion.state);
+                if !(left > 0.0) || motion.proceed(left).is_some() {
+                    break;
+                }
             }
-        }
-        Some((motion.checkpoint(), sums(&motion)))
+            Some((motion.checkpoint(), sums(&motion.record)))
+        })
     }
 }
 
-fn sums<D: Drive<f64>>(motion: &Motion<'_, f64, D>) -> Sums {
-    let whole = &motion.record.whole;
+fn sums(record: &Recorder<f64>) -> Sums {
+    let whole = &record.whole;
     Sums {
         work: whole.work.value(),
         squared_velocity: whole.squared_velocity.value(),

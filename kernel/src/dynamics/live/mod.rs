@@ -10,11 +10,12 @@
 //! dragged over the mass, a new potential, a mass put elsewhere) is in the ledger as moved by hand.
 
 mod kernel;
-mod phase;
 
 use crate::dynamics::model::Model;
+use crate::dynamics::model::excitation::{ExcitationParts, TonePart};
 use crate::dynamics::result::{Event, EventKind, Outcome, Phase, Sample, Side};
 use crate::dynamics::state::{Checkpoint, Contact};
+use crate::numeric::{DoubleDouble, Scalar};
 use kernel::{Kernel, Sums};
 
 /// Longest live run in kernel time units: some years for the prototype. The clock of an undriven scene is
@@ -135,7 +136,7 @@ impl Live {
         // the rest of the step that has already been taken
         let head_time = self.kernel.seconds(&self.head);
         let known = times.partition_point(|t| *t < head_time);
-        self.kernel.resample(&self.model, &self.tail, &self.head, &times[..known], &mut into.samples);
+        into.samples.extend(self.kernel.resample(&self.model, &self.tail, &self.head, &times[..known]));
         if self.ended.is_none() {
             let stretch = self.kernel.proceed(&self.model, &self.head, to, &times[known..]);
             into.samples.extend(stretch.samples);
@@ -192,9 +193,14 @@ impl Live {
 
     /// Electrical state of the transducer, in A or V; 0 where it has none.
     fn electrical(&self, carried: &Checkpoint<f64>) -> f64 {
-        self.model
-            .circuit()
-            .map_or(0.0, |circuit| circuit.amount * carried.state.circuit / self.kernel.unit())
+        let (state, unit) = (carried.state.circuit, self.kernel.unit());
+        self.model.circuit().map_or(0.0, |circuit| circuit.amount * state / unit)
+    }
+
+    /// Energy in J of a state: kinetic, potential, and that stored in the transducer.
+    fn energy(&self, carried: &Checkpoint<f64>) -> f64 {
+        let v = carried.state.v / self.kernel.unit();
+        energy(&self.model, (carried.state.x, v)) + self.model.electrical_energy(self.electrical(carried))
     }
 
     /// The state at the present time and the energies from the tail to there.
@@ -207,10 +213,7 @@ impl Live {
         let (carried, sums) = self.present();
         let mut ledger = self.past;
         ledger.add(&sums, &self.model);
-        let v = carried.state.v / self.kernel.unit();
-        let now = energy(&self.model, (carried.state.x, v))
-            + self.model.electrical_energy(self.electrical(&carried));
-        ledger.stored_j = now - self.start_energy;
+        ledger.stored_j = self.energy(&carried) - self.start_energy;
         ledger
     }
 
@@ -220,10 +223,10 @@ impl Live {
     /// even if their frequency changes. The mass keeps its place and speed; a stop that now lies on the other
     /// side of it carries it along and takes its speed, as does the end of the known curve.
     pub fn change(&mut self, model: &Model, into: &mut LiveOutput) {
-        self.shifts = phase::shifts(&self.model, model, &self.shifts, self.now);
+        self.shifts = phase_shifts(&self.model, model, &self.shifts, self.now);
         self.scene_times = (model.duration, model.settle);
         let mut next = without_end(model.clone());
-        phase::shift(&mut next.excitation, &self.shifts);
+        shift_phases(&mut next.excitation, &self.shifts);
         let state = self.state();
         self.go_on(next, (state.x, state.v), state.phase, into);
     }
@@ -243,11 +246,9 @@ impl Live {
 
     fn go_on(&mut self, mut next: Model, wanted: (f64, f64), previous: Phase, into: &mut LiveOutput) {
         let (carried, sums) = self.present();
-        let before = energy(&self.model, (carried.state.x, carried.state.v / self.kernel.unit()))
-            + self.model.electrical_energy(self.electrical(&carried));
+        let before = self.energy(&carried);
         self.past.add(&sums, &self.model);
-        // A stop that was pressed in stays so: the mass is carried along only as far as a stop is moved
-        // over it.
+        // A stop that was pressed in stays so: a mass is carried along only as far as a stop moves over it.
         let depth = self.model.pressed_depth(wanted.0).filter(|_| previous != Phase::Free);
         let depth = depth.filter(|_| next.compliant.is_some()).map_or(0.0, |depth| depth.0);
         next.start = next.held_within(wanted, depth);
@@ -284,13 +285,12 @@ impl Live {
     /// since the start.
     pub fn from_here(&self) -> Option<Model> {
         let drive = &self.model.excitation;
-        let repeats = drive.chirps.is_empty() && drive.records.is_empty();
-        if !repeats || drive.tones.iter().any(|tone| tone.ramp.is_some()) {
+        if !drive.has_only_tones() || drive.tones.iter().any(|tone| tone.ramp.is_some()) {
             return None;
         }
         let mut model = self.model.clone();
         (model.duration, model.settle) = self.scene_times;
-        phase::advance(&mut model.excitation, self.now);
+        advance_phases(&mut model.excitation, self.now);
         let turns = model.forcing_period.map_or(0.0, |period| self.now / period);
         model.start_phase = (model.start_phase + turns).rem_euclid(1.0);
         let (carried, _) = self.present();
@@ -361,4 +361,45 @@ fn without_end(mut model: Model) -> Model {
 fn energy(model: &Model, (x, v): (f64, f64)) -> f64 {
     let (kinetic, potential) = model.energies(x, v);
     kinetic + potential
+}
+
+/// The turns by which each tone of `new` has to be ahead of its scene from `now` in s on, if those of `old`
+/// were ahead by `shifts`. Tones correspond by their order; 0 if there is another number of them.
+fn phase_shifts(old: &Model, new: &Model, shifts: &[f64], now: f64) -> Vec<f64> {
+    let (from, to) = (&old.excitation.tones, &new.excitation.tones);
+    if from.len() != to.len() {
+        return vec![0.0; to.len()];
+    }
+    from.iter().zip(to).zip(shifts).map(|((from, to), shift)| shifted(from, to, *shift, now)).collect()
+}
+
+/// The turns by which a tone that follows another one is ahead. A change of amplitude needs no correction; if
+/// the frequency f becomes f' at time t, the phase has to grow by (f - f') t turns.
+fn shifted(from: &TonePart, to: &TonePart, shift: f64, now: f64) -> f64 {
+    if from.frequency == to.frequency {
+        return shift;
+    }
+    let turns = DoubleDouble::product(from.frequency, now) - DoubleDouble::product(to.frequency, now);
+    fraction(shift + (turns - turns.floor()).to_f64())
+}
+
+/// Advances every tone by its shift.
+fn shift_phases(drive: &mut ExcitationParts, shifts: &[f64]) {
+    for (tone, shift) in drive.tones.iter_mut().zip(shifts).filter(|(_, shift)| **shift != 0.0) {
+        tone.phase = fraction(tone.phase + shift);
+    }
+}
+
+/// Makes `now` in s the time 0 of every tone.
+fn advance_phases(drive: &mut ExcitationParts, now: f64) {
+    for tone in &mut drive.tones {
+        let turns = DoubleDouble::product(tone.frequency, now);
+        tone.phase = fraction(tone.phase + (turns - turns.floor()).to_f64());
+    }
+}
+
+/// Fraction of a turn, 0 <= fraction < 1.
+fn fraction(turns: f64) -> f64 {
+    let fraction = turns - turns.floor();
+    if fraction < 1.0 { fraction } else { 0.0 }
 }

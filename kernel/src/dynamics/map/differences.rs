@@ -1,5 +1,4 @@
-//! Tests of the derivatives of the map against finite differences in double-double arithmetic, for
-//! every event.
+//! The derivatives of the map against finite differences in double-double arithmetic, for every event.
 
 use std::sync::Arc;
 

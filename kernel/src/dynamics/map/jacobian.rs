@@ -78,15 +78,12 @@ mod tests {
     #[test]
     fn eigenvalues_of_both_kinds() {
         let real = Jacobian { rows: [[2.0, 1.0], [1.0, 2.0]] };
-        assert_eq!(
-            real.multipliers(real.determinant()).map(|multiplier| (multiplier.re, multiplier.im)),
-            [(3.0, 0.0), (1.0, 0.0)]
-        );
+        let parts = |jacobian: &Jacobian| {
+            jacobian.multipliers(jacobian.determinant()).map(|multiplier| (multiplier.re, multiplier.im))
+        };
+        assert_eq!(parts(&real), [(3.0, 0.0), (1.0, 0.0)]);
         let turned = Jacobian { rows: [[0.0, -0.5], [0.5, 0.0]] };
-        assert_eq!(
-            turned.multipliers(turned.determinant()).map(|multiplier| (multiplier.re, multiplier.im)),
-            [(0.0, 0.5), (0.0, -0.5)]
-        );
+        assert_eq!(parts(&turned), [(0.0, 0.5), (0.0, -0.5)]);
         assert!((turned.multipliers(0.25)[0].magnitude() - 0.5).abs() < 1e-15);
         let nothing = Jacobian { rows: [[0.0, 0.0], [0.0, 0.0]] };
         assert!(nothing.multipliers(0.0).iter().all(|multiplier| multiplier.magnitude() == 0.0));

@@ -11,9 +11,8 @@ mod differences;
 mod jacobian;
 mod passage;
 
-use super::clock::{Clock, Instant};
-use super::drive::form::{Form, clock, form, with_drive};
-use super::equation::Equation;
+use super::clock::Instant;
+use super::drive::form::{Kernel, with_drive};
 use super::model::Model;
 use crate::numeric::{Dual, Scalar};
 
@@ -21,22 +20,6 @@ pub use jacobian::{Jacobian, Multiplier};
 pub use passage::Miss;
 pub use passage::Passage;
 use passage::Traced;
-
-/// Equation, clock and drive of a model in numbers of one type.
-#[derive(Debug)]
-struct Kernel<T> {
-    equation: Equation<T>,
-    clock: Clock<T>,
-    drive: Form<T>,
-}
-
-impl<T: Scalar> Kernel<T> {
-    fn new(model: &Model) -> Self {
-        let unit = model.scales.unit();
-        let clock = clock(model, unit);
-        Self { equation: Equation::new(model, unit), drive: form(model, &clock), clock }
-    }
-}
 
 /// Length of one application of the map.
 #[derive(Debug, Clone, Copy)]
@@ -98,7 +81,7 @@ impl StroboscopicMap {
     /// Time in s of the first strobe of a run.
     pub fn first_strobe(&self) -> f64 {
         let Kernel { clock, equation, .. } = &self.plain;
-        (self.phase.0 as f64 + self.phase.1) * clock.period() * equation.unit
+        (self.phase.0 as f64 + self.phase.1) * clock.period * equation.unit
     }
 
     /// Time in s that one application takes: the forcing period.
@@ -149,12 +132,12 @@ impl StroboscopicMap {
 
     fn trace<T: Scalar>(&self, kernel: &Kernel<T>, start: (T, T), (from, to): (f64, f64)) -> Traced<T> {
         let Kernel { equation, clock, drive } = kernel;
-        let strobe = Instant { cycle: self.phase.0, phase: T::of(self.phase.1) * clock.period() };
+        let strobe = Instant { cycle: self.phase.0, phase: T::of(self.phase.1) * clock.period };
         let after = |periods: f64| match self.length {
             Length::Cycles(cycles) => {
                 let cycles = periods * cycles as f64;
                 let later = Instant { cycle: strobe.cycle + cycles.floor() as i64, ..strobe };
-                clock.advance(&later, T::of(cycles - cycles.floor()) * clock.period())
+                clock.advance(&later, T::of(cycles - cycles.floor()) * clock.period)
             }
             Length::Seconds(seconds) => clock.at(seconds * periods),
         };

@@ -2,13 +2,14 @@
 
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::drive::Drive;
-use crate::dynamics::equation::{End, EndKind, Equation};
+use crate::dynamics::equation::{End, EndKind, Equation, Mode};
 use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
-use crate::dynamics::record::barrier::side_of;
+use crate::dynamics::record::recorder::Recorder;
 use crate::dynamics::result::{Event, EventKind, Outcome, Request, Side};
-use crate::dynamics::state::{Contact, HELD, MotionState};
-use crate::dynamics::step::settings::ROUNDINGS;
+use crate::dynamics::series::Series;
+use crate::dynamics::state::{Contact, MotionState, Opening};
+use crate::dynamics::step::stepper::{ROUNDINGS, Stepper};
 use crate::numeric::{PolynomialRoots, Scalar};
 
 /// The motion between two strobes.
@@ -105,16 +106,14 @@ pub(super) fn trace<T: Scalar, D: Drive<T>>(
     equation: &Equation<T>,
     clock: Clock<T>,
     drive: &D,
-    (x, v): (T, T),
+    start: (T, T),
     (from, to): (Instant<T>, Instant<T>),
 ) -> Traced<T> {
     let request = Request { events: true, ..Request::default() };
     let mut motion = Motion::new(model, &request, model.tolerance, equation, clock, drive);
     motion.stepper.end = to;
     motion.record.next_strobe = None;
-    let mode = equation.mode_at(x, model.mechanism.curve.piece_index(x.to_f64()));
-    motion.state = MotionState { at: from, ..MotionState::new((x, v), mode, Contact::Free) };
-    motion.record.barrier_side = motion.record.barrier.map_or(0, |barrier| side_of(x, barrier));
+    motion.put(start, from);
     motion.place_at_start();
     if matches!(motion.state.contact, Contact::Resting(_)) {
         motion.record.events = Some(Vec::new());
@@ -134,17 +133,30 @@ pub(super) fn trace<T: Scalar, D: Drive<T>>(
             && motion.record.counts.sums == sums
             && flow.is_none();
         if flown {
-            add_misses(&motion, &before, &mut misses);
+            let Stepper { series, clock, .. } = &motion.stepper;
+            add_misses(motion.stepper.mode(&before), series, clock, (&before, motion.state.at), &mut misses);
         }
         if let Some(outcome) = flow.or_else(|| motion.spent()) {
             break outcome;
         }
     };
-    let MotionState { at, x, v, .. } = motion.state;
-    let rested = motion.record.counts.rests > 0;
-    let impacts = motion.record.counts.total_impacts;
-    let events = motion.record.events.take().unwrap_or_default();
-    let time = clock.between(&from, &at).to_f64() * equation.unit;
+    traced(equation, motion.record, from, &motion.state, misses, outcome)
+}
+
+/// The passage that a motion has made since the instant `from`.
+fn traced<T: Scalar>(
+    equation: &Equation<T>,
+    record: Recorder<T>,
+    from: Instant<T>,
+    &MotionState { at, x, v, .. }: &MotionState<T>,
+    misses: Vec<Miss>,
+    outcome: Outcome,
+) -> Traced<T> {
+    let model = record.model;
+    let rested = record.counts.rests > 0;
+    let impacts = record.counts.total_impacts;
+    let events = record.events.unwrap_or_default();
+    let time = record.clock.between(&from, &at).to_f64() * equation.unit;
     let known = equation.compliant.is_none() && model.circuit().is_none();
     let determinant = known.then(|| match rested {
         true => 0.0,
@@ -157,32 +169,32 @@ pub(super) fn trace<T: Scalar, D: Drive<T>>(
 
 /// The product of the squared restitution of each impact.
 fn squared_restitutions(model: &Model, events: &[Event]) -> f64 {
+    let (left, right) = model.sides();
     let restitution = |side: Side| {
-        let stop = model.stops.and_then(|pair| if side == Side::Left { pair.left } else { pair.right });
+        let stop = if side == Side::Left { left } else { right };
         stop.map_or(1.0, |stop| stop.restitution)
     };
     let impacts = events.iter().filter(|event| event.kind == EventKind::Impact);
     impacts.map(|event| restitution(event.side).powi(2)).product()
 }
 
-/// Adds the points before a stop at which the mass turned back during the last step, which began in the
-/// state `before`.
-fn add_misses<T: Scalar, D: Drive<T>>(
-    motion: &Motion<'_, T, D>,
-    before: &MotionState<T>,
+/// Adds the points before a stop at which the mass turned back during a step in a mode, from the state
+/// `before` up to the instant `until`.
+fn add_misses<T: Scalar>(
+    mode: &Mode<T>,
+    series: &Series<T>,
+    clock: &Clock<T>,
+    (before, until): (&MotionState<T>, Instant<T>),
     misses: &mut Vec<Miss>,
 ) {
-    let mode = motion.stepper.mode(before);
     let is_stop = |end: End| matches!(mode.end(end).1, EndKind::Stop | EndKind::Compliant);
     if !is_stop(End::Low) && !is_stop(End::High) {
         return;
     }
-    let series = &motion.stepper.series;
-    let clock = &motion.stepper.clock;
-    let length = clock.between(&before.at, &motion.state.at).to_f64();
+    let length = clock.between(&before.at, &until).to_f64();
     // where it leaves a surface, coefficients that are 0 by definition may differ from 0 by rounding
-    let multiplicity =
-        before.touch.map_or(1, |touch| if touch.multiplicity == HELD { 1 } else { touch.multiplicity });
+    let opening = before.touch.map(|touch| touch.opening).filter(|opening| *opening != Opening::Held);
+    let multiplicity = opening.map_or(1, |opening| opening as usize);
     let (mut velocity, mut power) = (Vec::with_capacity(series.known), 1.0);
     for (k, c) in series.coefficients().iter().enumerate().skip(1) {
         velocity.push(if k < multiplicity { 0.0 } else { k as f64 * c.to_f64() * power });

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::Model;
+use super::excitation::TonePart;
 
 /// Range of an axis of base acceleration without an excitation, in m/s^2.
 const UNSHAKEN: f64 = super::excitation::STANDARD_GRAVITY;
@@ -61,7 +62,7 @@ impl Model {
     pub fn largest_base_acceleration(&self) -> f64 {
         let drive = &self.excitation;
         let tones = drive.tones.iter().filter(|tone| !tone.noise);
-        let tones = tones.map(|tone| tone.amplitude.abs().max(tone.ramp.map_or(0.0, |ramp| ramp.0.abs())));
+        let tones = tones.map(TonePart::largest);
         let noises = drive.noises.iter().map(|noise| NOISE_ROOM * noise.rms);
         let chirps = drive.chirps.iter().map(|chirp| chirp.amplitude.abs());
         let records = drive.records.iter().map(|record| record.peak());
@@ -75,7 +76,7 @@ impl Model {
     /// Amplitude in m/s^2 and angular frequency in 1/s of the drive, if it is a single sine and nothing else.
     pub fn single_sine(&self) -> Option<(f64, f64)> {
         let drive = &self.excitation;
-        let alone = drive.constant == 0.0 && drive.chirps.is_empty() && drive.records.is_empty();
+        let alone = drive.constant == 0.0 && drive.has_only_tones();
         match drive.tones.as_slice() {
             [tone] if alone && tone.ramp.is_none() && !tone.noise => {
                 Some((tone.amplitude.abs(), TAU * tone.frequency))

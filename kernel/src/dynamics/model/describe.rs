@@ -1,6 +1,8 @@
 //! Description of a model in words, for `check`.
 
-use crate::dynamics::model::{Model, StopAt};
+use super::excitation::NoisePart;
+use super::scales::Scales;
+use super::{Model, StopAt};
 use crate::mechanics::Hertz;
 use crate::numeric::{number_text, short};
 
@@ -15,25 +17,21 @@ impl Model {
         } else {
             absent.push("damping");
         }
-        match &self.stops {
-            _ if self.compliant.is_some() => {
-                lines.extend(self.compliant.iter().flat_map(|stop| compliant(self, stop)))
+        match (&self.compliant, self.sides()) {
+            (_, (None, None)) => absent.push("stops"),
+            (Some(hertz), (Some(left), Some(right))) => {
+                lines.extend(compliant(self, hertz, [left.x, right.x]));
             }
-            Some(pair) => {
-                let stop = |side: &str, at: Option<StopAt>| match at {
-                    Some(s) => {
-                        let restitution = number_text(s.restitution);
-                        format!("{side} at {} mm with restitution {restitution}", short(s.x * 1e3))
+            (_, (left, right)) => {
+                let [left, right] = [("left", left), ("right", right)].map(|(side, stop)| match stop {
+                    Some(StopAt { x, restitution }) => {
+                        let restitution = number_text(restitution);
+                        format!("{side} at {} mm with restitution {restitution}", short(x * 1e3))
                     }
                     None => format!("{side} open"),
-                };
-                lines.push(format!(
-                    "rigid stops: {}; {}",
-                    stop("left", pair.left),
-                    stop("right", pair.right)
-                ));
+                });
+                lines.push(format!("rigid stops: {left}; {right}"));
             }
-            None => absent.push("stops"),
         }
         let excitation = self.describe_excitation();
         if excitation.is_empty() {
@@ -47,20 +45,11 @@ impl Model {
             }
             None => absent.push("transducer"),
         }
-        lines.push(format!(
-            "start at x = {} mm, v = {} m/s; runs {} s, settled after {} s",
-            short(self.start.0 * 1e3),
-            short(self.start.1),
-            short(self.duration),
-            short(self.settle)
-        ));
-        lines.push(format!(
-            "tolerance {:e}, relative to {} mm, {} m/s and {} s",
-            self.tolerance,
-            short(self.scales.length * 1e3),
-            short(self.scales.speed),
-            short(self.scales.time)
-        ));
+        let [x, v, end, settle] = [self.start.0 * 1e3, self.start.1, self.duration, self.settle].map(short);
+        lines.push(format!("start at x = {x} mm, v = {v} m/s; runs {end} s, settled after {settle} s"));
+        let Self { tolerance, scales: Scales { length, speed, time, .. }, .. } = self;
+        let [length, speed, time] = [length * 1e3, *speed, *time].map(short);
+        lines.push(format!("tolerance {tolerance:e}, relative to {length} mm, {speed} m/s and {time} s"));
         if !absent.is_empty() {
             lines.push(format!("left out: {}", absent.join(", ")));
         }
@@ -84,30 +73,21 @@ impl Model {
             lines.push(format!("base acceleration: sine of {} Hz, amplitude {size}", short(tone.frequency)));
         }
         for noise in &drive.noises {
-            lines.push(format!(
-                "base acceleration: noise of {} m/s^2 rms from {} to {} Hz, {} sines, seed {}",
-                short(noise.rms),
-                short(noise.low),
-                short(noise.high),
-                noise.lines,
-                noise.seed
-            ));
+            let [rms, low, high] = [noise.rms, noise.low, noise.high].map(short);
+            let band = format!("{rms} m/s^2 rms from {low} to {high} Hz");
+            let NoisePart { lines: sines, seed, .. } = noise;
+            lines.push(format!("base acceleration: noise of {band}, {sines} sines, seed {seed}"));
         }
         for chirp in &drive.chirps {
-            lines.push(format!(
-                "base acceleration: chirp from {} to {} Hz over {} s, amplitude {} m/s^2",
-                short(chirp.from),
-                short(chirp.to),
-                short(chirp.over),
-                short(chirp.amplitude.abs())
-            ));
+            let [from, to, over, size] = [chirp.from, chirp.to, chirp.over, chirp.amplitude.abs()].map(short);
+            let sweep = format!("chirp from {from} to {to} Hz over {over} s");
+            lines.push(format!("base acceleration: {sweep}, amplitude {size} m/s^2"));
         }
         for record in &drive.records {
+            let [end, peak] = [record.times.last().copied().unwrap_or(0.0), record.peak()].map(short);
+            let samples = record.times.len();
             lines.push(format!(
-                "base acceleration: record of {} samples up to {} s, peak {} m/s^2",
-                record.times.len(),
-                short(record.times.last().copied().unwrap_or(0.0)),
-                short(record.peak())
+                "base acceleration: record of {samples} samples up to {end} s, peak {peak} m/s^2"
             ));
         }
         if drive.fastest().is_some() && drive.tones.iter().filter(|t| !t.noise).count() > 1 {
@@ -129,27 +109,21 @@ const SPEEDS: [f64; 2] = [0.1, 0.5];
 const STEPS_PER_PERIOD: (f64, f64) = (1.5, 36.0);
 
 /// Description of a compliant stop, of an impact on it, and of the cost of a rest on it.
-fn compliant(model: &Model, stop: &Hertz) -> Vec<String> {
-    let place = |at: Option<f64>| short(at.unwrap_or(f64::NAN) * 1e3);
-    let (left, right) = model.stop_positions();
+fn compliant(model: &Model, stop: &Hertz, [left, right]: [f64; 2]) -> Vec<String> {
+    let [low, high, k, a] = [left * 1e3, right * 1e3, stop.stiffness, stop.loss].map(short);
     let mut lines = vec![format!(
-        "compliant stops at {} and {} mm: contact by Hertz, k = {} N/m^1.5, loss by Hunt and Crossley, \
-         a = {} s/m",
-        place(left),
-        place(right),
-        short(stop.stiffness),
-        short(stop.loss)
+        "compliant stops at {low} and {high} mm: contact by Hertz, k = {k} N/m^1.5, loss by Hunt and \
+         Crossley, a = {a} s/m"
     )];
     for speed in SPEEDS {
         let force = stop.peak_force(model.mass, speed);
         let pressure = stop.pressure(force).map(|pressure| format!(", {} GPa", short(pressure / 1e9)));
+        let pressure = pressure.unwrap_or_default();
+        let (time, depth) = (stop.contact_time(model.mass, speed), stop.depth(model.mass, speed));
+        let [ms, e, um, n] = [time * 1e3, stop.restitution(speed), depth * 1e6, force].map(short);
         lines.push(format!(
-            "an impact at {speed} m/s on one: {} ms of contact, restitution {}, {} um deep, {} N{}",
-            short(stop.contact_time(model.mass, speed) * 1e3),
-            short(stop.restitution(speed)),
-            short(stop.depth(model.mass, speed) * 1e6),
-            short(force),
-            pressure.unwrap_or_default()
+            "an impact at {speed} m/s on one: {ms} ms of contact, restitution {e}, {um} um deep, \
+             {n} N{pressure}"
         ));
     }
     if let Some(material) = stop.material {
@@ -159,7 +133,7 @@ fn compliant(model: &Model, stop: &Hertz) -> Vec<String> {
         ));
     }
     // Pressed by the mechanism alone, at the right-hand stop.
-    let pressed = right.map_or(0.0, |at| -model.mechanism.curve.force(at));
+    let pressed = -model.mechanism.curve.force(right);
     if pressed > 0.0 {
         let depth = stop.static_depth(pressed);
         let stiffness = 1.5 * stop.stiffness * depth.sqrt();
@@ -168,13 +142,11 @@ fn compliant(model: &Model, stop: &Hertz) -> Vec<String> {
             many if many >= 1.0 => many.round(),
             few => few,
         };
+        let (quiet, trembling) = (steps(STEPS_PER_PERIOD.0), steps(STEPS_PER_PERIOD.1));
+        let [hz, um, quiet, trembling] = [frequency, depth * 1e6, quiet, trembling].map(short);
         lines.push(format!(
-            "resting on one is an oscillation of {} Hz about a depth of {} um, and it is followed: each \
-             second of it takes some {} steps where it is quiet and up to {} where it trembles",
-            short(frequency),
-            short(depth * 1e6),
-            short(steps(STEPS_PER_PERIOD.0)),
-            short(steps(STEPS_PER_PERIOD.1))
+            "resting on one is an oscillation of {hz} Hz about a depth of {um} um, and it is followed: each \
+             second of it takes some {quiet} steps where it is quiet and up to {trembling} where it trembles"
         ));
     }
     lines

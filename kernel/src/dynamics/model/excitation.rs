@@ -6,6 +6,7 @@ use std::sync::Arc;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
+use super::start::fault;
 use crate::numeric::{Ratio, greatest_common_divisor};
 use crate::scene::{Excitation, Fault, Record};
 
@@ -20,11 +21,9 @@ const NOISE_PEAK: f64 = 3.0;
 /// Whether the drive repeats.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Rhythm {
-    /// The drive repeats.
     Periodic,
     /// The drive has no period, or its amplitude changes from one period to the next.
     Changing,
-    /// There is no drive.
     Absent,
 }
 
@@ -60,6 +59,21 @@ pub struct TonePart {
     pub ramp: Option<(f64, f64)>,
     /// Whether the tone is one line of a noise.
     pub noise: bool,
+}
+
+impl TonePart {
+    /// Magnitude in m/s^2 of the largest amplitude.
+    pub(crate) fn largest(&self) -> f64 {
+        self.amplitude.abs().max(self.ramp.map_or(0.0, |(from, _)| from.abs()))
+    }
+
+    /// Amplitude in m/s^2 at a time in s.
+    fn amplitude_at(&self, t: f64) -> f64 {
+        match self.ramp {
+            Some((from, over)) => from + (self.amplitude - from) * (t / over).min(1.0),
+            None => self.amplitude,
+        }
+    }
 }
 
 /// amplitude sin(2 pi (from t + (to - from) t^2/(2 over))), then holding `to`. SI.
@@ -141,11 +155,8 @@ impl ExcitationParts {
             Excitation::Recorded { path: file, record } => match record {
                 Some(record) => self.records.push(Arc::clone(record)),
                 None => {
-                    return Err(Fault {
-                        field: format!("{path}.path"),
-                        value: file.clone(),
-                        problem: "has not been read: take the scene from a document".into(),
-                    });
+                    let problem = "has not been read: take the scene from a document";
+                    return Err(fault(&format!("{path}.path"), file, problem));
                 }
             },
             Excitation::Sum(terms) => {
@@ -170,22 +181,21 @@ impl ExcitationParts {
             let phase = uniform();
             // a line at 0 Hz would be a constant
             let frequency = frequency.max(f64::MIN_POSITIVE);
-            self.tones.push(TonePart {
-                amplitude,
-                frequency,
-                phase,
-                quarter: false,
-                ramp: None,
-                noise: true,
-            });
+            let line = TonePart { amplitude, frequency, phase, quarter: false, ramp: None, noise: true };
+            self.tones.push(line);
         }
         self.noises.push(noise);
+    }
+
+    /// Whether it has neither chirps nor records; it may have a constant.
+    pub(crate) fn has_only_tones(&self) -> bool {
+        self.chirps.is_empty() && self.records.is_empty()
     }
 
     /// Whether the acceleration is always 0.
     pub(crate) fn is_still(&self) -> bool {
         self.constant == 0.0
-            && self.tones.iter().all(|t| t.amplitude == 0.0 && t.ramp.is_none_or(|r| r.0 == 0.0))
+            && self.tones.iter().all(|t| t.largest() == 0.0)
             && self.chirps.iter().all(|c| c.amplitude == 0.0)
             && self.records.iter().all(|r| r.peak() == 0.0)
     }
@@ -193,12 +203,8 @@ impl ExcitationParts {
     /// Acceleration in m/s^2 at a time in s since the start, without records; odd in the amplitudes.
     pub(crate) fn at(&self, t: f64) -> f64 {
         let tones = self.tones.iter().map(|tone| {
-            let amplitude = match tone.ramp {
-                Some((from, over)) => from + (tone.amplitude - from) * (t / over).min(1.0),
-                None => tone.amplitude,
-            };
             let quarter = if tone.quarter { 0.25 } else { 0.0 };
-            amplitude * (TAU * (tone.frequency * t + tone.phase + quarter)).sin()
+            tone.amplitude_at(t) * (TAU * (tone.frequency * t + tone.phase + quarter)).sin()
         });
         let chirps = self.chirps.iter().map(|chirp| {
             let swept = t.min(chirp.over);
@@ -215,9 +221,8 @@ impl ExcitationParts {
 
     /// Whether it repeats; `common` is the result of [`common_cycles`](Self::common_cycles).
     pub(crate) fn rhythm(&self, common: Option<u64>) -> Rhythm {
-        let empty = self.tones.is_empty() && self.chirps.is_empty() && self.records.is_empty();
         match common {
-            _ if empty => Rhythm::Absent,
+            _ if self.tones.is_empty() && self.has_only_tones() => Rhythm::Absent,
             Some(_) if self.tones.iter().all(|tone| tone.ramp.is_none()) => Rhythm::Periodic,
             _ => Rhythm::Changing,
         }
@@ -225,22 +230,20 @@ impl ExcitationParts {
 
     /// Magnitude of the amplitude in m/s^2 at a time in s, if the drive is one ramp.
     pub(crate) fn ramped_amplitude(&self, t: f64) -> Option<f64> {
-        let alone = self.constant == 0.0 && self.chirps.is_empty() && self.records.is_empty();
         match self.tones.as_slice() {
-            [TonePart { amplitude, ramp: Some((from, over)), .. }] if alone => {
-                Some((from + (amplitude - from) * (t / over).min(1.0)).abs())
+            [tone] if tone.ramp.is_some() && self.constant == 0.0 && self.has_only_tones() => {
+                Some(tone.amplitude_at(t).abs())
             }
             _ => None,
         }
     }
 
-    /// Amplitude in m/s^2 and angular frequency in 1/s of each part, for the scales; a constant and a record
-    /// have the rate 0.
+    /// Amplitude in m/s^2 and angular frequency in 1/s (a constant, a record: 0) of each part, for the
+    /// scales.
     pub(crate) fn parts(&self) -> Vec<(f64, f64)> {
         let mut parts = vec![(self.constant.abs(), 0.0)];
         for tone in self.tones.iter().filter(|t| !t.noise) {
-            let largest = tone.amplitude.abs().max(tone.ramp.map_or(0.0, |r| r.0.abs()));
-            parts.push((largest, tone.frequency * TAU));
+            parts.push((tone.largest(), tone.frequency * TAU));
         }
         parts.extend(self.noises.iter().map(|n| (NOISE_PEAK * n.rms, n.low * TAU)));
         parts.extend(self.chirps.iter().map(|c| (c.amplitude.abs(), c.from.min(c.to) * TAU)));
@@ -255,7 +258,7 @@ impl ExcitationParts {
 
     /// Periods of the fastest tone in the common period of all parts, if there is one of at most 10 000.
     pub(crate) fn common_cycles(&self) -> Option<u64> {
-        if !(self.chirps.is_empty() && self.records.is_empty() && self.noises.is_empty()) {
+        if !self.has_only_tones() || !self.noises.is_empty() {
             return None;
         }
         let fastest = self.fastest()?;

@@ -66,6 +66,14 @@ fn faults_of_check(scene: &Scene) -> Vec<Fault> {
     faults
 }
 
+/// The value, or 0 and the fault among the others.
+fn value_or_fault<T: Default>(value: Result<T, Fault>, faults: &mut Vec<Fault>) -> T {
+    value.unwrap_or_else(|fault| {
+        faults.push(fault);
+        T::default()
+    })
+}
+
 /// Damping coefficient in N s/m of the mechanism with this mass in kg.
 fn damping_coefficient(scene: &Scene, mechanism: &Mechanism, mass: f64) -> Result<f64, Fault> {
     let xi = match scene.damping {
@@ -97,41 +105,26 @@ impl Model {
         let mut faults = Vec::new();
         let mass = scene.mass_g / 1e3;
         let landscape = &mechanism.landscape;
-        let damping = damping_coefficient(scene, &mechanism, mass).unwrap_or_else(|found| {
-            faults.push(found);
-            0.0
-        });
+        let damping = value_or_fault(damping_coefficient(scene, &mechanism, mass), &mut faults);
         let transducer = Transducer::of(&scene.transducer, mass);
         if transducer.is_some_and(|transducer| !transducer.is_finite()) {
-            let value = match scene.transducer {
-                scene::Transducer::Piezoelectric { .. } => "Piezoelectric(..)",
-                _ => "Electromagnetic(..)",
-            };
+            let piezoelectric = matches!(scene.transducer, scene::Transducer::Piezoelectric { .. });
+            let value = if piezoelectric { "Piezoelectric(..)" } else { "Electromagnetic(..)" };
             let problem = "its numbers make no finite rates, damping and power with this mass; give some \
                            nearer to those of a real one";
             faults.push(fault("transducer", value, problem));
         }
         let stops = StopPair::of(&scene.stops);
         let compliant = Hertz::of(&scene.stops);
-        let start = start_state(scene, &mechanism, stops.as_ref(), compliant.as_ref());
-        let start = start.unwrap_or_else(|found| {
-            faults.push(found);
-            (0.0, 0.0)
-        });
-        let drive = ExcitationParts::new(&scene.excitation).unwrap_or_else(|found| {
-            faults.push(found);
-            ExcitationParts::default()
-        });
+        let start = value_or_fault(start_state(scene, &mechanism, stops, compliant), &mut faults);
+        let drive = value_or_fault(ExcitationParts::new(&scene.excitation), &mut faults);
         let periods = drive.fastest().unwrap_or(0.0) * scene.run.duration_s;
         if periods > MAX_PERIODS {
-            faults.push(fault(
-                "run.duration_s",
-                scene.run.duration_s,
-                format!(
-                    "makes {periods:e} periods of the excitation; at most {MAX_PERIODS:e} can be counted: \
-                     shorten the run or lower the frequency"
-                ),
-            ));
+            let problem = format!(
+                "makes {periods:e} periods of the excitation; at most {MAX_PERIODS:e} can be counted: \
+                 shorten the run or lower the frequency"
+            );
+            faults.push(fault("run.duration_s", scene.run.duration_s, problem));
         }
         if !faults.is_empty() {
             // a number that is not finite may have caused them: report it first
@@ -149,8 +142,8 @@ impl Model {
         // A charge can give the mass as much energy as a speed does.
         let fastest = (start.0, start.1.abs().max(charged.abs()));
         let scales = scales(scene, mass, &mechanism, &drive, fastest, (stops, compliant));
-        let (left, right) = (stops.and_then(|s| s.left), stops.and_then(|s| s.right));
-        let on_a_stop = left.is_some_and(|s| s.x == start.0) || right.is_some_and(|s| s.x == start.0);
+        let on_a_stop = stops
+            .is_some_and(|pair| [pair.left, pair.right].into_iter().flatten().any(|stop| stop.x == start.0));
         let motionless = scene.start == Start::Rest && !on_a_stop && drive.is_still();
         let mut model = Self {
             mass,
@@ -203,8 +196,13 @@ impl Model {
 
     /// Positions of the left and the right stop in m, if there are any.
     pub fn stop_positions(&self) -> (Option<f64>, Option<f64>) {
-        let at = |stop: Option<StopAt>| stop.map(|stop| stop.x);
-        self.stops.map_or((None, None), |pair| (at(pair.left), at(pair.right)))
+        let (left, right) = self.sides();
+        (left.map(|stop| stop.x), right.map(|stop| stop.x))
+    }
+
+    /// The left and the right stop, if there are any.
+    pub(in crate::dynamics) fn sides(&self) -> (Option<StopAt>, Option<StopAt>) {
+        self.stops.map_or((None, None), |pair| (pair.left, pair.right))
     }
 
     /// Kinetic and potential energy in J at a displacement in m and a velocity in m/s. The potential is 0 at
@@ -226,8 +224,7 @@ impl Model {
     /// Whether the mirror image of a free motion is a motion of the same model with mirrored crossings: an
     /// odd curve, equal stops on both sides.
     pub(crate) fn is_symmetric(&self) -> bool {
-        let (left, right) = self.stops.map_or((None, None), |pair| (pair.left, pair.right));
-        let alike = match (left, right) {
+        let alike = match self.sides() {
             (Some(left), Some(right)) => right == StopAt { x: -left.x, ..left },
             (None, None) => true,
             _ => false,

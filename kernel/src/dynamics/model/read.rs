@@ -12,17 +12,47 @@ use crate::mechanics::{Hertz, Mechanism};
 use crate::numeric::{DoubleDouble, Number, Scalar};
 use crate::scene;
 
-impl Model {
+/// Defines a method of [`Model`] for each of these fields, which returns it.
+macro_rules! accessors {
+    ($($(#[$doc:meta])* $field:ident: $type:ty,)*) => {
+        impl Model {
+            $($(#[$doc])* pub fn $field(&self) -> $type {
+                self.$field
+            })*
+        }
+    };
+}
+
+accessors! {
     /// Proof mass in kg.
-    pub fn mass(&self) -> f64 {
-        self.mass
-    }
-
+    mass: f64,
     /// Damping coefficient in N s/m of the mechanism alone.
-    pub fn damping(&self) -> f64 {
-        self.damping
-    }
+    damping: f64,
+    /// Electrical state at the start in A or V; 0 without one.
+    start_electrical: f64,
+    /// The stops; `None` if both sides are open.
+    stops: Option<StopPair>,
+    /// The contact law of the stops, if they are compliant.
+    compliant: Option<Hertz>,
+    /// Displacement in m and velocity in m/s at the start.
+    start: (f64, f64),
+    /// Displacement in m at which crossings are counted, if the mechanism has a barrier.
+    crossing_level: Option<f64>,
+    /// Duration in s.
+    duration: f64,
+    /// Begin of the settled window in s.
+    settle: f64,
+    /// Period of the excitation in s, if it has one.
+    forcing_period: Option<f64>,
+    /// Length, speed and time to which the tolerance is relative.
+    scales: Scales,
+    /// Permitted local error, relative to the scales.
+    tolerance: f64,
+    /// Whether a run may be completed from a recurrence of its motion.
+    recurrence: bool,
+}
 
+impl Model {
     /// Damping coefficient in N s/m that acts on the motion, including that of a transducer without an
     /// electrical state.
     pub fn total_damping(&self) -> f64 {
@@ -56,11 +86,6 @@ impl Model {
         self.transducer.as_ref()?.fast_circuit(self.mass, self.scales.time)
     }
 
-    /// Electrical state at the start in A or V; 0 without one.
-    pub fn start_electrical(&self) -> f64 {
-        self.start_electrical
-    }
-
     /// The circuit of the transducer, if it has a state.
     pub(in crate::dynamics) fn circuit(&self) -> Option<&Circuit> {
         self.transducer.as_ref().and_then(|transducer| transducer.circuit.as_ref())
@@ -71,8 +96,7 @@ impl Model {
         self.circuit().map_or(0.0, |circuit| 0.5 * self.mass * circuit.state(electrical).powi(2))
     }
 
-    /// The electrical state of this model when it takes over a run from another model in the
-    /// state `electrical`.
+    /// The electrical state of this model when it takes over from another one in the state `electrical`.
     pub(in crate::dynamics) fn electrical_after(&self, before: &Self, electrical: f64) -> f64 {
         let pair = self.transducer.as_ref().zip(before.transducer.as_ref());
         pair.map_or(0.0, |(present, previous)| present.electrical_after(previous, electrical))
@@ -83,44 +107,9 @@ impl Model {
         &self.mechanism
     }
 
-    /// The stops; `None` if both sides are open.
-    pub fn stops(&self) -> Option<StopPair> {
-        self.stops
-    }
-
-    /// The contact law of the stops, if they are compliant.
-    pub fn compliant(&self) -> Option<Hertz> {
-        self.compliant
-    }
-
     /// The excitation.
     pub fn excitation(&self) -> &ExcitationParts {
         &self.excitation
-    }
-
-    /// Displacement in m and velocity in m/s at the start.
-    pub fn start(&self) -> (f64, f64) {
-        self.start
-    }
-
-    /// Displacement in m at which crossings are counted, if the mechanism has a barrier.
-    pub fn crossing_level(&self) -> Option<f64> {
-        self.crossing_level
-    }
-
-    /// Duration in s.
-    pub fn duration(&self) -> f64 {
-        self.duration
-    }
-
-    /// Begin of the settled window in s.
-    pub fn settle(&self) -> f64 {
-        self.settle
-    }
-
-    /// Period of the excitation in s, if it has one.
-    pub fn forcing_period(&self) -> Option<f64> {
-        self.forcing_period
     }
 
     /// Phase of the drive at a time in s, in turns: the argument of its sine, or for a sum the fraction of
@@ -133,25 +122,10 @@ impl Model {
         Some(if share < 1.0 { share } else { 0.0 })
     }
 
-    /// Length, speed and time to which the tolerance is relative.
-    pub fn scales(&self) -> Scales {
-        self.scales
-    }
-
     /// The speed in m/s above which an impact is counted. A chatter has infinitely many impacts, and how many
     /// of the slower ones are computed one by one depends on the tolerance.
     pub fn least_impact_speed(&self) -> f64 {
         LEAST_IMPACT * self.scales.speed
-    }
-
-    /// Permitted local error, relative to the scales.
-    pub fn tolerance(&self) -> f64 {
-        self.tolerance
-    }
-
-    /// Whether a run may be completed from a recurrence of its motion.
-    pub fn recurrence(&self) -> bool {
-        self.recurrence
     }
 
     /// The same model with another tolerance.

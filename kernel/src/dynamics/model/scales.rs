@@ -7,8 +7,8 @@
 //!   the barrier (one well: at the well; none: at the start); without stiffness the drive's fastest tone;
 //!   without both, sqrt(acceleration over length), or speed over length. The inner side of a well that lies
 //!   beyond a kink is the slope just inside the kink, as for a damping ratio: flexures rest some um beyond
-//!   theirs, where the force is a wall of 30 times the stiffness, and the scales must not jump when a slider
-//!   moves the well across the kink;
+//!   their kink, where the stiffness is 30 times as large, and the scales must not jump when a slider moves
+//!   the well across the kink;
 //! - length L: the largest of half the distance between the wells, the start's distance from the barrier (or
 //!   the single equilibrium, or 0), start speed over w, and the sum over the parts of the drive of amplitude
 //!   over w and the larger of w and the rate of the part (the first kick of a fast part moves the mass as
@@ -25,8 +25,7 @@ use crate::mechanics::{Hertz, Mechanism};
 use crate::scene::Scene;
 
 /// Impacts slower than this share of the speed scale are not counted and may be part of a chatter that is
-/// summed in closed form. The share is far above rounding and far below the slowest impact that is visible in
-/// a trace.
+/// summed in closed form. It is far above rounding and far below the slowest impact visible in a trace.
 pub(in crate::dynamics) const LEAST_IMPACT: f64 = 1e-6;
 
 /// Length in m, speed in m/s, time in s; all above 0 and finite.
@@ -47,8 +46,7 @@ pub struct Scales {
 /// The longest step in units of the time scale, at high and at low order. It limits only motions far smaller
 /// than the length, since the tolerance is relative to the length. At high order a longer step would add
 /// rounding errors. At low order the limit keeps the series of an oscillation accurate relative to its size
-/// (at order 16 to 3^17/17! = 4e-7), so that small motions are as accurate as others and not noise of the
-/// size of the tolerance.
+/// (at order 16 to 3^17/17! = 4e-7), so that small motions are accurate too and not noise.
 const LONGEST_STEP: (f64, f64) = (8.0, 3.0);
 
 /// Largest ratio of the length to the room between the stops.
@@ -80,19 +78,15 @@ impl Scales {
         let stiff = l.stiffness_over_mass.sqrt();
         let usable = |x: f64| x.is_finite() && x > 0.0;
         let driven: f64 = l.drive.iter().map(|part| part.0).sum();
+        let reach = |rate: f64| -> f64 { l.drive.iter().map(|(a, w)| a / (rate * rate.max(*w))).sum() };
         let fastest = l.drive.iter().map(|part| part.1).fold(0.0, f64::max);
         let acceleration = l.start_acceleration.max(driven);
         let rated = usable(stiff) || usable(fastest);
         let (length, rate) = if rated {
             let rate = if usable(stiff) { stiff } else { fastest };
-            let driven: f64 = l.drive.iter().map(|(a, w)| a / (rate * rate.max(*w))).sum();
-            let length = l
-                .half_distance
-                .max(l.start_distance)
-                .max(l.start_speed / rate)
-                .max(driven)
-                .max(if usable(stiff) { 0.0 } else { l.start_acceleration / (rate * rate) });
-            (length, rate)
+            let by_start = if usable(stiff) { 0.0 } else { l.start_acceleration / (rate * rate) };
+            let length = l.half_distance.max(l.start_distance).max(l.start_speed / rate);
+            (length.max(reach(rate)).max(by_start), rate)
         } else if usable(acceleration) {
             let length = l.start_distance.max(l.start_speed * l.start_speed / acceleration);
             let length = if usable(length) { length } else { acceleration * l.duration * l.duration };
@@ -112,10 +106,7 @@ impl Scales {
             None => (length, rate),
             Some(room) => {
                 let within = room.max(FAR * room * (FAR * room / length));
-                let driven: f64 = match rated {
-                    true => l.drive.iter().map(|(a, w)| a / (rate * rate.max(*w))).sum(),
-                    false => acceleration / (rate * rate),
-                };
+                let driven = if rated { reach(rate) } else { acceleration / (rate * rate) };
                 let faster = (driven / within).sqrt().max(l.start_speed / rate / within);
                 (within, rate * faster.max(1.0))
             }
@@ -138,11 +129,8 @@ pub(crate) fn scales(
     start: (f64, f64),
     (stops, compliant): (Option<StopPair>, Option<Hertz>),
 ) -> Scales {
-    let landscape = &mechanism.landscape;
-    let curve = &mechanism.curve;
-    let mut stiffness: f64 = 0.0;
-    let mut reference = 0.0;
-    let mut half_distance = 0.0;
+    let Mechanism { landscape, curve, .. } = mechanism;
+    let (mut stiffness, mut reference, mut half_distance) = (0.0_f64, 0.0, 0.0);
     match (&landscape.barrier, landscape.equilibria.as_slice()) {
         (Some(barrier), equilibria) => {
             reference = barrier.x;

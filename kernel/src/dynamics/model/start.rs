@@ -12,51 +12,35 @@ pub(crate) fn fault(field: &str, value: impl ToString, problem: impl Into<String
 pub(crate) fn start_state(
     scene: &Scene,
     mechanism: &Mechanism,
-    stops: Option<&StopPair>,
-    compliant: Option<&Hertz>,
+    stops: Option<StopPair>,
+    compliant: Option<Hertz>,
 ) -> Result<(f64, f64), Fault> {
-    let (left, right) = (stops.and_then(|s| s.left), stops.and_then(|s| s.right));
+    let (left, right) = stops.map_or((None, None), |pair| (pair.left, pair.right));
     let domain = mechanism.curve.domain();
     match scene.start {
         Start::Rest => {
             let Some(equilibrium) = mechanism.landscape.right_stable() else {
-                return Err(fault(
-                    "start",
-                    "Rest",
-                    "this mechanism has no stable equilibrium to rest at; use At(x_mm: .., v_m_per_s: ..)",
-                ));
+                let problem =
+                    "this mechanism has no stable equilibrium to rest at; use At(x_mm: .., v_m_per_s: ..)";
+                return Err(fault("start", "Rest", problem));
             };
-            let mut x = equilibrium.x;
-            if let Some(stop) = right {
-                x = x.min(stop.x);
-            }
-            if let Some(stop) = left {
-                x = x.max(stop.x);
-            }
+            let mut x = right.map_or(equilibrium.x, |stop| equilibrium.x.min(stop.x));
+            x = left.map_or(x, |stop| x.max(stop.x));
             if let Some(hertz) = compliant.filter(|_| x != equilibrium.x) {
-                x = pressed_in(mechanism, hertz, x, equilibrium.x);
+                x = pressed_in(mechanism, &hertz, x, equilibrium.x);
             }
             Ok((x, 0.0))
         }
         Start::At { x_mm, v_m_per_s, .. } => {
             let x = x_mm / 1e3;
             if let Some(stop) = right.filter(|s| x > s.x).or(left.filter(|s| x < s.x)) {
-                return Err(fault(
-                    "start.x_mm",
-                    x_mm,
-                    format!("lies beyond the stop at {} mm; start between the stops", stop.x * 1e3),
-                ));
+                let problem = format!("lies beyond the stop at {} mm; start between the stops", stop.x * 1e3);
+                return Err(fault("start.x_mm", x_mm, problem));
             }
             if x < domain.0 || x > domain.1 {
-                return Err(fault(
-                    "start.x_mm",
-                    x_mm,
-                    format!(
-                        "lies outside the force curve, which is known from {} to {} mm",
-                        domain.0 * 1e3,
-                        domain.1 * 1e3
-                    ),
-                ));
+                let (from, to) = (domain.0 * 1e3, domain.1 * 1e3);
+                let problem = format!("lies outside the force curve, which is known from {from} to {to} mm");
+                return Err(fault("start.x_mm", x_mm, problem));
             }
             Ok((x, v_m_per_s))
         }
@@ -64,9 +48,8 @@ pub(crate) fn start_state(
 }
 
 /// Displacement in m of a mass at rest that the mechanism presses onto the compliant stop at `surface`,
-/// towards the equilibrium at `equilibrium` beyond it: the point at which the forces of stop and mechanism
-/// are equal. It lies between the surface, where only the mechanism acts, and the equilibrium, where its
-/// force is 0.
+/// towards the equilibrium at `equilibrium` beyond it: where the forces of stop and mechanism are equal. It
+/// lies between the surface, where only the mechanism acts, and the equilibrium, where its force is 0.
 fn pressed_in(mechanism: &Mechanism, hertz: &Hertz, surface: f64, equilibrium: f64) -> f64 {
     let sign = (equilibrium - surface).signum();
     let pressed = |depth: f64| -sign * mechanism.curve.force(surface + sign * depth);

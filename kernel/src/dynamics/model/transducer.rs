@@ -36,7 +36,6 @@ pub(crate) struct Circuit {
     pub decay: f64,
     /// State at w = 1 m/s, whose energy is that of the mass at this speed.
     pub amount: f64,
-    /// Whether the state is a voltage.
     is_voltage: bool,
 }
 
@@ -100,15 +99,15 @@ impl Transducer {
             Electromagnetic { coupling_v_s_per_m, coil_ohm, load_ohm, inductance_mh } => {
                 let (resistance, inductance) = (coil_ohm + load_ohm, inductance_mh / 1e3);
                 // per unit current: the current is the signal or is proportional to it
-                let (gain, circuit) = match transducer.has_state() {
-                    true => {
-                        let (k, decay) = (coupling_v_s_per_m, resistance / inductance);
-                        (1.0, Some(Circuit::new(k, inductance, decay, mass, false)))
-                    }
-                    false => (coupling_v_s_per_m / resistance, None),
+                let (gain, damping, circuit) = if transducer.has_state() {
+                    let (k, decay) = (coupling_v_s_per_m, resistance / inductance);
+                    (1.0, 0.0, Some(Circuit::new(k, inductance, decay, mass, false)))
+                } else {
+                    let gain = coupling_v_s_per_m / resistance;
+                    (gain, coupling_v_s_per_m * gain, None)
                 };
                 Self {
-                    damping: if circuit.is_none() { coupling_v_s_per_m * gain } else { 0.0 },
+                    damping,
                     circuit,
                     voltage: load_ohm * gain,
                     current: gain,
@@ -138,11 +137,8 @@ impl Transducer {
     /// Output at a velocity in m/s and an electrical state in A or V.
     pub fn output(&self, v: f64, electrical: f64) -> Output {
         let signal = if self.circuit.is_some() { electrical } else { v };
-        Output {
-            voltage: self.voltage * signal,
-            current: self.current * signal,
-            power: self.load * signal * signal,
-        }
+        let power = self.load * signal * signal;
+        Output { voltage: self.voltage * signal, current: self.current * signal, power }
     }
 
     /// Energies in J into the load and lost in the coil, from the time integral of the squared signal; from
@@ -185,11 +181,10 @@ impl Transducer {
         }
         let alternative = if circuit.is_voltage {
             let (load, force) = (1.0 / self.current, coupling * mass / circuit.amount);
+            let [coupling, load] = [force * load, load].map(short);
             format!(
-                "transducer=Electromagnetic(coupling_v_s_per_m: {}, coil_ohm: 0, load_ohm: {}) gives the \
-                 same voltage, current and power without a state of its own",
-                short(force * load),
-                short(load)
+                "transducer=Electromagnetic(coupling_v_s_per_m: {coupling}, coil_ohm: 0, load_ohm: {load}) \
+                 gives the same voltage, current and power without a state of its own"
             )
         } else if coupling * coupling / decay * time < OPEN_CIRCUIT_SHARE {
             "load_ohm: inf is the open circuit that this is".to_owned()
@@ -205,18 +200,16 @@ impl Transducer {
 
     /// Description in words, for `check`.
     pub fn describe(&self) -> String {
-        match &self.circuit {
-            None => format!(
-                "transducer: a damping of {} N s/m; {} V over the load and {} A through it at 1 m/s",
-                short(self.damping),
-                short(self.voltage),
-                short(self.current)
-            ),
-            Some(circuit) => format!(
-                "transducer: {} with a time constant of {} s beside the motion",
-                if circuit.is_voltage { "a voltage" } else { "a current" },
-                short(1.0 / circuit.decay)
-            ),
-        }
+        let Some(circuit) = &self.circuit else {
+            let [c, v, a] = [self.damping, self.voltage, self.current].map(short);
+            return format!(
+                "transducer: a damping of {c} N s/m; {v} V over the load and {a} A through it at 1 m/s"
+            );
+        };
+        let state = if circuit.is_voltage { "a voltage" } else { "a current" };
+        format!(
+            "transducer: {state} with a time constant of {} s beside the motion",
+            short(1.0 / circuit.decay)
+        )
     }
 }

@@ -14,7 +14,6 @@ pub(crate) fn side_of<T: Scalar>(x: T, barrier: T) -> i8 {
     }
 }
 
-/// The crossings of the barrier within one step.
 pub(crate) struct StepCrossings<'a, T> {
     /// The side from which the mass comes.
     pub from: i8,
@@ -22,14 +21,13 @@ pub(crate) struct StepCrossings<'a, T> {
     pub at_once: usize,
     /// The further crossings are its sign changes.
     pub roots: PolynomialRoots<'a, T>,
-    /// The side on which the step ends.
     end: i8,
 }
 
 impl<'a, T: Scalar> StepCrossings<'a, T> {
     /// From the coefficients of the displacement from the barrier over a step of length 1. If `from` is 0,
-    /// the motion started on the barrier and counts as coming from the side to which it leaves. `None` if it
-    /// stays on the barrier.
+    /// the motion started on the barrier and counts as coming from the side to which it leaves; `None` if it
+    /// stays.
     pub fn new(g: &'a mut [T], from: i8, end: i8) -> Option<Self> {
         // A step that starts on the barrier leaves it by its first coefficient that is not 0.
         let first = g.iter().position(|c| *c != T::zero())?;
@@ -42,7 +40,6 @@ impl<'a, T: Scalar> StepCrossings<'a, T> {
         Some(Self { from, at_once: usize::from(departs != from), roots: PolynomialRoots::new(g), end })
     }
 
-    /// Number of crossings.
     pub fn count(&self) -> usize {
         self.corrected_count(self.at_once + self.roots.count_sign_changes())
     }
@@ -57,7 +54,6 @@ impl<'a, T: Scalar> StepCrossings<'a, T> {
         }
     }
 
-    /// The side after `count` crossings.
     pub fn side_after(&self, count: usize) -> i8 {
         if count % 2 == 1 { -self.from } else { self.from }
     }

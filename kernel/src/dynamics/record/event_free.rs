@@ -4,8 +4,7 @@ use super::recorder::Recorder;
 use crate::dynamics::clock::Instant;
 use crate::numeric::{CompensatedSum, GaussLegendre, Scalar};
 
-/// Share of the clock's cycle by which an event-free step must end before the next border: more
-/// than rounding.
+/// Share of the clock's cycle by which an event-free step must end before a border: more than rounding.
 pub(crate) const MARGIN: f64 = 1e-9;
 
 /// The part of a record that event-free steps change, and the instant up to which they may be taken.
@@ -17,9 +16,7 @@ pub(crate) struct EventFree<T> {
     pub inside: bool,
     /// Whether the instant of every crossing is needed.
     pub listed: bool,
-    /// The barrier whose crossings are counted.
     pub barrier: Option<T>,
-    /// The side of the barrier.
     pub side: i8,
     pub low: T,
     pub high: T,
@@ -28,12 +25,6 @@ pub(crate) struct EventFree<T> {
 }
 
 impl<T: Scalar> Recorder<'_, T> {
-    /// Whether no samples are left to take, so that event-free steps need not be recorded one by one.
-    #[inline]
-    pub fn needs_no_samples(&self) -> bool {
-        self.next_time >= self.times.len()
-    }
-
     /// Begins a sequence of event-free steps at `at`, which ends at `end` at the latest.
     pub fn begin_event_free(&self, at: &Instant<T>, end: &Instant<T>) -> EventFree<T> {
         let until = |border: &Instant<T>| self.clock.between(at, border);
@@ -59,22 +50,21 @@ impl<T: Scalar> Recorder<'_, T> {
         }
     }
 
-    /// Ends the sequence: takes over what its steps have changed.
+    /// Ends the sequence: takes over what its steps have changed, the side of the barrier after them and the
+    /// number of crossings, all of them outside the settled window.
     pub fn end_event_free(
         &mut self,
         (low, high): (T, T),
         squared: CompensatedSum<T>,
         covered: CompensatedSum<T>,
+        side: i8,
+        crossings: u64,
     ) {
         (self.low, self.high) = (low, high);
         self.settled.squared_velocity = squared;
         self.covered = covered;
-    }
-
-    /// The same for crossings of the barrier before the settled window, and the side after them.
-    pub fn end_event_free_crossings(&mut self, side: i8, count: u64) {
         self.barrier_side = side;
-        self.counts.total_crossings += count;
+        self.counts.total_crossings += crossings;
     }
 
     /// Quadrature rule for integrals over a full step.

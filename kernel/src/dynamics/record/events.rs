@@ -9,73 +9,50 @@ use crate::numeric::Scalar;
 /// A recorder call other than a step. Velocities are signed, in kernel units.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Call<T> {
-    /// The mass stands still in this state: at rest on a stop, in an equilibrium, or during the unresolved
-    /// last bounces of a chatter (then with phase free and the speed of its first instant).
-    Stand {
-        at: Instant<T>,
-        until: Instant<T>,
-        state: (T, T),
-        phase: Phase,
-    },
-    Impact {
-        at: Instant<T>,
-        side: Side,
-        v_in: T,
-        v_out: T,
-    },
-    /// A chatter that begins at speed `v` is summed in closed form and dissipates its kinetic energy.
-    Chatter {
-        at: Instant<T>,
-        v: T,
-    },
-    Rest {
-        at: Instant<T>,
-        side: Side,
-    },
-    Release {
-        at: Instant<T>,
-        side: Side,
-    },
+    // The mass stands still in this state: at rest on a stop, in an equilibrium, or during the unresolved
+    // last bounces of a chatter (then with phase free and the speed of its first instant).
+    Stand { at: Instant<T>, until: Instant<T>, state: (T, T), phase: Phase },
+    Impact { at: Instant<T>, side: Side, v_in: T, v_out: T },
+    // A chatter that begins at speed `v` is summed in closed form and dissipates its kinetic energy.
+    Chatter { at: Instant<T>, v: T },
+    Rest { at: Instant<T>, side: Side },
+    Release { at: Instant<T>, side: Side },
 }
 
 impl<T: Scalar> Call<T> {
-    /// The same call at other instants.
-    pub fn when(self, instant: impl Fn(&Instant<T>) -> Instant<T>) -> Self {
-        match self {
-            Self::Stand { at, until, state, phase } => {
-                Self::Stand { at: instant(&at), until: instant(&until), state, phase }
-            }
-            Self::Impact { at, side, v_in, v_out } => Self::Impact { at: instant(&at), side, v_in, v_out },
-            Self::Chatter { at, v } => Self::Chatter { at: instant(&at), v },
-            Self::Rest { at, side } => Self::Rest { at: instant(&at), side },
-            Self::Release { at, side } => Self::Release { at: instant(&at), side },
+    pub fn when(mut self, instant: impl Fn(&Instant<T>) -> Instant<T>) -> Self {
+        match &mut self {
+            Self::Stand { at, until, .. } => (*at, *until) = (instant(at), instant(until)),
+            Self::Impact { at, .. }
+            | Self::Chatter { at, .. }
+            | Self::Rest { at, .. }
+            | Self::Release { at, .. } => *at = instant(at),
         }
+        self
     }
 
-    /// Its mirror image.
-    pub fn mirrored(self) -> Self {
+    pub fn mirrored(mut self) -> Self {
         let minus = |value: T| T::zero() - value;
-        let other = |phase: Phase| match phase {
-            Phase::Free => Phase::Free,
-            Phase::LeftStop => Phase::RightStop,
-            Phase::RightStop => Phase::LeftStop,
-        };
-        match self {
-            Self::Stand { at, until, state: (x, v), phase } => {
-                Self::Stand { at, until, state: (minus(x), minus(v)), phase: other(phase) }
+        match &mut self {
+            Self::Stand { state: (x, v), phase, .. } => {
+                (*x, *v) = (minus(*x), minus(*v));
+                *phase = match phase {
+                    Phase::Free => Phase::Free,
+                    Phase::LeftStop => Phase::RightStop,
+                    Phase::RightStop => Phase::LeftStop,
+                };
             }
-            Self::Impact { at, side, v_in, v_out } => {
-                Self::Impact { at, side: side.other(), v_in: minus(v_in), v_out: minus(v_out) }
+            Self::Impact { side, v_in, v_out, .. } => {
+                (*side, *v_in, *v_out) = (side.other(), minus(*v_in), minus(*v_out));
             }
-            Self::Chatter { .. } => self,
-            Self::Rest { at, side } => Self::Rest { at, side: side.other() },
-            Self::Release { at, side } => Self::Release { at, side: side.other() },
+            Self::Chatter { .. } => {}
+            Self::Rest { side, .. } | Self::Release { side, .. } => *side = side.other(),
         }
+        self
     }
 }
 
 impl<T: Scalar> Recorder<'_, T> {
-    /// Records a call in this segment of the drive.
     #[inline(always)]
     pub fn report(&mut self, call: &Call<T>, segment: usize) {
         match call {
@@ -155,8 +132,8 @@ impl<T: Scalar> Recorder<'_, T> {
         }
     }
 
-    /// The mass touches a compliant stop with this signed velocity in kernel units. `strikes`: it comes from
-    /// outside and has not been there since the start.
+    /// The mass touches a compliant stop with this signed velocity in kernel units. `strikes` is false for a
+    /// mass that is in the stop at the start of the run.
     pub fn touch(&mut self, at: &Instant<T>, side: Side, v: T, strikes: bool) {
         if strikes {
             self.count_impact(at, v);

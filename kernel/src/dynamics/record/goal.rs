@@ -6,7 +6,6 @@ use crate::dynamics::result::{Arrival, Pursuit};
 /// Number of stroboscopic states, beyond two periods of the motion, that must also have come back.
 const CONFIRMING_STATES: u64 = 12;
 
-/// The goal of a pursuit, and what it has reached.
 #[derive(Debug)]
 pub(crate) struct Goal<'a> {
     pursuit: Pursuit<'a>,
@@ -23,13 +22,13 @@ impl<'a> Goal<'a> {
         if self.reached.is_some() {
             return;
         }
-        let periods = judge.strobes().seen() - 1;
+        let periods = judge.strobes.seen - 1;
         if let Some(which) = self.pursuit.known.iter().position(|known| known.is_reached(state)) {
             self.reached = Some(Arrival::Captured { which, periods });
         } else if let Some(which) = self.pursuit.regions.iter().position(|region| region.holds(state)) {
             self.reached = Some(Arrival::Entered { which, periods });
         } else if periods >= self.pursuit.repeats_from {
-            let period = judge.strobes().repeats_for(CONFIRMING_STATES);
+            let period = judge.strobes.repeats_for(CONFIRMING_STATES);
             self.reached = period.map(|period| Arrival::Repeats { period, state, periods });
         }
     }

@@ -40,7 +40,7 @@ impl<T: Scalar> Recorder<'_, T> {
     /// Whether the time from `start` to `end` lies wholly inside the settled window (true) or wholly outside
     /// it (false); `None` if it does neither, or ends within rounding of a border.
     pub fn lies_inside(&self, start: &Instant<T>, end: &Instant<T>) -> Option<bool> {
-        let clear = self.clock.period() * T::of(CLEAR);
+        let clear = self.clock.period * T::of(CLEAR);
         let (from, to) = &self.window;
         let between = |a: &Instant<T>, b: &Instant<T>| self.clock.between(a, b);
         if between(from, start) >= T::zero() && between(end, to) > clear {
@@ -52,13 +52,25 @@ impl<T: Scalar> Recorder<'_, T> {
         }
     }
 
-    /// The instant up to which the time after `at` is on the same side of the window's borders, at
-    /// most `end`.
-    pub fn same_side_until(&self, at: &Instant<T>, end: &Instant<T>, inside: bool) -> Instant<T> {
+    /// The number of half cycles of the clock between two instants, if it is odd and whole.
+    pub fn odd_half_cycles(&self, from: &Instant<T>, to: &Instant<T>) -> Option<i64> {
+        let halves = self.clock.between(from, to) / (self.clock.period * T::of(0.5));
+        let whole = (halves + T::of(0.5)).floor();
+        let count = whole.to_f64() as i64;
+        ((halves - whole).abs() <= T::of(CLEAR) && count % 2 == 1).then_some(count)
+    }
+
+    /// Number of laps of `cycles` cycles of the clock from `at` on, up to `end`, that are on the same side of
+    /// the window's borders as the last one, which was `inside` or not.
+    pub fn laps_on_this_side(&self, at: &Instant<T>, end: &Instant<T>, cycles: i64, inside: bool) -> i64 {
         let (from, to) = self.window;
         let border =
             if inside { Some(to) } else { Some(from).filter(|w| self.clock.between(at, w) > T::zero()) };
-        border.filter(|border| self.clock.between(border, end) > T::zero()).unwrap_or(*end)
+        let until = border.filter(|border| self.clock.between(border, end) > T::zero()).unwrap_or(*end);
+        let clear = self.clock.period * T::of(CLEAR);
+        let length = self.clock.period * T::of(cycles as f64);
+        let laps = ((self.clock.between(at, &until) - clear) / length).floor();
+        laps.larger(T::zero()).to_f64() as i64
     }
 
     /// The first instant, at `at` or later, at which something is listed; `None` if nothing is.

@@ -15,16 +15,14 @@ pub(crate) const MAX_STROBES: u32 = 1 << 22;
 /// States listed once a forcing period.
 #[derive(Debug, Clone)]
 pub(crate) struct Listing<T> {
-    /// The instant of the next state.
     next: Instant<T>,
-    /// Number of states still to be listed.
-    left: u64,
+    /// Number of states still to be listed; `None` if only the last state is kept, of any number.
+    left: Option<u64>,
     /// Cycles of the clock between two states.
     cycles: i64,
-    /// Displacement in m and velocity in m/s of the states since `first`, or of the last one if `last_only`.
+    /// Displacement in m and velocity in m/s of the states since `first`.
     states: Vec<(f64, f64)>,
     first: Instant<T>,
-    last_only: bool,
 }
 
 /// The listings of a run.
@@ -42,19 +40,18 @@ pub(crate) struct Listed<T> {
 }
 
 impl<T: Scalar> Listing<T> {
-    /// Adds the state at the next instant.
     pub fn add(&mut self, (x, v): (f64, f64)) {
-        if self.last_only {
-            self.states.clear();
+        match &mut self.left {
+            Some(left) => *left -= 1,
+            None => self.states.clear(),
         }
         self.states.push((x, v));
-        self.left -= 1;
         self.next.cycle += self.cycles;
     }
 
     /// Skips states of a mass that stands still up to `until`, if only the last is kept.
     pub fn skip_still(&mut self, clock: &Clock<T>, period: T, until: &Instant<T>) {
-        if self.last_only {
+        if self.left.is_none() {
             let periods = (clock.between(&self.next, until) / period).floor().to_f64();
             self.next.cycle += (periods as i64 - 1).max(0) * self.cycles;
         }
@@ -62,7 +59,7 @@ impl<T: Scalar> Listing<T> {
 
     /// The next instant, if there is a state still to be listed.
     pub fn due(&self) -> Option<Instant<T>> {
-        (self.left > 0).then_some(self.next)
+        (self.left != Some(0)).then_some(self.next)
     }
 }
 
@@ -74,8 +71,8 @@ impl<T> Default for Listings<T> {
 
 impl<T: Scalar> Listings<T> {
     /// The listings that `request` asks for, in a run whose settled window begins at `from` and holds
-    /// `periods` forcing periods of `cycles` cycles of the clock each; `start` is the drive's phase at the
-    /// start in turns.
+    /// `periods` forcing periods of `cycles` cycles of the clock; `start` is the drive's phase at the start
+    /// in turns.
     pub fn new(
         request: &Request,
         clock: &Clock<T>,
@@ -86,15 +83,12 @@ impl<T: Scalar> Listings<T> {
         if cycles == 0 {
             return Self::default();
         }
-        let listing = |first: Instant<T>, left: u64, last_only: bool| {
-            let room = if last_only { 1 } else { 0 };
-            Listing { next: first, left, cycles, states: Vec::with_capacity(room), first, last_only }
-        };
+        let listing = |first, left| Listing { next: first, left, cycles, states: Vec::new(), first };
         let section = request.section.map(|phase| {
             let turns = (phase - start).rem_euclid(1.0) * cycles as f64;
             let whole = turns.floor();
-            let mut first = Instant { cycle: whole as i64, phase: T::of(turns - whole) * clock.period() };
-            let same = T::of(SAME * cycles as f64) * clock.period();
+            let mut first = Instant { cycle: whole as i64, phase: T::of(turns - whole) * clock.period };
+            let same = T::of(SAME * cycles as f64) * clock.period;
             first.cycle += (from.cycle - first.cycle).div_euclid(cycles) * cycles;
             while clock.between(&from, &first) < -same {
                 first.cycle += cycles;
@@ -102,13 +96,12 @@ impl<T: Scalar> Listings<T> {
             if clock.between(&from, &first).abs() <= same {
                 first = from;
             }
-            listing(first, periods.min(MAX_STROBES.into()), false)
+            listing(first, Some(periods.min(MAX_STROBES.into())))
         });
         let start = Instant { cycle: 0, phase: T::zero() };
-        Self { section, carried: request.carry.then(|| listing(start, u64::MAX, true)) }
+        Self { section, carried: request.carry.then(|| listing(start, None)) }
     }
 
-    /// Whether there are no listings.
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.section.is_none() && self.carried.is_none()
@@ -118,7 +111,6 @@ impl<T: Scalar> Listings<T> {
         self.section.iter_mut().chain(&mut self.carried)
     }
 
-    /// The next instants of the listings.
     #[inline]
     pub fn due(&self) -> impl Iterator<Item = Instant<T>> {
         self.section.iter().chain(&self.carried).filter_map(Listing::due)
@@ -137,11 +129,11 @@ impl<T: Scalar> Listings<T> {
                 continue; // the lap lies before all of them
             }
             listing.next.cycle += laps * cycles;
-            if !listing.last_only {
+            if let Some(left) = &mut listing.left {
                 let lap = listing.states.get(before.states..after.states).unwrap_or_default().to_vec();
-                let more = ((lap.len() as u64).saturating_mul(laps as u64)).min(listing.left);
+                let more = ((lap.len() as u64).saturating_mul(laps as u64)).min(*left);
                 listing.states.extend(lap.iter().cycle().take(more as usize));
-                listing.left -= more;
+                *left -= more;
             }
         }
     }
@@ -151,7 +143,7 @@ impl<T: Scalar> Listings<T> {
         if let Some(section) = &mut self.section {
             section.states.clear();
             section.first = section.next;
-            section.left = periods.min(MAX_STROBES.into());
+            section.left = Some(periods.min(MAX_STROBES.into()));
         }
     }
 

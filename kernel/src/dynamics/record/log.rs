@@ -8,7 +8,7 @@ use super::recorder::Recorder;
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::series::{Integrals, Series};
 use crate::dynamics::state::{Checkpoint, Label, MotionState};
-use crate::dynamics::step::path::StepView;
+use crate::dynamics::step::path::StepData;
 use crate::numeric::Scalar;
 
 /// Maximum number of entries of a log: a motion with more in a period would hardly repeat within a run.
@@ -24,19 +24,10 @@ enum Entry<T: Copy> {
 /// A step of flight; its coefficients lie in the log.
 #[derive(Debug, Clone)]
 struct KeptStep<T: Copy> {
-    origin: T,
-    at: Instant<T>,
-    whole: T,
-    length: T,
-    bound: T,
-    limits: (T, T),
-    x: T,
-    v: T,
+    data: StepData<T>,
     /// Index of its first coefficient in the log.
     first: usize,
-    /// Number of coefficients of the displacement.
     known: usize,
-    /// Number of coefficients of the base's acceleration.
     base: usize,
     /// Index of its integrals in the log; a step and its mirror image share them.
     integrals: usize,
@@ -46,7 +37,6 @@ struct KeptStep<T: Copy> {
 #[derive(Debug, Clone, Copy)]
 struct Mark<T> {
     point: Checkpoint<T>,
-    /// Number of entries before it.
     entries: usize,
 }
 
@@ -83,7 +73,6 @@ impl<T: Scalar> Log<T> {
         }
     }
 
-    /// Whether there is room for more entries.
     pub fn has_room(&self) -> bool {
         self.entries.len() < MAX_ENTRIES
     }
@@ -92,21 +81,13 @@ impl<T: Scalar> Log<T> {
         self.entries.push(Entry::Call(call));
     }
 
-    /// Keeps a step of free flight.
-    pub fn add_step(&mut self, step: &StepView<T, Series<T>>) {
-        let (y, a) = (step.path.coefficients(), step.path.base_coefficients());
+    pub fn add_step(&mut self, series: &Series<T>, step: &StepData<T>) {
+        let (y, a) = (series.coefficients(), series.base_coefficients());
         let first = self.coefficients.len();
         self.coefficients.extend_from_slice(y);
         self.coefficients.extend_from_slice(a);
         self.entries.push(Entry::Step(KeptStep {
-            origin: step.origin,
-            at: step.at,
-            whole: step.whole,
-            length: step.length,
-            bound: step.bound,
-            limits: step.limits,
-            x: step.x,
-            v: step.v,
+            data: *step,
             first,
             known: y.len(),
             base: a.len(),
@@ -136,12 +117,10 @@ impl<T: Scalar> Log<T> {
         self.labels.iter().find(|(label, ..)| wanted(label)).map(|(_, mark, totals)| (*mark, *totals))
     }
 
-    /// Number of marks.
     pub fn marks(&self) -> usize {
         self.marks.len()
     }
 
-    /// The instant of a mark.
     pub fn at(&self, mark: usize) -> Instant<T> {
         self.marks[mark].point.state.at
     }
@@ -152,16 +131,14 @@ impl<T: Scalar> Log<T> {
         first + self.marks[first + 1..].partition_point(reached)
     }
 
-    /// The checkpoint of a mark, shifted by `later`.
     pub fn point_later(&self, mark: usize, later: CycleShift) -> Checkpoint<T> {
         let Checkpoint { state, barrier_side } = self.marks[mark].point;
         let state = MotionState { at: later.instant(&state.at), refused: None, ..state };
         Checkpoint { state, barrier_side }
     }
 
-    /// Replays the recorder calls between two marks (up to the end if there is no second one), shifted by
-    /// `later`, in this segment of the drive, with each step in `series`. Returns the number of calls, and of
-    /// impacts among them.
+    /// Replays the recorder calls between two marks (up to the end without a second one), shifted by `later`,
+    /// in this segment of the drive, with each step in `series`. Returns the number of calls and of impacts.
     pub fn play(
         &self,
         (record, series): (&mut Recorder<T>, &mut Series<T>),
@@ -182,20 +159,8 @@ impl<T: Scalar> Log<T> {
                     series.known = y.len();
                     let integrals = &self.integrals[step.integrals];
                     series.measured.set(integrals.get());
-                    let view = StepView {
-                        path: &*series,
-                        circuit: None,
-                        origin: step.origin,
-                        at: later.instant(&step.at),
-                        whole: step.whole,
-                        length: step.length,
-                        duration: step.length,
-                        bound: step.bound,
-                        limits: step.limits,
-                        x: step.x,
-                        v: step.v,
-                    };
-                    record.step(&view, segment);
+                    let data = StepData { at: later.instant(&step.data.at), ..step.data };
+                    record.step(&*series, None, &data, segment);
                     integrals.set(series.measured.get());
                 }
                 Entry::Call(call) => {
@@ -210,7 +175,7 @@ impl<T: Scalar> Log<T> {
     /// Appends the mirror image of everything from mark `first` on, later by half a cycle and `cycles` whole
     /// cycles of the clock; `modes` is the number of modes.
     pub fn append_mirrored(&mut self, first: usize, cycles: i64, modes: usize, clock: &Clock<T>) {
-        let half = clock.period() * T::of(0.5);
+        let half = clock.period * T::of(0.5);
         let instant = |at: &Instant<T>| {
             let at = clock.advance(at, half);
             Instant { cycle: at.cycle + cycles, phase: at.phase }
@@ -232,15 +197,16 @@ impl<T: Scalar> Log<T> {
                     let first = self.coefficients.len();
                     self.coefficients.extend_from_within(step.first..step.first + step.known + step.base);
                     self.coefficients[first..].iter_mut().for_each(|c| *c = minus(*c));
-                    Entry::Step(KeptStep {
-                        origin: minus(step.origin),
-                        at: instant(&step.at),
-                        limits: (minus(step.limits.1), minus(step.limits.0)),
-                        x: minus(step.x),
-                        v: minus(step.v),
-                        first,
-                        ..step
-                    })
+                    let StepData { origin, at, limits: (low, high), x, v, .. } = step.data;
+                    let data = StepData {
+                        origin: minus(origin),
+                        at: instant(&at),
+                        limits: (minus(high), minus(low)),
+                        x: minus(x),
+                        v: minus(v),
+                        ..step.data
+                    };
+                    Entry::Step(KeptStep { data, first, ..step })
                 }
                 Entry::Call(call) => Entry::Call(call.when(instant).mirrored()),
             };

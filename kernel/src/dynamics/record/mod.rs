@@ -1,7 +1,6 @@
 //! Record of a run: samples, events, statistics, ledger. It does not affect the motion.
 
 pub(crate) mod barrier;
-mod circuit;
 mod crossings;
 pub(crate) mod event_free;
 pub(crate) mod events;
@@ -9,7 +8,6 @@ pub(crate) mod goal;
 pub(crate) mod laps;
 mod listing;
 pub(crate) mod log;
-mod pursuit;
 pub(crate) mod recorder;
 mod regime;
 mod repeats;

@@ -8,7 +8,7 @@ use super::listing::{Listings, MAX_STROBES};
 use super::regime::Judge;
 use super::sums::{Counts, Sums};
 use crate::dynamics::clock::{Clock, Instant};
-use crate::dynamics::drive::{Base, base_at};
+use crate::dynamics::drive::Base;
 use crate::dynamics::model::Model;
 use crate::dynamics::result::{Event, EventKind, Request, Sample, Side};
 use crate::numeric::{CompensatedSum, Scalar};
@@ -47,7 +47,6 @@ pub(crate) struct Recorder<'a, T: Copy> {
     /// -1, 0 (on it since the start) or 1.
     pub barrier_side: i8,
     pub judge: Judge,
-    /// The goal of the motion, if it is pursued.
     pub goal: Option<Goal<'a>>,
     /// The first instant of the run at the window's phase.
     pub origin: Instant<T>,
@@ -57,14 +56,13 @@ pub(crate) struct Recorder<'a, T: Copy> {
     pub period_cycles: i64,
     /// Number of stroboscopic states that may still be recorded one by one.
     pub strobes_left: u32,
-    /// Forcing periods in the window.
+    /// Whole forcing periods in the settled window; 0 if it holds none.
     pub periods: u64,
     /// Speed of the fastest impact in the window.
     pub impact_speed: T,
     pub counts: Counts,
     /// Largest force of a compliant stop over mass, kernel units.
     pub peak_contact: T,
-    /// Order of the series.
     pub order: usize,
 }
 
@@ -84,11 +82,13 @@ impl<'a, T: Scalar> Recorder<'a, T> {
         } else {
             clock.at(model.duration)
         };
-        let origin = match cycles {
-            0 => from,
-            _ => Instant { cycle: from.cycle.rem_euclid(cycles), phase: from.phase },
+        let (origin, first) = match cycles {
+            0 => (from, 0),
+            _ => (
+                Instant { cycle: from.cycle.rem_euclid(cycles), ..from },
+                from.cycle.div_euclid(cycles) as u64,
+            ),
         };
-        let first = if cycles == 0 { 0 } else { from.cycle.div_euclid(cycles) as u64 };
         let scales = (model.scales.length, model.scales.speed);
         let barrier = model.crossing_level.map(T::of);
         let side = barrier.map_or(0, |b| side_of(start.0, b));
@@ -109,7 +109,7 @@ impl<'a, T: Scalar> Recorder<'a, T> {
             samples,
             events: request.events.then(Vec::new),
             window: (from, to),
-            period: clock.period() * T::of(cycles as f64),
+            period: clock.period * T::of(cycles as f64),
             whole: Sums::new(),
             settled: Sums::new(),
             low: T::of(f64::INFINITY),
@@ -137,7 +137,7 @@ impl<'a, T: Scalar> Recorder<'a, T> {
 
     /// Acceleration of the base in m/s^2 at an instant in this segment of the drive.
     pub(crate) fn base(&self, at: &Instant<T>, segment: usize) -> f64 {
-        base_at(self.base, &self.clock, segment, at, self.unit)
+        self.base.in_si(at, segment, self.unit)
     }
 
     /// The part of \[at, at + length) inside the settled window, relative to `at`.
@@ -159,12 +159,10 @@ impl<'a, T: Scalar> Recorder<'a, T> {
         (self.clock.between(&self.origin, at) / self.period).to_f64()
     }
 
-    /// Whether the instant of every crossing is needed.
     pub(crate) fn lists_crossings(&self) -> bool {
         self.events.is_some() || self.judge.times_all_crossings()
     }
 
-    /// Lists an event, if events are listed.
     #[inline]
     pub fn event(&mut self, at: &Instant<T>, kind: EventKind, side: Side, v_in: f64, v_out: f64) {
         if let Some(events) = &mut self.events {

@@ -11,7 +11,6 @@ const MIN_PERIODS_TO_COMPARE: u64 = 8;
 /// Number of standard errors by which the means of two halves may differ.
 const STANDARD_ERRORS: f64 = 3.0;
 
-/// An observation of the judge, kept for replay.
 #[derive(Debug, Clone, Copy)]
 enum Observation {
     Strobe(Strobe, Gain),
@@ -42,7 +41,6 @@ impl Half {
         self.sum / self.count
     }
 
-    /// Square of the mean's standard error.
     fn error_squared(&self) -> f64 {
         let mean = self.mean();
         (self.squares / self.count - mean * mean).max(0.0) / (self.count - 1.0)
@@ -73,11 +71,10 @@ impl PeriodsWith {
 #[derive(Debug, Clone)]
 pub(crate) struct Judge {
     rhythm: Rhythm,
-    /// Forcing periods in the window.
     periods: u64,
     /// Number of the forcing period at which the window begins.
     from: u64,
-    strobes: Strobes,
+    pub strobes: Strobes,
     crossings: Crossings,
     crossing_periods: PeriodsWith,
     release_periods: PeriodsWith,
@@ -93,8 +90,7 @@ pub(crate) struct Judge {
 }
 
 impl Judge {
-    /// For a settled window of `periods` forcing periods that begins with the stroboscopic state
-    /// number `from`.
+    /// For a settled window of `periods` forcing periods that begins with stroboscopic state number `from`.
     pub fn new(rhythm: Rhythm, scales: (f64, f64), periods: u64, from: u64) -> Self {
         Self {
             rhythm,
@@ -111,18 +107,6 @@ impl Judge {
             last_crossing: None,
             tape: None,
         }
-    }
-
-    /// A copy for another window, made before the run has begun.
-    pub fn for_window(&self, periods: u64, from: u64) -> Self {
-        let mut strobes = self.strobes.clone();
-        strobes.begin_window(periods, from);
-        Self { periods, from, strobes, crossings: Crossings::new(periods), ..self.clone() }
-    }
-
-    /// The stroboscopic states so far.
-    pub fn strobes(&self) -> &Strobes {
-        &self.strobes
     }
 
     /// Whether the instants of crossings outside the window are needed too: under a drive that changes, the
@@ -143,26 +127,21 @@ impl Judge {
         let gain = (total.0 - self.last.0, total.1 - self.last.1);
         self.last = total;
         self.keep(Observation::Strobe(state, gain));
-        self.gain(self.strobes.seen(), gain);
+        self.gain(self.strobes.seen, 1, 1, gain);
         self.strobes.add(state);
     }
 
-    /// Adds the gain of the period before the stroboscopic state of this number.
-    fn gain(&mut self, number: u64, gain: Gain) {
-        if number > self.from && number <= self.from + self.periods {
-            let half = usize::from(2 * (number - self.from) > self.periods);
-            self.speed[half].add(gain.0, 1);
-            self.crossed[half].add(gain.1 as f64, 1);
-        }
-    }
-
-    /// The same for `times` states, `lap` periods apart.
-    fn gain_repeated(&mut self, number: u64, times: u64, lap: u64, gain: Gain) {
+    /// Adds the gain before the stroboscopic state of this number, and before `times` in all, `lap` periods
+    /// apart.
+    fn gain(&mut self, number: u64, times: u64, lap: u64, gain: Gain) {
         let up_to = |end: u64| (end + 1).saturating_sub(number).div_ceil(lap).min(times);
         let ends = [self.from, self.from + self.periods / 2, self.from + self.periods].map(up_to);
-        for (half, pair) in ends.windows(2).enumerate() {
-            self.speed[half].add(gain.0, pair[1] - pair[0]);
-            self.crossed[half].add(gain.1 as f64, pair[1] - pair[0]);
+        for half in [0, 1] {
+            let inside = ends[half + 1] - ends[half];
+            if inside > 0 {
+                self.speed[half].add(gain.0, inside);
+                self.crossed[half].add(gain.1 as f64, inside);
+            }
         }
     }
 
@@ -188,7 +167,6 @@ impl Judge {
         }
     }
 
-    /// Adds a release from rest on a stop.
     pub fn release(&mut self, time: f64, seconds: f64) {
         self.keep(Observation::Release { time, seconds });
         if self.rhythm == Rhythm::Changing {
@@ -210,12 +188,10 @@ impl Judge {
         self.tape = Some(Vec::with_capacity(64));
     }
 
-    /// Stops keeping observations.
     pub fn end_tape(&mut self) {
         self.tape = None;
     }
 
-    /// The number of observations kept.
     pub fn taped(&self) -> usize {
         self.tape.as_ref().map_or(0, Vec::len)
     }
@@ -238,7 +214,7 @@ impl Judge {
         }
         self.last = (self.last.0 + total.0 * laps as f64, self.last.1 + total.1.saturating_mul(laps));
         // Replay as many laps as any classification looks back, and one more to see what a lap adds.
-        let replayed = laps.min(2 * self.strobes.longest() as u64 / periods.max(1) + 4);
+        let replayed = laps.min(2 * self.strobes.longest as u64 / periods.max(1) + 4);
         let mut before = (0, 0);
         for number in 1..=replayed {
             before = (self.crossing_periods.count, self.release_periods.count);
@@ -247,7 +223,7 @@ impl Judge {
                 match *entry {
                     Observation::Strobe(..) => {
                         let Some((state, gain)) = next.next() else { continue };
-                        self.gain(self.strobes.seen(), *gain);
+                        self.gain(self.strobes.seen, 1, 1, *gain);
                         self.strobes.add(*state);
                     }
                     Observation::Crossing { time, side, seconds } => {
@@ -267,8 +243,8 @@ impl Judge {
             more(&mut self.crossing_periods, before.0);
             more(&mut self.release_periods, before.1);
             if strobes.len() as u64 == periods {
-                for (number, (_, gain)) in (self.strobes.seen()..).zip(&strobes) {
-                    self.gain_repeated(number, left, periods, *gain);
+                for (number, (_, gain)) in (self.strobes.seen..).zip(&strobes) {
+                    self.gain(number, left, periods, *gain);
                 }
                 self.strobes.skip(later, periods, |place| strobes[place as usize].0);
             }
@@ -278,10 +254,9 @@ impl Judge {
         self.tape = Some(tape);
     }
 
-    /// Adds `more` stroboscopic states equal to `state`, the last one; none of them is beyond the next border
-    /// of the window.
+    /// Adds `more` stroboscopic states equal to `state`, the last one, up to the next border of the window.
     pub fn skip_still(&mut self, more: u64, state: Strobe) {
-        self.gain_repeated(self.strobes.seen(), more, 1, (0.0, 0));
+        self.gain(self.strobes.seen, more, 1, (0.0, 0));
         self.strobes.skip(more, 1, |_| state);
     }
 
@@ -296,7 +271,6 @@ impl Judge {
         self.strobes.period().filter(|_| self.rhythm == Rhythm::Periodic)
     }
 
-    /// The period of the motion in forcing periods.
     pub fn period(&self) -> Option<u32> {
         self.repeats().map(|(period, _)| period)
     }
@@ -311,8 +285,8 @@ impl Judge {
         }
     }
 
-    /// Whether the averages of the window's halves agree, if this can be determined. They do if the motion
-    /// has settled.
+    /// Whether the averages of the window's halves agree, if that is known. They do once the motion has
+    /// settled.
     pub fn steady(&self, rests: bool) -> Option<bool> {
         match self.settled(rests)? {
             true => Some(true),
@@ -331,8 +305,8 @@ impl Judge {
         (self.crossing_periods.count, self.release_periods.count)
     }
 
-    /// The first crossing and release under a drive that changes; `end` is the end of the run in
-    /// forcing periods.
+    /// The first crossing and release under a drive that changes; `end` is that of the run in forcing
+    /// periods.
     pub fn firsts(&self, end: f64, amplitude: impl Fn(f64) -> Option<f64>) -> Option<Firsts> {
         let mut firsts = self.firsts;
         let lasting = |last: i64| last >= end.floor() as i64 - 1;
@@ -379,7 +353,7 @@ mod tests {
     }
 
     #[test]
-    fn laps_that_are_not_told_count() {
+    fn laps_that_are_not_replayed_count() {
         for period in [1, 2, 5, 13] {
             let laps = 200;
             for more in [0, 1, 250] {
@@ -407,7 +381,7 @@ mod tests {
                 assert_eq!(long.period(), all.then_some(period as u32), "{case}");
                 assert_eq!(long.periods_with(), short.periods_with());
                 assert_eq!(long.crossings_repeat(), short.crossings_repeat());
-                assert_eq!(long.strobes.seen(), short.strobes.seen());
+                assert_eq!(long.strobes.seen, short.strobes.seen);
                 assert_eq!(long.settles_at(|at| at as f64), short.settles_at(|at| at as f64));
                 // whole numbers, whose sums are exact
                 let halves = |judge: &Judge| format!("{:?} {:?}", judge.speed, judge.crossed);
@@ -435,7 +409,7 @@ mod tests {
     }
 
     #[test]
-    fn of_a_drive_that_changes_it_is_told_what_happened_first() {
+    fn under_a_drive_that_changes_the_first_events_are_known() {
         let mut judge = Judge::new(Rhythm::Changing, (1.0, 1.0), 10, 0);
         judge.release(2.2, 2.2);
         for time in [3.5, 6.5, 7.5, 8.5, 9.5] {

@@ -45,21 +45,18 @@ impl Strobe {
 pub(crate) struct Strobes {
     /// Length and speed to which differences of states are relative.
     scales: (f64, f64),
-    /// The longest period that is searched for.
-    longest: usize,
-    seen: u64,
+    pub longest: usize,
+    /// The number of states so far.
+    pub seen: u64,
     /// The last states, each at its number modulo [`LONGEST`].
     recent: [Strobe; LONGEST],
-    /// For each period up to [`LONGEST`], the number of the state from which on all states have come back
-    /// after it.
+    /// For each period up to [`LONGEST`], the number of the state from which on all states repeat with it.
     since: [u64; LONGEST],
     /// Forcing periods in the settled window.
     periods: u64,
     /// Number of the first state of the window.
     from: u64,
-    /// The first states of the window.
     opening: [Strobe; 2 * LONGEST],
-    /// The states around the middle of the window.
     middle: [Strobe; 2 * LONGEST],
 }
 
@@ -80,23 +77,12 @@ impl Strobes {
         }
     }
 
-    /// Changes the window, before the first state. All periods are searched for, however short the window is.
-    pub fn begin_window(&mut self, periods: u64, from: u64) {
-        *self = Self { longest: LONGEST, ..Self::new(self.scales, periods, from) };
-    }
-
-    /// The smallest number of states after which those of the last two periods, and `more` states before
-    /// them, have come back.
+    /// The smallest period, in states, with which the last two periods and `more` states before them repeat.
     pub fn repeats_for(&self, more: u64) -> Option<u32> {
         (1..=self.longest as u64).find_map(|q| {
             let back = self.since[q as usize - 1] + q + 2 * q + more < self.seen;
             back.then_some(q as u32)
         })
-    }
-
-    /// The number of states so far.
-    pub fn seen(&self) -> u64 {
-        self.seen
     }
 
     /// Adds a state; those after the window are ignored.
@@ -116,7 +102,6 @@ impl Strobes {
         self.seen += 1;
     }
 
-    /// Whether all states of the window have been seen.
     fn is_complete(&self) -> bool {
         self.seen > self.from + self.periods
     }
@@ -139,8 +124,8 @@ impl Strobes {
     }
 
     /// Adds `more` states of a motion that repeats exactly after every `lap` states, which divides `more`,
-    /// and has done so for four laps and twice as many states as are looked back at; `state` gives the states
-    /// of a lap.
+    /// and has done so for four laps and twice as many states as are looked back at; `state` gives those of a
+    /// lap.
     pub fn skip(&mut self, more: u64, lap: u64, state: impl Fn(u64) -> Strobe) {
         if self.is_complete() {
             return;
@@ -161,13 +146,8 @@ impl Strobes {
         self.seen += more;
     }
 
-    /// The longest period that is searched for.
-    pub fn longest(&self) -> usize {
-        self.longest
-    }
-
-    /// The smallest number of states after which all states of the window have come back and stay where they
-    /// are over the window, and the number of the state since which they have come back.
+    /// The smallest period, in states, with which the whole window repeats without a drift, and the number of
+    /// the state from which on the states repeat.
     pub fn period(&self) -> Option<(u32, u64)> {
         let back = |q: &u64| self.since[*q as usize - 1] <= self.from;
         let q =
@@ -215,18 +195,15 @@ impl Strobes {
     }
 }
 
-/// The crossings of the settled window.
 #[derive(Debug, Clone)]
 pub(crate) struct Crossings {
-    /// Forcing periods in the window.
     periods: f64,
-    /// Crossings that may still get a partner: time in forcing periods since the start of the window, and the
-    /// well entered.
+    /// Crossings that may still get a partner: time in forcing periods since the window's start, and well
+    /// entered.
     recent: VecDeque<(f64, Side)>,
     /// Number of crossings before the first of `recent`.
     gone: u64,
-    /// For each period, the first crossing without a partner one period later; `None` if a partner
-    /// was missing.
+    /// For each period, the first crossing without a partner one period later; `None` if one was missing.
     waiting: [Option<u64>; LONGEST],
     paired: [bool; LONGEST],
 }
@@ -291,53 +268,50 @@ impl Crossings {
 
 #[cfg(test)]
 mod tests {
+    use std::ops::Range;
+
     use super::*;
 
-    fn repeat(periods: u64, times: &[f64]) -> bool {
-        let side = |i: usize| if i.is_multiple_of(2) { Side::Right } else { Side::Left };
+    /// Adds crossings at `time(i)`, alternately to the right and to the left.
+    fn add(crossings: &mut Crossings, numbers: Range<i32>, time: impl Fn(i32) -> f64) {
+        let sides = [Side::Right, Side::Left].into_iter().cycle();
+        numbers.map(time).zip(sides).for_each(|(t, side)| crossings.add(t, side));
+    }
+
+    fn repeat(periods: u64, numbers: Range<i32>, time: impl Fn(i32) -> f64) -> bool {
         let mut crossings = Crossings::new(periods);
-        times.iter().enumerate().for_each(|(i, t)| crossings.add(*t, side(i)));
+        add(&mut crossings, numbers, time);
         assert!(crossings.recent.len() <= 2 * LONGEST + 2);
         crossings.repeat()
     }
 
+    fn twice_a_period(i: i32) -> f64 {
+        0.25 + 0.5 * f64::from(i)
+    }
+
     #[test]
     fn twice_a_period_repeats() {
-        let times: Vec<f64> = (0..30).map(|i| 0.25 + 0.5 * f64::from(i)).collect();
-        assert!(repeat(15, &times));
-        let edge: Vec<f64> =
-            (0..30).map(|i| 0.5 * f64::from(i) + if i % 4 == 0 { 1e-4 } else { 0.0 }).collect();
-        assert!(repeat(15, &edge));
-        let before_the_edge: Vec<f64> =
-            (1..31).map(|i| 0.5 * f64::from(i) - if i % 4 == 0 { 1e-4 } else { 0.0 }).collect();
-        assert!(repeat(15, &before_the_edge));
+        assert!(repeat(15, 0..30, twice_a_period));
+        let off_the_edge = |i: i32| if i % 4 == 0 { 1e-4 } else { 0.0 };
+        assert!(repeat(15, 0..30, |i| 0.5 * f64::from(i) + off_the_edge(i)));
+        assert!(repeat(15, 1..31, |i| 0.5 * f64::from(i) - off_the_edge(i)));
     }
 
     #[test]
     fn a_lone_crossing_or_scatter_does_not() {
-        assert!(!repeat(15, &[]));
-        assert!(!repeat(15, &[6.1]));
-        assert!(!repeat(15, &[6.1, 7.3]));
-        let scattered: Vec<f64> =
-            (0..28).map(|i| 0.25 + 0.5 * f64::from(i) + 0.1 * f64::from(i * i % 7)).collect();
-        assert!(!repeat(15, &scattered));
+        for few in [&[][..], &[6.1], &[6.1, 7.3]] {
+            assert!(!repeat(15, 0..few.len() as i32, |i| few[i as usize]));
+        }
+        assert!(!repeat(15, 0..28, |i| twice_a_period(i) + 0.1 * f64::from(i * i % 7)));
         // stops crossing half way, or begins there
-        let dying: Vec<f64> = (0..14).map(|i| 0.25 + 0.5 * f64::from(i)).collect();
-        assert!(!repeat(15, &dying));
-        let rising: Vec<f64> = (14..30).map(|i| 0.25 + 0.5 * f64::from(i)).collect();
-        assert!(!repeat(15, &rising));
+        assert!(!repeat(15, 0..14, twice_a_period));
+        assert!(!repeat(15, 14..30, twice_a_period));
     }
 
     #[test]
-    fn crossings_that_are_skipped_are_as_if_told() {
-        let times = |from: i32, to: i32| (from..to).map(|i| 0.25 + 0.5 * f64::from(i));
-        let add_all = |crossings: &mut Crossings, from: i32, to: i32| {
-            times(from, to)
-                .zip([Side::Right, Side::Left].into_iter().cycle())
-                .for_each(|(t, side)| crossings.add(t, side));
-        };
+    fn skipped_crossings_are_as_if_added() {
         let mut crossings = Crossings::new(1_000_000);
-        add_all(&mut crossings, 0, 60);
+        add(&mut crossings, 0..60, twice_a_period);
         crossings.skip(1_000_000.0 - 30.0);
         assert!(crossings.repeat());
         // the last period is another
@@ -417,7 +391,7 @@ mod tests {
     }
 
     #[test]
-    fn states_that_are_skipped_are_as_if_told() {
+    fn skipped_states_are_as_if_added() {
         for lap in [1, 2, 5, 12, 13, 30] {
             for (from, periods) in [(0, 1200), (7, 41), (100, 23), (3, 1090), (600, 500)] {
                 let state = |i: u64| Strobe { x: (i % lap) as f64, v: 0.0 };
@@ -429,7 +403,7 @@ mod tests {
                 skipped.skip(more, lap, |place| state(enough + place));
                 (enough + more..=from + periods).for_each(|i| skipped.add(state(i)));
                 (0..=from + periods).for_each(|i| full.add(state(i)));
-                assert_eq!(skipped.seen(), full.seen());
+                assert_eq!(skipped.seen, full.seen);
                 assert_eq!(skipped.period(), full.period(), "{lap} {from} {periods}");
                 let expected = (lap <= 12 && 2 * lap <= periods).then_some(lap as u32);
                 assert_eq!(full.period().map(|period| period.0), expected, "{lap} {from} {periods}");

@@ -4,7 +4,8 @@ use super::recorder::Recorder;
 use super::sums::Sums;
 use crate::dynamics::clock::Instant;
 use crate::dynamics::model::excitation::Rhythm;
-use crate::dynamics::result::{Harvest, Ledger, Outcome, Phase, Place, Regime, Run, Sample, Summary};
+use crate::dynamics::result::{Harvest, Ledger, Outcome, Place, Regime, Run, Sample, Summary};
+use crate::dynamics::state::MotionState;
 use crate::numeric::{CompensatedSum, Scalar};
 
 /// Share of the length scale below which a motion is rounding: the mass has not moved.
@@ -12,16 +13,11 @@ const STILL: f64 = 1e-12;
 
 /// The end of a run, as the recorder needs it.
 pub(crate) struct Ending<T> {
-    pub at: Instant<T>,
-    /// Displacement and velocity, kernel units.
-    pub state: (T, T),
+    pub state: MotionState<T>,
     /// Velocity at time 0, kernel units.
     pub start_v: T,
-    /// State of the circuit at time 0 and at the end.
-    pub circuit: (T, T),
-    pub phase: Phase,
-    /// Segment of the drive.
-    pub segment: usize,
+    /// State of the circuit at time 0.
+    pub start_circuit: T,
     /// Change of the potential over the run in J.
     pub potential: f64,
     pub outcome: Outcome,
@@ -32,12 +28,10 @@ fn value<T: Scalar>(sum: &CompensatedSum<T>) -> f64 {
 }
 
 impl<T: Scalar> Recorder<'_, T> {
-    /// Closes the record.
     pub fn finish(mut self, ending: &Ending<T>) -> Run {
-        let &Ending { at: end, state: (x, v), outcome, .. } = ending;
-        let final_x = x.to_f64();
-        let final_v = v.to_f64() / self.unit;
-        self.sample_the_end(ending, (final_x, final_v));
+        let &Ending { state: MotionState { at: end, x, v, .. }, outcome, .. } = ending;
+        let (final_x, final_v) = (x.to_f64(), v.to_f64() / self.unit);
+        self.sample_the_end(&ending.state);
         self.last_strobe(&end, (x, v));
         let (section, carried) = self.listed(&end, (final_x, final_v));
         let covered = value(&self.covered);
@@ -47,26 +41,23 @@ impl<T: Scalar> Recorder<'_, T> {
         let work = value(&self.settled.work);
         let travel = (self.high - self.low).to_f64();
         let scales = &self.model.scales;
-        let counts = &self.counts;
+        let counts = self.counts;
         let left = counts.crossings + counts.impacts + counts.releases > 0;
         let compliant = self.model.compliant;
         // A mass pressed onto a compliant stop throughout oscillates there but has not left it.
         let pressed = compliant.is_some() && value(&self.settled.rested) == covered;
         let moved = seen && (left || (travel > STILL * scales.length && !pressed));
         let rests = seen && !moved;
-        let pressed_by = |force: f64| compliant.and_then(|stop| stop.pressure(force));
         let force = compliant.map(|_| self.peak_contact.to_f64() * self.model.mass / (self.unit * self.unit));
-        let pressure = force.and_then(pressed_by);
+        let pressure = compliant.zip(force).and_then(|(stop, force)| stop.pressure(force));
         let material = compliant.and_then(|stop| stop.material);
         let yields =
             pressure.zip(material).is_some_and(|(pressure, material)| pressure > material.yield_pressure());
-        let impact_share =
-            (self.ledger && seen && work.abs() > 0.0).then(|| value(&self.settled.impact) / work);
+        let has_work = self.ledger && seen && work.abs() > 0.0;
         let done = outcome == Outcome::Done;
-        let origin = self.origin();
         let strobed = |number: u64| {
-            let cycle = origin.cycle + number as i64 * self.period_cycles;
-            self.clock.seconds(&Instant { cycle, phase: origin.phase })
+            let cycle = self.origin.cycle + number as i64 * self.period_cycles;
+            self.clock.seconds(&Instant { cycle, ..self.origin })
         };
         let (low, high) = (self.low.to_f64(), self.high.to_f64());
         let level = self.model.crossing_level.filter(|_| seen && !self.model.one_well);
@@ -78,66 +69,61 @@ impl<T: Scalar> Recorder<'_, T> {
         });
         let (crossing_periods, release_periods) = self.judge.periods_with();
         let ramped = |t: f64| self.model.excitation.ramped_amplitude(t);
-        Run {
-            samples: std::mem::take(&mut self.samples),
-            events: self.events.take().unwrap_or_default(),
-            section,
-            carried,
-            summary: Summary {
-                final_x,
-                final_v,
-                rms_velocity: (seen && rms.is_finite()).then_some(rms),
-                regime: self.regime(moved),
-                crossings: self.counts.crossings,
-                impacts: self.counts.impacts,
-                impact_speed_max: (self.counts.impacts > 0).then(|| self.impact_speed.to_f64() / self.unit),
-                releases: self.counts.releases,
-                max_abs_x: seen.then(|| high.abs().max(low.abs())),
-                range: seen.then_some((low, high)),
-                mean_x: (self.ledger && seen).then(|| value(&self.settled.displacement) / covered),
-                side,
-                window: self.window_seconds(&end),
-                periods: self.periods(),
-                crossing_periods,
-                release_periods,
-                settled: self.judge.settled(rests).map(|settled| settled && done),
-                steady: self.judge.steady(rests).filter(|_| done),
-                settles_at: self.judge.settles_at(strobed).filter(|_| done),
-                firsts: self.judge.firsts(self.in_periods(&end), ramped),
-                impact_share,
-                rested_share: seen.then(|| value(&self.settled.rested) / covered),
-                total_crossings: self.counts.total_crossings,
-                total_impacts: self.counts.total_impacts,
-                chatter_sums: self.counts.sums,
-                rests: self.counts.rests,
-                period: self.judge.period().filter(|_| done && moved),
-                peak_contact_force: force,
-                peak_contact_pressure: pressure,
-                contact_yields: yields,
-                harvest: self.harvest(seen, covered, work),
-                outcome,
-                steps: 0,
-                evaluations: 0,
-                cpu_s: 0.0,
-                ledger,
-            },
-        }
+        let summary = Summary {
+            final_x,
+            final_v,
+            rms_velocity: (seen && rms.is_finite()).then_some(rms),
+            regime: self.regime(moved),
+            crossings: counts.crossings,
+            impacts: counts.impacts,
+            impact_speed_max: (counts.impacts > 0).then(|| self.impact_speed.to_f64() / self.unit),
+            releases: counts.releases,
+            max_abs_x: seen.then(|| high.abs().max(low.abs())),
+            range: seen.then_some((low, high)),
+            mean_x: (self.ledger && seen).then(|| value(&self.settled.displacement) / covered),
+            side,
+            window: self.window_seconds(&end),
+            periods: self.periods,
+            crossing_periods,
+            release_periods,
+            settled: self.judge.settled(rests).map(|settled| settled && done),
+            steady: self.judge.steady(rests).filter(|_| done),
+            settles_at: self.judge.settles_at(strobed).filter(|_| done),
+            firsts: self.judge.firsts(self.in_periods(&end), ramped),
+            impact_share: has_work.then(|| value(&self.settled.impact) / work),
+            rested_share: seen.then(|| value(&self.settled.rested) / covered),
+            total_crossings: counts.total_crossings,
+            total_impacts: counts.total_impacts,
+            chatter_sums: counts.sums,
+            rests: counts.rests,
+            period: self.judge.period().filter(|_| done && moved),
+            peak_contact_force: force,
+            peak_contact_pressure: pressure,
+            contact_yields: yields,
+            harvest: self.harvest(seen, covered, has_work.then_some(work)),
+            outcome,
+            steps: 0,
+            evaluations: 0,
+            cpu_s: 0.0,
+            ledger,
+        };
+        Run { samples: self.samples, events: self.events.unwrap_or_default(), section, carried, summary }
     }
 
     /// Records the samples requested at the very end (to rounding), which are the final state.
-    fn sample_the_end(&mut self, ending: &Ending<T>, (x, v): (f64, f64)) {
-        let last = self.clock.seconds(&ending.at);
+    fn sample_the_end(&mut self, state: &MotionState<T>) {
+        let last = self.clock.seconds(&state.at);
         while let Some(t) = self.times.get(self.next_time).copied() {
             if t > last * (1.0 + 4.0 * f64::EPSILON) {
                 break;
             }
             self.samples.push(Sample {
                 t,
-                x,
-                v,
-                base_accel: self.base(&self.clock.at(t), ending.segment),
-                phase: ending.phase,
-                electrical: self.electrical(ending.circuit.1),
+                x: state.x.to_f64(),
+                v: state.v.to_f64() / self.unit,
+                base_accel: self.base(&self.clock.at(t), state.segment),
+                phase: state.phase(),
+                electrical: self.electrical(state.circuit),
             });
             self.next_time += 1;
         }
@@ -150,19 +136,18 @@ impl<T: Scalar> Recorder<'_, T> {
 
     /// The energies of the whole run, and what they leave unexplained.
     fn energy_ledger(&self, ending: &Ending<T>) -> Ledger {
-        let &Ending { state: (_, v), start_v, circuit, potential, .. } = ending;
+        let &Ending { state: MotionState { v, circuit, .. }, start_v, start_circuit, potential, .. } = ending;
         let (energy, transducer) = (self.energy_unit(), self.model.transducer);
         let kinetic = |v: T| (v * v).to_f64() * 0.5;
         let work_j = value(&self.whole.work) * energy;
         let damping_j = self.model.damping * value(&self.whole.squared_velocity) / self.unit;
         let impact_j = value(&self.whole.impact) * energy;
-        let charged = transducer.map_or(0.0, |_| kinetic(circuit.1) - kinetic(circuit.0));
+        let charged = transducer.map_or(0.0, |_| kinetic(circuit) - kinetic(start_circuit));
         let stored_j = (kinetic(v) - kinetic(start_v) + charged) * energy + potential;
         let (taken, moved) = ((work_j - damping_j) - impact_j, self.work_moved + self.peak_kinetic);
         let moved = moved * energy + damping_j + impact_j.abs() + stored_j.abs();
         let electrical = transducer.map(|transducer| transducer.energies(self.squared_signal(&self.whole)));
-        let (harvested_j, coil_j) =
-            (electrical.map(|energies| energies.0), electrical.map(|energies| energies.1));
+        let (harvested_j, coil_j) = electrical.unzip();
         let (residual_j, moved) = match electrical {
             Some((load, coil)) => ((taken - load - coil) - stored_j, moved + load + coil),
             None => (taken - stored_j, moved),
@@ -176,12 +161,11 @@ impl<T: Scalar> Recorder<'_, T> {
     }
 
     /// What the transducer delivers in the settled window, of which `covered` is recorded and in which the
-    /// base does `work`, both in kernel units.
-    fn harvest(&self, seen: bool, covered: f64, work: f64) -> Option<Harvest> {
+    /// base does `work`, if that is known and not 0; both in kernel units.
+    fn harvest(&self, seen: bool, covered: f64, work: Option<f64>) -> Option<Harvest> {
         let transducer = self.model.transducer?;
         let load = transducer.energies(self.squared_signal(&self.settled)).0;
-        let load_share =
-            (self.ledger && seen && work.abs() > 0.0).then(|| load / (work * self.energy_unit()));
+        let load_share = work.map(|work| load / (work * self.energy_unit()));
         let squared = Some(self.squared_signal(&self.settled) / (covered * self.unit));
         let squared = squared.filter(|squared| seen && squared.is_finite());
         Some(Harvest {

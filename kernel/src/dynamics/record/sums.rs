@@ -24,6 +24,23 @@ impl<T: Scalar> Sums<T> {
         let sum = CompensatedSum::new();
         Self { squared_velocity: sum, work: sum, impact: sum, rested: sum, displacement: sum, circuit: sum }
     }
+
+    /// Applies `more` to each sum and its values at two instants.
+    pub fn each(
+        &mut self,
+        before: &Self,
+        after: &Self,
+        more: impl Fn(&mut CompensatedSum<T>, &CompensatedSum<T>, &CompensatedSum<T>),
+    ) {
+        // destructured, so that no sum can be forgotten
+        let Self { squared_velocity, work, impact, rested, displacement, circuit } = self;
+        more(squared_velocity, &before.squared_velocity, &after.squared_velocity);
+        more(work, &before.work, &after.work);
+        more(impact, &before.impact, &after.impact);
+        more(rested, &before.rested, &after.rested);
+        more(displacement, &before.displacement, &after.displacement);
+        more(circuit, &before.circuit, &after.circuit);
+    }
 }
 
 #[derive(Debug, Default, Clone, Copy)]
@@ -41,33 +58,15 @@ impl Counts {
     /// Adds `laps` more of what was added between `before` and `after`.
     pub fn repeat(&mut self, before: &Self, after: &Self, laps: u64) {
         let Self { crossings, impacts, releases, total_crossings, total_impacts, sums, rests } = self;
-        *crossings = crossings.saturating_add((after.crossings - before.crossings).saturating_mul(laps));
-        *impacts = impacts.saturating_add((after.impacts - before.impacts).saturating_mul(laps));
-        *releases = releases.saturating_add((after.releases - before.releases).saturating_mul(laps));
-        *total_crossings = total_crossings
-            .saturating_add((after.total_crossings - before.total_crossings).saturating_mul(laps));
-        *total_impacts =
-            total_impacts.saturating_add((after.total_impacts - before.total_impacts).saturating_mul(laps));
-        *sums = sums.saturating_add((after.sums - before.sums).saturating_mul(laps));
-        *rests = rests.saturating_add((after.rests - before.rests).saturating_mul(laps));
-    }
-}
-
-impl<T: Scalar> Sums<T> {
-    /// Applies `more` to each sum and its values at two instants.
-    pub fn each(
-        &mut self,
-        before: &Self,
-        after: &Self,
-        more: impl Fn(&mut CompensatedSum<T>, &CompensatedSum<T>, &CompensatedSum<T>),
-    ) {
-        // destructured, so that no sum can be forgotten
-        let Self { squared_velocity, work, impact, rested, displacement, circuit } = self;
-        more(squared_velocity, &before.squared_velocity, &after.squared_velocity);
-        more(work, &before.work, &after.work);
-        more(impact, &before.impact, &after.impact);
-        more(rested, &before.rested, &after.rested);
-        more(displacement, &before.displacement, &after.displacement);
-        more(circuit, &before.circuit, &after.circuit);
+        let more = |count: &mut u64, before: u64, after: u64| {
+            *count = count.saturating_add((after - before).saturating_mul(laps));
+        };
+        more(crossings, before.crossings, after.crossings);
+        more(impacts, before.impacts, after.impacts);
+        more(releases, before.releases, after.releases);
+        more(total_crossings, before.total_crossings, after.total_crossings);
+        more(total_impacts, before.total_impacts, after.total_impacts);
+        more(sums, before.sums, after.sums);
+        more(rests, before.rests, after.rests);
     }
 }

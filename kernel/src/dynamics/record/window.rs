@@ -1,30 +1,33 @@
-//! Settled window of a record: its borders, the stroboscopic states in and before it, and the states that a
-//! run lists.
+//! Settled window of a record: its borders, the stroboscopic states in and before it, the states that a run
+//! lists, and the goal of a pursuit.
 
+use super::goal::Goal;
 use super::listing::SAME;
 use super::recorder::Recorder;
-use super::repeats::Strobe;
+use super::regime::Judge;
+use super::repeats::{LONGEST, Strobe};
 use super::sums::Sums;
 use crate::dynamics::clock::Instant;
-use crate::dynamics::result::SectionPoint;
-use crate::dynamics::step::path::{Path, StepView};
+use crate::dynamics::result::{Arrival, ReleaseIdentity, SectionPoint, Side};
+use crate::dynamics::step::path::{Path, StepData};
 use crate::numeric::{CompensatedSum, Scalar};
 
 /// Number of stroboscopic states of a mass at rest that are recorded one by one before some are skipped: more
 /// than the longest period that is searched for.
 pub(crate) const STILL: u32 = 32;
 
-impl<T: Scalar> Recorder<'_, T> {
-    pub(crate) fn strobes<P: Path<T>>(&mut self, step: &StepView<T, P>) {
+/// Forcing periods of the settled window of a pursuit.
+const PURSUIT_WINDOW: u64 = 100;
+
+impl<'a, T: Scalar> Recorder<'a, T> {
+    pub(crate) fn strobes<P: Path<T>>(&mut self, path: &P, step: &StepData<T>) {
         while let Some(strobe) = self.next_strobe {
             let into = self.clock.between(&step.at, &strobe);
             if into >= step.duration {
                 return;
             }
-            let into = step.path.parameter(into, step.length);
-            let x = step.x_at(into);
-            let v = step.path.velocity(into);
-            self.strobe(x, v);
+            let into = path.parameter(into, step.length);
+            self.strobe(step.x_at(path, into), path.velocity(into));
         }
     }
 
@@ -68,16 +71,6 @@ impl<T: Scalar> Recorder<'_, T> {
         }
     }
 
-    /// The first instant of the run at the window's phase.
-    pub(crate) fn origin(&self) -> Instant<T> {
-        self.origin
-    }
-
-    /// Whole forcing periods in the settled window; 0 if it holds none.
-    pub(crate) fn periods(&self) -> u64 {
-        self.periods
-    }
-
     /// Begin and end of the settled window in s, as far as a run that ended at `end` reached it.
     pub(crate) fn window_seconds(&self, end: &Instant<T>) -> (f64, f64) {
         let (from, to) = &self.window;
@@ -90,11 +83,6 @@ impl<T: Scalar> Recorder<'_, T> {
         };
         let (from, reached) = (seconds(from), seconds(reached));
         (from, reached.max(from))
-    }
-
-    /// The end of the settled window.
-    pub fn window_end(&self) -> Instant<T> {
-        self.window.1
     }
 
     /// Begins another settled window at the end of the last one, where the run is. Returns its end, or `None`
@@ -118,16 +106,15 @@ impl<T: Scalar> Recorder<'_, T> {
         Some(to)
     }
 
-    /// Lists the states within a step.
-    pub(crate) fn list_states<P: Path<T>>(&mut self, step: &StepView<T, P>) {
+    pub(crate) fn list_states<P: Path<T>>(&mut self, path: &P, step: &StepData<T>) {
         for listing in self.listings.each() {
             while let Some(next) = listing.due() {
                 let into = self.clock.between(&step.at, &next).larger(T::zero());
                 if into >= step.duration {
                     break;
                 }
-                let into = step.path.parameter(into, step.length);
-                listing.add((step.x_at(into).to_f64(), step.path.velocity(into).to_f64() / self.unit));
+                let into = path.parameter(into, step.length);
+                listing.add((step.x_at(path, into).to_f64(), path.velocity(into).to_f64() / self.unit));
             }
         }
     }
@@ -155,5 +142,50 @@ impl<T: Scalar> Recorder<'_, T> {
             }
         }
         std::mem::take(&mut self.listings).finish(&self.clock)
+    }
+
+    /// Begins a pursuit: stroboscopic states are taken from time 0 on, and the settled window is the last
+    /// periods before `max_periods`. Returns the end of the window.
+    pub fn pursue(&mut self, goal: Goal<'a>, max_periods: u64) -> Instant<T> {
+        let at = |period: u64| Instant { cycle: period as i64 * self.period_cycles, phase: T::zero() };
+        self.periods = max_periods.min(PURSUIT_WINDOW);
+        let from = max_periods - self.periods;
+        self.window = (at(from), at(max_periods));
+        self.origin = at(0);
+        self.next_strobe = Some(self.origin);
+        let scales = (self.model.scales.length, self.model.scales.speed);
+        self.judge = Judge::new(self.model.rhythm, scales, self.periods, from);
+        self.judge.strobes.longest = LONGEST; // however short the window is
+        self.goal = Some(goal);
+        self.window.1
+    }
+
+    /// Whether the motion has reached its goal.
+    #[inline]
+    pub fn has_arrived(&self) -> bool {
+        self.goal.as_ref().is_some_and(|goal| goal.reached.is_some())
+    }
+
+    pub fn arrival(&mut self) -> Option<Arrival> {
+        self.goal.as_mut().and_then(|goal| goal.reached.take())
+    }
+
+    /// The mass was released with this identity. Returns whether the motion is pursued.
+    pub fn released(&mut self, at: &Instant<T>, identity: ReleaseIdentity) -> bool {
+        let periods = self.periods_until(at);
+        self.goal.as_mut().map(|goal| goal.release(Arrival::Released { identity, periods })).is_some()
+    }
+
+    /// The mass rests from `at` on and will never be released.
+    pub fn rests_forever(&mut self, at: &Instant<T>, side: Side) {
+        let periods = self.periods_until(at);
+        if let Some(goal) = &mut self.goal {
+            goal.end(Arrival::Rests { side, periods });
+        }
+    }
+
+    /// The number of the first stroboscopic state at or after `at`.
+    fn periods_until(&self, at: &Instant<T>) -> u64 {
+        self.in_periods(at).ceil().max(0.0) as u64
     }
 }

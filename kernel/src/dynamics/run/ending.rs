@@ -1,23 +1,49 @@
-//! Start and end of a run.
+//! Start and end of a run, and the check whether its numbers are finite and its energy balances.
+//!
+//! The terms of a ledger are integrated separately, so their sum closes to the tolerance. If it is off by
+//! more than that and the rounding of its terms, the computed motion is wrong and the outcome says so. For a
+//! run without a ledger (a cell of a sweep) only the numbers are checked to be finite.
 
-use super::balance::{Excursion, checked_outcome};
 use crate::dynamics::drive::Drive;
-use crate::dynamics::equation::Compliant;
+use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::record::summary::Ending;
-use crate::dynamics::result::{Outcome, Run};
+use crate::dynamics::result::{Ledger, Outcome, Run};
 use crate::dynamics::state::MotionState;
 use crate::numeric::Scalar;
 
+/// Permitted residual of a ledger, in tolerances. The largest in tens of thousands of random scenes was 4.
+const TOLERANCES: f64 = 100.0;
+
+/// Tolerance below which the residual of a ledger is rounding.
+const MIN_TOLERANCE: f64 = 1e-13;
+/// Roundings of force and displacement that add up in a ledger.
+const FORCE_ROUNDINGS: f64 = 16.0;
+
+/// Steps whose errors add up to no more than the tolerance. The errors of an undamped mass between elastic
+/// stops all have one sign.
+const STEPS_WITHIN_TOLERANCE: f64 = 1000.0;
+
+/// Share of the energy moved that may be missing in a motion so small that the tolerance, which is relative
+/// to the scene's scales, does not limit the error further.
+const MAX_MISSING_SHARE: f64 = 0.1;
+/// Share of the length scale below which nothing has moved.
+const STILL: f64 = 1e-12;
+
+/// Ratio of coupling to the motion's rate above which a circuit holds the mass fast. The small motion that is
+/// left must balance its energy even if it is below the rounding of displacement and force.
+const STRONG_COUPLING: f64 = 1e3;
+
 /// The first instant of a run.
 pub(crate) struct Initial<T> {
-    /// Velocity.
     v: T,
-    /// State of the circuit.
     circuit: T,
-    /// Mode, displacement in m, and energy in J stored in a compliant stop.
-    place: (usize, f64, f64),
+    mode: usize,
+    /// Displacement in m.
+    x: f64,
+    /// Energy in J stored in a compliant stop.
+    stop_energy: f64,
 }
 
 impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
@@ -25,49 +51,91 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     pub fn begin(&mut self, model: &Model) -> Initial<T> {
         let MotionState { v, circuit, .. } = self.state;
         self.place_at_start();
-        Initial { v, circuit, place: (self.state.mode, self.state.x.to_f64(), self.stop_energy_j(model)) }
+        let stop_energy = stop_energy(model, self.stepper.equation, &self.state);
+        Initial { v, circuit, mode: self.state.mode, x: self.state.x.to_f64(), stop_energy }
     }
 
     /// Closes the record.
     pub fn finish(self, model: &Model, start: &Initial<T>, outcome: Outcome) -> Run {
-        let phase = self.state.phase();
-        let (start_v, potential) = (start.v, self.potential_since(model, start.place));
-        let unit = self.stepper.equation.unit;
-        let (low, high) = self.record.places;
-        let reach = Excursion { low, high, speed: (2.0 * self.record.peak_kinetic).sqrt() / unit };
-        let mut run = self.record.finish(&Ending {
-            at: self.state.at,
-            state: (self.state.x, self.state.v),
-            start_v,
-            circuit: (start.circuit, self.state.circuit),
-            phase,
-            segment: self.state.segment,
-            potential,
-            outcome,
-        });
-        run.summary.steps = self.steps;
-        run.summary.evaluations = self.stepper.evaluations;
-        run.summary.outcome = checked_outcome(model, &run, reach);
+        let Self { stepper, state, record, steps, .. } = self;
+        let places = record.places;
+        let speed = (2.0 * record.peak_kinetic).sqrt() / stepper.equation.unit;
+        let potential = potential_change(model, stepper.equation, start, &state);
+        let (start_v, start_circuit) = (start.v, start.circuit);
+        let mut run = record.finish(&Ending { state, start_v, start_circuit, potential, outcome });
+        run.summary.steps = steps;
+        run.summary.evaluations = stepper.evaluations;
+        run.summary.outcome = checked_outcome(model, &run, places, speed);
         run
     }
+}
 
-    /// Change in J of the potential and of the energy in a compliant stop, since a start in a mode at
-    /// a place.
-    fn potential_since(&self, model: &Model, (mode, from, stored): (usize, f64, f64)) -> f64 {
-        let piece = |mode: usize| &model.mechanism.curve.pieces()[self.stepper.equation.modes[mode].piece];
-        let (first, last, x) = (piece(mode), piece(self.state.mode), self.state.x.to_f64());
-        let change = match std::ptr::eq(first, last) {
-            true => first.potential_change(from, x),
-            false => last.potential(x) - first.potential(from),
-        };
-        change + (self.stop_energy_j(model) - stored)
-    }
+/// Change in J of the potential and of the energy in a compliant stop since the start.
+fn potential_change<T: Scalar>(
+    model: &Model,
+    equation: &Equation<T>,
+    start: &Initial<T>,
+    state: &MotionState<T>,
+) -> f64 {
+    let piece = |mode: usize| &model.mechanism.curve.pieces()[equation.modes[mode].piece];
+    let (first, last, x) = (piece(start.mode), piece(state.mode), state.x.to_f64());
+    let change = match std::ptr::eq(first, last) {
+        true => first.potential_change(start.x, x),
+        false => last.potential(x) - first.potential(start.x),
+    };
+    change + (stop_energy(model, equation, state) - start.stop_energy)
+}
 
-    /// Energy in J that the pressed compliant stop stores.
-    fn stop_energy_j(&self, model: &Model) -> f64 {
-        let unit = self.stepper.equation.unit;
-        let stored =
-            |stop: &Compliant<T>| stop.stored(self.state.depth.root).to_f64() * model.mass / (unit * unit);
-        self.stepper.equation.compliant.as_ref().map_or(0.0, stored)
+/// Energy in J that the pressed compliant stop stores.
+fn stop_energy<T: Scalar>(model: &Model, equation: &Equation<T>, state: &MotionState<T>) -> f64 {
+    let Some(stop) = &equation.compliant else { return 0.0 };
+    stop.stored(state.depth.root).to_f64() * model.mass / (equation.unit * equation.unit)
+}
+
+/// The outcome of a run after the check; `places` is the range of the motion in m, `speed` its largest in
+/// m/s.
+fn checked_outcome(model: &Model, run: &Run, places: (f64, f64), speed: f64) -> Outcome {
+    let summary = &run.summary;
+    if summary.outcome != Outcome::Done {
+        return summary.outcome;
     }
+    let samples = || run.samples.iter().all(|sample| sample.x.is_finite() && sample.v.is_finite());
+    let numbers = [summary.final_x, summary.final_v, summary.travel().unwrap_or(0.0)];
+    let averaged = summary.travel().is_none() || summary.rms_velocity.is_some();
+    let ledger = summary.ledger.unwrap_or_default();
+    let Ledger { work_j, damping_j, impact_j, stored_j, residual_j, energy_residual, .. } = ledger;
+    let electrical = [ledger.harvested_j, ledger.coil_j].map(Option::unwrap_or_default);
+    let energies =
+        [work_j, damping_j, impact_j, stored_j, residual_j, energy_residual, electrical[0], electrical[1]];
+    if !(averaged && numbers.into_iter().chain(energies).all(f64::is_finite) && samples()) {
+        return Outcome::NotFinite { at: model.duration };
+    }
+    let moved = residual_j.abs() / energy_residual;
+    let strong =
+        model.circuit().is_some_and(|circuit| circuit.coupling.abs() * model.scales.time > STRONG_COUPLING);
+    if strong && residual_j.abs() > MAX_MISSING_SHARE * moved {
+        return Outcome::Inaccurate { residual: energy_residual };
+    }
+    let missing = residual_j.abs() - rounding(model, places, summary.steps);
+    if !(missing > 0.0) {
+        return Outcome::Done;
+    }
+    let many = (summary.steps as f64 / STEPS_WITHIN_TOLERANCE).max(1.0);
+    let allowed = TOLERANCES * model.tolerance.max(MIN_TOLERANCE) * many;
+    let by_tolerance = allowed * (moved + model.mass * model.scales.speed * speed);
+    let moves = places.1 - places.0 > STILL * model.scales.length;
+    match missing > by_tolerance || (moves && missing > MAX_MISSING_SHARE * moved) {
+        true => Outcome::Inaccurate { residual: energy_residual },
+        false => Outcome::Done,
+    }
+}
+
+/// Energy in J by which rounding of displacements and forces changes the ledger.
+fn rounding(model: &Model, (low, high): (f64, f64), steps: u64) -> f64 {
+    let curve = &model.mechanism.curve;
+    let largest = |of: &dyn Fn(f64) -> f64| of(low).abs().max(of(high).abs());
+    let terms = largest(&|x| curve.stiffness(x) * x) * (high - low) + largest(&|x| curve.force(x) * x);
+    // These errors have both signs.
+    let many = (steps as f64 / STEPS_WITHIN_TOLERANCE).max(1.0).sqrt();
+    FORCE_ROUNDINGS * f64::EPSILON * terms * many
 }

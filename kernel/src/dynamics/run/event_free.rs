@@ -35,7 +35,8 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     pub fn event_free_steps(&mut self) -> FastPath<T> {
         let free = self.state.contact == Contact::Free && self.state.touch.is_none();
         let alone = self.stepper.drive.circuit().is_none();
-        if self.record.ledger || !alone || !free || self.log.is_some() || !self.record.needs_no_samples() {
+        let samples = self.record.next_time < self.record.times.len();
+        if self.record.ledger || !alone || !free || self.log.is_some() || samples {
             return FastPath::NotTaken;
         }
         let max_steps = self.stepper.work.pieces_until_check(self.stepper.costs.step);
@@ -58,13 +59,13 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
             stepper;
         let (damping, segment) = (equation.damping, state.segment);
         let allowed = settings.residual_of_a_full_step();
-        let margin = T::of(MARGIN) * clock.period();
+        let margin = T::of(MARGIN) * clock.period;
         let rule = record.rule_of_steps();
         let (mut at, mut x, mut v) = (state.at, state.x, state.v);
         let mut ended = FastPath::Paused;
         let (mut steps, mut crossed) = (0, 0);
         for _ in 0..max_steps {
-            drive.seed(clock, &at, segment, &mut series.a, cursor);
+            drive.seed(&at, segment, &mut series.a, cursor);
             series.begin(x - origin, v);
             series.extend(settings.order, &mode.force, damping, *drive, cursor);
             let length =
@@ -76,7 +77,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
             }
             let end = series.state(length);
             let next = clock.advance(&at, length);
-            let base = drive.value(clock, &next, segment, || series.base(length), cursor);
+            let base = drive.value(&next, segment, || series.base(length), cursor);
             let sum = (end.acceleration + damping * end.v) + base;
             let residual = (mode.force.at(end.y) + sum).abs() * length;
             if !(residual <= allowed) {
@@ -130,8 +131,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         if steps > 0 {
             state.turned_back = false;
             (state.at, state.x, state.v) = (at, x, v);
-            record.end_event_free((now.low, now.high), now.squared, now.covered);
-            record.end_event_free_crossings(now.side, crossed);
+            record.end_event_free((now.low, now.high), now.squared, now.covered, now.side, crossed);
         }
         self.steps += steps;
         work.add(steps * costs.step);
@@ -171,8 +171,8 @@ impl<T: Scalar> EventFree<T> {
     }
 
     /// Records a step inside the settled window of this length and integral of the squared velocity. Returns
-    /// false if a turning point within it may be an extreme. The deviations from the chords are only computed
-    /// if needed for that.
+    /// false if a turning point within it may be an extreme. The deviations from the chords are computed if
+    /// needed.
     #[inline(always)]
     fn record_step(
         &mut self,

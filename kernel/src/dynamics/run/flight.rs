@@ -69,8 +69,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     }
 
     /// Records a step that was chosen `h` long, of which `length` is kept, and moves to its end: the state
-    /// `(x, v)` at the instant `arrival`, if that is known, on the surface of the end `touched`, if there
-    /// is one.
+    /// `(x, v)` at the instant `arrival`, if that is known, on the surface of the end `touched`, if any.
     pub fn arrive(
         &mut self,
         (h, length): (T, T),
@@ -85,13 +84,12 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         }
         self.steps += 1;
         self.stepper.work.add(self.stepper.costs.step);
+        let step = self.stepper.step_data(&self.state, (h, length, length), bound, (x, v));
         let path = &self.stepper.series;
-        let mut view = self.stepper.view(&self.state, path, (h, length, length), bound, (x, v));
-        view.circuit = self.stepper.circuit_series();
         if let Some(log) = &mut self.log {
-            log.add_step(&view);
+            log.add_step(path, &step);
         }
-        self.record.step(&view, self.state.segment);
+        self.record.step(path, self.stepper.circuit_series(), &step, self.state.segment);
         let at_once = length == T::zero();
         let state = &mut self.state;
         state.at = arrival.unwrap_or_else(|| self.stepper.clock.advance(&state.at, length));

@@ -1,23 +1,24 @@
-//! Run from event to event, up to its end.
+//! Run from event to event, up to its end or until it is known what the motion goes to.
 
-mod balance;
 pub(crate) mod ending;
 pub(crate) mod event_free;
 mod flight;
-pub(crate) mod pursue;
 mod recurrence;
 
+use crate::dynamics::clock::Instant;
 use crate::dynamics::drive::Drive;
-use crate::dynamics::drive::form::{clock, form, general, with_drive};
+use crate::dynamics::drive::form::{Kernel, clock, general, with_drive};
 use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
-use crate::dynamics::result::{Outcome, Request, Run};
+use crate::dynamics::record::goal::Goal;
+use crate::dynamics::result::{Arrival, Outcome, Pursued, Pursuit, Request, Run};
 use crate::dynamics::state::{Contact, Flow};
-use crate::dynamics::step::settings::Settings;
+use crate::dynamics::step::stepper::Settings;
 use crate::dynamics::step::work::{Costs, IMPACT_BUDGET};
 use crate::numeric::{DoubleDouble, Scalar};
 use crate::system::clock::ThreadClock;
+use ending::Initial;
 use event_free::FastPath;
 
 impl Model {
@@ -27,9 +28,8 @@ impl Model {
     /// The motion does not depend on what is requested or on threads.
     pub fn run(&self, request: &Request) -> Run {
         let watch = ThreadClock::start();
-        let unit = self.scales.unit();
-        let (equation, clock) = (Equation::<f64>::new(self, unit), clock(self, unit));
-        let mut run = with_drive!(&form(self, &clock), drive => {
+        let Kernel { equation, clock, drive } = Kernel::<f64>::new(self);
+        let mut run = with_drive!(&drive, drive => {
             Motion::new(self, request, self.tolerance, &equation, clock, drive)
                 .with_recurrence(self.recurrence, self)
                 .run(self)
@@ -41,13 +41,11 @@ impl Model {
     /// Cost of a step of free flight at a tolerance, and the part of it due to the excitation, in units
     /// of work.
     pub fn cost_of_a_step(&self, tolerance: f64) -> (u64, u64) {
-        let unit = self.scales.unit();
-        let order = Settings::<f64>::new(self, unit, tolerance).order;
-        let degree = Equation::<f64>::new(self, unit).degree();
-        fn of<D: Drive<f64>>(order: usize, degree: usize, drive: &D) -> (u64, u64) {
-            (Costs::new(order, degree, drive).step, drive.cost(order))
-        }
-        with_drive!(&form(self, &clock(self, unit)), drive => of(order, degree, drive))
+        let Kernel { equation, drive, .. } = Kernel::<f64>::new(self);
+        let order = Settings::<f64>::new(self, equation.unit, tolerance).order;
+        with_drive!(&drive, drive => {
+            (Costs::new::<f64, _>(order, equation.degree(), drive).step, drive.cost(order))
+        })
     }
 
     /// Runs the model once in double-double arithmetic, some 31 digits, at the given `tolerance` (1e-28 is
@@ -140,8 +138,8 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         if cancelled {
             return Some(Outcome::Cancelled { at: at() });
         }
-        if self.stepper.work.impacts() >= IMPACT_BUDGET {
-            return Some(Outcome::ImpactBudget { at: at(), count: self.stepper.work.impacts() });
+        if self.stepper.work.impacts >= IMPACT_BUDGET {
+            return Some(Outcome::ImpactBudget { at: at(), count: self.stepper.work.impacts });
         }
         if self.stepper.work.is_done() {
             return Some(Outcome::StepBudget { at: at(), count: self.steps });
@@ -165,4 +163,37 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
             Contact::Compressing(end) | Contact::Clipped(end) => self.contact_step(end, left),
         }
     }
+}
+
+impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
+    /// Puts the motion at the start of a pursuit and sets the end of the pursuit. A release from rest ends
+    /// it, so it is never completed from a recurrence.
+    pub fn pursuing(mut self, pursuit: &Pursuit<'a>) -> Self {
+        let start = (T::of(pursuit.start.0), T::of(pursuit.start.1 * self.stepper.equation.unit));
+        self.put(start, Instant { cycle: 0, phase: T::zero() });
+        self.stepper.work.limit(pursuit.most_work);
+        self.stepper.end = self.record.pursue(Goal::new(*pursuit), pursuit.most_periods);
+        (self.recurs, self.until_settled) = (true, None);
+        self
+    }
+
+    /// Result of the pursuit.
+    pub fn arrived(mut self, model: &Model, start: &Initial<T>, outcome: Outcome) -> Pursued {
+        let (crossings, work) = (self.record.counts.total_crossings, self.stepper.work.done);
+        let arrival = self.record.arrival().filter(|_| outcome == Outcome::Done);
+        let unsettled = || Arrival::Unsettled(Box::new(self.finish(model, start, outcome).summary));
+        Pursued { arrival: arrival.unwrap_or_else(unsettled), crossings, work }
+    }
+}
+
+/// Pursues a motion alone.
+pub(crate) fn pursue_alone(model: &Model, pursuit: &Pursuit, request: &Request) -> Pursued {
+    let Kernel { equation, clock, drive } = Kernel::<f64>::new(model);
+    with_drive!(&drive, drive => {
+        let motion = Motion::new(model, request, model.tolerance, &equation, clock, drive);
+        let mut motion = motion.pursuing(pursuit);
+        let start = motion.begin(model);
+        let outcome = motion.go_on();
+        motion.arrived(model, &start, outcome)
+    })
 }

@@ -27,9 +27,6 @@ use crate::dynamics::state::Label;
 use crate::dynamics::step::work::REPLAYED;
 use crate::numeric::Scalar;
 
-/// Share of the clock's cycle by which a lap must be clear of any border: more than rounding.
-const CLEAR: f64 = 1e-9;
-
 /// Common periods of the drive after which a motion that has not come back is no longer logged: most cycles
 /// take one or two, and a motion that never rests again would be logged to its end.
 const MAX_LOGGED_PERIODS: i64 = 8;
@@ -73,7 +70,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         } else if let Some((first, before)) = log.find(|known| known.end == label.end.other())
             && self.stepper.drive.is_odd()
             && self.symmetric
-            && let Some(cycles) = self.half_cycles_since(&log.at(first))
+            && let Some(cycles) = self.record.odd_half_cycles(&log.at(first), &self.state.at)
         {
             self.complete_mirrored(log, first, cycles, before);
             self.record.judge.end_tape();
@@ -107,16 +104,6 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         }
     }
 
-    /// The number of half cycles of the clock since `at`, if it is odd and whole.
-    fn half_cycles_since(&self, at: &Instant<T>) -> Option<i64> {
-        let halves =
-            self.stepper.clock.between(at, &self.state.at) / (self.stepper.clock.period() * T::of(0.5));
-        let whole = (halves + T::of(0.5)).floor();
-        let close = (halves - whole).abs() <= T::of(CLEAR);
-        let count = whole.to_f64() as i64;
-        (close && count % 2 == 1).then_some(count)
-    }
-
     /// The totals of the lap since mark `first`, if it lay wholly inside or outside the settled window.
     fn lap_totals(&self, first: usize, log: &Log<T>, before: Totals<T>) -> Option<LapTotals<T>> {
         let inside = self.record.lies_inside(&log.at(first), &self.state.at)?;
@@ -148,10 +135,11 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
                 break;
             }
             if self.stepper.work.is_cancelled() || self.stepper.work.is_spent() {
-                return; // as it stands it goes on
+                return; // the rest of the run is integrated
             }
             if let Some(lap_totals) = lap.lap_totals {
-                let ahead = self.laps_on_this_side(&lap, lap_totals.inside);
+                let (at, end) = (&self.state.at, &self.stepper.end);
+                let ahead = self.record.laps_on_this_side(at, end, lap.cycles, lap_totals.inside);
                 if ahead > 0 {
                     let laps = self.list(log, &lap, later, ahead);
                     self.record.repeat(&lap_totals.before, &lap_totals.after, laps, lap.cycles);
@@ -175,18 +163,18 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     }
 
     /// Replays those of the next `laps` in which something is listed. The sums are restored afterwards, so
-    /// that they do not depend on what is listed. A replay counts as work: returns the number of laps for
-    /// which it was done.
+    /// that they do not depend on what is listed. Replays count as work: returns the number of laps that it
+    /// allows.
     fn list(&mut self, log: &Log<T>, lap: &Lap<T>, later: i64, laps: i64) -> i64 {
         let (sums, judge) = (self.record.totals(), self.record.judge.clone());
         // The stroboscopic states of these laps are added by multiplication.
         self.record.next_strobe = None;
         let listings = std::mem::take(&mut self.record.listings);
         let start = self.state.at;
-        let length = self.stepper.clock.period() * T::of(lap.cycles as f64);
+        let length = self.stepper.clock.period * T::of(lap.cycles as f64);
         let begin =
             |lap_before: i64| Instant { cycle: start.cycle + lap_before * lap.cycles, phase: start.phase };
-        let mut done = 0;
+        let (mut done, mut covered) = (0, laps);
         while let Some(next) = self.record.next_listed(&begin(done)) {
             // (by rounding it may lie in the previous lap)
             let between = (self.stepper.clock.between(&start, &next) / length).floor().to_f64() as i64 - 1;
@@ -195,9 +183,8 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
                 break;
             }
             if self.stepper.work.is_cancelled() || self.stepper.work.is_spent() {
-                self.record.restore(&sums);
-                (self.record.judge, self.record.listings) = (judge, listings);
-                return done;
+                covered = done;
+                break;
             }
             if self.stepper.clock.between(&next, &begin(number)) >= T::zero() {
                 let impacts = self.replay(log, (lap.first, None), CycleShift(later + number * lap.cycles));
@@ -207,7 +194,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         }
         self.record.restore(&sums);
         (self.record.judge, self.record.listings) = (judge, listings);
-        laps
+        covered
     }
 
     /// Replays a part of the log. Returns the number of impacts in it.
@@ -216,14 +203,5 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         let (calls, impacts) = log.play(recorded, marks, later, self.state.segment);
         self.stepper.work.add(REPLAYED * calls as u64);
         impacts
-    }
-
-    /// Number of laps from here on that are on the same side of the window's borders as the last one.
-    fn laps_on_this_side(&self, lap: &Lap<T>, inside: bool) -> i64 {
-        let clear = self.stepper.clock.period() * T::of(CLEAR);
-        let length = self.stepper.clock.period() * T::of(lap.cycles as f64);
-        let until = self.record.same_side_until(&self.state.at, &self.stepper.end, inside);
-        let laps = ((self.stepper.clock.between(&self.state.at, &until) - clear) / length).floor();
-        laps.larger(T::zero()).to_f64() as i64
     }
 }

@@ -51,7 +51,7 @@ impl<T: Number> ForceSeries<T> {
     /// Coefficient `k` of the force, from y\[0..=k\]; the lower ones must have been computed before.
     #[inline(always)]
     pub fn coefficient(&mut self, force: &PieceForce<T>, y: &[T; ROOM], k: usize) -> T {
-        match force.coefficients() {
+        match force.coefficients.as_slice() {
             [c0] => constant(*c0, k, None),
             [c0, c1] => linear(*c0, *c1, y, k, None),
             [c0, c1, c2] => self.cubic([*c0, *c1, *c2, T::zero()], y[0]).coefficient(y, k, None),
@@ -87,7 +87,7 @@ impl<T: Number> ForceSeries<T> {
             }
             let row = &mut self.rows[..=self.degree];
             if about.is_empty() {
-                row.copy_from_slice(force.coefficients());
+                row.copy_from_slice(&force.coefficients);
                 shift(row, y[0]);
             } else {
                 row.copy_from_slice(about);
@@ -208,9 +208,8 @@ pub(crate) fn square<T: Number>(a: &[T; ROOM], k: usize) -> T {
     if k == 0 { ends } else { inner_square(a, k) + (ends + ends) }
 }
 
-/// Sum of a\[i\] b\[k-i\] over i = 1..k, from the middle outwards: the terms of the highest orders, which
-/// have only just become known, come last. There are two running sums, since one addition waits for the
-/// previous one.
+/// Sum of a\[i\] b\[k-i\] over i = 1..k, from the middle outwards: the terms of the highest orders, which are
+/// known last, come last. There are two running sums, since an addition waits for the one before.
 #[inline(always)]
 fn inner_convolve<T: Number>(a: &[T; ROOM], b: &[T; ROOM], k: usize) -> T {
     if k < 2 {
@@ -257,19 +256,19 @@ mod tests {
 
     /// Coefficients of a force of this degree, and those of a motion.
     fn some<T: Number>(degree: usize) -> (PieceForce<T>, [T; ROOM]) {
-        let force = (0..=degree).map(|k| T::of(0.7 - 0.37 * (k % 5) as f64)).collect();
+        let coefficients = (0..=degree).map(|k| T::of(0.7 - 0.37 * (k % 5) as f64)).collect();
         let mut y = [T::zero(); ROOM];
         for (k, slot) in y.iter_mut().enumerate().take(20) {
             *slot = T::of(0.8 / (1.0 + k as f64) * if k % 3 == 1 { -1.0 } else { 1.0 });
         }
-        (PieceForce::new(force), y)
+        (PieceForce { coefficients }, y)
     }
 
     /// The series of the force by Horner's rule on whole series, in double-double arithmetic.
     fn by_horner(degree: usize) -> Vec<f64> {
         let (force, y) = some::<DoubleDouble>(degree);
         let mut sum = [DoubleDouble::zero(); ROOM];
-        for c in force.coefficients().iter().rev() {
+        for c in force.coefficients.iter().rev() {
             let last = sum;
             for (k, sum) in sum.iter_mut().enumerate() {
                 *sum = convolve(&last, &y, k);

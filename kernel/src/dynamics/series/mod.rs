@@ -23,11 +23,8 @@ pub(crate) use order::{MAX_ORDER, ROOM, SEEDED, Tail};
 pub(crate) struct Series<T: Copy> {
     /// Displacement from the piece's origin: y\[k\] is the coefficient of (time since the step's start)^k.
     pub y: [T; ROOM],
-    /// Acceleration of the base.
     pub a: [T; ROOM],
-    /// Number of coefficients of y that are known.
     pub known: usize,
-    /// The integrals computed last, if any.
     pub measured: Cell<Option<Integrals<T>>>,
     forces: ForceSeries<T>,
     inverse: [T; ROOM],
@@ -38,7 +35,6 @@ pub(crate) struct Series<T: Copy> {
 pub(crate) struct Integrals<T> {
     /// Time since the step's start up to which they are taken.
     pub until: T,
-    /// Integral of the squared velocity.
     pub squared: T,
     /// Integral of base acceleration times velocity; 0 in a run without a ledger.
     pub work: T,
@@ -47,7 +43,6 @@ pub(crate) struct Integrals<T> {
 /// The state at the end of a step's polynomial.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Endpoint<T> {
-    /// Displacement from the piece's origin.
     pub y: T,
     pub v: T,
     pub acceleration: T,
@@ -83,7 +78,6 @@ impl<T: Number> Series<T> {
         self.measured.set(None);
     }
 
-    /// Adds coefficients up to `order`.
     #[inline(always)]
     pub fn extend_to<D: Tail<T>>(
         &mut self,
@@ -138,7 +132,7 @@ impl<T: Number> Series<T> {
                 )
             };
         }
-        match force.coefficients() {
+        match force.coefficients.as_slice() {
             [c0] => recur!(true, |k, _, more| force::constant(*c0, k, more)),
             [c0, c1] => recur!(true, |k, y, more| force::linear(*c0, *c1, y, k, more)),
             [c0, c1, c2] => {
@@ -173,8 +167,8 @@ impl<T: Number> Series<T> {
     pub fn state(&self, t: T) -> Endpoint<T> {
         let zero = T::zero();
         let (mut y, mut v, mut acceleration, mut bound) = (zero, self.y[1], zero, zero);
-        // Powers, and sums of terms: Horner's rule waits for a product and a sum at each coefficient, this
-        // only for one of them.
+        // Powers and sums of terms: Horner's rule waits for a product and a sum at each order, this for one
+        // of them.
         let (mut before, mut power) = (T::of(1.0), t);
         each_order::<T, true, 2>(
             2..self.known,
@@ -193,7 +187,6 @@ impl<T: Number> Series<T> {
         Endpoint { y: self.y[0] + (term + y), v, acceleration, bound: term.abs() + bound }
     }
 
-    /// The known coefficients of the displacement.
     #[inline(always)]
     pub fn coefficients(&self) -> &[T] {
         &self.y[..self.known]
@@ -220,8 +213,8 @@ impl<T: Scalar> Series<T> {
         self.extend_to(order, force, damping, drive, cursor);
     }
 
-    /// The longest step whose first neglected term in the velocity stays below `tolerance` times `speed`, at
-    /// most `cap`.
+    /// The longest step, at most `cap`, whose first neglected term in the velocity is below `tolerance` times
+    /// `speed`.
     #[inline]
     pub fn natural_step(&self, speed_log2: f64, tolerance_log2: f64, cap: f64) -> f64 {
         let [step] =
@@ -286,7 +279,7 @@ fn recur<T: Number, D: Tail<T>, const SIMPLE: bool>(
             if k >= SEEDED {
                 drive.extend(k, a, inverse, cursor);
             }
-            let base = if k < drive.zero_from() { Some(a[k]) } else { None };
+            let base = if drive.zero_from().is_none_or(|zero| k < zero) { Some(a[k]) } else { None };
             let drag = damping * T::whole(k + 1) * y[k + 1];
             let drag = match drive.couple(k, y, cursor) {
                 Some(push) => drag + push,
@@ -300,8 +293,7 @@ fn recur<T: Number, D: Tail<T>, const SIMPLE: bool>(
 }
 
 /// Calls `next` for each of the orders. If `UNROLLED`, the first order is `USUAL` and the arithmetic of `T`
-/// is quick, the loop is unrolled with constant orders: the bookkeeping of a loop may cost as much as its
-/// body.
+/// is quick, the loop is unrolled with constant orders: its bookkeeping may cost as much as its body.
 #[inline(always)]
 pub(crate) fn each_order<T: Number, const UNROLLED: bool, const USUAL: usize>(
     orders: std::ops::Range<usize>,
@@ -324,8 +316,8 @@ fn each_order_while<T: Number, const UNROLLED: bool, const USUAL: usize>(
     mut next: impl FnMut(usize) -> bool,
 ) {
     let mut rest = orders.start;
-    // Each condition is a constant of its own: what does not hold is then not compiled at all, and twenty
-    // copies of a body in double-double arithmetic take long.
+    // Each condition is constant, so that a branch that is never taken is not compiled: twenty copies of a
+    // body in double-double arithmetic take long to compile.
     if UNROLLED && T::QUICK && orders.start == USUAL {
         macro_rules! each {
             ($($k:literal)*) => {
@@ -355,7 +347,8 @@ mod tests {
     #[test]
     fn a_series_that_stops_early_and_goes_on_has_the_same_bits() {
         for degree in [0, 1, 2, 3, 9] {
-            let force = PieceForce::new((0..=degree).map(|k| 0.7 - 0.3 * f64::from(k)).collect());
+            let coefficients = (0..=degree).map(|k| 0.7 - 0.3 * f64::from(k)).collect();
+            let force = PieceForce { coefficients };
             let drive = crate::dynamics::drive::tone::Harmonic { curvature: -1.3 };
             let begun = || {
                 let mut series = Series::<f64>::new(force.degree());

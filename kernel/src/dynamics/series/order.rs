@@ -2,22 +2,21 @@
 
 use crate::numeric::Number;
 
-/// The highest order of a step.
 pub(crate) const MAX_ORDER: usize = 32;
 /// Room for coefficients 0..=MAX_ORDER.
 pub(crate) const ROOM: usize = MAX_ORDER + 2;
 /// Number of coefficients of the drive that are known from the start.
 pub(crate) const SEEDED: usize = 4;
 
-/// Continuation of the series of a drive.
 pub(crate) trait Tail<T: Number> {
     /// State carried along a series.
     type Cursor: Default;
 
-    /// The order from which on all coefficients are 0. If it is a compile-time constant, no code adds them.
+    /// The order from which on all coefficients are 0, if there is one. If it is a compile-time constant, no
+    /// code adds them.
     #[inline(always)]
-    fn zero_from(&self) -> usize {
-        usize::MAX
+    fn zero_from(&self) -> Option<usize> {
+        None
     }
 
     /// The acceleration that a circuit takes at order `k`, from y\[0..=k+1\]; `None` without a circuit. To be

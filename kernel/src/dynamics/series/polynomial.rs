@@ -23,9 +23,15 @@ pub(crate) fn scaled<T: Number>(y: &[T], h: T) -> [T; ROOM] {
 /// The coefficients of the velocity times `h`, each times its power of `h`.
 #[inline(always)]
 pub(crate) fn scaled_slope<T: Number>(y: &[T], h: T) -> [T; ROOM] {
-    let (mut slope, scaled) = ([T::zero(); ROOM], scaled(y, h));
+    derivative(&scaled(y, h)[..y.len()])
+}
+
+/// The coefficients of the derivative.
+#[inline(always)]
+pub(crate) fn derivative<T: Number>(y: &[T]) -> [T; ROOM] {
+    let mut slope = [T::zero(); ROOM];
     for (k, slot) in (1..y.len()).zip(&mut slope) {
-        *slot = scaled[k] * T::whole(k);
+        *slot = y[k] * T::whole(k);
     }
     slope
 }
@@ -137,19 +143,17 @@ fn at_nodes<T: Number, const WORK: bool, const COUNT: usize>(
     add!(0 1 2 3);
 }
 
-/// The integral of the square over (from, to) within the step.
-pub(crate) fn squared<T: Scalar>(w: &[T], rule: &GaussLegendre<T>, from: T, to: T) -> T {
+/// The integral of a function over (from, to), by Gauss' rule.
+#[inline]
+pub(crate) fn integral<T: Scalar>(rule: &GaussLegendre<T>, from: T, to: T, of: impl Fn(T) -> T) -> T {
     let length = to - from;
     let parts = rule.nodes().iter().zip(rule.weights());
-    let square = |t: T| value(w, t) * value(w, t);
-    parts.fold(T::zero(), |sum, (node, weight)| sum + square(from + length * *node) * *weight) * length
+    parts.fold(T::zero(), |sum, (node, weight)| sum + of(from + length * *node) * *weight) * length
 }
 
-/// The integral of the displacement over (from, to) within the step.
-pub(crate) fn moment<T: Scalar>(y: &[T], rule: &GaussLegendre<T>, from: T, to: T) -> T {
-    let length = to - from;
-    let parts = rule.nodes().iter().zip(rule.weights());
-    parts.fold(T::zero(), |sum, (node, weight)| sum + value(y, from + length * *node) * *weight) * length
+/// The integral of the square over (from, to) within the step.
+pub(crate) fn squared<T: Scalar>(w: &[T], rule: &GaussLegendre<T>, from: T, to: T) -> T {
+    integral(rule, from, to, |t| value(w, t) * value(w, t))
 }
 
 /// The polynomial of the coefficients `first..count`, the lowest being the constant, at four times.

@@ -1,15 +1,14 @@
-//! Choice of the length of a step of free flight.
+//! Choice of the length of a step of free flight, and the state of a circuit along it.
 //!
 //! The event-free step is written three times: here (with `run/flight.rs`, which takes the step), as the fast
 //! path of a single motion (`run/event_free.rs`), and for a batch (`lanes/columns/step.rs`). The three do the
 //! same arithmetic and must stay equal to the bit.
 
-use super::settings::{RESIDUAL, ROUNDINGS};
-use super::stepper::{MAX_HALVINGS, Step, Stepper};
+use super::stepper::{MAX_HALVINGS, RESIDUAL, ROUNDINGS, Step, Stepper};
 use crate::dynamics::drive::Drive;
-use crate::dynamics::series::Endpoint;
-use crate::dynamics::state::{BY_JERK, MotionState, Touch};
-use crate::numeric::Scalar;
+use crate::dynamics::series::{Endpoint, natural_steps, polynomial};
+use crate::dynamics::state::{MotionState, Opening};
+use crate::numeric::{Scalar, fast_log2};
 
 /// Order that is sufficient for the series of most rebounds.
 const LOW_ORDER: usize = 8;
@@ -49,7 +48,6 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     /// The step of up to length `h` that ends before the borders and satisfies the equation of motion.
     #[inline(always)]
     pub fn shorten(&mut self, state: &MotionState<T>, mut h: T, left: T) -> Option<Step<T>> {
-        let border = self.drive.segment_end(state.segment);
         for attempt in 0..MAX_HALVINGS {
             if !(h > T::zero()) {
                 return None;
@@ -57,18 +55,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             if attempt > 0 {
                 self.work.add(self.costs.check);
             }
-            let mut arrival = None;
-            if left <= h {
-                h = left;
-                arrival = Some(self.end);
-            }
-            if let Some(border) = border {
-                let to_border = self.clock.between(&state.at, &border);
-                if to_border <= h {
-                    h = to_border;
-                    arrival = Some(border);
-                }
-            }
+            let arrival = self.arrival(state, left, &mut h);
             let end = self.series.state(h);
             if self.step_holds(state, h, &end) {
                 return Some(Step { length: h, arrival, end });
@@ -83,27 +70,15 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         None
     }
 
-    /// Extends the series to the full order.
     #[inline]
     fn expand(&mut self, state: &MotionState<T>) {
-        if let (2, Some(Touch { multiplicity: BY_JERK.., .. })) = (self.series.known, state.touch) {
-            self.push(state);
+        let (mode, damping, order) = (self.mode(state), self.equation.damping, self.settings.order);
+        let Self { series, drive, cursor, .. } = self;
+        if series.known == 2 && state.touch.is_some_and(|touch| touch.opening >= Opening::Jerk) {
+            series.extend(2, &mode.force, damping, *drive, cursor);
+            series.y[2] = T::zero(); // a release: the net force is 0 by definition
         }
-        let mode = self.mode(state);
-        let order = self.settings.order;
-        self.series.extend(order, &mode.force, self.equation.damping, self.drive, &mut self.cursor);
-    }
-
-    #[inline]
-    fn push(&mut self, state: &MotionState<T>) {
-        let mode = self.mode(state);
-        let next = self.series.known;
-        self.series.extend(next, &mode.force, self.equation.damping, self.drive, &mut self.cursor);
-        if self.series.known == 3
-            && let Some(Touch { multiplicity: BY_JERK.., .. }) = state.touch
-        {
-            self.series.y[2] = T::zero(); // a release: the net force is 0 by definition
-        }
+        series.extend(order, &mode.force, damping, *drive, cursor);
     }
 
     /// Extends the series, just begun, until two consecutive terms are negligible over `flight` relative to
@@ -153,7 +128,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let mode = self.mode(state);
         let at = self.clock.advance(&state.at, h);
         let series = &self.series;
-        let base = self.drive.value(&self.clock, &at, state.segment, || series.base(h), &mut self.cursor);
+        let base = self.drive.value(&at, state.segment, || series.base(h), &mut self.cursor);
         let sum = (acceleration + self.equation.damping * v) + base;
         let push = self.drive.circuit().and_then(|circuit| Some(circuit.coupling * self.circuit_at(h)?));
         let sum = push.map_or(sum, |push| sum + push);
@@ -169,5 +144,55 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let size = acceleration.abs() + (self.equation.damping * v).abs() + base.abs();
         let size = push.map_or(size, |push| size + push.abs());
         residual <= (rounding + size * T::of(T::EPSILON)) * h * T::of(ROUNDINGS) && self.circuit_holds(h, v)
+    }
+
+    /// Coefficients of the circuit's state that belong to those of the motion; `None` without a circuit.
+    #[inline(always)]
+    pub fn circuit_series(&self) -> Option<&[T]> {
+        self.drive.circuit_state(&self.cursor).map(|state| &state[..self.series.known - 1])
+    }
+
+    #[inline(always)]
+    pub fn circuit_at(&self, t: T) -> Option<T> {
+        self.circuit_series().map(|state| polynomial::value(state, t))
+    }
+
+    /// Effect of the circuit on a mass that moves little, as a stiffness over mass: its squared coupling.
+    #[inline(always)]
+    pub fn circuit_stiffness(&self) -> Option<T> {
+        self.drive.circuit().map(|circuit| circuit.coupling * circuit.coupling)
+    }
+
+    /// The longest step whose first neglected term in the circuit's state stays below the tolerance.
+    #[inline(always)]
+    pub fn circuit_step(&self) -> Option<f64> {
+        let (circuit, state) = (self.drive.circuit()?, self.circuit_series()?);
+        let (s, order) = (&self.settings, self.series.known - 1);
+        // (as for the velocity, whose coefficient k - 1 is k times that of the displacement)
+        let coefficient = |k: usize| [state[k - 1].magnitude() / k as f64];
+        let scale = fast_log2(circuit.scale.to_f64());
+        let [step] = natural_steps(order, coefficient, &[scale], s.tolerance_log2, &[s.longest]);
+        Some(step)
+    }
+
+    /// Whether the polynomial of the state satisfies the circuit's equation at time `h` into the step, where
+    /// the velocity is `v`, within tolerance and rounding.
+    #[inline(always)]
+    pub fn circuit_holds(&self, h: T, v: T) -> bool {
+        let Some((circuit, state)) = self.drive.circuit().zip(self.circuit_series()) else { return true };
+        let residual = polynomial::slope(state, h) + circuit.decay * polynomial::value(state, h);
+        let residual = (residual - circuit.coupling * v).abs() * h;
+        let allowed = T::of(RESIDUAL * state.len() as f64 * self.settings.tolerance) * circuit.scale;
+        if residual <= allowed {
+            return true;
+        }
+        // larger than permitted: it may be rounding
+        let (mut size, mut power) = (T::zero(), T::of(1.0));
+        for (k, c) in state.iter().enumerate() {
+            size += c.abs() * power * (T::whole(k) + circuit.decay * h);
+            power = power * h;
+        }
+        let size = size + (circuit.coupling * v * h).abs();
+        residual <= size * T::of(T::EPSILON * ROUNDINGS)
     }
 }

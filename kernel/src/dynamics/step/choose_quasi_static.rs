@@ -1,9 +1,7 @@
-//! Choice of a step of quasi-static motion: whether the mass rings, and the length over which the
-//! series holds.
+//! Choice of a step of quasi-static motion: whether the mass rings, and how long the series holds.
 
 use super::quasi_static::QuasiStatic;
-use super::settings::RESIDUAL;
-use super::stepper::Stepper;
+use super::stepper::{RESIDUAL, Stepper};
 use crate::dynamics::clock::Instant;
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::End;
@@ -44,13 +42,12 @@ pub(crate) struct QuasiStaticStep<T> {
     pub arrival: Option<Instant<T>>,
     /// Root of the depth and inward speed at its end.
     pub end: (T, T),
-    /// Bound of the change of the depth.
     pub bound: T,
 }
 
 impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
-    /// A step of quasi-static motion; `None` if the mass rings by more than the tolerance, or if the load
-    /// changes too fast.
+    /// A step of quasi-static motion; `None` if the mass rings beyond the tolerance or the load changes too
+    /// fast.
     pub fn quasi_static_step(
         &mut self,
         state: &MotionState<T>,
@@ -67,10 +64,9 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         if !compressing || self.settings.tolerance < MIN_TOLERANCE {
             return None;
         }
-        // Does the mass ring? The first term of its quasi-static motion shows whether the series is
-        // worth computing.
+        // Does the mass ring? The first term of its quasi-static motion shows whether the series is worth it.
         let a = &mut path.series.a;
-        self.drive.seed(&self.clock, &state.at, state.segment, a, &mut self.cursor);
+        self.drive.seed(&state.at, state.segment, a, &mut self.cursor);
         let (jerk, snap) = (-(sign * a[1]), a[2].abs() * T::of(2.0));
         let stiffness = T::of(1.5) * stop.stiffness * root;
         if !((speed * stiffness - jerk).abs() <= ring * stiffness + jerk.abs() * T::of(FIRST_TERM_ROUGH)) {
@@ -123,18 +119,8 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             &[self.settings.longest],
         );
         let mut length = T::of(natural);
-        let border = self.drive.segment_end(state.segment);
         for _ in 0..MAX_HALVINGS {
-            let mut arrival = None;
-            let mut until = |time: T, instant| {
-                if time <= length {
-                    (length, arrival) = (time, Some(instant));
-                }
-            };
-            until(left, self.end);
-            if let Some(border) = border {
-                until(self.clock.between(&state.at, &border), border);
-            }
+            let arrival = self.arrival(state, left, &mut length);
             if !(length * ringing > T::of(MIN_RADIANS)) {
                 return None;
             }

@@ -9,11 +9,8 @@ pub(crate) const CLEARANCE: f64 = 1.0625;
 /// Share of the displacement of a step that is far above rounding.
 pub(crate) const ROUNDING: f64 = 1e-9;
 
-/// A step of free flight.
 pub(crate) struct Chord<T> {
-    /// Displacement at its start.
     pub start: T,
-    /// Displacement at its end.
     pub end: T,
     /// Bound of |x - x(start)|.
     pub bound: T,
@@ -25,7 +22,6 @@ pub(crate) struct Chord<T> {
     pub slopes: (T, T),
     /// The accelerations at its ends, times the square of its length; 0 if they are not needed.
     pub curvatures: (T, T),
-    /// Ends of the mode.
     pub limits: (T, T),
 }
 
@@ -92,8 +88,7 @@ impl<T: Scalar> Chord<T> {
         self.bends_one_way() & keeps_sign((from, T::zero() - to), T::zero())
     }
 
-    /// The extremes including the ends of the step, and whether a turning point inside it may lie
-    /// beyond them.
+    /// The extremes with the ends of the step, and whether a turning point inside it may lie beyond them.
     #[inline(always)]
     pub fn extremes(&self, (low, high): (T, T)) -> (T, T, bool) {
         let start = self.start.larger(self.limits.0).smaller(self.limits.1);

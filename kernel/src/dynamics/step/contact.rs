@@ -1,16 +1,17 @@
-//! Choice of a step of contact with a compliant stop, and the first event within it.
+//! Choice of a step of contact with a compliant stop, and the first event within it; choice of a whole impact
+//! as one step, in which there is no other event.
 
 use super::contact_path::{Changes, ContactState};
+use super::impact::{DRIVE_TERMS, FORCE_TERMS, Impact, Separation};
 use super::path::Path;
-use super::penetration::{Penetration, Start, Terms};
-use super::settings::{RESIDUAL, ROUNDINGS};
-use super::stepper::{MAX_HALVINGS, Stepper};
+use super::penetration::{Penetration, Terms, neglected};
+use super::stepper::{MAX_HALVINGS, RESIDUAL, ROUNDINGS, Stepper};
 use crate::dynamics::clock::Instant;
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::{End, EndKind};
-use crate::dynamics::series::MAX_ORDER;
-use crate::dynamics::state::{Contact, HELD, MotionState};
-use crate::numeric::{PolynomialRoots, Scalar, fast_log2};
+use crate::dynamics::series::{MAX_ORDER, SEEDED};
+use crate::dynamics::state::{Contact, MotionState, Opening};
+use crate::numeric::{Collocation, PolynomialRoots, Scalar, fast_log2};
 
 /// Minimum of the speed to which the tolerance in contact is relative, as a share of the scene's speed. The
 /// tolerance is relative to the speed that corresponds to the energy in the contact, up to the scene's speed:
@@ -32,6 +33,12 @@ const COARSE: f64 = 1e-9;
 /// changes more.
 const SLOW_SHARE: f64 = 0.01;
 
+/// Tolerance of a step below which rounding dominates a whole impact.
+const MIN_TOLERANCE: f64 = 1e-14;
+
+/// Difference between the binary digits of the tolerance and the number of points of a whole impact.
+const FEWER_POINTS: f64 = 2.0;
+
 /// The event at the end of a step of contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Reached {
@@ -42,15 +49,12 @@ pub(crate) enum Reached {
     End(End),
 }
 
-/// A step of contact that has been chosen.
 pub(crate) struct ContactStep<T> {
     /// Length as chosen, in the parameter.
     pub whole: T,
     /// Length that is kept, in the parameter.
     pub length: T,
-    /// State at the end of the kept length.
     pub end: ContactState<T>,
-    /// The duration of the kept length.
     pub duration: T,
     /// Bound of the change of the depth over the chosen length.
     pub bound: T,
@@ -71,18 +75,14 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let damping = self.equation.damping;
         let order = (self.settings.order + CONTACT_ORDERS).min(MAX_ORDER);
         let sign = end.sign::<T>();
-        let start = Start {
-            root: state.depth.root,
-            speed: sign * state.v,
-            sign,
-            surface: self.equation.surface(end)? - mode.origin,
-            clipped: matches!(state.contact, Contact::Clipped(_)),
-        };
-        self.drive.seed(&self.clock, &state.at, state.segment, path.seeded(), &mut self.cursor);
+        (path.root[0], path.speed[0]) = (state.depth.root, sign * state.v);
+        (path.sign, path.surface) = (sign, self.equation.surface(end)? - mode.origin);
+        path.clipped = matches!(state.contact, Contact::Clipped(_));
+        self.drive.seed(&state.at, state.segment, path.seeded(), &mut self.cursor);
         self.evaluations += 1;
         self.work.add(self.costs.contact);
-        // At most as far as the initial speed would lead in the longest time.
-        let (u, w) = (start.root.to_f64(), start.speed.abs().to_f64());
+        // The parameter that the mass would reach in the longest time at its initial speed.
+        let (u, w) = (path.root[0].to_f64(), path.speed[0].abs().to_f64());
         let longest = self.settings.longest;
         let cap = 2.0 * longest / (u + (u * u + w * longest).sqrt());
         let (speed, tolerance) = self.contact_tolerance(state)?;
@@ -90,7 +90,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let few = fast && self.settings.tolerance > COARSE;
         let mut terms = if few { Terms::Few } else { Terms::More };
         let force = (&mode.force, state.mode);
-        path.expand(&start, (order, terms), force, damping);
+        path.expand((order, terms), force, damping);
         let settings = (fast_log2(speed.to_f64()), self.settings.tolerance_log2 + CONTACT_SHARE.log2());
         let mut whole = T::of(path.natural_step(settings.0, settings.1, cap));
         let border = self.drive.segment_end(state.segment);
@@ -108,15 +108,14 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
                 let deepest = path.depth[0] + changes.depth;
                 let neglected = path.neglected(self.drive, &mut self.cursor, (duration, deepest));
                 if neglected > T::of(tolerance) * speed {
-                    // The drive is as fast as the contact, or the stop so soft that the force changes
-                    // during it.
+                    // The drive is as fast as the contact, or the stop so soft that the force changes.
                     self.work.add(self.costs.contact);
                     terms = match terms {
                         Terms::Few => Terms::More,
-                        _ => Terms::All(order.min(self.drive.zero_from())),
+                        _ => Terms::All(self.drive.zero_from().map_or(order, |zero| order.min(zero))),
                     };
                     path.extend_drive(terms.of_drive(), self.drive, &mut self.cursor);
-                    path.expand(&start, (order, terms), force, damping);
+                    path.expand((order, terms), force, damping);
                     whole = T::of(path.natural_step(settings.0, settings.1, cap));
                     continue;
                 }
@@ -177,7 +176,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         for at in [End::Low, End::High] {
             let (level, kind) = mode.end(at);
             let touch = state.touch.filter(|touch| touch.end == at);
-            if kind == EndKind::Compliant || touch.is_some_and(|touch| touch.multiplicity == HELD) {
+            if kind == EndKind::Compliant || touch.is_some_and(|touch| touch.opening == Opening::Held) {
                 continue;
             }
             let gap = at.sign::<T>() * (level - state.x);
@@ -198,5 +197,50 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             earlier(share, Reached::End(at));
         }
         first
+    }
+
+    /// The impact that begins with this touch of the stop of `end`, if it can be taken in one step: nothing
+    /// but the stop force changes much in it, neither a break of the curve nor `barrier` is within its reach,
+    /// and it ends before the run and the drive's segment do.
+    pub fn choose_impact(
+        &mut self,
+        state: &MotionState<T>,
+        end: End,
+        left: T,
+        barrier: Option<T>,
+        path: &mut Impact<T>,
+    ) -> Option<Separation<T>> {
+        let (sign, speed) = (end.sign::<T>(), end.sign::<T>() * state.v);
+        let touches = matches!(state.contact, Contact::Compressing(_)) && state.depth.root == T::zero();
+        if !touches || self.settings.tolerance < MIN_TOLERANCE {
+            return None;
+        }
+        let mode = self.mode(state);
+        let level = self.equation.surface(end)?;
+        let (scale, tolerance) = self.contact_tolerance(state)?;
+        self.drive.seed(&state.at, state.segment, &mut path.series.a, &mut self.cursor);
+        for k in SEEDED..DRIVE_TERMS + 2 {
+            path.series.extend_drive(k, self.drive, &mut self.cursor);
+        }
+        self.evaluations += 1;
+        self.work.add(self.costs.contact);
+        (path.sign, path.surface, path.damping) = (sign, level - mode.origin, self.equation.damping);
+        if path.about_mode != Some(state.mode) {
+            mode.force.about(path.surface, &mut path.about);
+            path.about.resize(path.about.len().max(FORCE_TERMS), T::zero());
+            path.about_mode = Some(state.mode);
+        }
+        path.rule = Collocation::of((-self.settings.tolerance_log2 - FEWER_POINTS) as usize);
+        let share = scale / speed;
+        let tolerances = (T::of(tolerance) * share, T::of(RESIDUAL * self.settings.tolerance) * share);
+        let found = path.solve(speed, tolerances)?;
+        let depth = path.max_root * path.max_root;
+        let base = (&path.series.a[DRIVE_TERMS..], DRIVE_TERMS);
+        let missed = neglected(base, (&path.about, FORCE_TERMS), (found.time, depth));
+        let before = |border| found.time < self.clock.between(&state.at, &border);
+        let in_time = found.time < left && self.drive.segment_end(state.segment).is_none_or(before);
+        let clear = |at: T| !((at - level).abs() <= depth + depth);
+        let alone = barrier.is_none_or(clear) && clear(mode.end(end).0);
+        (missed <= T::of(tolerance) * scale && in_time && alone).then_some(found)
     }
 }

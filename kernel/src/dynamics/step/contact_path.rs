@@ -1,5 +1,4 @@
-//! Evaluation of a step of contact: bounds, events, residual, position, integrals, dissipation,
-//! largest force.
+//! Evaluation of a step of contact: bounds, events, residual, position, integrals, loss, largest force.
 
 use super::path::{InStop, Path};
 use super::penetration::Penetration;
@@ -9,7 +8,6 @@ use crate::dynamics::series::polynomial::{self, at_four_times};
 use crate::dynamics::series::{ROOM, convolve};
 use crate::numeric::{GaussLegendre, PolynomialRoots, Scalar};
 
-/// Bounds of the changes over a step of contact.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Changes<T> {
     pub root: T,
@@ -71,12 +69,10 @@ impl<T: Scalar> Penetration<T> {
         }
         g[0] += if self.clipped { T::of(-1.0) } else { T::of(1.0) };
         let from = usize::from(passed);
-        // If the sign is wrong, it is so by rounding: the change was a mere touch, and the contact continues
-        // as it was.
+        // A wrong sign comes from rounding: the change was a mere touch, and the contact continues as it was.
         if g[from] > T::zero() { PolynomialRoots::new(&g[from..n]).first() } else { None }
     }
 
-    /// The state at `s`.
     pub fn state(&self, s: T) -> ContactState<T> {
         let zero = T::zero();
         let (mut root, mut speed, mut slope, mut time) = (zero, zero, zero, zero);
@@ -95,7 +91,6 @@ impl<T: Scalar> Penetration<T> {
         at.slope + at.root * (damping * at.speed + self.sign * (f + base) + pushed)
     }
 
-    /// Bound of the rounding of the residual.
     pub fn residual_rounding(&self, at: &ContactState<T>, force: &PieceForce<T>, damping: T) -> T {
         let (f, _, rounding) = force.value(self.displacement(at));
         let (f, base, pushed) = self.forces(at, f);
@@ -108,11 +103,10 @@ impl<T: Scalar> Penetration<T> {
         self.surface + self.sign * (at.root * at.root)
     }
 
-    /// Forces over mass in a state: the given one of the mechanism, that of the base by its series, that of
-    /// the stop.
+    /// Forces over mass in a state: the given one of the mechanism, the base's by its series, the stop's.
     fn forces(&self, at: &ContactState<T>, force: T) -> (T, T, T) {
         let levels = self.known_drive.min(self.terms.of_drive());
-        let base = self.inner.a[..levels].iter().rev().fold(T::zero(), |sum, c| sum * at.time + *c);
+        let base = polynomial::value(&self.inner.a[..levels], at.time);
         let pushed = if self.clipped { T::zero() } else { self.stop.force(at.root, at.speed) };
         (force, base, pushed)
     }
@@ -124,15 +118,12 @@ impl<T: Scalar> InStop<T> for Penetration<T> {
         if self.clipped {
             return self.stop.stored(self.root_at(from)) - self.stop.stored(self.root_at(to));
         }
-        let length = to - from;
-        let mut sum = T::zero();
-        for (node, weight) in rule.nodes().iter().zip(rule.weights()) {
-            let s = from + length * *node;
+        let lost = polynomial::integral(rule, from, to, |s| {
             let (u, w) = (self.root_at(s), self.speed_at(s));
             let square = u * u;
-            sum += square * square * (w * w) * *weight;
-        }
-        self.stop.stiffness * self.stop.loss * (sum * length)
+            square * square * (w * w)
+        });
+        self.stop.stiffness * self.stop.loss * lost
     }
 
     fn peak(&self, h: T, until: T, known: T) -> T {
@@ -152,12 +143,9 @@ impl<T: Scalar> InStop<T> for Penetration<T> {
             push[k] = cube[k] + self.stop.loss * convolve(&cube, &self.speed, k);
         }
         let scaled = self.powers(&push, h);
-        let value = |s: T| scaled[..n].iter().rev().fold(T::zero(), |sum, c| sum * s + *c);
+        let value = |s: T| polynomial::value(&scaled[..n], s);
         let mut peak = value(T::zero()).larger(value(until));
-        let mut slope = [T::zero(); ROOM];
-        for k in 1..n {
-            slope[k - 1] = scaled[k] * T::of(k as f64);
-        }
+        let slope = polynomial::derivative(&scaled[..n]);
         PolynomialRoots::new(&slope[..n - 1]).each_sign_change(&mut |s| {
             if s < until {
                 peak = peak.larger(value(s));
@@ -238,12 +226,6 @@ impl<T: Scalar> Path<T> for Penetration<T> {
         (squared * length, power * length)
     }
     fn moment(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T {
-        let length = to - from;
-        let parts = rule.nodes().iter().zip(rule.weights());
-        let moment = parts.fold(T::zero(), |sum, (node, weight)| {
-            let s = from + length * *node;
-            sum + self.position(s) * self.root_at(s) * *weight
-        });
-        moment * length
+        polynomial::integral(rule, from, to, |s| self.position(s) * self.root_at(s))
     }
 }

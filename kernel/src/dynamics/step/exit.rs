@@ -5,7 +5,7 @@ use super::stepper::Stepper;
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::End;
 use crate::dynamics::series::{Endpoint, polynomial};
-use crate::dynamics::state::{BY_SPEED, HELD, MotionState, Touch};
+use crate::dynamics::state::{MotionState, Opening, Touch};
 use crate::numeric::{PolynomialRoots, Scalar, single_root};
 
 impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
@@ -20,8 +20,8 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let past = |exit: End| exit.sign::<T>() * (to - mode.end(exit).0) > T::zero();
         let ahead = if state.v > T::zero() { End::High } else { End::Low };
         let exit = match state.touch {
-            Some(Touch { multiplicity: BY_SPEED, end }) if past(end) => end,
-            None | Some(Touch { multiplicity: BY_SPEED, .. }) => ahead,
+            Some(Touch { opening: Opening::Speed, end }) if past(end) => end,
+            None | Some(Touch { opening: Opening::Speed, .. }) => ahead,
             Some(_) => return None,
         };
         let (sign, level) = (exit.sign::<T>(), mode.end(exit).0);
@@ -83,8 +83,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let mut first: Option<(T, End)> = None;
         if state.touch.is_none() {
             let limits = (mode.low, mode.high);
-            let near = !(state.x - limits.0 > bound && limits.1 - state.x > bound);
-            if !near {
+            if state.x - limits.0 > bound && limits.1 - state.x > bound {
                 return None;
             }
             let (y, to) = (self.series.coefficients(), end + mode.origin);
@@ -113,7 +112,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let (zero, sign, n) = (T::zero(), end.sign::<T>(), self.series.known);
         let gap = sign * (self.mode(state).end(end).0 - state.x);
         let touch = state.touch.filter(|t| t.end == end);
-        if touch.map_or(gap > bound, |touch| touch.multiplicity == HELD) {
+        if touch.map_or(gap > bound, |touch| touch.opening == Opening::Held) {
             return None;
         }
         let mut g = polynomial::scaled(self.series.coefficients(), h);
@@ -121,9 +120,11 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             g[1..n].iter_mut().for_each(|c| *c = -*c);
         }
         g[0] = gap;
-        // Beyond the surface by rounding only, after it was held, and not moving outward: it is touched.
+        // The mass lies beyond a surface that the last step ignored, by rounding alone, and does not move
+        // outward: it touches the surface.
         let returns = touch.is_none() && gap < zero && sign * state.v <= zero;
-        let mut from = if returns { BY_SPEED } else { touch.map_or(0, |t| t.multiplicity.min(n - 1)) };
+        let opening = if returns { Some(Opening::Speed) } else { touch.map(|touch| touch.opening) };
+        let mut from = opening.map_or(0, |opening| (opening as usize).min(n - 1));
         // A coefficient that is exactly 0 is divided out.
         while from + 1 < n && g[from] == zero {
             from += 1;

@@ -232,16 +232,16 @@ impl<T: Scalar> Impact<T> {
         if self.pressing > T::zero() {
             m += power(self.pressing / fifth, 1.0 / 3.0) * T::of(0.5);
         }
-        for _ in 0..20 {
+        let newton = |m: T| {
             let cube = fifth * m * m * m;
             let value = (cube - self.pressing) * (m * m) - stored;
-            let slope = m * (T::of(5.0) * cube - T::of(2.0) * self.pressing);
-            let change = value / slope;
+            value / (m * (T::of(5.0) * cube - T::of(2.0) * self.pressing))
+        };
+        for _ in 0..20 {
+            let change = newton(m);
             m -= change;
             if change.abs() <= m * T::of(T::ROUGH) {
-                let cube = fifth * m * m * m;
-                let value = (cube - self.pressing) * (m * m) - stored;
-                return Some(m - value / (m * (T::of(5.0) * cube - T::of(2.0) * self.pressing)));
+                return Some(m - newton(m));
             }
         }
         None
@@ -283,8 +283,7 @@ impl<T: Scalar> Impact<T> {
         None
     }
 
-    /// Computes m at all points from the slopes by the last m and t, and corrects the motion to first order
-    /// in the change of m.
+    /// Computes m at all points from the slopes by the last m and t; corrects the motion to first order in m.
     #[inline(always)]
     fn sweep(&mut self, (m, t): (T, T)) {
         let all = Lanes::<GROUP, T>::all;
@@ -292,7 +291,8 @@ impl<T: Scalar> Impact<T> {
         let none: Values<T> = [Lanes::zero(); MOST_GROUPS];
         let (mut passing, mut gains) = (none, none);
         for group in 0..self.rule.groups() {
-            let place = self.motion_at(group);
+            let (m, t, y) = (self.amplitude[group], self.time[group], self.rule.places(group));
+            let place = self.motion(Lanes::all, |value| value.map(T::sqrt), [m, t, y]);
             self.change[group] =
                 (place.amplitude_slope - self.amplitude_slope[group]).abs() * inverse_amplitude;
             self.amplitude_slope[group] = place.amplitude_slope;
@@ -311,13 +311,6 @@ impl<T: Scalar> Impact<T> {
             self.change[group] += (slope - self.time_slope[group]).abs() * inverse_time;
             self.time_slope[group] = slope;
         }
-    }
-
-    /// The motion at the points of a group.
-    #[inline(always)]
-    fn motion_at(&self, group: usize) -> Place<Lanes<GROUP, T>> {
-        let (m, t, y) = (self.amplitude[group], self.time[group], self.rule.places(group));
-        self.motion(Lanes::all, |value| value.map(T::sqrt), [m, t, y])
     }
 
     /// The motion at m, t and y.
@@ -354,8 +347,7 @@ impl<T: Scalar> Impact<T> {
         Place { root: u, speed: w, time_slope: two * slope * m * net, amplitude_slope: slope * w * b, gain }
     }
 
-    /// Change since touch of the inward acceleration by everything but the stop, at a time, a depth and
-    /// a speed.
+    /// Change since touch of the inward acceleration by all but the stop, at a time, a depth and a speed.
     #[inline(always)]
     pub fn changed<N: Number>(&self, all: impl Fn(T) -> N, [t, d, w]: [N; 3]) -> N {
         let outward =

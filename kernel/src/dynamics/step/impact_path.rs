@@ -24,11 +24,6 @@ impl<T: Scalar> Impact<T> {
         (all(self.first) + self.rule.integral(m, y, all).0, self.rule.integral(t, y, all))
     }
 
-    /// The time at `y` and its slope.
-    fn time_at(&self, y: T) -> (T, T) {
-        self.sums(y, |value| value).1
-    }
-
     /// Root of the depth at y = 0: m, which hardly changes.
     fn turn(&self) -> T {
         self.first + self.rule.half(&self.amplitude_slope)
@@ -86,8 +81,8 @@ impl<T: Scalar> Impact<T> {
         parameter
     }
 
-    /// The integral over time of a function of time, root of the depth and inward speed, between two
-    /// parameters.
+    /// The integral over time, between two parameters, of a function of time, root of the depth and inward
+    /// speed.
     fn integral(&self, (from, to): (T, T), of: impl Fn(Group<T>, Group<T>, Group<T>) -> Group<T>) -> T {
         let (one, whole) = (T::of(1.0), from == T::zero() && to == T::of(2.0));
         let half = if whole { one } else { (to - from) * T::of(0.5) };
@@ -146,7 +141,7 @@ impl<T: Scalar> Path<T> for Impact<T> {
         if time >= self.rule.total(&self.time_slope) {
             return length;
         }
-        let between = self.parameter_by(|y| self.time_at(y), time, length * T::of(0.5));
+        let between = self.parameter_by(|y| self.sums(y, |value| value).1, time, length * T::of(0.5));
         let exactly = |y: T| {
             let (point, time) = self.exactly_at(y);
             (time, point.time_slope)

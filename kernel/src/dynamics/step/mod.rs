@@ -1,11 +1,8 @@
-//! Steps in free flight and in contact with a compliant stop: their length, their first event, and
-//! their evaluation.
+//! Steps in free flight and in contact with a compliant stop: length, first event, and evaluation.
 
 mod choose;
-mod choose_impact;
 pub(crate) mod choose_quasi_static;
 pub(crate) mod chord;
-pub(crate) mod circuit;
 pub(crate) mod contact;
 mod contact_path;
 mod exit;
@@ -15,6 +12,5 @@ pub(crate) mod path;
 pub(crate) mod penetration;
 pub(crate) mod quasi_static;
 mod rebound;
-pub(crate) mod settings;
 pub(crate) mod stepper;
 pub(crate) mod work;

@@ -10,7 +10,8 @@ use crate::dynamics::series::polynomial;
 use crate::dynamics::series::{Integrals, ROOM, Series};
 use crate::numeric::{GaussLegendre, Scalar};
 
-/// The motion over one step, in a parameter that is 0 at the step's start and grows with time.
+/// The motion over one step, in a parameter that is 0 at the step's start and grows with time. Unless a path
+/// says otherwise, the parameter is the time.
 pub(crate) trait Path<T: Scalar> {
     /// Whether it runs in contact with a compliant stop.
     const IN_CONTACT: bool;
@@ -29,42 +30,44 @@ pub(crate) trait Path<T: Scalar> {
     fn scaled(&self, h: T) -> [T; ROOM];
     /// Displacement from the piece's origin.
     fn position(&self, parameter: T) -> T;
-    /// Velocity.
     fn velocity(&self, parameter: T) -> T;
     /// Time since the step's start.
-    fn time(&self, parameter: T) -> T;
+    #[inline]
+    fn time(&self, parameter: T) -> T {
+        parameter
+    }
     /// The parameter, up to `length`, at a time since the step's start.
-    fn parameter(&self, time: T, length: T) -> T;
+    #[inline]
+    fn parameter(&self, time: T, _length: T) -> T {
+        time
+    }
     /// Integrals over time between two parameters: of the squared velocity and, if `WORK`, of base
     /// acceleration times velocity.
     fn integrals<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T);
     /// Integral over time between two parameters of the displacement from the piece's origin.
-    fn moment(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T;
+    fn moment(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T {
+        polynomial::integral(rule, from, to, |t| self.position(t))
+    }
 }
 
-/// Further methods of a step within a compliant stop.
 pub(crate) trait InStop<T: Scalar>: Path<T> {
     /// Energy over mass that the stop dissipates over (from, to) in the path's parameter.
     fn loss(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T;
-    /// The larger of `known` and the largest force over mass within a step of length `h`, up to its
-    /// fraction `until`.
+    /// The larger of `known` and the largest force over mass in a step of length `h`, up to its fraction
+    /// `until`.
     fn peak(&self, h: T, until: T, known: T) -> T;
 }
 
-/// One accepted step, as the recorder sees it.
-pub(crate) struct StepView<'a, T, P> {
-    pub path: &'a P,
-    /// Coefficients of a circuit's state in free flight, if there is a circuit.
-    pub circuit: Option<&'a [T]>,
-    /// Origin of the series.
+/// An accepted step without its path, as the recorder sees it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct StepData<T> {
+    /// Origin of the piece.
     pub origin: T,
-    /// When the step starts.
     pub at: Instant<T>,
     /// Length of the step as it was chosen, in the path's parameter.
     pub whole: T,
     /// Length that is kept, at most `whole`.
     pub length: T,
-    /// Duration of the kept length.
     pub duration: T,
     /// Bound of |x - x(start)| over the step.
     pub bound: T,
@@ -76,10 +79,10 @@ pub(crate) struct StepView<'a, T, P> {
     pub v: T,
 }
 
-impl<T: Scalar, P: Path<T>> StepView<'_, T, P> {
-    /// Displacement at a parameter of the step, limited to the mode, since its origin is rounded.
-    pub fn x_at(&self, t: T) -> T {
-        let x = self.path.position(t) + self.origin;
+impl<T: Scalar> StepData<T> {
+    /// Displacement at a parameter of the step's path, limited to the mode, since its origin is rounded.
+    pub fn x_at<P: Path<T>>(&self, path: &P, parameter: T) -> T {
+        let x = path.position(parameter) + self.origin;
         x.larger(self.limits.0).smaller(self.limits.1)
     }
 }
@@ -117,14 +120,6 @@ impl<T: Scalar> Path<T> for Series<T> {
         polynomial::slope(self.coefficients(), parameter)
     }
     #[inline]
-    fn time(&self, parameter: T) -> T {
-        parameter
-    }
-    #[inline]
-    fn parameter(&self, time: T, _: T) -> T {
-        time
-    }
-    #[inline]
     fn integrals<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T) {
         let whole = from == T::zero();
         if let Some(known) = self.measured.get().filter(|known| whole && known.until == to) {
@@ -136,8 +131,5 @@ impl<T: Scalar> Path<T> for Series<T> {
             self.measured.set(Some(Integrals { until: to, squared, work }));
         }
         (squared, work)
-    }
-    fn moment(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T {
-        polynomial::moment(self.coefficients(), rule, from, to)
     }
 }

@@ -22,7 +22,7 @@
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::Compliant;
 use crate::dynamics::equation::force::PieceForce;
-use crate::dynamics::series::{MAX_ORDER, ROOM, SEEDED, Series, convolve, each_order, square};
+use crate::dynamics::series::{MAX_ORDER, ROOM, SEEDED, Series, convolve, each_order, polynomial, square};
 use crate::numeric::{Scalar, fast_exp2, fast_log2};
 
 /// One step of contact, in the parameter s, and the workspace.
@@ -30,21 +30,17 @@ use crate::numeric::{Scalar, fast_exp2, fast_log2};
 pub(crate) struct Penetration<T: Copy> {
     /// Displacement from the piece's origin over s, and the base's acceleration over *time*.
     pub inner: Series<T>,
-    /// Root of the depth.
     pub root: [T; ROOM],
-    /// Speed into the stop.
     pub speed: [T; ROOM],
     /// Time since the step's start.
     pub(super) time: [T; ROOM],
     pub(super) depth: [T; ROOM],
-    /// Square of the depth.
     square: [T; ROOM],
     /// Outward acceleration by everything but stop and damping.
     outward: [T; ROOM],
     /// The terms of the force beyond the first ones, over the square of the depth.
     beyond: [T; ROOM],
     time_square: [T; ROOM],
-    /// The base's acceleration.
     pub(super) base: [T; ROOM],
     /// Its nested form in powers of the time, from the second level on.
     nested: [[T; ROOM]; ROOM],
@@ -56,7 +52,6 @@ pub(crate) struct Penetration<T: Copy> {
     about: Vec<T>,
     /// The mode of that force.
     about_mode: Option<usize>,
-    /// 1/k.
     inverse: [T; ROOM],
     pub(super) order: usize,
     pub(super) stop: Compliant<T>,
@@ -80,7 +75,6 @@ pub(crate) enum Terms {
 }
 
 impl Terms {
-    /// Terms of the drive.
     pub fn of_drive(self) -> usize {
         match self {
             Self::Few => 3,
@@ -90,17 +84,6 @@ impl Terms {
     }
 }
 
-/// Initial values of a step of contact.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Start<T> {
-    pub root: T,
-    pub speed: T,
-    pub sign: T,
-    pub surface: T,
-    pub clipped: bool,
-}
-
-/// The constants of the recurrence.
 struct Constants<T> {
     force: [T; 5],
     stiffness: T,
@@ -152,30 +135,27 @@ impl<T: Scalar> Penetration<T> {
         }
     }
 
-    /// Expands the motion from `start` to `order` in s, with `terms` of the base's acceleration over time (no
-    /// more than are known) and of the force over depth; `mode` is the number of the force's mode.
+    /// Expands the motion to `order` in s, with `terms` of the base's acceleration over time (no more than
+    /// are known) and of the force over depth; `mode` is the number of the force's mode. The first
+    /// coefficients of root and speed, and all that describes the stop, must be set.
     pub fn expand(
         &mut self,
-        start: &Start<T>,
         (order, terms): (usize, Terms),
         (force, mode): (&PieceForce<T>, usize),
         damping: T,
     ) {
         let order = order.min(MAX_ORDER);
-        (self.order, self.terms, self.clipped) = (order, terms, start.clipped);
-        (self.sign, self.surface) = (start.sign, start.surface);
+        (self.order, self.terms) = (order, terms);
         if self.about_mode != Some(mode) {
             force.about(self.surface, &mut self.about);
             self.about.resize(self.about.len().max(5), T::zero());
             self.about_mode = Some(mode);
         }
-        self.root[0] = start.root;
-        self.speed[0] = start.speed;
         self.time[0] = T::zero();
-        self.depth[0] = start.root * start.root;
+        self.depth[0] = self.root[0] * self.root[0];
         let [f0, f1, f2, f3, f4] = [0, 1, 2, 3, 4].map(|k| self.about[k]);
         let sign = self.sign;
-        let stiffness = if start.clipped { T::zero() } else { self.stop.stiffness };
+        let stiffness = if self.clipped { T::zero() } else { self.stop.stiffness };
         let constants = Constants {
             // As forces outward of the stop over depth; the odd ones keep their sign.
             force: [sign * f0, f1, sign * f2, f3, sign * f4],
@@ -285,25 +265,23 @@ impl<T: Scalar> Penetration<T> {
     /// Speed that the neglected terms of drive and force would cause in this time, up to this depth.
     pub fn neglected<D: Drive<T>>(&mut self, drive: &D, cursor: &mut D::Cursor, whole: (T, T)) -> T {
         let levels = self.terms.of_drive();
-        let zero_from = drive.zero_from();
-        if levels < zero_from {
+        let all_used = drive.zero_from().is_some_and(|zero| levels >= zero);
+        if !all_used {
             self.extend_drive(levels + 2, drive, cursor);
         }
         let first = if self.terms == Terms::Few { 3 } else { 5 };
-        let levels = if levels < zero_from { levels } else { ROOM };
-        neglected(&self.inner.a, levels, (&self.about, first), whole)
+        let base = if all_used { &[][..] } else { &self.inner.a[levels..] };
+        neglected((base, levels), (&self.about, first), whole)
     }
 
     pub(super) fn at(&self, c: &[T; ROOM], s: T) -> T {
-        c[..=self.order].iter().rev().fold(T::zero(), |sum, c| sum * s + *c)
+        polynomial::value(&c[..=self.order], s)
     }
 
-    /// Root of the depth at `s`.
     pub fn root_at(&self, s: T) -> T {
         self.at(&self.root, s)
     }
 
-    /// Speed into the stop at `s`.
     pub fn speed_at(&self, s: T) -> T {
         self.at(&self.speed, s)
     }
@@ -320,17 +298,17 @@ impl<T: Scalar> Penetration<T> {
     }
 }
 
-/// Speed that neglected terms would cause over `time`, up to the depth `deepest`: the first two terms of the
-/// drive `a` over time from `levels` on, and all terms of the force over depth from `first` on.
+/// Speed that neglected terms would cause over `time`, up to the depth `deepest`: the first two of the
+/// drive's terms `base` over time, of orders from `levels` on, and all terms of the force over depth from
+/// `first` on.
 pub(super) fn neglected<T: Scalar>(
-    a: &[T],
-    levels: usize,
+    (base, levels): (&[T], usize),
     (about, first): (&[T], usize),
     (time, deepest): (T, T),
 ) -> T {
     let mut made = T::zero();
     let mut power = (0..levels).fold(T::of(1.0), |power, _| power * time);
-    for (k, a) in (levels..levels + 2).zip(a.iter().skip(levels)) {
+    for (k, a) in (levels..levels + 2).zip(base) {
         power = power * time;
         made = made.larger(a.abs() * power / T::of((k + 1) as f64));
     }

@@ -122,15 +122,13 @@ impl<T: Scalar> QuasiStatic<T> {
 
 impl<T: Scalar> InStop<T> for QuasiStatic<T> {
     fn loss(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T {
-        let (length, coefficients) = (to - from, &self.depth[..=self.order()]);
-        let parts = rule.nodes().iter().zip(rule.weights());
-        let lost = parts.fold(T::zero(), |sum, (node, weight)| {
-            let t = from + length * *node;
+        let coefficients = &self.depth[..=self.order()];
+        let lost = polynomial::integral(rule, from, to, |t| {
             let speed = polynomial::slope(coefficients, t);
             let root = polynomial::value(coefficients, t).sqrt();
-            sum + root * root * root * (speed * speed) * *weight
+            root * root * root * (speed * speed)
         });
-        self.stop.stiffness * self.stop.loss * (lost * length)
+        self.stop.stiffness * self.stop.loss * lost
     }
 
     /// (From the extremes of the depth: the speed there is 0, and it is nearly 0 where the force is largest.)
@@ -147,10 +145,7 @@ impl<T: Scalar> InStop<T> for QuasiStatic<T> {
             return known;
         }
         let mut peak = known.larger(force(T::zero())).larger(force(h));
-        let mut slope = [T::zero(); ROOM];
-        for k in 1..coefficients.len() {
-            slope[k - 1] = scaled[k] * T::whole(k);
-        }
+        let slope = polynomial::derivative(&scaled[..coefficients.len()]);
         PolynomialRoots::new(&slope[..coefficients.len() - 1]).each_sign_change(&mut |s| {
             peak = peak.larger(force(s * h));
             true
@@ -183,22 +178,8 @@ impl<T: Scalar> Path<T> for QuasiStatic<T> {
     fn velocity(&self, parameter: T) -> T {
         polynomial::slope(self.series.coefficients(), parameter)
     }
-    fn time(&self, parameter: T) -> T {
-        parameter
-    }
-    fn parameter(&self, time: T, _: T) -> T {
-        time
-    }
     fn integrals<const WORK: bool>(&self, rule: &GaussLegendre<T>, from: T, to: T) -> (T, T) {
-        polynomial::integrals::<_, WORK>(
-            self.series.coefficients(),
-            self.series.base_coefficients(),
-            rule,
-            from,
-            to,
-        )
-    }
-    fn moment(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T {
-        polynomial::moment(self.series.coefficients(), rule, from, to)
+        let (y, a) = (self.series.coefficients(), self.series.base_coefficients());
+        polynomial::integrals::<_, WORK>(y, a, rule, from, to)
     }
 }

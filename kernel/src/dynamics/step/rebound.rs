@@ -3,14 +3,13 @@
 //! Before a mass comes to rest it bounces a dozen times, each time at a fraction of the speed; most impacts
 //! of a run are of this kind. Their flights are nearly parabolas, so their ends need no search: the gap is 0
 //! at the start by definition, and divided by time it is a polynomial with one root. A third-order method
-//! that starts from the end of the parabola finds the root to the last digit in two or three steps, however
-//! short the flight.
+//! that starts from the end of the parabola finds the root to the last digit in two or three steps.
 
 use super::stepper::Stepper;
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::{End, EndKind};
 use crate::dynamics::series::Endpoint;
-use crate::dynamics::state::{BY_SPEED, MotionState, Touch};
+use crate::dynamics::state::{MotionState, Opening, Touch};
 use crate::numeric::Scalar;
 
 /// Maximum number of steps to the root; each takes the error to its third power.
@@ -21,7 +20,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     pub fn flies_freely(&mut self, state: &MotionState<T>) -> bool {
         match state.touch {
             None => true,
-            Some(Touch { multiplicity: BY_SPEED, .. }) => {
+            Some(Touch { opening: Opening::Speed, .. }) => {
                 self.seed(state);
                 self.pressed_rebound(state)
                     .is_none_or(|(end, rates)| self.short_flight(state, end, rates).is_none())
@@ -30,12 +29,11 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         }
     }
 
-    /// The stop from which the mass has just rebounded, with the contact acceleration there and its first
-    /// two derivatives; `None` if there is none, or if the mass is not pressed back. Expects the drive to
-    /// be seeded.
+    /// The stop from which the mass has just rebounded, with the contact acceleration there and its first two
+    /// derivatives; `None` if there is none or the mass is not pressed back. Expects a seeded drive.
     #[inline(always)]
     pub fn pressed_rebound(&self, state: &MotionState<T>) -> Option<(End, [T; 3])> {
-        let Some(Touch { end, multiplicity: BY_SPEED }) = state.touch else { return None };
+        let Some(Touch { end, opening: Opening::Speed }) = state.touch else { return None };
         if !matches!(self.mode(state).end(end).1, EndKind::Stop | EndKind::Compliant) {
             return None;
         }
@@ -65,7 +63,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     /// search. Expects the series to be extended far enough.
     #[inline(always)]
     pub fn rebound(&mut self, state: &MotionState<T>, flight: T, left: T) -> Option<(End, T, Endpoint<T>)> {
-        let Some(Touch { end, multiplicity: BY_SPEED }) = state.touch else { return None };
+        let Some(Touch { end, opening: Opening::Speed }) = state.touch else { return None };
         let (level, kind) = self.mode(state).end(end);
         let border = self.drive.segment_end(state.segment);
         let before = |border| flight < self.clock.between(&state.at, &border);

@@ -1,20 +1,68 @@
-//! Stepper: equation, drive and clock, and the series of the present step.
+//! Stepper: equation, drive and clock, settings that follow from the tolerance, and the present step's
+//! series.
 
 use super::impact::Impact;
-use super::path::StepView;
+use super::path::StepData;
 use super::penetration::Penetration;
 use super::quasi_static::QuasiStatic;
-use super::settings::Settings;
 use super::work::{Costs, Work};
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::{End, Equation, Mode};
-use crate::dynamics::series::{Endpoint, Series};
+use crate::dynamics::model::Model;
+use crate::dynamics::series::{Endpoint, MAX_ORDER, Series};
 use crate::dynamics::state::MotionState;
-use crate::numeric::Scalar;
+use crate::numeric::{Scalar, fast_log2};
 
 /// Maximum number of halvings of a step before it is given up.
 pub(super) const MAX_HALVINGS: u32 = 200;
+
+/// Tolerance of a step relative to that of the scene: the errors of some hundred steps add up, and even the
+/// energy of an undamped run of some hundred periods stays within the tolerance. A fifth costs a tenth more.
+const LOCAL_SHARE: f64 = 0.02;
+
+/// Largest permitted ratio of the residual at the end of a step to the neglected term for which the step was
+/// chosen. It is rarely above 3 if the coefficients are representative, and soon above 1e3 if they are not.
+pub(crate) const RESIDUAL: f64 = 20.0;
+
+/// Number of roundings of the terms that add up in a residual.
+pub(crate) const ROUNDINGS: f64 = 32.0;
+
+/// Order, that of a tolerance of 1e-12, from which on the errors of a step are near rounding.
+const HIGH_ORDER: usize = 20;
+
+pub(crate) struct Settings<T> {
+    pub order: usize,
+    pub tolerance: f64,
+    pub tolerance_log2: f64,
+    pub speed: T,
+    pub speed_log2: f64,
+    pub longest: f64,
+}
+
+impl<T: Scalar> Settings<T> {
+    /// The residual that a step of the full order may leave.
+    pub fn residual_of_a_full_step(&self) -> T {
+        T::of(RESIDUAL * self.order as f64 * self.tolerance) * self.speed
+    }
+
+    /// The order is the cheapest in measurements on the nominal cubic: about 5/4 coefficients per digit.
+    pub fn new(model: &Model, unit: f64, tolerance: f64) -> Self {
+        let local = tolerance * LOCAL_SHARE;
+        let order = (3.0 - 1.25 * local.log10()).round().clamp(8.0, MAX_ORDER as f64) as usize;
+        let speed = model.scales.speed * unit;
+        let (at_high_order, otherwise) = model.scales.longest_step;
+        let longest = if order >= HIGH_ORDER { at_high_order } else { otherwise };
+        Self {
+            order,
+            tolerance: local,
+            tolerance_log2: local.log2(),
+            speed: T::of(speed),
+            speed_log2: fast_log2(speed),
+            longest: longest / unit,
+        }
+    }
+}
 
 /// The data of a step apart from the state and the record.
 pub(crate) struct Stepper<'a, T: Scalar, D: Drive<T>> {
@@ -30,7 +78,6 @@ pub(crate) struct Stepper<'a, T: Scalar, D: Drive<T>> {
     pub impact: Option<Box<Impact<T>>>,
     /// The same for a mass that a slow load presses into the stop.
     pub quasi_static: Option<Box<QuasiStatic<T>>>,
-    /// The end of the run.
     pub end: Instant<T>,
     pub evaluations: u64,
     pub work: Work<'a>,
@@ -42,7 +89,6 @@ pub(crate) struct Step<T> {
     pub length: T,
     /// The instant at which it ends, if that is the end of the run or of the drive's segment.
     pub arrival: Option<Instant<T>>,
-    /// The end of its polynomial.
     pub end: Endpoint<T>,
 }
 
@@ -80,33 +126,29 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
     /// Fills the first coefficients of the drive.
     #[inline]
     pub fn seed(&mut self, state: &MotionState<T>) {
-        self.drive.seed(&self.clock, &state.at, state.segment, &mut self.series.a, &mut self.cursor);
+        self.drive.seed(&state.at, state.segment, &mut self.series.a, &mut self.cursor);
         D::begin_circuit(&mut self.cursor, state.circuit);
     }
 
-    /// A step along a path from this state, as the recorder sees it: the chosen and the kept length, the
-    /// duration, a bound of the displacement, and the state at its end.
+    /// The data of a step from this state: the chosen and the kept length, the duration, a bound of the
+    /// displacement, and the state at its end.
     #[inline]
-    pub fn view<'p, P>(
+    pub fn step_data(
         &self,
         state: &MotionState<T>,
-        path: &'p P,
         (whole, length, duration): (T, T, T),
         bound: T,
         (x, v): (T, T),
-    ) -> StepView<'p, T, P> {
+    ) -> StepData<T> {
         let Mode { origin, low, high, .. } = *self.mode(state);
-        let (at, limits) = (state.at, (low, high));
-        StepView { path, circuit: None, origin, at, whole, length, duration, bound, limits, x, v }
+        StepData { origin, at: state.at, whole, length, duration, bound, limits: (low, high), x, v }
     }
 
-    /// The time to the end of the run.
     #[inline]
     pub fn left(&self, state: &MotionState<T>) -> T {
         self.clock.between(&state.at, &self.end)
     }
 
-    /// The time of a state in s.
     pub fn seconds(&self, state: &MotionState<T>) -> f64 {
         self.clock.seconds(&state.at)
     }
@@ -118,6 +160,23 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
             Some(border) if self.clock.between(&border, &self.end) > T::zero() => border,
             _ => self.end,
         }
+    }
+
+    /// Shortens a step to the end of the run, `left` away, or of the drive's segment; returns the instant of
+    /// that.
+    #[inline(always)]
+    pub fn arrival(&self, state: &MotionState<T>, left: T, length: &mut T) -> Option<Instant<T>> {
+        let mut arrival = None;
+        if left <= *length {
+            (*length, arrival) = (left, Some(self.end));
+        }
+        if let Some(border) = self.drive.segment_end(state.segment) {
+            let to_border = self.clock.between(&state.at, &border);
+            if to_border <= *length {
+                (*length, arrival) = (to_border, Some(border));
+            }
+        }
+        arrival
     }
 
     /// Enters the drive's next segment if the present one has ended. Returns whether it has.

@@ -4,8 +4,8 @@
 //! with the order of its series, the degree of the force and each part of the drive; those of a step of
 //! contact with a compliant stop, a search for a release and the replay of a lap were measured. Laps that are
 //! added by multiplication cost nothing, so a run that recurs is completed however long it is. Samples,
-//! events and ledger are not counted: what is recorded does not affect how a run ends, unless laps have to be
-//! replayed for it.
+//! events and ledger are not counted: what is recorded does not affect how a run ends, unless laps are
+//! replayed.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -34,13 +34,11 @@ pub(crate) const REPLAYED: u64 = 10;
 /// Costs of the parts of a run, in units of work.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Costs {
-    /// A step of free flight.
     pub step: u64,
     /// Another check of a step, after it was halved.
     pub check: u64,
     /// An expansion in contact with a compliant stop, or an impact on it as one step.
     pub contact: u64,
-    /// A sample of the motion and the base.
     sample: u64,
 }
 
@@ -58,7 +56,6 @@ impl Costs {
         }
     }
 
-    /// Samples between two checks of the cancel flag.
     pub fn samples_per_check(&self) -> u64 {
         (CHECK_INTERVAL / self.sample).max(1)
     }
@@ -67,9 +64,9 @@ impl Costs {
 /// Work done, its limit, and the next check of the cancel flag.
 #[derive(Debug, Clone)]
 pub(crate) struct Work<'a> {
-    done: u64,
+    pub done: u64,
     max_units: u64,
-    impacts: u64,
+    pub impacts: u64,
     next_check: u64,
     cancel: Option<&'a AtomicBool>,
 }
@@ -79,19 +76,8 @@ impl<'a> Work<'a> {
         Self { done: 0, max_units: WORK_BUDGET, impacts: 0, next_check: CHECK_INTERVAL, cancel }
     }
 
-    /// Limits the work to this many units.
     pub fn limit(&mut self, max_units: u64) {
         self.max_units = self.max_units.min(max_units);
-    }
-
-    /// Units of work done.
-    pub fn done(&self) -> u64 {
-        self.done
-    }
-
-    /// Number of impacts computed one by one.
-    pub fn impacts(&self) -> u64 {
-        self.impacts
     }
 
     #[inline]
@@ -109,12 +95,10 @@ impl<'a> Work<'a> {
         self.done + units < self.max_units && self.impacts < IMPACT_BUDGET
     }
 
-    /// Whether the limit of work is reached.
     pub fn is_done(&self) -> bool {
         self.done >= self.max_units
     }
 
-    /// Whether a budget is spent.
     pub fn is_spent(&self) -> bool {
         !self.has_room_for(0)
     }
@@ -145,7 +129,7 @@ mod tests {
     use super::*;
     use crate::dynamics::drive::Still;
     use crate::dynamics::drive::general::General;
-    use crate::dynamics::drive::lines::Lines;
+    use crate::dynamics::drive::tone::{Tone, TurnsPerCycle};
 
     #[test]
     fn a_simple_scene_may_take_twenty_million_steps_at_any_tolerance() {
@@ -157,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn looks_are_as_much_work_apart_whatever_a_piece_costs() {
+    fn checks_are_equally_far_apart_whatever_a_piece_costs() {
         let cancel = AtomicBool::new(true);
         for cost in [1, 30, 9_999, 10_000, 3_000_000] {
             let mut work = Work::new(Some(&cancel));
@@ -173,30 +157,9 @@ mod tests {
 
     #[test]
     fn every_part_of_a_drive_costs_its_share() {
-        let drive = |lines: usize| {
-            let tone = crate::dynamics::drive::tone::Tone {
-                amplitude: 1.0,
-                frequency: 1.0,
-                ratio: crate::dynamics::drive::tone::TurnsPerCycle::Rounded(1.0),
-                phase: 0.0,
-                quarter: false,
-                ramp: None,
-            };
-            General {
-                sine: None,
-                still: false,
-                circuit: None,
-                constant: 0.0,
-                tones: vec![tone; lines],
-                lines: Lines::default(),
-                chirps: vec![],
-                records: vec![],
-                segment_ends: vec![],
-                common_cycles: None,
-                reach: 1.0,
-                fastest: 1.0,
-            }
-        };
+        let ratio = TurnsPerCycle::Rounded(1.0);
+        let tone = Tone { amplitude: 1.0, frequency: 1.0, ratio, phase: 0.0, quarter: false, ramp: None };
+        let drive = |lines: usize| General { tones: vec![tone.clone(); lines], ..General::default() };
         let step = |lines| Costs::new(16, 3, &drive(lines)).step;
         assert!(step(4096) > 500 * step(1) && step(64) > 5 * step(1));
         assert_eq!(Costs::new(16, 3, &drive(4096)).samples_per_check(), 1);

@@ -18,7 +18,6 @@ pub(super) struct Arrivals<const W: usize> {
     pub unit: (Lanes<W>, Lanes<W>),
 }
 
-/// Three columns.
 type Three<const W: usize> = (Lanes<W>, Lanes<W>, Lanes<W>);
 
 impl<const W: usize> Columns<W> {
@@ -125,8 +124,8 @@ impl<const W: usize> Columns<W> {
         }
     }
 
-    /// Includes turning points in the extremes of lanes that are `turning`, if they turn once. Returns the
-    /// lanes that do.
+    /// Includes the turning points of lanes that are `turning` and turn once in the extremes. Returns these
+    /// lanes.
     #[inline(always)]
     pub(super) fn turn(
         &self,

@@ -8,16 +8,14 @@ use crate::dynamics::drive::tone::Sine;
 use crate::dynamics::equation::force::PieceForce;
 use crate::dynamics::equation::{End, EndKind, Mode};
 use crate::dynamics::motion::Motion;
-use crate::dynamics::state::{BY_SPEED, Touch};
+use crate::dynamics::state::{Opening, Touch};
 use crate::dynamics::step::work::ARRIVAL;
 use crate::numeric::Lanes;
 
-/// One motion under a sine.
 pub(super) type LaneMotion<'a> = Motion<'a, f64, Sine<f64>>;
 
 /// The lanes, in columns.
 pub(crate) struct Columns<const W: usize> {
-    /// Which lanes are active.
     pub active: [bool; W],
     /// Steps taken since a lane was loaded.
     steps: Lanes<W>,
@@ -26,8 +24,9 @@ pub(crate) struct Columns<const W: usize> {
     /// Crossings of the barrier since then.
     crossings: Lanes<W>,
     // constant while a lane is in one mode of one run
-    /// The run and its mode.
-    of: [(usize, usize); W],
+    /// The number of the run, once one has been loaded, and its mode.
+    run: [Option<usize>; W],
+    mode: [usize; W],
     force: PieceForce<Lanes<W>>,
     origin: Lanes<W>,
     low_end: Lanes<W>,
@@ -48,7 +47,6 @@ pub(crate) struct Columns<const W: usize> {
     // constant over event-free steps
     /// The barrier whose crossings are counted; NaN without one.
     barrier: Lanes<W>,
-    /// The side of the barrier.
     side: Lanes<W>,
     border: Clocks<W>,
     /// Whether each step is logged, in case the motion recurs.
@@ -81,8 +79,9 @@ impl<const W: usize> Columns<W> {
             steps: zero,
             passages: zero,
             crossings: zero,
-            of: [(usize::MAX, 0); W],
-            force: PieceForce::new(vec![zero; force.coefficients().len()]),
+            run: [None; W],
+            mode: [0; W],
+            force: PieceForce { coefficients: vec![zero; force.coefficients.len()] },
             origin: zero,
             low_end: zero,
             high_end: zero,
@@ -116,17 +115,16 @@ impl<const W: usize> Columns<W> {
         }
     }
 
-    /// Whether a force has the degree of the lanes.
     pub fn takes(&self, force: &PieceForce<f64>) -> bool {
         self.force.degree() == force.degree()
     }
 
     /// Loads a motion, whose force has the lanes' degree, into a lane; `index` is the number of its run.
     pub fn load(&mut self, lane: usize, index: usize, motion: &LaneMotion) {
-        let chord = motion.record.begin_event_free(&motion.state.at, &motion.stepper.end);
-        if self.of[lane] != (index, motion.state.mode) {
+        let record = motion.record.begin_event_free(&motion.state.at, &motion.stepper.end);
+        if (self.run[lane], self.mode[lane]) != (Some(index), motion.state.mode) {
             self.load_mode(lane, motion.state.mode, motion.stepper.mode(&motion.state));
-            self.of[lane].0 = index;
+            self.run[lane] = Some(index);
             let (tone, settings) = (&motion.stepper.drive.tone, &motion.stepper.settings);
             self.damping.0[lane] = motion.stepper.equation.damping;
             self.curvature.0[lane] = tone.curvature();
@@ -137,16 +135,16 @@ impl<const W: usize> Columns<W> {
             self.speed_log2[lane] = settings.speed_log2;
             self.longest[lane] = settings.longest;
             self.allowed.0[lane] = settings.residual_of_a_full_step();
-            self.period.0[lane] = motion.stepper.clock.period();
+            self.period.0[lane] = motion.stepper.clock.period;
         }
-        self.barrier.0[lane] = chord.barrier.unwrap_or(f64::NAN);
-        self.side.0[lane] = f64::from(chord.side);
-        self.border.set(lane, &chord.border);
+        self.barrier.0[lane] = record.barrier.unwrap_or(f64::NAN);
+        self.side.0[lane] = f64::from(record.side);
+        self.border.set(lane, &record.border);
         self.logged[lane] = motion.log.is_some();
-        self.inside[lane] = chord.inside;
-        (self.low.0[lane], self.high.0[lane]) = (chord.low, chord.high);
-        self.squared.set(lane, &chord.squared);
-        self.covered.set(lane, &chord.covered);
+        self.inside[lane] = record.inside;
+        (self.low.0[lane], self.high.0[lane]) = (record.low, record.high);
+        self.squared.set(lane, &record.squared);
+        self.covered.set(lane, &record.covered);
         self.touch.0[lane] = motion.state.touch.map_or(0.0, |touch| touch.end.sign());
         (self.x.0[lane], self.v.0[lane]) = (motion.state.x, motion.state.v);
         self.at.set(lane, &motion.state.at);
@@ -160,9 +158,9 @@ impl<const W: usize> Columns<W> {
 
     /// Loads a mode, whose force has the lanes' degree, into a lane; `index` is its number in the equation.
     fn load_mode(&mut self, lane: usize, index: usize, mode: &Mode<f64>) {
-        self.of[lane].1 = index;
-        for (degree, coefficient) in mode.force.coefficients().iter().enumerate() {
-            self.force.coefficient_mut(degree).0[lane] = *coefficient;
+        self.mode[lane] = index;
+        for (column, coefficient) in self.force.coefficients.iter_mut().zip(&mode.force.coefficients) {
+            column.0[lane] = *coefficient;
         }
         let at_break = |end: End| match mode.end(end) {
             (level, EndKind::Break) => level,
@@ -178,13 +176,12 @@ impl<const W: usize> Columns<W> {
         if self.v.0[lane] > 0.0 { End::High } else { End::Low }
     }
 
-    /// Moves a lane that stands on a break into the neighbouring mode; returns false if the force has another
-    /// degree there.
+    /// Moves a lane that stands on a break into the next mode; returns false if the force has another degree.
     pub fn enter_neighbour(&mut self, lane: usize, modes: &[Mode<f64>]) -> bool {
         let exit = self.exit(lane);
         let index = match exit {
-            End::Low => self.of[lane].1 - 1,
-            End::High => self.of[lane].1 + 1,
+            End::Low => self.mode[lane] - 1,
+            End::High => self.mode[lane] + 1,
         };
         if !self.takes(&modes[index].force) {
             return false;
@@ -203,7 +200,6 @@ impl<const W: usize> Columns<W> {
         motion.record.barrier_side = self.side.0[lane] as i8;
     }
 
-    /// Stores a lane back to its motion.
     pub fn store(&mut self, lane: usize, motion: &mut LaneMotion) {
         self.active[lane] = false;
         let steps = self.steps.0[lane] as u64;
@@ -218,15 +214,16 @@ impl<const W: usize> Columns<W> {
         motion.state.at = self.at.get(lane);
         motion.stepper.cursor = Some((motion.state.at, (self.value.0[lane], self.slope.0[lane])));
         motion.state.turned_back = false;
-        motion.state.mode = self.of[lane].1;
-        let touched = |end: End| Touch { end, multiplicity: BY_SPEED };
+        motion.state.mode = self.mode[lane];
+        let touched = |end: End| Touch { end, opening: Opening::Speed };
         let ends = [End::Low, End::High].into_iter();
         motion.state.touch = ends.map(touched).find(|touch| touch.end.sign::<f64>() == self.touch.0[lane]);
         motion.record.end_event_free(
             (self.low.0[lane], self.high.0[lane]),
             self.squared.get(lane),
             self.covered.get(lane),
+            self.side.0[lane] as i8,
+            self.crossings.0[lane] as u64,
         );
-        motion.record.end_event_free_crossings(self.side.0[lane] as i8, self.crossings.0[lane] as u64);
     }
 }
