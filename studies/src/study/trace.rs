@@ -16,8 +16,8 @@ pub struct Trace {
     pub impacts: Table,
     /// `from_s,to_s,side` of every span at rest on a stop.
     pub rests: Table,
-    /// `t_s,x_m,v_m_per_s` once a forcing period, where the drive has its phase of time 0, over the times of the
-    /// phase portrait.
+    /// `t_s,x_m,v_m_per_s` once a forcing period, where the drive has its phase of time 0, over the times of
+    /// the phase portrait.
     pub strobes: Table,
     /// Time in s from which on the phase portrait is shown: the last forcing periods, or a window asked for.
     pub portrait_from: f64,
