@@ -46,8 +46,8 @@ pub struct Arguments {
     pub summary: Option<PathBuf>,
 
     /// With --plot: these panels alone, one under the other: displacement, velocity, acceleration (of the
-    /// base), energy (potential and kinetic), portrait (velocity over displacement) [default: all but energy,
-    /// with numbers beside them]
+    /// base), power (into the load, or of the base), energy (potential and kinetic), portrait (velocity over
+    /// displacement) [default: all but power and energy, with numbers beside them]
     #[arg(long, value_name = "A,B,..", requires = "plot", conflicts_with = "measured", value_delimiter = ',',
           value_parser = RunPanel::ALL.map(RunPanel::name))]
     pub panels: Vec<String>,

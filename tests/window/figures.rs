@@ -93,7 +93,9 @@ fn of_a_run_and_of_the_force_curve_the_copied_command_makes_the_same_bytes() {
         assert!(line.contains("headless curve first-look") && line.contains("--set mass_g=16"), "{line}");
     }
     harness.state_mut().figures.titled = false;
-    for (view, panel) in [(View::Displacement, "displacement"), (View::PhasePortrait, "portrait")] {
+    for (view, panel) in
+        [(View::Displacement, "displacement"), (View::Power, "power"), (View::PhasePortrait, "portrait")]
+    {
         let line = same_bytes(&mut harness, view, "svg");
         assert!(line.contains(&format!("--panels {panel}")), "{line}");
         assert!(line.contains("simulate first-look") && line.contains("--no-title"), "{line}");
@@ -123,10 +125,10 @@ fn a_run_is_drawn_over_the_times_that_are_typed_and_is_as_long_as_they_ask() {
     harness.state_mut().figures.panels = RunPanel::ALL.map(|panel| RunPanel::USUAL.contains(&panel));
     harness.run_steps(1);
     assert!(!copy(&mut harness).contains("--panels"));
-    harness.state_mut().figures.panels = [false; 5];
+    harness.state_mut().figures.panels = [false; RunPanel::ALL.len()];
     harness.run_steps(1);
     harness.get_by_label_contains("at least one is needed");
-    harness.state_mut().figures.panels = [true; 5];
+    harness.state_mut().figures.panels = [true; RunPanel::ALL.len()];
     harness.state_mut().figures.times = ["2".to_owned(), "1".to_owned()];
     harness.run_steps(1);
     harness.get_by_label_contains("give two in s, the first one below the second");

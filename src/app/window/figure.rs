@@ -184,6 +184,7 @@ fn panel(view: View) -> Option<RunPanel> {
         View::Displacement => Some(RunPanel::Displacement),
         View::Velocity => Some(RunPanel::Velocity),
         View::BaseAcceleration => Some(RunPanel::Acceleration),
+        View::Power => Some(RunPanel::Power),
         View::Energy => Some(RunPanel::Energy),
         View::PhasePortrait => Some(RunPanel::Portrait),
         _ => None,

@@ -9,9 +9,12 @@ use crate::dynamics::{Event, EventKind, Model, Outcome, Phase, Request, Sample, 
 /// One run as a picture shows it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trace {
-    /// `t_s,x_m,v_m_per_s,base_accel_m_per_s2` in order of time; at an impact the velocities before
-    /// and after it, without the base's acceleration.
+    /// `t_s,x_m,v_m_per_s,base_accel_m_per_s2,power_w` in order of time; at an impact the velocities before
+    /// and after it, without the base's acceleration and the power. The power is that into the load of a
+    /// transducer, or without a transducer that of the base on the mass.
     pub path: Table,
+    /// Whether the scene has a transducer.
+    pub has_load: bool,
     /// `t_s,side` of every impact.
     pub impacts: Table,
     /// `from_s,to_s,side` of every span at rest on a stop.
@@ -86,7 +89,7 @@ pub fn simulate_with_trace(
         seen = ascending(picture_times(model, close, end).into_iter().chain(strobes.clone()).collect());
         shown = model.run(&Request { sample_times: &seen, ..request }).samples;
     }
-    let path = path(&shown, &run.events, stops);
+    let path = path(model, &shown, &run.events);
     let rows = path.numbers("t_s").unwrap_or_default();
     let (mut portrait_from, shown_to) = close;
     let until = rows.partition_point(|t| *t <= shown_to);
@@ -106,6 +109,7 @@ pub fn simulate_with_trace(
         .each("v_m_per_s", &strobes, |sample| sample.v);
     let trace = Trace {
         path,
+        has_load: model.has_transducer(),
         strobes,
         impacts: impacts(&run.events),
         rests: rests(&run.events, run.samples.first(), end),
@@ -165,22 +169,25 @@ fn picture_times(model: &Model, close: (f64, f64), duration: f64) -> Vec<f64> {
 }
 
 /// Samples and impacts in order of time. A sample at an impact's instant is the state after it.
-fn path(samples: &[Sample], events: &[Event], stops: (f64, f64)) -> Table {
-    let mut rows: Vec<[f64; 4]> = Vec::with_capacity(samples.len());
+fn path(model: &Model, samples: &[Sample], events: &[Event]) -> Table {
+    let stops = model.stop_positions();
+    let mut rows: Vec<[f64; 5]> = Vec::with_capacity(samples.len());
     let mut jumps = events.iter().filter(|event| event.kind == EventKind::Impact).peekable();
     for sample in samples {
         while let Some(jump) = jumps.next_if(|jump| jump.t <= sample.t) {
-            let x = if jump.side == Side::Left { stops.0 } else { stops.1 };
-            rows.push([jump.t, x, jump.v_in, f64::NAN]);
-            rows.push([jump.t, x, jump.v_out, f64::NAN]);
+            let x = if jump.side == Side::Left { stops.0 } else { stops.1 }.unwrap_or(f64::NAN);
+            rows.push([jump.t, x, jump.v_in, f64::NAN, f64::NAN]);
+            rows.push([jump.t, x, jump.v_out, f64::NAN, f64::NAN]);
         }
-        rows.push([sample.t, sample.x, sample.v, sample.base_accel]);
+        let power = model.output(sample).map_or(sample.work_rate(model.mass()), |output| output.power);
+        rows.push([sample.t, sample.x, sample.v, sample.base_accel, power]);
     }
     Table::new()
         .each("t_s", &rows, |row| row[0])
         .each("x_m", &rows, |row| row[1])
         .each("v_m_per_s", &rows, |row| row[2])
         .each("base_accel_m_per_s2", &rows, |row| row[3])
+        .each("power_w", &rows, |row| row[4])
 }
 
 fn impacts(events: &[Event]) -> Table {

@@ -24,6 +24,8 @@ pub enum RunPanel {
     Velocity,
     /// Acceleration of the base over time.
     Acceleration,
+    /// Power into the load of a transducer, or without one of the base on the mass, over time.
+    Power,
     /// Potential and kinetic energy over time.
     Energy,
     /// Velocity over displacement.
@@ -32,8 +34,8 @@ pub enum RunPanel {
 
 impl RunPanel {
     /// All of them, in the order in which they stand.
-    pub const ALL: [Self; 5] =
-        [Self::Displacement, Self::Velocity, Self::Acceleration, Self::Energy, Self::Portrait];
+    pub const ALL: [Self; 6] =
+        [Self::Displacement, Self::Velocity, Self::Acceleration, Self::Power, Self::Energy, Self::Portrait];
 
     /// Those that are shown where none are named. Together they have numbers beside them.
     pub const USUAL: [Self; 4] = [Self::Displacement, Self::Velocity, Self::Acceleration, Self::Portrait];
@@ -44,6 +46,7 @@ impl RunPanel {
             Self::Displacement => "displacement",
             Self::Velocity => "velocity",
             Self::Acceleration => "acceleration",
+            Self::Power => "power",
             Self::Energy => "energy",
             Self::Portrait => "portrait",
         }
@@ -74,6 +77,7 @@ pub fn run_chart(
         x: column("x_m"),
         v: column("v_m_per_s"),
         accel: column("base_accel_m_per_s2"),
+        power: column("power_w"),
         wells: stable.map(|equilibrium| equilibrium.x).collect(),
         speed: suited_unit("m/s", column("v_m_per_s").iter().copied()),
         displacements: ranges.y,
@@ -111,6 +115,7 @@ struct Seen<'a> {
     x: &'a [f64],
     v: &'a [f64],
     accel: &'a [f64],
+    power: &'a [f64],
     wells: Vec<f64>,
     /// Factor from m/s and name of the unit of speed.
     speed: (f64, &'static str),
@@ -170,6 +175,10 @@ impl Seen<'_> {
         let time = PlotAxis::between(trace.shown_from, trace.shown_to, "time (s)");
         let shown = self.rows(trace.shown_from);
         let in_g = self.accel[shown.clone()].iter().map(|a| a / STANDARD_GRAVITY);
+        let power = &self.power[shown.clone()];
+        let (per_watt, watt) = suited_unit("W", power.iter().copied());
+        let in_unit = power.iter().filter(|power| power.is_finite()).map(|power| power * per_watt);
+        let where_to = if trace.has_load { "into the load" } else { "of the base" };
         let panels = [
             (
                 RunPanel::Displacement,
@@ -194,6 +203,14 @@ impl Seen<'_> {
                 1.0 / STANDARD_GRAVITY,
                 Role::Drive,
                 0.85,
+            ),
+            (
+                RunPanel::Power,
+                PlotAxis::around(in_unit.chain([0.0]), 0.08, &format!("power {where_to} ({watt})")),
+                self.power,
+                per_watt,
+                if trace.has_load { Role::Second } else { Role::Drive },
+                1.0,
             ),
         ];
         let rests: Vec<(f64, f64)> = {
@@ -315,9 +332,11 @@ impl Seen<'_> {
 
     /// All that is drawn, with this portrait.
     fn drawn(&self, portrait: Option<&Panel>) -> Table {
-        let Self { trace, t, x, v, accel, .. } = *self;
+        let Self { trace, t, x, v, accel, power, .. } = *self;
         let has_energy = self.has(RunPanel::Energy);
         let names = ["t_s", "x_m", "v_m_per_s", "base_accel_m_per_s2"].into_iter();
+        let has_power = self.has(RunPanel::Power);
+        let names = names.chain(has_power.then_some("power_w"));
         let names = names.chain(has_energy.then_some(["potential_j", "kinetic_j"]).into_iter().flatten());
         let mut drawn = Drawn::new(names, &["side"]);
         let shown =
@@ -325,6 +344,7 @@ impl Seen<'_> {
         for i in self.rows(trace.shown_from).filter(|_| self.is_over_time()) {
             let value = |place: usize, of: &[f64]| if shown[place] { of[i] } else { f64::NAN };
             let mut row = vec![t[i], value(0, x), value(1, v), value(2, accel)];
+            row.extend(has_power.then_some(power[i]));
             if has_energy {
                 row.extend([self.potential(x[i]), 0.5 * self.mass * v[i] * v[i]]);
             }
