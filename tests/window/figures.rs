@@ -161,6 +161,10 @@ fn of_every_view_of_a_survey_the_copied_command_makes_the_same_bytes() {
         harness.get_by_label(label).click();
         harness.run_steps(3);
     }
+    wait_until("the map", || {
+        harness.run_steps(1);
+        harness.state().session.map.map().is_some_and(|map| map.is_covered())
+    });
     let line = same_bytes(&mut harness, View::Map, "svg");
     assert!(line.contains("--cut amplitude_g=1 --cut travel_limit_mm=1.5"), "{line}");
     let line = same_bytes(&mut harness, View::UpAndDown, "svg");

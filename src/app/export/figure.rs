@@ -88,10 +88,14 @@ impl Subject {
         let no_axes = || "This scene has no two fields to make a map over.".to_owned();
         let axes = session.map_axes().ok_or_else(no_axes)?.to_vec();
         let quantity = session.map.quantity().name;
-        let cuts = || session.map.shown().filter(|_| cuts).map(|(map, _)| map.cuts(session.scene()));
         let view = match surface && words_of(quantity).is_none() {
             true => View::Surface,
-            false => cuts().map_or(View::Top, View::Cuts),
+            false if cuts => {
+                let map = session.map.map().filter(|map| map.question.axes == axes[..]);
+                let map = map.ok_or("The cuts are known as soon as the map is begun: show it first.")?;
+                View::Cuts(map.cuts(session.scene()))
+            }
+            false => View::Top,
         };
         Ok(Self::Sweep(axes, quantity, view))
     }
