@@ -299,6 +299,8 @@ fn the_window_is_made_larger_by_keys_that_are_listed() {
     assert_eq!(zoom(&harness), 15.0);
     press(&mut harness, Key::P);
     click_on(&mut harness, "View");
+    harness.get_by_label_contains("Zoom of the window").click();
+    harness.run_steps(3);
     for name in ["Larger", "Smaller", "Usual size"] {
         harness.get_by_label_contains(name);
     }

@@ -234,11 +234,12 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
         Item("Cover the results", plain(Key::C), C::Cover,
             As("Views", "cover the motion and all results, until C again: predict first")),
         Item("What it would take", plain(Key::H), C::Ways, As("Views", "what it would take to cross")),
-        Line,
-        Item("Larger", control(Key::Plus), C::Magnify(1),
-            As("Views", "the whole window larger, smaller, at its usual size")),
-        Item("Smaller", control(Key::Minus), C::Magnify(-1), Joined),
-        Item("Usual size", control(Key::Num0), C::Magnify(0), Joined),
+        Part::Menu("Zoom of the window", &[
+            Item("Larger", control(Key::Plus), C::Magnify(1),
+                As("Views", "the whole window larger, smaller, at its usual size")),
+            Item("Smaller", control(Key::Minus), C::Magnify(-1), Joined),
+            Item("Usual size", control(Key::Num0), C::Magnify(0), Joined),
+        ]),
         Item("Full screen", plain(Key::F11), C::FullScreen, As("Views", "full screen")),
     ]),
     ("Motion", &[
