@@ -3,6 +3,7 @@
 
 mod accuracy;
 mod advanced;
+mod answered;
 mod background;
 mod beside;
 mod compare;
@@ -32,6 +33,7 @@ mod sentences;
 mod session;
 #[path = "../shared/mod.rs"]
 mod shared;
+mod still;
 mod support;
 mod typing;
 mod views;

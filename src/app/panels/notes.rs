@@ -1,12 +1,12 @@
 //! Texts to read: notes of the scene below the controls, the glossary, the lecturer's notes of a lesson.
 
 use eframe::egui::{
-    self, CentralPanel, Color32, FontSelection, Key, Modifiers, RichText, ScrollArea, Ui, ViewportBuilder,
-    ViewportClass, ViewportId,
+    self, CentralPanel, Key, Modifiers, RichText, ScrollArea, Ui, ViewportBuilder, ViewportClass, ViewportId,
 };
 
 use crate::app::session::lesson::{OpenLesson, Outcome};
-use crate::app::ui::widgets::{close_ui, dialog, dialog_width};
+use crate::app::ui::style::BODY;
+use crate::app::ui::widgets::{close_ui, dialog, dialog_width, prose, prose_ui};
 use crate::app::words::lesson::plain;
 use crate::app::words::meanings::{GLOSSARY, meaning};
 use crate::scene::Scene;
@@ -21,8 +21,8 @@ const MORE: f32 = 30.0;
 /// Least height in points in which notes are shown.
 const LEAST: f32 = 120.0;
 
-/// Draws the notes down to `bottom`. If the scene was changed, they describe it before the changes. Returns
-/// whether the user asks for all of the notes.
+/// Draws the beginning of the notes, above `bottom`: two sentences at most. If the scene was changed, they
+/// describe it before the changes. Returns whether the user asks for all of the notes.
 pub fn notes_ui(ui: &mut Ui, scene: &Scene, is_changed: bool, bottom: f32) -> bool {
     let notes = scene.notes.trim();
     let room = bottom - ui.cursor().top();
@@ -36,23 +36,24 @@ pub fn notes_ui(ui: &mut Ui, scene: &Scene, is_changed: bool, bottom: f32) -> bo
         return ui.button(heading).on_hover_text(hover).clicked();
     }
     ui.label(RichText::new(heading).heading());
-    let font = FontSelection::Default.resolve(ui.style());
     let width = ui.available_width();
-    let height = |text: &str| {
-        let (text, font) = (text.to_owned(), font.clone());
-        ui.fonts_mut(|fonts| fonts.layout(text, font, Color32::PLACEHOLDER, width)).size().y
+    let fits = |text: &str| {
+        let mut job = prose(ui, text, BODY);
+        job.wrap.max_width = width;
+        ui.fonts_mut(|fonts| fonts.layout_job(job)).size().y <= room - HEADING - MORE
     };
-    if height(notes) <= room - HEADING {
-        ui.label(notes);
-        return false;
+    let shown = [2, 1].map(|count| beginning(notes, count)).into_iter().find(|text| fits(text));
+    if let Some(text) = shown {
+        prose_ui(ui, text, BODY);
     }
-    // the whole sentences that fit
-    let ends = notes.match_indices('.').map(|(at, _)| at + 1);
-    let ends: Vec<usize> = ends.filter(|at| notes[*at..].starts_with(char::is_whitespace)).collect();
-    let count = ends.partition_point(|end| height(&notes[..*end]) <= room - HEADING - MORE);
-    let end = count.checked_sub(1).and_then(|last| ends.get(last)).copied().unwrap_or(0);
-    ui.label(&notes[..end]);
-    ui.button("Read on").on_hover_text(hover).clicked()
+    shown != Some(notes) && ui.button("Read on").on_hover_text(hover).clicked()
+}
+
+/// The first sentences of a text, at most `count`.
+fn beginning(text: &str, count: usize) -> &str {
+    let ends = text.match_indices('.').map(|(at, _)| at + 1);
+    let mut ends = ends.filter(|at| text[*at..].starts_with(char::is_whitespace));
+    ends.nth(count - 1).map_or(text, |end| &text[..end])
 }
 
 /// Shows the glossary. Returns `false` once it is to be closed.

@@ -19,6 +19,8 @@ pub const COMPACT_BELOW: f32 = 1000.0;
 /// Size in points of a window above which there is room for one more tile.
 pub const LARGE_FROM: egui::Vec2 = egui::Vec2::new(1600.0, 880.0);
 
+/// Size of a text that would not fit at another one.
+pub const LEAST: f32 = 9.5;
 pub const SMALL: f32 = 11.5;
 pub const BODY: f32 = 14.0;
 pub const STATUS: f32 = 18.0;

@@ -55,6 +55,8 @@ pub enum Command {
         closer: bool,
     },
     FullScreen,
+    /// Show everything larger (1), smaller (-1), or at its usual size (0).
+    Magnify(i8),
     Toggle(Setting),
     Grab,
     Pin(PinKind),
@@ -227,10 +229,17 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
         Hidden(plain(Key::O), C::Zoom { upwards: false, closer: false }, Joined),
         Hidden(shift(Key::I), C::Zoom { upwards: true, closer: true }, No),
         Hidden(shift(Key::O), C::Zoom { upwards: true, closer: false }, No),
-        Row("Views", "wheel, drag", "zoom (Shift up, Ctrl both); Shift and drag moves, right drag is a box"),
+        Row("Views", "wheel, drag",
+            "zoom its axes (Shift up, Ctrl both); Shift and drag moves, right drag is a box"),
         Item("Cover the results", plain(Key::C), C::Cover,
             As("Views", "cover the motion and all results, until C again: predict first")),
         Item("What it would take", plain(Key::H), C::Ways, As("Views", "what it would take to cross")),
+        Part::Menu("Zoom of the window", &[
+            Item("Larger", control(Key::Plus), C::Magnify(1),
+                As("Views", "the whole window larger, smaller, at its usual size")),
+            Item("Smaller", control(Key::Minus), C::Magnify(-1), Joined),
+            Item("Usual size", control(Key::Num0), C::Magnify(0), Joined),
+        ]),
         Item("Full screen", plain(Key::F11), C::FullScreen, As("Views", "full screen")),
     ]),
     ("Motion", &[

@@ -49,7 +49,7 @@ impl Window {
     }
 }
 
-/// Number of frames after which sizes are those of the present zoom.
+/// Number of frames after a change of the zoom from which sizes are those of the present one.
 const SETTLED: u32 = 3;
 /// Number of frames within which the window system reports the size of the window's decoration.
 const DECORATED: u32 = 90;
@@ -59,8 +59,9 @@ const DECORATED: u32 = 90;
 pub(super) struct WindowSize {
     /// The size to restore; `None` once it has been requested.
     wanted: Option<Vec2>,
-    /// Number of frames with the wanted zoom.
+    /// Number of frames since the zoom last changed, and that zoom.
     frames: u32,
+    zoom: f32,
     /// Whether the window was larger than the screen and has been maximized.
     fitted: bool,
     /// The last size of the window that was neither maximized nor full-screen.
@@ -68,9 +69,11 @@ pub(super) struct WindowSize {
 }
 
 impl WindowSize {
-    /// To be called in every frame, with the wanted zoom.
-    pub fn follow(&mut self, ctx: &Context, zoom: f32) {
-        self.frames = if (ctx.zoom_factor() - zoom).abs() < 1e-3 { self.frames.saturating_add(1) } else { 0 };
+    /// To be called in every frame.
+    pub fn follow(&mut self, ctx: &Context) {
+        let zoom = ctx.zoom_factor();
+        self.frames = if (zoom - self.zoom).abs() < 1e-3 { self.frames.saturating_add(1) } else { 0 };
+        self.zoom = zoom;
         if self.frames < SETTLED {
             ctx.request_repaint();
             return;

@@ -56,7 +56,6 @@ struct Suspended {
     more: bool,
     filled: Option<View>,
     hint: Hint,
-    hint_row: bool,
     ways: bool,
 }
 
@@ -107,7 +106,6 @@ impl Window {
                 more: std::mem::take(&mut self.more),
                 filled: self.filled.take(),
                 hint: self.hint,
-                hint_row: self.hint_row,
                 ways: std::mem::take(&mut self.ways),
             });
         }
@@ -142,7 +140,7 @@ impl Window {
             self.session = before.session;
             (self.tiling, self.arrangement) = (before.tiling, before.arrangement);
             (self.memory, self.more, self.filled) = (before.memory, before.more, before.filled);
-            (self.hint, self.hint_row, self.ways) = (before.hint, before.hint_row, before.ways);
+            (self.hint, self.ways) = (before.hint, before.ways);
             if self.tiling.room() != room {
                 self.arrange(room);
             }

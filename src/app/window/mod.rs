@@ -4,6 +4,7 @@
 
 use eframe::egui::{self, CentralPanel, Panel, RichText, Ui};
 
+use crate::app::panels::hint::guide_ui;
 use crate::app::panels::status_line::{self, covered_ui, status_ui};
 use crate::app::panels::{controls, notes, transport};
 use crate::app::session::lesson::Records;
@@ -20,13 +21,14 @@ const ROW: f32 = 28.0;
 /// Width in points of the column of controls that opens beside the views.
 const MORE: f32 = 276.0;
 
-/// Height in points of a window up to which the hint line is shown only with a hint.
-const LOW: f32 = 440.0;
-const HINT_ROW: f32 = 32.0;
+const MENU: f32 = 28.0;
+/// Height in points of the guide line, whatever it says.
+const GUIDE: f32 = 29.0;
 
 mod command;
 mod figure;
 mod files;
+mod impossible;
 mod kept;
 mod keys;
 pub mod layouts;
@@ -50,15 +52,14 @@ impl Window {
     /// Updates the state before a frame is drawn: settings, input, results of the background, the motion.
     pub fn logic(&mut self, ctx: &egui::Context) {
         let Settings { dark, projector, .. } = self.settings;
-        let zoom = if projector { PROJECTOR_ZOOM } else { 1.0 };
         if self.applied != Some(self.settings) {
             ctx.set_theme(if dark && !projector { egui::Theme::Dark } else { egui::Theme::Light });
             if projector || self.applied.is_some_and(|applied| applied.projector) {
-                ctx.set_zoom_factor(zoom);
+                ctx.set_zoom_factor(self.usual_zoom());
             }
             self.applied = Some(self.settings);
         }
-        self.window_size.follow(ctx, zoom);
+        self.window_size.follow(ctx);
         self.take_choice(ctx);
         self.take_input(ctx);
         // a view that is no longer shown cannot release the mass itself
@@ -101,12 +102,9 @@ impl Window {
             self.lesson_panels_ui(ui, &style, compact);
         } else {
             commands.extend(self.controls_ui(ui, compact));
-            commands.extend(self.hint_row_ui(ui, &style));
-        }
-        self.session.follow_best();
-        if self.session.best.is_shown() && !self.covered {
-            let panel = Panel::top("best stops").frame(panel_frame(ui, 12, 4));
-            panel.show(ui, |ui| controls::best_stops_answer_ui(ui, &mut self.session));
+            self.session.follow_best();
+            let panel = Panel::top("guide").frame(panel_frame(ui, 12, 0)).exact_size(GUIDE);
+            commands.extend(panel.show(ui, |ui| self.guide_line_ui(ui, &style)).inner);
         }
         CentralPanel::no_frame().show(ui, |ui| self.views_ui(ui, style));
         self.pointing_ui(&ctx, &style);
@@ -122,16 +120,18 @@ impl Window {
         focus_ui(&ctx, &style);
     }
 
+    /// The zoom of the window unless a person chooses another one.
+    fn usual_zoom(&self) -> f32 {
+        if self.settings.projector { PROJECTOR_ZOOM } else { 1.0 }
+    }
+
     /// Menu bar, status line and transport bar. Returns the commands that were chosen.
     fn bars_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) -> Vec<Command> {
-        let bar = Panel::top("menu").frame(panel_frame(ui, 8, 2)).exact_size(32.0).show(ui, |ui| {
-            let Self { session, tiling, settings, recent, lessons, .. } = self;
-            let settings = *settings;
-            menu::Menus { session, tiling, settings, recent, lessons, chosen: Vec::new() }.ui(ui)
-        });
+        let bar = Panel::top("menu").frame(panel_frame(ui, 8, 2)).exact_size(MENU);
+        let bar = bar.show(ui, |ui| menu::Menus { window: self, chosen: Vec::new() }.ui(ui));
         let (line, covered) = (panel_frame(ui, 12, 4), self.motion_is_covered());
-        let height = status_line::height(ui, &self.session, compact);
-        Panel::top("status").frame(line).exact_size(height).show(ui, |ui| match covered {
+        let status = Panel::top("status").frame(panel_frame(ui, 12, 2)).exact_size(status_line::height(ui));
+        status.show(ui, |ui| match covered {
             true => covered_ui(ui, !self.covered),
             false => status_ui(ui, &mut self.session, &mut self.announcer, style, compact),
         });
@@ -155,7 +155,7 @@ impl Window {
             if self.more {
                 Panel::right("more").frame(line).resizable(false).exact_size(MORE).show(ui, |ui| {
                     let session = &mut self.session;
-                    egui::ScrollArea::vertical().show(ui, |ui| controls::more_ui(ui, session, 150.0));
+                    egui::ScrollArea::vertical().show(ui, |ui| controls::beside_ui(ui, session, 150.0));
                 });
             }
             return None;
@@ -175,37 +175,37 @@ impl Window {
         column.inner.then_some(Command::Notes)
     }
 
-    /// The row with the hint of the first minute or the ways to cross. Returns the chosen command.
-    fn hint_row_ui(&mut self, ui: &mut Ui, style: &Style) -> Option<Command> {
+    /// The guide line: the best stops that are looked for, the ways to cross, or the hint of the first minute.
+    /// Returns the chosen command.
+    fn guide_line_ui(&mut self, ui: &mut Ui, style: &Style) -> Option<Command> {
         let hinted = self.hint.is_shown(&self.session);
-        self.hint_row |= hinted;
-        let shows_ways = self.ways && !self.covered;
-        let has_room = ui.ctx().content_rect().height() > LOW;
-        // the line stays when the hint is done, so that the views below do not jump
-        if !shows_ways && !(self.hint_row && (has_room || hinted && !self.covered)) {
+        let (ink, faint) = (style.ink(), style.faint());
+        if self.session.best.is_shown() && !self.ways && !self.covered {
+            let words = self.session.best.words();
+            guide_ui(ui, ("", &words, ink), |ui| controls::best_stops_answer_ui(ui, &mut self.session));
             return None;
         }
-        let panel = Panel::top("hint").frame(panel_frame(ui, 12, 4)).min_size(HINT_ROW);
-        let row = panel.show(ui, |ui| {
-            if shows_ways {
-                ui.horizontal_wrapped(|ui| {
-                    ui.label(self.session.ways());
-                    if hinted {
-                        ui.label(RichText::new("H: back to the lesson").color(style.faint()));
-                    }
-                });
-                return None;
+        if self.ways && !self.covered {
+            let ways = self.session.ways();
+            let back = if hinted { "H: back to the lesson" } else { "H closes this" };
+            guide_ui(ui, ("", &ways, ink), |ui| ui.label(RichText::new(back).color(faint)));
+            return None;
+        }
+        let Some(next) = next_lesson(&self.lessons.records).filter(|_| hinted && !self.covered) else {
+            let has_barrier = self.session.model().mechanism().landscape.barrier.is_some();
+            let ways = if has_barrier { "H says what it would take to cross, " } else { "" };
+            guide_ui(ui, ("", &format!("{ways}F1 lists all keys."), faint), |_| ());
+            return None;
+        };
+        let (heading, text) = self.hint.text(&self.session);
+        guide_ui(ui, (heading, &text, ink), |ui| {
+            let hover = "Look, predict, try and explain, step by step. The scene waits as it is.";
+            let lesson = ui.small_button(numbered(next)).on_hover_text(hover).clicked();
+            if ui.small_button("Dismiss").clicked() {
+                self.hint.dismiss();
             }
-            if hinted && !self.covered {
-                let next = next_lesson(&self.lessons.records)?;
-                let clicked = self.hint.ui(ui, &self.session, &numbered(next));
-                return clicked.then_some(Command::OpenLesson(next));
-            }
-            let text = "H says what it would take to cross, F1 lists all keys.";
-            ui.label(RichText::new(text).color(style.faint()));
-            None
-        });
-        row.inner
+            lesson.then_some(Command::OpenLesson(next))
+        })
     }
 
     fn dialogs_ui(&mut self, ui: &mut Ui, ctx: &egui::Context) {

@@ -72,8 +72,6 @@ pub struct Window {
     pub columns: Option<MeasuredDialog>,
     pub(super) deferred: DeferredInput,
     pub(super) hint: hint::Hint,
-    /// Whether the hint line has been shown.
-    pub(super) hint_row: bool,
     pub(super) lessons: Lessons,
     pub(super) glossary: bool,
     pub(super) wake: Wake,
@@ -144,7 +142,6 @@ impl Window {
             figures: Figures::default(),
             columns: None,
             deferred: DeferredInput::default(),
-            hint_row: false,
             lessons: Lessons::default(),
             glossary: false,
             wake,

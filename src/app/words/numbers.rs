@@ -48,6 +48,27 @@ pub fn exact(value: f64, least: usize) -> String {
     if decimals_in(&text) >= least { text } else { format!("{:.least$}", value + 0.0) }
 }
 
+/// Units that follow a number after a space.
+const UNITS: [&str; 26] = [
+    "g", "mm", "m", "um", "mm/s", "um/s", "m/s", "s", "ms", "Hz", "N", "mN", "N/m", "J", "mJ", "uJ", "W",
+    "mW", "uW", "V", "ohm", "kohm", "%", "min", "points", "N s/m",
+];
+
+/// A text for the screen: its lines are not broken between a number and its unit.
+pub fn unbroken(text: &str) -> String {
+    let mut whole = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(at) = rest.find(' ') {
+        let after = &rest[at + 1..];
+        let word = after.split(|c: char| c.is_whitespace() || ".,;:?!)".contains(c)).next().unwrap_or("");
+        let is_unit = rest[..at].ends_with(|c: char| c.is_ascii_digit()) && UNITS.contains(&word);
+        whole += &rest[..at];
+        whole.push(if is_unit { '\u{a0}' } else { ' ' });
+        rest = after;
+    }
+    whole + rest
+}
+
 /// A number with at least three significant digits, and no more decimals than these take.
 pub fn three(value: f64) -> String {
     let size = value.abs();
