@@ -33,6 +33,7 @@ mod session;
 #[path = "../shared/mod.rs"]
 mod shared;
 mod support;
+mod table;
 mod typing;
 mod views;
 mod written;

@@ -112,6 +112,7 @@ impl Menus<'_> {
             Command::RemoveMeasured => session.measured.over.is_some(),
             Command::SaveAs(Wanted::Map) => session.map.map().is_some_and(Map::is_whole),
             Command::CopyMapCommand => session.map.map().is_some(),
+            Command::Unpin(letter) => session.pins.get(*letter).is_some(),
             Command::Undo => session.editor.can_undo(),
             Command::Redo => session.editor.can_redo(),
             Command::KeepOwn => tiling.room() != Room::Compact && lessons.open.is_none(),
