@@ -352,7 +352,10 @@ fn a_pin_has_its_letter_at_its_end_and_lies_under_the_motion() {
         matches!(shape, Shape::Text(text)
             if text.galley.text() == "A" && place.contains(text.visual_bounding_rect().center()))
     };
-    let is_box = |shape: &Shape| matches!(shape, Shape::Rect(rect) if place.contains_rect(rect.rect) && rect.stroke.width == 1.5);
+    let is_box = |shape: &Shape| match shape {
+        Shape::Rect(rect) => place.contains_rect(rect.rect) && rect.stroke.width == 1.5,
+        _ => false,
+    };
     let letter = shapes.iter().position(|own| is_letter(&own.shape)).unwrap();
     let mass = shapes.iter().rposition(|own| is_box(&own.shape)).unwrap();
     assert!(letter < mass, "{letter} {mass}");

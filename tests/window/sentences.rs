@@ -180,8 +180,8 @@ fn a_ramp_is_told_by_what_happens_on_it() {
     assert_eq!(kind, Kind::Resting);
     assert_eq!(
         text,
-        "Growing shaking: will first be released at 0.689 g, after 103 s; will cross at 0.719 g, after 108 s, \
-         and in every period from then on."
+        "Growing shaking: will first be released at 0.689 g, after 103 s; will cross at 0.719 g, after \
+         108 s, and in every period from then on."
     );
     // also where the run ends before the ramp does
     let ramp = "excitation=AmplitudeRamp(frequency_hz: 3, from_g: 0, to_g: 1, over_s: 60)";

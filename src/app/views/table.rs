@@ -118,10 +118,10 @@ pub(super) fn table_ui(
         });
         for (i, (text, apart)) in row.texts.iter().zip(&row.apart).enumerate() {
             let written = RichText::new(text);
-            let written = match () {
-                () if i == now => written.heading(),
-                () if columns[i].differs && *text == row.texts[now] => written.color(style.faint()),
-                () => written,
+            let written = match columns[i].differs && *text == row.texts[now] {
+                _ if i == now => written.heading(),
+                true => written.color(style.faint()),
+                false => written,
             };
             cell_ui(ui, width, |ui| {
                 ui.horizontal_wrapped(|ui| {
@@ -274,15 +274,14 @@ fn number_rows(columns: &[Column], now: usize, with_threshold: bool) -> Vec<Row>
         let all = columns.iter().filter_map(|column| watt(&column.card.as_ref()?.settled?));
         let (factor, unit) = power_unit(all.fold(0.0, f64::max));
         let text = |_: &Card, run: &Summary| watt(run).map(|watt| three(watt * factor));
-        let decimals = |size: f64| decimals_for(size);
-        rows.push(row("power into the load", unit, &text, &|run| Some(watt(run)? * factor), &decimals));
+        rows.push(row("power into the load", unit, &text, &|run| Some(watt(run)? * factor), &decimals_for));
     }
     if with_threshold {
         let found = |column: &Column| threshold(&column.card.as_ref()?.thresholds?.crossing);
         let texts = columns.iter().map(|column| found(column).unwrap_or_else(|| UNKNOWN.to_owned()));
         let row = Row::new(CROSSES, "g", texts.collect());
         // left out where all are known and equal
-        if columns.len() < 2 || row.differs() || row.texts.iter().any(|text| text == UNKNOWN) {
+        if row.differs() || row.texts.iter().any(|text| text == UNKNOWN) {
             rows.push(row);
         }
     }
@@ -375,7 +374,7 @@ fn regime_ui(ui: &mut Ui, context: &ViewContext<'_>, settled: Option<&Summary>, 
     };
     if settled.outcome != Outcome::Done {
         let text = RichText::new("the run ended early");
-        ui.add(egui::Label::new(if small { text.font(context.style.small()) } else { text }).wrap());
+        ui.add(Label::new(if small { text.font(context.style.small()) } else { text }).wrap());
         return;
     }
     let kind = Kind::from(settled.regime);

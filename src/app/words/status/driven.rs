@@ -164,7 +164,8 @@ pub fn driven(facts: &DrivenMotion) -> Sentence {
             format!("Irregular: {crosses} in every period, never twice alike; {rms}.")
         }
         Regime::Irregular => format!(
-            "Irregular: {crosses} in {}{} of {periods:.0} periods, without a rhythm; {rms}, reach about {} mm.",
+            "Irregular: {crosses} in {}{} of {periods:.0} periods, without a rhythm; {rms}, reach about {} \
+             mm.",
             facts.about(facts.origin + summary.window.1),
             summary.crossing_periods,
             mm_beside(reach, stops)
