@@ -35,6 +35,7 @@ mod session;
 mod shared;
 mod still;
 mod support;
+mod table;
 mod typing;
 mod views;
 mod written;

@@ -8,7 +8,7 @@ use crate::app::ui::knob::{How, Knob, refuse};
 use crate::app::ui::widgets::hover_beside;
 use crate::app::words::fields::{Reach, info, name_and_unit};
 use crate::app::words::numbers::{below, decimals, round_up, shown};
-use crate::scene::{Damping, Excitation, FieldPath, Mechanism, Stops, numeric_fields};
+use crate::scene::{Damping, Excitation, FieldPath, Mechanism, Stops, Transducer, numeric_fields};
 
 use super::advanced;
 
@@ -44,13 +44,10 @@ const FREQUENCY: &str = "excitation.frequency_hz";
 /// The travel limit of the stops, or of each stop. While the stops are off their control is grey, and shows
 /// the limit that they will have.
 const LIMITS: [&str; 3] = ["stops.travel_limit_mm", "stops.left_mm", "stops.right_mm"];
-/// Fields of a transducer at the top of More.
-const LOAD: [&str; 4] = [
-    "transducer.load_ohm",
-    "transducer.load_kohm",
-    "transducer.coupling_v_s_per_m",
-    "transducer.coupling_n_per_v",
-];
+/// The load of a transducer, which stands below the stops or, in a row of controls, at the top of More.
+const LOAD: [&str; 2] = ["transducer.load_ohm", "transducer.load_kohm"];
+/// Other fields of a transducer at the top of More.
+const COUPLING: [&str; 2] = ["transducer.coupling_v_s_per_m", "transducer.coupling_n_per_v"];
 /// Fields of a transducer under Advanced.
 const CIRCUIT: [&str; 3] = ["transducer.coil_ohm", "transducer.inductance_mh", "transducer.capacitance_nf"];
 
@@ -63,13 +60,18 @@ pub fn column_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
     stops_switch_ui(ui, session);
     fields_ui(ui, session, &LIMITS, width);
     best_stops_ui(ui, session, "Find the best stops");
+    if session.scene().transducer != Transducer::None {
+        ui.add_space(14.0);
+        heading_ui(ui, "Load");
+        fields_ui(ui, session, &LOAD, width);
+    }
     ui.add_space(14.0);
     let name = RichText::new(if *more { "Less" } else { "More" }).strong();
     if ui.selectable_label(*more, name).on_hover_text(MORE_HOVER).clicked() {
         *more = !*more;
     }
     if *more {
-        more_ui(ui, session, width);
+        fields_below_ui(ui, session, width);
     }
 }
 
@@ -190,8 +192,14 @@ fn stops_switch_ui(ui: &mut Ui, session: &mut Session) {
     }
 }
 
+/// The fields under More beside a row of controls, which has no room for the load.
 fn more_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     fields_ui(ui, session, &LOAD, width);
+    fields_below_ui(ui, session, width);
+}
+
+fn fields_below_ui(ui: &mut Ui, session: &mut Session, width: f32) {
+    fields_ui(ui, session, &COUPLING, width);
     restitution_ui(ui, session, width);
     preload_ui(ui, session, width);
     for path in sliders(session).into_iter().filter(|path| is_balancing(path)) {

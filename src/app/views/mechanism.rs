@@ -69,8 +69,6 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
     let body = Rect::from_center_size(pos2(x, middle), half * 2.0);
     let zero = context.span.screen_from_world(0.0, rect);
     beside.draw(ui, &painter, &style, behind, &Places { rect, bottom, body, zero, below });
-    let edge = Stroke::new(1.5, style.mass_edge());
-    painter.rect(body, 3.0, style.mass(), edge, egui::StrokeKind::Inside);
     let heights = (middle - half.y - 4.0, middle + half.y + 4.0);
     for ghost in ghosts(context) {
         let walls = rect.with_min_y(heights.0).with_max_y(heights.1);
@@ -78,6 +76,9 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
         let x = context.span.screen_from_world(ghost.state.x, rect);
         ghost.body(&painter, &style, Rect::from_center_size(pos2(x, middle), half * 2.0));
     }
+    // over the pinned ones
+    let edge = Stroke::new(1.5, style.mass_edge());
+    painter.rect(body, 3.0, style.mass(), edge, egui::StrokeKind::Inside);
     stops_ui(ui, context, rect, heights, BALL);
     mass_ui(ui, context, pos2(x, middle), rect);
     rings(ui, context, rect, middle);

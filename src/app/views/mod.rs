@@ -39,6 +39,7 @@ mod side_by_side;
 mod span;
 mod spectrum;
 mod stops;
+mod table;
 mod trace;
 mod up_and_down;
 mod view;

@@ -48,6 +48,7 @@ impl Window {
                 !session.map.map().is_some_and(Map::is_whole),
                 "There is no whole map yet: show the Map first",
             ),
+            C::Unpin(letter) => (session.pins.get(*letter).is_none(), "No motion is pinned by this letter"),
             C::CopyMapCommand => (session.map.map().is_none(), "There is no map yet: show the Map first"),
             C::Undo => (!session.editor.can_undo(), "There is nothing to undo"),
             C::Redo => (!session.editor.can_redo(), "There is nothing to redo"),

@@ -126,6 +126,8 @@ impl Tiling {
 
     /// Shows a view. A view without a tile becomes a tab beside `other`, if that is shown among tabs.
     pub fn show_beside(&mut self, view: View, other: View) {
+        // new tiles have no tabs until they are drawn
+        self.tree.simplify(&simplification());
         let tiles = &mut self.tree.tiles;
         let shown = tiles.find_pane(&other).filter(|id| tiles.is_visible(*id));
         let place = shown.and_then(|id| tiles.parent_of(id));
@@ -212,6 +214,11 @@ impl Tiling {
     }
 }
 
+/// Every view keeps its title.
+fn simplification() -> SimplificationOptions {
+    SimplificationOptions { all_panes_must_have_tabs: true, ..SimplificationOptions::default() }
+}
+
 struct Behavior<'a, 'b> {
     context: &'a mut ViewContext<'b>,
     fill: &'a mut Option<View>,
@@ -286,7 +293,6 @@ impl egui_tiles::Behavior<View> for Behavior<'_, '_> {
     }
 
     fn simplification_options(&self) -> SimplificationOptions {
-        // every view keeps its title
-        SimplificationOptions { all_panes_must_have_tabs: true, ..SimplificationOptions::default() }
+        simplification()
     }
 }

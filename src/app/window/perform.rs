@@ -6,10 +6,11 @@ use crate::app::export;
 use crate::app::panels::hint;
 use crate::app::panels::transport::EVENT_AHEAD;
 use crate::app::session::measured::MeasuredData;
-use crate::app::session::pins::PinKind;
+use crate::app::session::pins::{Pin, PinKind};
 use crate::app::session::player::{Goal, SPEEDS};
 use crate::app::views::{Memory, View};
 use crate::dynamics::EventKind;
+use crate::scene::Layout;
 
 use super::Window;
 use super::command::{Command, UNDO};
@@ -84,7 +85,13 @@ impl Window {
                     self.session.player.speed = speed.0;
                 }
             }
-            Command::Arrange(layout) => self.show_arrangement(Arrangement::Layout(layout)),
+            Command::Arrange(layout) => {
+                self.show_arrangement(Arrangement::Layout(layout));
+                // the other studies need shaking that repeats
+                if layout == Layout::Explore && !self.session.model().repeats() {
+                    self.tiling.show_beside(View::Spectrum, View::UpAndDown);
+                }
+            }
             Command::ArrangeOwn => {
                 // the custom arrangement begins as a copy of the present tiles
                 if self.custom.is_none() {
@@ -124,6 +131,7 @@ impl Window {
             }
             Command::Grab => self.memory.grab = true,
             Command::Pin(kind) => self.pin(kind),
+            Command::Unpin(letter) => self.session.pins.unpin(letter),
             Command::Ways => self.ways = !self.ways,
             Command::BestStops => {
                 self.ways = false;
@@ -215,10 +223,17 @@ impl Window {
                     PinKind::Twin => "a twin that begins a micrometre beside the mass",
                 };
                 self.messages.notify(format!("Pinned as {letter}, dashed: {what}"));
-                let view = if kind == PinKind::Twin { View::Distance } else { View::Compare };
-                self.tiling.show_beside(view, View::BeforeNow);
+                self.tiling.show_beside(self.view_of_pins(), View::BeforeNow);
             }
             Err(why) => self.messages.notify(why),
+        }
+    }
+
+    /// The view that opens with the newest pin.
+    pub(super) fn view_of_pins(&self) -> View {
+        match self.session.pins.all().last().map(Pin::kind) {
+            Some(PinKind::Twin) => View::Distance,
+            _ => View::Compare,
         }
     }
 

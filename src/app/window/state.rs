@@ -195,5 +195,10 @@ impl Window {
             (Arrangement::Custom, None) => Tiling::new(Layout::Look, room),
             (Arrangement::Layout(layout), _) => Tiling::new(layout, room),
         };
+        // what is pinned keeps its view
+        let has_pins = !self.session.pins.all().is_empty();
+        if has_pins && self.arrangement != Arrangement::Custom && self.tiling.shows(View::BeforeNow) {
+            self.tiling.show_beside(self.view_of_pins(), View::BeforeNow);
+        }
     }
 }

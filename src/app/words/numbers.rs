@@ -78,9 +78,12 @@ pub fn three(value: f64) -> String {
     format!("{value:.0$}", numeric::decimals(size, 3))
 }
 
+/// Powers in W that are given in mW, wherever they stand.
+const MILLIWATTS: std::ops::Range<f64> = 1e-5..1.0;
+
 /// The factor from W to the unit that suits powers up to `largest` in W, and the name of that unit.
 pub fn power_unit(largest: f64) -> (f64, &'static str) {
-    suited_unit("W", std::iter::once(largest))
+    if MILLIWATTS.contains(&largest) { (1e3, "mW") } else { suited_unit("W", std::iter::once(largest)) }
 }
 
 /// A power in W as text with a unit.
@@ -225,8 +228,8 @@ mod tests {
         assert_eq!(texts, ["0.90", "1.137", "0.0377295", "1047.198", "15.0", "0.00", "1e-9"]);
         assert_eq!(exact(0.037_729_499_880_183_35, 2), "0.03772949988018335");
         assert_eq!([0.05, 0.01, 15.0, 2e-4].map(decimals), [2, 2, 0, 4]);
-        let powers = [0.0, 1.234, 0.012_34, 5e-6, -2e-9].map(power);
-        assert_eq!(powers, ["0 mW", "1.23 W", "12.3 mW", "5.00 µW", "-2.00 nW"]);
+        let powers = [0.0, 1.234, 0.012_34, 3.26e-4, 5e-6, -2e-9].map(power);
+        assert_eq!(powers, ["0 mW", "1.23 W", "12.3 mW", "0.326 mW", "5.00 µW", "-2.00 nW"]);
         assert_eq!([0.0384, 1.25, 1000.0].map(three), ["0.0384", "1.25", "1000"]);
     }
 
