@@ -5,6 +5,7 @@ mod accuracy;
 mod advanced;
 mod background;
 mod beside;
+mod classroom;
 mod compare;
 mod cursors;
 mod documents;

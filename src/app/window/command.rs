@@ -49,6 +49,8 @@ pub enum Command {
     /// Hold the axes of the active view, or release them.
     HoldAxes,
     FreeAxes,
+    /// Letters and lines as large as they were before Ctrl and plus or minus.
+    NaturalSize,
     /// Zoom the vertical or the horizontal axis of the active view, in or out.
     Zoom {
         upwards: bool,
@@ -231,6 +233,8 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
         Item("Cover the results", plain(Key::C), C::Cover,
             As("Views", "cover the motion and all results, until C again: predict first")),
         Item("What it would take", plain(Key::H), C::Ways, As("Views", "what it would take to cross")),
+        Hidden(control(Key::Num0), C::NaturalSize,
+            As("Views", "letters and lines at their own size again, after Ctrl and +, -")),
         Item("Full screen", plain(Key::F11), C::FullScreen, As("Views", "full screen")),
     ]),
     ("Motion", &[
@@ -269,6 +273,7 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
         Row("Lesson", "PageUp, PageDown", "in a lesson: the step before, after"),
         Row("Lesson", "A, B, C or 1, 2, 3", "choose what you expect"),
         Row("Lesson", "H", "the hint of a task"),
+        Row("Lesson", "Shift+A, B, C", "count a vote for it"),
         Line,
         Item("Copy my answers", None, C::CopyAnswers, No),
         Item("Lecturer's notes", control(Key::L), C::LecturerNotes,

@@ -108,6 +108,7 @@ impl Window {
             Command::Cursors => self.switch_cursors(),
             Command::HoldAxes => self.hold_axes(),
             Command::FreeAxes => self.memory.free_axes(self.active_view()),
+            Command::NaturalSize => ctx.set_zoom_factor(self.natural_zoom()),
             Command::Zoom { upwards, closer } => {
                 self.memory.zoom_by_key(self.active_view(), upwards, closer);
             }
