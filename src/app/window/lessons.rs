@@ -281,7 +281,8 @@ impl Window {
                 ui.label(&finished.goal);
                 ui.add_space(8.0);
                 ui.horizontal(|ui| {
-                    next = finished.next.filter(|name| ui.button(numbered(name)).clicked());
+                    let name = |name: &&str| format!("Go on to {}", numbered(name));
+                    next = finished.next.filter(|next| ui.button(name(next)).clicked());
                     close_ui(ui)
                 })
                 .inner
