@@ -48,10 +48,7 @@ pub fn status_ui(
     compact: bool,
 ) {
     let sentence = session.sentence();
-    if let Some(seconds) = announcer.take(&sentence, ui.input(|input| input.time)) {
-        ui.ctx().request_repaint_after_secs(seconds as f32);
-    }
-    announcer.ui(ui);
+    announcer.say(ui, &sentence);
     let size = if compact { STATUS_COMPACT } else { STATUS };
     ui.horizontal_centered(|ui| {
         let (rect, _) = ui.allocate_exact_size(Vec2::splat(size + 6.0), Sense::hover());
@@ -172,6 +169,14 @@ impl Announcer {
         }
         self.waiting = Some((text, since));
         Some(since + STILL - now)
+    }
+
+    /// Speaks the sentence of the frame once it is to be spoken.
+    pub fn say(&mut self, ui: &mut Ui, sentence: &Sentence) {
+        if let Some(seconds) = self.take(sentence, ui.input(|input| input.time)) {
+            ui.ctx().request_repaint_after_secs(seconds as f32);
+        }
+        self.ui(ui);
     }
 
     fn speak(&mut self, kind: Kind, text: String) {

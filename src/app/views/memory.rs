@@ -27,6 +27,10 @@ pub struct Memory {
     /// Whether measured data are to be opened.
     pub open_measured: bool,
     pub hovered: Option<View>,
+    /// A view that a lesson covers until its first prediction has been shown.
+    pub covered: Option<View>,
+    /// Displacements in mm of the stops about which a lesson asks, left and right.
+    pub asked_stops: [Option<f64>; 2],
     pub timeline: Timeline,
     pub cursors: Cursors,
     /// Ends of axes chosen by hand.

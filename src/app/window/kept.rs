@@ -7,6 +7,8 @@
 use eframe::egui::{Context, Vec2, ViewportCommand, vec2};
 use eframe::{Storage, get_value, set_value};
 
+use crate::app::ui::style::{FILLED_ZOOM, PROJECTOR_ZOOM, projector_zoom};
+
 use super::Window;
 
 const RECENT: &str = "recent";
@@ -66,9 +68,17 @@ pub(super) struct WindowSize {
     fitted: bool,
     /// The last size of the window that was neither maximized nor full-screen.
     size: Option<Vec2>,
+    /// The present size, in points at zoom 1.
+    present: Option<Vec2>,
 }
 
 impl WindowSize {
+    /// The zoom of the projector in the present window, which follows its size; larger for a view over it.
+    pub fn projector_zoom(&self, filled: bool) -> f32 {
+        let zoom = self.present.map_or(PROJECTOR_ZOOM, projector_zoom);
+        if filled { FILLED_ZOOM * zoom } else { zoom }
+    }
+
     /// To be called in every frame.
     pub fn follow(&mut self, ctx: &Context) {
         let zoom = ctx.zoom_factor();
@@ -83,7 +93,13 @@ impl WindowSize {
             let fills_screen = view.maximized == Some(true) || view.fullscreen == Some(true);
             (view.inner_rect, view.outer_rect, view.monitor_size, fills_screen)
         });
-        let Some(inner) = inner.map(|rect| rect.size()).filter(|_| !fills_screen) else { return };
+        let Some(inner) = inner.map(|rect| rect.size()) else { return };
+        if fills_screen || self.wanted.is_none() {
+            self.present = Some(inner * zoom);
+        }
+        if fills_screen {
+            return;
+        }
         if let Some(wanted) = self.wanted.take() {
             if (inner * zoom - wanted).abs().max_elem() > 1.0 {
                 ctx.send_viewport_cmd(ViewportCommand::InnerSize(wanted / zoom));

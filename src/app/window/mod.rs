@@ -9,7 +9,7 @@ use crate::app::panels::status_line::{self, covered_ui, status_ui};
 use crate::app::panels::{controls, notes, transport};
 use crate::app::session::lesson::Records;
 use crate::app::ui::settings::Settings;
-use crate::app::ui::style::{self, PROJECTOR_ZOOM, Style};
+use crate::app::ui::style::{self, Style};
 use crate::app::ui::widgets::{Icon, icon_button_ui, panel_frame};
 use crate::app::views::{self, Drawn, ViewContext};
 use crate::app::words::lesson::numbered;
@@ -54,10 +54,13 @@ impl Window {
         let Settings { dark, projector, .. } = self.settings;
         if self.applied != Some(self.settings) {
             ctx.set_theme(if dark && !projector { egui::Theme::Dark } else { egui::Theme::Light });
-            if projector || self.applied.is_some_and(|applied| applied.projector) {
-                ctx.set_zoom_factor(self.usual_zoom());
-            }
             self.applied = Some(self.settings);
+        }
+        let zoom = projector.then(|| self.window_size.projector_zoom(self.filled.is_some()));
+        let is_close = |a: f32, b: f32| (a - b).abs() < 0.01 * b;
+        if !zoom.zip(self.zoom).map_or(zoom == self.zoom, |(zoom, applied)| is_close(zoom, applied)) {
+            self.zoom = zoom;
+            ctx.set_zoom_factor(self.natural_zoom());
         }
         self.window_size.follow(ctx);
         self.take_choice(ctx);
@@ -98,7 +101,9 @@ impl Window {
         }
         let mut commands = self.bars_ui(ui, &style, compact);
         self.follow_lesson(&ctx);
-        if self.lessons.open.is_some() {
+        if self.filled.is_some() {
+            // the view has the whole window
+        } else if self.lessons.open.is_some() {
             self.lesson_panels_ui(ui, &style, compact);
         } else {
             commands.extend(self.controls_ui(ui, compact));
@@ -120,13 +125,29 @@ impl Window {
         focus_ui(&ctx, &style);
     }
 
-    /// The zoom of the window unless a person chooses another one.
-    fn usual_zoom(&self) -> f32 {
-        if self.settings.projector { PROJECTOR_ZOOM } else { 1.0 }
+    /// Menu bar, status line and transport bar; a view over the window leaves the last. Returns the commands
+    /// that were chosen.
+    fn bars_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) -> Vec<Command> {
+        let (line, covered) = (panel_frame(ui, 12, 4), self.motion_is_covered());
+        let chosen = match self.filled {
+            None => self.head_ui(ui, style, compact),
+            Some(_) if covered => Vec::new(),
+            Some(_) => {
+                self.announcer.say(ui, &self.session.sentence());
+                Vec::new()
+            }
+        };
+        Panel::bottom("transport").frame(line).exact_size(if compact { 46.0 } else { 60.0 }).show(ui, |ui| {
+            if self.lesson_covers() {
+                ui.disable();
+            }
+            transport::transport_ui(ui, &mut self.session, style, covered);
+        });
+        chosen
     }
 
-    /// Menu bar, status line and transport bar. Returns the commands that were chosen.
-    fn bars_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) -> Vec<Command> {
+    /// Menu bar and status line. Returns the commands that were chosen.
+    fn head_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) -> Vec<Command> {
         let bar = Panel::top("menu").frame(panel_frame(ui, 8, 2)).exact_size(MENU);
         let bar = bar.show(ui, |ui| menu::Menus { window: self, chosen: Vec::new() }.ui(ui));
         let (line, covered) = (panel_frame(ui, 12, 4), self.motion_is_covered());
@@ -134,12 +155,6 @@ impl Window {
         status.show(ui, |ui| match covered {
             true => covered_ui(ui, !self.covered),
             false => status_ui(ui, &mut self.session, &mut self.announcer, style, compact),
-        });
-        Panel::bottom("transport").frame(line).exact_size(if compact { 46.0 } else { 60.0 }).show(ui, |ui| {
-            if self.lesson_covers() {
-                ui.disable();
-            }
-            transport::transport_ui(ui, &mut self.session, style, covered);
         });
         bar.inner
     }
@@ -210,6 +225,7 @@ impl Window {
 
     fn dialogs_ui(&mut self, ui: &mut Ui, ctx: &egui::Context) {
         self.lecturer_ui(ctx);
+        self.lesson_dialogs_ui(ui);
         self.questions_ui(ui, ctx);
         self.measured_ui(ui);
         self.take_figure();
@@ -223,6 +239,7 @@ impl Window {
     fn views_ui(&mut self, ui: &mut Ui, style: Style) {
         // a key may have advanced the motion
         self.session.follow_pins();
+        self.pose_question();
         let (span, cover) = (self.memory.span(&self.session), self.cover());
         let mut context = ViewContext {
             session: &mut self.session,

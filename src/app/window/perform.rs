@@ -120,7 +120,7 @@ impl Window {
             Command::Cover => self.covered = !self.covered,
             Command::Magnify(1) => gui_zoom::zoom_in(ctx),
             Command::Magnify(-1) => gui_zoom::zoom_out(ctx),
-            Command::Magnify(_) => ctx.set_zoom_factor(self.usual_zoom()),
+            Command::Magnify(_) => ctx.set_zoom_factor(self.natural_zoom()),
             Command::FullScreen => {
                 let full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));
                 ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(!full));

@@ -77,6 +77,8 @@ pub struct Window {
     pub(super) wake: Wake,
     /// The settings that were applied last; they are applied again only if they change.
     pub(super) applied: Option<Settings>,
+    /// The zoom of the projector that was applied last; `None` without a projector.
+    pub(super) zoom: Option<f32>,
 }
 
 impl Window {
@@ -146,6 +148,7 @@ impl Window {
             glossary: false,
             wake,
             applied: None,
+            zoom: None,
         })
     }
 
@@ -161,6 +164,11 @@ impl Window {
         self.recent.retain(|recent| *recent != full);
         self.recent.insert(0, full);
         self.recent.truncate(MOST_RECENT);
+    }
+
+    /// The zoom to which Ctrl+0 returns.
+    pub(super) fn natural_zoom(&self) -> f32 {
+        self.zoom.unwrap_or(1.0)
     }
 
     pub fn message(&self) -> Option<&str> {
@@ -181,6 +189,7 @@ impl Window {
             || self.columns.is_some()
             || self.shortcuts.is_some()
             || self.glossary
+            || self.lessons.ask()
     }
 
     /// Builds the tiles of the arrangement for a window of the size class `room`.

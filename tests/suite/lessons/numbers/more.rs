@@ -82,7 +82,8 @@ fn design() {
     let told = Told::new(8);
     let hill = |preload: &str| 1e3 * told.hill(&[preload]);
     let (stiff, soft) = (hill("mechanism.preload_mm=2.7"), hill("mechanism.preload_mm=1"));
-    told.says(&format!("{stiff:.2} mJ high at 2.7 mm, {soft:.2} mJ at 1.0 mm"));
+    told.says(&format!("{stiff:.2} mJ high at 2.7 mm"));
+    told.says(&format!("lowers the whole hill, to {soft:.2} mJ at 1.0 mm"));
     let preloaded = |preload: f64| format!("mechanism.preload_mm={preload}");
     let at = |preload: f64, limit: f64| told.run(&[&preloaded(preload), &stopped(limit)]);
     assert_eq!(at(2.7, 2.0).regime, Regime::Rest);
