@@ -57,7 +57,9 @@ pub fn picture_arguments(command: &str, given: impl IntoIterator<Item = Argument
     let words = kept.flat_map(|mut argument| {
         let ending = argument.value.as_deref().and_then(|value| Path::new(value).extension());
         let ending = ending.map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-        if let (Some(name @ ("plot" | "contact-plot")), Some(ending)) = (argument.option.as_deref(), ending) {
+        if let (Some(name @ ("plot" | "contact-plot" | "shapes-plot")), Some(ending)) =
+            (argument.option.as_deref(), ending)
+        {
             argument.value = Some(format!("{}.{ending}", name.replace('-', "_")));
         }
         argument.words().collect::<Vec<_>>()
