@@ -21,7 +21,7 @@ fn forget_notice(harness: &mut Harness<'static, Window>) {
     }
 }
 
-fn notice(harness: &Harness<'static, Window>) -> &str {
+fn notice<'a>(harness: &'a Harness<'static, Window>) -> &'a str {
     harness.state().notice().unwrap_or_default()
 }
 
