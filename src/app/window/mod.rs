@@ -127,7 +127,7 @@ impl Window {
     /// over the dialog.
     fn hide_hover_texts(&mut self, ctx: &egui::Context) {
         let waits = self.waits_for_answer();
-        let opens = waits && !std::mem::replace(&mut self.waited, waits);
+        let opens = waits && !self.waited;
         let usual = egui::style::Interaction::default().tooltip_delay;
         let delay = if opens { NEVER } else { usual };
         if ctx.global_style().interaction.tooltip_delay != delay {
@@ -191,7 +191,7 @@ impl Window {
         column.inner.then_some(Command::Notes)
     }
 
-    /// The guide line: the best stops that are looked for, the ways to cross, or the hint of the first minute.
+    /// The guide line: the search for the best stops, the ways to cross, or the hint of the first minute.
     /// Returns the chosen command.
     fn guide_line_ui(&mut self, ui: &mut Ui, style: &Style) -> Option<Command> {
         let hinted = self.hint.is_shown(&self.session);
