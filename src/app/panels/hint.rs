@@ -15,7 +15,7 @@ const TRIED_MM: f64 = 0.3;
 
 /// How stops between two wells act.
 const MIDDLE: &str = "a stop near the middle holds the mass high on the barrier: a weaker push carries it \
-                      over, but it travels less. Further out the mechanism presses it harder on the stop";
+                      over, but it travels less. Further out it presses harder";
 
 /// What the line asks the user to try.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -22,6 +22,8 @@ const ROW: f32 = 28.0;
 const MORE: f32 = 276.0;
 
 const MENU: f32 = 28.0;
+/// Delay in s with which no hover text comes.
+const NEVER: f32 = 1e3;
 /// Height in points of the guide line, whatever it says.
 const GUIDE: f32 = 29.0;
 
@@ -90,6 +92,7 @@ impl Window {
 
     pub fn ui(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
+        self.hide_hover_texts(&ctx);
         if !self.waits_for_answer() {
             self.keys(&ctx);
         }
@@ -123,6 +126,19 @@ impl Window {
         }
         self.dialogs_ui(ui, &ctx);
         focus_ui(&ctx, &style);
+    }
+
+    /// Closes hover texts once a dialog has opened: one that is open would stay as long as the pointer does,
+    /// over the dialog.
+    fn hide_hover_texts(&mut self, ctx: &egui::Context) {
+        let waits = self.waits_for_answer();
+        let opens = waits && !self.waited;
+        let usual = egui::style::Interaction::default().tooltip_delay;
+        let delay = if opens { NEVER } else { usual };
+        if ctx.global_style().interaction.tooltip_delay != delay {
+            ctx.all_styles_mut(|style| style.interaction.tooltip_delay = delay);
+        }
+        self.waited = waits;
     }
 
     /// Menu bar, status line and transport bar; a view over the window leaves the last. Returns the commands
@@ -190,7 +206,7 @@ impl Window {
         column.inner.then_some(Command::Notes)
     }
 
-    /// The guide line: the best stops that are looked for, the ways to cross, or the hint of the first minute.
+    /// The guide line: the search for the best stops, the ways to cross, or the hint of the first minute.
     /// Returns the chosen command.
     fn guide_line_ui(&mut self, ui: &mut Ui, style: &Style) -> Option<Command> {
         let hinted = self.hint.is_shown(&self.session);

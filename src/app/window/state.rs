@@ -74,6 +74,8 @@ pub struct Window {
     pub(super) hint: hint::Hint,
     pub(super) lessons: Lessons,
     pub(super) glossary: bool,
+    /// Whether a dialog was open in the last frame.
+    pub(super) waited: bool,
     pub(super) wake: Wake,
     /// The settings that were applied last; they are applied again only if they change.
     pub(super) applied: Option<Settings>,
@@ -146,6 +148,7 @@ impl Window {
             deferred: DeferredInput::default(),
             lessons: Lessons::default(),
             glossary: false,
+            waited: false,
             wake,
             applied: None,
             zoom: None,
