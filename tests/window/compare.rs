@@ -321,7 +321,8 @@ fn pins_stay_through_ctrl_1_and_leave_by_the_menu() {
     assert!(harness.state().tiling.place_of(View::Compare).is_some());
     harness.get_by_label("Motion").click();
     harness.run_steps(3);
-    harness.get_by_label_contains("Unpin ");
+    // that of the menu, beside the button in the table
+    assert_eq!(harness.query_all_by_label_contains("Unpin").count(), 2);
     press(&mut harness, Key::Escape);
     command(&mut harness, Command::Unpin('B'));
     assert_eq!(harness.state().session.pins.all().len(), 1);
@@ -340,7 +341,7 @@ fn a_pin_has_its_letter_at_its_end_and_lies_under_the_motion() {
     harness.run_steps(60);
     let place = harness.state().tiling.place_of(View::Displacement).unwrap();
     let at_end = |own: &&(String, eframe::egui::Rect, eframe::egui::Rect)| {
-        own.0 == "A" && place.contains(own.1.center()) && own.1.left() > place.left() + 100.0
+        own.0 == "A" && place.contains(own.1.center()) && own.1.top() > place.top() + 24.0
     };
     let all = painted(&harness);
     let ends: Vec<_> = all.iter().filter(at_end).collect();

@@ -100,6 +100,7 @@ fn the_trace_keeps_its_mean_in_the_smallest_tile() {
     command(&mut harness, Command::Arrange(Layout::Study));
     command(&mut harness, Command::Show(View::Power, true));
     command(&mut harness, Command::Show(View::Velocity, true));
+    command(&mut harness, Command::Show(View::BaseAcceleration, true));
     harness.state_mut().session.wait_settled(LONG);
     harness.run_steps(3);
     assert!(harness.state().tiling.place_of(View::Power).unwrap().height() < 110.0);

@@ -19,8 +19,8 @@ pub(super) fn amplitude(scene: &Scene) -> Option<f64> {
 const NARROW: f64 = 1.03;
 
 /// The clause that says how far gaps reach above the least amplitude that crosses; empty without gaps.
-fn gaps(found: &Thresholds, from: f64) -> String {
-    match found.crossing.without_gap {
+fn gaps(found: &Found, from: f64) -> String {
+    match found.without_gap {
         Some(whole) if whole > NARROW * from => format!(", with gaps up to {} g", grams(whole)),
         None => ", with gaps above it".to_owned(),
         Some(_) => String::new(),
