@@ -78,6 +78,9 @@ fn page_down_stops_at_a_covered_prediction_and_at_the_last_step() {
     press(&mut harness, Key::Enter);
     assert!(!harness.state().lesson().unwrap().is_covering());
     assert_eq!(harness.state().lesson().unwrap().answer().choice, None);
+    // and no other has it after that
+    press(&mut harness, Key::Enter);
+    assert_eq!(number(&harness), at);
     while !harness.state().lesson().unwrap().is_last() {
         go_on(&mut harness);
     }
