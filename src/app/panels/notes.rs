@@ -1,8 +1,8 @@
 //! Texts to read: notes of the scene below the controls, the glossary, the lecturer's notes of a lesson.
 
 use eframe::egui::{
-    self, Align, CentralPanel, Color32, FontSelection, Frame, Key, Layout, Modifiers, RichText, ScrollArea,
-    Ui, ViewportBuilder, ViewportClass, ViewportId, vec2,
+    self, Align, CentralPanel, Color32, FontSelection, Frame, Key, Label, Layout, Modifiers, RichText,
+    ScrollArea, Ui, ViewportBuilder, ViewportClass, ViewportId, vec2,
 };
 
 use crate::app::session::lesson::{OpenLesson, Outcome};
@@ -174,7 +174,7 @@ fn script_ui(ui: &mut Ui, open: &OpenLesson) {
                         ui.label("now");
                     }
                 });
-                ui.label(plain(text));
+                ui.add(Label::new(plain(text)).wrap());
             });
         });
     }
