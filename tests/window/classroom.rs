@@ -78,6 +78,9 @@ fn page_down_stops_at_a_covered_prediction_and_at_the_last_step() {
     press(&mut harness, Key::Enter);
     assert!(!harness.state().lesson().unwrap().is_covering());
     assert_eq!(harness.state().lesson().unwrap().answer().choice, None);
+    // and no other has it after that
+    press(&mut harness, Key::Enter);
+    assert_eq!(number(&harness), at);
     while !harness.state().lesson().unwrap().is_last() {
         go_on(&mut harness);
     }
@@ -159,6 +162,10 @@ fn the_notes_mark_the_line_of_now() {
     for time in ["0:00", "0:30", "1:30", "4:30"] {
         assert!(is_painted(&harness, time), "{time}");
     }
+    // a long line goes on below, beside its time
+    let all = painted(&harness);
+    let long = all.iter().find(|own| own.0.starts_with("Ask why it was stuck")).unwrap();
+    assert!(long.1.right() <= long.2.right() && long.1.height() > 20.0, "{long:?}");
     let above = |harness: &Shown, time: &str| height(harness, "now") - height(harness, time);
     assert!((1.0..30.0).contains(&above(&harness, "0:00")));
     // 31 s later, at four frames a second

@@ -343,9 +343,12 @@ fn navigation_ui(ui: &mut Ui, lesson: &OpenLesson, urged: bool) -> Option<Lesson
     action
 }
 
-/// Moves the keyboard focus to a button, so that Enter presses it.
+/// Moves the keyboard focus to a button, so that Enter presses it, until it has been pressed: the button that
+/// then stands in its place must not have it.
 fn urge(button: &Response, urged: bool) {
-    if urged {
+    if button.clicked() {
+        button.surrender_focus();
+    } else if urged {
         button.request_focus();
     }
 }

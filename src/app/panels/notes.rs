@@ -1,7 +1,7 @@
 //! Texts to read: notes of the scene below the controls, the glossary, the lecturer's notes of a lesson.
 
 use eframe::egui::{
-    self, Align, CentralPanel, Color32, Frame, Key, Layout, Modifiers, RichText, ScrollArea, Ui,
+    self, Align, CentralPanel, Color32, Frame, Key, Label, Layout, Modifiers, RichText, ScrollArea, Ui,
     ViewportBuilder, ViewportClass, ViewportId, vec2,
 };
 
@@ -176,7 +176,7 @@ fn script_ui(ui: &mut Ui, open: &OpenLesson) {
                         ui.label("now");
                     }
                 });
-                ui.label(plain(text));
+                ui.add(Label::new(plain(text)).wrap());
             });
         });
     }

@@ -320,7 +320,9 @@ mod tests {
                 _ => None,
             });
             for asked in goals.flat_map(parts) {
-                for found in [Value::Number(0.5), Value::Word("intrawell".to_owned()), Value::Missing] {
+                let is_regime = asked.field().is_some_and(|field| field.ends_with(REGIME));
+                let found = if is_regime { Value::Word("rest".to_owned()) } else { Value::Number(0.5) };
+                for found in [found, Value::Missing] {
                     let text = not_yet(&Lack { asked: asked.clone(), found }, true);
                     let spare = ["(", "_", "intrawell", "interwell", "differs"];
                     assert!(spare.iter().all(|word| !text.contains(word)), "{}: {text}", own.name);
