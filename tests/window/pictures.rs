@@ -125,18 +125,18 @@ fn the_force_curve_has_the_force_and_the_push_that_frees_the_mass() {
         let text = format!("{force:.3} N = {:.3} g", force / model.mass() / 9.80665);
         assert!(labels.len() == 2 && labels.iter().all(|own| own.0.ends_with(&text)), "{text}: {labels:?}");
         assert!(labels.iter().all(|own| own.2.contains_rect(own.1)), "{labels:?}");
-        collide(&harness, &["N", "g"]);
+        keep_apart(&harness);
     }
 }
 
 /// No two texts lie over each other.
-fn collide(harness: &Harness<'static, Window>, what: &[&str]) {
+fn keep_apart(harness: &Harness<'static, Window>) {
     let all = painted(harness);
     let seen: Vec<_> = all.iter().filter(|own| own.2.intersects(own.1) && own.1.is_positive()).collect();
     for (i, own) in seen.iter().enumerate() {
         for other in &seen[i + 1..] {
             let over = own.1.shrink(1.5).intersects(other.1.shrink(1.5));
-            assert!(!over || own.0 == other.0, "{what:?}: {own:?} {other:?}");
+            assert!(!over || own.0 == other.0, "{own:?} {other:?}");
         }
     }
 }
@@ -259,7 +259,7 @@ fn style(harness: &Harness<'static, Window>) -> Stroke {
 #[test]
 fn the_headings_of_energy_stand_apart() {
     for size in [WIDE, PROJECTED, [1024.0, 700.0], [1920.0, 1080.0]] {
-        collide(&showing("paper", size, &[View::Energy]), &["energy"]);
+        keep_apart(&showing("paper", size, &[View::Energy]));
     }
     let mut harness = window("paper", [1024.0, 700.0]);
     command(&mut harness, Command::Arrange(interwell::scene::Layout::Study));

@@ -85,7 +85,7 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     clipped.extend(Shape::dashed_line(&line(tilt), style.ghost_stroke(), 5.0, 5.0));
     clipped.add(Shape::line(reachable, style.tray_stroke()));
 
-    let (mut balls, mut other): (Vec<(Pos2, Ghost)>, Vec<usize>) = Default::default();
+    let (mut balls, mut other): (Vec<(Pos2, Ghost)>, Vec<usize>) = (Vec::new(), Vec::new());
     for ghost in ghosts(context) {
         let (state, tilted) = (ghost.state, ghost.model.mass() * ghost.state.base_accel);
         let (curve, bottom) = (&ghost.model.mechanism().curve, super::ranges::bottom(&ghost.model));
