@@ -26,6 +26,7 @@ mod measured;
 mod memory;
 mod newcomer;
 mod past;
+mod pictures;
 mod power;
 mod quiet;
 mod random;

@@ -41,7 +41,7 @@ pub const STATUS_COMPACT: f32 = 16.0;
 
 /// Radius in points of the proof mass where it rides on a curve; stops are drawn this far outside their
 /// limit, so that the mass touches them at the limit.
-pub const BALL: f32 = 9.0;
+pub const BALL: f32 = 13.5;
 
 /// Distance in points within which something can be grabbed.
 pub const GRAB: f32 = 14.0;

@@ -146,7 +146,10 @@ impl TraceQuantity {
     fn ends(self, context: &mut ViewContext<'_>) -> (f64, f64) {
         let both = |end: f64| (-end, end);
         match self {
-            Self::Displacement => (context.span.low * 1e3, context.span.high * 1e3),
+            Self::Displacement => {
+                let span = context.memory.reach(context.session, None);
+                (span.low * 1e3, span.high * 1e3)
+            }
             Self::Velocity => both(context.memory.ranges.follow(context.session).speed() * 1e3),
             Self::BaseAcceleration => both(
                 1.12 * room_for_push(context.session.shown().largest_base_acceleration()) / STANDARD_GRAVITY,

@@ -158,10 +158,14 @@ pub fn limit_mm(mm: f64) -> String {
     }
 }
 
-/// Energy in mJ: two decimals, or three significant digits below that.
+/// Energy in mJ with two decimals, or below that with three significant digits in a unit that suits it.
 pub fn energy(j: f64) -> String {
     let mj = j.max(0.0) * 1e3;
-    if mj == 0.0 || mj >= 0.1 { format!("{mj:.2} mJ") } else { format!("{} mJ", significant(mj, 3)) }
+    if mj == 0.0 || mj >= 0.1 {
+        return format!("{mj:.2} mJ");
+    }
+    let (factor, unit) = suited_unit("J", std::iter::once(j));
+    format!("{} {unit}", significant(j * factor, 3))
 }
 
 /// A displacement in m near the left and right stops in m, as text in mm: as `mm` formats it, or with more
@@ -249,6 +253,12 @@ mod tests {
         }
         assert_eq!([0.6881, 1.15, 0.9991].map(grams_up), ["0.689", "1.15", "1.00"]);
         assert_eq!((grams_apart(0.2604), newtons(0.196_8)), ("0.26".into(), "0.20 N".into()));
+    }
+
+    #[test]
+    fn an_energy_has_the_unit_that_suits_it() {
+        let texts = [9.2e-4, 1.2, 5.12e-12, 4.56e-8, 0.0, -1.0].map(energy);
+        assert_eq!(texts, ["0.92 mJ", "1200.00 mJ", "5.12 pJ", "45.6 nJ", "0.00 mJ", "0.00 mJ"]);
     }
 
     #[test]
