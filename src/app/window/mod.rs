@@ -166,7 +166,7 @@ impl Window {
     fn head_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) -> Vec<Command> {
         let bar = Panel::top("menu").frame(panel_frame(ui, 8, 2)).exact_size(MENU);
         let bar = bar.show(ui, |ui| menu::Menus { window: self, chosen: Vec::new() }.ui(ui));
-        let (line, covered) = (panel_frame(ui, 12, 4), self.motion_is_covered());
+        let covered = self.motion_is_covered();
         let status = Panel::top("status").frame(panel_frame(ui, 12, 2)).exact_size(status_line::height(ui));
         status.show(ui, |ui| match covered {
             true => covered_ui(ui, !self.covered),
