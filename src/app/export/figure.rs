@@ -100,14 +100,14 @@ impl Subject {
         Ok(Self::Sweep(axes, quantity, view))
     }
 
-    /// The flexures where the mass is now.
-    pub fn shapes(session: &Session) -> Result<Self, String> {
+    /// The flexures with the mass at `x` in m.
+    pub fn shapes(session: &Session, x: f64) -> Result<Self, String> {
         if session.model().mechanism().flexures.is_none() {
             return Err("There is no figure of a mechanism that is a force without flexures: File, Save a \
                         picture of the window has its sketch as it stands."
                 .to_owned());
         }
-        Ok(Self::Shapes((session.player.state().x * 1e7).round() / 1e4))
+        Ok(Self::Shapes((x * 1e7).round() / 1e4))
     }
 
     /// The record as it lies over the computed.

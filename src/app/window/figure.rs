@@ -40,6 +40,8 @@ pub struct Figures {
     before: [String; 2],
     /// Why the last figure was not saved.
     pub(super) problem: Option<String>,
+    /// Where the mass was when the dialog was opened, in m.
+    x: f64,
     /// Whether the path has had the keyboard focus.
     had_focus: bool,
     job: Background<(), WriteResult>,
@@ -58,6 +60,7 @@ impl Default for Figures {
             panels: [false; RunPanel::ALL.len()],
             before: <[String; 2]>::default(),
             problem: None,
+            x: 0.0,
             had_focus: false,
             job: Background::default(),
         }
@@ -93,6 +96,7 @@ impl Figures {
         if !self.is_open() {
             self.before = [self.width.clone(), self.font.clone()];
         }
+        self.x = session.player.state().x;
         (self.view, self.problem, self.had_focus) = (Some(view), None, false);
     }
 
@@ -125,7 +129,7 @@ impl Figures {
                 Ok(Subject::Run(self.typed_times()?, shown))
             }
             View::Section => Ok(Subject::Section),
-            View::Mechanism => Subject::shapes(session),
+            View::Mechanism => Subject::shapes(session, self.x),
             View::Measured => Subject::measured(session),
             View::Well | View::ForceCurve => Ok(Subject::Curve),
             View::Map => Subject::map(session, memory.map_look.surface, memory.map_look.cuts),
@@ -171,7 +175,7 @@ impl Figures {
             _ if panel(view).is_some() => "The run of the scene from its start.",
             View::Section => "The states of the scene's own run, from its start.",
             View::Well | View::ForceCurve => "Force and potential over displacement.",
-            View::Mechanism => "The centre lines of the flexures where the mass is now.",
+            View::Mechanism => "The centre lines of the flexures where the mass was when this dialog opened.",
             View::Measured => "The record over the run of the scene from its start, or over its force.",
             View::Map | View::UpAndDown | View::Basins => "Every run is made anew, which may take a while.",
             _ => "",

@@ -14,6 +14,9 @@ use super::super::ViewContext;
 use super::super::axes::{field_ui, range_id, range_row_ui};
 use super::super::memory::MapLook;
 
+/// Width in points of the title at most: a long one is cut, and whole in the list and beside the colours.
+const TITLE: f32 = 180.0;
+
 /// Width in points below which the choices take two rows.
 const NARROW: f32 = 1080.0;
 
@@ -28,7 +31,10 @@ pub fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let narrow = ui.available_width() < NARROW;
     ui.horizontal(|ui| {
         ui.add_space(8.0);
-        quantity_ui(ui, &mut context.session.map);
+        ui.scope(|ui| {
+            ui.set_max_width(TITLE);
+            quantity_ui(ui, &mut context.session.map);
+        });
         ui.label(RichText::new("from rest").heading())
             .on_hover_text("Every cell is a run of its own from rest.");
         if !narrow {
