@@ -30,13 +30,17 @@ fn number(text: &str) -> Option<f64> {
     text.replace('\u{2212}', "-").parse().ok()
 }
 
+/// Whether a text is the name of a vertical axis, or its unit alone.
+fn is_title(own: &(String, Rect, Rect), name: &str) -> bool {
+    own.0 == name && (own.1.height() > own.1.width() || name.len() < 5)
+}
+
 /// The numbers of the vertical axis of the picture that is called so at its side, with their heights; and
 /// those of the axis below it.
 fn axes(harness: &Harness<'static, Window>, name: &str) -> [Vec<(f64, f32)>; 2] {
     let all = painted(harness);
-    let is_title =
-        |own: &&(String, Rect, Rect)| own.0 == name && (own.1.height() > own.1.width() || name.len() < 5);
-    let title = all.iter().find(is_title).unwrap_or_else(|| panic!("{name}: {all:?}")).clone();
+    let title =
+        all.iter().find(|own| is_title(own, name)).unwrap_or_else(|| panic!("{name}: {all:?}")).clone();
     let beside = |own: &&(String, Rect, Rect)| {
         let gap = own.1.left() - title.1.right();
         (-8.0..60.0).contains(&gap) && title.2.intersects(own.1)
@@ -180,10 +184,9 @@ fn every_axis_has_three_numbers_and_its_unit_in_its_name() {
             if !harness.state().tiling.shows(view) {
                 continue;
             }
-            let Some(name) =
-                names.into_iter().find(|name| painted(&harness).iter().any(|own| own.0 == *name))
-            else {
-                // behind another tab
+            let all = painted(&harness);
+            // none where it is behind another tab
+            let Some(name) = names.into_iter().find(|name| all.iter().any(|own| is_title(own, name))) else {
                 continue;
             };
             let [up, _] = axes(&harness, name);
