@@ -82,6 +82,8 @@ fn another_scene_is_walked_anew_and_a_closed_view_asks_for_nothing() {
 fn a_scene_that_cannot_be_walked_says_why() {
     let mut harness = window("random-shaking", PROJECTED);
     command(&mut harness, Command::Arrange(Layout::Explore));
+    harness.get_by_label("Up and down").click();
+    harness.run_steps(3);
     harness.get_by_label_contains("that needs shaking that repeats");
 }
 

@@ -190,8 +190,8 @@ fn a_reach_is_not_beyond_its_stop() {
     harness.state_mut().session.edit_once(|scene| scene.stops = stops);
     harness.state_mut().session.wait(LONG);
     harness.run_steps(3);
-    harness.get_by_label("2.25 mm");
-    assert!(harness.query_by_label("2.3 mm").is_none());
+    harness.get_by_label("2.25");
+    assert!(harness.query_by_label("2.3").is_none());
 }
 
 #[test]

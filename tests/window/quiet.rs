@@ -59,6 +59,10 @@ fn paused_no_layout_asks_for_a_frame() {
             screen.window.session.map.choose(Some(axes(0.5)));
             screen.ask(layout.map_or(Command::ArrangeOwn, Command::Arrange));
             pause(&mut screen);
+            // what is told of a new arrangement goes by itself
+            while screen.window.notice().is_some() {
+                screen.steps(30);
+            }
             let what = format!("{layout:?} at {size:?}");
             comes_to_rest(&mut screen, &what);
             // the hand rests somewhere, and something is read there

@@ -35,7 +35,7 @@ fn shaken() {
         )
     });
     assert!(likely.any(|own| text.starts_with(&own)), "{text}");
-    assert!(text.contains("g short of crossing at 1.1") && text.contains(" to 1."), "{text}");
+    assert!(text.contains("g short of crossing at about 1.1"), "{text}");
 
     let (kind, text) = of("first-look", &[&stops(1.5)]);
     let expected = "Interwell: will cross twice a period, from stop to stop at ±1.5 mm; \
@@ -58,7 +58,9 @@ fn shaken() {
 
     let (kind, text) = of("duffing", &[]);
     assert!(
-        kind == Kind::Interwell && text.contains("will cross 2 times in 5 periods and then repeats"),
+        kind == Kind::Interwell
+            && text.contains("will cross 2 times in 5 periods from ")
+            && text.contains(" s on and then repeat, "),
         "{text}"
     );
     let (_, text) = of("monostable", &[]);
@@ -187,7 +189,8 @@ fn a_ramp_is_told_by_what_happens_on_it() {
     let ramp = "excitation=AmplitudeRamp(frequency_hz: 3, from_g: 0, to_g: 1, over_s: 60)";
     let (_, text) = of("paper", &[ramp]);
     assert!(
-        text.starts_with("Growing shaking: will first be released at 0.69") && text.contains("after 41 s"),
+        text.starts_with("Growing shaking: will first be released at about 0.69")
+            && text.contains("after about 41 s"),
         "{text}"
     );
     let weak = "excitation=AmplitudeRamp(frequency_hz: 3, from_g: 0, to_g: 0.6, over_s: 60)";
@@ -263,7 +266,7 @@ fn the_future_until_it_has_been_seen() {
     assert!(says(&own).1.starts_with("Interwell: crosses twice a period"), "{:?}", says(&own));
     // three periods of it have been drawn
     let since = own.player.watch().time() - own.changed_at();
-    assert!(since >= 1.0 && of >= 1.0, "{since}");
+    assert!(since >= 1.0 - 1e-9, "{since}");
     // paused in mid-air, it is not said to rest on a stop
     while own.player.state().phase != interwell::dynamics::Phase::Free {
         own.player.tick(0.01);

@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
 
 use crate::screen::Screen;
-use crate::support::{LONG, PROJECTED, WIDE, command, painted, press, window};
+use crate::support::{LONG, PROJECTED, WIDE, command, painted, painted_as_is, press, window};
 
 const GESTURES: usize = 200;
 
@@ -158,7 +158,7 @@ fn a_number_keeps_its_unit_and_code_has_no_backticks() {
         let mut harness = window(preset.name, WIDE);
         command(&mut harness, Command::Notes);
         let notes = harness.state().message().unwrap().replace('`', "");
-        let all = painted(&harness);
+        let all = painted_as_is(&harness);
         let plain = |text: &str| text.replace('\u{a0}', " ");
         let shown = all.iter().find(|own| plain(&own.0) == notes);
         let (text, ..) = shown.unwrap_or_else(|| panic!("{}: {notes}", preset.name));
@@ -172,9 +172,8 @@ fn notes_begin_with_two_sentences() {
         let mut harness = window(preset.name, [1280.0, 900.0]);
         let notes = harness.state().session.scene().notes.trim().to_owned();
         let begin = notes.chars().take_while(|letter| *letter != '`').take(30).collect::<String>();
-        let plain = |text: &str| text.replace('\u{a0}', " ");
         let all = painted(&harness);
-        let shown = all.iter().map(|own| plain(&own.0)).find(|text| text.starts_with(&begin)).unwrap();
+        let shown = all.iter().map(|own| &own.0).find(|text| text.starts_with(&begin)).unwrap();
         let ends = shown.match_indices(". ").count();
         assert!(shown.ends_with('.') && ends <= 1, "{}: {shown}", preset.name);
         harness.get_by_label("Read on").click();

@@ -36,6 +36,8 @@ enum Stage {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hint {
     stage: Stage,
+    /// Whether the scene was opened with a hint, shown or not.
+    pub has_line: bool,
     /// The shaking in g that the scene was opened with.
     opened_g: f64,
 }
@@ -45,10 +47,9 @@ impl Hint {
     pub fn for_scene(session: &Session) -> Self {
         let offered = session.scene().app.as_ref().is_some_and(|app| app.stops_when_on.is_some());
         let barrier = session.model().mechanism().landscape.barrier.is_some();
-        match session.amplitude_g().filter(|_| offered && barrier) {
-            Some(opened_g) => Self { stage: Stage::Cross, opened_g },
-            None => Self { stage: Stage::Done, opened_g: 0.0 },
-        }
+        let opened_g = session.amplitude_g().filter(|_| offered && barrier);
+        let stage = if opened_g.is_some() { Stage::Cross } else { Stage::Done };
+        Self { stage, has_line: opened_g.is_some(), opened_g: opened_g.unwrap_or(0.0) }
     }
 
     /// Whether the line is shown. Also advances to the next stage once the present one is done.

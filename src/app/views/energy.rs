@@ -29,6 +29,9 @@ const ROWS: (f32, f32) = (17.0, 30.0);
 /// Number of rows of the view, including the headings and the bar of the present energy.
 const COUNT: f32 = 10.0;
 
+/// Height in points of the names below the bar of the present energy.
+const LEGEND: f32 = 11.0;
+
 /// Units of energy in J, with their names.
 const UNITS: [(f64, &str); 5] = [(1.0, "J"), (1e-3, "mJ"), (1e-6, "µJ"), (1e-9, "nJ"), (1e-12, "pJ")];
 
@@ -268,12 +271,19 @@ fn present_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, (unit, nam
     painter.rect_filled(Rect::from_x_y_ranges(track.left()..=first, track.y_range()), 0.0, style.ink());
     painter.rect_filled(Rect::from_x_y_ranges(first..=second, track.y_range()), 0.0, style.mass());
     let below = track.bottom() + 3.0;
-    let legend =
-        painter.text(pos2(track.left(), below), Align2::LEFT_TOP, "potential", style.small(), style.ink());
-    let at = pos2(legend.right() + 8.0, below);
-    painter.text(at, Align2::LEFT_TOP, "+ kinetic now", style.small(), style.mass_ink());
-    let end = format!("{} {name}", short(scale / unit));
-    painter.text(pos2(track.right(), below), Align2::RIGHT_TOP, end, style.small(), style.faint());
+    if below + LEGEND <= rect.bottom() + 4.0 {
+        let legend = painter.text(
+            pos2(track.left(), below),
+            Align2::LEFT_TOP,
+            "potential",
+            style.small(),
+            style.ink(),
+        );
+        let at = pos2(legend.right() + 8.0, below);
+        painter.text(at, Align2::LEFT_TOP, "+ kinetic now", style.small(), style.mass_ink());
+        let end = format!("{} {name}", short(scale / unit));
+        painter.text(pos2(track.right(), below), Align2::RIGHT_TOP, end, style.small(), style.faint());
+    }
     if let Some(barrier) = barrier {
         let x = screen_from_energy(barrier);
         let heights = track.y_range().expand(3.0);

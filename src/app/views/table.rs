@@ -99,7 +99,7 @@ pub(super) fn table_ui(
     let before = scene_rows(&scenes);
     let after = number_rows(columns, now, !context.session.keeps_remedy);
     // the headings and the row of the motion
-    let count = (before.len() + after.len() + 3) as f32;
+    let count = (before.len() + after.len() + 2) as f32;
     let gap = ((ui.available_height() - count * ROW) / (count - 1.0)).clamp(ROW_GAP.1, ROW_GAP.0);
     let settled = columns[now].card.as_ref().and_then(|card| card.settled.as_ref());
     let row_ui = |ui: &mut Ui, row: &Row| {
@@ -136,6 +136,7 @@ pub(super) fn table_ui(
         }
         ui.end_row();
     };
+    ui.spacing_mut().interact_size.y = ui.spacing().interact_size.y.min(ROW);
     Grid::new("table").num_columns(1 + columns.len()).spacing([COLUMN_GAP, gap]).show(ui, |ui| {
         cell_ui(ui, names, |ui| heading(ui, None, names));
         for i in 0..columns.len() {
@@ -143,9 +144,14 @@ pub(super) fn table_ui(
         }
         ui.end_row();
         before.iter().for_each(|row| row_ui(ui, row));
-        ui.label(RichText::new(SETTLED).font(style.small())).on_hover_text(SETTLED_HOVER);
-        ui.end_row();
-        cell_ui(ui, names, |ui| ui.label(RichText::new("motion").color(style.faint())));
+        cell_ui(ui, names, |ui| {
+            ui.horizontal_wrapped(|ui| {
+                ui.spacing_mut().item_spacing.x = 4.0;
+                ui.label(RichText::new("motion").color(style.faint()));
+                let settled = RichText::new(SETTLED).font(style.small()).color(style.faint());
+                ui.label(settled).on_hover_text(SETTLED_HOVER);
+            });
+        });
         for column in columns {
             cell_ui(ui, width, |ui| match column.ended {
                 Some(at) => {
@@ -163,7 +169,7 @@ pub(super) fn table_ui(
     });
 }
 
-/// Heading of the rows below it.
+/// What holds for the row of the motion and those below it.
 const SETTLED: &str = "once settled";
 const SETTLED_HOVER: &str = "What the motion settles to, whether or not it has been played so far.";
 
@@ -251,8 +257,8 @@ fn number_rows(columns: &[Column], now: usize, with_threshold: bool) -> Vec<Row>
         let texts = columns.iter().map(|column| written(column).unwrap_or_else(|| UNKNOWN.to_owned()));
         let present = settled(&columns[now]).and_then(|settled| value(&settled));
         let apart = |column: &Column| {
-            let own = settled(column).filter(|_| column.differs).and_then(|settled| value(&settled))?;
-            Some(difference(own, present?, decimals))
+            let number = settled(column).filter(|_| column.differs).and_then(|settled| value(&settled))?;
+            Some(difference(number, present?, decimals))
         };
         Row { apart: columns.iter().map(apart).collect(), ..Row::new(name, unit, texts.collect()) }
     };
@@ -289,9 +295,9 @@ fn number_rows(columns: &[Column], now: usize, with_threshold: bool) -> Vec<Row>
 }
 
 /// A value less the present one, as text.
-fn difference(own: f64, present: f64, decimals: &dyn Fn(f64) -> usize) -> String {
-    let decimals = decimals(own.abs().max(present.abs()));
-    let text = format!("{:+.decimals$}", own - present);
+fn difference(value: f64, present: f64, decimals: &dyn Fn(f64) -> usize) -> String {
+    let decimals = decimals(value.abs().max(present.abs()));
+    let text = format!("{:+.decimals$}", value - present);
     // a difference that rounds to zero has no sign
     let is_zero = text.trim_start_matches(['+', '-', '0', '.']).is_empty();
     if is_zero { "same".to_owned() } else { text }

@@ -212,7 +212,6 @@ pub(super) static MENUS: [(&str, &[Part]); 6] = [
         Hidden(plain(Key::P), C::Toggle(Setting::Projector),
             As("Views", "projector: light, larger, thicker lines")),
         Hidden(plain(Key::D), C::Toggle(Setting::Dark), As("Views", "light letters on a dark ground")),
-        Line,
         Part::Views,
         Item("The next tab", control(Key::Tab), C::NextTab,
             As("Views", "the next of the views that share a place")),

@@ -22,8 +22,6 @@ const ROW: f32 = 28.0;
 const MORE: f32 = 276.0;
 
 const MENU: f32 = 28.0;
-/// Delay in s with which no hover text comes.
-const NEVER: f32 = 1e3;
 /// Height in points of the guide line, whatever it says.
 const GUIDE: f32 = 29.0;
 
@@ -92,7 +90,7 @@ impl Window {
 
     pub fn ui(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
-        self.hide_hover_texts(&ctx);
+        self.hide_hover_texts(ui);
         if !self.waits_for_answer() {
             self.keys(&ctx);
         }
@@ -104,6 +102,8 @@ impl Window {
         }
         let mut commands = self.bars_ui(ui, &style, compact);
         self.follow_lesson(&ctx);
+        // where room is short, a guide line that is asked for lies over the views
+        let mut is_over_views = false;
         if self.filled.is_some() {
             // the view has the whole window
         } else if self.lessons.open.is_some() {
@@ -111,10 +111,20 @@ impl Window {
         } else {
             commands.extend(self.controls_ui(ui, compact));
             self.session.follow_best();
-            let panel = Panel::top("guide").frame(panel_frame(ui, 12, 0)).exact_size(GUIDE);
-            commands.extend(panel.show(ui, |ui| self.guide_line_ui(ui, &style)).inner);
+            is_over_views = compact && !self.hint.has_line;
+            if !is_over_views {
+                let panel = Panel::top("guide").frame(panel_frame(ui, 12, 0)).exact_size(GUIDE);
+                commands.extend(panel.show(ui, |ui| self.guide_line_ui(ui, &style)).inner);
+            }
         }
+        let views = ui.available_rect_before_wrap();
         CentralPanel::no_frame().show(ui, |ui| self.views_ui(ui, style));
+        if is_over_views && (self.ways || self.session.best.is_shown()) && !self.covered {
+            let line = egui::UiBuilder::new().max_rect(views.with_min_y(views.bottom() - GUIDE));
+            ui.scope_builder(line, |ui| {
+                panel_frame(ui, 12, 0).show(ui, |ui| self.guide_line_ui(ui, &style));
+            });
+        }
         self.pointing_ui(&ctx, &style);
         self.memory.grab = false;
         commands.extend(self.memory.pin.take().map(Command::Pin));
@@ -129,14 +139,14 @@ impl Window {
     }
 
     /// Closes hover texts once a dialog has opened: one that is open would stay as long as the pointer does,
-    /// over the dialog.
-    fn hide_hover_texts(&mut self, ctx: &egui::Context) {
+    /// over the dialog. A layer has one hover text at a time: an empty one takes the place of any other.
+    fn hide_hover_texts(&mut self, ui: &Ui) {
         let waits = self.waits_for_answer();
-        let opens = waits && !self.waited;
-        let usual = egui::style::Interaction::default().tooltip_delay;
-        let delay = if opens { NEVER } else { usual };
-        if ctx.global_style().interaction.tooltip_delay != delay {
-            ctx.all_styles_mut(|style| style.interaction.tooltip_delay = delay);
+        if waits && !self.waited {
+            let (ctx, id) = (ui.ctx().clone(), egui::Id::unique("no hover text"));
+            let mut empty = egui::Tooltip::always_open(ctx, ui.layer_id(), id, egui::Pos2::ZERO);
+            empty.popup = empty.popup.frame(egui::Frame::NONE);
+            empty.show(|_| ());
         }
         self.waited = waits;
     }

@@ -158,11 +158,14 @@ pub fn limit_mm(mm: f64) -> String {
     }
 }
 
-/// Energy in mJ with two decimals, or below that with three significant digits in a unit that suits it.
+/// Energy in mJ with two decimals, or with three significant digits, below 1 µJ in a unit that suits it.
 pub fn energy(j: f64) -> String {
     let mj = j.max(0.0) * 1e3;
     if mj == 0.0 || mj >= 0.1 {
         return format!("{mj:.2} mJ");
+    }
+    if mj >= 1e-3 {
+        return format!("{} mJ", significant(mj, 3));
     }
     let (factor, unit) = suited_unit("J", std::iter::once(j));
     format!("{} {unit}", significant(j * factor, 3))
@@ -257,8 +260,8 @@ mod tests {
 
     #[test]
     fn an_energy_has_the_unit_that_suits_it() {
-        let texts = [9.2e-4, 1.2, 5.12e-12, 4.56e-8, 0.0, -1.0].map(energy);
-        assert_eq!(texts, ["0.92 mJ", "1200.00 mJ", "5.12 pJ", "45.6 nJ", "0.00 mJ", "0.00 mJ"]);
+        let texts = [9.2e-4, 1.2, 7.87e-5, 5.12e-12, 4.56e-8, 0.0, -1.0].map(energy);
+        assert_eq!(texts, ["0.92 mJ", "1200.00 mJ", "0.0787 mJ", "5.12 pJ", "45.6 nJ", "0.00 mJ", "0.00 mJ"]);
     }
 
     #[test]

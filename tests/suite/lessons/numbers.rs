@@ -248,7 +248,7 @@ fn price() {
     told.says(&format!("stops at 2.0 mm still cross at {:.0} mm/s", rms(&weaker(2.0))));
     let request = Request { until_settled: Some(600.0), ..Request::default() };
     for tolerance in ["run.tolerance=1e-9", "run.tolerance=1e-11"] {
-        let free = told.model(&["stops=None", &shaken(1.2), tolerance]).run(&request).summary;
+        let free = told.model(&["sweep=[]", "stops=None", &shaken(1.2), tolerance]).run(&request).summary;
         assert!(crosses(&free) && rms(&free) > 250.0, "{}", rms(&free));
     }
     let stops = told.run(&[&stopped(2.0), &shaken(1.2)]);
