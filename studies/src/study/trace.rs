@@ -89,7 +89,7 @@ pub fn simulate_with_trace(
         seen = ascending(picture_times(model, close, end).into_iter().chain(strobes.clone()).collect());
         shown = model.run(&Request { sample_times: &seen, ..request }).samples;
     }
-    let path = path(model, &shown, &run.events);
+    let path = path(model, &shown, &run.events, stops);
     let rows = path.numbers("t_s").unwrap_or_default();
     let (mut portrait_from, shown_to) = close;
     let until = rows.partition_point(|t| *t <= shown_to);
@@ -169,13 +169,12 @@ fn picture_times(model: &Model, close: (f64, f64), duration: f64) -> Vec<f64> {
 }
 
 /// Samples and impacts in order of time. A sample at an impact's instant is the state after it.
-fn path(model: &Model, samples: &[Sample], events: &[Event]) -> Table {
-    let stops = model.stop_positions();
+fn path(model: &Model, samples: &[Sample], events: &[Event], stops: (f64, f64)) -> Table {
     let mut rows: Vec<[f64; 5]> = Vec::with_capacity(samples.len());
     let mut jumps = events.iter().filter(|event| event.kind == EventKind::Impact).peekable();
     for sample in samples {
         while let Some(jump) = jumps.next_if(|jump| jump.t <= sample.t) {
-            let x = if jump.side == Side::Left { stops.0 } else { stops.1 }.unwrap_or(f64::NAN);
+            let x = if jump.side == Side::Left { stops.0 } else { stops.1 };
             rows.push([jump.t, x, jump.v_in, f64::NAN, f64::NAN]);
             rows.push([jump.t, x, jump.v_out, f64::NAN, f64::NAN]);
         }
