@@ -100,21 +100,3 @@ fn the_projector_keeps_the_view_over_the_window_and_is_light() {
     command(&mut harness, Command::Arrange(Layout::Study));
     assert!(harness.query_by_label("all views").is_none());
 }
-
-#[test]
-fn the_bar_of_time_says_what_its_signs_are_in_two_lines() {
-    let mut harness = window("first-look", WIDE);
-    let bar = harness.get_by_label("time").rect();
-    harness.hover_at(bar.center());
-    harness.run_steps(3);
-    wait_until("the hover text is there", || {
-        harness.run_steps(20);
-        is_painted(&harness, "What has been seen")
-    });
-    let all = painted(&harness);
-    let hover = all.iter().find(|own| own.0.starts_with("What has been seen")).unwrap();
-    assert_eq!(hover.0.lines().count(), 2, "{}", hover.0);
-    // neither is wrapped
-    let line = all.iter().find(|own| own.0 == "Shaking").unwrap().1.height();
-    assert!(hover.1.height() < 3.0 * line, "{hover:?}");
-}

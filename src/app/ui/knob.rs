@@ -10,11 +10,11 @@ use eframe::egui::{self, Color32, DragValue, Key, Response, RichText, Slider, Ui
 use crate::app::words::fields::Reach;
 use crate::app::words::numbers::{decimal, decimals, exact, rounded, shown};
 
-use super::style::{COMPACT_BELOW, Style};
+use super::style::{COMPACT_BELOW, CONTROL, NUMBER, Style};
 use super::widgets::hover_beside;
 
-/// Width in points of a usual number beside its slider.
-const NUMBER: f32 = 72.0;
+/// Height in points of a slider, 2.5 times the radius of its handle.
+const SLIDER: f32 = 18.0;
 /// Smallest width of a slider in points, beside a long number.
 const MIN_SLIDER: f32 = 30.0;
 
@@ -72,9 +72,10 @@ impl Knob<'_> {
         let mut turned = value;
         let (slider, field, typed) = ui
             .horizontal(|ui| {
-                let slider = self.slider_ui(ui, &mut turned, decimals).labelled_by(name.id);
+                let slider = ui.scope(|ui| self.slider_ui(ui, &mut turned, decimals)).inner;
+                let slider = slider.labelled_by(name.id);
                 let slid = turned != value;
-                let (field, typed) = self.number_ui(ui, &mut turned, decimals, !slid);
+                let (field, typed) = self.number_ui(ui, &mut turned, (decimals, NUMBER), !slid);
                 (slider, field.labelled_by(name.id), typed)
             })
             .inner;
@@ -96,7 +97,7 @@ impl Knob<'_> {
     /// Draws the number alone, without a slider. Returns the new number if one was typed or dragged to.
     pub fn alone_ui(&self, ui: &mut Ui, value: f64) -> Option<f64> {
         let mut turned = value;
-        let (field, _) = self.number_ui(ui, &mut turned, 0, true);
+        let (field, _) = self.number_ui(ui, &mut turned, (0, 0.0), true);
         ui.ctx().accesskit_node_builder(field.id, |node| node.set_label(self.name));
         refusal_ui(ui, self.id, &field);
         let changed = turned != value && !turned.is_nan();
@@ -109,6 +110,10 @@ impl Knob<'_> {
     fn slider_ui(&self, ui: &mut Ui, value: &mut f64, decimals: usize) -> Response {
         let (present, Reach { low, high, step, ratios }) = (*value, self.reach);
         ui.spacing_mut().slider_width = self.slider_width(ui, present, decimals);
+        ui.spacing_mut().interact_size.y = SLIDER;
+        let style = Style::of(ui.ctx(), false);
+        ui.visuals_mut().selection.bg_fill = style.accent();
+        ui.visuals_mut().widgets.inactive.bg_fill = style.track();
         if ratios {
             return logarithmic_ui(ui, value, (low, high));
         }
@@ -128,8 +133,15 @@ impl Knob<'_> {
         slider
     }
 
-    /// Draws the number beside the slider. Returns its response, and whether an acceptable number was typed.
-    fn number_ui(&self, ui: &mut Ui, value: &mut f64, decimals: usize, free: bool) -> (Response, bool) {
+    /// Draws the number, in a field of at least `width` points. Returns its response, and whether an
+    /// acceptable number was typed.
+    fn number_ui(
+        &self,
+        ui: &mut Ui,
+        value: &mut f64,
+        (decimals, width): (usize, f32),
+        free: bool,
+    ) -> (Response, bool) {
         let present = *value;
         let editing = ui.memory(|memory| memory.has_focus(ui.next_auto_id()));
         let write = |number: f64| if editing { exact(number, decimals) } else { shown(number, decimals) };
@@ -138,6 +150,7 @@ impl Knob<'_> {
         let field = DragValue::new(&mut edited)
             .speed(self.reach.step)
             .suffix(self.suffix())
+            .min_size(egui::vec2(width, CONTROL))
             .custom_formatter(|number, _| write(number))
             .update_while_editing(false)
             .custom_parser(|text| {

@@ -1,6 +1,6 @@
 //! View of the distance between the pinned motions and the present one over time, on a logarithmic scale.
 
-use eframe::egui::{self, Align2, RichText, Ui, UiBuilder, vec2};
+use eframe::egui::{self, Align2, RichText, Ui, UiBuilder, pos2, vec2};
 use egui_plot::{HLine, Line, PlotBounds, PlotPoint, Text, VLine};
 
 use crate::app::session::pins::{Pin, PinKind};
@@ -15,7 +15,7 @@ use super::labels::haloed;
 use super::legend::LEGEND;
 use super::plot::{LOW, MARGIN, even, marks, plot_place, still_plot};
 use super::view::Axis;
-use super::{View, ViewContext, too_small_ui};
+use super::{LegendRow, View, ViewContext, too_small_ui};
 
 const MAX_POINTS: usize = 2000;
 
@@ -116,7 +116,8 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             metres => format!("{letter}: {}", millimetres(metres)),
         })
         .collect();
-    let at = (area.right_top() + vec2(-6.0, 0.5 * LEGEND), Align2::RIGHT_CENTER);
+    let end = LegendRow::of(ui, area).right - 6.0;
+    let at = (pos2(end, area.top() + 0.5 * LEGEND), Align2::RIGHT_CENTER);
     let painter = ui.painter().with_clip_rect(area);
     haloed(&painter, &style, at, &texts.join("   "), (style.small(), style.ink()));
     let frame = *shown.transform.frame();

@@ -5,10 +5,11 @@ use eframe::egui::{Color32, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 use crate::app::ui::style::Style;
 use crate::app::words::meanings::explained;
 
+use super::LegendRow;
 use super::ghosts::dashed;
 
 /// Height in points of the row.
-pub const LEGEND: f32 = 22.0;
+pub const LEGEND: f32 = LegendRow::HEIGHT;
 
 /// Width in points of a symbol.
 const SYMBOL: f32 = 18.0;
@@ -64,16 +65,18 @@ impl Symbol {
 /// Draws the entries in the upper row of `area`, with short names if the long ones do not all fit left of
 /// `right`; entries that still do not fit are left out. Each is explained on hover.
 pub fn legend(ui: &Ui, style: &Style, area: Rect, right: f32, entries: &[(Symbol, &str)]) {
+    let row = LegendRow::of(ui, area);
+    let (left, right) = (row.left + 8.0, right.min(row.right) - 4.0);
     let painter = ui.painter().with_clip_rect(area);
     let written = |text: &str| painter.layout_no_wrap(text.to_owned(), style.small(), style.faint());
     let wide: f32 = entries.iter().map(|(_, text)| SYMBOL + GAP + written(text).size().x + ENTRY_GAP).sum();
-    let is_wide = area.left() + 8.0 + wide - ENTRY_GAP <= right - 4.0;
-    let (mut x, y) = (area.left() + 8.0, area.top() + 0.5 * LEGEND);
+    let is_wide = left + wide - ENTRY_GAP <= right;
+    let (mut x, y) = (left, area.top() + 0.5 * LEGEND);
     for (sign, name) in entries {
         let short = SHORT.iter().find(|(long, _)| long == name).map_or(*name, |pair| pair.1);
         let galley = written(if is_wide { name } else { short });
         let (width, height) = (galley.size().x, galley.size().y);
-        if x + SYMBOL + GAP + width > right - 4.0 {
+        if x + SYMBOL + GAP + width > right {
             break;
         }
         let rect = Rect::from_min_max(pos2(x, y - 5.0), pos2(x + SYMBOL, y + 5.0));

@@ -18,6 +18,9 @@ use super::view::View;
 /// Points of the screen in a unit of a chart.
 const UNIT: f32 = SMALL / TICK as f32;
 
+/// Least radius in points of a dot that can be seen.
+const LEAST_DOT: f32 = 1.5;
+
 /// Ascent of the letters in ems.
 const ASCENT: f32 = 1984.0 / 2048.0;
 
@@ -104,7 +107,7 @@ impl Painting {
                     tessellator.tessellate_shape(shape, &mut mesh);
                 }
                 Drawn::Disc(centre, radius, ink) => {
-                    let radius = style.dot(radius as f32 * UNIT);
+                    let radius = style.dot((radius as f32 * UNIT).max(LEAST_DOT));
                     let disc = Shape::circle_filled(painting.place(centre), radius, colour(ink));
                     tessellator.tessellate_shape(disc, &mut mesh);
                 }

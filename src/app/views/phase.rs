@@ -22,7 +22,7 @@ use super::labels::pointer_rests;
 use super::legend::{LEGEND, Symbol};
 use super::stops::stops_ui;
 use super::view::Axis;
-use super::{View, ViewContext, too_small_ui};
+use super::{LegendRow, View, ViewContext, too_small_ui};
 
 /// Length of the trail in forcing periods.
 const TRAIL_PERIODS: f64 = 4.0;
@@ -127,7 +127,8 @@ fn states_ui(ui: &mut Ui, context: &mut ViewContext<'_>, is_section: bool) {
 
 /// Button in the row of the legend that hides the path. Returns its left edge.
 fn points_ui(ui: &mut Ui, area: egui::Rect, points_only: &mut bool) -> f32 {
-    let row = area.with_max_y(area.top() + LEGEND).with_max_x(area.right() - 4.0);
+    let right = LegendRow::of(ui, area).right - 4.0;
+    let row = area.with_max_y(area.top() + LEGEND).with_max_x(right);
     let layout = egui::Layout::right_to_left(egui::Align::Center);
     let builder = egui::UiBuilder::new().max_rect(row).layout(layout);
     ui.scope_builder(builder, |ui| {

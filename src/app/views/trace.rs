@@ -4,7 +4,7 @@
 //! under the pointer, so that they can be read below each other. Their vertical ranges come from the scene
 //! and from [`Ranges`](super::ranges::Ranges), not from what is visible.
 
-use eframe::egui::{Align2, RichText, Stroke, Ui, vec2};
+use eframe::egui::{Align2, RichText, Stroke, Ui, pos2};
 use egui_plot::{HLine, Line, LineStyle, PlotBounds, PlotPoint, PlotPoints, PlotUi, Span, Text, VLine};
 
 use crate::app::session::Session;
@@ -24,7 +24,7 @@ use super::overlay::{MeasuredTrace, with_room};
 use super::plot::{LOW, MARGIN, even, marks, plot_place, still_plot};
 use super::ranges::room_for_push;
 use super::view::Axis;
-use super::{View, ViewContext};
+use super::{LegendRow, View, ViewContext};
 
 /// Number of forcing periods shown.
 const PERIODS: f64 = 6.0;
@@ -259,7 +259,8 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
         let t = t.clamp(watch.begin().min(now), now);
         context.memory.timeline.cursor = Some((t, pass));
         let value = quantity.value_in(watch, &watch.state_at(t));
-        let at = (area.right_top() + vec2(-6.0, 0.5 * LEGEND), Align2::RIGHT_CENTER);
+        let end = LegendRow::of(&ui, area).right - 6.0;
+        let at = (pos2(end, area.top() + 0.5 * LEGEND), Align2::RIGHT_CENTER);
         let text = format!("{value:.digits$} {} at {t:.3} s", quantity.unit());
         right = haloed(&painter, &style, at, &text, (style.small(), style.ink())).left();
     }

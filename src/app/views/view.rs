@@ -167,6 +167,12 @@ impl View {
         matches!(self, Self::Map | Self::UpAndDown | Self::Basins)
     }
 
+    /// Whether its upper row is a legend, for which the row of its card may have room.
+    pub fn has_legend(self) -> bool {
+        matches!(self, Self::Mechanism | Self::Well | Self::ForceCurve | Self::PhasePortrait | Self::Section)
+            || self.is_over_time()
+    }
+
     /// Whether its horizontal axis is time, so that it shows the cursors.
     pub fn is_over_time(self) -> bool {
         use View::{BaseAcceleration, Displacement, Distance, Power, Velocity};

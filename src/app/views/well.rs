@@ -23,7 +23,7 @@ use super::plot::LOW;
 use super::ranges::{bottom, room_for_push};
 use super::stops::{WALL, stops_ui};
 use super::view::Axis;
-use super::{View, ViewContext, too_small_ui};
+use super::{LegendRow, View, ViewContext, too_small_ui};
 
 /// Height in points of the names of wells and barrier below the curve.
 const NAMES: f32 = 17.0;
@@ -258,7 +258,7 @@ fn legend(ui: &Ui, context: &ViewContext<'_>, area: Rect, other: &[usize]) {
     let y = area.top() + 0.5 * LEGEND;
     let mut right = area.right();
     if let Some(ago) = ago(context.session) {
-        let at = (pos2(area.right() - 8.0, y), Align2::RIGHT_CENTER);
+        let at = (pos2(LegendRow::of(ui, area).right - 8.0, y), Align2::RIGHT_CENTER);
         let painter = ui.painter().with_clip_rect(area);
         right = haloed(&painter, &style, at, &ago, (style.small(), style.ink())).left();
     }

@@ -7,7 +7,7 @@ use eframe::egui::{self, Button, ComboBox, Grid, Key, RichText, TextEdit, Ui};
 use crate::app::export::figure::{FigureOrder, Place, Subject, round_times};
 use crate::app::session::Session;
 use crate::app::task::Background;
-use crate::app::ui::widgets::{dialog, dialog_width};
+use crate::app::ui::widgets::{dialog, dialog_width, primary};
 use crate::app::views::{Memory, View, stretch};
 use crate::output::{Format, RunPanel, Sheet, SheetText};
 use crate::system::files;
@@ -255,7 +255,7 @@ impl Figures {
                 }
                 return;
             }
-            let save = ui.add_enabled(can_save, Button::new("Save")).on_disabled_hover_text(&remark);
+            let save = ui.add_enabled(can_save, primary(ui, "Save")).on_disabled_hover_text(&remark);
             if save.clicked() || entered.inner && can_save {
                 action = Some(Action::Save);
             }

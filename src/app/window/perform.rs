@@ -15,7 +15,7 @@ use crate::scene::Layout;
 use super::Window;
 use super::command::{Command, UNDO};
 use super::keys;
-use super::layouts::Arrangement;
+use super::layouts::{Arrangement, Room};
 use super::leave::Next;
 use super::wanted::Wanted;
 
@@ -105,7 +105,12 @@ impl Window {
                 self.custom = self.tiling.tree_to_save().cloned().or(self.custom.take());
                 self.arrangement = Arrangement::Custom;
             }
-            Command::Show(view, shown) => self.tiling.show(view, shown),
+            Command::Show(view, shown) => {
+                self.tiling.show(view, shown);
+                // two mechanisms and two wells need the room of all tiles
+                let is_large = shown && view == View::SideBySide && self.tiling.room() != Room::Large;
+                self.filled = if is_large { Some(view) } else { self.filled };
+            }
             Command::NextTab => self.tiling.next_tab(self.memory.hovered),
             Command::Cursors => self.switch_cursors(),
             Command::HoldAxes => self.hold_axes(),
