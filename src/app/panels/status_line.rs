@@ -3,8 +3,8 @@
 use eframe::egui::{self, Id, RichText, Role, Sense, Ui, Vec2, accesskit::Live};
 
 use crate::app::session::{OFFER_TO_STOP, Session};
-use crate::app::ui::style::{SMALL, STATUS, Style};
-use crate::app::ui::widgets::{fitting, kind_shapes, prose_ui};
+use crate::app::ui::style::{SMALL, STATUS, Style, strong_family};
+use crate::app::ui::widgets::{fitting, kind_shapes, parts_ui};
 use crate::app::words::kind::Kind;
 use crate::app::words::meanings::meaning;
 use crate::app::words::status::Sentence;
@@ -58,8 +58,11 @@ pub fn status_ui(ui: &mut Ui, session: &mut Session, announcer: &mut Announcer, 
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 let text = sentence.whole();
                 let room = ui.available_size();
-                let (size, _) = fitting(ui, &[(&text, egui::FontFamily::Proportional)], room, size);
-                let label = prose_ui(ui, &text, size);
+                // the name of the motion is read first
+                let (name, rest) = text.split_at(text.find(':').map_or(0, |at| at + 1));
+                let parts = [(name, strong_family()), (rest, egui::FontFamily::Proportional)];
+                let (size, _) = fitting(ui, &parts, room, size);
+                let label = parts_ui(ui, &parts, size);
                 if label.hovered() {
                     let kind = meaning(&sentence.text).map_or_else(String::new, |text| format!("{text}\n\n"));
                     let trust = session.trust().filter(|_| is_narrow(ui));

@@ -20,7 +20,7 @@ pub const EVENT_AHEAD: f64 = 5.0;
 /// Widths in points of the buttons, and of the one that plays.
 const BUTTON: (f32, f32) = (32.0, 40.0);
 /// Width in points of the time, and where there is no row below the bar, with the note below the time.
-const TIME: (f32, f32) = (72.0, 150.0);
+const TIME: (f32, f32) = (72.0, 140.0);
 /// Width in points of the length of the run.
 const LENGTH: f32 = 48.0;
 /// Height in points of the bar with the signs of events above and below it.
@@ -75,6 +75,8 @@ pub fn transport_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: 
             ui.allocate_ui_with_layout(place, egui::Layout::top_down(egui::Align::Min), |ui| {
                 ui.set_width(TIME.1);
                 ui.spacing_mut().item_spacing.y = 0.0;
+                ui.add_space(0.5 * (ui.available_height() - ONE_LINE));
+                ui.spacing_mut().interact_size.y = ONE_LINE;
                 ui.allocate_ui_with_layout(vec2(TIME.1, ONE_LINE), left, |ui| {
                     clock_ui(ui, session);
                     to_present_ui(ui, session, "to now");
@@ -87,7 +89,7 @@ pub fn transport_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: 
 }
 
 /// Height in points of the time above a note.
-const ONE_LINE: f32 = 20.0;
+const ONE_LINE: f32 = 18.0;
 
 /// The time that is shown.
 fn clock_ui(ui: &mut Ui, session: &Session) {

@@ -5,7 +5,8 @@
 
 use std::cell::RefCell;
 
-use eframe::egui::{self, Color32, DragValue, Key, Response, RichText, Slider, Ui, pos2};
+use eframe::egui::layers::ShapeIdx;
+use eframe::egui::{self, Color32, DragValue, Key, Response, RichText, Shape, Slider, Ui, pos2};
 
 use crate::app::words::fields::Reach;
 use crate::app::words::numbers::{decimal, decimals, exact, rounded, shown};
@@ -110,10 +111,6 @@ impl Knob<'_> {
     fn slider_ui(&self, ui: &mut Ui, value: &mut f64, decimals: usize) -> Response {
         let (present, Reach { low, high, step, ratios }) = (*value, self.reach);
         ui.spacing_mut().slider_width = self.slider_width(ui, present, decimals);
-        ui.spacing_mut().interact_size.y = SLIDER;
-        let style = Style::of(ui.ctx(), false);
-        ui.visuals_mut().selection.bg_fill = style.accent();
-        ui.visuals_mut().widgets.inactive.bg_fill = style.track();
         if ratios {
             return logarithmic_ui(ui, value, (low, high));
         }
@@ -122,7 +119,7 @@ impl Knob<'_> {
             .clamping(egui::SliderClamping::Never)
             .smart_aim(false)
             .step_by(step);
-        let slider = ui.add(slider);
+        let slider = slider_ui(ui, slider);
         if *value != present && !slider.dragged() && slider.has_focus() && ui.input(|i| i.modifiers.shift) {
             *value = present + 10.0 * (*value - present);
         }
@@ -223,11 +220,32 @@ impl Knob<'_> {
     }
 }
 
+/// A slider with a thin track, whose handle has the ground of a card: a slider fills both alike.
+fn slider_ui(ui: &mut Ui, slider: Slider<'_>) -> Response {
+    let style = Style::of(ui.ctx(), false);
+    ui.spacing_mut().interact_size.y = SLIDER;
+    ui.visuals_mut().selection.bg_fill = style.accent();
+    ui.visuals_mut().widgets.inactive.bg_fill = style.track();
+    let response = ui.add(slider);
+    let handle = ui.painter().add(Shape::Noop).0.checked_sub(1);
+    ui.ctx().graphics_mut(|graphics| {
+        let list = graphics.get_mut(&ui.layer_id()).zip(handle);
+        list.into_iter().for_each(|(list, handle)| {
+            list.mutate_shape(ShapeIdx(handle), |shape| {
+                if let Shape::Circle(circle) = &mut shape.shape {
+                    circle.fill = style.ground();
+                }
+            });
+        });
+    });
+    response
+}
+
 /// A logarithmic slider; a value beyond its ends is shown at the end.
 fn logarithmic_ui(ui: &mut Ui, value: &mut f64, (low, high): (f64, f64)) -> Response {
     let present = *value;
     let slider = Slider::new(value, low..=high).show_value(false).logarithmic(true);
-    let slider = ui.add(slider.clamping(egui::SliderClamping::Never));
+    let slider = slider_ui(ui, slider.clamping(egui::SliderClamping::Never));
     if *value == present {
         return slider;
     }

@@ -39,6 +39,19 @@ pub fn prose_ui(ui: &mut Ui, text: &str, size: f32) -> Response {
     response
 }
 
+/// A label of texts one after another, in these fonts; a screen reader is told their words.
+pub fn parts_ui(ui: &mut Ui, parts: &[(&str, FontFamily)], size: f32) -> Response {
+    let (mut job, ink) = (LayoutJob::default(), ui.visuals().text_color());
+    for (text, family) in parts {
+        let font = FontId::new(size, family.clone());
+        job.append(&unbroken(text), 0.0, TextFormat::simple(font, ink));
+    }
+    let response = ui.add(egui::Label::new(job).wrap());
+    let words: String = parts.iter().map(|part| part.0).collect();
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, words.as_str()));
+    response
+}
+
 /// The text size at which texts fit into `room` one after another: `most` in one row, or else the size of
 /// body text in several, or less where they would not fit.
 ///

@@ -283,6 +283,11 @@ fn caption_ui(
     let width = |text: &str| painter.layout_no_wrap(text.to_owned(), style.small(), style.ink()).size().x;
     let needed = |all: &[(String, Color32, u8)]| all.iter().map(|text| width(&text.0) + 14.0).sum::<f32>();
     let row = LegendRow::of(ui, rect);
+    // the motion of the base says from where it is seen
+    let inset_width = context.drawn.model(context.session).single_sine().map_or(0.0, |_| INSET);
+    if needed(&all) + inset_width > row.right - row.left - 10.0 {
+        all.retain(|text| text.2 > 0);
+    }
     while needed(&all) > row.right - row.left - 6.0
         && let Some(lowest) = all.iter().map(|text| text.2).min()
     {

@@ -88,6 +88,7 @@ pub(super) fn table_ui(
         }
     };
     let small = width < WIDE_COLUMN;
+    ui.spacing_mut().interact_size.y = ROW;
     if small {
         let styles = &mut ui.style_mut().text_styles;
         styles.insert(TextStyle::Body, style.small());
