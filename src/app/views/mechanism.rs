@@ -14,11 +14,11 @@ use crate::app::words::numbers::{decimals_for, three};
 use crate::dynamics::{EventKind, STANDARD_GRAVITY, Side};
 
 use super::beside::{Attachments, LowerFlexures, MIN_LABELLED, Places};
-use super::chart::GUTTER;
 use super::flexures::{CLAMP, DrawingArea, DrawingScale, bulge_words, clamp, state_at};
 use super::ghosts::ghosts;
 use super::labels::{Taken, ago};
 use super::memory::Ring;
+use super::pane::GUTTER;
 use super::schematic::{Schematic, schematic};
 use super::stops::{WALL, stops_ui};
 use super::{Span, ViewContext, mass::mass_ui, too_small_ui};
