@@ -126,7 +126,12 @@ impl Style {
     /// The line of what stands for `role`.
     pub fn stroke(&self, role: Role) -> Stroke {
         let look = self.theme().look(role);
-        Stroke::new(self.width(STROKE * look.width as f32), colour(look.ink))
+        Stroke::new(self.line(look.width), colour(look.ink))
+    }
+
+    /// The width in points of a line that is so wide on paper.
+    pub fn line(&self, width: f64) -> f32 {
+        self.width(STROKE * width as f32)
     }
 
     pub fn kind(&self, kind: Kind) -> Color32 {
@@ -136,10 +141,6 @@ impl Style {
             Kind::Irregular => self.colour(Role::Second),
             Kind::Interwell | Kind::Crossing | Kind::Fault => self.impact(),
         }
-    }
-
-    pub fn measured(&self) -> Color32 {
-        self.kind(Kind::Irregular)
     }
 
     pub fn stop(&self) -> Color32 {
@@ -172,16 +173,6 @@ impl Style {
 
     pub fn cursor_stroke(&self) -> Stroke {
         Stroke::new(self.width(1.3), self.kind(Kind::Irregular))
-    }
-
-    /// A pinned motion, over time and in the phase portrait.
-    pub fn ghost_motion_stroke(&self) -> Stroke {
-        Stroke::new(self.width(1.6), self.ink().gamma_multiply(0.6))
-    }
-
-    /// Many measured samples, below the computed line.
-    pub fn measured_stroke(&self) -> Stroke {
-        Stroke::new(self.width(4.5), self.measured().lerp_to_gamma(self.ground(), 0.25))
     }
 
     pub fn grid_stroke(&self) -> Stroke {
@@ -273,10 +264,6 @@ roles! {
     ghost_stroke: Reference;
     /// The motion over time.
     motion_stroke: Motion;
-    /// Power of a transducer over time.
-    power_stroke: Motion;
-    /// Acceleration of the base over time, and its push.
-    base_stroke: Drive;
     /// An impact: a tick on a time axis, a jump of the velocity.
     impact_stroke: Impact;
     stop_stroke: Stop;

@@ -1,5 +1,7 @@
 //! Context passed to every view, and the placeholder of a view that is too small.
 
+use std::sync::Arc;
+
 use eframe::egui::{
     Align, Align2, FontId, Label, Layout, Rect, RichText, Role, Sense, Shape, Ui, UiBuilder, Vec2,
     WidgetInfo, pos2, vec2,
@@ -57,7 +59,7 @@ impl Drawn {
     }
 
     /// Its model at that time.
-    pub(super) fn model(self, session: &Session) -> &Model {
+    pub(super) fn model(self, session: &Session) -> &Arc<Model> {
         let of_pin = |pin| Pin::watch(pin).model_at(session.player.time());
         self.pin(session).map_or(session.shown(), |pin| of_pin(pin))
     }

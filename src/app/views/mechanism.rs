@@ -14,13 +14,12 @@ use crate::app::words::numbers::{decimals_for, three};
 use crate::dynamics::{EventKind, STANDARD_GRAVITY, Side};
 
 use super::beside::{Attachments, LowerFlexures, MIN_LABELLED, Places};
-use super::chart::GUTTER;
 use super::flexures::{CLAMP, DrawingArea, DrawingScale, bulge_words, clamp, state_at};
 use super::ghosts::ghosts;
 use super::labels::{Taken, ago};
-use super::legend::LEGEND;
 use super::mass::{OUTLINE, body_ui, was_dragged};
 use super::memory::Ring;
+use super::pane::GUTTER;
 use super::schematic::{Schematic, schematic};
 use super::stops::{WALL, stops_ui};
 use super::{Cover, Drawn, LegendRow, Span, ViewContext, too_small_ui};
@@ -293,7 +292,7 @@ fn caption_ui(
     {
         all.retain(|text| text.2 > lowest);
     }
-    let mut at = pos2(row.left + 10.0, rect.top() + 0.5 * LEGEND);
+    let mut at = pos2(row.left + 10.0, rect.top() + 0.5 * LegendRow::HEIGHT);
     for (text, color, _) in all {
         let place = painter.text(at, Align2::LEFT_CENTER, &text, style.small(), color);
         explain(ui, place, &text);

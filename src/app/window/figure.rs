@@ -139,6 +139,9 @@ impl Figures {
             View::Compare | View::Distance | View::BeforeNow => {
                 Err("There is no figure of this view: it shows several scenes, and a figure one.".to_owned())
             }
+            View::Accuracy => {
+                Err("There is no figure of Accuracy: its processor times differ from run to run.".to_owned())
+            }
             _ => Err(format!(
                 "There is no figure of {}: File, Save a picture of the window has it as it stands.",
                 view.name()
@@ -318,7 +321,8 @@ impl Figures {
         if panel(view).is_some() {
             ui.label("Panels");
             ui.horizontal(|ui| {
-                let names = ["displacement", "velocity", "base acceleration", "energy", "phase portrait"];
+                let names: [&str; RunPanel::ALL.len()] =
+                    ["displacement", "velocity", "base acceleration", "power", "energy", "phase portrait"];
                 for (name, panel) in names.into_iter().zip(&mut self.panels) {
                     ui.checkbox(panel, name);
                 }
