@@ -8,7 +8,7 @@ use eframe::egui::{
     Align2, FontFamily, FontId, Id, Mesh, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2,
 };
 
-use crate::app::ui::style::{SMALL, Style, colour, strong_family};
+use crate::app::ui::style::{BODY, SMALL, STATUS, Style, colour, strong_family};
 use crate::app::words::meanings::explained;
 use crate::output::{
     Area, Chart, Figure, Frame, Layer, PlotAxis, Room, Shape as Drawn, SurfaceFrame, TICK, Text, is_fine,
@@ -211,10 +211,12 @@ impl Painting {
 }
 
 fn write(painter: &Painter, at: Pos2, text: &Text) {
-    let (size, ink) = (text.size as f32 * UNIT, colour(text.ink));
+    let (wanted, ink) = (text.size as f32 * UNIT, colour(text.ink));
+    // the name of an axis is as large as its numbers: the window has three sizes
+    let size = [STATUS, BODY, SMALL].into_iter().find(|size| *size <= wanted + 0.1).unwrap_or(wanted);
     let family = if text.bold { strong_family() } else { FontFamily::Proportional };
     let galley = painter.layout_no_wrap(text.words.clone(), FontId::new(size, family), ink);
-    let before = text.before() as f32 * UNIT;
+    let before = text.before() as f32 * UNIT * size / wanted;
     let (corner, angle) = match text.upright {
         true => (pos2(at.x - ASCENT * size, at.y + before), -FRAC_PI_2),
         false => (pos2(at.x - before, at.y - ASCENT * size), 0.0),
