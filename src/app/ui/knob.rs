@@ -229,7 +229,7 @@ fn slider_ui(ui: &mut Ui, slider: Slider<'_>) -> Response {
     let response = ui.add(slider);
     let handle = ui.painter().add(Shape::Noop).0.checked_sub(1);
     ui.ctx().graphics_mut(|graphics| {
-        let list = graphics.get_mut(&ui.layer_id()).zip(handle);
+        let list = graphics.get_mut(ui.layer_id()).zip(handle);
         list.into_iter().for_each(|(list, handle)| {
             list.mutate_shape(ShapeIdx(handle), |shape| {
                 if let Shape::Circle(circle) = &mut shape.shape {
