@@ -336,10 +336,8 @@ fn a_message_lies_over_hover_texts() {
     harness.hover_at(switch.center());
     harness.run_steps(60);
     assert!(is_painted(&harness, "Rigid walls that limit"));
-    let order: Vec<_> = harness.ctx.memory(|memory| memory.areas().order().to_vec());
-    let told = egui::Id::unique("told");
-    let last = order.iter().rfind(|layer| layer.order == egui::Order::Tooltip).unwrap();
-    assert_eq!(last.id, told, "{order:?}");
+    let top = harness.ctx.memory(|memory| memory.areas().top_layer_id(egui::Order::Tooltip));
+    assert_eq!(top.map(|layer| layer.id), Some(egui::Id::unique("told")));
 }
 
 /// The colours of a coil's wires and frame.

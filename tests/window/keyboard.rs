@@ -7,7 +7,7 @@ use interwell::app::ui::settings::Settings;
 use interwell::app::window::{Command, Window};
 use interwell::scene::{Layout, Stops};
 
-use crate::support::{WIDE, command, is_painted, painted, press, says, wait_until, window, window_with};
+use crate::support::{WIDE, command, press, says, window, window_with};
 
 #[test]
 fn the_mass_is_held_moved_and_let_go() {

@@ -108,8 +108,11 @@ impl Window {
             Command::Show(view, shown) => {
                 self.tiling.show(view, shown);
                 // two mechanisms and two wells need the room of all tiles
-                let is_large = shown && view == View::SideBySide && self.tiling.room() != Room::Large;
-                self.filled = if is_large { Some(view) } else { self.filled };
+                let others = View::ALL.into_iter().any(|other| other != view && self.tiling.shows(other));
+                let is_large = view == View::SideBySide && self.tiling.room() != Room::Large;
+                if shown && is_large && others {
+                    self.filled = Some(view);
+                }
             }
             Command::NextTab => self.tiling.next_tab(self.memory.hovered),
             Command::Cursors => self.switch_cursors(),
