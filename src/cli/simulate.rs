@@ -45,9 +45,9 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE", allow_hyphen_values = true)]
     pub summary: Option<PathBuf>,
 
-    /// With --plot: these panels alone, one under the other: displacement, velocity, acceleration (of the
-    /// base), power (into the load, or of the base), energy (potential and kinetic), portrait (velocity over
-    /// displacement) [default: all but power and energy, with numbers beside them]
+    /// With --plot: these panels alone, in this order one under the other: displacement, velocity,
+    /// acceleration (of the base), power (into the load, or of the base), energy (potential and kinetic),
+    /// portrait (velocity over displacement) [default: all but power and energy, with numbers beside them]
     #[arg(long, value_name = "A,B,..", requires = "plot", conflicts_with = "measured", value_delimiter = ',',
           value_parser = RunPanel::ALL.map(RunPanel::name))]
     pub panels: Vec<String>,
@@ -71,6 +71,11 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         }
         (None, None) => Sampling::Default,
     };
+    let panels: Vec<_> = options.panels.iter().filter_map(|name| RunPanel::named(name)).collect();
+    if let Some(twice) = (1..panels.len()).find(|place| panels[..*place].contains(&panels[*place])) {
+        refuse!("--panels: {} is named twice; a picture shows each panel once", panels[twice].name());
+    }
+    let panels = if panels.is_empty() { RunPanel::USUAL.to_vec() } else { panels };
     let (document, model) = load_model(&options.scene, common)?;
     let until_settled = until_settled(options.until_settled.as_deref(), &document, &model)?;
     let times = sample_times(&document.scene, &model, &sampling, until_settled)?;
@@ -116,11 +121,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
                 let quantity = measured.record.channels[1].quantity;
                 measured_chart(&trace, (found, quantity), inset, axes)
             }
-            None => {
-                let named: Vec<_> = options.panels.iter().filter_map(|name| RunPanel::named(name)).collect();
-                let panels = if named.is_empty() { RunPanel::USUAL.to_vec() } else { named };
-                run_chart(&trace, &simulation.summary, (mechanism, model.mass()), &panels, axes)
-            }
+            None => run_chart(&trace, &simulation.summary, (mechanism, model.mass()), &panels, axes),
         };
         picture.write(&mut outputs, &chart, &caption(&document))?;
     }

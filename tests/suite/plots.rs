@@ -2,6 +2,7 @@
 
 mod asked;
 mod documented;
+mod legends;
 mod lines;
 mod manifests;
 mod paper;

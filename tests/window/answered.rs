@@ -157,8 +157,9 @@ fn a_click_on_the_bar_of_time_works_while_it_plays() {
     screen.window.session.player.speed = 1.0;
     screen.steps(200);
     let bar = screen.nodes.iter().find(|node| node.label() == Some("time")).unwrap().bounds().unwrap();
-    let at = pos2((bar.x0 + 0.3 * (bar.x1 - bar.x0)) as f32, bar.y0 as f32 + 20.0);
     let now = screen.window.session.player.time();
+    let seen = now / screen.window.session.end_of_run();
+    let at = pos2((bar.x0 + 0.3 * seen * (bar.x1 - bar.x0)) as f32, bar.y0 as f32 + 20.0);
     screen.step(vec![Event::PointerMoved(at)]);
     // pressed and released between two frames
     let button = |pressed| Event::PointerButton {

@@ -217,6 +217,28 @@ fn of_the_basins_the_copied_command_makes_the_same_bytes() {
 }
 
 #[test]
+fn each_box_of_the_dialog_is_the_panel_that_it_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window("harvester", WIDE);
+    open(&mut harness, View::Velocity, &folder.path().join("a.svg"));
+    let boxes = [
+        ("displacement", "displacement"),
+        ("base acceleration", "acceleration"),
+        ("power", "power"),
+        ("energy", "energy"),
+        ("phase portrait", "portrait"),
+    ];
+    for (name, panel) in boxes {
+        harness.state_mut().figures.panels = [false; RunPanel::ALL.len()];
+        harness.run_steps(1);
+        harness.get_by_role_and_label(Role::CheckBox, name).click();
+        harness.run_steps(2);
+        let line = copy(&mut harness);
+        assert!(line.contains(&format!("--panels {panel} ")), "{name}: {line}");
+    }
+}
+
+#[test]
 fn a_view_without_a_figure_says_so_and_the_keyboard_alone_saves_one() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = window("first-look", WIDE);

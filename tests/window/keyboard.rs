@@ -7,7 +7,7 @@ use interwell::app::ui::settings::Settings;
 use interwell::app::window::{Command, Window};
 use interwell::scene::{Layout, Stops};
 
-use crate::support::{WIDE, command, is_painted, painted, press, says, wait_until, window, window_with};
+use crate::support::{WIDE, command, press, says, window, window_with};
 
 #[test]
 fn the_mass_is_held_moved_and_let_go() {
@@ -99,22 +99,4 @@ fn the_projector_keeps_the_view_over_the_window_and_is_light() {
     // an arrangement that is asked for has all views
     command(&mut harness, Command::Arrange(Layout::Study));
     assert!(harness.query_by_label("all views").is_none());
-}
-
-#[test]
-fn the_bar_of_time_says_what_its_signs_are_in_two_lines() {
-    let mut harness = window("first-look", WIDE);
-    let bar = harness.get_by_label("time").rect();
-    harness.hover_at(bar.center());
-    harness.run_steps(3);
-    wait_until("the hover text is there", || {
-        harness.run_steps(20);
-        is_painted(&harness, "What has been seen")
-    });
-    let all = painted(&harness);
-    let hover = all.iter().find(|own| own.0.starts_with("What has been seen")).unwrap();
-    assert_eq!(hover.0.lines().count(), 2, "{}", hover.0);
-    // neither is wrapped
-    let line = all.iter().find(|own| own.0 == "Shaking").unwrap().1.height();
-    assert!(hover.1.height() < 3.0 * line, "{hover:?}");
 }

@@ -6,6 +6,7 @@ mod advanced;
 mod answered;
 mod background;
 mod beside;
+mod cards;
 mod classroom;
 mod compare;
 mod cursors;

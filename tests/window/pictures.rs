@@ -276,3 +276,64 @@ fn the_headings_of_energy_stand_apart() {
     });
     assert!(heads.is_none_or(|(start, period)| period.right() + 6.0 < start.left()), "{heads:?}");
 }
+
+/// The texts that are seen and lie at least in part in one of a view.
+fn seen_in(harness: &Harness<'static, Window>, view: View) -> Vec<(String, Rect)> {
+    let place = harness.state().tiling.place_of(view).unwrap();
+    let all = painted(harness).into_iter().filter(|own| own.2.intersects(own.1) && place.intersects(own.1));
+    all.map(|own| (own.0, own.1)).collect()
+}
+
+#[test]
+fn what_is_read_under_the_pointer_lies_over_no_title() {
+    let readings = [
+        (View::PhasePortrait, "mm/s", ["displacement (mm)", "velocity (mm/s)"]),
+        (View::ForceCurve, "holds it at", ["displacement (mm)", "force to the right (N)"]),
+        (View::Displacement, " mm at ", ["time (s)", "displacement (mm)"]),
+    ];
+    for size in [WIDE, PROJECTED] {
+        for (view, reading, titles) in readings {
+            let mut harness = showing("paper", size, &[view]);
+            let place = harness.state().tiling.place_of(view).unwrap();
+            harness.hover_at(place.center());
+            harness.run_steps(3);
+            let all = seen_in(&harness, view);
+            let read = all.iter().find(|own| {
+                own.0.contains(reading) && number(&own.0[..1]).is_some()
+                    || own.0.starts_with('\u{2212}') && own.0.contains(reading)
+            });
+            let (_, read) = read.unwrap_or_else(|| panic!("{view:?}: {all:?}"));
+            for title in titles {
+                let title =
+                    all.iter().find(|own| own.0 == title).unwrap_or_else(|| panic!("{title}: {all:?}"));
+                assert!(!title.1.intersects(*read), "{view:?} {size:?}: {read:?} {title:?}");
+            }
+            // and not in the picture: in the row of the legend
+            assert!(read.bottom() < place.top() + 60.0, "{view:?}: {read:?} {place:?}");
+        }
+    }
+}
+
+#[test]
+fn the_legend_of_the_phase_portrait_has_the_square_at_rest() {
+    assert!(is_painted(&showing("paper", WIDE, &[View::PhasePortrait]), "at rest on a stop"));
+    let harness = showing("first-look", WIDE, &[View::PhasePortrait]);
+    assert!(is_painted(&harness, "separatrix") && !is_painted(&harness, "at rest on a stop"));
+}
+
+/// Axes, grid, separatrix and legend are one shape, the path and its points another.
+#[test]
+fn a_live_picture_is_few_shapes() {
+    for view in [View::PhasePortrait, View::ForceCurve, View::Displacement, View::Power, View::Well] {
+        let mut harness = showing("paper", WIDE, &[view]);
+        harness.state_mut().session.player.speed = 1.0;
+        harness.state_mut().session.player.tick(2.0);
+        harness.run_steps(3);
+        let place = harness.state().tiling.place_of(view).unwrap();
+        let is_text = |shape: &Shape| matches!(shape, Shape::Text(_) | Shape::Noop);
+        let of_view = harness.output().shapes.iter().filter(|own| place.contains_rect(own.clip_rect));
+        let count = of_view.filter(|own| !is_text(&own.shape)).count();
+        // the hatching of two walls among them
+        assert!(count < 250, "{view:?}: {count}");
+    }
+}

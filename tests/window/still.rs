@@ -110,8 +110,7 @@ fn the_lines_above_the_views_are_low_and_keep_their_height() {
             tops.reduce(f32::min).unwrap()
         };
         let before = top(&harness);
-        // the titles of the views are 26 points high
-        assert!(before <= 96.0 + 26.0, "{}: {before}", preset.name);
+        assert!(before <= 96.0, "{}: {before}", preset.name);
         press(&mut harness, Key::H);
         harness.state_mut().session.wait(LONG);
         harness.run_steps(2);

@@ -5,7 +5,7 @@ use eframe::egui::{self, Color32, Label, Rect, RichText, Ui};
 use crate::app::session::Session;
 use crate::app::session::sliders::reach;
 use crate::app::ui::knob::{How, Knob, refuse};
-use crate::app::ui::widgets::hover_beside;
+use crate::app::ui::widgets::{hover_beside, primary};
 use crate::app::words::fields::{Reach, info, name_and_unit};
 use crate::app::words::numbers::{below, decimals, round_up, shown};
 use crate::scene::{Damping, Excitation, FieldPath, Mechanism, Stops, Transducer, numeric_fields};
@@ -24,7 +24,7 @@ const SWITCH: &str = "stops";
 /// Width in points of that switch.
 const SWITCH_WIDTH: f32 = 90.0;
 /// Width in points of a slider's control apart from the slider and its name.
-const BESIDE_SLIDER: f32 = 130.0;
+const BESIDE_SLIDER: f32 = 136.0;
 const LEAST_SLIDER: f32 = 60.0;
 const WIDEST_SLIDER: f32 = 280.0;
 
@@ -96,7 +96,7 @@ pub fn row_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
             };
             // a narrow row has no room for headings
             let is_narrow = ui.available_width() < NARROW;
-            let names = if is_narrow { 330.0 } else { 395.0 } + 110.0 * sides as f32;
+            let names = if is_narrow { 340.0 } else { 405.0 } + 120.0 * sides as f32;
             let slider_width = |button: f32| (ui.available_width() - names - button) / (1 + sides) as f32;
             let has_search = !is_narrow && slider_width(SEARCH) >= LEAST_BESIDE;
             let width = slider_width(if has_search { SEARCH } else { 0.0 }).clamp(30.0, 260.0);
@@ -167,7 +167,7 @@ fn shaking_ui(ui: &mut Ui, session: &mut Session, width: f32) {
             let sine = session.suiting_sine();
             let Excitation::Sine { frequency_hz, amplitude_g, .. } = sine else { return };
             let hover = format!("A sine of {frequency_hz} Hz and {amplitude_g} g.");
-            if ui.button("Shake it").on_hover_text(hover).clicked() {
+            if ui.add(primary(ui, "Shake it")).on_hover_text(hover).clicked() {
                 session.edit_once(|scene| scene.excitation = sine);
             }
             return;
@@ -238,16 +238,13 @@ fn damping_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     fields_ui(ui, session, &["damping.xi", "damping.c_n_s_per_m"], width)
 }
 
-/// A button labelled `name` that starts the search; there is none in a lesson.
+/// A button labelled `name` that starts the search; there is none in a lesson, and where nothing shakes the
+/// mass.
 pub fn best_stops_ui(ui: &mut Ui, session: &mut Session, name: &str) {
-    if session.best.is_off {
+    if session.best.is_off || !session.model().is_shaken() {
         return;
     }
-    let why = match (session.best.is_running(), session.model().is_shaken()) {
-        (true, _) => Some("It is being looked for."),
-        (false, false) => Some(NOT_SHAKEN),
-        (false, true) => None,
-    };
+    let why = session.best.is_running().then_some("It is being looked for.");
     let response = ui.add_enabled(why.is_none(), egui::Button::new(name)).on_hover_text(SEARCH_HOVER);
     if response.on_disabled_hover_text(why.unwrap_or_default()).clicked() {
         session.find_best_stops();
@@ -258,20 +255,20 @@ pub fn best_stops_ui(ui: &mut Ui, session: &mut Session, name: &str) {
 /// stops there.
 pub fn best_stops_answer_ui(ui: &mut Ui, session: &mut Session) {
     if session.best.is_running() {
-        if ui.small_button("Stop looking").clicked() {
+        if ui.link("Stop looking").clicked() {
             session.best.close();
         }
         ui.add(egui::Spinner::new().size(14.0));
         return;
     }
-    if ui.small_button("Close").on_hover_text("Forgets the best stops.").clicked() {
+    if ui.link("Close").on_hover_text("Forgets the best stops.").clicked() {
         return session.best.close();
     }
     match session.is_at_best_stops() {
         true => _ = ui.label(RichText::new("The stops stand there.").weak()),
         false if session.best.limit_mm().is_some() => {
             let hover = "Moves the stops there, as one step that can be undone. The motion goes on.";
-            if ui.small_button("Take the stops there").on_hover_text(hover).clicked() {
+            if ui.link("Take the stops there").on_hover_text(hover).clicked() {
                 session.go_to_best_stops();
             }
         }

@@ -171,8 +171,8 @@ pub fn guide_ui<R>(
         let (size, taken) = fitting(ui, &texts, room.size(), BODY);
         let place = room.with_min_y(ui.max_rect().center().y - 0.5 * taken);
         let rows = Layout::left_to_right(Align::Min).with_main_wrap(true);
-        let mut ui = ui.new_child(UiBuilder::new().max_rect(place).layout(rows));
         ui.spacing_mut().interact_size.y = 0.0;
+        let mut ui = ui.new_child(UiBuilder::new().max_rect(place).layout(rows));
         ui.spacing_mut().item_spacing = vec2(6.0, 0.0);
         if !heading.is_empty() {
             ui.label(RichText::new(heading).heading().size(size));

@@ -8,21 +8,19 @@ use eframe::egui::{
 
 use crate::app::session::Session;
 use crate::app::session::lesson::{MOST_VOTES, OpenLesson, Outcome, TaskState};
-use crate::app::ui::style::{BODY, Style, strong_family};
+use crate::app::ui::style::{BODY, CONTROL, Style, strong_family};
+use crate::app::ui::widgets::primary;
 use crate::app::words::lesson::{expected, judged_by, letter, not_yet, numbered, pieces, plain, tally};
 use crate::app::words::meanings::{meaning, terms};
 use crate::scene::lesson::{Choice, Step};
 
 use super::status_line::spoken_ui;
 
-/// Text size in points, unless the window is compact.
-const LARGE: f32 = 16.0;
 /// Width in points of the column with the dots of the steps and the navigation buttons.
 const NAVIGATION: f32 = 190.0;
-const BUTTON_HEIGHT: f32 = 24.0;
 const SPACE: f32 = 4.0;
 /// Least height in points of the text, beside which the dots and the buttons stand.
-const LEAST: f32 = 20.0 + SPACE + BUTTON_HEIGHT;
+const LEAST: f32 = 20.0 + SPACE + CONTROL;
 const HINT: &str = "Hint: ";
 const DOT: f32 = 4.5;
 const DOT_SPACING: f32 = 15.0;
@@ -54,10 +52,9 @@ pub fn lesson_ui(
     lesson: &mut OpenLesson,
     session: &Session,
     style: &Style,
-    compact: bool,
     urged: bool,
 ) -> Option<LessonAction> {
-    let size = if compact { BODY } else { LARGE };
+    let size = BODY;
     let mut action = None;
     ui.spacing_mut().item_spacing.y = SPACE;
     let text = spoken(lesson, session);
@@ -165,7 +162,7 @@ fn job(style: &Style, heading: &str, text: &str, size: f32) -> LayoutJob {
         underline,
         ..TextFormat::default()
     };
-    job.append(heading, 0.0, format(&strong, style.base(), Stroke::NONE));
+    job.append(heading, 0.0, format(&strong, style.accent(), Stroke::NONE));
     let (regular, line) = (FontId::proportional(size), Stroke::new(1.0, style.faint()));
     for piece in pieces(text) {
         let font = if piece.bold { &strong } else { &regular };
@@ -236,7 +233,7 @@ fn below_ui(
         Step::Do { .. } => {
             let how = judged_by(lesson.lesson(), session.scene().start);
             let (state, color) = match lesson.task(session) {
-                TaskState::Met => ("Done.".to_owned(), style.base()),
+                TaskState::Met => ("Done.".to_owned(), style.accent()),
                 TaskState::Unjudged(why) => (format!("It cannot be judged: {why}"), style.ink()),
                 TaskState::Moving => (format!("Will be judged once you let go. {how}"), style.faint()),
                 TaskState::NotYet(lack) => (not_yet(&lack, is_on_stops(session)), style.ink()),
@@ -296,7 +293,7 @@ fn dots_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style) {
         let fill = if is_behind && lesson.is_settled(number) { style.ink() } else { Color32::TRANSPARENT };
         ui.painter().circle(at, DOT.min(0.4 * spacing), fill, Stroke::new(1.2, style.ink()));
         if number == lesson.number() {
-            let ring = Stroke::new(2.0, style.base());
+            let ring = Stroke::new(2.0, style.accent());
             ui.painter().circle_stroke(at, (DOT + 2.5).min(0.5 * spacing), ring);
         }
     }
@@ -305,11 +302,12 @@ fn dots_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style) {
 
 fn navigation_ui(ui: &mut Ui, lesson: &OpenLesson, urged: bool) -> Option<LessonAction> {
     let mut action = None;
-    let row = vec2(NAVIGATION, BUTTON_HEIGHT);
+    let row = vec2(NAVIGATION, CONTROL);
     ui.allocate_ui_with_layout(row, Layout::right_to_left(Align::Center), |ui| {
         let following = lesson.following().filter(|_| lesson.is_last() && lesson.may_go_on());
         if let Some(name) = following {
-            let next = ui.button(numbered(name)).on_hover_text("The lesson that comes after this one");
+            let next =
+                ui.add(primary(ui, &numbered(name))).on_hover_text("The lesson that comes after this one");
             urge(&next, urged);
             if next.clicked() {
                 action = Some(LessonAction::NextLesson(name));
@@ -323,7 +321,8 @@ fn navigation_ui(ui: &mut Ui, lesson: &OpenLesson, urged: bool) -> Option<Lesson
             Step::Predict { .. } => "First choose what you expect, or Reveal.",
             _ => "First the task. A lecturer goes on with PageDown.",
         };
-        let next = ui.add_enabled(lesson.may_go_on(), Button::new(name)).on_disabled_hover_text(condition);
+        let button = if following.is_none() { primary(ui, name) } else { Button::new(name) };
+        let next = ui.add_enabled(lesson.may_go_on(), button).on_disabled_hover_text(condition);
         urge(&next, urged && lesson.is_last() && following.is_none());
         if next.on_hover_text("The next step (PageDown)").clicked() {
             action = Some(chosen);

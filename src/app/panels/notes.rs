@@ -36,7 +36,7 @@ pub fn notes_ui(ui: &mut Ui, scene: &Scene, is_changed: bool, bottom: f32) -> bo
     let heading = if is_changed { "The scene before changes" } else { "About this scene" };
     ui.add_space(14.0);
     if room < LEAST {
-        return ui.button(heading).on_hover_text(hover).clicked();
+        return ui.link(heading).on_hover_text(hover).clicked();
     }
     ui.label(RichText::new(heading).heading());
     let width = ui.available_width();
@@ -49,7 +49,7 @@ pub fn notes_ui(ui: &mut Ui, scene: &Scene, is_changed: bool, bottom: f32) -> bo
     if let Some(text) = shown {
         prose_ui(ui, text, BODY);
     }
-    shown != Some(notes) && ui.button("Read on").on_hover_text(hover).clicked()
+    shown != Some(notes) && ui.link("Read on").on_hover_text(hover).clicked()
 }
 
 /// The first sentences of a text, at most `count`.

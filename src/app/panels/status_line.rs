@@ -3,8 +3,8 @@
 use eframe::egui::{self, Id, RichText, Role, Sense, Ui, Vec2, accesskit::Live};
 
 use crate::app::session::{OFFER_TO_STOP, Session};
-use crate::app::ui::style::{STATUS, STATUS_COMPACT, Style};
-use crate::app::ui::widgets::{fitting, kind_shapes, prose_ui};
+use crate::app::ui::style::{SMALL, STATUS, Style, strong_family};
+use crate::app::ui::widgets::{fitting, kind_shapes, parts_ui};
 use crate::app::words::kind::Kind;
 use crate::app::words::meanings::meaning;
 use crate::app::words::status::Sentence;
@@ -16,8 +16,6 @@ const SPARE: &str =
 const BESIDE: f32 = 236.0;
 /// Height in points of a line in that column.
 const LINE: f32 = 17.0;
-/// Text size in points in that column.
-const SMALL_LINE: f32 = 13.0;
 /// Width in points of a window below which hover text replaces that column.
 const NARROW: f32 = 640.0;
 /// Height in points of a row of the sentence at the size of body text.
@@ -40,16 +38,10 @@ fn is_narrow(ui: &Ui) -> bool {
     ui.ctx().content_rect().width() < NARROW
 }
 
-pub fn status_ui(
-    ui: &mut Ui,
-    session: &mut Session,
-    announcer: &mut Announcer,
-    style: &Style,
-    compact: bool,
-) {
+pub fn status_ui(ui: &mut Ui, session: &mut Session, announcer: &mut Announcer, style: &Style) {
     let sentence = session.sentence();
     announcer.say(ui, &sentence);
-    let size = if compact { STATUS_COMPACT } else { STATUS };
+    let size = STATUS;
     ui.horizontal_centered(|ui| {
         let (rect, _) = ui.allocate_exact_size(Vec2::splat(size + 6.0), Sense::hover());
         let (kind, color) = (sentence.kind, style.kind(sentence.kind));
@@ -66,8 +58,11 @@ pub fn status_ui(
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 let text = sentence.whole();
                 let room = ui.available_size();
-                let (size, _) = fitting(ui, &[(&text, egui::FontFamily::Proportional)], room, size);
-                let label = prose_ui(ui, &text, size);
+                // the name of the motion is read first
+                let (name, rest) = text.split_at(text.find(':').map_or(0, |at| at + 1));
+                let parts = [(name, strong_family()), (rest, egui::FontFamily::Proportional)];
+                let (size, _) = fitting(ui, &parts, room, size);
+                let label = parts_ui(ui, &parts, size);
                 if label.hovered() {
                     let kind = meaning(&sentence.text).map_or_else(String::new, |text| format!("{text}\n\n"));
                     let trust = session.trust().filter(|_| is_narrow(ui));
@@ -109,7 +104,7 @@ fn beside_ui(ui: &mut Ui, session: &Session, style: &Style, settling: Option<Str
         let mut line = |text: String, hover: &str| {
             let hover =
                 meaning(&text).map_or_else(|| hover.to_owned(), |meaning| format!("{meaning}\n\n{hover}"));
-            let text = RichText::new(text).size(SMALL_LINE).color(style.faint());
+            let text = RichText::new(text).size(SMALL).color(style.faint());
             ui.add(egui::Label::new(text).extend()).on_hover_text(hover);
         };
         if let Some((short, long)) = trust {
@@ -128,7 +123,7 @@ pub fn covered_ui(ui: &mut Ui, by_lesson: bool) {
             true => "Covered until you choose: what do you expect?",
             false => "Covered: what do you expect? C shows it again.",
         };
-        ui.label(RichText::new(text).size(STATUS_COMPACT));
+        ui.label(RichText::new(text).size(STATUS));
     });
 }
 

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use eframe::egui::{
-    self, Align2, ComboBox, Painter, Pos2, Rect, RichText, Sense, Shape, Stroke, Ui, pos2, vec2,
+    self, Align2, ComboBox, Painter, Pos2, Rect, RichText, Sense, Shape, Stroke, Ui, UiBuilder, pos2, vec2,
 };
 
 use crate::app::session::Session;
@@ -17,22 +17,16 @@ use crate::dynamics::{Event, EventKind};
 /// Time in s of the motion within which the next event is searched.
 pub const EVENT_AHEAD: f64 = 5.0;
 
-const BUTTON: f32 = 32.0;
-
-/// Greatest width in points of the time, with its event and the button that leads back to the present.
-const TIME: f32 = 250.0;
-/// Greatest share of the width that the time takes in a narrow window.
-const TIME_SHARE: f32 = 0.65;
-const LEAST_TIME: f32 = 150.0;
-const ONE_LINE: f32 = 20.0;
-/// Height in points of the time with a note below it.
-const TWO_LINES: f32 = 36.0;
-/// Width in points that the button back to the present takes with its full text.
-const BACK: f32 = 130.0;
-
-const LEGEND: f32 = 15.0;
-/// Height in points of a transport bar that has room for the legend.
-const HIGH: f32 = 46.0;
+/// Widths in points of the buttons, and of the one that plays.
+const BUTTON: (f32, f32) = (32.0, 40.0);
+/// Width in points of the time, and where there is no row below the bar, with the note below the time.
+const TIME: (f32, f32) = (72.0, 140.0);
+/// Width in points of the length of the run.
+const LENGTH: f32 = 48.0;
+/// Height in points of the bar with the signs of events above and below it.
+const SIGNS: f32 = 34.0;
+/// Height in points of the row below the bar.
+const BELOW: f32 = 14.0;
 
 /// Share of the bar by which an arrow key moves; with Shift, ten times as much.
 const KEY_SHARE: f64 = 0.002;
@@ -40,10 +34,10 @@ const KEY_SHARE: f64 = 0.002;
 /// Least interval in points of the bar from which a row shows only its first event.
 const TICK: f32 = 5.0;
 
-/// Distances in points of the three rows of signs from the top.
-const ROWS: [f32; 3] = [4.5, 13.5, 27.5];
-/// Distance in points of the bar from the top.
-const BAR: f32 = 20.0;
+/// Distances in points of the three rows of signs from the bar.
+const ROWS: [f32; 3] = [-15.5, -6.5, 7.5];
+/// Distance in points of the bar from the lower end of the signs.
+const BAR: f32 = 12.0;
 
 /// Draws the transport bar; it shows no events while results are covered.
 pub fn transport_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) {
@@ -53,28 +47,54 @@ pub fn transport_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: 
         response.on_disabled_hover_text("First choose what you expect").clicked()
     };
     ui.horizontal_centered(|ui| {
-        if button_ui(ui, Icon::Restart, BUTTON, "restart", "From the start again") {
+        if button_ui(ui, Icon::Restart, BUTTON.0, "restart", "From the start again") {
             session.restart();
         }
         let previous = "To the event before: a release, a crossing, an impact (PageUp)";
-        if button_ui(ui, Icon::PreviousEvent, BUTTON, "previous event", previous) {
+        if button_ui(ui, Icon::PreviousEvent, BUTTON.0, "previous event", previous) {
             session.player.seek_event(false, EVENT_AHEAD);
         }
         let playing = session.player.is_playing();
         let (icon, name) = if playing { (Icon::Pause, "pause") } else { (Icon::Play, "play") };
-        if button_ui(ui, icon, BUTTON + 6.0, name, "Play and pause (space)") {
+        if button_ui(ui, icon, BUTTON.1, name, "Play and pause (space)") {
             session.play_or_pause();
         }
-        if button_ui(ui, Icon::NextEvent, BUTTON, "next event", "To the next event (PageDown)") {
+        if button_ui(ui, Icon::NextEvent, BUTTON.0, "next event", "To the next event (PageDown)") {
             session.player.seek_event(true, EVENT_AHEAD);
         }
-        if button_ui(ui, Icon::Step, BUTTON, "step", "A little further, then stand (full stop)") {
+        if button_ui(ui, Icon::Step, BUTTON.0, "step", "A little further, then stand (full stop)") {
             session.player.step();
         }
         speed_ui(ui, session);
-        scrub_ui(ui, session, style, covered);
-        time_ui(ui, session, style, covered);
+        let (note, left) = (note(session, covered), egui::Layout::left_to_right(egui::Align::Center));
+        if ui.available_height() >= SIGNS + BELOW - 2.0 {
+            ui.allocate_ui_with_layout(vec2(TIME.0, SIGNS), left, |ui| clock_ui(ui, session));
+            scrub_ui(ui, session, style, covered, Some(&note));
+        } else {
+            let place = vec2(TIME.1, ui.available_height());
+            ui.allocate_ui_with_layout(place, egui::Layout::top_down(egui::Align::Min), |ui| {
+                ui.set_width(TIME.1);
+                ui.spacing_mut().item_spacing.y = 0.0;
+                ui.add_space(0.5 * (ui.available_height() - ONE_LINE));
+                ui.spacing_mut().interact_size.y = ONE_LINE;
+                ui.allocate_ui_with_layout(vec2(TIME.1, ONE_LINE), left, |ui| {
+                    clock_ui(ui, session);
+                    to_present_ui(ui, session, "to now");
+                });
+                note_ui(ui, style, &note);
+            });
+            scrub_ui(ui, session, style, covered, None);
+        }
     });
+}
+
+/// Height in points of the time above a note.
+const ONE_LINE: f32 = 18.0;
+
+/// The time that is shown.
+fn clock_ui(ui: &mut Ui, session: &Session) {
+    ui.set_min_width(TIME.0);
+    ui.label(format!("{:.3} s", session.player.time()));
 }
 
 fn speed_ui(ui: &mut Ui, session: &mut Session) {
@@ -127,43 +147,49 @@ fn sign(kind: EventKind, at: Pos2, style: &Style) -> Shape {
     }
 }
 
-/// The signs and their meanings in a row.
-fn legend(painter: &Painter, style: &Style, row: Rect) {
+/// The signs of the events that there are, and their meanings, in a row.
+fn legend(painter: &Painter, style: &Style, row: Rect, present: [bool; 3]) {
     let mut x = row.left() + 10.0;
     let signs =
         [(EventKind::Impact, "impact"), (EventKind::Release, "release"), (EventKind::Crossing, "crossing")];
-    for (kind, name) in signs {
+    for (kind, name) in signs.into_iter().filter(|sign| present[self::row(sign.0)]) {
         painter.add(sign(kind, pos2(x, row.center().y), style));
         let at = pos2(x + 8.0, row.center().y);
         x = painter.text(at, Align2::LEFT_CENTER, name, style.small(), style.faint()).right() + 18.0;
     }
 }
 
-/// The recorded motion as a bar with signs of its events. Dragging, or the arrow keys while the bar has the
-/// focus, shows an earlier time.
-fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) {
-    let time = (TIME_SHARE * ui.available_width()).clamp(LEAST_TIME, TIME);
-    let width = (ui.available_width() - time).max(40.0);
-    let has_legend = !covered && ui.available_height() >= HIGH;
-    let height = if has_legend { BUTTON + LEGEND } else { BUTTON };
-    let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::click_and_drag());
+/// The run as a bar, as far as it has been seen with signs of its events, and its length. Dragging, or the
+/// arrow keys while the bar has the focus, shows an earlier time. With a `note` there is a row below the bar:
+/// the meanings of the signs, and the note.
+fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool, note: Option<&str>) {
+    let width = (ui.available_width() - LENGTH).max(40.0);
+    let height = if note.is_some() { SIGNS + BELOW } else { SIGNS };
+    let (whole, _) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
+    let rect = whole.with_max_y(whole.top() + SIGNS);
+    let response = ui.interact(rect, ui.scope_id().with("bar"), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::slider(true, session.player.time(), "time"));
     let watch = session.player.watch();
-    let (begin, end) = (watch.begin(), watch.time());
+    let (begin, seen) = (watch.begin(), watch.time());
+    let end = session.end_of_run().max(seen);
     let span = (end - begin).max(1e-9);
-    let bar = Rect::from_center_size(pos2(rect.center().x, rect.top() + BAR), vec2(rect.width() - 12.0, 4.0));
+    let bar =
+        Rect::from_center_size(pos2(rect.center().x, rect.bottom() - BAR), vec2(rect.width() - 12.0, 4.0));
     let screen_from_time = |t: f64| bar.left() + ((t - begin) / span) as f32 * bar.width();
     let painter = ui.painter();
-    painter.rect_filled(bar, 2.0, style.grid());
+    painter.rect_filled(bar, 2.0, style.track());
+    painter.rect_filled(bar.with_max_x(screen_from_time(seen)), 2.0, style.edge());
+    let mut present = [false; 3];
     if !covered {
-        for event in ticks(watch.events(), begin, end, f64::from(TICK / bar.width()) * span) {
-            let at = pos2(screen_from_time(event.t), rect.top() + ROWS[row(event.kind)]);
+        for event in ticks(watch.events(), begin, seen, f64::from(TICK / bar.width()) * span) {
+            let at = pos2(screen_from_time(event.t), bar.center().y + ROWS[row(event.kind)]);
             painter.add(sign(event.kind, at, style));
+            present[row(event.kind)] = true;
         }
     }
-    if has_legend {
-        legend(painter, style, rect.with_min_y(rect.bottom() - LEGEND));
-    }
+    let length = if end < 10.0 { format!("{end:.1} s") } else { format!("{end:.0} s") };
+    let at = pos2(bar.right() + 12.0, bar.center().y);
+    painter.text(at, Align2::LEFT_CENTER, length, style.small(), style.faint());
     let now = pos2(screen_from_time(session.player.time()), bar.center().y);
     painter.circle(now, 7.0, style.mass(), Stroke::new(1.5, style.mass_edge()));
     let by_key = if response.has_focus() { arrows(ui, response.id) } else { 0.0 };
@@ -176,45 +202,41 @@ fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) {
     if let Some(t) = wanted {
         session.player.seek(t);
     }
-    let mut hover = "What has been seen: drag, or press the arrow keys, to look back.".to_owned();
-    if !covered {
-        hover += "\nA line is an impact, a triangle a release, a diamond a crossing.";
-    }
-    response.on_hover_text(hover);
+    let Some(note) = note else { return };
+    let below = whole.with_min_y(rect.bottom());
+    legend(ui.painter(), style, below, present);
+    let hint = if response.hovered() { "drag, or press the arrow keys, to look back" } else { "" };
+    let layout = egui::Layout::right_to_left(egui::Align::Center);
+    ui.scope_builder(UiBuilder::new().max_rect(below).layout(layout), |ui| {
+        ui.spacing_mut().interact_size.y = BELOW;
+        to_present_ui(ui, session, "past: go to now");
+        note_ui(ui, style, if note.is_empty() { hint } else { note });
+    });
 }
 
-/// The time that is shown, the event at that time or the goal below it, and the button back to the present.
-fn time_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) {
+/// What is told of the time that is shown: its event, or the goal.
+fn note(session: &Session, covered: bool) -> String {
     let player = &session.player;
-    let note = match player.goal() {
+    match player.goal() {
         Some(Goal::Time(_)) => "going on; any key stops".to_owned(),
         Some(Goal::First(kind, _)) => format!("looking for a {}; any key stops", kind.name()),
         None if covered => String::new(),
         None => player.event().map_or_else(String::new, event_words),
-    };
-    let time = format!("{:.3} s", player.time());
-    let is_past = player.is_past();
-    let mut back = false;
-    ui.vertical(|ui| {
-        ui.spacing_mut().item_spacing.y = 0.0;
-        let height = if note.is_empty() { ONE_LINE } else { TWO_LINES };
-        ui.add_space(((ui.available_height() - height) * 0.5).max(0.0));
-        ui.horizontal(|ui| {
-            ui.label(time);
-            if is_past {
-                let text = if ui.available_width() < BACK { "to now" } else { "past: go to now" };
-                let text = RichText::new(text).small();
-                let hover =
-                    "The past is shown, with the shaking and the stops of then. A click goes back to now.";
-                back = ui.small_button(text).on_hover_text(hover).clicked();
-            }
-        });
-        if !note.is_empty() {
-            let text = RichText::new(&note).small().color(style.faint());
-            explained(ui.add(egui::Label::new(text).truncate()), &note);
-        }
-    });
-    if back {
+    }
+}
+
+fn note_ui(ui: &mut Ui, style: &Style, note: &str) {
+    if !note.is_empty() {
+        let text = RichText::new(note).small().color(style.faint());
+        explained(ui.add(egui::Label::new(text).truncate()), note);
+    }
+}
+
+/// A link back to the present, if the past is shown.
+fn to_present_ui(ui: &mut Ui, session: &mut Session, text: &str) {
+    let hover = "The past is shown, with the shaking and the stops of then. A click goes back to now.";
+    let is_past = session.player.is_past();
+    if is_past && ui.link(RichText::new(text).small()).on_hover_text(hover).clicked() {
         session.player.to_present();
     }
 }

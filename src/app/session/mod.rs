@@ -303,7 +303,7 @@ impl Session {
     }
 
     /// The model at the time that is shown, which may be in the past.
-    pub fn shown(&self) -> &Model {
+    pub fn shown(&self) -> &Arc<Model> {
         let player = &self.player;
         if player.is_past() { player.watch().model_at(player.time()) } else { &self.model }
     }

@@ -5,16 +5,17 @@
 
 use std::cell::RefCell;
 
-use eframe::egui::{self, Color32, DragValue, Key, Response, RichText, Slider, Ui, pos2};
+use eframe::egui::layers::ShapeIdx;
+use eframe::egui::{self, Color32, DragValue, Key, Response, RichText, Shape, Slider, Ui, pos2};
 
 use crate::app::words::fields::Reach;
 use crate::app::words::numbers::{decimal, decimals, exact, rounded, shown};
 
-use super::style::{COMPACT_BELOW, Style};
+use super::style::{COMPACT_BELOW, CONTROL, NUMBER, Style};
 use super::widgets::hover_beside;
 
-/// Width in points of a usual number beside its slider.
-const NUMBER: f32 = 72.0;
+/// Height in points of a slider, 2.5 times the radius of its handle.
+const SLIDER: f32 = 18.0;
 /// Smallest width of a slider in points, beside a long number.
 const MIN_SLIDER: f32 = 30.0;
 
@@ -72,9 +73,10 @@ impl Knob<'_> {
         let mut turned = value;
         let (slider, field, typed) = ui
             .horizontal(|ui| {
-                let slider = self.slider_ui(ui, &mut turned, decimals).labelled_by(name.id);
+                let slider = ui.scope(|ui| self.slider_ui(ui, &mut turned, decimals)).inner;
+                let slider = slider.labelled_by(name.id);
                 let slid = turned != value;
-                let (field, typed) = self.number_ui(ui, &mut turned, decimals, !slid);
+                let (field, typed) = self.number_ui(ui, &mut turned, (decimals, NUMBER), !slid);
                 (slider, field.labelled_by(name.id), typed)
             })
             .inner;
@@ -96,7 +98,7 @@ impl Knob<'_> {
     /// Draws the number alone, without a slider. Returns the new number if one was typed or dragged to.
     pub fn alone_ui(&self, ui: &mut Ui, value: f64) -> Option<f64> {
         let mut turned = value;
-        let (field, _) = self.number_ui(ui, &mut turned, 0, true);
+        let (field, _) = self.number_ui(ui, &mut turned, (0, 0.0), true);
         ui.ctx().accesskit_node_builder(field.id, |node| node.set_label(self.name));
         refusal_ui(ui, self.id, &field);
         let changed = turned != value && !turned.is_nan();
@@ -117,7 +119,7 @@ impl Knob<'_> {
             .clamping(egui::SliderClamping::Never)
             .smart_aim(false)
             .step_by(step);
-        let slider = ui.add(slider);
+        let slider = slider_ui(ui, slider);
         if *value != present && !slider.dragged() && slider.has_focus() && ui.input(|i| i.modifiers.shift) {
             *value = present + 10.0 * (*value - present);
         }
@@ -128,8 +130,15 @@ impl Knob<'_> {
         slider
     }
 
-    /// Draws the number beside the slider. Returns its response, and whether an acceptable number was typed.
-    fn number_ui(&self, ui: &mut Ui, value: &mut f64, decimals: usize, free: bool) -> (Response, bool) {
+    /// Draws the number, in a field of at least `width` points. Returns its response, and whether an
+    /// acceptable number was typed.
+    fn number_ui(
+        &self,
+        ui: &mut Ui,
+        value: &mut f64,
+        (decimals, width): (usize, f32),
+        free: bool,
+    ) -> (Response, bool) {
         let present = *value;
         let editing = ui.memory(|memory| memory.has_focus(ui.next_auto_id()));
         let write = |number: f64| if editing { exact(number, decimals) } else { shown(number, decimals) };
@@ -138,6 +147,7 @@ impl Knob<'_> {
         let field = DragValue::new(&mut edited)
             .speed(self.reach.step)
             .suffix(self.suffix())
+            .min_size(egui::vec2(width, CONTROL))
             .custom_formatter(|number, _| write(number))
             .update_while_editing(false)
             .custom_parser(|text| {
@@ -210,11 +220,32 @@ impl Knob<'_> {
     }
 }
 
+/// A slider with a thin track, whose handle has the ground of a card: a slider fills both alike.
+fn slider_ui(ui: &mut Ui, slider: Slider<'_>) -> Response {
+    let style = Style::of(ui.ctx(), false);
+    ui.spacing_mut().interact_size.y = SLIDER;
+    ui.visuals_mut().selection.bg_fill = style.accent();
+    ui.visuals_mut().widgets.inactive.bg_fill = style.track();
+    let response = ui.add(slider);
+    let handle = ui.painter().add(Shape::Noop).0.checked_sub(1);
+    ui.ctx().graphics_mut(|graphics| {
+        let list = graphics.get_mut(ui.layer_id()).zip(handle);
+        list.into_iter().for_each(|(list, handle)| {
+            list.mutate_shape(ShapeIdx(handle), |shape| {
+                if let Shape::Circle(circle) = &mut shape.shape {
+                    circle.fill = style.ground();
+                }
+            });
+        });
+    });
+    response
+}
+
 /// A logarithmic slider; a value beyond its ends is shown at the end.
 fn logarithmic_ui(ui: &mut Ui, value: &mut f64, (low, high): (f64, f64)) -> Response {
     let present = *value;
     let slider = Slider::new(value, low..=high).show_value(false).logarithmic(true);
-    let slider = ui.add(slider.clamping(egui::SliderClamping::Never));
+    let slider = slider_ui(ui, slider.clamping(egui::SliderClamping::Never));
     if *value == present {
         return slider;
     }

@@ -31,13 +31,25 @@ pub const COMPACT_BELOW: f32 = 1000.0;
 /// Size in points of a window above which there is room for one more tile.
 pub const LARGE_FROM: egui::Vec2 = egui::Vec2::new(1600.0, 880.0);
 
-/// Size of a text that would not fit at another one.
-pub const LEAST: f32 = 9.5;
-pub const SMALL: f32 = 11.5;
+/// The three text sizes in points: labels of pictures and notes, text and controls, the headline.
+pub const SMALL: f32 = 12.0;
 pub const BODY: f32 = 14.0;
 pub const STATUS: f32 = 18.0;
-/// Size of the status sentence in points where room is short.
-pub const STATUS_COMPACT: f32 = 16.0;
+/// Size of a text that would not fit at another one.
+pub const LEAST: f32 = 9.5;
+
+/// Height in points of every control, and of the row with the title of a view.
+pub const CONTROL: f32 = 28.0;
+/// Width in points of the field with the number of a slider.
+pub const NUMBER: f32 = 76.0;
+/// Distance in points between cards, and between a card and the edge of the window.
+pub const GAP: f32 = 8.0;
+/// Radius in points of the corners of a card.
+pub const CORNER: u8 = 6;
+/// Radius in points of the corners of a control.
+const CONTROL_CORNER: u8 = 5;
+/// Height in points of the track of a slider.
+const TRACK: f32 = 4.0;
 
 /// Radius in points of the proof mass where it rides on a curve; stops are drawn this far outside their
 /// limit, so that the mass touches them at the limit.
@@ -80,9 +92,30 @@ impl Style {
         ORANGE
     }
 
-    /// The colours of pictures in this appearance.
+    /// The colours of pictures in this appearance: those on paper, on the ground of a card.
     pub fn theme(&self) -> Theme {
-        Theme::of(self.dark, None)
+        let [paper, ink, soft, grid] = [self.ground(), self.ink(), self.faint(), self.grid()].map(ink_of);
+        Theme { paper, ink, soft, grid, ..Theme::of(self.dark, None) }
+    }
+
+    /// The frame of a card.
+    pub fn card_stroke(&self) -> Stroke {
+        Stroke::new(1.0, self.border())
+    }
+
+    /// The colours of text, each with the grounds that it stands on.
+    pub fn texts(&self) -> [(&'static str, Color32, Vec<Color32>); 8] {
+        let both = vec![self.panel(), self.ground()];
+        [
+            ("primary", self.ink(), both.clone()),
+            ("secondary", self.faint(), both.clone()),
+            ("link", self.accent(), both.clone()),
+            ("the mass", self.mass_ink(), both.clone()),
+            ("the base", self.base(), vec![self.ground()]),
+            ("a primary action", self.on_action(), vec![self.action()]),
+            ("what is chosen", self.ink(), vec![self.chosen()]),
+            ("what is under the pointer", self.ink(), vec![self.pointed()]),
+        ]
     }
 
     /// The colour of what stands for `role`.
@@ -93,7 +126,12 @@ impl Style {
     /// The line of what stands for `role`.
     pub fn stroke(&self, role: Role) -> Stroke {
         let look = self.theme().look(role);
-        Stroke::new(self.width(STROKE * look.width as f32), colour(look.ink))
+        Stroke::new(self.line(look.width), colour(look.ink))
+    }
+
+    /// The width in points of a line that is so wide on paper.
+    pub fn line(&self, width: f64) -> f32 {
+        self.width(STROKE * width as f32)
     }
 
     pub fn kind(&self, kind: Kind) -> Color32 {
@@ -103,10 +141,6 @@ impl Style {
             Kind::Irregular => self.colour(Role::Second),
             Kind::Interwell | Kind::Crossing | Kind::Fault => self.impact(),
         }
-    }
-
-    pub fn measured(&self) -> Color32 {
-        self.kind(Kind::Irregular)
     }
 
     pub fn stop(&self) -> Color32 {
@@ -139,16 +173,6 @@ impl Style {
 
     pub fn cursor_stroke(&self) -> Stroke {
         Stroke::new(self.width(1.3), self.kind(Kind::Irregular))
-    }
-
-    /// A pinned motion, over time and in the phase portrait.
-    pub fn ghost_motion_stroke(&self) -> Stroke {
-        Stroke::new(self.width(1.6), self.ink().gamma_multiply(0.6))
-    }
-
-    /// Many measured samples, below the computed line.
-    pub fn measured_stroke(&self) -> Stroke {
-        Stroke::new(self.width(4.5), self.measured().lerp_to_gamma(self.ground(), 0.25))
     }
 
     pub fn grid_stroke(&self) -> Stroke {
@@ -190,19 +214,33 @@ macro_rules! colours {
 
 colours! {
     /// Text and axes.
-    ink: colour(Theme::LIGHT.ink), colour(Theme::DARK.ink);
+    ink: hex(0x1b1e22), hex(0xe8eaed);
     /// Secondary text and lines: ticks, units, notes.
-    faint: colour(Theme::LIGHT.soft), colour(Theme::DARK.soft);
+    faint: hex(0x5a6067), hex(0xa3a9b0);
+    /// The window around the cards, and cells that are not computed yet.
+    panel: hex(0xf6f7f8), hex(0x15171a);
+    /// A card, on which views are drawn.
+    ground: hex(0xffffff), hex(0x1d2024);
+    /// The frame of a card.
+    border: hex(0xe1e4e8), hex(0x2b2f35);
     /// Edges of controls, with a contrast of at least 3:1 to the background.
-    edge: gray(135), gray(118);
-    grid: colour(Theme::LIGHT.grid), colour(Theme::DARK.grid);
-    ground: colour(Theme::LIGHT.paper), colour(Theme::DARK.paper);
+    edge: hex(0x858b93), hex(0x6c727a);
+    grid: hex(0xeceef0), hex(0x2b2f35);
+    /// The track of a slider.
+    track: hex(0xd3d8dd), hex(0x40454d);
+    /// A control under the pointer.
+    pointed: hex(0xe9edf1), hex(0x2a2e34);
+    /// One of several that is chosen.
+    chosen: hex(0xd3e6f4), hex(0x1f4560);
+    /// Links, and what is filled of a track.
+    accent: hex(0x17689f), hex(0x6cbcec);
+    /// A primary action.
+    action: hex(0x17689f), hex(0x2272a8);
+    on_action: hex(0xffffff), hex(0xffffff);
     /// Text about the proof mass.
     mass_ink: rgb(140, 92, 0), ORANGE;
     mass_edge: rgb(122, 84, 0), rgb(255, 214, 128);
     frame_colour: gray(190), gray(85);
-    /// Background of panels, and cells that are not computed yet.
-    panel: gray(246), gray(34);
     /// Veil over a map that is not that of the scene.
     veil: Color32::from_white_alpha(140), Color32::from_black_alpha(130);
 }
@@ -226,10 +264,6 @@ roles! {
     ghost_stroke: Reference;
     /// The motion over time.
     motion_stroke: Motion;
-    /// Power of a transducer over time.
-    power_stroke: Motion;
-    /// Acceleration of the base over time, and its push.
-    base_stroke: Drive;
     /// An impact: a tick on a time axis, a jump of the velocity.
     impact_stroke: Impact;
     stop_stroke: Stop;
@@ -254,17 +288,28 @@ strokes! {
     /// The height of the barrier where energies are compared with it.
     barrier_stroke: 2.0, ink;
     /// Frame of what has the keyboard focus.
-    focus_stroke: 2.0, base;
+    focus_stroke: 2.0, accent;
     /// Frame of what a lesson points at.
     pointing_stroke: 3.0, mass_ink;
     arrow_stroke: 3.0, base;
     flexure_stroke: 2.0, ink;
+    /// The lines over a view that is covered.
+    hatching_stroke: 1.0, border;
     /// Outline of the cell under the pointer.
     cell_stroke: 2.0, ink;
 }
 
 const fn gray(level: u8) -> Color32 {
     Color32::from_gray(level)
+}
+
+const fn hex(code: u32) -> Color32 {
+    let [_, red, green, blue] = code.to_be_bytes();
+    rgb(red, green, blue)
+}
+
+fn ink_of(colour: Color32) -> Ink {
+    Ink(colour.r(), colour.g(), colour.b())
 }
 
 const fn rgb(red: u8, green: u8, blue: u8) -> Color32 {
@@ -286,7 +331,6 @@ pub fn install(ctx: &egui::Context) {
     ctx.set_fonts(fonts);
     ctx.all_styles_mut(|style| {
         let dark = style.visuals.dark_mode;
-        let ink = Style { dark, projector: false };
         style.text_styles = [
             (TextStyle::Small, FontId::proportional(SMALL)),
             (TextStyle::Body, FontId::proportional(BODY)),
@@ -295,21 +339,97 @@ pub fn install(ctx: &egui::Context) {
             (TextStyle::Heading, FontId::new(BODY, strong_family())),
         ]
         .into();
-        style.spacing.slider_width = 150.0;
-        style.spacing.item_spacing = egui::vec2(8.0, 6.0);
+        let spacing = &mut style.spacing;
+        spacing.slider_width = 150.0;
+        spacing.slider_rail_height = TRACK;
+        spacing.interact_size.y = CONTROL;
+        spacing.item_spacing = egui::vec2(8.0, 4.0);
+        spacing.button_padding = egui::vec2(8.0, 4.0);
         // scroll bars are always visible
-        style.spacing.scroll =
-            egui::style::ScrollStyle { bar_width: 7.0, ..egui::style::ScrollStyle::solid() };
-        style.visuals.override_text_color = Some(ink.ink());
-        style.visuals.slider_trailing_fill = true;
-        // buttons and check boxes have an edge that is visible on every background
-        style.visuals.widgets.inactive.bg_stroke = Stroke::new(1.0, ink.edge());
-        // the widget with the keyboard focus has this frame as well
-        style.visuals.widgets.active.bg_stroke = ink.focus_stroke();
+        spacing.scroll = egui::style::ScrollStyle { bar_width: 7.0, ..egui::style::ScrollStyle::solid() };
+        paint(&mut style.visuals, Style { dark, projector: false });
     });
+}
+
+/// Colours of the widgets: controls are outlined, and filled with a tint under the pointer.
+fn paint(visuals: &mut egui::Visuals, style: Style) {
+    let (ink, ground) = (style.ink(), style.ground());
+    visuals.slider_trailing_fill = true;
+    visuals.handle_shape = egui::style::HandleShape::Circle;
+    visuals.weak_text_color = Some(style.faint());
+    visuals.hyperlink_color = style.accent();
+    visuals.panel_fill = style.panel();
+    (visuals.window_fill, visuals.window_stroke) = (ground, style.card_stroke());
+    (visuals.extreme_bg_color, visuals.faint_bg_color) = (ground, style.panel());
+    (visuals.window_corner_radius, visuals.menu_corner_radius) = (CORNER.into(), CORNER.into());
+    visuals.selection.bg_fill = style.chosen();
+    visuals.selection.stroke = Stroke::new(1.0, ink);
+    let widgets = &mut visuals.widgets;
+    let edge = Stroke::new(1.0, style.edge());
+    for (widget, fill, stroke) in [
+        (&mut widgets.noninteractive, style.panel(), style.card_stroke()),
+        // buttons and check boxes have an edge that is visible on every background
+        (&mut widgets.inactive, ground, edge),
+        (&mut widgets.hovered, style.pointed(), edge),
+        // the widget with the keyboard focus has this frame as well
+        (&mut widgets.active, style.pointed(), style.focus_stroke()),
+        (&mut widgets.open, style.pointed(), edge),
+    ] {
+        (widget.bg_fill, widget.weak_bg_fill, widget.bg_stroke) = (fill, fill, stroke);
+        widget.fg_stroke = Stroke::new(1.5, ink);
+        (widget.corner_radius, widget.expansion) = (CONTROL_CORNER.into(), 0.0);
+    }
 }
 
 /// The font family of headings and of text that is to be read first.
 pub fn strong_family() -> FontFamily {
     FontFamily::Name("strong".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Contrast of two colours by the rule of WCAG 2.
+    fn contrast(a: Color32, b: Color32) -> f64 {
+        let luminance = |colour: Color32| {
+            let linear = |part: u8| {
+                let share = f64::from(part) / 255.0;
+                if share <= 0.040_45 { share / 12.92 } else { ((share + 0.055) / 1.055).powf(2.4) }
+            };
+            0.2126 * linear(colour.r()) + 0.7152 * linear(colour.g()) + 0.0722 * linear(colour.b())
+        };
+        let (a, b) = (luminance(a) + 0.05, luminance(b) + 0.05);
+        a.max(b) / a.min(b)
+    }
+
+    #[test]
+    fn every_text_has_a_contrast_of_four_and_a_half() {
+        assert!((contrast(Color32::WHITE, Color32::BLACK) - 21.0).abs() < 1e-9);
+        for dark in [false, true] {
+            let style = Style { dark, projector: false };
+            for (name, colour, grounds) in style.texts() {
+                for ground in grounds {
+                    let contrast = contrast(colour, ground);
+                    assert!(contrast >= 4.5, "{name}, dark {dark}: {contrast:.2} on {ground:?}");
+                }
+            }
+            for ground in [style.panel(), style.ground()] {
+                assert!(contrast(style.edge(), ground) >= 3.0, "dark {dark}: the edge on {ground:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn spaces_are_steps_of_four_points() {
+        let ctx = egui::Context::default();
+        install(&ctx);
+        let style = ctx.style_of(egui::Theme::Light);
+        let spacing = &style.spacing;
+        let spaces = [CONTROL, NUMBER, GAP, TRACK, spacing.slider_rail_height, spacing.interact_size.y];
+        let pairs = [spacing.item_spacing, spacing.button_padding].map(|pair| [pair.x, pair.y]);
+        for space in spaces.into_iter().chain(pairs.into_iter().flatten()) {
+            assert!(space > 0.0 && space % 4.0 == 0.0, "{space}");
+        }
+    }
 }

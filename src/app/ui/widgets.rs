@@ -8,7 +8,7 @@ use eframe::egui::{
 use crate::app::words::kind::Kind;
 use crate::app::words::numbers::unbroken;
 
-use super::style::{BODY, COMPACT_BELOW, LEAST};
+use super::style::{BODY, COMPACT_BELOW, CONTROL, LEAST, Style};
 
 pub fn dialog(ctx: &egui::Context, id: &str) -> egui::Modal {
     let frame = egui::Frame::popup(&ctx.global_style()).inner_margin(16.0);
@@ -39,8 +39,21 @@ pub fn prose_ui(ui: &mut Ui, text: &str, size: f32) -> Response {
     response
 }
 
-/// The largest text size up to `most` at which texts fit into `room` one after another: in one row, or else
-/// in several at the size of body text or less.
+/// A label of texts one after another, in these fonts; a screen reader is told their words.
+pub fn parts_ui(ui: &mut Ui, parts: &[(&str, FontFamily)], size: f32) -> Response {
+    let (mut job, ink) = (LayoutJob::default(), ui.visuals().text_color());
+    for (text, family) in parts {
+        let font = FontId::new(size, family.clone());
+        job.append(&unbroken(text), 0.0, TextFormat::simple(font, ink));
+    }
+    let response = ui.add(egui::Label::new(job).wrap());
+    let words: String = parts.iter().map(|part| part.0).collect();
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, words.as_str()));
+    response
+}
+
+/// The text size at which texts fit into `room` one after another: `most` in one row, or else the size of
+/// body text in several, or less where they would not fit.
 ///
 /// Returns the size, and the height in points that they take.
 pub fn fitting(ui: &Ui, texts: &[(&str, FontFamily)], room: Vec2, most: f32) -> (f32, f32) {
@@ -53,12 +66,11 @@ pub fn fitting(ui: &Ui, texts: &[(&str, FontFamily)], room: Vec2, most: f32) -> 
         }
         ui.fonts_mut(|fonts| fonts.layout_job(job)).size()
     };
-    let body = BODY.min(most);
-    let in_a_row = most * (room.x / taken(most, f32::INFINITY).x.max(1.0)).min(1.0) - 0.05;
-    if in_a_row >= body - 0.05 {
-        return (in_a_row, taken(in_a_row, f32::INFINITY).y);
+    let in_a_row = taken(most, f32::INFINITY);
+    if in_a_row.x <= room.x {
+        return (most, in_a_row.y);
     }
-    let mut size = body;
+    let mut size = BODY.min(most);
     while size > LEAST && taken(size, room.x).y > room.y {
         size -= 0.5;
     }
@@ -136,18 +148,42 @@ pub enum Icon {
     Free,
 }
 
-/// A button with an icon; screen readers and tests call it `name`.
-pub fn icon_button_ui(ui: &mut Ui, icon: Icon, size: f32, name: &str, hover: &str) -> Response {
+/// An outlined button with an icon; screen readers and tests call it `name`.
+pub fn icon_button_ui(ui: &mut Ui, icon: Icon, width: f32, name: &str, hover: &str) -> Response {
+    let (rect, response) = ui.allocate_exact_size(vec2(width, CONTROL), Sense::click());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, ui.is_enabled(), name));
+    let visuals = ui.style().interact(&response);
+    let (corner, stroke) = (visuals.corner_radius, visuals.bg_stroke);
+    ui.painter().rect(rect, corner, visuals.weak_bg_fill, stroke, egui::StrokeKind::Inside);
+    ui.painter().extend(icon_shapes(icon, icon_place(rect), visuals.fg_stroke.color));
+    response.on_hover_text(hover)
+}
+
+/// A button of `size` without an outline, which is seen while it is `shown`, under the pointer or has the
+/// keyboard focus; screen readers and tests call it `name`.
+pub fn tool_ui(ui: &mut Ui, icon: Icon, size: f32, name: &str, hover: &str, shown: bool) -> Response {
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(size), Sense::click());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, ui.is_enabled(), name));
     let visuals = ui.style().interact(&response);
-    ui.painter().rect_filled(rect, 4.0, visuals.weak_bg_fill);
-    if response.has_focus() {
-        ui.painter().rect_stroke(rect, 4.0, visuals.fg_stroke, egui::StrokeKind::Inside);
+    if response.hovered() {
+        ui.painter().rect_filled(rect, visuals.corner_radius, visuals.weak_bg_fill);
     }
-    let color = if ui.is_enabled() { visuals.fg_stroke.color } else { ui.visuals().weak_text_color() };
-    ui.painter().extend(icon_shapes(icon, rect.shrink(size * 0.28), color));
+    if shown || response.has_focus() {
+        let color = if response.hovered() { visuals.fg_stroke.color } else { ui.visuals().weak_text_color() };
+        ui.painter().extend(icon_shapes(icon, icon_place(rect), color));
+    }
     response.on_hover_text(hover)
+}
+
+fn icon_place(button: Rect) -> Rect {
+    Rect::from_center_size(button.center(), Vec2::splat(0.48 * button.height()))
+}
+
+/// The button of the primary action, which is filled.
+pub fn primary(ui: &Ui, text: &str) -> egui::Button<'static> {
+    let style = Style::of(ui.ctx(), false);
+    let text = egui::RichText::new(text).color(style.on_action());
+    egui::Button::new(text).fill(style.action()).stroke(Stroke::NONE)
 }
 
 fn icon_shapes(icon: Icon, rect: Rect, color: Color32) -> Vec<Shape> {

@@ -1,18 +1,17 @@
 //! View of the basins of attraction: the plane of starts, coloured by the attractor of each start.
 
-use eframe::egui::{self, Align2, RichText, Ui, UiBuilder, vec2};
+use eframe::egui::{self, Align2, Ui, UiBuilder, vec2};
 
 use crate::app::session::explore::Level;
 use crate::app::words::numbers::three;
 use crate::output::{Cell, Chart, Panel, PlotAxis, Role};
-use crate::study::Attractor;
 
 use super::hand::axes_input;
 use super::labels::{plated, pointer_rests};
 use super::pane::{Pane, kept_pane_ui};
 use super::stops::stops_ui;
 use super::view::Axis;
-use super::{View, ViewContext, too_small_ui};
+use super::{View, ViewContext, empty_ui, too_small_ui};
 
 pub fn basins_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let area = ui.max_rect();
@@ -46,9 +45,7 @@ pub fn basins_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let Some(frame) = pane.frame(0) else { return };
     axes_input(ui, context.memory, View::Basins, &pane.response, (area, frame));
     if let Some(Err(problem)) = &level {
-        ui.scope_builder(UiBuilder::new().max_rect(frame.shrink(12.0)), |ui| {
-            ui.label(RichText::new(problem).color(style.faint()));
-        });
+        empty_ui(ui, &style, frame, problem);
     }
     stops_ui(ui, context, frame, (frame.top(), frame.bottom()), 0.0);
     if let Some(Ok(level)) = &level {
@@ -80,13 +77,12 @@ fn pointer_ui(ui: &Ui, context: &mut ViewContext<'_>, pane: &Pane, level: &Level
     if !(x >= level.room.0 && x <= level.room.1) {
         return; // nothing begins beyond the stops
     }
-    let attractor = || -> Option<&Attractor> {
+    let words = || -> Option<&String> {
         let cells = pane.chart.panels().next()?.cells()?;
         let cell = cells.at(cells.across.cell(x_mm)?, cells.up.cell(speed)?);
-        level.answer.attractors.get(if let Cell::Value(place) = cell { place as usize } else { return None })
+        level.words.get(if let Cell::Value(place) = cell { place as usize } else { return None })
     };
-    let target =
-        attractor().map_or("to none that is known".to_owned(), |found| format!("to {}", found.words()));
+    let target = words().map_or("to none that is known".to_owned(), |words| format!("to {words}"));
     let coarse = if is_whole { "" } else { " (coarse)" };
     let text = format!("{} mm, {} mm/s: {target}{coarse}", three(x_mm), three(v * 1e3));
     let at = (frame.right_bottom() - vec2(6.0, 4.0), Align2::RIGHT_BOTTOM);

@@ -1,14 +1,14 @@
 //! Table of the present motion and the pinned ones, with differences.
 
 use eframe::egui::TextWrapMode::Extend;
-use eframe::egui::{self, Button, Label, RichText, ScrollArea, Ui};
+use eframe::egui::{self, Button, RichText, ScrollArea, Ui};
 
 use crate::app::session::Card;
 use crate::app::session::pins::{FULL, Pin, PinKind};
 use crate::scene::Stops;
 
-use super::ViewContext;
 use super::table::{Column, WIDE_COLUMN, table_ui};
+use super::{ViewContext, empty_ui};
 
 /// An action on a pin.
 enum PinAction {
@@ -26,7 +26,8 @@ pub fn compare_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             if context.session.pins.all().is_empty() {
                 let text = "Nothing is pinned. A pinned motion goes on beside the present one, dashed, with \
                             the drive in step.";
-                ui.add(Label::new(RichText::new(text).color(style.faint())).wrap());
+                let below = ui.available_rect_before_wrap();
+                empty_ui(ui, &style, below, text);
                 return;
             }
             match pinned_ui(ui, context) {

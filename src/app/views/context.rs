@@ -1,10 +1,15 @@
 //! Context passed to every view, and the placeholder of a view that is too small.
 
-use eframe::egui::{Align, Label, Layout, Rect, RichText, Ui, UiBuilder};
+use std::sync::Arc;
+
+use eframe::egui::{
+    Align, Align2, FontId, Label, Layout, Rect, RichText, Role, Sense, Shape, Ui, UiBuilder, Vec2,
+    WidgetInfo, pos2, vec2,
+};
 
 use crate::app::session::Session;
 use crate::app::session::pins::Pin;
-use crate::app::ui::style::Style;
+use crate::app::ui::style::{CONTROL, CORNER, Style, strong_family};
 use crate::dynamics::{Model, Sample};
 use crate::study::Watch;
 
@@ -54,7 +59,7 @@ impl Drawn {
     }
 
     /// Its model at that time.
-    pub(super) fn model(self, session: &Session) -> &Model {
+    pub(super) fn model(self, session: &Session) -> &Arc<Model> {
         let of_pin = |pin| Pin::watch(pin).model_at(session.player.time());
         self.pin(session).map_or(session.shown(), |pin| of_pin(pin))
     }
@@ -78,15 +83,64 @@ pub struct ViewContext<'a> {
     pub drawn: Drawn,
 }
 
+/// Greatest width in points of a sentence in place of a view.
+const SENTENCE: f32 = 380.0;
+
+/// Distance in points between the lines of a hatching, and radius of the mark in the middle of it.
+const HATCHING: f32 = 12.0;
+const MARK: f32 = 20.0;
+
+/// Writes one sentence in the middle of `area`, in which a view has nothing to show.
+pub fn empty_ui(ui: &mut Ui, style: &Style, area: Rect, text: &str) {
+    offer_ui(ui, style, area, text, "");
+}
+
+/// The same, and below it a button if it has a name. Returns whether that was clicked.
+pub fn offer_ui(ui: &mut Ui, style: &Style, area: Rect, text: &str, button: &str) -> bool {
+    let width = (area.width() - 2.0 * MARK).clamp(1.0, SENTENCE);
+    let words = ui.painter().layout(text.to_owned(), style.body(), style.faint(), width).size();
+    let height = words.y + if button.is_empty() { 0.0 } else { ui.spacing().item_spacing.y + CONTROL };
+    let middle = Rect::from_center_size(area.center(), vec2(width, height.min(area.height())));
+    let layout = Layout::top_down(Align::Center);
+    ui.scope_builder(UiBuilder::new().max_rect(middle).layout(layout), |ui| {
+        ui.set_clip_rect(area.intersect(ui.clip_rect()));
+        ui.add(Label::new(RichText::new(text).color(style.faint())).wrap());
+        !button.is_empty() && ui.button(button).clicked()
+    })
+    .inner
+}
+
+/// Draws what covers a view: a hatching, a question mark and the question.
+pub fn covered_ui(ui: &mut Ui, style: &Style, question: &str) {
+    let area = ui.max_rect();
+    let painter = ui.painter().with_clip_rect(area.intersect(ui.clip_rect()));
+    painter.rect_filled(area, 0.0, style.ground());
+    let lines = ((area.width() + area.height()) / HATCHING) as usize;
+    painter.extend((0..lines).map(|i| {
+        let foot = pos2(area.left() + HATCHING * (i as f32 + 0.5), area.top());
+        Shape::line_segment([foot, foot + vec2(-area.height(), area.height())], style.hatching_stroke())
+    }));
+    let mark = area.center() - vec2(0.0, MARK);
+    painter.circle(mark, MARK, style.ground(), style.card_stroke());
+    let font = FontId::new(1.2 * MARK, strong_family());
+    painter.text(mark, Align2::CENTER_CENTER, "?", font, style.faint());
+    let place = Rect::from_center_size(mark, Vec2::splat(2.0 * MARK));
+    let response = ui.interact(place, ui.scope_id().with("covered"), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, "Covered"));
+    let width = (area.width() - 2.0 * MARK).clamp(1.0, SENTENCE);
+    let galley = painter.layout(question.to_owned(), style.body(), style.ink(), width);
+    let place = Rect::from_min_size(
+        pos2(area.center().x - 0.5 * galley.size().x, mark.y + 1.5 * MARK),
+        galley.size(),
+    );
+    if place.bottom() < area.bottom() {
+        painter.rect_filled(place.expand(4.0), CORNER, style.ground());
+        painter.galley(place.min, galley, style.ink());
+    }
+}
+
 /// Shows a hint in place of a view that is too small.
 pub fn too_small_ui(ui: &mut Ui, style: &Style, area: Rect) {
     ui.painter().rect_filled(area, 0.0, style.ground());
-    let text = RichText::new("Too small to show: drag an edge of it, or press Z over it.")
-        .small()
-        .color(style.faint());
-    let middle = UiBuilder::new().max_rect(area.shrink(4.0)).layout(Layout::top_down(Align::Center));
-    ui.scope_builder(middle, |ui| {
-        ui.set_clip_rect(area.intersect(ui.clip_rect()));
-        ui.add(Label::new(text).wrap())
-    });
+    empty_ui(ui, style, area, "Too small to show: drag an edge of it, or press Z over it.");
 }

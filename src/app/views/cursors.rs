@@ -13,7 +13,7 @@ use crate::app::words::numbers::{below, decimals_for, three};
 use super::ViewContext;
 use super::cursor_times::{Cursors, recorded_range};
 use super::labels::plated;
-use super::legend::LEGEND;
+use super::pane::LEGEND;
 use super::view::Axis;
 use super::zoom::Ends;
 

@@ -1,19 +1,17 @@
 //! View of the distance between the pinned motions and the present one over time, on a logarithmic scale.
 
-use eframe::egui::{self, Align2, RichText, Ui, UiBuilder, vec2};
-use egui_plot::{HLine, Line, PlotBounds, PlotPoint, Text, VLine};
+use eframe::egui::{self, Align2, RichText, Sense, Ui, UiBuilder, vec2};
 
 use crate::app::session::pins::{Pin, PinKind};
 use crate::app::words::numbers::three;
-use crate::output::PlotAxis;
-use crate::study::distances;
+use crate::output::{Chart, Marks, Panel, PlotAxis, Role};
+use crate::study::{Table, distances};
 
 use super::cursors::{cursors_ui, readout_ui};
 use super::ghosts::PINNED;
 use super::hand::axes_input;
 use super::labels::haloed;
-use super::legend::LEGEND;
-use super::plot::{LOW, MARGIN, even, marks, plot_place, still_plot};
+use super::pane::{Place, fresh_pane_ui};
 use super::view::Axis;
 use super::{View, ViewContext, too_small_ui};
 
@@ -59,9 +57,6 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let [across, up] = [Axis::Across(View::Distance), Axis::Up(View::Distance)];
     let (from, to) = context.memory.axes.ends(across, (from, to));
     let (low, high) = context.memory.axes.ends(up, (low, high));
-    let stroke = style.motion_stroke();
-    let rows = f64::from((area.height() / 40.0).clamp(2.0, 7.0));
-    let columns = f64::from((area.width() / 80.0).clamp(2.0, 10.0));
     let distance = |pin: &Pin, t: f64| (session.player.watch().state_at(t).x - pin.state_at(t).x).abs();
     let of_all = |word: &dyn Fn(&Pin) -> String| {
         pins.iter().map(|pin| format!("{} {}", pin.letter(), word(pin))).collect::<Vec<_>>().join(", ")
@@ -73,41 +68,27 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         format!("exponential rate {}", of_all(&|pin| text(rate(pin))))
     };
     let readout = readout_ui(ui, context, (area, to - from), at_each, between);
-    let is_low = area.height() < LOW;
-    let decades = PlotAxis::powers(low, high, "").with_ticks(rows as usize);
-    let (time_label, label) = if is_low { ("", "mm") } else { ("time (s)", "distance (mm)") };
-    let plot = area.with_min_y(area.top() + LEGEND + readout).shrink2(vec2(MARGIN, 0.0));
-    let mut child = plot_place(ui, &style, plot);
-    let shown = still_plot("distance")
-        .x_grid_spacer(|_| marks(&even(from, to - 0.05 * (to - from), columns)))
-        .y_grid_spacer(|_| marks(&decades))
-        .x_axis_label(time_label)
-        .y_axis_label(label)
-        .y_axis_formatter(|mark, _| {
-            let tick = decades.ticks.iter().find(|tick| tick.0 == mark.value);
-            tick.map(|tick| tick.1.clone()).unwrap_or_default()
-        })
-        .show(&mut child, |plot| {
-            plot.set_plot_bounds(PlotBounds::from_min_max([from, low], [to, high]));
-            for (value, _) in &decades.ticks {
-                plot.hline(HLine::new("", *value).stroke(style.grid_stroke()));
-            }
-            plot.vline(VLine::new("now", now).stroke(style.ghost_stroke()));
-            for (place, path) in &lines {
-                let points: Vec<[f64; 2]> = path.iter().map(|(t, metres)| [*t, height(*metres)]).collect();
-                let end = points.last().map(|last| PlotPoint::new(last[0], last[1]));
-                // solid, since so steep a line has thousands of dashes; the letter at its end names it
-                plot.line(Line::new("distance", points).stroke(stroke).allow_band(false));
-                if let Some(end) = end {
-                    let letter = RichText::new(PINNED[place % PINNED.len()]).font(style.body());
-                    plot.text(
-                        Text::new("letter", end, letter).color(style.ink()).anchor(Align2::LEFT_CENTER),
-                    );
-                }
-            }
-        });
+    let (x, y) = (PlotAxis::between(from, to, "time (s)"), PlotAxis::powers(low, high, "distance (mm)"));
+    let mut panel = Panel::new(x, y);
+    panel.draw(Role::Reference, Marks::Verticals(vec![now]));
+    for (_, path) in &lines {
+        // solid, since so steep a line has thousands of dashes; the letter at its end names it
+        let points = path.iter().map(|(t, metres)| (*t, height(*metres)));
+        panel.draw(Role::Motion, Marks::Trace(points.collect()));
+    }
+    let place = Place::in_line(ui, area, Sense::click_and_drag(), (0.0, readout));
+    let pane = fresh_pane_ui(ui, &style, place, Chart::stack(vec![panel], "", Table::new()));
+    let Some(frame) = pane.frame(0) else { return };
+    let painter = ui.painter().with_clip_rect(area);
+    for (place, path) in &lines {
+        let end = path.last().and_then(|(t, metres)| pane.place(0, (*t, height(*metres))));
+        if let Some(at) = end.filter(|at| frame.expand(1.0).contains(*at)) {
+            let at = (at + vec2(3.0, 0.0), Align2::LEFT_CENTER);
+            haloed(&painter, &style, at, PINNED[place % PINNED.len()], (style.body(), style.ink()));
+        }
+    }
     let spoken = "distance of the pinned motions";
-    shown.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, spoken));
+    pane.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, spoken));
     let texts: Vec<String> = lines
         .iter()
         .filter_map(|(place, path)| Some((PINNED[place % PINNED.len()], path.last()?.1)))
@@ -116,12 +97,9 @@ pub fn distance_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             metres => format!("{letter}: {}", millimetres(metres)),
         })
         .collect();
-    let at = (area.right_top() + vec2(-6.0, 0.5 * LEGEND), Align2::RIGHT_CENTER);
-    let painter = ui.painter().with_clip_rect(area);
-    haloed(&painter, &style, at, &texts.join("   "), (style.small(), style.ink()));
-    let frame = *shown.transform.frame();
-    axes_input(&child, context.memory, View::Distance, &shown.response, (area, frame));
-    cursors_ui(&mut child, context, &shown.response, (frame, (from, to)), "distance");
+    pane.reading(ui, &style, 0.0, &texts.join("   "));
+    axes_input(ui, context.memory, View::Distance, &pane.response, (area, frame));
+    cursors_ui(ui, context, &pane.response, (frame, (from, to)), "distance");
 }
 
 /// A distance in m as text in mm; a small one in scientific notation.

@@ -9,7 +9,7 @@ use crate::app::words::numbers::three;
 use crate::study::{Table, Values, watched_events};
 
 use super::energy::unit_of;
-use super::{ViewContext, too_small_ui};
+use super::{ViewContext, empty_ui, too_small_ui};
 
 /// Height in points of a row.
 const ROW: f32 = 18.0;
@@ -52,7 +52,9 @@ pub fn events_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         }
     });
     if count == 0 {
-        ui.label(RichText::new("Nothing has happened yet.").color(style.faint()));
+        let below = ui.available_rect_before_wrap();
+        let text = "Nothing has happened yet: an impact, a release or a crossing is a row here.";
+        empty_ui(ui, &style, below, text);
         return;
     }
     let unit = unit_of(context.session.model().mass() * context.session.model().scales().speed.powi(2));

@@ -5,30 +5,34 @@
 //! Where the line is above the curve, the mass is driven to the right, where it is below, to the left. A mass
 //! on a stop is released when the line passes the curve at the stop.
 
-use eframe::egui::{Align2, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+use std::sync::Arc;
 
+use eframe::egui::{Align2, Painter, Pos2, Rect, Sense, Stroke, Ui, pos2, vec2};
+
+use crate::app::task::Identity;
 use crate::app::words::numbers::three;
-use crate::dynamics::STANDARD_GRAVITY;
+use crate::dynamics::{Model, STANDARD_GRAVITY};
+use crate::output::{Chart, Layer, Marks, PlotAxis, Role, force_panel};
+use crate::study::Table;
 
-use super::chart::Chart;
 use super::ghosts::ghosts;
 use super::hand::axes_input;
 use super::labels::Taken;
-use super::legend::Symbol;
 use super::overlay::measured_force;
+use super::pane::{Pane, Place, kept_pane_ui};
 use super::ranges::{axis_end, room_for_push};
 use super::stops::{WALL, stops_ui};
 use super::view::Axis;
-use super::{View, ViewContext, too_small_ui};
+use super::{Span, View, ViewContext, too_small_ui};
 
 /// Factor by which the axis exceeds the largest force between the wells.
 const ROOM: f64 = 1.3;
 
-/// Half the size in points of the mark of a kink and of the force at a stop.
-const MARK: f32 = 5.0;
+/// Length in points of the line at a stop.
+const LINE: f32 = 40.0;
 
-/// Length of the line at a stop, in multiples of [`MARK`].
-const LINE: f32 = 8.0;
+/// Number of points of the curve.
+const POINTS: usize = 600;
 
 /// Distance in points of a label from its stop.
 const BESIDE: f32 = 16.0;
@@ -39,63 +43,77 @@ const ABOVE: [f32; 9] = [2.0, -14.0, 16.0, -28.0, 30.0, -42.0, 44.0, -56.0, 58.0
 const BALL: f32 = 7.0;
 
 pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
-    let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::DRAG);
+    let (area, style) = (ui.max_rect(), context.style);
     if area.width() < 60.0 || area.height() < 80.0 {
-        return too_small_ui(ui, &context.style, area);
+        return too_small_ui(ui, &style, area);
     }
-    let style = context.style;
+    ui.painter().rect_filled(area, 0.0, style.ground());
     let end = end_of_axis(context);
     let ends = context.memory.frozen.force.keep((-end, end), context.session.editor.in_gesture());
     let (low, high) = context.memory.axes.ends(Axis::Up(View::ForceCurve), ends);
-    let chart = Chart::new(area, context.span, low, high);
-    axes_input(ui, context.memory, View::ForceCurve, &response, (area, chart.rect));
-    let pointer = response.hover_pos().filter(|at| chart.rect.contains(*at));
-    chart.axes(ui, context, ("force to the right (N)", 1.0), pointer.is_some());
-    let painter = ui.painter().with_clip_rect(chart.rect);
-    let measured = measured_force(&painter, context, &chart);
-    let lines = curve(&painter, context, &chart);
-    let edges = (chart.rect.top(), chart.rect.bottom());
-    stops_ui(ui, context, chart.rect, edges, 0.0);
-    let painter = ui.painter().with_clip_rect(chart.rect);
-    let model = context.session.shown();
-    let (landscape, curve) = (&model.mechanism().landscape, &model.mechanism().curve);
-    chart.equilibria(&painter, &style, landscape);
-    for kink in &landscape.kinks {
-        let at = chart.screen_from_world(kink.x, curve.force(kink.x));
-        let points = [vec2(0.0, -MARK), vec2(MARK, 0.0), vec2(0.0, MARK), vec2(-MARK, 0.0)];
-        let diamond = points.iter().map(|step| at + *step * 1.3).collect();
-        painter.add(Shape::closed_line(diamond, Stroke::new(1.5, style.ink())));
-    }
+    let (span, model) = (context.span, Arc::clone(context.session.shown()));
+    let over = context.session.measured.over.clone();
+    let key = (Identity(Arc::clone(&model)), over, [span.low, span.high, low, high], style);
+    let pane = kept_pane_ui(ui, &style, Place::in_line(ui, area, Sense::DRAG, (0.0, 0.0)), key, || {
+        let axis = |low: f64, high: f64, name: &str| PlotAxis::between(low, high, name);
+        let axes = (
+            axis(span.low * 1e3, span.high * 1e3, "displacement (mm)"),
+            axis(low, high, "force to the right (N)"),
+        );
+        still(&model, span, axes, measured_force(context.session))
+    });
+    let Some(frame) = pane.frame(0) else { return };
+    axes_input(ui, context.memory, View::ForceCurve, &pane.response, (area, frame));
+    stops_ui(ui, context, frame, (frame.top(), frame.bottom()), 0.0);
+    let painter = ui.painter().with_clip_rect(frame);
+    let curve = &model.mechanism().curve;
     let state = context.session.player.state();
     let push = -model.mass() * state.base_accel;
-    let mut legend = vec![(Symbol::Line(style.tray_stroke()), "holds the mass there")];
+    let mm = state.x * 1e3;
     if model.is_shaken() {
-        legend.push((Symbol::Line(style.arrow_stroke()), "push of the base"));
-        let at = chart.screen_from_world(state.x, push);
-        painter.hline(chart.rect.x_range(), at.y, style.arrow_stroke());
-        let from = chart.screen_from_world(state.x, curve.force(state.x));
-        painter.extend(Shape::dashed_line(&[from, at], style.base_stroke(), 4.0, 3.0));
+        let layer = |role, marks| Layer { marks, role, name: String::new() };
+        let apart = vec![(mm, curve.force(state.x)), (mm, push)];
+        let push = Marks::Horizontals(vec![push]);
+        pane.draw(&painter, &style, 0, &[layer(Role::Push, push), layer(Role::Apart, Marks::Path(apart))]);
     }
-    legend.extend(measured);
-    releases(&painter, context, &chart, lines);
+    releases(&painter, context, &pane, frame);
+    let at = |x: f64, force: f64| pane.place(0, (x * 1e3, force)).unwrap_or(frame.min);
     for ghost in ghosts(context) {
         let curve = &ghost.model.mechanism().curve;
-        ghost.stops(&painter, context, chart.rect, 0.0);
-        let at = chart.screen_from_world(ghost.state.x, curve.force(ghost.state.x));
-        ghost.ball(&painter, &style, at, BALL);
+        ghost.stops(&painter, context, frame, 0.0);
+        ghost.ball(&painter, &style, at(ghost.state.x, curve.force(ghost.state.x)), BALL);
     }
-    let at = chart.screen_from_world(state.x, curve.force(state.x));
-    painter.circle(at, BALL, style.mass(), Stroke::new(1.5, style.mass_edge()));
-    chart.legend(ui, &style, area.right(), &legend);
-    if let Some(pointer) = pointer {
-        let (x, _) = chart.world_from_screen(pointer);
-        let force = context.session.shown().mechanism().curve.force(x);
+    let mass = at(state.x, curve.force(state.x));
+    painter.circle(mass, BALL, style.mass(), Stroke::new(1.5, style.mass_edge()));
+    let pointer = pane.response.hover_pos().filter(|at| frame.contains(*at));
+    if let Some((mm, _)) = pointer.and_then(|at| pane.values_at(0, at)) {
+        let force = curve.force(mm * 1e-3);
         if force.is_finite() {
             let direction = if force < 0.0 { " to the left" } else { " to the right" };
-            let text = format!("{} N{direction} holds it at {} mm", three(force.abs()), three(x * 1e3));
-            chart.readout(ui, &style, &text);
+            let text = format!("{} N{direction} holds it at {} mm", three(force.abs()), three(mm));
+            pane.reading(ui, &style, 0.0, &text);
         }
     }
+}
+
+/// What stays the same from frame to frame: axes, curve, kinks and equilibria, what was measured, and the
+/// legend of the push. The view draws the stops, which can be dragged.
+fn still(model: &Model, span: Span, axes: (PlotAxis, PlotAxis), measured: Option<Layer>) -> Chart {
+    let curve = &model.mechanism().curve;
+    let mm = |stop: Option<f64>| stop.map_or(f64::NAN, |x| x * 1e3);
+    let (stops, domain) = (model.stop_positions(), curve.domain());
+    let (low, high) = (span.low.max(domain.0), span.high.min(domain.1));
+    let place = |i: usize| (low + (high - low) * i as f64 / POINTS as f64).min(high);
+    let points = (0..=POINTS).map(place).map(|x| (x * 1e3, curve.force(x)));
+    let points = if high > low { points.collect() } else { Vec::new() };
+    let stops = (mm(stops.0), mm(stops.1));
+    let mut panel = force_panel(model.mechanism(), axes, 1.0, stops, ("holds the mass there", points));
+    panel.layers.retain(|layer| layer.role != Role::Stop);
+    panel.layers.splice(0..0, measured);
+    if model.is_shaken() {
+        panel.layer(Role::Push, "push of the base", Marks::Path(Vec::new()));
+    }
+    Chart::stack(vec![panel], "", Table::new())
 }
 
 /// End of the axis in N: covers the forces between the wells and the largest push of the base.
@@ -123,44 +141,39 @@ fn end_of_axis(context: &ViewContext<'_>) -> f64 {
     axis_end((ROOM * largest).max(1.1 * push))
 }
 
-/// Draws the force curve: thick between the stops, dashed beyond them. Returns its parts.
-fn curve(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) -> Vec<Vec<Pos2>> {
-    let (style, model) = (context.style, context.session.shown());
-    let curve = &model.mechanism().curve;
-    let (left, right) = model.stop_positions();
-    let domain = curve.domain();
-    let (low, high) = (context.span.low.max(domain.0), context.span.high.min(domain.1));
-    let (inner, outer) = (left.unwrap_or(low).clamp(low, high), right.unwrap_or(high).clamp(low, high));
-    let force = |x: f64| curve.force(x);
-    let parts = [(low, inner), (inner, outer), (outer, high)].map(|(a, b)| chart.curve(a, b, force));
-    for beyond in [&parts[0], &parts[2]] {
-        painter.extend(Shape::dashed_line(beyond, style.ghost_stroke(), 5.0, 5.0));
-    }
-    painter.add(Shape::line(parts[1].clone(), style.tray_stroke()));
-    parts.into()
+/// The lines of the curve on the screen.
+fn lines(pane: &Pane) -> Vec<Vec<Pos2>> {
+    let layers = pane.chart.panels().flat_map(|panel| &panel.layers);
+    let of_curve = layers.filter(|layer| matches!(layer.role, Role::Curve | Role::Beyond));
+    let on_screen = |layer: &Layer| match &layer.marks {
+        Marks::Path(points) => points.iter().filter_map(|point| pane.place(0, *point)).collect(),
+        _ => Vec::new(),
+    };
+    of_curve.map(on_screen).collect()
 }
 
 /// Marks the force at each stop that the mass can rest on, and writes it with the push that frees the mass:
-/// beside the stop, clear of the `lines` of the curve.
-fn releases(painter: &Painter, context: &ViewContext<'_>, chart: &Chart, lines: Vec<Vec<Pos2>>) {
+/// beside the stop, clear of the lines of the curve.
+fn releases(painter: &Painter, context: &ViewContext<'_>, pane: &Pane, rect: Rect) {
     let (style, model) = (context.style, context.session.shown());
     let (left, right) = model.stop_positions();
+    let place = |x: f64, force: f64| pane.place(0, (x * 1e3, force)).unwrap_or(rect.min);
     let sides = [(left, -1.0_f32), (right, 1.0)].into_iter().filter_map(|(x, side)| Some((x?, side)));
     let wall = |(x, side): (f64, f32)| {
-        let face = chart.screen_from_world(x, 0.0).x;
-        Rect::from_two_pos(pos2(face, chart.rect.top()), pos2(face + side * WALL, chart.rect.bottom()))
+        let face = place(x, 0.0).x;
+        Rect::from_two_pos(pos2(face, rect.top()), pos2(face + side * WALL, rect.bottom()))
     };
-    let mut taken = Taken { lines, places: sides.clone().map(wall).collect() };
-    let zero = chart.screen_from_world(0.0, 0.0).y;
-    taken.lines.push(vec![pos2(chart.rect.left(), zero), pos2(chart.rect.right(), zero)]);
+    let mut taken = Taken { lines: lines(pane), places: sides.clone().map(wall).collect() };
+    let zero = place(0.0, 0.0).y;
+    taken.lines.push(vec![pos2(rect.left(), zero), pos2(rect.right(), zero)]);
     for (x, side) in sides {
         let force = model.mechanism().curve.force(x);
         // only where the mechanism presses the mass onto the stop
         if !(force * f64::from(side) < 0.0) {
             continue;
         }
-        let at = chart.screen_from_world(x, force);
-        let end = at - vec2(LINE * MARK * side, 0.0);
+        let at = place(x, force);
+        let end = at - vec2(LINE * side, 0.0);
         painter.line_segment([at, end], style.stop_stroke());
         taken.lines.push(vec![at, end]);
         let push = three(force.abs() / (model.mass() * STANDARD_GRAVITY));
@@ -177,6 +190,6 @@ fn releases(painter: &Painter, context: &ViewContext<'_>, chart: &Chart, lines: 
             [(&long, beyond), (&short, beyond), (&long, before), (&short, before), (&short, near)]
         });
         let places = places.map(|(text, (at, align))| (text.as_str(), at, align));
-        taken.write(painter, chart.rect, (style.small(), style.faint()), places);
+        taken.write(painter, rect, (style.small(), style.faint()), places);
     }
 }

@@ -12,13 +12,23 @@ use super::stops::key_step;
 /// Distance that an arrow key moves the mass, in steps of a stop's slider; ten times as far with Shift.
 const KEY_STEPS: f64 = 2.0;
 
+/// Distance in points of the outline from a mass under the pointer.
+pub const OUTLINE: f32 = 2.5;
+
 /// Lets the mass be dragged: it is held at the pointer, and time stands still. With the keyboard focus, the
 /// arrow keys hold and move it, and Enter lets it go.
 pub fn mass_ui(ui: &mut Ui, context: &mut ViewContext<'_>, at: Pos2, rect: Rect) {
-    if matches!(context.drawn, Drawn::Pinned(_)) {
-        return;
-    }
     let grab = Rect::from_center_size(at, egui::Vec2::splat(2.0 * GRAB));
+    if body_ui(ui, context, (at, grab), rect) {
+        ui.painter().circle_stroke(at, BALL + OUTLINE, context.style.pointing_stroke());
+    }
+}
+
+/// The same for a mass that fills `grab`, at `at`. Returns whether the pointer is over it, or drags it.
+pub fn body_ui(ui: &mut Ui, context: &mut ViewContext<'_>, (at, grab): (Pos2, Rect), rect: Rect) -> bool {
+    if matches!(context.drawn, Drawn::Pinned(_)) {
+        return false;
+    }
     let response = ui
         .interact(grab.intersect(rect.expand(GRAB)), ui.scope_id().with("mass"), Sense::drag())
         .on_hover_and_drag_cursor(CursorIcon::Grab);
@@ -30,6 +40,9 @@ pub fn mass_ui(ui: &mut Ui, context: &mut ViewContext<'_>, at: Pos2, rect: Rect)
     }
     if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
         context.session.player.hold(context.span.world_from_screen(pointer.x, rect));
+    }
+    if response.drag_started() {
+        ui.data_mut(|data| data.insert_temp(dragged(), true));
     }
     if response.drag_stopped() {
         context.session.player.let_go();
@@ -50,4 +63,14 @@ pub fn mass_ui(ui: &mut Ui, context: &mut ViewContext<'_>, at: Pos2, rect: Rect)
         context.session.player.let_go();
         context.session.moved_by_hand();
     }
+    ui.is_enabled() && (response.hovered() || response.dragged())
+}
+
+fn dragged() -> egui::Id {
+    egui::Id::unique("the mass has been dragged")
+}
+
+/// Whether the mass was dragged since the program began.
+pub fn was_dragged(ui: &Ui) -> bool {
+    ui.data(|data| data.get_temp::<bool>(dragged())).is_some()
 }

@@ -13,7 +13,7 @@ use crate::numeric::short;
 use crate::scene::{Quantity, Start};
 use crate::study::{Table, metres};
 
-use super::ViewContext;
+use super::{ViewContext, offer_ui};
 
 /// Range of the shift slider to either side, in forcing periods or characteristic times.
 const PERIODS: f64 = 2.0;
@@ -34,10 +34,10 @@ pub fn measured_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         ui.set_min_size(ui.available_size());
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             let Some(over) = context.session.measured.over.clone() else {
-                let text = "No measured data. A CSV of displacement, velocity or acceleration over time, or \
-                            of force over position, lies over what is computed: drop it on the window, or";
-                ui.add(egui::Label::new(RichText::new(text).color(style.faint())).wrap());
-                context.memory.open_measured |= ui.button("Open measured data...").clicked();
+                let text = "Drop a CSV on the window, of displacement, velocity or acceleration over time or \
+                            of force over position, to lay it over what is computed.";
+                let room = ui.available_rect_before_wrap();
+                context.memory.open_measured |= offer_ui(ui, &style, room, text, "Open measured data...");
                 return;
             };
             context.session.want_differences();

@@ -8,20 +8,21 @@
 
 use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
-use crate::app::ui::style::{BALL, RING_SECONDS};
+use crate::app::ui::style::{BALL, RING_SECONDS, Style};
 use crate::app::words::meanings::explained;
 use crate::app::words::numbers::{decimals_for, three};
 use crate::dynamics::{EventKind, STANDARD_GRAVITY, Side};
 
 use super::beside::{Attachments, LowerFlexures, MIN_LABELLED, Places};
-use super::chart::GUTTER;
 use super::flexures::{CLAMP, DrawingArea, DrawingScale, bulge_words, clamp, state_at};
 use super::ghosts::ghosts;
 use super::labels::{Taken, ago};
+use super::mass::{OUTLINE, body_ui, was_dragged};
 use super::memory::Ring;
+use super::pane::GUTTER;
 use super::schematic::{Schematic, schematic};
 use super::stops::{WALL, stops_ui};
-use super::{Span, ViewContext, mass::mass_ui, too_small_ui};
+use super::{Cover, Drawn, LegendRow, Span, ViewContext, too_small_ui};
 
 /// Height in points of the name of a stop above the foot of the stop, clear of the rail.
 const CLEAR: f32 = 6.0;
@@ -88,12 +89,26 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
     let edge = Stroke::new(1.5, style.mass_edge());
     painter.rect(body, 3.0, style.mass(), edge, egui::StrokeKind::Inside);
     stops_ui(ui, context, rect, heights, BALL);
-    mass_ui(ui, context, pos2(x, middle), rect);
+    grip(&painter, &style, body);
+    if body_ui(ui, context, (pos2(x, middle), body), rect) {
+        let stroke = style.pointing_stroke();
+        painter.rect_stroke(body.expand(OUTLINE), 5.0, stroke, egui::StrokeKind::Middle);
+    }
     rings(ui, context, rect, middle);
     let arrow = body.translate(vec2(0.0, -beside.lift() * half.y));
     push_arrow(&painter, context, arrow, state.base_accel, rect);
-    part_names(&painter, context, rect, top, heights, body, taken);
+    let is_new = !was_dragged(ui) && context.cover == Cover::None && context.drawn == Drawn::WithGhosts;
+    let mass = if is_new { "mass: drag me" } else { "mass" };
+    part_names(&painter, context, rect, top, heights, (body, mass), taken);
     caption_ui(ui, &painter, context, rect, &words, state.base_accel);
+}
+
+/// Draws dots on the mass, by which it can be dragged.
+fn grip(painter: &egui::Painter, style: &Style, body: Rect) {
+    for (i, j) in (-1..=1).flat_map(|i| [(i, -1), (i, 1)]) {
+        let at = body.center() + vec2(3.0 * j as f32, 6.0 * i as f32);
+        painter.circle_filled(at, 1.5, style.mass_edge());
+    }
 }
 
 /// The walls of the stops between these heights.
@@ -115,7 +130,7 @@ fn part_names(
     rect: Rect,
     top: f32,
     heights: (f32, f32),
-    body: Rect,
+    (body, mass): (Rect, &str),
     mut taken: Taken,
 ) {
     if rect.width() < MIN_LABELLED.x || rect.height() < MIN_LABELLED.y {
@@ -147,7 +162,7 @@ fn part_names(
         (body.right() + 2.0, below, Align2::LEFT_TOP),
         (body.left() - 2.0, below, Align2::RIGHT_TOP),
     ];
-    taken.write(painter, rect, look.clone(), corners.map(|(x, y, align)| ("mass", pos2(x, y), align)));
+    taken.write(painter, rect, look.clone(), corners.map(|(x, y, align)| (mass, pos2(x, y), align)));
     let y = heights.1 - CLEAR;
     let places = walls(context, rect, heights).flat_map(|wall| {
         let right = (wall.right() + 5.0, Align2::LEFT_BOTTOM);
@@ -266,18 +281,30 @@ fn caption_ui(
     }
     let width = |text: &str| painter.layout_no_wrap(text.to_owned(), style.small(), style.ink()).size().x;
     let needed = |all: &[(String, Color32, u8)]| all.iter().map(|text| width(&text.0) + 14.0).sum::<f32>();
-    while needed(&all) > rect.width() - 6.0
+    let row = LegendRow::of(ui, rect);
+    // the motion of the base says from where it is seen
+    let inset_width = context.drawn.model(context.session).single_sine().map_or(0.0, |_| INSET);
+    if needed(&all) + inset_width > row.right - row.left - 10.0 {
+        all.retain(|text| text.2 > 0);
+    }
+    while needed(&all) > row.right - row.left - 6.0
         && let Some(lowest) = all.iter().map(|text| text.2).min()
     {
         all.retain(|text| text.2 > lowest);
     }
-    let mut at = rect.left_top() + vec2(10.0, 4.0);
+    let mut at = pos2(row.left + 10.0, rect.top() + 0.5 * LegendRow::HEIGHT);
     for (text, color, _) in all {
-        let place = painter.text(at, Align2::LEFT_TOP, &text, style.small(), color);
+        let place = painter.text(at, Align2::LEFT_CENTER, &text, style.small(), color);
         explain(ui, place, &text);
         at.x = place.right() + 14.0;
     }
-    inset(ui, painter, context, Rect::from_min_max(pos2(at.x, rect.top()), rect.max), base_accel);
+    inset(
+        ui,
+        painter,
+        context,
+        Rect::from_min_max(pos2(at.x, rect.top()), pos2(row.right, rect.bottom())),
+        base_accel,
+    );
 }
 
 /// Draws the motion of the base at another scale, for a sine, whose displacement is -a/(2 pi f)^2.

@@ -29,6 +29,8 @@ pub struct Memory {
     pub hovered: Option<View>,
     /// A view that a lesson covers until its first prediction has been shown.
     pub covered: Option<View>,
+    /// The question over what a lesson covers.
+    pub question: Option<String>,
     /// Displacements in mm of the stops about which a lesson asks, left and right.
     pub asked_stops: [Option<f64>; 2],
     pub timeline: Timeline,

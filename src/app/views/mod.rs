@@ -9,7 +9,6 @@ mod axes;
 mod basins;
 mod before_now;
 mod beside;
-mod chart;
 mod compare;
 mod context;
 mod cursor_times;
@@ -22,7 +21,6 @@ mod force;
 mod ghosts;
 mod hand;
 mod labels;
-mod legend;
 mod map;
 mod mass;
 mod measured;
@@ -31,9 +29,9 @@ mod memory;
 mod overlay;
 mod pane;
 mod phase;
-mod plot;
 mod power;
 mod ranges;
+mod row;
 mod schematic;
 mod side_by_side;
 mod span;
@@ -48,16 +46,18 @@ mod zoom;
 
 use eframe::egui::{Ui, UiBuilder};
 
-use crate::app::ui::style::Style;
-
-pub(super) use context::too_small_ui;
 pub use context::{Cover, Drawn, ViewContext};
+use context::{covered_ui, empty_ui, offer_ui, too_small_ui};
 pub use cursor_times::Cursors;
 pub use memory::{MapLook, Memory, Timeline};
+pub use row::LegendRow;
 pub use span::Span;
 pub use trace::TraceQuantity;
 pub(super) use trace::stretch;
 pub use view::View;
+
+/// What is said over a view that waits for the first prediction of a lesson.
+const LATER: &str = "This is shown after the first prediction.";
 
 pub fn view_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) {
     // the rest of the panel: a view that fills the window has a title and a button above it
@@ -68,18 +68,9 @@ pub fn view_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) {
     ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| drawn_ui(ui, view, context));
 }
 
-/// Draws the placeholder of a view whose content is covered.
-fn covered_ui(ui: &mut Ui, style: &Style) {
-    let rect = ui.max_rect();
-    ui.painter().rect_filled(rect, 0.0, style.ground());
-    ui.scope_builder(UiBuilder::new().max_rect(rect.shrink(12.0)), |ui| {
-        ui.label("Covered");
-    });
-}
-
 fn drawn_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) {
     if context.memory.covered == Some(view) {
-        return covered_ui(ui, &context.style);
+        return covered_ui(ui, &context.style, LATER);
     }
     match context.cover {
         Cover::None => {}
@@ -88,7 +79,11 @@ fn drawn_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) {
             ui.disable();
             ui.set_opacity(1.0);
         }
-        Cover::Surveys | Cover::Future | Cover::All => return covered_ui(ui, &context.style),
+        Cover::Surveys => return covered_ui(ui, &context.style, LATER),
+        Cover::Future | Cover::All => {
+            let question = context.memory.question.as_deref().unwrap_or("What do you expect?");
+            return covered_ui(ui, &context.style, question);
+        }
     }
     match view {
         View::Mechanism => mechanism::mechanism_ui(ui, context),

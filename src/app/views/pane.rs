@@ -5,21 +5,63 @@ use std::sync::Arc;
 
 use eframe::egui::epaint::{TessellationOptions, Tessellator, TextShape};
 use eframe::egui::{
-    FontFamily, FontId, Id, Mesh, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2,
+    Align2, FontFamily, FontId, Id, Mesh, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2,
 };
 
-use crate::app::ui::style::{SMALL, Style, colour, strong_family};
-use crate::output::{Area, Chart, Figure, Frame, PlotAxis, Shape as Drawn, SurfaceFrame, TICK, Text};
+use crate::app::ui::style::{BODY, SMALL, STATUS, Style, colour, strong_family};
+use crate::app::words::meanings::explained;
+use crate::output::{
+    Area, Chart, Figure, Frame, Layer, PlotAxis, Room, Shape as Drawn, SurfaceFrame, TICK, Text, is_fine,
+};
 
+use super::LegendRow;
 use super::hand::axes_input;
 use super::memory::Memory;
 use super::view::View;
 
 /// Points of the screen in a unit of a chart.
-const UNIT: f32 = SMALL / TICK as f32;
+pub const UNIT: f32 = SMALL / TICK as f32;
+
+/// Width in points from the left edge of a view to its frame, where it stands in line with others.
+pub const GUTTER: f32 = 62.0;
+
+/// Height in points of the row of a legend.
+pub const LEGEND: f32 = LegendRow::HEIGHT;
+
+/// Least radius in points of a dot that can be seen.
+const LEAST_DOT: f32 = 1.5;
 
 /// Ascent of the letters in ems.
 const ASCENT: f32 = 1984.0 / 2048.0;
+
+/// A place of the window for a chart.
+pub struct Place {
+    area: Rect,
+    room: Option<Room>,
+    sense: Sense,
+}
+
+impl From<Rect> for Place {
+    fn from(area: Rect) -> Self {
+        Self { area, room: None, sense: Sense::click_and_drag() }
+    }
+}
+
+impl Place {
+    /// A place in line with those above and below it, on a ground that the view has painted. It leaves these
+    /// widths and heights in points free: beside the legend, and between it and the picture.
+    pub fn in_line(ui: &Ui, area: Rect, sense: Sense, (beside, between): (f32, f32)) -> Self {
+        let unit = |points: f32| f64::from(points / UNIT);
+        let row = LegendRow::of(ui, area);
+        let room = Room {
+            left: unit(GUTTER),
+            legend: unit((row.left - area.left()).max(GUTTER)),
+            beside: unit(beside + area.right() - row.right),
+            between: unit(between),
+        };
+        Self { area, room: Some(room), sense }
+    }
+}
 
 /// A chart that was painted.
 pub struct Pane {
@@ -29,6 +71,30 @@ pub struct Pane {
 }
 
 impl Pane {
+    /// Paints layers over a panel.
+    pub fn draw(&self, painter: &Painter, style: &Style, panel: usize, layers: &[Layer]) {
+        let Some(frame) = self.painting.frames.get(panel) else { return };
+        let (mesh, _) =
+            self.painting.mesh(painter.pixels_per_point(), style, frame.shapes(layers, &style.theme()));
+        painter.add(Shape::mesh(mesh));
+    }
+
+    /// Writes what is under the pointer at the right end of the legend, over the entries that it would cut,
+    /// left of what stands `beside` it.
+    pub fn reading(&self, ui: &Ui, style: &Style, beside: f32, text: &str) {
+        let area = self.response.rect;
+        let painter = ui.painter().with_clip_rect(area);
+        let galley = painter.layout_no_wrap(text.to_owned(), style.small(), style.ink());
+        let right = LegendRow::of(ui, area).right - beside;
+        let row = Rect::from_min_max(area.min, pos2(right, area.top() + LEGEND));
+        let at = Align2::RIGHT_CENTER.anchor_size(row.right_center() - vec2(6.0, 0.0), galley.size());
+        let entries = self.painting.legend.iter().map(|entry| entry.0);
+        let cut = entries.filter(|entry| entry.right() > at.left() - 4.0 && entry.center().y < row.bottom());
+        let left = cut.map(|entry| entry.left()).fold(at.left(), f32::min) - 2.0;
+        painter.rect_filled(row.with_min_x(left), 0.0, style.ground());
+        painter.galley(at.min, galley, style.ink());
+    }
+
     /// The values of a panel's axes at a place on the screen.
     pub fn values_at(&self, panel: usize, at: Pos2) -> Option<(f64, f64)> {
         let (rect, frame) = (self.frame(panel)?, self.painting.frames.get(panel)?);
@@ -75,28 +141,43 @@ struct Painting {
     origin: Pos2,
     frames: Vec<Frame>,
     surface: Option<SurfaceFrame>,
+    legend: Vec<(Rect, String)>,
     mesh: Arc<Mesh>,
     texts: Vec<Text>,
 }
 
 impl Painting {
-    /// The chart laid out in `area`, its shapes but the texts as one mesh.
-    fn new(ui: &Ui, style: &Style, area: Rect, chart: &Chart) -> Self {
+    /// The chart laid out in a place, its shapes but the texts as one mesh.
+    fn new(ui: &Ui, style: &Style, Place { area, room, .. }: &Place, chart: &Chart) -> Self {
         let size = (f64::from(area.width() / UNIT), f64::from(area.height() / UNIT));
-        let Figure { shapes, frames, surface, .. } = chart.pane(size, &style.theme());
+        let figure = chart.pane(size, &style.theme(), room.as_ref());
+        let Figure { mut shapes, frames, surface, legend, .. } = figure;
+        if room.is_some() {
+            shapes.remove(0); // the ground, on which the view may have written
+        }
+        let (mesh, texts) = (Arc::default(), Vec::new());
+        let mut painting = Self { origin: area.min, frames, surface, legend: Vec::new(), mesh, texts };
+        painting.legend = legend.into_iter().map(|(area, words)| (painting.rect(area), words)).collect();
+        let (mesh, texts) = painting.mesh(ui.pixels_per_point(), style, shapes);
+        (painting.mesh, painting.texts) = (Arc::new(mesh), texts);
+        painting
+    }
+
+    /// Shapes of the canvas as a mesh on the screen, and the texts among them.
+    fn mesh(&self, pixels: f32, style: &Style, shapes: Vec<Drawn>) -> (Mesh, Vec<Text>) {
         // prerasterized discs lie in a texture that may change
         let options = TessellationOptions { prerasterized_discs: false, ..TessellationOptions::default() };
-        let mut tessellator = Tessellator::new(ui.pixels_per_point(), options, [1, 1], Vec::new());
+        let mut tessellator = Tessellator::new(pixels, options, [1, 1], Vec::new());
         let (mut mesh, mut texts) = (Mesh::default(), Vec::new());
-        let mut painting =
-            Self { origin: area.min, frames, surface, mesh: Arc::default(), texts: Vec::new() };
         for shape in shapes {
-            let places = |points: &[(f64, f64)]| points.iter().map(|point| painting.place(*point)).collect();
+            let places = |points: &[(f64, f64)]| points.iter().map(|point| self.place(*point)).collect();
             match shape {
                 // without a soft edge, so that neighbouring cells leave no seam
-                Drawn::Rect(area, ink) => mesh.add_colored_rect(painting.rect(area), colour(ink)),
+                Drawn::Rect(area, ink) => mesh.add_colored_rect(self.rect(area), colour(ink)),
                 Drawn::Line(points, width, ink) => {
-                    let stroke = Stroke::new(style.width(width as f32 * UNIT), colour(ink));
+                    // frame and grid are as thin by a projector
+                    let width = if is_fine(width) { width as f32 * UNIT } else { style.line(width) };
+                    let stroke = Stroke::new(width, colour(ink));
                     tessellator.tessellate_shape(Shape::line(places(&points), stroke), &mut mesh);
                 }
                 Drawn::Polygon(points, ink) => {
@@ -104,15 +185,14 @@ impl Painting {
                     tessellator.tessellate_shape(shape, &mut mesh);
                 }
                 Drawn::Disc(centre, radius, ink) => {
-                    let radius = style.dot(radius as f32 * UNIT);
-                    let disc = Shape::circle_filled(painting.place(centre), radius, colour(ink));
+                    let radius = style.dot((radius as f32 * UNIT).max(LEAST_DOT));
+                    let disc = Shape::circle_filled(self.place(centre), radius, colour(ink));
                     tessellator.tessellate_shape(disc, &mut mesh);
                 }
                 Drawn::Text(text) => texts.push(text),
             }
         }
-        (painting.mesh, painting.texts) = (Arc::new(mesh), texts);
-        painting
+        (mesh, texts)
     }
 
     fn paint(&self, painter: &Painter) {
@@ -131,10 +211,12 @@ impl Painting {
 }
 
 fn write(painter: &Painter, at: Pos2, text: &Text) {
-    let (size, ink) = (text.size as f32 * UNIT, colour(text.ink));
+    let (wanted, ink) = (text.size as f32 * UNIT, colour(text.ink));
+    // the name of an axis is as large as its numbers: the window has three sizes
+    let size = [STATUS, BODY, SMALL].into_iter().find(|size| *size <= wanted + 0.1).unwrap_or(wanted);
     let family = if text.bold { strong_family() } else { FontFamily::Proportional };
     let galley = painter.layout_no_wrap(text.words.clone(), FontId::new(size, family), ink);
-    let before = text.before() as f32 * UNIT;
+    let before = text.before() as f32 * UNIT * size / wanted;
     let (corner, angle) = match text.upright {
         true => (pos2(at.x - ASCENT * size, at.y + before), -FRAC_PI_2),
         false => (pos2(at.x - before, at.y - ASCENT * size), 0.0),
@@ -156,44 +238,88 @@ pub fn pane_ui(
         panel.x = panel.x.zoomed(memory.axes.ends(axes[0], (panel.x.low, panel.x.high)));
         panel.y = panel.y.zoomed(memory.axes.ends(axes[1], (panel.y.low, panel.y.high)));
     }
-    let painting = Arc::new(Painting::new(ui, style, area, &chart));
-    let response = ui.interact(area, ui.scope_id().with("chart"), Sense::click_and_drag());
-    painting.paint(&ui.painter().with_clip_rect(area));
-    let pane = Pane { response, chart: Arc::new(chart), painting };
+    let pane = fresh_pane_ui(ui, style, area, chart);
     if let Some(frame) = pane.frame(0) {
         axes_input(ui, memory, view, &pane.response, (area, frame));
     }
     pane
 }
 
+/// Paints `chart` in a place.
+pub fn fresh_pane_ui(ui: &mut Ui, style: &Style, place: impl Into<Place>, chart: Chart) -> Pane {
+    let place = place.into();
+    let painting = Arc::new(Painting::new(ui, style, &place, &chart));
+    shown(ui, &place, Arc::new(chart), painting)
+}
+
+/// Paints what was made of a chart for this place.
+fn shown(ui: &mut Ui, place: &Place, chart: Arc<Chart>, painting: Arc<Painting>) -> Pane {
+    let response = ui.interact(place.area, ui.scope_id().with("chart"), place.sense);
+    painting.paint(&ui.painter().with_clip_rect(place.area));
+    for (rect, words) in &painting.legend {
+        explained(ui.interact(*rect, ui.scope_id().with(("legend", words)), Sense::hover()), words);
+    }
+    Pane { response, chart, painting }
+}
+
 /// A chart as it was painted last, for a key and a place of the screen.
 #[derive(Clone)]
 struct Kept<K> {
-    key: (K, Rect, f32),
+    key: (K, Rect, Option<Room>, f32),
     chart: Arc<Chart>,
     painting: Arc<Painting>,
 }
 
-/// Paints a chart in `area` as it was painted before, as long as `key` and `area` stay the same; else it is
-/// made anew.
+/// Paints a chart in a place as it was painted before, as long as `key` and the place stay the same; else it
+/// is made anew.
 pub fn kept_pane_ui<K: Clone + PartialEq + Send + Sync + 'static>(
     ui: &mut Ui,
     style: &Style,
-    area: Rect,
+    place: impl Into<Place>,
     key: K,
     chart: impl FnOnce() -> Chart,
 ) -> Pane {
+    let place = place.into();
     let id: Id = ui.scope_id().with("kept chart");
-    let key = (key, area, ui.pixels_per_point());
+    let key = (key, place.area, place.room, ui.pixels_per_point());
     let kept = ui.data(|data| data.get_temp::<Kept<K>>(id)).filter(|kept| kept.key == key);
     let kept = kept.unwrap_or_else(|| {
         let chart = Arc::new(chart());
-        let painting = Arc::new(Painting::new(ui, style, area, &chart));
+        let painting = Arc::new(Painting::new(ui, style, &place, &chart));
         let kept = Kept { key, chart, painting };
         ui.data_mut(|data| data.insert_temp(id, kept.clone()));
         kept
     });
-    let response = ui.interact(area, ui.scope_id().with("chart"), Sense::click_and_drag());
-    kept.painting.paint(&ui.painter().with_clip_rect(area));
-    Pane { response, chart: kept.chart, painting: kept.painting }
+    shown(ui, &place, kept.chart, kept.painting)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::BLACK;
+
+    /// The joins of a line neither cut its peaks nor lengthen them: all of one height end within a pixel.
+    #[test]
+    fn peaks_of_one_height_are_drawn_as_high() {
+        let style = Style { dark: false, projector: false };
+        let canvas = Painting {
+            origin: Pos2::ZERO,
+            frames: Vec::new(),
+            surface: None,
+            legend: Vec::new(),
+            mesh: Arc::default(),
+            texts: Vec::new(),
+        };
+        let top = |half: f64| {
+            let peak = vec![(100.0 - half, 400.0), (100.0, 100.0), (100.0 + half, 400.0)];
+            let (mesh, _) = canvas.mesh(1.0, &style, vec![Drawn::Line(peak, 2.4, BLACK)]);
+            mesh.vertices.iter().map(|vertex| vertex.pos.y).fold(f32::INFINITY, f32::min)
+        };
+        let tops = [0.0, 0.01, 0.1, 1.0, 4.0, 20.0, 100.0].map(top);
+        let peak = 100.0 * UNIT;
+        assert!(tops.iter().all(|top| (peak - 2.2..=peak).contains(top)), "{tops:?} at {peak}");
+        let ends =
+            tops.iter().fold((f32::INFINITY, 0.0_f32), |(low, high), top| (low.min(*top), high.max(*top)));
+        assert!(ends.1 - ends.0 < 1.0, "{tops:?}");
+    }
 }

@@ -5,24 +5,25 @@
 //! the state across it.
 
 use std::collections::VecDeque;
+use std::sync::Arc;
 
-use eframe::egui::{self, Color32, Painter, Pos2, Sense, Shape, Stroke, Ui};
+use eframe::egui::{self, Sense, Stroke, Ui};
 
+use crate::app::task::Identity;
 use crate::app::ui::widgets::kind_shapes;
 use crate::app::words::numbers::three;
 use crate::app::words::status::Kind;
 use crate::dynamics::{Model, Phase, Sample};
-use crate::output::separatrix as separatrix_of;
-use crate::study::between;
+use crate::output::{Chart, Layer, Marks, PlotAxis, Role, portrait_panel};
+use crate::study::{Table, between};
 
-use super::chart::Chart;
-use super::ghosts::{dashed, ghosts};
+use super::ghosts::ghosts;
 use super::hand::axes_input;
 use super::labels::pointer_rests;
-use super::legend::{LEGEND, Symbol};
+use super::pane::{LEGEND, Pane, Place, kept_pane_ui};
 use super::stops::stops_ui;
 use super::view::Axis;
-use super::{View, ViewContext, too_small_ui};
+use super::{LegendRow, View, ViewContext, too_small_ui};
 
 /// Length of the trail in forcing periods.
 const TRAIL_PERIODS: f64 = 4.0;
@@ -41,15 +42,24 @@ const MAX_PIECES: f32 = 12.0;
 /// Largest number of pieces of a path.
 const MAX_TOTAL_PIECES: usize = 6000;
 
-/// Opacity of the oldest part of the trail.
-const FAINTEST: f32 = 0.12;
-
 const MAX_STROBES: f64 = 300.0;
 
 /// Radius in points of the mark of the present state.
 const STATE: f32 = 6.0;
-/// Radius in points of the mark of a stroboscopic state.
-const STROBE: f32 = 3.0;
+/// Width in points of the button beside the legend.
+const BUTTON: f32 = 88.0;
+
+/// A point of the picture: displacement in mm, velocity in mm/s.
+type State = (f64, f64);
+
+/// A point of the picture from m and m/s.
+fn state((x, v): (f64, f64)) -> State {
+    (x * 1e3, v * 1e3)
+}
+
+fn layer(role: Role, name: &str, marks: Marks) -> Layer {
+    Layer { marks, role, name: name.to_owned() }
+}
 
 pub fn phase_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     states_ui(ui, context, false);
@@ -66,68 +76,79 @@ pub fn section_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 }
 
 fn states_ui(ui: &mut Ui, context: &mut ViewContext<'_>, is_section: bool) {
-    let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::click() | Sense::DRAG);
+    let (area, style) = (ui.max_rect(), context.style);
     if area.width() < 60.0 || area.height() < 80.0 {
-        return too_small_ui(ui, &context.style, area);
+        return too_small_ui(ui, &style, area);
     }
-    let style = context.style;
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "states of the mass"));
+    ui.painter().rect_filled(area, 0.0, style.ground());
     let speed = context.memory.ranges.follow(context.session).speed();
     let view = if is_section { View::Section } else { View::PhasePortrait };
     let (low, high) = context.memory.axes.ends(Axis::Up(view), (-speed, speed));
     let shared = context.span;
     context.span = context.memory.reach(context.session, Some(Axis::Reach));
-    let chart = Chart::new(area, context.span, low, high);
-    let pointer = response.hover_pos().filter(|at| chart.rect.contains(*at));
-    chart.axes(ui, context, ("velocity (mm/s)", 1e-3), pointer.is_some());
-    let painter = ui.painter().with_clip_rect(chart.rect);
-    let mut legend = Vec::new();
-    if separatrix(&painter, context, &chart) {
-        legend.push((Symbol::Dashed(style.ghost_stroke()), "separatrix"));
-    }
-    chart.equilibria(&painter, &style, &context.session.shown().mechanism().landscape);
-    let edges = (chart.rect.top(), chart.rect.bottom());
-    stops_ui(ui, context, chart.rect, edges, 0.0);
-    let painter = ui.painter().with_clip_rect(chart.rect.expand(STATE));
-    let is_periodic = context.session.shown().forcing_period().is_some();
+    let (span, model) = (context.span, Arc::clone(context.session.shown()));
+    let is_periodic = model.forcing_period().is_some();
     let points_only = is_section || context.memory.points_only && is_periodic;
+    let beside = if is_periodic && !is_section { BUTTON } else { 0.0 };
+    let place = Place::in_line(ui, area, Sense::click() | Sense::DRAG, (beside, 0.0));
+    let key = (Identity(Arc::clone(&model)), [span.low, span.high, low, high], points_only, style);
+    let pane = kept_pane_ui(ui, &style, place, key, || {
+        let axis = |low: f64, high: f64, name: &str| PlotAxis::between(low * 1e3, high * 1e3, name);
+        let axes = (axis(span.low, span.high, "displacement (mm)"), axis(low, high, "velocity (mm/s)"));
+        still(&model, axes, points_only)
+    });
+    pane.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "states of the mass"));
+    let Some(frame) = pane.frame(0) else { return };
+    stops_ui(ui, context, frame, (frame.top(), frame.bottom()), 0.0);
+    let mut layers = Vec::new();
     if !points_only {
-        ghost_trails(&painter, context, &chart);
-        trail(&painter, context, &chart);
+        ghost_trails(&mut layers, context, &pane);
+        trail(&mut layers, context, &pane);
     }
-    if is_periodic {
-        legend.push((Symbol::Ring(style.base_stroke()), "once a period"));
-    }
-    if context.session.shown().stop_positions() != (None, None) && !points_only {
-        legend.push((Symbol::Dashed(style.impact_stroke()), "impact"));
-    }
-    strobes(&painter, context, &chart);
+    layers.push(layer(Role::Strobe, "", Marks::Points(strobes(context))));
+    let painter = ui.painter().with_clip_rect(frame.expand(STATE));
+    pane.draw(&painter, &style, 0, &layers);
+    let at = |sample: Sample| pane.place(0, state((sample.x, sample.v))).unwrap_or(frame.min);
     for ghost in ghosts(context) {
-        ghost.stops(&painter, context, chart.rect, 0.0);
-        let at = chart.screen_from_world(ghost.state.x, ghost.state.v);
-        ghost.ball(&painter, &style, at, STATE);
+        ghost.stops(&painter, context, frame, 0.0);
+        ghost.ball(&painter, &style, at(ghost.state), STATE);
     }
-    let state = context.session.player.state();
-    let at = chart.screen_from_world(state.x, state.v);
-    if state.phase == Phase::Free {
-        painter.circle(at, STATE, style.mass(), Stroke::new(1.5, style.mass_edge()));
+    let present = context.session.player.state();
+    if present.phase == Phase::Free {
+        painter.circle(at(present), STATE, style.mass(), Stroke::new(1.5, style.mass_edge()));
     } else {
-        painter.extend(kind_shapes(Kind::Resting, at, STATE + 2.5, style.mass_edge()));
-        painter.extend(kind_shapes(Kind::Resting, at, STATE, style.mass()));
+        painter.extend(kind_shapes(Kind::Resting, at(present), STATE + 2.5, style.mass_edge()));
+        painter.extend(kind_shapes(Kind::Resting, at(present), STATE, style.mass()));
     }
-    let right = match is_periodic && !is_section {
-        true => points_ui(ui, area, &mut context.memory.points_only),
-        false => area.right(),
-    };
-    chart.legend(ui, &style, right, &legend);
-    axes_input(ui, context.memory, view, &response, (area, chart.rect));
-    start_ui(ui, &response, context, &chart, pointer);
+    if beside > 0.0 {
+        points_ui(ui, area, &mut context.memory.points_only);
+    }
+    axes_input(ui, context.memory, view, &pane.response, (area, frame));
+    start_ui(ui, context, &pane, beside);
     context.span = shared;
 }
 
-/// Button in the row of the legend that hides the path. Returns its left edge.
-fn points_ui(ui: &mut Ui, area: egui::Rect, points_only: &mut bool) -> f32 {
-    let row = area.with_max_y(area.top() + LEGEND).with_max_x(area.right() - 4.0);
+/// What stays the same from frame to frame: axes, separatrix and equilibria, and the legend of the motion.
+/// The view draws the stops, which can be dragged.
+fn still(model: &Model, axes: (PlotAxis, PlotAxis), points_only: bool) -> Chart {
+    let mut named = Vec::new();
+    if model.forcing_period().is_some() {
+        named.push(layer(Role::Strobe, "once a period", Marks::Points(Vec::new())));
+    }
+    if model.stop_positions() != (None, None) {
+        if !points_only {
+            named.push(layer(Role::Jump(0.0), "impact", Marks::Path(Vec::new())));
+        }
+        named.push(layer(Role::Resting, "at rest on a stop", Marks::Points(Vec::new())));
+    }
+    let panel = portrait_panel((model.mechanism(), model.mass()), axes, 1e3, (f64::NAN, f64::NAN), named);
+    Chart::stack(vec![panel], "", Table::new())
+}
+
+/// Button in the row of the legend that hides the path.
+fn points_ui(ui: &mut Ui, area: egui::Rect, points_only: &mut bool) {
+    let right = LegendRow::of(ui, area).right - 4.0;
+    let row = area.with_max_y(area.top() + LEGEND).with_max_x(right);
     let layout = egui::Layout::right_to_left(egui::Align::Center);
     let builder = egui::UiBuilder::new().max_rect(row).layout(layout);
     ui.scope_builder(builder, |ui| {
@@ -140,29 +161,22 @@ fn points_ui(ui: &mut Ui, area: egui::Rect, points_only: &mut bool) -> f32 {
         if response.clicked() {
             *points_only = !*points_only;
         }
-        response.rect.left() - 6.0
-    })
-    .inner
+    });
 }
 
 /// Shows the state under the pointer; a click lets the motion go on from there.
-fn start_ui(
-    ui: &Ui,
-    response: &egui::Response,
-    context: &mut ViewContext<'_>,
-    chart: &Chart,
-    pointer: Option<Pos2>,
-) {
-    let Some(pointer) = pointer else { return };
-    let (x, v) = chart.world_from_screen(pointer);
-    let inside = within(context, x);
-    if response.clicked() {
-        context.session.player.place(x, if inside { v } else { 0.0 });
+fn start_ui(ui: &Ui, context: &mut ViewContext<'_>, pane: &Pane, beside: f32) {
+    let pointer =
+        pane.response.hover_pos().filter(|at| pane.frame(0).is_some_and(|frame| frame.contains(*at)));
+    let Some((mm, speed)) = pointer.and_then(|at| pane.values_at(0, at)) else { return };
+    if pane.response.clicked() {
+        let inside = within(context, mm / 1e3);
+        context.session.player.place(mm / 1e3, if inside { speed / 1e3 } else { 0.0 });
         context.session.moved_by_hand();
     }
-    chart.readout(ui, &context.style, &format!("{} mm, {} mm/s", three(x * 1e3), three(v * 1e3)));
+    pane.reading(ui, &context.style, beside, &format!("{} mm, {} mm/s", three(mm), three(speed)));
     if pointer_rests(ui) {
-        response.clone().on_hover_text_at_pointer("Click: the motion goes on from here.");
+        pane.response.clone().on_hover_text_at_pointer("Click: the motion goes on from here.");
     }
 }
 
@@ -173,109 +187,85 @@ fn within(context: &ViewContext<'_>, x: f64) -> bool {
     x >= left.unwrap_or(domain.0).max(domain.0) && x <= right.unwrap_or(domain.1).min(domain.1)
 }
 
-/// Draws the states with the energy of the top of the barrier. Returns whether there is a barrier.
-fn separatrix(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) -> bool {
-    let model = context.session.shown();
-    let stroke = context.style.ghost_stroke();
-    let branches = separatrix_of(model.mechanism(), model.mass(), (context.span.low, context.span.high));
-    for path in &branches {
-        let points: Vec<Pos2> = path.iter().map(|(x, v)| chart.screen_from_world(*x, *v)).collect();
-        painter.extend(Shape::dashed_line(&points, stroke, 5.0, 4.0));
-    }
-    !branches.is_empty()
-}
-
-/// Draws the recent path, fading with age. An impact is a dashed jump; moving the mass by hand leaves a gap.
-fn trail(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
-    let (session, style) = (&context.session, context.style);
+/// The recent path, fading with age. An impact is a dashed jump; moving the mass by hand leaves a gap.
+fn trail(layers: &mut Vec<Layer>, context: &ViewContext<'_>, pane: &Pane) {
+    let session = &context.session;
     let model = session.shown();
     let length =
         model.forcing_period().map_or(TRAIL_SWINGS * model.natural_time(), |period| TRAIL_PERIODS * period);
-    let state = session.player.state();
+    let present = session.player.state();
     let watch = session.player.watch();
-    let path = recent(watch.samples(), state, length);
+    let path = recent(watch.samples(), present, length);
     let mut pieces_left = MAX_TOTAL_PIECES;
     let level = |t: f64| {
-        let age = ((state.t - t) / length).clamp(0.0, 1.0);
+        let age = ((present.t - t) / length).clamp(0.0, 1.0);
         ((age * FADES as f64) as usize).min(FADES - 1)
     };
-    let shade = |color: Color32, level: usize| {
-        let age = level as f32 / (FADES - 1) as f32;
-        color.gamma_multiply(1.0 - (1.0 - FAINTEST) * age)
-    };
-    let (motion, impact) = (style.motion_stroke(), style.impact_stroke());
-    let mut line: Vec<Pos2> = Vec::new();
-    let mut drawn = FADES;
-    let finish = |line: &mut Vec<Pos2>, level: usize| {
-        if line.len() > 1 {
-            let stroke = Stroke::new(motion.width, shade(motion.color, level));
-            painter.add(Shape::line(std::mem::take(line), stroke));
-        }
-        line.clear();
-    };
+    let mut parts: [Vec<State>; FADES] = Default::default();
+    let mut jumps: [Vec<State>; FADES] = Default::default();
+    const GAP: State = (f64::NAN, f64::NAN);
     for pair in path.windows(2) {
         let (a, b) = (pair[0], pair[1]);
-        let (from, to) = (chart.screen_from_world(a.x, a.v), chart.screen_from_world(b.x, b.v));
-        let now = level(b.t);
+        let (from, to, now) = (state((a.x, a.v)), state((b.x, b.v)), level(b.t));
         if a.t == b.t {
-            finish(&mut line, drawn.min(FADES - 1));
+            parts[now].push(GAP);
             if a.x == b.x && a.v != b.v {
-                let stroke = Stroke::new(1.5 * impact.width, shade(impact.color, now));
-                painter.extend(Shape::dashed_line(&[from, to], stroke, 4.0, 3.0));
+                jumps[now].extend([from, to, GAP]);
             }
             continue;
         }
-        if now != drawn || line.is_empty() {
-            finish(&mut line, drawn.min(FADES - 1));
-            line.push(from);
-            drawn = now;
+        if parts[now].last() != Some(&from) {
+            parts[now].extend([GAP, from]);
         }
-        let count = pieces(chart, watch.model_at(a.t), (&a, &b)).min(pieces_left);
+        let count = pieces(pane, watch.model_at(a.t), (&a, &b)).min(pieces_left);
         pieces_left -= count;
-        let between = between(watch.model_at(a.t), &a, &b, count);
-        line.extend(between.iter().map(|(x, v)| chart.screen_from_world(*x, *v)));
-        line.push(to);
+        parts[now].extend(between(watch.model_at(a.t), &a, &b, count).into_iter().map(state));
+        parts[now].push(to);
     }
-    finish(&mut line, drawn.min(FADES - 1));
+    // the oldest lies below
+    for (level, (part, jumps)) in parts.into_iter().zip(jumps).enumerate().rev() {
+        let age = level as f64 / (FADES - 1) as f64;
+        layers.push(layer(Role::Past(age), "", Marks::Path(part)));
+        layers.push(layer(Role::Jump(age), "", Marks::Path(jumps)));
+    }
 }
 
-/// Draws the last period of the paths of the pinned motions, dashed; longer paths could not be told apart.
-fn ghost_trails(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
+/// The last period of the paths of the pinned motions; longer paths could not be told apart.
+fn ghost_trails(layers: &mut Vec<Layer>, context: &ViewContext<'_>, pane: &Pane) {
     let session = &context.session;
     let model = session.shown();
     let length = model.forcing_period().unwrap_or(TRAIL_SWINGS / TRAIL_PERIODS * model.natural_time());
     let now = session.player.time();
-    let stroke = context.style.ghost_motion_stroke();
     for pin in session.pins.all() {
         let watch = pin.watch();
         let path = recent(watch.samples(), pin.state_at(now), length.min(now - pin.since()));
         let mut pieces_left = MAX_TOTAL_PIECES;
-        let mut points: Vec<Pos2> = Vec::with_capacity(2 * path.len());
+        let mut points: Vec<State> = Vec::with_capacity(2 * path.len());
         for pair in path.windows(2) {
             let (a, b) = (pair[0], pair[1]);
-            let count = if a.t == b.t { 1 } else { pieces(chart, watch.model_at(a.t), (&a, &b)) };
+            let count = if a.t == b.t { 1 } else { pieces(pane, watch.model_at(a.t), (&a, &b)) };
             let count = count.min(pieces_left);
             pieces_left -= count;
-            let between = between(watch.model_at(a.t), &a, &b, count);
-            points.push(chart.screen_from_world(a.x, a.v));
-            points.extend(between.iter().map(|(x, v)| chart.screen_from_world(*x, *v)));
+            points.push(state((a.x, a.v)));
+            points.extend(between(watch.model_at(a.t), &a, &b, count).into_iter().map(state));
         }
-        points.extend(path.last().map(|last| chart.screen_from_world(last.x, last.v)));
-        painter.extend(dashed(&points, pin.place(), stroke));
+        points.extend(path.last().map(|last| state((last.x, last.v))));
+        layers.push(layer(Role::Pin(pin.place()), "", Marks::Path(points)));
     }
 }
 
 /// Number of pieces that make the path between two samples look smooth, from how far the control points of
 /// its cubic are off the chord.
-fn pieces(chart: &Chart, model: &Model, (a, b): (&Sample, &Sample)) -> usize {
+fn pieces(pane: &Pane, model: &Model, (a, b): (&Sample, &Sample)) -> usize {
     let third = (b.t - a.t) / 3.0;
+    let place = |at: (f64, f64)| pane.place(0, state(at)).unwrap_or_default();
     let control = |sample: &Sample, third: f64| {
         let acceleration = model.acceleration(sample.x, sample.v, sample.base_accel);
-        chart.screen_from_world(sample.x + third * sample.v, sample.v + third * acceleration)
+        place((sample.x + third * sample.v, sample.v + third * acceleration))
     };
-    let (from, to) = (chart.screen_from_world(a.x, a.v), chart.screen_from_world(b.x, b.v));
+    let (from, to) = (place((a.x, a.v)), place((b.x, b.v)));
     let along = (to - from).normalized();
-    let distance = |at: Pos2| {
+    let distance = |at: egui::Pos2| {
         let aside = at - from;
         (aside - along * aside.dot(along)).length()
     };
@@ -295,10 +285,10 @@ fn recent(samples: &VecDeque<Sample>, state: Sample, length: f64) -> Vec<Sample>
     samples.range(first..last).copied().chain([state]).collect()
 }
 
-/// Draws the stroboscopic states since the last change.
-fn strobes(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
+/// The stroboscopic states since the last change.
+fn strobes(context: &ViewContext<'_>) -> Vec<State> {
     let session = &context.session;
-    let Some(period) = session.shown().forcing_period() else { return };
+    let Some(period) = session.shown().forcing_period() else { return Vec::new() };
     let (watch, now) = (session.player.watch(), session.player.time());
     // since the last change of the model, and since the mass was last moved by hand
     let placed = if session.player.is_past() { 0.0 } else { session.changed_at() };
@@ -306,12 +296,8 @@ fn strobes(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     let last = (now / period).floor();
     let first = (begin / period).ceil().max(last - MAX_STROBES);
     let count = (last - first + 1.0).clamp(0.0, MAX_STROBES) as u32;
-    let stroke = context.style.base_stroke();
-    for i in 0..count {
-        let state = watch.state_at((first + f64::from(i)) * period);
-        let at = chart.screen_from_world(state.x, state.v);
-        painter.circle(at, context.style.dot(STROBE), context.style.ground(), stroke);
-    }
+    let at = |i: u32| watch.state_at((first + f64::from(i)) * period);
+    (0..count).map(|i| at(i)).map(|sample| state((sample.x, sample.v))).collect()
 }
 
 #[cfg(test)]

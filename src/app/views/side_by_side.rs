@@ -9,7 +9,7 @@ use super::context::Drawn;
 use super::mechanism::mechanism_ui;
 use super::table::{shaking, stops};
 use super::well::well_ui;
-use super::{ViewContext, too_small_ui};
+use super::{ViewContext, offer_ui, too_small_ui};
 
 /// Height in points of the heading of a column.
 const HEADING: f32 = 26.0;
@@ -104,10 +104,7 @@ fn nothing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, area: Rect) {
         Stops::None => "Beside it with stops",
         _ => "Beside it without stops",
     };
-    ui.scope_builder(UiBuilder::new().max_rect(area.shrink(10.0)), |ui| {
-        ui.add(egui::Label::new(RichText::new(text).color(context.style.faint())).wrap());
-        if ui.button(name).clicked() {
-            context.memory.pin = Some(PinKind::OtherStops);
-        }
-    });
+    if offer_ui(ui, &context.style, area, text, name) {
+        context.memory.pin = Some(PinKind::OtherStops);
+    }
 }

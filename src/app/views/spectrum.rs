@@ -1,13 +1,12 @@
 //! View of the spectrum of the settled motion: amplitude over frequency, on a logarithmic scale.
 
-use eframe::egui::{self, Rect, RichText, Ui, UiBuilder, vec2};
+use eframe::egui::{self, Rect, Ui, UiBuilder, vec2};
 
-use crate::app::ui::style::Style;
 use crate::output::{Ranges, SpectrumQuantity, spectrum_chart};
 use crate::study::Signal;
 
 use super::pane::pane_ui;
-use super::{View, ViewContext, too_small_ui};
+use super::{View, ViewContext, empty_ui, too_small_ui};
 
 /// Height in points of the row of choices.
 const TOOLS: f32 = 30.0;
@@ -39,8 +38,8 @@ pub fn spectrum_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (parts, current) = context.session.explore.spectra.found.parts();
     let spectrum = match parts.last() {
         Some(Ok(spectrum)) => spectrum,
-        Some(Err(problem)) => return message_ui(ui, &style, below, problem),
-        None => return message_ui(ui, &style, below, "Working it out."),
+        Some(Err(problem)) => return empty_ui(ui, &style, below, problem),
+        None => return empty_ui(ui, &style, below, "Working it out."),
     };
     let chart = spectrum_chart(spectrum, SpectrumQuantity::Amplitude, Ranges::default());
     let name = SIGNALS.iter().find(|entry| entry.0 == spectrum.signal).map_or("", |entry| entry.1);
@@ -51,10 +50,4 @@ pub fn spectrum_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let pane = pane_ui(&mut child, context.memory, View::Spectrum, &style, below, chart);
     let spoken = format!("spectrum of {}", name.to_lowercase());
     pane.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, spoken.clone()));
-}
-
-fn message_ui(ui: &mut Ui, style: &Style, area: Rect, text: &str) {
-    ui.scope_builder(UiBuilder::new().max_rect(area.shrink(10.0)), |ui| {
-        ui.label(RichText::new(text).color(style.faint()));
-    });
 }

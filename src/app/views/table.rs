@@ -88,6 +88,7 @@ pub(super) fn table_ui(
         }
     };
     let small = width < WIDE_COLUMN;
+    ui.spacing_mut().interact_size.y = ROW;
     if small {
         let styles = &mut ui.style_mut().text_styles;
         styles.insert(TextStyle::Body, style.small());
@@ -136,7 +137,6 @@ pub(super) fn table_ui(
         }
         ui.end_row();
     };
-    ui.spacing_mut().interact_size.y = ui.spacing().interact_size.y.min(ROW);
     Grid::new("table").num_columns(1 + columns.len()).spacing([COLUMN_GAP, gap]).show(ui, |ui| {
         cell_ui(ui, names, |ui| heading(ui, None, names));
         for i in 0..columns.len() {

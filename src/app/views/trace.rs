@@ -4,24 +4,22 @@
 //! under the pointer, so that they can be read below each other. Their vertical ranges come from the scene
 //! and from [`Ranges`](super::ranges::Ranges), not from what is visible.
 
-use eframe::egui::{Align2, RichText, Stroke, Ui, vec2};
-use egui_plot::{HLine, Line, LineStyle, PlotBounds, PlotPoint, PlotPoints, PlotUi, Span, Text, VLine};
+use eframe::egui::{Align2, Sense, Shape, Ui, pos2, vec2};
 
 use crate::app::session::Session;
 use crate::app::session::pins::Pin;
-use crate::app::ui::style::Style;
 use crate::app::words::numbers::decimals_for;
-use crate::dynamics::{EventKind, Model, Phase, STANDARD_GRAVITY, Sample};
+use crate::dynamics::{EventKind, Model, Phase, STANDARD_GRAVITY, Sample, Side};
+use crate::output::{Chart, Layer, Marks, OverTime, PlotAxis, Role, RunPanel};
 use crate::scene::Quantity;
-use crate::study::Watch;
+use crate::study::{Table, Watch};
 
 use super::cursors::{cursors_ui, readout_ui};
-use super::ghosts::{PINNED, plot_dashes};
+use super::ghosts::PINNED;
 use super::hand::axes_input;
 use super::labels::haloed;
-use super::legend::{LEGEND, Symbol, legend};
-use super::overlay::{MeasuredTrace, with_room};
-use super::plot::{LOW, MARGIN, even, marks, plot_place, still_plot};
+use super::overlay::{measured_trace, with_room};
+use super::pane::{Place, fresh_pane_ui};
 use super::ranges::room_for_push;
 use super::view::Axis;
 use super::{View, ViewContext};
@@ -36,14 +34,8 @@ const MAX_SWINGS: f64 = 200.0;
 /// Position of the present in the range of time, as a share of it.
 const PRESENT: f64 = 0.94;
 
-/// Width of a pin's letter at the end of its line, as a share of the range of time.
-const LETTER: f64 = 0.019;
-
-/// Height in points of the numbers and the name below a plot.
-const BELOW: f32 = 40.0;
-
-/// Share of the time axis at its end without numbers, which would be cut off there.
-const NO_NUMBER: f64 = 0.05;
+/// Width in points of a pin's letter at the end of its line.
+const LETTER: f32 = 9.0;
 
 /// Largest number of points of a line; a longer path is thinned.
 const MAX_POINTS: usize = 20_000;
@@ -51,11 +43,8 @@ const MAX_POINTS: usize = 20_000;
 /// Largest number of points of a pinned motion's line, whose dashes cost more.
 const MAX_GHOST_POINTS: usize = 4000;
 
-/// Largest number of flights drawn as separate lines; with more, the tips of one line are not visible.
-const MAX_FLIGHTS: usize = 400;
-
-/// The ends of a line over time, in s and mm.
-type StopLine = [[f64; 2]; 2];
+/// A point of the picture: time in s and value.
+type Point = (f64, f64);
 
 /// A quantity drawn over time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -134,11 +123,13 @@ impl TraceQuantity {
         }
     }
 
-    fn stroke(self, style: &Style) -> Stroke {
+    /// The panel of the picture of a run that shows it.
+    fn panel(self) -> RunPanel {
         match self {
-            Self::Displacement | Self::Velocity => style.motion_stroke(),
-            Self::BaseAcceleration | Self::Power => style.base_stroke(),
-            Self::LoadPower { .. } => style.power_stroke(),
+            Self::Displacement => RunPanel::Displacement,
+            Self::Velocity => RunPanel::Velocity,
+            Self::BaseAcceleration => RunPanel::Acceleration,
+            Self::Power | Self::LoadPower { .. } => RunPanel::Power,
         }
     }
 
@@ -171,99 +162,89 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
     let now = context.session.player.time();
     let (from, to) = time_ends(context, now);
     let (window, end) = (to - from, now.min(to));
-    let watch = context.session.player.watch();
-    let samples = shown_samples(context.session, from, to);
-    let is_displacement = quantity == TraceQuantity::Displacement;
-    let paths =
-        paths(&samples, is_displacement, |sample| PlotPoint::new(sample.t, quantity.value_in(watch, sample)));
-    let ghosts = ghost_paths(context.session, quantity, from, end);
-    let measured = MeasuredTrace::of(context.session, quantity.measured(), (from, to));
-    let rests = rest_spans(&samples);
-    let impacts = impact_times(watch, from, end);
-    let stops = if is_displacement { stop_lines(watch, from, to) } else { Vec::new() };
-    let pass = ui.ctx().cumulative_pass_nr();
-    let cursor = context.memory.timeline.cursor.filter(|cursor| cursor.1 + 1 >= pass).map(|cursor| cursor.0);
-    let tick = 0.035 * (high - low);
-    let rows = f64::from((ui.available_height() / 40.0).clamp(2.0, 6.0));
-    let columns = f64::from((ui.available_width() / 80.0).clamp(2.0, 8.0));
     let area = ui.max_rect();
     ui.painter().rect_filled(area, 0.0, style.ground());
-    let entries = entries(&style, &rests, &impacts, &stops, &ghosts, measured.as_ref());
-    let (axis, time_label) = axis_names(ui, quantity, &style);
-    // a number at the very end of the axis would be cut off
-    let edge = 0.02 * (high - low);
     let digits = 1 + decimals_for(high - low);
+    let watch = context.session.player.watch();
     let (read, unit) = (|t: f64| quantity.value_in(watch, &watch.state_at(t)), quantity.unit());
     let at_each = |t: f64| format!("{:.digits$} {unit}", read(t));
     let between = |a: f64, b: f64| format!("{:+.digits$} {unit}", read(b) - read(a));
     let readout = readout_ui(ui, context, (area, window), at_each, between);
-    let plot = area.with_min_x(area.left() + MARGIN).with_min_y(area.top() + LEGEND + readout);
-    // distance on the screen between two points of the plot
-    let distance = |a: &PlotPoint, b: &PlotPoint| {
-        let (x, y) = ((b.x - a.x) / window, (b.y - a.y) / (high - low));
-        (x as f32 * plot.width()).hypot(y as f32 * plot.height())
-    };
-    let mut ui = plot_place(ui, &style, plot);
-    let response = still_plot(quantity.name())
-        .x_grid_spacer(|_| marks(&even(from.max(0.0), to - NO_NUMBER * window, columns)))
-        .y_grid_spacer(|_| marks(&even(low + edge, high - edge, rows)))
-        .x_axis_label(time_label)
-        .y_axis_label(axis)
-        .show(&mut ui, |plot| {
-            plot.set_plot_bounds(PlotBounds::from_min_max([from, low], [to, high]));
-            for (value, _) in even(low, high, rows).ticks {
-                plot.hline(HLine::new("", value).stroke(style.grid_stroke()));
-            }
-            draw_rests_and_stops(plot, rests, stops, &style);
-            plot.vline(VLine::new("now", now).stroke(style.ghost_stroke()));
-            // the ticks stand at the edge, clear of the motion
-            for t in thinned(&impacts, window) {
-                let ends = vec![[t, low], [t, low + tick]];
-                plot.line(Line::new("impact", ends).stroke(style.impact_stroke()));
-            }
-            if let Some(trace) = measured {
-                trace.draw(plot, &style);
-            }
-            // each has its letter at its end, beside those of the others
-            for (i, (place, path)) in ghosts.iter().enumerate() {
-                let Some(last) = path.last().filter(|last| last.y.is_finite()) else { continue };
-                let at = PlotPoint::new(last.x + LETTER * (i as f64 + 0.5) * window, last.y.clamp(low, high));
-                let letter = RichText::new(PINNED[place % PINNED.len()]).font(style.small());
-                plot.text(Text::new("letter", at, letter).color(style.ink()));
-            }
-            for (place, path) in ghosts {
-                let length = path.windows(2).map(|pair| distance(&pair[0], &pair[1])).sum();
-                let line = Line::new("ghost", PlotPoints::Owned(path)).stroke(style.ghost_motion_stroke());
-                let line = line.style(plot_dashes(place, length));
-                plot.line(line.allow_band(!is_displacement));
-            }
-            for path in paths {
-                let line =
-                    Line::new(quantity.name(), PlotPoints::Owned(path)).stroke(quantity.stroke(&style));
-                // a band reaches beyond the ends of a steep line
-                plot.line(line.allow_band(!is_displacement));
-            }
-            if let Some(t) = cursor {
-                let dashed = LineStyle::dashed_dense();
-                plot.vline(VLine::new("cursor", t).stroke(style.ghost_stroke()).style(dashed));
-            }
-        });
-    let (transform, response) = (response.transform, response.response);
-    axes_input(&ui, context.memory, quantity.view(), &response, (area, *transform.frame()));
-    cursors_ui(&mut ui, context, &response, (*transform.frame(), (from, to)), quantity.name());
+    let chart = chart(context.session, quantity, (from, to), (low, high));
+    let place = Place::in_line(ui, area, Sense::click_and_drag(), (0.0, readout));
+    let pane = fresh_pane_ui(ui, &style, place, chart);
+    let Some(frame) = pane.frame(0) else { return };
+    axes_input(ui, context.memory, quantity.view(), &pane.response, (area, frame));
     let painter = ui.painter().with_clip_rect(area);
-    let mut right = area.right();
-    if let Some(at) = response.hover_pos() {
-        let t = transform.value_from_position(at).x;
+    // each pin has its letter at the end of its line, beside those of the others
+    for (i, pin) in pinned(context.session, quantity).iter().enumerate() {
+        let value = quantity.value_in(pin.watch(), &pin.state_at(end));
+        let Some(at) = pane.place(0, (end, value.clamp(low, high))).filter(|_| value.is_finite()) else {
+            continue;
+        };
+        let at = (at + vec2(LETTER * (i as f32 + 0.5), 0.0), Align2::CENTER_CENTER);
+        haloed(&painter, &style, at, PINNED[pin.place() % PINNED.len()], (style.small(), style.ink()));
+    }
+    let pass = ui.ctx().cumulative_pass_nr();
+    let cursor = context.memory.timeline.cursor.filter(|cursor| cursor.1 + 1 >= pass);
+    if let Some(at) = cursor.and_then(|cursor| pane.place(0, (cursor.0, low))) {
+        let line = [pos2(at.x, frame.top()), pos2(at.x, frame.bottom())];
+        painter.with_clip_rect(frame).extend(Shape::dashed_line(&line, style.ghost_stroke(), 4.0, 3.0));
+    }
+    cursors_ui(ui, context, &pane.response, (frame, (from, to)), quantity.name());
+    let pointer = pane.response.hover_pos().and_then(|at| pane.values_at(0, at));
+    if let Some((t, _)) = pointer {
         let watch = context.session.player.watch();
         let t = t.clamp(watch.begin().min(now), now);
-        context.memory.timeline.cursor = Some((t, pass));
         let value = quantity.value_in(watch, &watch.state_at(t));
-        let at = (area.right_top() + vec2(-6.0, 0.5 * LEGEND), Align2::RIGHT_CENTER);
-        let text = format!("{value:.digits$} {} at {t:.3} s", quantity.unit());
-        right = haloed(&painter, &style, at, &text, (style.small(), style.ink())).left();
+        pane.reading(ui, &style, 0.0, &format!("{value:.digits$} {unit} at {t:.3} s"));
+        context.memory.timeline.cursor = Some((t, pass));
     }
-    legend(&ui, &style, area, right, &entries);
+}
+
+/// The picture from `from` to `to` in s over this vertical axis.
+fn chart(session: &Session, quantity: TraceQuantity, (from, to): Point, (low, high): Point) -> Chart {
+    let (watch, now) = (session.player.watch(), session.player.time());
+    let samples = shown_samples(session, from, to);
+    let layer = |role, name: &str, marks| Layer { marks, role, name: name.to_owned() };
+    let line = |watch: &Watch, samples: &mut dyn Iterator<Item = Sample>| {
+        let points = samples.map(|sample| (sample.t, quantity.value_in(watch, &sample)));
+        Marks::Trace(points.filter(|point| !point.1.is_nan()).collect())
+    };
+    let measured = measured_trace(session, quantity.measured(), (from, to));
+    let has_load = matches!(quantity, TraceQuantity::LoadPower { .. });
+    // what was measured has the colour of a second quantity
+    let role = if measured.is_some() { Role::Motion } else { quantity.panel().role(has_load) };
+    let mut lines = vec![layer(Role::Reference, "", Marks::Verticals(vec![now]))];
+    let mut stops = (f64::NAN, f64::NAN);
+    if quantity == TraceQuantity::Displacement {
+        match stop_lines(watch, from, to) {
+            Moved::Not(places) => stops = places,
+            Moved::Line(points) => lines.push(layer(Role::Stop, "stop", Marks::Path(points))),
+        }
+    }
+    lines.extend(measured);
+    for pin in pinned(session, quantity) {
+        let path = line(pin.watch(), &mut ghost_samples(pin, from, now.min(to)));
+        lines.push(layer(Role::Pin(pin.place()), PINNED[pin.place() % PINNED.len()], path));
+    }
+    lines.push(layer(role, "", line(watch, &mut samples.iter().copied())));
+    let stable = session.shown().mechanism().landscape.equilibria.iter().filter(|point| point.stable);
+    let beside = OverTime {
+        time: PlotAxis::between(from, to, "time (s)"),
+        rests: (rest_spans(&samples), "at rest on a stop"),
+        impacts: [Side::Left, Side::Right].map(|side| impact_times(watch, side, (from, now.min(to)))),
+        stops,
+        wells: stable.map(|well| well.x * 1e3).collect(),
+    };
+    let up = PlotAxis::between(low, high, &quantity.panel().label(quantity.unit(), has_load));
+    Chart::stack(vec![quantity.panel().over_time(up, lines, &beside)], "", Table::new())
+}
+
+/// The pinned motions whose paths are drawn: of displacement and velocity.
+fn pinned(session: &Session, quantity: TraceQuantity) -> &[Pin] {
+    let is_drawn = matches!(quantity, TraceQuantity::Displacement | TraceQuantity::Velocity);
+    if is_drawn { session.pins.all() } else { &[] }
 }
 
 /// The ends of the time axis in s, which shows the present near its end.
@@ -273,39 +254,6 @@ fn time_ends(context: &mut ViewContext<'_>, now: f64) -> (f64, f64) {
     let window = timeline.window.unwrap_or(timeline.default_window);
     let from = (now - PRESENT * window).max(-0.02 * window);
     context.memory.axes.ends(Axis::Time, (from, from + window))
-}
-
-/// The entries of the legend for what the trace shows besides the motion.
-fn entries(
-    style: &Style,
-    rests: &[(f64, f64)],
-    impacts: &[f64],
-    stops: &[StopLine],
-    ghosts: &[(usize, Vec<PlotPoint>)],
-    measured: Option<&MeasuredTrace>,
-) -> Vec<(Symbol, &'static str)> {
-    let seen = [
-        (!rests.is_empty(), Symbol::Shade(style.rest_shade()), "at rest on a stop"),
-        (!impacts.is_empty(), Symbol::Ticks(style.impact_stroke()), "impacts"),
-        (!stops.is_empty(), Symbol::Dashed(style.stop_stroke()), "stops"),
-    ];
-    let seen = seen.into_iter().filter(|entry| entry.0);
-    let mut entries: Vec<_> = seen.map(|(_, symbol, name)| (symbol, name)).collect();
-    let pinned = |place: usize| (Symbol::Dashes(style.ghost_motion_stroke(), place), PINNED[place]);
-    entries.extend(ghosts.iter().map(|ghost| pinned(ghost.0)));
-    entries.extend(measured.map(|trace| trace.entry(style)));
-    entries
-}
-
-fn draw_rests_and_stops(plot: &mut PlotUi<'_>, rests: Vec<(f64, f64)>, stops: Vec<StopLine>, style: &Style) {
-    for (begin, end) in rests {
-        let span = Span::new("", begin..=end).fill(style.rest_shade());
-        plot.span(span.border(Stroke::NONE));
-    }
-    for ends in stops {
-        let line = Line::new("stop", ends.to_vec()).stroke(style.stop_stroke());
-        plot.line(line.style(LineStyle::dashed_loose()));
-    }
 }
 
 /// The states from `from` to `to` in s, thinned, up to the present or to what is known at `to`.
@@ -319,50 +267,23 @@ fn shown_samples(session: &Session, from: f64, to: f64) -> Vec<Sample> {
     samples.range(first..last).step_by(stride).copied().chain([state]).collect()
 }
 
-/// Times of the impacts from `from` to `to` in s.
-fn impact_times(watch: &Watch, from: f64, to: f64) -> Vec<f64> {
-    watch
-        .events()
-        .iter()
-        .skip(watch.events().partition_point(|event| event.t < from))
-        .take_while(|event| event.t <= to)
-        .filter(|event| matches!(event.kind, EventKind::Impact | EventKind::Contact))
+/// Times of the impacts on a stop from `from` to `to` in s.
+fn impact_times(watch: &Watch, side: Side, (from, to): Point) -> Vec<f64> {
+    let events = watch.events();
+    let seen = events.range(events.partition_point(|event| event.t < from)..);
+    seen.take_while(|event| event.t <= to)
+        .filter(|event| matches!(event.kind, EventKind::Impact | EventKind::Contact) && event.side == side)
         .map(|event| event.t)
         .collect()
 }
 
-/// Names of the vertical and of the time axis, as short as the height left in `ui` demands.
-fn axis_names(ui: &Ui, quantity: TraceQuantity, style: &Style) -> (String, &'static str) {
-    let axis = format!("{} ({})", quantity.name(), quantity.unit());
-    let is_low = ui.available_height() < LOW;
-    // a name that is longer than its axis would run into the legend
-    let name = ui.painter().layout_no_wrap(axis.clone(), style.small(), style.ink()).size().x;
-    let is_long = name > ui.available_height() - LEGEND - BELOW;
-    let axis = if is_low || is_long { quantity.unit().to_owned() } else { axis };
-    (axis, if is_low { "" } else { "time (s)" })
-}
-
-/// Paths of the displacement or the velocity of the pinned motions since they were pinned, with the indices
-/// of the pins; none of another quantity.
-fn ghost_paths(
-    session: &Session,
-    quantity: TraceQuantity,
-    from: f64,
-    to: f64,
-) -> Vec<(usize, Vec<PlotPoint>)> {
-    if !matches!(quantity, TraceQuantity::Displacement | TraceQuantity::Velocity) {
-        return Vec::new();
-    }
-    let path = |pin: &Pin| {
-        let (watch, samples) = (pin.watch(), pin.watch().samples());
-        let first = samples.partition_point(|sample| sample.t < from.max(pin.since())).saturating_sub(1);
-        let last = samples.partition_point(|sample| sample.t <= to).max(first);
-        let stride = ((last - first) / MAX_GHOST_POINTS).max(1);
-        let shown = samples.range(first..last).step_by(stride).copied().chain([pin.state_at(to)]);
-        let points = shown.map(|sample| PlotPoint::new(sample.t, quantity.value_in(watch, &sample)));
-        (pin.place(), points.collect())
-    };
-    session.pins.all().iter().map(path).collect()
+/// The states of a pinned motion since it was pinned.
+fn ghost_samples(pin: &Pin, from: f64, to: f64) -> impl Iterator<Item = Sample> {
+    let samples = pin.watch().samples();
+    let first = samples.partition_point(|sample| sample.t < from.max(pin.since())).saturating_sub(1);
+    let last = samples.partition_point(|sample| sample.t <= to).max(first);
+    let stride = ((last - first) / MAX_GHOST_POINTS).max(1);
+    samples.range(first..last).step_by(stride).copied().chain([pin.state_at(to)])
 }
 
 /// The time in s that is shown by default of a motion of a model.
@@ -373,31 +294,29 @@ pub(in crate::app) fn stretch(model: &Model) -> f64 {
         .map_or(SWINGS * model.characteristic_time(), |period| (PERIODS * period).min(limit))
 }
 
-/// The path as lines, without unknown values. A line has a tip beyond a point where it reverses; with
-/// `flights`, each flight is therefore a separate line, which does not reach through a stop.
-fn paths(samples: &[Sample], flights: bool, point: impl Fn(&Sample) -> PlotPoint) -> Vec<Vec<PlotPoint>> {
-    let reverses = |pair: &&[Sample]| pair[0].t == pair[1].t;
-    let line = |part: &[Sample]| part.iter().map(&point).filter(|at| !at.y.is_nan()).collect();
-    if !flights || samples.windows(2).filter(reverses).count() > MAX_FLIGHTS {
-        return vec![line(samples)];
-    }
-    let parts = samples.chunk_by(|a, b| a.t != b.t);
-    parts.map(line).collect()
+/// Whether stops moved in a range of time.
+enum Moved {
+    /// They stand at these places in mm, NaN where there is none.
+    Not(Point),
+    /// They moved along these lines, parted by points that are not finite.
+    Line(Vec<Point>),
 }
 
-/// Lines of the stops over time; a stop that did not move is one line.
-fn stop_lines(watch: &Watch, from: f64, to: f64) -> Vec<StopLine> {
-    let mut lines: Vec<StopLine> = Vec::new();
-    for (begin, end, model) in watch.models_between(from.max(0.0), to) {
-        let (left, right) = model.stop_positions();
-        for mm in [left, right].into_iter().flatten().map(|stop| stop * 1e3) {
-            match lines.iter_mut().find(|line| line[1] == [begin, mm]) {
-                Some(line) => line[1][0] = end,
-                None => lines.push([[begin, mm], [end, mm]]),
-            }
-        }
+fn stop_lines(watch: &Watch, from: f64, to: f64) -> Moved {
+    let mm = |stop: Option<f64>| stop.map_or(f64::NAN, |x| x * 1e3);
+    let held: Vec<(f64, f64, [f64; 2])> = watch
+        .models_between(from.max(0.0), to)
+        .map(|(begin, end, model)| (begin, end, <[_; 2]>::from(model.stop_positions()).map(mm)))
+        .collect();
+    let first = held.first().map_or([f64::NAN; 2], |held| held.2);
+    if held.iter().all(|held| held.2.map(f64::to_bits) == first.map(f64::to_bits)) {
+        return Moved::Not(first.into());
     }
-    lines
+    let gap = (f64::NAN, f64::NAN);
+    let of_side = |side: usize| {
+        held.iter().flat_map(move |(begin, end, mm)| [(*begin, mm[side]), (*end, mm[side]), gap])
+    };
+    Moved::Line(of_side(0).chain(of_side(1)).collect())
 }
 
 /// Times between which the mass rests on a stop.
@@ -413,15 +332,4 @@ fn rest_spans(samples: &[Sample]) -> Vec<(f64, f64)> {
         }
     }
     spans
-}
-
-/// Times of the impacts that can be told apart on the screen.
-fn thinned(times: &[f64], window: f64) -> Vec<f64> {
-    let mut kept: Vec<f64> = Vec::new();
-    for t in times {
-        if kept.last().is_none_or(|last| t - last > window / 1000.0) {
-            kept.push(*t);
-        }
-    }
-    kept
 }

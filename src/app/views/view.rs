@@ -78,7 +78,7 @@ views! {
         "The force that would hold the mass at a place, positive to the right; the mechanism pulls with as \
          much the other way. Where the push is above the curve it drives the mass to the right, below it \
          to the left; a mass on a stop is freed when the push passes the mark there. Filled: stable. \
-         Hollow: unstable. Diamond: a kink, where the stiffness jumps.";
+         Hollow: unstable. Dotted: a kink, where the stiffness jumps.";
     /// The energy supplied, taken and stored.
     Energy "Energy"
         "Where the energy came from, where it went, and what is there against the barrier.";
@@ -167,6 +167,12 @@ impl View {
         matches!(self, Self::Map | Self::UpAndDown | Self::Basins)
     }
 
+    /// Whether its upper row is a legend, for which the row of its card may have room.
+    pub fn has_legend(self) -> bool {
+        matches!(self, Self::Mechanism | Self::Well | Self::ForceCurve | Self::PhasePortrait | Self::Section)
+            || self.is_over_time()
+    }
+
     /// Whether its horizontal axis is time, so that it shows the cursors.
     pub fn is_over_time(self) -> bool {
         use View::{BaseAcceleration, Displacement, Distance, Power, Velocity};
@@ -189,7 +195,7 @@ impl View {
             Self::Displacement | Self::Velocity | Self::BaseAcceleration | Self::Power => Axis::Time,
             Self::Well | Self::ForceCurve | Self::Basins => Axis::Place,
             Self::PhasePortrait | Self::Section => Axis::Reach,
-            Self::Distance | Self::UpAndDown | Self::Spectrum => Axis::Across(self),
+            Self::Distance | Self::UpAndDown | Self::Spectrum | Self::Accuracy => Axis::Across(self),
             Self::SideBySide => return Self::Well.axes(),
             _ => return None,
         };

@@ -7,7 +7,7 @@ use eframe::egui::{self, Button, ComboBox, Grid, Key, RichText, TextEdit, Ui};
 use crate::app::export::figure::{FigureOrder, Place, Subject, round_times};
 use crate::app::session::Session;
 use crate::app::task::Background;
-use crate::app::ui::widgets::{dialog, dialog_width};
+use crate::app::ui::widgets::{dialog, dialog_width, primary};
 use crate::app::views::{Memory, View, stretch};
 use crate::output::{Format, RunPanel, Sheet, SheetText};
 use crate::system::files;
@@ -139,6 +139,9 @@ impl Figures {
             View::Compare | View::Distance | View::BeforeNow => {
                 Err("There is no figure of this view: it shows several scenes, and a figure one.".to_owned())
             }
+            View::Accuracy => {
+                Err("There is no figure of Accuracy: its processor times differ from run to run.".to_owned())
+            }
             _ => Err(format!(
                 "There is no figure of {}: File, Save a picture of the window has it as it stands.",
                 view.name()
@@ -255,7 +258,7 @@ impl Figures {
                 }
                 return;
             }
-            let save = ui.add_enabled(can_save, Button::new("Save")).on_disabled_hover_text(&remark);
+            let save = ui.add_enabled(can_save, primary(ui, "Save")).on_disabled_hover_text(&remark);
             if save.clicked() || entered.inner && can_save {
                 action = Some(Action::Save);
             }
@@ -318,7 +321,8 @@ impl Figures {
         if panel(view).is_some() {
             ui.label("Panels");
             ui.horizontal(|ui| {
-                let names = ["displacement", "velocity", "base acceleration", "energy", "phase portrait"];
+                let names: [&str; RunPanel::ALL.len()] =
+                    ["displacement", "velocity", "base acceleration", "power", "energy", "phase portrait"];
                 for (name, panel) in names.into_iter().zip(&mut self.panels) {
                     ui.checkbox(panel, name);
                 }

@@ -1,20 +1,19 @@
 //! Tiles of the views in each arrangement.
 
-use eframe::egui::{self, Response, Ui, Vec2, WidgetText};
-use egui_tiles::{Container, SimplificationOptions, Tabs, Tile, TileId, Tiles, Tree, UiResponse};
+use std::collections::HashMap;
 
-use crate::app::ui::style::{BODY, COMPACT_BELOW, LARGE_FROM, LEAST};
-use crate::app::ui::widgets::{Icon, icon_button_ui};
-use crate::app::views::{Memory, View, ViewContext, view_ui};
+use eframe::egui::{self, Stroke, Ui, Vec2, WidgetText};
+use egui_tiles::{Container, ResizeState, SimplificationOptions, Tabs, Tile, TileId, Tree, UiResponse};
+
+use crate::app::ui::style::{COMPACT_BELOW, GAP, LARGE_FROM};
+use crate::app::views::{View, ViewContext};
 use crate::scene::Layout;
+
+use super::card::{Title, card_ui};
 
 use trees::{compact_lesson_tree, compact_tree, lesson_tree, tabs_tree, views_of, wide_tree};
 
 mod trees;
-
-const TITLE_MARGIN: f32 = 6.0;
-/// Width in points of the buttons beside the titles.
-const BUTTONS: f32 = 58.0;
 
 /// Size class of the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -187,30 +186,32 @@ impl Tiling {
         Some(place)
     }
 
-    /// The greatest text size at which the titles of every group of tabs fit side by side.
-    fn title_size(&self, ui: &Ui) -> f32 {
-        let width = |id: &TileId| {
-            let view = self.tree.tiles.get_pane(id).filter(|_| self.tree.is_visible(*id))?;
-            let (name, font) = (view.name().to_owned(), egui::FontId::proportional(BODY));
-            Some(ui.painter().layout_no_wrap(name, font, egui::Color32::PLACEHOLDER).size().x)
-        };
-        let fitting = |(id, tile): (&TileId, &Tile<View>)| {
-            let Tile::Container(Container::Tabs(tabs)) = tile else { return None };
-            let widths: Vec<f32> = tabs.children.iter().filter_map(width).collect();
-            let buttons = if self.room == Room::Compact { BUTTONS } else { 1.7 * BUTTONS };
-            let room =
-                self.tree.tiles.rect(*id)?.width() - buttons - 2.0 * TITLE_MARGIN * widths.len() as f32;
-            Some(BODY * room / widths.iter().sum::<f32>().max(1.0))
-        };
-        let least = self.tree.tiles.iter().filter_map(fitting).fold(BODY, f32::min);
-        least.max(LEAST)
+    /// Draws the views in their cards; `fill` is set if a view is to fill the window.
+    pub fn ui(&mut self, ui: &mut Ui, context: &mut ViewContext<'_>, fill: &mut Option<View>) {
+        // new tiles have no tabs until then
+        self.tree.simplify(&simplification());
+        let mut behavior = Behavior { titles: self.titles(), context, fill, chosen: None };
+        self.tree.ui(&mut behavior, ui);
+        if let Some(id) = behavior.chosen.and_then(|view| self.tree.tiles.find_pane(&view))
+            && let Some(place) = self.tree.tiles.parent_of(id)
+            && let Some(Tile::Container(Container::Tabs(tabs))) = self.tree.tiles.get_mut(place)
+        {
+            tabs.set_active(id);
+        }
     }
 
-    /// Draws the views; `fill` is set if a view is to fill the window.
-    pub fn ui(&mut self, ui: &mut Ui, context: &mut ViewContext<'_>, fill: &mut Option<View>) {
-        let title = self.title_size(ui);
-        let mut behavior = Behavior { context, fill, title, room: self.room };
-        self.tree.ui(&mut behavior, ui);
+    /// The titles in the card of each view that is in front.
+    fn titles(&self) -> HashMap<TileId, Vec<Title>> {
+        let title = |id: &TileId| {
+            let view = *self.tree.tiles.get_pane(id).filter(|_| self.tree.is_visible(*id))?;
+            Some(Title { view, id: id.egui_id(self.tree.id()) })
+        };
+        let group = |tile: &Tile<View>| {
+            let Tile::Container(Container::Tabs(tabs)) = tile else { return None };
+            let titles: Vec<Title> = tabs.children.iter().filter_map(title).collect();
+            Some((tabs.next_active(&self.tree.tiles)?, titles))
+        };
+        self.tree.tiles.iter().filter_map(|(_, tile)| group(tile)).collect()
     }
 }
 
@@ -220,72 +221,42 @@ fn simplification() -> SimplificationOptions {
 }
 
 struct Behavior<'a, 'b> {
+    titles: HashMap<TileId, Vec<Title>>,
     context: &'a mut ViewContext<'b>,
     fill: &'a mut Option<View>,
-    title: f32,
-    room: Room,
-}
-
-/// The button that holds the axes of a view; `None` if it has no axes.
-pub(super) fn hold_ui(ui: &mut Ui, view: View, memory: &mut Memory) -> Option<Response> {
-    let (icon, name, hover) = match memory.are_axes_held(view)? {
-        true => (Icon::Held, "let go of the axes of", "The axes are held. A click lets go of them (L)."),
-        false => (Icon::Free, "hold the axes of", "Hold the axes as they are, whatever comes (L)."),
-    };
-    let response = icon_button_ui(ui, icon, 22.0, &format!("{name} {}", view.name()), hover);
-    if response.clicked() {
-        memory.hold_axes(view);
-    }
-    Some(response)
+    /// The view whose title was clicked.
+    chosen: Option<View>,
 }
 
 impl egui_tiles::Behavior<View> for Behavior<'_, '_> {
     fn tab_title_for_pane(&mut self, view: &View) -> WidgetText {
-        egui::RichText::new(view.name()).size(self.title).into()
+        view.name().into()
     }
 
-    fn tab_title_spacing(&self, _: &egui::Visuals) -> f32 {
-        TITLE_MARGIN
-    }
-
-    fn pane_ui(&mut self, ui: &mut Ui, _: TileId, view: &mut View) -> UiResponse {
-        view_ui(ui, *view, self.context);
+    fn pane_ui(&mut self, ui: &mut Ui, id: TileId, view: &mut View) -> UiResponse {
+        let titles = self.titles.get(&id).map_or(&[][..], Vec::as_slice);
+        let answer = card_ui(ui, ui.max_rect(), titles, *view, self.context);
+        self.chosen = answer.chosen.or(self.chosen);
+        if answer.fills {
+            *self.fill = Some(*view);
+        }
         UiResponse::None
     }
 
-    fn tab_bar_height(&self, _: &egui::Style) -> f32 {
-        26.0
+    /// The titles stand in the cards.
+    fn is_tab_bar_visible(&self, _: TileId, _: &Tabs) -> bool {
+        false
     }
 
-    fn on_tab_button(&mut self, tiles: &mut Tiles<View>, id: TileId, button: Response) -> Response {
-        match tiles.get_pane(&id) {
-            Some(view) => button.on_hover_text(view.about()),
-            None => button,
-        }
-    }
-
-    fn top_bar_right_ui(&mut self, tiles: &Tiles<View>, ui: &mut Ui, _: TileId, tabs: &Tabs, _: &mut f32) {
-        let Some(view) = tabs.active.and_then(|id| tiles.get_pane(&id)) else { return };
-        let name = format!("fill the window with {}", view.name());
-        let hover = "This view over the whole window (Z)";
-        let fill = icon_button_ui(ui, Icon::Fill, 22.0, &name, hover);
-        if fill.clicked() {
-            *self.fill = Some(*view);
-        }
-        let name = format!("figure of {}", view.name());
-        let hover = "Save a figure of this view (Ctrl+E)";
-        if self.room != Room::Compact && icon_button_ui(ui, Icon::Figure, 22.0, &name, hover).clicked() {
-            self.context.memory.figure = Some(*view);
-        }
-        let hold = hold_ui(ui, *view, self.context.memory);
-        // keys act on the view whose buttons have the focus
-        if fill.has_focus() || hold.is_some_and(|button| button.has_focus()) {
-            self.context.memory.hovered = Some(*view);
+    fn resize_stroke(&self, _: &egui::Style, state: ResizeState) -> Stroke {
+        match state {
+            ResizeState::Idle => Stroke::NONE,
+            ResizeState::Hovering | ResizeState::Dragging => self.context.style.focus_stroke(),
         }
     }
 
     fn gap_width(&self, _: &egui::Style) -> f32 {
-        4.0
+        GAP
     }
 
     fn min_size(&self) -> f32 {

@@ -2,7 +2,7 @@
 
 use eframe::egui::Ui;
 
-use crate::app::ui::widgets::{dialog, dialog_width};
+use crate::app::ui::widgets::{dialog, dialog_width, primary};
 
 /// What to do once the present scene may be closed.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -51,7 +51,10 @@ fn choice_ui(ui: &Ui, id: &str, heading: &str, text: &str, second: &str) -> Opti
             for (label, answer) in
                 [("Save", Answer::Save), (second, Answer::DontSave), ("Cancel", Answer::Cancel)]
             {
-                let button = ui.button(label);
+                let button = match answer {
+                    Answer::Save => ui.add(primary(ui, label)),
+                    _ => ui.button(label),
+                };
                 if answer == Answer::Save && ui.memory(|memory| memory.focused().is_none()) {
                     button.request_focus();
                 }

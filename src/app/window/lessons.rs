@@ -14,10 +14,11 @@ use crate::app::session::explore::WalkQuantity;
 use crate::app::session::lesson::{OpenLesson, Records, Turn, answers_text};
 use crate::app::session::{CannotRun, Session};
 use crate::app::ui::style::Style;
-use crate::app::ui::widgets::{close_ui, dialog, dialog_width, panel_frame};
+use crate::app::ui::widgets::{close_ui, dialog, dialog_width, panel_frame, primary};
 use crate::app::views::{Cover, Memory, View};
+use crate::app::words::capital;
 use crate::app::words::fields::name_and_unit;
-use crate::app::words::lesson::{bold_words, letter, numbered};
+use crate::app::words::lesson::{bold_words, letter, numbered, plain};
 use crate::scene::lesson::{BuiltInLesson, LessonDocument, LessonError, Step};
 use crate::scene::{Document, PRESETS, SceneError};
 use crate::study::result_fields;
@@ -222,6 +223,8 @@ impl Window {
         let curve = View::ForceCurve;
         let name = curve.name().to_lowercase();
         self.memory.covered = lesson.filter(|open| open.keeps_back(&name)).map(|_| curve);
+        let covering = lesson.filter(|open| open.is_covering());
+        self.memory.question = covering.and_then(|open| question(open.step().text()));
         let present = self.session.scene().stops.limits_mm();
         let asked = lesson.and_then(OpenLesson::asked).map(|scene| scene.stops.limits_mm());
         let [left, right] = asked.filter(|asked| *asked != present).unwrap_or_default();
@@ -280,7 +283,7 @@ impl Window {
                 ui.add_space(8.0);
                 ui.horizontal(|ui| {
                     let name = |name: &&str| format!("Go on to {}", numbered(name));
-                    next = finished.next.filter(|next| ui.button(name(next)).clicked());
+                    next = finished.next.filter(|next| ui.add(primary(ui, &name(next))).clicked());
                     close_ui(ui)
                 })
                 .inner
@@ -301,7 +304,7 @@ impl Window {
             ui.add_space(8.0);
             ui.horizontal(|ui| {
                 anew = ui.button("Begin anew").clicked();
-                ui.button("Go on").clicked()
+                ui.add(primary(ui, "Go on")).clicked()
             })
             .inner
         });
@@ -370,7 +373,7 @@ impl Window {
     }
 
     /// The strip of the open lesson, and its controls; they are disabled while the motion is covered.
-    pub(super) fn lesson_panels_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) {
+    pub(super) fn lesson_panels_ui(&mut self, ui: &mut Ui, style: &Style) {
         let urged = std::mem::take(&mut self.lessons.urged);
         let Some(lesson) = &mut self.lessons.open else { return };
         // not a panel, whose height would follow its contents one frame late
@@ -378,11 +381,9 @@ impl Window {
         let strip = panel_frame(ui, 12, 6).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = spacing;
             ui.set_min_width(ui.available_width());
-            lesson_ui(ui, lesson, &self.session, style, compact, urged)
+            lesson_ui(ui, lesson, &self.session, style, urged)
         });
         ui.spacing_mut().item_spacing.y = spacing;
-        let edge = ui.visuals().widgets.noninteractive.bg_stroke;
-        ui.painter().hline(strip.response.rect.x_range(), strip.response.rect.bottom(), edge);
         if let Some(action) = strip.inner {
             self.act_in_lesson(action);
         }
@@ -390,7 +391,8 @@ impl Window {
         else {
             return;
         };
-        Panel::top("controls of the lesson").frame(panel_frame(ui, 12, 4)).show(ui, |ui| {
+        let row = Panel::top("controls of the lesson").frame(panel_frame(ui, 12, 4));
+        row.show_separator_line(false).show(ui, |ui| {
             if lesson.is_covering() {
                 ui.disable();
             }
@@ -430,6 +432,14 @@ impl Window {
             None => self.messages.notify("There are no answers yet"),
         }
     }
+}
+
+/// The first question in a text.
+fn question(text: &str) -> Option<String> {
+    let text = plain(text);
+    let end = text.find('?')? + 1;
+    let begin = text[..end - 1].rfind(['.', ':', '!']).map_or(0, |at| at + 1);
+    Some(capital(text[begin..end].trim()))
 }
 
 /// Whether a word in lower case names the control of a field: by its label, or by the field's usual name.

@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use eframe::egui::{self, Button, ComboBox, Grid, RichText, Ui};
+use eframe::egui::{self, ComboBox, Grid, RichText, Ui};
 
 use crate::app::session::measured::{MeasuredRecord, file_name, sentence};
 use crate::app::task::{Background, Wake};
-use crate::app::ui::widgets::{dialog, dialog_width};
+use crate::app::ui::widgets::{dialog, dialog_width, primary};
 use crate::scene::{ChosenColumn, MeasuredText, Quantity, Unit};
 
 /// Extensions of the files that are taken for measured data.
@@ -190,7 +190,7 @@ impl MeasuredDialog {
     fn buttons_ui(&self, ui: &mut Ui) -> Option<MeasuredAnswer> {
         let record = self.known().and_then(Result::ok);
         ui.horizontal(|ui| {
-            let lay = ui.add_enabled(record.is_some(), Button::new("Lay it over"));
+            let lay = ui.add_enabled(record.is_some(), primary(ui, "Lay it over"));
             if record.is_some() && ui.memory(|memory| memory.focused().is_none()) {
                 lay.request_focus();
             }

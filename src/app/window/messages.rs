@@ -66,13 +66,15 @@ impl Messages {
         let now = ui.input(|input| input.time);
         let left = *notice.since.get_or_insert(now) + SHOWN_FOR - now;
         let area = Area::new(Id::unique("told")).anchor(Align2::CENTER_BOTTOM, vec2(0.0, -ABOVE));
-        area.order(Order::Tooltip).interactable(false).show(ui.ctx(), |ui| {
+        let shown = area.order(Order::Tooltip).interactable(false).show(ui.ctx(), |ui| {
             egui::Frame::popup(ui.style()).show(ui, |ui| {
                 ui.set_max_width(dialog_width(ui, 900.0));
                 let label = ui.label(&notice.text);
                 ui.ctx().accesskit_node_builder(label.id, |node| node.set_live(Live::Polite));
             });
         });
+        // over a hover text that opened later
+        ui.ctx().move_to_top(shown.response.layer_id);
         if left > 0.0 {
             ui.ctx().request_repaint_after_secs(left as f32);
         } else {

@@ -9,22 +9,27 @@ use crate::app::panels::status_line::{self, covered_ui, status_ui};
 use crate::app::panels::{controls, notes, transport};
 use crate::app::session::lesson::Records;
 use crate::app::ui::settings::Settings;
-use crate::app::ui::style::{self, Style};
-use crate::app::ui::widgets::{Icon, icon_button_ui, panel_frame};
-use crate::app::views::{self, Drawn, ViewContext};
+use crate::app::ui::style::{self, CONTROL, GAP, Style};
+use crate::app::ui::widgets::panel_frame;
+use crate::app::views::{Drawn, ViewContext};
 use crate::app::words::lesson::numbered;
 use crate::scene::lesson::LESSONS;
 
+use card::{Title, card_ui};
 use layouts::{Arrangement, Room};
 
-const ROW: f32 = 28.0;
 /// Width in points of the column of controls that opens beside the views.
 const MORE: f32 = 276.0;
 
 const MENU: f32 = 28.0;
+/// Height in points of the bar with the time, and in a compact window.
+const TRANSPORT: (f32, f32) = (56.0, 46.0);
+/// Space around the cards: the bars above and below and the controls have their own.
+const MARGIN: egui::Margin = egui::Margin { left: GAP as i8, right: GAP as i8, top: 0, bottom: 0 };
 /// Height in points of the guide line, whatever it says.
 const GUIDE: f32 = 29.0;
 
+mod card;
 mod command;
 mod figure;
 mod files;
@@ -107,18 +112,20 @@ impl Window {
         if self.filled.is_some() {
             // the view has the whole window
         } else if self.lessons.open.is_some() {
-            self.lesson_panels_ui(ui, &style, compact);
+            self.lesson_panels_ui(ui, &style);
         } else {
             commands.extend(self.controls_ui(ui, compact));
             self.session.follow_best();
             is_over_views = compact && !self.hint.has_line;
             if !is_over_views {
                 let panel = Panel::top("guide").frame(panel_frame(ui, 12, 0)).exact_size(GUIDE);
-                commands.extend(panel.show(ui, |ui| self.guide_line_ui(ui, &style)).inner);
+                let line = panel.show_separator_line(false).show(ui, |ui| self.guide_line_ui(ui, &style));
+                commands.extend(line.inner);
             }
         }
         let views = ui.available_rect_before_wrap();
-        CentralPanel::no_frame().show(ui, |ui| self.views_ui(ui, style));
+        let cards = egui::Frame::new().fill(style.panel()).inner_margin(MARGIN);
+        CentralPanel::no_frame().frame(cards).show(ui, |ui| self.views_ui(ui, style));
         if is_over_views && (self.ways || self.session.best.is_shown()) && !self.covered {
             let line = egui::UiBuilder::new().max_rect(views.with_min_y(views.bottom() - GUIDE));
             ui.scope_builder(line, |ui| {
@@ -156,14 +163,15 @@ impl Window {
     fn bars_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) -> Vec<Command> {
         let (line, covered) = (panel_frame(ui, 12, 4), self.motion_is_covered());
         let chosen = match self.filled {
-            None => self.head_ui(ui, style, compact),
+            None => self.head_ui(ui, style),
             Some(_) if covered => Vec::new(),
             Some(_) => {
                 self.announcer.say(ui, &self.session.sentence());
                 Vec::new()
             }
         };
-        Panel::bottom("transport").frame(line).exact_size(if compact { 46.0 } else { 60.0 }).show(ui, |ui| {
+        let bar = Panel::bottom("transport").frame(line).show_separator_line(false);
+        bar.exact_size(if compact { TRANSPORT.1 } else { TRANSPORT.0 }).show(ui, |ui| {
             if self.lesson_covers() {
                 ui.disable();
             }
@@ -173,14 +181,16 @@ impl Window {
     }
 
     /// Menu bar and status line. Returns the commands that were chosen.
-    fn head_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) -> Vec<Command> {
+    fn head_ui(&mut self, ui: &mut Ui, style: &Style) -> Vec<Command> {
         let bar = Panel::top("menu").frame(panel_frame(ui, 8, 2)).exact_size(MENU);
-        let bar = bar.show(ui, |ui| menu::Menus { window: self, chosen: Vec::new() }.ui(ui));
+        let bar = bar
+            .show_separator_line(false)
+            .show(ui, |ui| menu::Menus { window: self, chosen: Vec::new() }.ui(ui));
         let covered = self.motion_is_covered();
         let status = Panel::top("status").frame(panel_frame(ui, 12, 2)).exact_size(status_line::height(ui));
-        status.show(ui, |ui| match covered {
+        status.show_separator_line(false).show(ui, |ui| match covered {
             true => covered_ui(ui, !self.covered),
-            false => status_ui(ui, &mut self.session, &mut self.announcer, style, compact),
+            false => status_ui(ui, &mut self.session, &mut self.announcer, style),
         });
         bar.inner
     }
@@ -189,12 +199,13 @@ impl Window {
     fn controls_ui(&mut self, ui: &mut Ui, compact: bool) -> Option<Command> {
         if compact {
             let line = panel_frame(ui, 12, 4);
-            Panel::top("controls row").frame(line).show(ui, |ui| {
-                ui.set_height(ROW);
+            Panel::top("controls row").frame(line).show_separator_line(false).show(ui, |ui| {
+                ui.set_height(CONTROL);
                 controls::row_ui(ui, &mut self.session, &mut self.more);
             });
             if self.more {
-                Panel::right("more").frame(line).resizable(false).exact_size(MORE).show(ui, |ui| {
+                let column = Panel::right("more").frame(line).show_separator_line(false);
+                column.resizable(false).exact_size(MORE).show(ui, |ui| {
                     let session = &mut self.session;
                     egui::ScrollArea::vertical().show(ui, |ui| controls::beside_ui(ui, session, 150.0));
                 });
@@ -204,7 +215,7 @@ impl Window {
         let width = if ui.ctx().content_rect().width() > 1600.0 { 300.0 } else { 250.0 };
         let column =
             Panel::left("controls").frame(panel_frame(ui, 12, 10)).resizable(false).exact_size(width);
-        let column = column.show(ui, |ui| {
+        let column = column.show_separator_line(false).show(ui, |ui| {
             let bottom = ui.max_rect().bottom();
             let contents = egui::ScrollArea::vertical().show(ui, |ui| {
                 controls::column_ui(ui, &mut self.session, &mut self.more);
@@ -241,8 +252,8 @@ impl Window {
         let (heading, text) = self.hint.text(&self.session);
         guide_ui(ui, (heading, &text, ink), |ui| {
             let hover = "Look, predict, try and explain, step by step. The scene waits as it is.";
-            let lesson = ui.small_button(numbered(next)).on_hover_text(hover).clicked();
-            if ui.small_button("Dismiss").clicked() {
+            let lesson = ui.link(numbered(next)).on_hover_text(hover).clicked();
+            if ui.link("Dismiss").clicked() {
                 self.hint.dismiss();
             }
             lesson.then_some(Command::OpenLesson(next))
@@ -277,7 +288,6 @@ impl Window {
             filled: self.filled.is_some(),
             drawn: Drawn::WithGhosts,
         };
-        ui.painter().rect_filled(ui.max_rect(), 0.0, ui.visuals().panel_fill);
         let Some(view) = self.filled else {
             self.tiling.ui(ui, &mut context, &mut self.filled);
             // changes to the custom arrangement are kept
@@ -290,18 +300,8 @@ impl Window {
             }
             return;
         };
-        let mut close = false;
-        ui.horizontal(|ui| {
-            ui.add_space(8.0);
-            ui.heading(view.name()).on_hover_text(view.about());
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                close = icon_button_ui(ui, Icon::Restore, 24.0, "all views", "All views again (Z or Esc)")
-                    .clicked();
-                layouts::hold_ui(ui, view, context.memory);
-            });
-        });
-        views::view_ui(ui, view, &mut context);
-        if close {
+        let title = Title { view, id: egui::Id::unique("title of the window") };
+        if card_ui(ui, ui.max_rect(), &[title], view, &mut context).fills {
             self.filled = None;
         }
     }

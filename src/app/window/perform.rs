@@ -15,7 +15,7 @@ use crate::scene::Layout;
 use super::Window;
 use super::command::{Command, UNDO};
 use super::keys;
-use super::layouts::Arrangement;
+use super::layouts::{Arrangement, Room};
 use super::leave::Next;
 use super::wanted::Wanted;
 
@@ -105,7 +105,15 @@ impl Window {
                 self.custom = self.tiling.tree_to_save().cloned().or(self.custom.take());
                 self.arrangement = Arrangement::Custom;
             }
-            Command::Show(view, shown) => self.tiling.show(view, shown),
+            Command::Show(view, shown) => {
+                self.tiling.show(view, shown);
+                // two mechanisms and two wells need the room of all tiles
+                let others = View::ALL.into_iter().any(|other| other != view && self.tiling.shows(other));
+                let is_large = view == View::SideBySide && self.tiling.room() != Room::Large;
+                if shown && is_large && others {
+                    self.filled = Some(view);
+                }
+            }
             Command::NextTab => self.tiling.next_tab(self.memory.hovered),
             Command::Cursors => self.switch_cursors(),
             Command::HoldAxes => self.hold_axes(),

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use eframe::egui::{self, Key, RichText, TextEdit, Ui};
+use eframe::egui::{Key, RichText, TextEdit, Ui};
 
-use crate::app::ui::widgets::{dialog, dialog_width};
+use crate::app::ui::widgets::{dialog, dialog_width, primary};
 use crate::system::files;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -125,7 +125,7 @@ impl PathDialog {
                 field.request_focus();
             }
             ui.horizontal(|ui| {
-                let done = ui.add_enabled(taken, egui::Button::new(self.wanted.verb())).clicked();
+                let done = ui.add_enabled(taken, primary(ui, self.wanted.verb())).clicked();
                 let cancelled = ui.button("Cancel").clicked();
                 if taken && (done || entered) {
                     Some(PathAnswer::Chosen(PathBuf::from(self.path.trim())))

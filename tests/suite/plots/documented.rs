@@ -108,12 +108,26 @@ fn panels_of_a_run_are_drawn_alone_or_one_under_the_other() {
     );
     let two = says(&format!("{run} --panels portrait,displacement"), &["displacement (mm)", "time (s)"]);
     assert_eq!(two.iter().filter(|text| *text == "displacement (mm)").count(), 2, "{two:?}");
+    // in the order in which they are named
+    let order = |panels: &str| {
+        let texts = says(&format!("{run} --panels {panels}"), &["time (s)"]);
+        let place = |label: &str| texts.iter().position(|text| text == label).unwrap();
+        place("velocity (mm/s)") < place("base accel. (g)")
+    };
+    assert!(order("velocity,acceleration") && !order("acceleration,velocity"));
     // all of them is the picture with its numbers
+    let sorted = |mut texts: Vec<String>| {
+        texts.sort();
+        texts
+    };
     let whole = says(&format!("{run} --panels portrait,velocity,acceleration,displacement"), &["crossings"]);
-    assert_eq!(whole, says(run, &["crossings"]));
+    assert_eq!(sorted(whole), sorted(says(run, &["crossings"])));
     let path = folder.path().join("c.svg");
     refused(with_plot(&format!("{run} --panels force"), &path), &["--panels", "force", "displacement"]);
     refused(headless(&format!("{run} --panels velocity")), &["--plot"]);
+    for twice in ["power,power", "velocity,energy,velocity"] {
+        refused(with_plot(&format!("{run} --panels {twice}"), &path), &["--panels", "named twice"]);
+    }
 }
 
 #[test]

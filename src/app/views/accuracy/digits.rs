@@ -9,8 +9,8 @@ use crate::study::accuracy::scene::{
     AtTolerance, StepSize, Tolerances, duration, length_mm, moment, small_length, step_name,
 };
 
-use super::super::pane::pane_ui;
-use super::super::{View, ViewContext};
+use super::super::ViewContext;
+use super::super::pane::fresh_pane_ui;
 use super::waiting::waiting_ui;
 
 /// Smallest height in points of the plot of error over processor time.
@@ -44,7 +44,7 @@ pub fn digits_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         let rest = ui.available_rect_before_wrap();
         if rest.height() > PICTURE && rest.width() > 200.0 {
             let chart = chart(&known, tolerance, stepped.as_ref());
-            let pane = pane_ui(ui, context.memory, View::Accuracy, &style, rest, chart);
+            let pane = fresh_pane_ui(ui, &style, rest, chart);
             pane.response
                 .widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, "error over processor time"));
         }

@@ -1,18 +1,15 @@
 //! Plot of the run in fixed steps over the true one, with the errors in words.
 
-use eframe::egui::{self, ComboBox, Rect, TextStyle, Ui, UiBuilder, vec2};
-use egui_plot::{HLine, Line, LineStyle, PlotBounds, PlotPoint, PlotPoints, Points};
+use eframe::egui::{self, ComboBox, TextStyle, Ui, UiBuilder};
 
 use crate::app::session::accuracy::Accuracy;
-use crate::app::ui::style::Style;
-use crate::numeric::extent;
-use crate::output::Area;
+use crate::output::{Chart, Marks, Panel, PlotAxis, Role};
+use crate::study::Table;
 use crate::study::accuracy::methods::Scheme;
 use crate::study::accuracy::scene::{StepSize, step_name};
 
-use super::super::ViewContext;
-use super::super::legend::{LEGEND, Symbol, legend};
-use super::super::plot::{even, marks, plot_place, still_plot};
+use super::super::pane::pane_ui;
+use super::super::{View, ViewContext};
 use super::waiting::waiting_ui;
 
 /// Ends of the slider in s.
@@ -36,13 +33,8 @@ const PLOT: f32 = 70.0;
 /// Height in points of a line of text below the plot.
 const LINE_HEIGHT: f32 = 19.0;
 
-/// Width in points of the numbers of the vertical axis.
-const AXIS_WIDTH: f32 = 44.0;
-
-/// Height in points below which the names of the axes are left out.
-const LOW: f32 = 170.0;
-/// Margin in points at the right end, for a number.
-const MARGIN: f32 = 14.0;
+/// Room above and below the true motion, as a share of its range.
+const ROOM: f64 = 0.12;
 
 /// Largest number of steps that are drawn as dots.
 const MAX_DOTS: usize = 150;
@@ -62,7 +54,7 @@ pub fn steps_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         }
     };
     let (left, right) = model.stop_positions();
-    let stops = [left, right].map(|stop| stop.map(|stop| stop * 1e3));
+    let [left, right] = [left, right].map(|stop| stop.map_or(f64::NAN, |x| x * 1e3));
     ui.scope(|ui| {
         if !current {
             ui.set_opacity(0.5);
@@ -88,7 +80,7 @@ pub fn steps_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         let plot = rest.with_max_y((rest.bottom() - below).max(rest.top()));
         let mut top = rest.top();
         if plot.height() >= PLOT {
-            plot_ui(ui, &style, plot, &known, stops);
+            pane_ui(ui, context.memory, View::Accuracy, &style, plot, chart(&known, (left, right)));
             top = plot.bottom() + 4.0;
         }
         ui.scope_builder(UiBuilder::new().max_rect(rest.with_min_y(top)), |ui| {
@@ -193,61 +185,20 @@ fn parsed(text: &str) -> Option<f64> {
     Some(value * unit).filter(|step| step.is_finite())
 }
 
-fn plot_ui(ui: &mut Ui, style: &Style, area: Rect, known: &StepSize, stops: [Option<f64>; 2]) {
-    let path = |points: &[(f64, f64)]| -> Vec<PlotPoint> {
-        points.iter().map(|(t, x)| PlotPoint::new(*t, x * 1e3)).collect()
-    };
-    let (truth, ghost) = (path(&known.truth), path(&known.ghost));
+/// The run in fixed steps over the true one.
+fn chart(known: &StepSize, stops: (f64, f64)) -> Chart {
+    let path = |points: &[(f64, f64)]| points.iter().map(|(t, x)| (*t, x * 1e3)).collect::<Vec<_>>();
+    let (truth, stepped) = (path(&known.truth), path(&known.ghost));
     // a diverging run leaves the picture
-    let (low, high) = extent(truth.iter().map(|point| point.y));
-    let room = (0.12 * (high - low)).max(1e-6);
-    let (low, high) = (low - room, high + room);
-    let entries = [
-        (Symbol::Line(style.motion_stroke()), "true"),
-        (Symbol::Dashed(style.impact_stroke()), known.scheme.name()),
-    ];
-    legend(ui, style, area, area.right(), &entries);
-    let rows = f64::from((area.height() / 40.0).clamp(2.0, 6.0));
-    let columns = f64::from((area.width() / 80.0).clamp(2.0, 8.0));
-    let is_low = area.height() < LOW;
-    let (time_label, axis) = if is_low { ("", "mm") } else { ("time (s)", "displacement (mm)") };
-    let rect = Rect::from_min_max(area.min + vec2(0.0, LEGEND), area.max - vec2(MARGIN, 0.0));
-    let mut ui = plot_place(ui, style, rect);
-    let (end, edge) = (known.drawn, 0.02 * (high - low));
-    still_plot(("step size", end.to_bits()))
-        .allow_drag([true, false])
-        .allow_zoom([true, false])
-        .allow_double_click_reset(true)
-        .default_x_bounds(0.0, end)
-        .default_y_bounds(low, high)
-        .x_axis_label(time_label)
-        .y_axis_label(axis)
-        .y_axis_min_width(AXIS_WIDTH)
-        .x_grid_spacer(|input| marks(&even(input.bounds.0, input.bounds.1, columns)))
-        .y_grid_spacer(|_| marks(&even(low + edge, high - edge, rows)))
-        .show(&mut ui, |plot| {
-            let seen = plot.plot_bounds();
-            let bounds = PlotBounds::from_min_max([seen.min()[0], low], [seen.max()[0], high]);
-            plot.set_plot_bounds(bounds);
-            for (value, _) in even(low, high, rows).ticks {
-                plot.hline(HLine::new("", value).stroke(style.grid_stroke()));
-            }
-            for stop in stops.into_iter().flatten() {
-                plot.hline(HLine::new("", stop).stroke(style.stop_stroke()));
-            }
-            plot.line(Line::new("true", PlotPoints::Owned(truth)).stroke(style.motion_stroke()));
-            // egui_plot computes the dashes of a whole path before it clips them: a diverging solution or a
-            // strong zoom gives more than fit into memory
-            let shown = Area::new(bounds.min()[0], bounds.min()[1], bounds.max()[0], bounds.max()[1]);
-            for piece in shown.parts(&ghost.iter().map(|point| (point.x, point.y)).collect::<Vec<_>>()) {
-                let piece = piece.into_iter().map(|(x, y)| PlotPoint::new(x, y)).collect();
-                let line = Line::new("ghost", PlotPoints::Owned(piece)).stroke(style.impact_stroke());
-                plot.line(line.style(LineStyle::dashed_dense()));
-            }
-            if ghost.len() <= MAX_DOTS {
-                plot.points(Points::new("steps", PlotPoints::Owned(ghost)).radius(2.4).color(style.impact()));
-            }
-        });
+    let up = PlotAxis::around(truth.iter().map(|point| point.1), ROOM, "displacement (mm)");
+    let mut panel = Panel::new(PlotAxis::between(0.0, known.drawn, "time (s)"), up);
+    panel.level_stops(stops);
+    panel.layer(Role::Motion, "true", Marks::Trace(truth));
+    panel.layer(Role::Method(1), known.scheme.name(), Marks::Trace(stepped.clone()));
+    if stepped.len() <= MAX_DOTS {
+        panel.draw(Role::Method(1), Marks::Points(stepped));
+    }
+    Chart::stack(vec![panel], "", Table::new())
 }
 
 #[cfg(test)]

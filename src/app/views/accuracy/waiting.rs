@@ -1,8 +1,8 @@
 //! Placeholder for a result that is still being computed.
 
-use eframe::egui::{RichText, Ui};
+use eframe::egui::Ui;
 
-use super::super::ViewContext;
+use super::super::{ViewContext, empty_ui};
 
 /// Shows a message while a result is computed for the first time.
 pub fn waiting_ui(ui: &mut Ui, context: &ViewContext<'_>) {
@@ -11,5 +11,6 @@ pub fn waiting_ui(ui: &mut Ui, context: &ViewContext<'_>) {
         None if context.session.accuracy.is_stopped() => "Stopped: the next change begins it again.",
         None => "Working it out.",
     };
-    ui.label(RichText::new(text).color(context.style.faint()));
+    let room = ui.available_rect_before_wrap();
+    empty_ui(ui, &context.style, room, text);
 }

@@ -2,8 +2,8 @@
 //!
 //! The spring lies between the frame on the left and the mass. The magnets face each other across their gap
 //! when the mass is at x = 0, one below the mass and one on a post; the gap is drawn to the scale of the
-//! flexures if there is room for that. A coil lies on the lower clamp around the feet of the flexures, in
-//! section; its magnet hangs below the mass. Piezoelectric patches lie on the feet of the flexures. The load
+//! flexures if there is room for that. A coil at the frame lies around the magnet that hangs
+//! below the mass, in section. Piezoelectric patches lie on the feet of the flexures. The load
 //! is on the right, where the flexures do not reach.
 
 use std::cell::RefCell;

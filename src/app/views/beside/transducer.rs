@@ -7,12 +7,14 @@ use crate::scene::Transducer;
 
 use super::{MIN_POLE, POLE, Pen, Places};
 
-/// Width in points of each half of a coil.
-const WINDING: f32 = 28.0;
-/// Height in points of each half of a coil.
-const WOUND: f32 = 11.0;
+/// Half the length in points of a coil.
+const WINDING: f32 = 72.0;
+/// Thickness in points of the wires on each side of a coil.
+const WOUND: f32 = 7.0;
 /// Number of wires in a row of a coil.
-const TURNS: usize = 5;
+const TURNS: usize = 18;
+/// Width in points of a piezoelectric layer.
+const LAYER: f32 = 28.0;
 
 /// Distance in points from x = 0 to a piezoelectric layer, if there are no flexures.
 const ASIDE: f32 = 38.0;
@@ -39,9 +41,7 @@ impl Pen<'_> {
         let (name, part, coupled, (load, unit), words) = match *transducer {
             Transducer::None => return,
             Transducer::Electromagnetic { coupling_v_s_per_m, load_ohm, .. } => {
-                let corner = pos2(zero + self.reach_at(WOUND), bottom - 1.0 - WOUND);
-                let part = Rect::from_min_size(corner, vec2(WINDING, WOUND));
-                self.coil(part, shapes);
+                let part = self.coil(shapes);
                 let words = format!(
                     "A coil at the frame, cut through. The magnet at the mass induces {} V in it at 1 m/s.",
                     short(coupling_v_s_per_m.abs())
@@ -51,8 +51,8 @@ impl Pen<'_> {
             Transducer::Piezoelectric { coupling_n_per_v, load_kohm, .. } => {
                 // patches lie where the flexures stand
                 let aside = if below.is_some() { 0.0 } else { ASIDE };
-                let corner = pos2(zero + aside - 0.5 * WINDING, bottom - 3.0 - height);
-                let part = Rect::from_min_size(corner, vec2(WINDING, height));
+                let corner = pos2(zero + aside - 0.5 * LAYER, bottom - 3.0 - height);
+                let part = Rect::from_min_size(corner, vec2(LAYER, height));
                 self.patches(part, shapes);
                 let words = format!(
                     "A piezoelectric layer, which the motion strains: 1 V on it is a force of {} N on the \
@@ -77,23 +77,34 @@ impl Pen<'_> {
         FOOT + if below.is_some() { 0.5 * rect.width() * bent } else { 0.0 }
     }
 
-    /// Draws a flat coil around x = 0 in section, of which `part` is the right half, and above it the magnet
-    /// of the mass, if there is room and no other magnet hangs there.
-    fn coil(&self, part: Rect, shapes: &mut Vec<Shape>) {
+    /// Draws a coil around x = 0 in section, and in it the magnet of the mass, if there is room and no other
+    /// magnet hangs there: then the coil lies on the clamp. Returns the right end of its lower row.
+    fn coil(&self, shapes: &mut Vec<Shape>) -> Rect {
         let Places { bottom, body, zero, .. } = *self.places;
-        let left = Rect::from_center_size(pos2(2.0 * zero - part.center().x, part.center().y), part.size());
-        for half in [left, part] {
+        let row =
+            |top: f32| Rect::from_center_size(pos2(zero, top + 0.5 * WOUND), vec2(2.0 * WINDING, WOUND));
+        let pole = POLE.min(0.5 * (bottom - body.bottom() - 2.0 * WOUND) - 3.0);
+        let hangs = pole >= MIN_POLE && !self.has_magnets;
+        let rows = match hangs {
+            true => [body.bottom() + 1.0, body.bottom() + WOUND + 2.0 * pole + 4.0],
+            false => [bottom - 2.0 * WOUND - 1.0, bottom - WOUND - 1.0],
+        };
+        for half in rows.map(row) {
             shapes.push(Shape::rect_filled(half, 2.0, self.style.frame_colour()));
-            let step = vec2(half.width() / TURNS as f32, 0.5 * half.height());
-            for (i, j) in (0..TURNS).flat_map(|i| [(i, 0), (i, 1)]) {
-                let at = half.min + step * vec2(i as f32 + 0.5, j as f32 + 0.5);
-                shapes.push(Shape::circle_filled(at, 1.9, self.style.ink()));
-            }
+            let step = half.width() / TURNS as f32;
+            shapes.extend((0..TURNS).map(|i| {
+                let at = pos2(half.left() + step * (i as f32 + 0.5), half.center().y);
+                Shape::circle_filled(at, 1.9, self.style.ink())
+            }));
         }
-        let pole = POLE.min(0.5 * (bottom - body.bottom() - WOUND) - 4.0);
-        if pole >= MIN_POLE && !self.has_magnets {
-            self.magnet(pos2(body.center().x, body.bottom() + pole), pole, true);
+        if hangs {
+            let middle = pos2(body.center().x, body.bottom() + WOUND + pole + 2.5);
+            let stem = [body.center_bottom(), middle - vec2(0.0, pole)];
+            self.painter.line_segment(stem, Stroke::new(3.0, self.style.ink()));
+            self.magnet(middle, pole, true);
         }
+        let end = row(rows[1]);
+        end.with_min_x(end.right() - WOUND)
     }
 
     /// Draws patches on the flexures, or without flexures a layer between two electrodes.

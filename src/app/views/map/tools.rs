@@ -14,8 +14,8 @@ use super::super::ViewContext;
 use super::super::axes::{field_ui, range_id, range_row_ui};
 use super::super::memory::MapLook;
 
-/// Width in points of the title at most: a long one is cut, and whole in the list and beside the colours.
-const TITLE: f32 = 180.0;
+/// Width in points of the title: a long one is cut, and whole in the list and beside the colours.
+const TITLE: f32 = 150.0;
 
 /// Width in points below which the choices take two rows.
 const NARROW: f32 = 1080.0;
@@ -26,51 +26,43 @@ const LOW: f32 = 320.0;
 /// Title, choices, progress.
 pub fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     // less spacing for a low map
-    ui.spacing_mut().item_spacing.y = if ui.available_height() > LOW { 5.0 } else { 1.0 };
-    ui.add_space(2.0);
+    ui.spacing_mut().item_spacing.y = if ui.available_height() > LOW { 4.0 } else { 0.0 };
     let narrow = ui.available_width() < NARROW;
-    ui.horizontal(|ui| {
-        ui.add_space(8.0);
-        ui.scope(|ui| {
-            ui.set_max_width(TITLE);
+    egui::Frame::new().inner_margin(egui::Margin::symmetric(8, 0)).show(ui, |ui| {
+        ui.horizontal_wrapped(|ui| {
             quantity_ui(ui, &mut context.session.map);
-        });
-        ui.label(RichText::new("from rest").heading())
-            .on_hover_text("Every cell is a run of its own from rest.");
-        if !narrow {
-            axes_ui(ui, context);
-        }
-        look_ui(ui, &mut context.memory.map_look, context.session.map.quantity());
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            ui.add_space(8.0);
+            ui.label(RichText::new("from rest").heading())
+                .on_hover_text("Every cell is a run of its own from rest.");
+            if !narrow {
+                axes_ui(ui, context);
+            }
+            look_ui(ui, &mut context.memory.map_look, context.session.map.quantity());
             progress_ui(ui, context);
         });
+        if narrow {
+            ui.horizontal_wrapped(|ui| axes_ui(ui, context));
+        }
     });
-    if narrow {
-        ui.horizontal(|ui| {
-            ui.add_space(8.0);
-            axes_ui(ui, context);
-        });
-    }
 }
 
 /// Choice of the quantity, by groups of columns.
 fn quantity_ui(ui: &mut Ui, mapping: &mut Mapping) {
     let chosen = mapping.quantity();
     let title = RichText::new(chosen.title()).heading();
-    let combo = ComboBox::from_id_salt("quantity").width(118.0).height(420.0).selected_text(title).truncate();
+    let combo = ComboBox::from_id_salt("quantity").width(TITLE).height(420.0).selected_text(title).truncate();
     let inner = combo.show_ui(ui, |ui| {
-        ui.set_min_width(230.0);
         for (group, columns) in &COLUMNS {
-            ui.label(RichText::new(*group).small());
-            for column in columns.iter().filter_map(|name| SummaryField::find(name)) {
-                let entry = ui.selectable_label(column.name == chosen.name, column.title());
-                let cost =
-                    if column.needs_ledger { " The runs are made anew for it, one by one." } else { "" };
-                if entry.on_hover_text(format!("{}{cost}", column.about)).clicked() {
-                    mapping.show(column);
+            ui.menu_button(*group, |ui| {
+                for column in columns.iter().filter_map(|name| SummaryField::find(name)) {
+                    let entry = ui.selectable_label(column.name == chosen.name, column.title());
+                    let cost =
+                        if column.needs_ledger { " The runs are made anew for it, one by one." } else { "" };
+                    if entry.on_hover_text(format!("{}{cost}", column.about)).clicked() {
+                        mapping.show(column);
+                        ui.close();
+                    }
                 }
-            }
+            });
         }
     });
     let name = format!("map of {}", chosen.title());

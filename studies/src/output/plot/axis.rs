@@ -137,6 +137,17 @@ impl PlotAxis {
         Self { low, high, ..self.clone() }.with_ticks(USUAL)
     }
 
+    /// Whether its ticks are numbers of a scale, of which some may be left out.
+    pub(super) fn is_scale(&self) -> bool {
+        self.scale != Scale::Given
+    }
+
+    /// The axis with its unit alone as its label, where it has one.
+    pub(super) fn by_unit(&self) -> Self {
+        let unit = self.label.rsplit_once(" (").map(|(_, unit)| unit.trim_end_matches(')').to_owned());
+        Self { label: unit.unwrap_or_else(|| self.label.clone()), ..self.clone() }
+    }
+
     /// Whether a value lies between its ends.
     pub fn contains(&self, value: f64) -> bool {
         (self.low..=self.high).contains(&value)

@@ -141,6 +141,27 @@ impl Chart {
     }
 }
 
+impl Layer {
+    /// A curve, `y` over x from one of its `points` to the next: dashed beyond these stops.
+    pub fn curve(name: &str, mut points: Vec<Point>, stops: (f64, f64), y: impl Fn(f64) -> f64) -> Vec<Self> {
+        let ends = points.first().zip(points.last()).map_or((0.0, 0.0), |(first, last)| (first.0, last.0));
+        let faces = [stops.0, stops.1].into_iter().filter(|stop| *stop > ends.0 && *stop < ends.1);
+        points.extend(faces.map(|stop| (stop, y(stop))));
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let part = |role, name: &str, is_in: &dyn Fn(f64) -> bool| {
+            let points = points.iter().copied().filter(|point| is_in(point.0)).collect();
+            Self { marks: Marks::Path(points), role, name: name.to_owned() }
+        };
+        let mut layers = vec![
+            part(Role::Beyond, "beyond the stops", &|x| x <= stops.0),
+            part(Role::Beyond, "beyond the stops", &|x| x >= stops.1),
+        ];
+        layers.retain(|layer| matches!(&layer.marks, Marks::Path(points) if points.len() > 1));
+        layers.push(part(Role::Curve, name, &|x| !(x < stops.0 || x > stops.1)));
+        layers
+    }
+}
+
 impl Panel {
     /// A panel without layers.
     pub fn new(x: PlotAxis, y: PlotAxis) -> Self {

@@ -1,7 +1,7 @@
 //! Picture of a mechanism: force and potential over displacement, with equilibria, kinks and stops.
 
 use super::axis::{PlotAxis, Ranges};
-use super::chart::{Chart, Marks, Panel};
+use super::chart::{Chart, Layer, Marks, Panel};
 use super::drawn::Drawn;
 use super::figure::Point;
 use super::role::Role;
@@ -28,27 +28,53 @@ pub fn curve_chart(table: &Table, mechanism: &Mechanism, stops: (f64, f64), rang
     let up = height(force_range, force, 0.0, &format!("force to hold ({force_unit})")).or_given(ranges.y);
     let below = height(potential_range, potential, f64::NAN, &format!("potential ({potential_unit})"));
     let inside = |at: f64| across.contains(at * 1e3);
-    let kinks: Vec<f64> = landscape.kinks.iter().map(|kink| kink.x).filter(|x| inside(*x)).collect();
-    let mut panels = [Panel::new(across.clone(), up), Panel::new(across.clone(), below)];
-    let lines = [pairs(column("force_n"), force), pairs(column("potential_j"), potential)];
-    let energy = |x: f64| mechanism.curve.potential(x) * potential;
-    for (i, (panel, line)) in panels.iter_mut().zip(lines).enumerate() {
-        panel.upright_stops((stops.0 * 1e3, stops.1 * 1e3));
-        if !kinks.is_empty() {
-            let at = kinks.iter().map(|x| x * 1e3).collect();
-            panel.layer(Role::Kink, "kink of the force", Marks::Verticals(at));
-        }
-        if i == 0 {
-            panel.draw(Role::Reference, Marks::Horizontals(vec![0.0]));
-        }
-        panel.draw(Role::Curve, Marks::Path(line));
-        panel.equilibria(landscape, |equilibrium| if i == 0 { 0.0 } else { energy(equilibrium.x) });
-    }
+    let of_force = pairs(column("force_n"), force);
+    let of_potential = pairs(column("potential_j"), potential);
+    let (stops_mm, curve) = ((stops.0 * 1e3, stops.1 * 1e3), &mechanism.curve);
+    let axes = (across.clone(), up);
+    let upper = force_panel(mechanism, axes, force, stops_mm, ("", of_force));
+    let mut lower = Panel::new(across.clone(), below);
+    lower.upright_stops(stops_mm);
+    lower.kinks(landscape);
+    lower
+        .layers
+        .extend(Layer::curve("", of_potential, stops_mm, |mm| curve.potential(mm * 1e-3) * potential));
+    lower.equilibria(landscape, |equilibrium| curve.potential(equilibrium.x) * potential);
     let mut words = subtitle(landscape);
-    if let Some(wall) = wall(column("x_m"), column("force_n"), &panels[0], force) {
+    if let Some(wall) = wall(column("x_m"), column("force_n"), &upper, force) {
         words += &wall;
     }
-    Chart::stack(panels.into(), words, drawn(table, mechanism, stops, inside))
+    Chart::stack(vec![upper, lower], words, drawn(table, mechanism, stops, inside))
+}
+
+/// The force that holds the mass, over displacement in mm, of which `per_newton` units are a N: its stops in
+/// mm, kinks, equilibria, and the curve of these points by its name.
+pub fn force_panel(
+    mechanism: &Mechanism,
+    (across, up): (PlotAxis, PlotAxis),
+    per_newton: f64,
+    stops: (f64, f64),
+    (name, points): (&str, Vec<Point>),
+) -> Panel {
+    let mut panel = Panel::new(across, up);
+    panel.upright_stops(stops);
+    panel.kinks(&mechanism.landscape);
+    panel.draw(Role::Reference, Marks::Horizontals(vec![0.0]));
+    let force = |mm: f64| mechanism.curve.force(mm * 1e-3) * per_newton;
+    panel.layers.extend(Layer::curve(name, points, stops, force));
+    panel.equilibria(&mechanism.landscape, |_| 0.0);
+    panel
+}
+
+impl Panel {
+    /// Adds the kinks of the force that lie in the range of the horizontal axis, in mm.
+    fn kinks(&mut self, landscape: &Landscape) {
+        let kinks = landscape.kinks.iter().map(|kink| kink.x * 1e3);
+        let kinks: Vec<f64> = kinks.filter(|mm| self.x.contains(*mm)).collect();
+        if !kinks.is_empty() {
+            self.layer(Role::Kink, "kink of the force", Marks::Verticals(kinks));
+        }
+    }
 }
 
 /// All that is drawn at the positions in m that lie `inside`.

@@ -126,6 +126,9 @@ pub enum Align {
     Right,
 }
 
+/// The most dashes of a line.
+const MOST_DASHES: f64 = 400.0;
+
 /// A line of text.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Text {
@@ -198,6 +201,8 @@ pub struct Figure {
     pub frames: Vec<Frame>,
     /// The frame of a surface.
     pub surface: Option<SurfaceFrame>,
+    /// The entries of its legend, and where each is.
+    pub legend: Vec<(Area, String)>,
     /// Upper and lower edge of what stands between the captions.
     body: (f64, f64),
 }
@@ -216,6 +221,7 @@ impl Figure {
             origin: Map::new(),
             frames: Vec::new(),
             surface: None,
+            legend: Vec::new(),
             data: Table::new(),
         }
     }
@@ -271,10 +277,13 @@ impl Figure {
         }
     }
 
-    /// Adds a broken line with dashes and gaps of the given lengths.
-    pub fn dashed(&mut self, points: &[Point], width: f64, ink: Ink, dash: (f64, f64), within: Area) {
+    /// Adds a broken line with dashes and gaps of the given lengths, longer ones in a line of very many.
+    pub fn dashed(&mut self, points: &[Point], width: f64, ink: Ink, (on, off): (f64, f64), within: Area) {
         for part in within.parts(points) {
-            for piece in dashes(&part, dash) {
+            let length: f64 =
+                part.windows(2).map(|pair| (pair[1].0 - pair[0].0).hypot(pair[1].1 - pair[0].1)).sum();
+            let longer = (length / (MOST_DASHES * (on + off))).max(1.0);
+            for piece in dashes(&part, (on * longer, off * longer)) {
                 self.shapes.push(Shape::Line(piece, width, ink));
             }
         }

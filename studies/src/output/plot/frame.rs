@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use super::axis::PlotAxis;
 use super::cells::{Cell, Cells, Colours};
 use super::chart::{Layer, Marks, Side};
-use super::figure::{Align, Area, Figure, Point, Text};
+use super::figure::{Align, Area, Figure, Point, Shape, Text};
 use super::font;
 use super::mark::{REGIMES, dot, mark, marker};
 use super::role::{Look, Role};
@@ -19,6 +19,9 @@ const MANY: f64 = 2000.0;
 /// Length of a tick of a layer, and the least distance between two.
 const TICK: f64 = 20.0;
 const APART: f64 = 4.5;
+
+/// Numbers of a scale upward stand this far apart at least.
+const LEAST_APART: f64 = 24.0;
 
 /// So many times its half height apart, markers on a line are told from each other.
 const MARKER_ROOM: f64 = 5.0;
@@ -59,6 +62,15 @@ impl Frame {
         (finite(x, self.across(x)), finite(y, self.down(y)))
     }
 
+    /// The shapes of layers over it, on a canvas as large as itself.
+    pub fn shapes(&self, layers: &[Layer], theme: &Theme) -> Vec<Shape> {
+        let Area { right, bottom, .. } = self.area;
+        let mut figure = Figure::new(theme, (right, bottom), (0.0, bottom));
+        figure.shapes.clear();
+        layers.iter().for_each(|layer| self.layer(&mut figure, layer, theme));
+        figure.shapes
+    }
+
     /// Grid lines, under everything else.
     pub fn grid(&self, figure: &mut Figure, theme: &Theme) {
         let Area { left, top, right, bottom } = self.area;
@@ -88,15 +100,23 @@ impl Frame {
             let tick = [(at, bottom), (at, bottom + style::TICK_LENGTH)];
             figure.line(&tick, style::FRAME, theme.ink, figure.canvas);
             if shows_x && numbered(i) {
+                // where the canvas ends beside it, a number stands inwards
+                let half = 0.5 * font::width(words, style::TICK, false) + 2.0;
+                let at = at.min(figure.canvas.right - half).max(half);
                 figure.text(text(words, (at, bottom + style::TICK_LENGTH + ascent + 8.0), Align::Centre));
             }
         }
         let places: Vec<f64> = self.y.ticks.iter().map(|tick| self.down(tick.0)).collect();
         let apart = places.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(f64::INFINITY, f64::min);
-        for (at, (_, words)) in places.iter().zip(&self.y.ticks) {
+        // in a low frame some have no number
+        let least = if self.y.is_scale() { LEAST_APART } else { 0.0 };
+        let every = (least / apart).ceil().clamp(1.0, 50.0) as usize;
+        let zero = self.y.ticks.iter().position(|tick| tick.0 == 0.0).unwrap_or(0);
+        let apart = apart * every as f64;
+        for (i, (at, (_, words))) in places.iter().zip(&self.y.ticks).enumerate() {
             let tick = [(left - style::TICK_LENGTH, *at), (left, *at)];
             figure.line(&tick, style::FRAME, theme.ink, figure.canvas);
-            if let Some(room) = numbers {
+            if let Some(room) = numbers.filter(|_| i % every == zero % every) {
                 let share = (room / font::width(words, style::TICK, false)).min(1.0);
                 let size = (share * style::TICK).min(0.9 * apart);
                 let place = (left - style::TICK_LENGTH - 7.0, at + 0.5 * size * font::CAPITAL);
@@ -131,7 +151,8 @@ impl Frame {
             Marks::Path(points) => self.path(figure, points, &look),
             Marks::Trace(points) => self.trace(figure, points, &look),
             Marks::Points(points) => {
-                let places = self.inside(points);
+                let mut places = self.inside(points);
+                once(&mut places);
                 let room = SIZE_SHARE * (right - left) / places.len().max(1) as f64;
                 let size = look.size.min(room.max(SMALLEST));
                 places.into_iter().for_each(|at| mark(figure, &look, at, size, theme));
@@ -269,11 +290,9 @@ impl Frame {
         }
     }
 
-    /// Points on the same half pixel are one.
     fn cloud(&self, figure: &mut Figure, points: &[Point], look: &Look, theme: &Theme) {
-        let mut taken = HashSet::new();
         let mut places = self.inside(points);
-        places.retain(|at| taken.insert(((2.0 * at.0) as i64, (2.0 * at.1) as i64)));
+        once(&mut places);
         let many = ((places.len() as f64 / FEW).ln() / (MANY / FEW).ln()).clamp(0.0, 1.0);
         let size = CLOUD.0 + many * (CLOUD.1 - CLOUD.0);
         for at in places {
@@ -423,6 +442,12 @@ impl Frame {
             }
         }
     }
+}
+
+/// Leaves one of the points on the same half pixel.
+fn once(places: &mut Vec<Point>) {
+    let mut taken = HashSet::new();
+    places.retain(|at| taken.insert(((2.0 * at.0) as i64, (2.0 * at.1) as i64)));
 }
 
 /// First, least, greatest and last of a column, in their order.

@@ -8,7 +8,7 @@ use super::figure::{Align, Area, Figure, Text};
 use super::font;
 use super::frame::Frame;
 use super::mark::marker;
-use super::page::wrapped;
+use super::page::{NAMELESS, Room, wrapped};
 use super::style::{self, Theme};
 use super::surface;
 
@@ -133,8 +133,8 @@ impl<'a> Grid<'a> {
     }
 
     /// Finds the sizes of the frames between these edges and within this height, where a panel of height 1
-    /// has at least `least`; the height that is needed.
-    pub fn fit(&mut self, (left, right): (f64, f64), height: f64, least: f64) -> f64 {
+    /// has at least `least`; the height that is needed. With this room the frames begin where it says.
+    pub fn fit(&mut self, (left, right): (f64, f64), height: f64, least: f64, room: Option<&Room>) -> f64 {
         self.begin = left;
         let mut needed = height;
         // The ticks depend on the size of the frames, and that on the room for the ticks.
@@ -143,6 +143,9 @@ impl<'a> Grid<'a> {
             let most = MOST_NUMBERS * (right - left);
             for (i, stack) in self.stacks.iter_mut().enumerate() {
                 stack.measure(most, (if i == 0 { left } else { 0.0 }, if i == last { left } else { 0.0 }));
+                if let Some(room) = room {
+                    stack.line_up(room, height);
+                }
             }
             let beside: f64 = self.stacks.iter().map(|stack| stack.left + stack.right).sum();
             let frames = right - left - beside - BETWEEN_COLUMNS * last as f64;
@@ -278,6 +281,22 @@ impl Stack<'_> {
             if slot.panel.surface().is_none() {
                 let before = if slot.numbers > 0.0 { TO_NUMBERS + slot.numbers + TO_LABEL } else { 0.0 };
                 self.left = self.left.max(before + slot.y_label.across(LABEL_WIDTH));
+            }
+        }
+    }
+
+    /// Gives its frames this room to the left and none to the right. A name that would need a second line
+    /// becomes the unit, and in a low place the axis to the right has none.
+    fn line_up(&mut self, room: &Room, height: f64) {
+        (self.left, self.right) = (room.left, 0.0);
+        for slot in &mut self.slots {
+            slot.more = 0.0;
+            slot.numbers = (room.left - TO_NUMBERS - TO_LABEL - LABEL_WIDTH).max(0.0);
+            if slot.y_label.lines.len() > 1 || slot.y_label.size < ONE_LINE * style::AXIS {
+                slot.y_label = Label::new(&slot.y.by_unit(), f64::INFINITY);
+            }
+            if height < NAMELESS {
+                slot.x_label = Label::default();
             }
         }
     }

@@ -22,6 +22,7 @@ const BETWEEN_ENTRIES: f64 = 38.0;
 /// The least height of a panel of height 1: of a page, and of a place of the window.
 const LEAST: f64 = 230.0;
 const LEAST_PANE: f64 = 90.0;
+const LEAST_LINED: f64 = 20.0;
 /// Free space around a place of the window, and the height below which it has no subtitle.
 const PANE: f64 = 16.0;
 const LOW_PANE: f64 = 600.0;
@@ -87,6 +88,24 @@ impl Lines {
     }
 }
 
+/// What is left free in a place of the window whose pictures stand in line one above the other.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Room {
+    /// From the left edge to the frames, whatever their numbers need.
+    pub left: f64,
+    /// From the left edge to the legend.
+    pub legend: f64,
+    /// To the right of the legend.
+    pub beside: f64,
+    /// Between the legend and the frames.
+    pub between: f64,
+}
+
+/// Height of a legend over that of such a place, at most, and the height below which its horizontal axis has
+/// no name.
+const LEGEND_SHARE: f64 = 1.0 / 6.0;
+pub(super) const NAMELESS: f64 = 340.0;
+
 /// An entry of a legend, placed from the legend's upper left corner on.
 struct Entry<'a> {
     sample: Sample,
@@ -117,7 +136,8 @@ impl Chart {
             None => style::SIZE.1.into(),
             Some(sheet) => sheet.height_mm.map_or(PROPORTION * width + around, |mm| mm / sheet.unit_mm()),
         };
-        let body = grid.fit((edge, width - edge), asked - around - legend.height, LEAST) + legend.height;
+        let body =
+            grid.fit((edge, width - edge), asked - around - legend.height, LEAST, None) + legend.height;
         let height = above + body + below;
         let mut figure = Figure::new(theme, (width, height), (above, height - below));
         figure.origin = caption.origin.clone();
@@ -142,25 +162,36 @@ impl Chart {
     }
 
     /// The chart in this width and height, as for a place of the window: without captions but the subtitle,
-    /// which a low one has not.
-    pub fn pane(&self, (width, height): (f64, f64), theme: &Theme) -> Figure {
+    /// which a low one has not. One in line with others leaves some room free.
+    pub fn pane(&self, (width, height): (f64, f64), theme: &Theme, room: Option<&Room>) -> Figure {
         let named = self.entries(theme);
-        let legend = Legend::new(&named, width - 2.0 * PANE);
+        let margin = if room.is_some() { 0.0 } else { PANE };
+        let left = room.map_or(PANE, |room| room.legend);
+        let mut legend = Legend::new(&named, width - left - room.map_or(PANE, |room| room.beside));
+        if room.is_some() {
+            legend.keep((LEGEND_SHARE * height / ROW).max(1.0) as usize);
+        }
         let is_low = height < LOW_PANE;
         let has_subtitle = !is_low && !self.subtitle.is_empty();
         let subtitle = if has_subtitle { &self.subtitle } else { "" };
         let subtitle = wrapped_to(subtitle, style::TICK, false, width - 2.0 * PANE, MOST_LINES);
-        let edge = if is_low { 0.0 } else { 0.5 * PANE };
+        let edge = if is_low || room.is_some() { 0.0 } else { 0.5 * PANE };
         let above = edge + if has_subtitle { SUBTITLE_LINE * subtitle.len() as f64 } else { 0.0 };
+        let below = above + legend.height + room.map_or(0.0, |room| room.between);
         let mut grid = Grid::new(self, width < style::NARROW);
-        grid.fit((PANE, width - PANE), height - above - legend.height - edge, LEAST_PANE);
+        grid.fit(
+            (margin, width - margin),
+            height - below - edge,
+            room.map_or(LEAST_PANE, |_| LEAST_LINED),
+            room,
+        );
         let mut figure = Figure::new(theme, (width, height), (0.0, height));
         for (i, line) in subtitle.iter().enumerate() {
             let at = (PANE, edge + SUBTITLE_LINE * (i as f64 + 0.75));
             figure.text(Text::new(line, at, style::TICK, theme.soft));
         }
-        legend.draw(&mut figure, (PANE, above), theme);
-        grid.place(above + legend.height).for_each(|slot| slot.draw(&mut figure, theme));
+        legend.draw(&mut figure, (left, above), theme);
+        grid.place(below).for_each(|slot| slot.draw(&mut figure, theme));
         figure
     }
 
@@ -227,6 +258,13 @@ impl<'a> Legend<'a> {
         Self { entries, height }
     }
 
+    /// Keeps so many rows, and the height of one where it is empty.
+    fn keep(&mut self, rows: usize) {
+        self.entries.retain(|entry| entry.row < rows);
+        let last = self.entries.last().map_or(0, |entry| entry.row);
+        self.height = ROW * (last as f64 + 1.0) + 10.0;
+    }
+
     /// Draws it with its upper left corner at a place.
     fn draw(&self, figure: &mut Figure, (left, top): (f64, f64), theme: &Theme) {
         for Entry { sample, words, size, left: from, row } in &self.entries {
@@ -234,6 +272,8 @@ impl<'a> Legend<'a> {
             entry(figure, theme, *sample, Area::new(x, middle - 12.0, x + SAMPLE, middle + 12.0));
             let at = (x + SAMPLE + GAP, middle + 0.5 * size * font::CAPITAL);
             figure.text(Text::new(*words, at, *size, theme.ink));
+            let right = at.0 + font::width(words, *size, false);
+            figure.legend.push((Area::new(x, middle - 12.0, right, middle + 12.0), (*words).to_owned()));
         }
     }
 }

@@ -1,16 +1,41 @@
-//! States with the energy of the top of the barrier, which bound the wells in the phase portrait.
+//! Phase portrait: velocity over displacement, with the states of the energy of the top of the barrier, which
+//! bound the wells.
 
+use super::axis::PlotAxis;
+use super::chart::{Layer, Marks, Panel};
 use super::figure::Point;
+use super::role::Role;
 use crate::mechanics::Mechanism;
 use crate::numeric::bisect;
 
 /// Points of each branch.
 const POINTS: usize = 400;
 
+/// A phase portrait of a mass in kg over these axes, of displacement in mm and of velocity, of which
+/// `per_speed` units are a m/s: its stops in mm, the separatrix, the layers of a motion, and the equilibria.
+pub fn portrait_panel(
+    (mechanism, mass): (&Mechanism, f64),
+    (x, y): (PlotAxis, PlotAxis),
+    per_speed: f64,
+    stops: (f64, f64),
+    motion: Vec<Layer>,
+) -> Panel {
+    let mut panel = Panel::new(x, y);
+    panel.upright_stops(stops);
+    for part in separatrix(mechanism, mass, (panel.x.low * 1e-3, panel.x.high * 1e-3)) {
+        let part = part.into_iter().map(|(x, v)| (x * 1e3, v * per_speed));
+        let part: Vec<_> = part.filter(|point| panel.x.contains(point.0)).collect();
+        panel.layer(Role::Separatrix, "separatrix", Marks::Path(part));
+    }
+    panel.layers.extend(motion);
+    panel.equilibria(&mechanism.landscape, |_| 0.0);
+    panel
+}
+
 /// The separatrix of a mass in kg between these displacements in m: its branches, displacement in m over
 /// velocity in m/s, each from the barrier outwards to where the potential is as high again. Without shaking
 /// and dissipation a state inside one of its loops never leaves that well. Empty without a barrier.
-pub fn separatrix(mechanism: &Mechanism, mass: f64, (low, high): (f64, f64)) -> Vec<Vec<Point>> {
+fn separatrix(mechanism: &Mechanism, mass: f64, (low, high): (f64, f64)) -> Vec<Vec<Point>> {
     let Some(barrier) = mechanism.landscape.barrier else { return Vec::new() };
     let curve = &mechanism.curve;
     let top = curve.potential(barrier.x);

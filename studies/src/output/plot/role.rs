@@ -84,7 +84,33 @@ pub enum Role {
     Several,
     /// The part that another panel shows closer.
     Closer,
+    /// Potential energy.
+    Potential,
+    /// Potential and kinetic energy.
+    Total,
+    /// The energy of the top of the barrier.
+    Barrier,
+    /// A curve beyond the stops, where the mass does not get.
+    Beyond,
+    /// The push of the base.
+    Push,
+    /// How far the push is from the curve.
+    Apart,
+    /// A motion as it was: from 0, which is now, to 1, the oldest that is shown.
+    Past(f64),
+    /// An impact of that age, which turns the velocity round.
+    Jump(f64),
+    /// A pinned motion by the place of its letter.
+    Pin(usize),
+    /// The mass at rest.
+    Resting,
 }
+
+/// Dash and gap of the pinned motions, of which each can be told from the others.
+const PINS: [(f64, f64); 3] = [(36.0, 14.0), (4.5, 9.0), (14.0, 9.0)];
+
+/// Strength of the oldest part of a motion that fades.
+const FAINTEST: f64 = 0.12;
 
 /// How a role looks.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -133,7 +159,7 @@ impl Theme {
             Role::Drive => fine(self.shaking),
             Role::Curve => Look { width: style::LINE + 0.8, ..plain },
             Role::Stop => Look { hatch: Some(self.wall_hatch()), ..of(self.wall) },
-            Role::Impact => Look { width: 2.0, ..marked(self.impact, Marker::Disc) },
+            Role::Impact => fine(self.impact),
             Role::Rest => Look { hatch: Some(self.rest_hatch), ..of(self.rest) },
             Role::Well => dashed(self.stable),
             Role::Stable => Look { size: style::MARKER + 2.0, halo: Some(self.paper), ..of(self.ink) },
@@ -183,6 +209,36 @@ impl Theme {
             Role::Impacts => marked(self.regimes[3], Marker::Triangle),
             Role::Several => of(self.paper),
             Role::Closer => of(self.rest),
+            Role::Potential => fine(self.unstable),
+            Role::Total => of(self.energy),
+            Role::Barrier => dotted(self.soft),
+            Role::Resting => marked(self.unstable, Marker::Square),
+            Role::Beyond => Look { width: style::THIN, ..dashed(self.soft) },
+            Role::Push => Look { width: style::LINE + 1.0, ..of(self.shaking) },
+            Role::Apart => Look { dash: Some(style::SHORT_DASH), ..fine(self.shaking) },
+            Role::Past(age) => fine(self.faded(self.ink, age)),
+            Role::Jump(age) => Look { dash: Some(style::SHORT_DASH), ..fine(self.faded(self.impact, age)) },
+            Role::Pin(place) => {
+                Look { dash: Some(PINS[place % PINS.len()]), ..fine(self.ink.over(self.paper, 0.6)) }
+            }
         }
+    }
+
+    /// A colour that fades with its age.
+    fn faded(&self, ink: Ink, age: f64) -> Ink {
+        ink.over(self.paper, 1.0 - (1.0 - FAINTEST) * age)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A dash of one pin is at least twice as long as that of the next.
+    #[test]
+    fn the_dashes_of_the_pins_can_be_told_apart() {
+        let mut lengths = PINS.map(|(dash, _)| dash);
+        lengths.sort_by(f64::total_cmp);
+        assert!(lengths.windows(2).all(|pair| pair[1] >= 2.0 * pair[0]), "{lengths:?}");
     }
 }

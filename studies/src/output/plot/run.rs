@@ -3,11 +3,12 @@
 use std::ops::Range;
 
 use super::axis::{PlotAxis, Ranges};
-use super::chart::{Chart, Column, Marks, Note, Panel, Side};
+use super::chart::{Chart, Column, Layer, Marks, Note, Panel};
 use super::drawn::Drawn;
 use super::figure::Point;
 use super::mark::REGIMES;
-use super::portrait::separatrix;
+use super::over_time::OverTime;
+use super::portrait::portrait_panel;
 use super::quantity::suited_unit;
 use super::role::Role;
 use crate::dynamics::{Outcome, STANDARD_GRAVITY, Summary};
@@ -90,19 +91,16 @@ pub fn run_chart(
         true => subtitle(summary),
         false => format!("from {} to {} s", short(trace.shown_from), short(trace.shown_to)),
     };
-    let over_time = seen.over_time();
-    let mut portrait = seen.has(RunPanel::Portrait).then(|| seen.portrait());
+    let mut built: Vec<Panel> = panels.iter().map(|panel| seen.panel(*panel)).collect();
+    let place = panels.iter().position(|panel| *panel == RunPanel::Portrait);
     let whole = RunPanel::USUAL.iter().all(|panel| seen.has(*panel));
-    if let Some(portrait) = portrait.as_mut().filter(|_| whole && judged) {
-        portrait.notes = account(summary, trace, seen.speed);
+    if let Some(place) = place.filter(|_| whole && judged) {
+        built[place].notes = account(summary, trace, seen.speed);
     }
-    let data = seen.drawn(portrait.as_ref());
-    let mut chart = Chart::stack(over_time, about, data);
-    match portrait {
-        Some(portrait) if whole => chart.columns.push(Column { width: 0.44, panels: vec![portrait] }),
-        Some(portrait) => chart.columns[0].panels.push(portrait),
-        None => {}
-    }
+    let data = seen.drawn(place.map(|place| &built[place]));
+    let beside = place.filter(|_| whole).map(|place| built.remove(place));
+    let mut chart = Chart::stack(built, about, data);
+    chart.columns.extend(beside.map(|portrait| Column { width: 0.44, panels: vec![portrait] }));
     chart
 }
 
@@ -164,95 +162,64 @@ impl Seen<'_> {
         (self.trace.stops.0 * 1e3, self.trace.stops.1 * 1e3)
     }
 
-    /// The wells in mm that an axis shows.
-    fn wells_mm(&self, axis: &PlotAxis) -> Vec<f64> {
-        self.wells.iter().map(|well| well * 1e3).filter(|well| axis.contains(*well)).collect()
+    /// One of its panels.
+    fn panel(&self, kind: RunPanel) -> Panel {
+        let shown = self.rows(self.trace.shown_from);
+        let label = |unit: &str| kind.label(unit, self.trace.has_load);
+        match kind {
+            RunPanel::Displacement => {
+                self.quantity(kind, (self.x, 1e3), self.displacement(&self.x[shown]), 1.0)
+            }
+            RunPanel::Velocity => {
+                self.quantity(kind, (self.v, self.speed.0), self.velocity(&self.v[shown]), 0.9)
+            }
+            RunPanel::Acceleration => {
+                let in_g = self.accel[shown].iter().map(|a| a / STANDARD_GRAVITY);
+                let up = PlotAxis::around(in_g.chain([0.0]), 0.1, &label("g"));
+                self.quantity(kind, (self.accel, 1.0 / STANDARD_GRAVITY), up, 0.85)
+            }
+            RunPanel::Power => {
+                let power = &self.power[shown];
+                let (per_watt, watt) = suited_unit("W", power.iter().copied());
+                let known = power.iter().filter(|power| power.is_finite()).map(|power| power * per_watt);
+                let up = PlotAxis::around(known.chain([0.0]), 0.08, &label(watt));
+                self.quantity(kind, (self.power, per_watt), up, 1.0)
+            }
+            RunPanel::Energy => self.energy(),
+            RunPanel::Portrait => self.portrait(),
+        }
     }
 
-    /// Displacement, velocity and base acceleration over time.
-    fn over_time(&self) -> Vec<Panel> {
+    /// What its panels over time share.
+    fn beside(&self) -> OverTime {
         let Self { trace, .. } = *self;
-        let time = PlotAxis::between(trace.shown_from, trace.shown_to, "time (s)");
-        let shown = self.rows(trace.shown_from);
-        let in_g = self.accel[shown.clone()].iter().map(|a| a / STANDARD_GRAVITY);
-        let power = &self.power[shown.clone()];
-        let (per_watt, watt) = suited_unit("W", power.iter().copied());
-        let in_unit = power.iter().filter(|power| power.is_finite()).map(|power| power * per_watt);
-        let where_to = if trace.has_load { "into the load" } else { "of the base" };
-        let panels = [
-            (
-                RunPanel::Displacement,
-                self.displacement(&self.x[shown.clone()]),
-                self.x,
-                1e3,
-                Role::Motion,
-                1.0,
-            ),
-            (
-                RunPanel::Velocity,
-                self.velocity(&self.v[shown.clone()]),
-                self.v,
-                self.speed.0,
-                Role::Second,
-                0.9,
-            ),
-            (
-                RunPanel::Acceleration,
-                PlotAxis::around(in_g.chain([0.0]), 0.1, "base accel. (g)"),
-                self.accel,
-                1.0 / STANDARD_GRAVITY,
-                Role::Drive,
-                0.85,
-            ),
-            (
-                RunPanel::Power,
-                PlotAxis::around(in_unit.chain([0.0]), 0.08, &format!("power {where_to} ({watt})")),
-                self.power,
-                per_watt,
-                if trace.has_load { Role::Second } else { Role::Drive },
-                1.0,
-            ),
-        ];
-        let rests: Vec<(f64, f64)> = {
-            let column = |name: &str| trace.rests.numbers(name).unwrap_or_default();
-            let spans = column("from_s").iter().copied().zip(column("to_s").iter().copied());
-            spans.filter(|(from, to)| *to >= trace.shown_from && *from <= trace.shown_to).collect()
-        };
-        let build = |(kind, up, values, scale, role, height): (_, PlotAxis, &[f64], f64, _, _)| {
-            let mut panel = Panel { height, ..Panel::new(time.clone(), up) };
-            if !rests.is_empty() {
-                panel.layer(Role::Rest, self.rests, Marks::Spans(rests.clone()));
-            }
-            if kind == RunPanel::Displacement {
-                panel.level_stops(self.stops_mm());
-                let wells = self.wells_mm(&panel.y);
-                if !wells.is_empty() {
-                    panel.layer(Role::Well, "well", Marks::Horizontals(wells));
-                }
-            } else {
-                panel.draw(Role::Reference, Marks::Horizontals(vec![0.0]));
-            }
-            let pairs =
-                shown.clone().map(|i| (self.t[i], values[i] * scale)).filter(|pair| pair.1.is_finite());
-            panel.draw(role, Marks::Trace(pairs.collect()));
-            if kind == RunPanel::Displacement {
-                let times = trace.impacts.numbers("t_s").unwrap_or_default();
-                let sides = trace.impacts.words("side");
-                for (word, side) in [("left", Side::Bottom), ("right", Side::Top)] {
-                    let of_side = times.iter().zip(sides).filter(|impact| *impact.1 == word);
-                    let at: Vec<f64> =
-                        of_side.map(|impact| *impact.0).filter(|t| time.contains(*t)).collect();
-                    if !at.is_empty() {
-                        panel.layer(Role::Impact, "impact", Marks::Ticks(at, side));
-                    }
-                }
-            }
-            panel
-        };
-        let mut panels: Vec<Panel> =
-            panels.into_iter().filter(|panel| self.has(panel.0)).map(build).collect();
-        panels.extend(self.has(RunPanel::Energy).then(|| self.energy(time, &rests)));
-        panels
+        let column = |name: &str| trace.rests.numbers(name).unwrap_or_default();
+        let spans = column("from_s").iter().copied().zip(column("to_s").iter().copied());
+        let seen = spans.filter(|(from, to)| *to >= trace.shown_from && *from <= trace.shown_to);
+        OverTime {
+            time: PlotAxis::between(trace.shown_from, trace.shown_to, "time (s)"),
+            rests: (seen.collect(), self.rests),
+            impacts: Default::default(),
+            stops: self.stops_mm(),
+            wells: self.wells.iter().map(|well| well * 1e3).collect(),
+        }
+    }
+
+    /// The panel of a quantity over time, of these values in SI and times `scale`.
+    fn quantity(&self, kind: RunPanel, (values, scale): (&[f64], f64), up: PlotAxis, height: f64) -> Panel {
+        let Self { trace, .. } = *self;
+        let pairs = self.rows(trace.shown_from).map(|i| (self.t[i], values[i] * scale));
+        let marks = Marks::Trace(pairs.filter(|pair| pair.1.is_finite()).collect());
+        let line = Layer { marks, role: kind.role(trace.has_load), name: String::new() };
+        let mut beside = self.beside();
+        if kind == RunPanel::Displacement {
+            let times = trace.impacts.numbers("t_s").unwrap_or_default();
+            let impacts = times.iter().zip(trace.impacts.words("side"));
+            beside.impacts = ["left", "right"].map(|side| {
+                impacts.clone().filter(|impact| *impact.1 == side).map(|impact| *impact.0).collect()
+            });
+        }
+        Panel { height, ..kind.over_time(up, vec![line], &beside) }
     }
 
     /// Potential energy in J, counted from the bottom of the deeper well or, without wells, from its least
@@ -264,7 +231,7 @@ impl Seen<'_> {
     }
 
     /// Potential energy, and the sum with the kinetic one, over time.
-    fn energy(&self, time: PlotAxis, rests: &[(f64, f64)]) -> Panel {
+    fn energy(&self) -> Panel {
         let shown = self.rows(self.trace.shown_from);
         let of = |i: usize, with: f64| {
             (self.t[i], self.potential(self.x[i]) + with * 0.5 * self.mass * self.v[i] * self.v[i])
@@ -275,19 +242,18 @@ impl Seen<'_> {
         let values = || total.iter().map(|point| point.1).chain(barrier).chain([0.0]);
         let (scale, unit) = suited_unit("J", values());
         let up = PlotAxis::around(values().map(|energy| energy * scale), 0.08, &format!("energy ({unit})"));
-        let mut panel = Panel::new(time, up);
-        if !rests.is_empty() {
-            panel.layer(Role::Rest, self.rests, Marks::Spans(rests.to_vec()));
-        }
+        let beside = self.beside();
+        let mut panel = Panel::new(beside.time.clone(), up);
+        panel.rests(&beside);
         if let Some(barrier) = barrier {
-            panel.layer(Role::Separatrix, "top of the barrier", Marks::Horizontals(vec![barrier * scale]));
+            panel.layer(Role::Barrier, "top of the barrier", Marks::Horizontals(vec![barrier * scale]));
         }
         let scaled = |points: Vec<Point>| {
             let points = points.into_iter().map(|(t, energy)| (t, energy * scale));
             Marks::Trace(points.filter(|point| point.1.is_finite()).collect())
         };
-        panel.layer(Role::Motion, "potential and kinetic", scaled(total));
-        panel.layer(Role::Second, "potential", scaled(potential));
+        panel.layer(Role::Total, "potential and kinetic energy", scaled(total));
+        panel.layer(Role::Potential, "potential energy", scaled(potential));
         panel
     }
 
@@ -303,31 +269,25 @@ impl Seen<'_> {
         let Self { trace, .. } = *self;
         let shown = self.rows(trace.portrait_from);
         let (x, v) = (&self.x[shown.clone()], &self.v[shown]);
-        let mut panel = Panel { height: 1.2, ..Panel::new(self.displacement(x), self.velocity(v)) };
-        panel.heading = match short(trace.portrait_from) {
+        let path = x.iter().zip(v).map(|(x, v)| (x * 1e3, v * self.speed.0)).collect();
+        let layer = |role, name: &str, marks| Layer { marks, role, name: name.to_owned() };
+        let mut motion = vec![layer(Role::Motion, "", Marks::Path(path))];
+        let strobes = self.strobes().map(|[_, x, v]| (x * 1e3, v * self.speed.0)).collect::<Vec<_>>();
+        if !strobes.is_empty() {
+            motion.push(layer(Role::Strobe, "once a period", Marks::Points(strobes)));
+        }
+        if let (Some(x), true, true) = (x.first(), is_still(x), is_still(v)) {
+            motion.push(layer(Role::Resting, "the mass at rest", Marks::Points(vec![(x * 1e3, 0.0)])));
+        }
+        let (of, axes) = ((self.mechanism, self.mass), (self.displacement(x), self.velocity(v)));
+        let panel = portrait_panel(of, axes, self.speed.0, self.stops_mm(), motion);
+        let heading = match short(trace.portrait_from) {
             from if trace.shown_to < trace.end => {
                 format!("phase portrait, {from} to {} s", short(trace.shown_to))
             }
             from => format!("phase portrait from {from} s on"),
         };
-        panel.upright_stops(self.stops_mm());
-        let loops = separatrix(self.mechanism, self.mass, (panel.x.low * 1e-3, panel.x.high * 1e-3));
-        for part in loops {
-            let part = part.into_iter().map(|(x, v)| (x * 1e3, v * self.speed.0));
-            let part: Vec<_> = part.filter(|point| panel.x.contains(point.0)).collect();
-            panel.layer(Role::Separatrix, "separatrix", Marks::Path(part));
-        }
-        let path = x.iter().zip(v).map(|(x, v)| (x * 1e3, v * self.speed.0)).collect();
-        panel.draw(Role::Motion, Marks::Path(path));
-        let strobes = self.strobes().map(|[_, x, v]| (x * 1e3, v * self.speed.0)).collect::<Vec<_>>();
-        if !strobes.is_empty() {
-            panel.layer(Role::Strobe, "once a period", Marks::Points(strobes));
-        }
-        if let (Some(x), true, true) = (x.first(), is_still(x), is_still(v)) {
-            panel.layer(Role::Drive, "the mass at rest", Marks::Points(vec![(x * 1e3, 0.0)]));
-        }
-        panel.equilibria(&self.mechanism.landscape, |_| 0.0);
-        panel
+        Panel { height: 1.2, heading, ..panel }
     }
 
     /// All that is drawn, with this portrait.

@@ -63,8 +63,15 @@ pub const WALL: f64 = 30.0;
 pub const TICK_LENGTH: f64 = 9.0;
 /// Dash and gap of a dashed line.
 pub const DASH: (f64, f64) = (18.0, 11.0);
+/// Dash and gap of a short dashed line.
+pub const SHORT_DASH: (f64, f64) = (9.0, 7.0);
 /// Dash and gap of a dotted line.
 pub const DOT: (f64, f64) = (3.0, 7.0);
+
+/// Whether a line of this width belongs to a frame, a grid or a hatching.
+pub fn is_fine(width: f64) -> bool {
+    width == FRAME || width < THIN
+}
 
 const ORANGE: Ink = Ink(0xe6, 0x9f, 0x00);
 const SKY: Ink = Ink(0x56, 0xb4, 0xe9);
@@ -103,6 +110,8 @@ pub struct Theme {
     pub rest: Ink,
     /// The hatching over cells at rest.
     pub rest_hatch: Ink,
+    /// Potential and kinetic energy together.
+    pub energy: Ink,
     /// The regimes `rest`, `intrawell`, `irregular`, `interwell`, `crossing`.
     pub regimes: [Ink; 5],
 }
@@ -123,6 +132,7 @@ impl Theme {
         impact: VERMILION,
         rest: Ink(0xe4, 0xe4, 0xe4),
         rest_hatch: Ink(0x9a, 0x9a, 0x9a),
+        energy: Ink(0x8c, 0x5c, 0x00),
         regimes: [Ink(0x80, 0x80, 0x80), BLUE, PURPLE, VERMILION, Ink(0xe8, 0x9a, 0x5c)],
     };
 
@@ -141,6 +151,7 @@ impl Theme {
         impact: Ink(0xf0, 0x78, 0x28),
         rest: Ink(0x3a, 0x3f, 0x47),
         rest_hatch: Ink(0x72, 0x78, 0x82),
+        energy: Ink(0xff, 0xe0, 0x9a),
         regimes: [
             Ink(0x9a, 0x9a, 0x9a),
             Ink(0x2b, 0x95, 0xd6),

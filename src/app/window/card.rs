@@ -1,0 +1,170 @@
+//! Card of a view: its title in a row with its legend, and tools at the right of that row.
+//!
+//! The tools are quiet until the pointer is over the card. They are there all the time for the keyboard and
+//! for a screen reader.
+
+use eframe::egui::{self, Align2, FontId, Rect, Response, Sense, Ui, UiBuilder, pos2, vec2};
+
+use crate::app::ui::style::{BODY, COMPACT_BELOW, CONTROL, CORNER, LEAST, SMALL, strong_family};
+use crate::app::ui::widgets::{Icon, tool_ui};
+use crate::app::views::{LegendRow, View, ViewContext, view_ui};
+
+/// Height in points of the row with the titles.
+const ROW: f32 = CONTROL;
+/// Distance in points of the titles from the edge of the card, and half of that between two titles.
+const MARGIN: f32 = 8.0;
+/// Width in points of a tool.
+const TOOL: f32 = 24.0;
+/// Width in points that a legend needs beside the titles; it has a row below where there is less.
+const LEGEND_ROOM: f32 = 220.0;
+/// Distance in points of a view from the edge of its card, so that the corners of the card stay round.
+const INSET: f32 = 2.0;
+
+/// A view whose title stands in a card.
+#[derive(Debug, Clone, Copy)]
+pub struct Title {
+    pub view: View,
+    pub id: egui::Id,
+}
+
+/// What was done in the row of a card.
+#[derive(Debug, Default)]
+pub struct Answer {
+    /// The title that was clicked.
+    pub chosen: Option<View>,
+    pub fills: bool,
+}
+
+/// Draws a view in a card at `rect`, with the titles of all views that share it. One that is `filled` has the
+/// whole window, and a tool that gives it back.
+pub fn card_ui(
+    ui: &mut Ui,
+    rect: Rect,
+    titles: &[Title],
+    view: View,
+    context: &mut ViewContext<'_>,
+) -> Answer {
+    let style = context.style;
+    ui.painter().rect_filled(rect, CORNER, style.ground());
+    let row = rect.with_max_y(rect.top() + ROW);
+    let tools = tool_count(ui, view, context) as f32 * TOOL + 4.0;
+    let font = title_font(ui, titles, row.width() - tools - MARGIN);
+    let width: f32 = titles.iter().map(|title| width_of(ui, title, &font)).sum();
+    let free = LegendRow { left: row.left() + MARGIN + width, right: row.right() - tools };
+    let shares = view.has_legend() && free.right - free.left >= LEGEND_ROOM;
+    let top = if shares { rect.top() + 0.5 * (ROW - LegendRow::HEIGHT) } else { row.bottom() };
+    let inner = Rect::from_min_max(pos2(rect.left() + INSET, top), rect.max - vec2(INSET, INSET + 2.0));
+    let mut info = egui::UiStackInfo::default();
+    if shares {
+        info = info.with_tag_value(LegendRow::TAG, free);
+    }
+    ui.scope_builder(UiBuilder::new().max_rect(inner).ui_stack_info(info), |ui| {
+        ui.set_clip_rect(inner.intersect(ui.clip_rect()));
+        view_ui(ui, view, context);
+    });
+    let mut answer = Answer::default();
+    let mut left = row.left() + MARGIN;
+    for title in titles {
+        let right = left + width_of(ui, title, &font);
+        let place = row.with_min_x(left - 0.5 * MARGIN).with_max_x(right - 0.5 * MARGIN);
+        if title_ui(ui, place, title, (title.view == view, titles.len() > 1), &font, context).clicked() {
+            answer.chosen = Some(title.view);
+        }
+        left = right;
+    }
+    answer.fills = tools_ui(ui, rect, row, view, context);
+    ui.painter().rect_stroke(rect, CORNER, style.card_stroke(), egui::StrokeKind::Inside);
+    answer
+}
+
+/// The largest text size at which the titles fit side by side into `room`.
+fn title_font(ui: &Ui, titles: &[Title], room: f32) -> FontId {
+    let font = |size: f32| FontId::new(size, strong_family());
+    let width = |size: f32| titles.iter().map(|title| width_of(ui, title, &font(size))).sum::<f32>();
+    font([BODY, SMALL].into_iter().find(|size| width(*size) <= room).unwrap_or(LEAST))
+}
+
+fn width_of(ui: &Ui, title: &Title, font: &FontId) -> f32 {
+    let name = title.view.name().to_owned();
+    ui.painter().layout_no_wrap(name, font.clone(), egui::Color32::PLACEHOLDER).size().x + 1.5 * MARGIN
+}
+
+/// A title, which can be dragged with its view; the one in front is underlined if there are `several`.
+fn title_ui(
+    ui: &Ui,
+    place: Rect,
+    title: &Title,
+    (in_front, several): (bool, bool),
+    font: &FontId,
+    context: &ViewContext<'_>,
+) -> Response {
+    let (style, name) = (context.style, title.view.name());
+    let sense = if context.filled { Sense::hover() } else { Sense::click_and_drag() };
+    let response = ui.interact(place, title.id, sense);
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, in_front, name));
+    let colour = if in_front || response.hovered() { style.ink() } else { style.faint() };
+    let at = pos2(place.left() + 0.5 * MARGIN, place.center().y);
+    let written = ui.painter().text(at, Align2::LEFT_CENTER, name, font.clone(), colour);
+    if in_front && several {
+        let stroke = egui::Stroke::new(2.0, style.accent());
+        ui.painter().hline(written.x_range(), place.bottom() - 3.0, stroke);
+    }
+    response.on_hover_text(title.view.about())
+}
+
+fn tool_count(ui: &Ui, view: View, context: &ViewContext<'_>) -> usize {
+    let is_held = context.memory.are_axes_held(view).is_some();
+    1 + usize::from(has_figure(ui, context)) + usize::from(is_held)
+}
+
+/// Whether the card has the tool for a figure: one over the whole window, or in a compact one, has not.
+fn has_figure(ui: &Ui, context: &ViewContext<'_>) -> bool {
+    !context.filled && ui.ctx().content_rect().width() >= COMPACT_BELOW
+}
+
+/// The tools at the right of the row. Returns whether the view is to fill the window, or to give it back.
+fn tools_ui(ui: &mut Ui, card: Rect, row: Rect, view: View, context: &mut ViewContext<'_>) -> bool {
+    let is_over = ui.rect_contains_pointer(card);
+    let shown = is_over || context.style.projector || context.filled;
+    let layout = egui::Layout::right_to_left(egui::Align::Center);
+    let builder = UiBuilder::new().max_rect(row.with_max_x(row.right() - 4.0)).layout(layout);
+    let (fill, held) = ui
+        .scope_builder(builder, |ui| {
+            ui.spacing_mut().item_spacing.x = 0.0;
+            let fill = match context.filled {
+                true => tool_ui(ui, Icon::Restore, TOOL, "all views", "All views again (Z or Esc)", true),
+                false => {
+                    let name = format!("fill the window with {}", view.name());
+                    tool_ui(ui, Icon::Fill, TOOL, &name, "This view over the whole window (Z)", shown)
+                }
+            };
+            if has_figure(ui, context) {
+                let name = format!("figure of {}", view.name());
+                let hover = "Save a figure of this view (Ctrl+E)";
+                if tool_ui(ui, Icon::Figure, TOOL, &name, hover, shown).clicked() {
+                    context.memory.figure = Some(view);
+                }
+            }
+            (fill, hold_ui(ui, view, context, shown))
+        })
+        .inner;
+    // keys act on the view under the pointer, or whose tools have the focus
+    if is_over || fill.has_focus() || held.is_some_and(|tool| tool.has_focus()) {
+        context.memory.hovered = Some(view);
+    }
+    fill.clicked()
+}
+
+/// The tool that holds the axes of a view, which is seen as long as they are held; `None` if it has no axes.
+fn hold_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>, shown: bool) -> Option<Response> {
+    let held = context.memory.are_axes_held(view)?;
+    let (icon, name, hover) = match held {
+        true => (Icon::Held, "let go of the axes of", "The axes are held. A click lets go of them (L)."),
+        false => (Icon::Free, "hold the axes of", "Hold the axes as they are, whatever comes (L)."),
+    };
+    let response = tool_ui(ui, icon, TOOL, &format!("{name} {}", view.name()), hover, shown || held);
+    if response.clicked() {
+        context.memory.hold_axes(view);
+    }
+    Some(response)
+}

@@ -1,0 +1,77 @@
+//! Panel of a quantity over time, as in the picture of a run and in the window.
+
+use super::axis::PlotAxis;
+use super::chart::{Layer, Marks, Panel, Side};
+use super::role::Role;
+use super::run::RunPanel;
+
+/// What a motion meets over time, beside the values that are drawn. Unknown numbers are NaN.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OverTime {
+    /// The axis of time in s.
+    pub time: PlotAxis,
+    /// Times in s at rest on a stop, and what they are called.
+    pub rests: (Vec<(f64, f64)>, &'static str),
+    /// Times in s of the impacts on the left and on the right stop.
+    pub impacts: [Vec<f64>; 2],
+    /// Positions of the stops in mm.
+    pub stops: (f64, f64),
+    /// Positions of the wells in mm.
+    pub wells: Vec<f64>,
+}
+
+impl RunPanel {
+    /// The axis of this quantity is called so, in a unit. With a load, power is that into it.
+    pub fn label(self, unit: &str, has_load: bool) -> String {
+        let name = match self {
+            Self::Acceleration => "base accel.",
+            Self::Power if has_load => "power into the load",
+            Self::Power => "power of the base",
+            _ => self.name(),
+        };
+        format!("{name} ({unit})")
+    }
+
+    /// What its line stands for.
+    pub fn role(self, has_load: bool) -> Role {
+        match self {
+            Self::Velocity => Role::Second,
+            Self::Power if has_load => Role::Second,
+            Self::Acceleration | Self::Power => Role::Drive,
+            _ => Role::Motion,
+        }
+    }
+
+    /// Its panel with these lines over this axis.
+    pub fn over_time(self, up: PlotAxis, lines: Vec<Layer>, beside: &OverTime) -> Panel {
+        let mut panel = Panel::new(beside.time.clone(), up);
+        panel.rests(beside);
+        if self == Self::Displacement {
+            panel.level_stops(beside.stops);
+            let wells: Vec<f64> = beside.wells.iter().copied().filter(|mm| panel.y.contains(*mm)).collect();
+            if !wells.is_empty() {
+                panel.layer(Role::Well, "well", Marks::Horizontals(wells));
+            }
+        } else {
+            panel.draw(Role::Reference, Marks::Horizontals(vec![0.0]));
+        }
+        panel.layers.extend(lines);
+        for (times, side) in beside.impacts.iter().zip([Side::Bottom, Side::Top]) {
+            let at: Vec<f64> = times.iter().copied().filter(|t| beside.time.contains(*t)).collect();
+            if !at.is_empty() {
+                panel.layer(Role::Impact, "impact", Marks::Ticks(at, side));
+            }
+        }
+        panel
+    }
+}
+
+impl Panel {
+    /// Adds the times at rest.
+    pub(super) fn rests(&mut self, beside: &OverTime) {
+        let (spans, name) = &beside.rests;
+        if !spans.is_empty() {
+            self.layer(Role::Rest, *name, Marks::Spans(spans.clone()));
+        }
+    }
+}
