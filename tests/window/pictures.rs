@@ -316,9 +316,9 @@ fn what_is_read_under_the_pointer_lies_over_no_title() {
 
 #[test]
 fn the_legend_of_the_phase_portrait_has_the_square_at_rest() {
-    assert!(is_painted(&showing("paper", WIDE, &[View::PhasePortrait]), "at rest on a stop"));
+    assert!(is_painted(&showing("paper", WIDE, &[View::PhasePortrait]), "at rest"));
     let harness = showing("first-look", WIDE, &[View::PhasePortrait]);
-    assert!(is_painted(&harness, "separatrix") && !is_painted(&harness, "at rest on a stop"));
+    assert!(is_painted(&harness, "separatrix") && !is_painted(&harness, "at rest"));
 }
 
 /// Axes, grid, separatrix and legend are one shape, the path and its points another.

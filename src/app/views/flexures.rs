@@ -117,7 +117,7 @@ impl DrawingScale {
             painter.line_segment([end - vec2(4.0, 0.0), end + vec2(4.0, 0.0)], stroke);
         }
         let middle = at - vec2(8.0, 0.5 * length);
-        let name = painter.text(middle, Align2::RIGHT_CENTER, "10 mm", style.small(), style.faint());
+        let name = painter.text(middle, Align2::RIGHT_CENTER, "10\u{a0}mm", style.small(), style.faint());
         Some(name.union(Rect::from_two_pos(at, foot)))
     }
 }

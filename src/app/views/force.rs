@@ -109,10 +109,11 @@ fn still(model: &Model, span: Span, axes: (PlotAxis, PlotAxis), measured: Option
     let stops = (mm(stops.0), mm(stops.1));
     let mut panel = force_panel(model.mechanism(), axes, 1.0, stops, ("holds the mass there", points));
     panel.layers.retain(|layer| layer.role != Role::Stop);
-    panel.layers.splice(0..0, measured);
-    if model.is_shaken() {
-        panel.layer(Role::Push, "push of the base", Marks::Path(Vec::new()));
-    }
+    // what is drawn is named before what is marked
+    let named = |role, name: &str| Layer { marks: Marks::Path(Vec::new()), role, name: name.to_owned() };
+    let push = model.is_shaken().then(|| named(Role::Push, "push of the base"));
+    let first = [named(Role::Curve, "holds the mass there")].into_iter().chain(push).chain(measured);
+    panel.layers.splice(0..0, first);
     Chart::stack(vec![panel], "", Table::new())
 }
 
@@ -144,12 +145,11 @@ fn end_of_axis(context: &ViewContext<'_>) -> f64 {
 /// The lines of the curve on the screen.
 fn lines(pane: &Pane) -> Vec<Vec<Pos2>> {
     let layers = pane.chart.panels().flat_map(|panel| &panel.layers);
-    let of_curve = layers.filter(|layer| matches!(layer.role, Role::Curve | Role::Beyond));
     let on_screen = |layer: &Layer| match &layer.marks {
         Marks::Path(points) => points.iter().filter_map(|point| pane.place(0, *point)).collect(),
         _ => Vec::new(),
     };
-    of_curve.map(on_screen).collect()
+    layers.map(on_screen).collect()
 }
 
 /// Marks the force at each stop that the mass can rest on, and writes it with the push that frees the mass:

@@ -84,7 +84,7 @@ impl Pane {
     pub fn reading(&self, ui: &Ui, style: &Style, beside: f32, text: &str) {
         let area = self.response.rect;
         let painter = ui.painter().with_clip_rect(area);
-        let galley = painter.layout_no_wrap(text.to_owned(), style.small(), style.ink());
+        let galley = painter.layout_no_wrap(text.replace('-', "\u{2212}"), style.small(), style.ink());
         let right = LegendRow::of(ui, area).right - beside;
         let row = Rect::from_min_max(area.min, pos2(right, area.top() + LEGEND));
         let at = Align2::RIGHT_CENTER.anchor_size(row.right_center() - vec2(6.0, 0.0), galley.size());

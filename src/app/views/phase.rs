@@ -139,7 +139,7 @@ fn still(model: &Model, axes: (PlotAxis, PlotAxis), points_only: bool) -> Chart 
         if !points_only {
             named.push(layer(Role::Jump(0.0), "impact", Marks::Path(Vec::new())));
         }
-        named.push(layer(Role::Resting, "at rest on a stop", Marks::Points(Vec::new())));
+        named.push(layer(Role::Resting, "at rest", Marks::Points(Vec::new())));
     }
     let panel = portrait_panel((model.mechanism(), model.mass()), axes, 1e3, (f64::NAN, f64::NAN), named);
     Chart::stack(vec![panel], "", Table::new())

@@ -17,7 +17,6 @@ use crate::study::{Table, Watch};
 use super::cursors::{cursors_ui, readout_ui};
 use super::ghosts::PINNED;
 use super::hand::axes_input;
-use super::labels::haloed;
 use super::overlay::{measured_trace, with_room};
 use super::pane::{Place, fresh_pane_ui};
 use super::ranges::room_for_push;
@@ -182,8 +181,9 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
         let Some(at) = pane.place(0, (end, value.clamp(low, high))).filter(|_| value.is_finite()) else {
             continue;
         };
-        let at = (at + vec2(LETTER * (i as f32 + 0.5), 0.0), Align2::CENTER_CENTER);
-        haloed(&painter, &style, at, PINNED[pin.place() % PINNED.len()], (style.small(), style.ink()));
+        let at = at + vec2(LETTER * (i as f32 + 0.5), 0.0);
+        let letter = PINNED[pin.place() % PINNED.len()];
+        painter.text(at, Align2::CENTER_CENTER, letter, style.small(), style.ink());
     }
     let pass = ui.ctx().cumulative_pass_nr();
     let cursor = context.memory.timeline.cursor.filter(|cursor| cursor.1 + 1 >= pass);

@@ -78,7 +78,7 @@ views! {
         "The force that would hold the mass at a place, positive to the right; the mechanism pulls with as \
          much the other way. Where the push is above the curve it drives the mass to the right, below it \
          to the left; a mass on a stop is freed when the push passes the mark there. Filled: stable. \
-         Hollow: unstable. Dotted: a kink, where the stiffness jumps.";
+         Hollow: unstable. Diamond: a kink, where the stiffness jumps.";
     /// The energy supplied, taken and stored.
     Energy "Energy"
         "Where the energy came from, where it went, and what is there against the barrier.";

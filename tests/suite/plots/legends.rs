@@ -23,7 +23,7 @@ fn no_two_entries_of_a_legend_look_alike_in_any_set_of_panels() {
         for _ in 0..8 {
             let mut panels = RunPanel::ALL.to_vec();
             panels.retain(|_| random.next_u32() % 3 > 0);
-            let of = (model.mechanism(), model.mass());
+            let of = (model.mechanism().as_ref(), model.mass());
             let chart = run_chart(&trace, &simulation.summary, of, &panels, Ranges::default());
             let layers: Vec<_> = chart.panels().flat_map(|panel| &panel.layers).collect();
             for theme in [Theme::LIGHT, Theme::DARK] {

@@ -33,12 +33,8 @@ pub fn curve_chart(table: &Table, mechanism: &Mechanism, stops: (f64, f64), rang
     let (stops_mm, curve) = ((stops.0 * 1e3, stops.1 * 1e3), &mechanism.curve);
     let axes = (across.clone(), up);
     let upper = force_panel(mechanism, axes, force, stops_mm, ("", of_force));
-    let mut lower = Panel::new(across.clone(), below);
-    lower.upright_stops(stops_mm);
-    lower.kinks(landscape);
-    lower
-        .layers
-        .extend(Layer::curve("", of_potential, stops_mm, |mm| curve.potential(mm * 1e-3) * potential));
+    let energy = |mm: f64| curve.potential(mm * 1e-3) * potential;
+    let mut lower = curve_panel((across.clone(), below), landscape, stops_mm, ("", of_potential), energy);
     lower.equilibria(landscape, |equilibrium| curve.potential(equilibrium.x) * potential);
     let mut words = subtitle(landscape);
     if let Some(wall) = wall(column("x_m"), column("force_n"), &upper, force) {
@@ -48,33 +44,39 @@ pub fn curve_chart(table: &Table, mechanism: &Mechanism, stops: (f64, f64), rang
 }
 
 /// The force that holds the mass, over displacement in mm, of which `per_newton` units are a N: its stops in
-/// mm, kinks, equilibria, and the curve of these points by its name.
+/// mm, kinks, equilibria, and the curve by its name and points.
 pub fn force_panel(
     mechanism: &Mechanism,
-    (across, up): (PlotAxis, PlotAxis),
+    axes: (PlotAxis, PlotAxis),
     per_newton: f64,
     stops: (f64, f64),
-    (name, points): (&str, Vec<Point>),
+    line: (&str, Vec<Point>),
 ) -> Panel {
-    let mut panel = Panel::new(across, up);
-    panel.upright_stops(stops);
-    panel.kinks(&mechanism.landscape);
-    panel.draw(Role::Reference, Marks::Horizontals(vec![0.0]));
     let force = |mm: f64| mechanism.curve.force(mm * 1e-3) * per_newton;
-    panel.layers.extend(Layer::curve(name, points, stops, force));
+    let mut panel = curve_panel(axes, &mechanism.landscape, stops, line, force);
+    let zero = Marks::Horizontals(vec![0.0]);
+    panel.layers.insert(0, Layer { marks: zero, role: Role::Reference, name: String::new() });
     panel.equilibria(&mechanism.landscape, |_| 0.0);
     panel
 }
 
-impl Panel {
-    /// Adds the kinks of the force that lie in the range of the horizontal axis, in mm.
-    fn kinks(&mut self, landscape: &Landscape) {
-        let kinks = landscape.kinks.iter().map(|kink| kink.x * 1e3);
-        let kinks: Vec<f64> = kinks.filter(|mm| self.x.contains(*mm)).collect();
-        if !kinks.is_empty() {
-            self.layer(Role::Kink, "kink of the force", Marks::Verticals(kinks));
-        }
+/// A curve over displacement in mm, by its name and its points, with its stops and the kinks of the force.
+fn curve_panel(
+    (across, up): (PlotAxis, PlotAxis),
+    landscape: &Landscape,
+    stops: (f64, f64),
+    (name, points): (&str, Vec<Point>),
+    value: impl Fn(f64) -> f64,
+) -> Panel {
+    let mut panel = Panel::new(across, up);
+    panel.upright_stops(stops);
+    panel.layers.extend(Layer::curve(name, points, stops, &value));
+    let kinks = landscape.kinks.iter().map(|kink| (kink.x * 1e3, value(kink.x * 1e3)));
+    let kinks: Vec<Point> = kinks.filter(|kink| panel.x.contains(kink.0)).collect();
+    if !kinks.is_empty() {
+        panel.layer(Role::Kink, "kink of the force", Marks::Points(kinks));
     }
+    panel
 }
 
 /// All that is drawn at the positions in m that lie `inside`.

@@ -129,7 +129,7 @@ impl Chart {
             30.0 + TITLE_LINE * title.lines.len() as f64 + SUBTITLE_LINE * subtitle.lines.len() as f64 + 8.0;
         let below = 24.0 + style::FOOTER_LINE * footer.len() as f64;
         let named = self.entries(theme);
-        let legend = Legend::new(&named, room);
+        let legend = Legend::new(&named, room, 0.0);
         let mut grid = Grid::new(self, theme.is_narrow());
         let around = if sheet.is_some_and(|sheet| !sheet.titled) { 0.0 } else { above + below };
         let asked = match sheet {
@@ -167,7 +167,8 @@ impl Chart {
         let named = self.entries(theme);
         let margin = if room.is_some() { 0.0 } else { PANE };
         let left = room.map_or(PANE, |room| room.legend);
-        let mut legend = Legend::new(&named, width - left - room.map_or(PANE, |room| room.beside));
+        let beside = room.map_or(0.0, |room| room.beside);
+        let mut legend = Legend::new(&named, width - left - margin, beside);
         if room.is_some() {
             legend.keep((LEGEND_SHARE * height / ROW).max(1.0) as usize);
         }
@@ -240,15 +241,15 @@ struct Legend<'a> {
 }
 
 impl<'a> Legend<'a> {
-    /// These entries in rows that are no wider than `room`.
-    fn new(named: &'a [(Sample, String)], room: f64) -> Self {
+    /// These entries in rows that are no wider than `room`, of which the first one leaves some free `beside` it.
+    fn new(named: &'a [(Sample, String)], room: f64, beside: f64) -> Self {
         let (mut left, mut row) = (0.0, 0);
         let mut entries = Vec::new();
         for (sample, words) in named {
             let share = ((room - SAMPLE - GAP) / font::width(words, style::TICK, false)).min(1.0);
             let size = share * style::TICK;
             let width = SAMPLE + GAP + font::width(words, size, false);
-            if left > 0.0 && left + width > room + 0.5 {
+            if left > 0.0 && left + width > room + 0.5 - if row == 0 { beside } else { 0.0 } {
                 (left, row) = (0.0, row + 1);
             }
             entries.push(Entry { sample: *sample, words, size, left, row });
