@@ -47,7 +47,7 @@ fn lessons_are_numbered_in_their_order_and_each_has_all_that_a_class_needs() {
         assert!(own.name.starts_with(&format!("{number:02}-")), "{}", own.name);
         let lesson = read(own.text).unwrap().lesson;
         assert!((1..=3).contains(&lesson.controls.len()), "{}", own.name);
-        assert!((2..=3).contains(&lesson.views.len()), "{}", own.name);
+        assert!((2..=4).contains(&lesson.views.len()), "{}", own.name);
         assert!(matches!(lesson.steps[0], Step::Say(_)), "{}", own.name);
         assert!(matches!(lesson.steps.last(), Some(Step::Explain(_))), "{}", own.name);
         let hints = lesson.steps.iter().all(|step| !matches!(step, Step::Do { hint: None, .. }));

@@ -1,6 +1,6 @@
 //! Pinned motions beside the present one.
 
-use eframe::egui::Key;
+use eframe::egui::{Key, Shape};
 use egui_kittest::{Harness, kittest::Queryable as _};
 use interwell::app::session::Session;
 use interwell::app::session::pins::{Pin, PinKind};
@@ -10,7 +10,9 @@ use interwell::dynamics::EventKind;
 use interwell::scene::{Layout, Stops};
 use interwell::study::distances;
 
-use crate::support::{LONG, PROJECTED, WIDE, command, painted, press, session, wait_until, window};
+use crate::support::{
+    LONG, PROJECTED, WIDE, command, painted, press, press_with_ctrl, session, wait_until, window,
+};
 
 /// Has the motion go on for some seconds, with its pins.
 fn play(session: &mut Session, seconds: f64) {
@@ -142,7 +144,8 @@ fn there_is_room_for_three() {
     assert_eq!(letters(&harness), "ABC");
     press(&mut harness, Key::K);
     assert_eq!(letters(&harness), "ABC");
-    assert!(harness.state().notice().is_some_and(|told| told.contains("unpin one first")));
+    let told = harness.state().notice().unwrap_or_default();
+    assert!(told.contains("unpin one first, in the view Compare or by Motion, Unpin"), "{told}");
     harness.get_by_label("Unpin A").click();
     harness.run_steps(2);
     assert_eq!(letters(&harness), "BC");
@@ -306,4 +309,55 @@ fn two_motions_stand_side_by_side_and_a_hand_moves_the_present_one_alone() {
     harness.run_steps(3);
     assert!(harness.query_by_label("0.90 g, 3.0 Hz, ±1.50 mm").is_none());
     assert!(!harness.state().session.editor.can_undo());
+}
+
+#[test]
+fn pins_stay_through_ctrl_1_and_leave_by_the_menu() {
+    let mut harness = window("paper", WIDE);
+    press(&mut harness, Key::K);
+    assert!(harness.state().tiling.place_of(View::Compare).is_some());
+    press_with_ctrl(&mut harness, Key::Num1);
+    assert_eq!(harness.state().session.pins.all().len(), 1);
+    assert!(harness.state().tiling.place_of(View::Compare).is_some());
+    harness.get_by_label("Motion").click();
+    harness.run_steps(3);
+    // that of the menu, beside the button in the table
+    assert_eq!(harness.query_all_by_label_contains("Unpin").count(), 2);
+    press(&mut harness, Key::Escape);
+    command(&mut harness, Command::Unpin('B'));
+    assert_eq!(harness.state().session.pins.all().len(), 1);
+    command(&mut harness, Command::Unpin('A'));
+    assert!(harness.state().session.pins.all().is_empty());
+    press_with_ctrl(&mut harness, Key::Num1);
+    assert!(harness.state().tiling.place_of(View::Compare).is_none());
+}
+
+#[test]
+fn a_pin_has_its_letter_at_its_end_and_lies_under_the_motion() {
+    let mut harness = window("first-look", WIDE);
+    harness.state_mut().session.player.speed = 1.0;
+    press(&mut harness, Key::K);
+    harness.state_mut().session.switch_stops(true);
+    harness.run_steps(60);
+    let place = harness.state().tiling.place_of(View::Displacement).unwrap();
+    let at_end = |own: &&(String, eframe::egui::Rect, eframe::egui::Rect)| {
+        own.0 == "A" && place.contains(own.1.center()) && own.1.top() > place.top() + 24.0
+    };
+    let all = painted(&harness);
+    let ends: Vec<_> = all.iter().filter(at_end).collect();
+    assert_eq!(ends.len(), 1, "{ends:?}");
+    // in the drawing the box of the mass is painted after the outline and letter of the pinned one
+    let place = harness.state().tiling.place_of(View::Mechanism).unwrap();
+    let shapes = &harness.output().shapes;
+    let is_letter = |shape: &Shape| {
+        matches!(shape, Shape::Text(text)
+            if text.galley.text() == "A" && place.contains(text.visual_bounding_rect().center()))
+    };
+    let is_box = |shape: &Shape| match shape {
+        Shape::Rect(rect) => place.contains_rect(rect.rect) && rect.stroke.width == 1.5,
+        _ => false,
+    };
+    let letter = shapes.iter().position(|own| is_letter(&own.shape)).unwrap();
+    let mass = shapes.iter().rposition(|own| is_box(&own.shape)).unwrap();
+    assert!(letter < mass, "{letter} {mass}");
 }

@@ -3,6 +3,7 @@
 use eframe::egui::{Key, accesskit::Role};
 use egui_kittest::{Harness, kittest::Queryable as _};
 use interwell::app::session::explore::WalkQuantity;
+use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
 use interwell::scene::{Layout, Start};
 use interwell::study::{Direction, Signal};
@@ -134,4 +135,19 @@ fn a_spectrum_has_lines_where_the_motion_repeats() {
         let (parts, current) = harness.state().session.explore.spectra.found.parts();
         current && parts.iter().flatten().any(|own| own.signal == Signal::BaseAcceleration)
     });
+}
+
+#[test]
+fn under_noise_the_tab_that_has_something_is_open() {
+    let mut harness = window("random-shaking", WIDE);
+    press_with_ctrl(&mut harness, Key::Num5);
+    let tiling = &harness.state().tiling;
+    assert!(tiling.place_of(View::Spectrum).is_some() && tiling.place_of(View::UpAndDown).is_none());
+    // the other one says in its middle what it needs
+    harness.get_by_label("Up and down").click();
+    harness.run_steps(3);
+    let place = harness.state().tiling.place_of(View::UpAndDown).unwrap();
+    let text = harness.get_by_label_contains("needs shaking that repeats, such as a sine").rect();
+    assert!((text.center().x - place.center().x).abs() < 10.0, "{text:?} {place:?}");
+    assert!((text.center().y - place.center().y).abs() < 0.2 * place.height(), "{text:?} {place:?}");
 }

@@ -42,11 +42,11 @@ minute() {
     local width=$1 height=$2 style=$3
     name=${width}x$height-$style
     # where the number of the shaking, the switch of the stops and the number of the limit stand
-    local shaking="190 142" stops="19 184" limit="196 232"
+    local shaking="190 133" stops="19 224" limit="196 273"
     case $name in
-        1920*-light | 1920*-dark) shaking="240 142" limit="240 232" ;;
-        1280*-projector) shaking="481 140" stops="565 140" limit="1050 140" ;;
-        1920*-projector) shaking="282 213" stops="28 276" limit="294 348" ;;
+        1920*-light | 1920*-dark) shaking="240 133" limit="240 273" ;;
+        1280*-projector) shaking="481 127" stops="565 127" limit="1050 127" ;;
+        1920*-projector) shaking="282 200" stops="28 336" limit="294 410" ;;
     esac
     local kept display
     kept=$(mktemp -d)

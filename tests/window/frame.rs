@@ -310,7 +310,7 @@ fn a_scene_that_cannot_be_opened_is_said_in_the_window() {
     assert_eq!(window.session.editor.origin().as_deref(), Some(PRESETS[0].name));
 }
 
-/// The commands to the window of a frame in which it has these sizes in points.
+/// The commands to the window of a frame in which it has these sizes in points at zoom 1.
 fn asked_of_the_screen(
     window: &mut Window,
     ctx: &egui::Context,
@@ -318,11 +318,12 @@ fn asked_of_the_screen(
     outer: [f32; 2],
 ) -> Vec<ViewportCommand> {
     let mut input = egui::RawInput::default();
+    let [inner, outer] = [inner, outer].map(|size| egui::Vec2::from(size) / ctx.zoom_factor());
     let view = input.viewports.entry(egui::ViewportId::ROOT).or_default();
-    view.inner_rect = Some(Rect::from_min_size(pos2(0.0, 30.0), inner.into()));
-    view.outer_rect = Some(Rect::from_min_size(pos2(0.0, 0.0), outer.into()));
+    view.inner_rect = Some(Rect::from_min_size(pos2(0.0, 30.0), inner));
+    view.outer_rect = Some(Rect::from_min_size(pos2(0.0, 0.0), outer));
     view.monitor_size = Some(vec2(1280.0, 720.0) / ctx.zoom_factor());
-    input.screen_rect = Some(Rect::from_min_size(pos2(0.0, 0.0), inner.into()));
+    input.screen_rect = Some(Rect::from_min_size(pos2(0.0, 0.0), inner));
     let mut output = ctx.run_ui(input, |ui| {
         window.logic(&ui.ctx().clone());
         window.ui(ui);
@@ -351,10 +352,29 @@ fn the_window_fits_the_screen_and_keeps_its_size() {
     // a projected one comes back at the size that it had in pixels
     let mut window = open(Settings { projector: true, ..Settings::default() });
     window.restore_size(Some([1200.0, 660.0]));
-    let small = [1200.0 / 2.25, 660.0 / 2.25];
+    let small = [800.0, 440.0];
     assert_eq!(frames(&mut window, small, small), [ViewportCommand::InnerSize(vec2(800.0, 440.0))]);
-    frames(&mut window, [800.0, 440.0], [800.0, 440.0]);
-    assert_eq!(window.size(), Some([1200.0, 660.0]));
+    let whole = [1200.0, 660.0];
+    frames(&mut window, whole, whole);
+    assert_eq!(window.size(), Some(whole));
+    // its letters follow the height of the window, and are larger in a view over the whole of it
+    assert_eq!(ctx.zoom_factor(), 1.375);
+    for (size, zoom) in [([1920.0, 1080.0], 2.25), ([1024.0, 768.0], 1024.0 / 740.0), ([1280.0, 720.0], 1.5)]
+    {
+        frames(&mut window, size, size);
+        frames(&mut window, size, size);
+        assert_eq!(ctx.zoom_factor(), zoom, "{size:?}");
+    }
+    // Ctrl+0 comes back to that
+    ctx.set_zoom_factor(1.0);
+    frames(&mut window, WIDE, WIDE);
+    assert_eq!(ctx.zoom_factor(), 1.0);
+    window.carry_out(&ctx, Command::Magnify(0));
+    frames(&mut window, WIDE, WIDE);
+    assert_eq!(ctx.zoom_factor(), 1.5);
+    window.carry_out(&ctx, Command::Fill);
+    frames(&mut window, WIDE, WIDE);
+    assert_eq!(ctx.zoom_factor(), 1.875);
 }
 
 #[test]

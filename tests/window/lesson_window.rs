@@ -10,7 +10,7 @@ use interwell::scene::lesson::{LESSONS, LessonDocument, Step};
 use interwell::scene::{Document, Stops};
 use interwell::study::result_fields;
 
-use crate::lessons::{OWN, Shown, go_to, is_anywhere, number, opened, own, step, until, written};
+use crate::lessons::{OWN, Shown, go_on, go_to, is_anywhere, number, opened, own, step, until, written};
 use crate::support::{PROJECTED, WIDE, command, press, press_with_ctrl, sliced, window};
 
 #[test]
@@ -120,7 +120,7 @@ fn the_longest_texts_fit() {
                 }
                 _ => {}
             }
-            press(&mut harness, Key::PageDown);
+            go_on(&mut harness);
         }
     }
 }

@@ -12,7 +12,7 @@ use interwell::app::window::{Command, Wanted, Window};
 use interwell::scene::lesson::{LESSONS, Step};
 
 use crate::support::{
-    LONG, PROJECTED, WIDE, command, is_painted, painted, press, sliced, wait_until, window,
+    LONG, PROJECTED, WIDE, click_on, command, is_painted, painted, press, sliced, wait_until, window,
 };
 
 pub type Shown = Harness<'static, Window>;
@@ -91,13 +91,23 @@ pub fn until(harness: &mut Shown, what: &str, mut condition: impl FnMut(&Shown) 
     });
 }
 
+/// Goes on as a lecturer does: reveals what is covered, and leaves the lesson after its last step.
+pub fn go_on(harness: &mut Shown) {
+    let lesson = harness.state().lesson().unwrap();
+    match (lesson.is_covering(), lesson.is_last()) {
+        (true, _) => click_on(harness, "Reveal"),
+        (false, true) => command(harness, Command::LeaveLesson),
+        (false, false) => press(harness, Key::PageDown),
+    }
+}
+
 /// Goes on as a lecturer does until a step is of a kind; false where none is.
 pub fn go_to(harness: &mut Shown, is_wanted: fn(&Step) -> bool) -> bool {
     while harness.state().lesson().is_some() {
         if is_wanted(&step(harness)) {
             return true;
         }
-        press(harness, Key::PageDown);
+        go_on(harness);
     }
     false
 }
@@ -187,7 +197,7 @@ fn every_lesson_is_gone_through_from_its_first_step_to_its_last() {
 fn the_last_step_leads_to_the_next_lesson_too() {
     let mut harness = opened(LESSONS[0].name, WIDE);
     while !harness.state().lesson().unwrap().is_last() {
-        press(&mut harness, Key::PageDown);
+        go_on(&mut harness);
     }
     harness.get_by_label("Lesson 2").click();
     harness.run_steps(3);
@@ -198,7 +208,7 @@ fn the_last_step_leads_to_the_next_lesson_too() {
     harness.state_mut().open_lesson(LESSONS[last].name);
     harness.run_steps(3);
     while !harness.state().lesson().unwrap().is_last() {
-        press(&mut harness, Key::PageDown);
+        go_on(&mut harness);
     }
     assert!(harness.query_by_label("Lesson 11").is_none());
     harness.get_by_label("Finish").click();
@@ -214,12 +224,12 @@ fn no_text_of_a_lesson_is_cut_and_a_lecturer_goes_through_by_two_keys() {
         while harness.state().lesson().is_some() {
             last = number(&harness);
             assert_eq!(sliced(&harness), [""; 0], "{} {last}", own.name);
-            press(&mut harness, Key::PageDown);
+            go_on(&mut harness);
         }
         harness.state_mut().open_lesson(own.name);
         harness.run_steps(3);
         while number(&harness) < last {
-            press(&mut harness, Key::PageDown);
+            go_on(&mut harness);
         }
         for number in (0..last).rev() {
             press(&mut harness, Key::PageUp);

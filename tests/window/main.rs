@@ -3,8 +3,10 @@
 
 mod accuracy;
 mod advanced;
+mod answered;
 mod background;
 mod beside;
+mod classroom;
 mod compare;
 mod cursors;
 mod documents;
@@ -24,6 +26,7 @@ mod measured;
 mod memory;
 mod newcomer;
 mod past;
+mod pictures;
 mod power;
 mod quiet;
 mod random;
@@ -32,7 +35,9 @@ mod sentences;
 mod session;
 #[path = "../shared/mod.rs"]
 mod shared;
+mod still;
 mod support;
+mod table;
 mod typing;
 mod views;
 mod written;

@@ -51,8 +51,8 @@ fn the_view_says_what_the_load_takes() {
         near(harvest.mean_load_power.unwrap(), 3.261_236_594e-4, 1e-12);
         near(harvest.mean_coil_power.unwrap() / harvest.mean_load_power.unwrap(), 40.0 / 60.0, 1e-12);
         near(harvest.load_share.unwrap(), 0.124_12, 1e-5);
-        assert!(is_painted(&harness, "Into the load: mean 326 µW, 12.4 % of the work of the base."));
-        assert!(is_painted(&harness, "Coil: mean 217 µW. Voltage: 0.140 V RMS."));
+        assert!(is_painted(&harness, "Into the load: mean 0.326 mW, 12.4 % of the work of the base."));
+        assert!(is_painted(&harness, "Coil: mean 0.217 mW. Voltage: 0.140 V RMS."));
         assert!(is_painted(&harness, "of settled motion."));
         assert!(is_painted(&harness, "power into the load (mW)"));
         assert_eq!(sliced(&harness), [""; 0]);
@@ -66,10 +66,45 @@ fn a_tile_among_others_has_the_mean_and_its_axis_fits() {
     harness.state_mut().session.wait_settled(LONG);
     harness.run_steps(3);
     assert!(harness.state().tiling.place_of(View::Power).unwrap().height() < 250.0);
-    assert!(is_painted(&harness, "Into the load: mean 326 µW"));
+    assert!(is_painted(&harness, "Into the load: mean 0.326 mW"));
     assert_eq!(sliced(&harness), [""; 0]);
     // the name of the axis would reach into the legend
     assert!(!is_painted(&harness, "power into the load (mW)") && is_painted(&harness, "mW"));
+}
+
+#[test]
+fn the_scene_about_power_speaks_of_power() {
+    let mut harness = window("harvester", WIDE);
+    harness.run_steps(3);
+    let session = &harness.state().session;
+    assert!(session.sentence().text.contains("; 0.326 mW into the load, RMS velocity "));
+    assert!(is_painted(&harness, "0.326 mW into the load"));
+    // the load is among the first controls, and the power in the card
+    harness.get_by_role_and_label(Role::Slider, "load");
+    assert!(harness.query_by_role_and_label(Role::Slider, "coupling").is_none());
+    harness.get_by_label("power into the load");
+    harness.get_by_label("0.326");
+    assert_eq!(session.map.quantity().name, "mean_load_power_w");
+    // nothing of this where there is no transducer
+    let harness = window("paper", WIDE);
+    assert!(harness.query_by_role_and_label(Role::Slider, "load").is_none());
+    assert!(harness.query_by_label("power into the load").is_none());
+    let session = &harness.state().session;
+    assert_eq!(session.map.quantity().name, "rms_velocity_m_per_s");
+    assert!(!session.sentence().text.contains("into the load"));
+}
+
+#[test]
+fn the_trace_keeps_its_mean_in_the_smallest_tile() {
+    let mut harness = window("harvester", [1024.0, 700.0]);
+    command(&mut harness, Command::Arrange(Layout::Study));
+    command(&mut harness, Command::Show(View::Power, true));
+    command(&mut harness, Command::Show(View::Velocity, true));
+    command(&mut harness, Command::Show(View::BaseAcceleration, true));
+    harness.state_mut().session.wait_settled(LONG);
+    harness.run_steps(3);
+    assert!(harness.state().tiling.place_of(View::Power).unwrap().height() < 110.0);
+    assert!(is_painted(&harness, "Into the load: mean 0.326 mW"));
 }
 
 #[test]
@@ -230,7 +265,7 @@ fn the_map_and_the_walks_go_over_the_load() {
         harness.state().session.explore.walks.found.is_whole()
     });
     assert_eq!(harness.state().session.explore.walks.quantity, WalkQuantity::LoadPower);
-    assert!(is_painted(&harness, "mean power into the load (µW)"));
+    assert!(is_painted(&harness, "mean power into the load (mW)"));
 }
 
 /// A session on the prototype in short runs.
@@ -290,7 +325,7 @@ fn with_a_load_the_power_is_made_large() {
     session.find_best_stops();
     assert!(session.wait_for_best_stops(LONG));
     let words = session.best.words();
-    assert!(words.contains("where the mean power into the load is largest, 4"), "{words}");
+    assert!(words.contains("where the mean power into the load is largest, 0.4"), "{words}");
     assert!((1.85..2.1).contains(&session.best.limit_mm().unwrap()), "{words}");
 }
 

@@ -8,7 +8,7 @@ use crate::app::ui::knob::{How, Knob, refuse};
 use crate::app::ui::widgets::hover_beside;
 use crate::app::words::fields::{Reach, info, name_and_unit};
 use crate::app::words::numbers::{below, decimals, round_up, shown};
-use crate::scene::{Damping, Excitation, FieldPath, Mechanism, Stops, numeric_fields};
+use crate::scene::{Damping, Excitation, FieldPath, Mechanism, Stops, Transducer, numeric_fields};
 
 use super::advanced;
 
@@ -28,23 +28,26 @@ const BESIDE_SLIDER: f32 = 130.0;
 const LEAST_SLIDER: f32 = 60.0;
 const WIDEST_SLIDER: f32 = 280.0;
 
-const MORE_HOVER: &str = "Restitution, preload, frequency, damping and mass; spring, magnets and \
-                          transducer, where there are such.";
+const MORE_HOVER: &str = "Restitution, preload, damping and mass; spring, magnets and transducer, where \
+                          there are such.";
 
 const SEARCH_HOVER: &str = "Looks for the distance of the stops with which the scene as it stands, from \
                             rest, moves fastest, or where there is a transducer gives most power, and how \
                             far that is from where it is lost (B).";
 
-/// The travel limit of the stops, or of each stop. While the stops are off their control shows the limit that
-/// they will have, and moving it switches them on.
+const STOPS_OFF: &str = "The stops are off. This is where they will stand: switch them on first.";
+/// Why there is no search for the best stops.
+pub const NOT_SHAKEN: &str = "Nothing shakes the mass: shake it first.";
+
+/// Of a sine.
+const FREQUENCY: &str = "excitation.frequency_hz";
+/// The travel limit of the stops, or of each stop. While the stops are off their control is grey, and shows
+/// the limit that they will have.
 const LIMITS: [&str; 3] = ["stops.travel_limit_mm", "stops.left_mm", "stops.right_mm"];
-/// Fields of a transducer at the top of More.
-const LOAD: [&str; 4] = [
-    "transducer.load_ohm",
-    "transducer.load_kohm",
-    "transducer.coupling_v_s_per_m",
-    "transducer.coupling_n_per_v",
-];
+/// The load of a transducer, which stands below the stops or, in a row of controls, at the top of More.
+const LOAD: [&str; 2] = ["transducer.load_ohm", "transducer.load_kohm"];
+/// Other fields of a transducer at the top of More.
+const COUPLING: [&str; 2] = ["transducer.coupling_v_s_per_m", "transducer.coupling_n_per_v"];
 /// Fields of a transducer under Advanced.
 const CIRCUIT: [&str; 3] = ["transducer.coil_ohm", "transducer.inductance_mh", "transducer.capacitance_nf"];
 
@@ -52,18 +55,30 @@ pub fn column_ui(ui: &mut Ui, session: &mut Session, more: &mut bool) {
     let width = (ui.available_width() - 84.0).max(80.0);
     heading_ui(ui, "Shaking");
     shaking_ui(ui, session, width);
+    field_ui(ui, session, FREQUENCY, width);
     ui.add_space(14.0);
     stops_switch_ui(ui, session);
     fields_ui(ui, session, &LIMITS, width);
     best_stops_ui(ui, session, "Find the best stops");
+    if session.scene().transducer != Transducer::None {
+        ui.add_space(14.0);
+        heading_ui(ui, "Load");
+        fields_ui(ui, session, &LOAD, width);
+    }
     ui.add_space(14.0);
     let name = RichText::new(if *more { "Less" } else { "More" }).strong();
     if ui.selectable_label(*more, name).on_hover_text(MORE_HOVER).clicked() {
         *more = !*more;
     }
     if *more {
-        more_ui(ui, session, width);
+        fields_below_ui(ui, session, width);
     }
+}
+
+/// What opens beside the views in a compact window, whose row has no room for the frequency.
+pub fn beside_ui(ui: &mut Ui, session: &mut Session, width: f32) {
+    field_ui(ui, session, FREQUENCY, width);
+    more_ui(ui, session, width);
 }
 
 /// Shaking and stops in one row, for a compact window; More opens a column beside the views.
@@ -119,6 +134,7 @@ pub fn named_ui(ui: &mut Ui, session: &mut Session, controls: &[String]) -> Vec<
             _ => rows.push(vec![control]),
         }
     }
+    let has_switch = controls.iter().any(|path| path == SWITCH);
     let mut places = Vec::new();
     for row in rows {
         let sliders = row.iter().filter(|control| control.0 != SWITCH).count().max(1) as f32;
@@ -128,7 +144,7 @@ pub fn named_ui(ui: &mut Ui, session: &mut Session, controls: &[String]) -> Vec<
             for (path, _) in row {
                 let control = ui.scope(|ui| match path.as_str() {
                     SWITCH => stops_switch_ui(ui, session),
-                    path => field_ui(ui, session, path, width),
+                    path => knob_ui(ui, session, path, width, has_switch && is_off(session, path)),
                 });
                 places.push((path.clone(), control.response.rect));
                 ui.add_space(10.0);
@@ -176,15 +192,18 @@ fn stops_switch_ui(ui: &mut Ui, session: &mut Session) {
     }
 }
 
-pub fn more_ui(ui: &mut Ui, session: &mut Session, width: f32) {
+/// The fields under More beside a row of controls, which has no room for the load.
+fn more_ui(ui: &mut Ui, session: &mut Session, width: f32) {
     fields_ui(ui, session, &LOAD, width);
+    fields_below_ui(ui, session, width);
+}
+
+fn fields_below_ui(ui: &mut Ui, session: &mut Session, width: f32) {
+    fields_ui(ui, session, &COUPLING, width);
     restitution_ui(ui, session, width);
     preload_ui(ui, session, width);
     for path in sliders(session).into_iter().filter(|path| is_balancing(path)) {
         field_ui(ui, session, &path, width);
-    }
-    if matches!(session.scene().excitation, Excitation::Sine { .. }) {
-        field_ui(ui, session, "excitation.frequency_hz", width);
     }
     damping_ui(ui, session, width);
     field_ui(ui, session, "mass_g", width);
@@ -224,38 +243,40 @@ pub fn best_stops_ui(ui: &mut Ui, session: &mut Session, name: &str) {
     if session.best.is_off {
         return;
     }
-    let button = egui::Button::new(name);
-    let response = ui.add_enabled(!session.best.is_running(), button);
-    if response.on_hover_text(SEARCH_HOVER).on_disabled_hover_text("It is being looked for.").clicked() {
+    let why = match (session.best.is_running(), session.model().is_shaken()) {
+        (true, _) => Some("It is being looked for."),
+        (false, false) => Some(NOT_SHAKEN),
+        (false, true) => None,
+    };
+    let response = ui.add_enabled(why.is_none(), egui::Button::new(name)).on_hover_text(SEARCH_HOVER);
+    if response.on_disabled_hover_text(why.unwrap_or_default()).clicked() {
         session.find_best_stops();
     }
 }
 
-/// The answer of the search so far, and a button that moves the stops there.
+/// What can be done with the search for the best stops, from right to left: stop it, forget it, or move the
+/// stops there.
 pub fn best_stops_answer_ui(ui: &mut Ui, session: &mut Session) {
-    ui.horizontal_wrapped(|ui| {
-        ui.label(session.best.words());
-        if session.best.is_running() {
-            ui.add(egui::Spinner::new().size(14.0));
-            if ui.small_button("Stop looking").clicked() {
-                session.best.close();
-            }
-            return;
-        }
-        match session.is_at_best_stops() {
-            true => _ = ui.label(RichText::new("The stops stand there.").weak()),
-            false if session.best.limit_mm().is_some() => {
-                let hover = "Moves the stops there, as one step that can be undone. The motion goes on.";
-                if ui.small_button("Take the stops there").on_hover_text(hover).clicked() {
-                    session.go_to_best_stops();
-                }
-            }
-            false => {}
-        }
-        if ui.small_button("Close").on_hover_text("Forgets the best stops.").clicked() {
+    if session.best.is_running() {
+        if ui.small_button("Stop looking").clicked() {
             session.best.close();
         }
-    });
+        ui.add(egui::Spinner::new().size(14.0));
+        return;
+    }
+    if ui.small_button("Close").on_hover_text("Forgets the best stops.").clicked() {
+        return session.best.close();
+    }
+    match session.is_at_best_stops() {
+        true => _ = ui.label(RichText::new("The stops stand there.").weak()),
+        false if session.best.limit_mm().is_some() => {
+            let hover = "Moves the stops there, as one step that can be undone. The motion goes on.";
+            if ui.small_button("Take the stops there").on_hover_text(hover).clicked() {
+                session.go_to_best_stops();
+            }
+        }
+        false => {}
+    }
 }
 
 /// Paths of the mechanism's fields that have a slider, including those of the parts of a sum.
@@ -298,6 +319,17 @@ fn sizes_ui(ui: &mut Ui, session: &mut Session, width: f32) {
 /// The control of a field of the scene, or of the stops that it gets when they are switched on. Draws nothing
 /// if there is no such field. A change of the start restarts the motion.
 pub(super) fn field_ui(ui: &mut Ui, session: &mut Session, path: &str, width: f32) {
+    let off = is_off(session, path);
+    knob_ui(ui, session, path, width, off);
+}
+
+/// Whether a field is the travel limit of stops that are off.
+fn is_off(session: &Session, path: &str) -> bool {
+    session.scene().stops == Stops::None && LIMITS.contains(&path)
+}
+
+/// The control of a field, grey if it is `off`.
+fn knob_ui(ui: &mut Ui, session: &mut Session, path: &str, width: f32, off: bool) {
     let Some(value) = session.number(path) else { return };
     let (name, unit) = name_and_unit(path);
     let (reach, typed, hover) = match info(path) {
@@ -305,7 +337,9 @@ pub(super) fn field_ui(ui: &mut Ui, session: &mut Session, path: &str, width: f3
         None => (around(session, path, value), (f64::MIN, f64::MAX), ""),
     };
     let id = egui::Id::unique(("field", path));
-    let turn = Knob { id, name: &name, unit, reach, typed, hover, width }.ui(ui, value);
+    let hover = if off { STOPS_OFF } else { hover };
+    let knob = Knob { id, name: &name, unit, reach, typed, hover, width };
+    let turn = ui.add_enabled_ui(!off, |ui| knob.ui(ui, value)).inner;
     if let Some(value) = turn.value {
         match turn.how {
             How::Pressed => session.press(path, ui.input(|input| input.time)),

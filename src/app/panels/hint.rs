@@ -1,8 +1,11 @@
 //! Hint line of the first minute: what to try next, and what the last try showed.
 
-use eframe::egui::{RichText, Ui};
+use eframe::egui::{Align, Color32, FontFamily, Layout, RichText, Role, Ui, UiBuilder, WidgetInfo, vec2};
 
 use crate::app::session::Session;
+use crate::app::ui::style::{BODY, strong_family};
+use crate::app::ui::widgets::fitting;
+use crate::app::words::numbers::unbroken;
 use crate::app::words::status::grams;
 use crate::dynamics::EventKind;
 use crate::scene::Excitation;
@@ -11,9 +14,8 @@ use crate::scene::Excitation;
 const TRIED_MM: f64 = 0.3;
 
 /// How stops between two wells act.
-const MIDDLE: &str = "a stop near the middle holds the mass high on the barrier, so that a weaker push \
-                      carries it over; but the mass travels less. Further out the mechanism presses the mass \
-                      harder against the stop";
+const MIDDLE: &str = "a stop near the middle holds the mass high on the barrier: a weaker push carries it \
+                      over, but it travels less. Further out it presses harder";
 
 /// What the line asks the user to try.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,6 +67,7 @@ impl Hint {
             (Stage::Cross | Stage::Compare, Some(from_mm)) if crossed && as_opened => Stage::Move { from_mm },
             (Stage::Cross, _) if crossed => Stage::Compare,
             (Stage::Move { .. }, None) => Stage::Compare,
+            (Stage::Answer, None) => Stage::Done,
             (Stage::Move { from_mm }, Some(mm))
                 if (mm - from_mm).abs() >= TRIED_MM && !session.editor.in_gesture() =>
             {
@@ -146,21 +149,38 @@ impl Hint {
         scene == *opened
     }
 
-    /// Draws the line, with a button labelled `lesson` that opens a lesson. Returns whether it was clicked.
-    pub fn ui(&mut self, ui: &mut Ui, session: &Session, lesson: &str) -> bool {
-        let (first, then) = self.text(session);
-        let mut clicked = false;
-        ui.horizontal_wrapped(|ui| {
-            ui.label(RichText::new(first).heading());
-            ui.label(then);
-            if ui.small_button("Dismiss").clicked() {
-                self.stage = Stage::Done;
-            }
-            let hover = "Look, predict, try and explain, step by step. The scene waits as it is.";
-            clicked = ui.small_button(lesson).on_hover_text(hover).clicked();
-        });
-        clicked
+    pub fn dismiss(&mut self) {
+        self.stage = Stage::Done;
     }
+}
+
+/// Draws the guide line: a heading and a text in `color` at the left, in rows that fit, and at the right
+/// `buttons`, the last one first. Returns the answer of the buttons.
+pub fn guide_ui<R>(
+    ui: &mut Ui,
+    (heading, text, color): (&str, &str, Color32),
+    buttons: impl FnOnce(&mut Ui) -> R,
+) -> R {
+    let right_to_left = Layout::right_to_left(Align::Center);
+    let row = ui.allocate_ui_with_layout(ui.available_size(), right_to_left, |ui| {
+        let answer = buttons(ui);
+        let room = ui.available_rect_before_wrap();
+        let (strong, usual) = (strong_family(), FontFamily::Proportional);
+        let texts = [(heading, strong), ("  ", usual.clone()), (text, usual)];
+        let (size, taken) = fitting(ui, &texts, room.size(), BODY);
+        let place = room.with_min_y(ui.max_rect().center().y - 0.5 * taken);
+        let rows = Layout::left_to_right(Align::Min).with_main_wrap(true);
+        let mut ui = ui.new_child(UiBuilder::new().max_rect(place).layout(rows));
+        ui.spacing_mut().interact_size.y = 0.0;
+        ui.spacing_mut().item_spacing = vec2(6.0, 0.0);
+        if !heading.is_empty() {
+            ui.label(RichText::new(heading).heading().size(size));
+        }
+        let label = ui.label(RichText::new(unbroken(text)).size(size).color(color));
+        label.widget_info(|| WidgetInfo::labeled(Role::Label, true, text));
+        answer
+    });
+    row.inner
 }
 
 /// How stops between these wells act, for any travel limit.

@@ -2,26 +2,28 @@
 
 use eframe::egui::text::{LayoutJob, TextFormat};
 use eframe::egui::{
-    self, Align, Button, Color32, FontId, Id, Label, Layout, Popup, Pos2, RichText, Sense, SetOpenCommand,
-    Stroke, TextEdit, Ui, UiBuilder, vec2,
+    self, Align, Button, Color32, FontId, Id, Label, Layout, Popup, Pos2, Response, RichText, Sense,
+    SetOpenCommand, Stroke, TextEdit, Ui, Vec2, vec2,
 };
 
 use crate::app::session::Session;
-use crate::app::session::lesson::{OpenLesson, Outcome, TaskState};
+use crate::app::session::lesson::{MOST_VOTES, OpenLesson, Outcome, TaskState};
 use crate::app::ui::style::{BODY, Style, strong_family};
-use crate::app::words::lesson::{expected, judged_by, not_yet, numbered, pieces, plain};
+use crate::app::words::lesson::{expected, judged_by, letter, not_yet, numbered, pieces, plain, tally};
 use crate::app::words::meanings::{meaning, terms};
-use crate::scene::lesson::Step;
+use crate::scene::lesson::{Choice, Step};
 
 use super::status_line::spoken_ui;
 
 /// Text size in points, unless the window is compact.
 const LARGE: f32 = 16.0;
 /// Width in points of the column with the dots of the steps and the navigation buttons.
-const NAVIGATION: f32 = 158.0;
-/// Width in points of that column in the last step, where it also leads to the next lesson.
-const LAST_NAVIGATION: f32 = 190.0;
+const NAVIGATION: f32 = 190.0;
 const BUTTON_HEIGHT: f32 = 24.0;
+const SPACE: f32 = 4.0;
+/// Least height in points of the text, beside which the dots and the buttons stand.
+const LEAST: f32 = 20.0 + SPACE + BUTTON_HEIGHT;
+const HINT: &str = "Hint: ";
 const DOT: f32 = 4.5;
 const DOT_SPACING: f32 = 15.0;
 /// Greatest number of characters of the reason that a student gives.
@@ -36,45 +38,86 @@ pub enum LessonAction {
     Choose(usize),
     Back,
     Next,
+    /// Show the answer of a prediction without a choice.
+    Reveal,
+    Finish,
     Hint,
+    /// More or fewer votes for an option.
+    Vote(usize, i32),
     NextLesson(&'static str),
 }
 
-pub fn letter(option: usize) -> char {
-    ('A'..='Z').nth(option).unwrap_or('?')
-}
-
-/// Draws the strip. Returns the action that was chosen.
+/// Draws the strip, as high in every step of the lesson. `urged` moves the keyboard focus to the button that
+/// goes on. Returns the action that was chosen.
 pub fn lesson_ui(
     ui: &mut Ui,
     lesson: &mut OpenLesson,
     session: &Session,
     style: &Style,
     compact: bool,
+    urged: bool,
 ) -> Option<LessonAction> {
     let size = if compact { BODY } else { LARGE };
     let mut action = None;
-    ui.spacing_mut().item_spacing.y = 4.0;
+    ui.spacing_mut().item_spacing.y = SPACE;
     let text = spoken(lesson, session);
     spoken_ui(ui, Id::unique(("step of a lesson", lesson.number(), &text)), &text);
+    let width = (ui.available_width() - NAVIGATION - 16.0).max(120.0);
+    let steps = lesson.lesson().steps.iter();
+    let height = steps.map(|step| height_of(ui, style, step, size, width)).fold(0.0, f32::max);
+    ui.set_min_height(height);
     ui.horizontal_top(|ui| {
-        let navigation = if lesson.is_last() { LAST_NAVIGATION } else { NAVIGATION };
-        let width = (ui.available_width() - navigation - 16.0).max(120.0);
         ui.allocate_ui_with_layout(vec2(width, 0.0), Layout::top_down(Align::Min), |ui| {
             ui.set_width(width);
             let step = lesson.step();
             text_ui(ui, style, heading(step), step.text(), size);
             action = below_ui(ui, lesson, session, style, size);
         });
-        ui.allocate_ui_with_layout(vec2(navigation, 0.0), Layout::top_down(Align::Max), |ui| {
+        ui.allocate_ui_with_layout(vec2(NAVIGATION, 0.0), Layout::top_down(Align::Max), |ui| {
             dots_ui(ui, lesson, style);
-            action = action.or(navigation_ui(ui, lesson, navigation));
+            action = action.or(navigation_ui(ui, lesson, urged));
         });
     });
     if lesson.is_covering() {
         action = action.or(options_ui(ui, lesson, size));
     }
     action
+}
+
+/// A button for each option of a prediction, with the votes for it.
+pub fn votes_ui(ui: &mut Ui, lesson: &OpenLesson) -> Option<LessonAction> {
+    let mut action = None;
+    for option in 0..lesson.options().len() {
+        let (letter, votes) = (letter(option), lesson.votes().get(option).unwrap_or(&0));
+        let hover = format!("One more vote for {letter} (Shift+{letter}). Right button: one less.");
+        let button = ui.button(format!("{letter} {votes}")).on_hover_text(hover);
+        let more = i32::from(button.clicked()) - i32::from(button.secondary_clicked());
+        action = action.or((more != 0).then_some(LessonAction::Vote(option, more)));
+    }
+    action
+}
+
+/// Height in points of the strip in a step, with all that can come below its text.
+fn height_of(ui: &Ui, style: &Style, step: &Step, size: f32, width: f32) -> f32 {
+    let of = |heading: &str, text: &str| {
+        let mut job = job(style, heading, text, size);
+        job.wrap.max_width = width;
+        ui.painter().layout_job(job).size().y
+    };
+    let (text, row) = (of(heading(step), step.text()), ui.spacing().interact_size.y.max(1.4 * size));
+    match step {
+        Step::Say(_) | Step::Explain(_) => text,
+        Step::Predict { options, .. } => {
+            let longest = options.iter().map(|option| option.text.as_str()).max_by_key(|text| text.len());
+            let verdict = expected(longest, longest.map(|text| format!("{text} ")).as_deref());
+            let covered = text.max(LEAST) + SPACE + options_height(ui, options, size);
+            covered.max(text + of(&verdict, "") + row + 2.0 * SPACE)
+        }
+        Step::Do { hint, .. } => {
+            let hint = hint.as_deref().map_or(0.0, |hint| of(HINT, hint) + SPACE);
+            text + row + hint + SPACE
+        }
+    }
 }
 
 fn heading(step: &Step) -> &'static str {
@@ -112,8 +155,8 @@ fn verdict(lesson: &OpenLesson) -> String {
     expected(lesson.answer().choice.as_deref(), outcome)
 }
 
-/// A text with bold words. Terms of the glossary are underlined; hovering or a click shows their meaning.
-fn text_ui(ui: &mut Ui, style: &Style, heading: &str, text: &str, size: f32) {
+/// A text with bold words, and terms of the glossary underlined.
+fn job(style: &Style, heading: &str, text: &str, size: f32) -> LayoutJob {
     let mut job = LayoutJob::default();
     let strong = FontId::new(size, strong_family());
     let format = |font: &FontId, color: Color32, underline: Stroke| TextFormat {
@@ -134,6 +177,12 @@ fn text_ui(ui: &mut Ui, style: &Style, heading: &str, text: &str, size: f32) {
         }
         job.append(&piece.text[from..], 0.0, format(font, style.ink(), Stroke::NONE));
     }
+    job
+}
+
+/// Draws a text; hovering or a click on a term of the glossary shows its meaning.
+fn text_ui(ui: &mut Ui, style: &Style, heading: &str, text: &str, size: f32) {
+    let job = job(style, heading, text, size);
     let whole = job.text.clone();
     let (at, galley, response) =
         Label::new(job).wrap().selectable(false).sense(Sense::CLICK).layout_in_ui(ui);
@@ -177,44 +226,48 @@ fn below_ui(
         Step::Predict { .. } => {
             ui.horizontal_wrapped(|ui| {
                 ui.label(RichText::new(verdict(lesson)).size(size).font(FontId::new(size, strong_family())));
-                if lesson.answer().choice.is_some() {
+                if lesson.votes().iter().any(|votes| *votes > 0) {
+                    ui.label(RichText::new(tally(lesson.votes())).size(size).color(style.faint()));
+                } else if lesson.answer().choice.is_some() {
                     reason_ui(ui, lesson, style, size);
                 }
             });
         }
         Step::Do { .. } => {
+            let how = judged_by(lesson.lesson(), session.scene().start);
             let (state, color) = match lesson.task(session) {
                 TaskState::Met => ("Done.".to_owned(), style.base()),
                 TaskState::Unjudged(why) => (format!("It cannot be judged: {why}"), style.ink()),
-                state => {
-                    let word = match state {
-                        TaskState::Moving => "Will be judged once you let go.".to_owned(),
-                        TaskState::NotYet(lack) => not_yet(&lack),
-                        _ => "Being judged ...".to_owned(),
-                    };
-                    let how = judged_by(lesson.lesson(), session.scene().start);
-                    (format!("{word} {how}"), style.faint())
-                }
+                TaskState::Moving => (format!("Will be judged once you let go. {how}"), style.faint()),
+                TaskState::NotYet(lack) => (not_yet(&lack, is_on_stops(session)), style.ink()),
+                TaskState::Judging => (format!("Being judged. {how}"), style.faint()),
             };
             ui.horizontal_wrapped(|ui| {
-                ui.label(RichText::new(state).size(size).color(color));
+                ui.label(RichText::new(state).size(size).color(color)).on_hover_text(how);
                 if lesson.offered_hint().is_some() && lesson.hint().is_none() {
-                    let hover = "It comes by itself after 45 s (H)";
-                    if ui.small_button("Hint (H)").on_hover_text(hover).clicked() {
+                    let (name, hover) = match lesson.offers_hint() {
+                        true => ("Would a hint help? (H)", "Shows the hint"),
+                        false => ("Hint (H)", "Shows the hint"),
+                    };
+                    let button = Button::new(name).small().selected(lesson.offers_hint());
+                    if ui.add(button).on_hover_text(hover).clicked() {
                         action = Some(LessonAction::Hint);
                     }
                 }
             });
-            // space is reserved for the hint if there is room: nothing moves when it appears by itself
-            let reserved = lesson.offered_hint().filter(|_| size > BODY);
-            if let Some(hint) = lesson.hint().or(reserved) {
-                let builder = UiBuilder::new();
-                let builder = if lesson.hint().is_some() { builder } else { builder.invisible() };
-                ui.scope_builder(builder, |ui| text_ui(ui, style, "Hint: ", hint, size));
+            if let Some(hint) = lesson.hint() {
+                text_ui(ui, style, HINT, hint, size);
             }
         }
     }
     action
+}
+
+/// Whether stops hold the mass away from the bottoms of the wells, so that it can hop on one.
+fn is_on_stops(session: &Session) -> bool {
+    let model = session.model();
+    let well = model.mechanism().landscape.right_stable().map(|well| well.x);
+    well.zip(model.stop_positions().1).is_some_and(|(well, stop)| stop < well)
 }
 
 fn reason_ui(ui: &mut Ui, lesson: &mut OpenLesson, style: &Style, size: f32) {
@@ -250,23 +303,37 @@ fn dots_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style) {
     response.on_hover_text(name);
 }
 
-fn navigation_ui(ui: &mut Ui, lesson: &OpenLesson, width: f32) -> Option<LessonAction> {
+fn navigation_ui(ui: &mut Ui, lesson: &OpenLesson, urged: bool) -> Option<LessonAction> {
     let mut action = None;
-    ui.allocate_ui_with_layout(vec2(width, BUTTON_HEIGHT), Layout::right_to_left(Align::Center), |ui| {
-        let next_lesson = lesson.following().filter(|_| lesson.is_last() && lesson.may_go_on());
-        if let Some(name) = next_lesson
-            && ui.button(numbered(name)).on_hover_text("The lesson that comes after this one").clicked()
-        {
-            action = Some(LessonAction::NextLesson(name));
+    let row = vec2(NAVIGATION, BUTTON_HEIGHT);
+    ui.allocate_ui_with_layout(row, Layout::right_to_left(Align::Center), |ui| {
+        let following = lesson.following().filter(|_| lesson.is_last() && lesson.may_go_on());
+        if let Some(name) = following {
+            let next = ui.button(numbered(name)).on_hover_text("The lesson that comes after this one");
+            urge(&next, urged);
+            if next.clicked() {
+                action = Some(LessonAction::NextLesson(name));
+            }
         }
-        let name = if lesson.is_last() { "Finish" } else { "Next" };
+        let (name, chosen) = match lesson.is_last() {
+            true => ("Finish", LessonAction::Finish),
+            false => ("Next", LessonAction::Next),
+        };
         let condition = match lesson.step() {
-            Step::Predict { .. } => "First choose what you expect. A lecturer goes on with PageDown.",
+            Step::Predict { .. } => "First choose what you expect, or Reveal.",
             _ => "First the task. A lecturer goes on with PageDown.",
         };
         let next = ui.add_enabled(lesson.may_go_on(), Button::new(name)).on_disabled_hover_text(condition);
+        urge(&next, urged && lesson.is_last() && following.is_none());
         if next.on_hover_text("The next step (PageDown)").clicked() {
-            action = Some(LessonAction::Next);
+            action = Some(chosen);
+        }
+        if lesson.is_covering() {
+            let reveal = ui.button("Reveal").on_hover_text("Shows what it does, without a choice");
+            urge(&reveal, urged);
+            if reveal.clicked() {
+                action = Some(LessonAction::Reveal);
+            }
         }
         let back = ui.add_enabled(lesson.number() > 0, Button::new("Back"));
         if back.on_hover_text("The step before (PageUp)").clicked() {
@@ -276,34 +343,70 @@ fn navigation_ui(ui: &mut Ui, lesson: &OpenLesson, width: f32) -> Option<LessonA
     action
 }
 
+/// Moves the keyboard focus to a button, so that Enter presses it, until it has been pressed: the button that
+/// then stands in its place must not have it.
+fn urge(button: &Response, urged: bool) {
+    if button.clicked() {
+        button.surrender_focus();
+    } else if urged {
+        button.request_focus();
+    }
+}
+
+/// Number of rows of so many options.
+fn rows_of(count: usize) -> usize {
+    count.div_ceil(SIDE_BY_SIDE).max(1)
+}
+
+/// An option, with the votes for it if there are any.
+fn option_text(option: usize, choice: &Choice, votes: u32) -> String {
+    let votes = if votes > 0 { format!(" ({votes})") } else { String::new() };
+    format!("{}{votes}   {}", letter(option), plain(&choice.text))
+}
+
+/// Width and height in points of each option.
+fn option_size(ui: &Ui, options: &[Choice], size: f32) -> Vec2 {
+    let columns = options.len().div_ceil(rows_of(options.len())) as f32;
+    let (space, padding) = (ui.spacing().item_spacing.x, ui.spacing().button_padding);
+    let width = (ui.available_width() - space * (columns - 1.0)) / columns;
+    let height = |(option, choice): (usize, &Choice)| {
+        let (room, font) = (width - 2.0 * padding.x, FontId::proportional(size));
+        let text = option_text(option, choice, MOST_VOTES);
+        ui.painter().layout(text, font, Color32::PLACEHOLDER, room).size().y
+    };
+    let tallest = options.iter().enumerate().map(height).fold(0.0, f32::max);
+    vec2(width, tallest + 2.0 * padding.y + 4.0)
+}
+
+fn options_height(ui: &Ui, options: &[Choice], size: f32) -> f32 {
+    let rows = rows_of(options.len()) as f32;
+    option_size(ui, options, size).y * rows + SPACE * (rows - 1.0)
+}
+
 /// The options side by side, all of one height.
 fn options_ui(ui: &mut Ui, lesson: &OpenLesson, size: f32) -> Option<LessonAction> {
     let mut action = None;
     let options = lesson.options();
-    let rows = options.len().div_ceil(SIDE_BY_SIDE).max(1);
-    let columns = options.len().div_ceil(rows);
-    let (space, padding) = (ui.spacing().item_spacing.x, ui.spacing().button_padding);
-    let width = (ui.available_width() - space * (columns as f32 - 1.0)) / columns as f32;
-    let texts: Vec<String> = options
-        .iter()
-        .enumerate()
-        .map(|(i, option)| format!("{}   {}", letter(i), plain(&option.text)))
-        .collect();
-    let font = FontId::proportional(size);
-    let height = |text: &String| {
-        let room = width - 2.0 * padding.x;
-        ui.painter().layout(text.clone(), font.clone(), Color32::PLACEHOLDER, room).size().y
-    };
-    let tallest = texts.iter().map(height).fold(0.0, f32::max) + 2.0 * padding.y + 4.0;
-    for (row, texts) in texts.chunks(columns.max(1)).enumerate() {
+    let columns = options.len().div_ceil(rows_of(options.len())).max(1);
+    let each = option_size(ui, options, size);
+    for (row, choices) in options.chunks(columns).enumerate() {
         ui.horizontal(|ui| {
-            for (i, text) in texts.iter().enumerate() {
+            for (i, choice) in choices.iter().enumerate() {
                 let option = row * columns + i;
-                let text = RichText::new(text).font(font.clone());
-                let button = ui.add_sized([width, tallest], Button::new(text).wrap());
-                let hover = format!("Choose this: nothing is scored (key {})", letter(option));
-                if button.on_hover_text(hover).clicked() {
+                let votes = *lesson.votes().get(option).unwrap_or(&0);
+                let text = RichText::new(option_text(option, choice, votes));
+                let text = text.font(FontId::proportional(size));
+                let button = ui.add_sized(each, Button::new(text).wrap());
+                let letter = letter(option);
+                let hover = format!(
+                    "Choose this: nothing is scored (key {letter}). Right button or Shift+{letter}: count a \
+                     vote."
+                );
+                let button = button.on_hover_text(hover);
+                if button.clicked() {
                     action = Some(LessonAction::Choose(option));
+                } else if button.secondary_clicked() {
+                    action = Some(LessonAction::Vote(option, 1));
                 }
             }
         });

@@ -1,28 +1,31 @@
 //! Texts to read: notes of the scene below the controls, the glossary, the lecturer's notes of a lesson.
 
 use eframe::egui::{
-    self, CentralPanel, Color32, FontSelection, Key, Modifiers, RichText, ScrollArea, Ui, ViewportBuilder,
-    ViewportClass, ViewportId,
+    self, Align, CentralPanel, Color32, Frame, Key, Label, Layout, Modifiers, RichText, ScrollArea, Ui,
+    ViewportBuilder, ViewportClass, ViewportId, vec2,
 };
 
 use crate::app::session::lesson::{OpenLesson, Outcome};
-use crate::app::ui::widgets::{close_ui, dialog, dialog_width};
-use crate::app::words::lesson::plain;
+use crate::app::ui::style::BODY;
+use crate::app::ui::widgets::{close_ui, dialog, dialog_width, prose, prose_ui};
+use crate::app::words::lesson::{letter, plain, script};
 use crate::app::words::meanings::{GLOSSARY, meaning};
 use crate::scene::Scene;
 use crate::scene::lesson::Step;
 
-use super::lesson::{LessonAction, letter};
+use super::lesson::{LessonAction, votes_ui};
 
 /// Height in points of the heading.
 const HEADING: f32 = 42.0;
 /// Height in points of the button that shows the rest.
 const MORE: f32 = 30.0;
+/// Width in points of the column of times.
+const TIME: f32 = 40.0;
 /// Least height in points in which notes are shown.
 const LEAST: f32 = 120.0;
 
-/// Draws the notes down to `bottom`. If the scene was changed, they describe it before the changes. Returns
-/// whether the user asks for all of the notes.
+/// Draws the beginning of the notes, above `bottom`: two sentences at most. If the scene was changed, they
+/// describe it before the changes. Returns whether the user asks for all of the notes.
 pub fn notes_ui(ui: &mut Ui, scene: &Scene, is_changed: bool, bottom: f32) -> bool {
     let notes = scene.notes.trim();
     let room = bottom - ui.cursor().top();
@@ -36,23 +39,24 @@ pub fn notes_ui(ui: &mut Ui, scene: &Scene, is_changed: bool, bottom: f32) -> bo
         return ui.button(heading).on_hover_text(hover).clicked();
     }
     ui.label(RichText::new(heading).heading());
-    let font = FontSelection::Default.resolve(ui.style());
     let width = ui.available_width();
-    let height = |text: &str| {
-        let (text, font) = (text.to_owned(), font.clone());
-        ui.fonts_mut(|fonts| fonts.layout(text, font, Color32::PLACEHOLDER, width)).size().y
+    let fits = |text: &str| {
+        let mut job = prose(ui, text, BODY);
+        job.wrap.max_width = width;
+        ui.fonts_mut(|fonts| fonts.layout_job(job)).size().y <= room - HEADING - MORE
     };
-    if height(notes) <= room - HEADING {
-        ui.label(notes);
-        return false;
+    let shown = [2, 1].map(|count| beginning(notes, count)).into_iter().find(|text| fits(text));
+    if let Some(text) = shown {
+        prose_ui(ui, text, BODY);
     }
-    // the whole sentences that fit
-    let ends = notes.match_indices('.').map(|(at, _)| at + 1);
-    let ends: Vec<usize> = ends.filter(|at| notes[*at..].starts_with(char::is_whitespace)).collect();
-    let count = ends.partition_point(|end| height(&notes[..*end]) <= room - HEADING - MORE);
-    let end = count.checked_sub(1).and_then(|last| ends.get(last)).copied().unwrap_or(0);
-    ui.label(&notes[..end]);
-    ui.button("Read on").on_hover_text(hover).clicked()
+    shown != Some(notes) && ui.button("Read on").on_hover_text(hover).clicked()
+}
+
+/// The first sentences of a text, at most `count`.
+fn beginning(text: &str, count: usize) -> &str {
+    let ends = text.match_indices('.').map(|(at, _)| at + 1);
+    let mut ends = ends.filter(|at| text[*at..].starts_with(char::is_whitespace));
+    ends.nth(count - 1).map_or(text, |end| &text[..end])
 }
 
 /// Shows the glossary. Returns `false` once it is to be closed.
@@ -84,9 +88,9 @@ pub fn lecturer_ui(ctx: &egui::Context, lesson: &OpenLesson) -> (Option<LessonAc
     ctx.show_viewport_immediate(ViewportId::from_hash_of("lecturer"), builder, |ui, class| {
         let is_separate = class != ViewportClass::EmbeddedWindow;
         if is_separate {
-            CentralPanel::default_margins().show(ui, |ui| lecturer_notes_ui(ui, lesson));
+            CentralPanel::default_margins().show(ui, |ui| action = lecturer_notes_ui(ui, lesson));
         } else {
-            lecturer_notes_ui(ui, lesson);
+            action = lecturer_notes_ui(ui, lesson);
             closed |= ui.button("Close").clicked();
         }
         closed |= ui.input(|input| input.viewport().close_requested()) && is_separate;
@@ -102,8 +106,9 @@ pub fn lecturer_ui(ctx: &egui::Context, lesson: &OpenLesson) -> (Option<LessonAc
     (action, closed)
 }
 
-fn lecturer_notes_ui(ui: &mut Ui, open: &OpenLesson) {
+fn lecturer_notes_ui(ui: &mut Ui, open: &OpenLesson) -> Option<LessonAction> {
     let lesson = open.lesson();
+    let mut action = None;
     ScrollArea::vertical().auto_shrink(false).max_height((ui.available_height() - 8.0).max(60.0)).show(
         ui,
         |ui| {
@@ -117,9 +122,22 @@ fn lecturer_notes_ui(ui: &mut Ui, open: &OpenLesson) {
                 }
             };
             part_ui(ui, "What students think before", &lesson.misconception);
-            part_ui(ui, "What to do", &lesson.lecturer);
+            if !lesson.lecturer.trim().is_empty() {
+                ui.add_space(6.0);
+                ui.label(RichText::new("What to do").heading());
+                script_ui(ui, open);
+            }
             let heading = format!("Step {} of {}", open.number() + 1, lesson.steps.len());
             part_ui(ui, &heading, open.step().text());
+            if open.is_covering() {
+                ui.horizontal(|ui| {
+                    ui.label("Votes");
+                    action = votes_ui(ui, open);
+                    if ui.button("Reveal to the class").clicked() {
+                        action = Some(LessonAction::Reveal);
+                    }
+                });
+            }
             match (open.step(), open.outcome()) {
                 (Step::Predict { .. }, Outcome::Holds(option)) => {
                     let text = format!("{}: {}", letter(option), open.options()[option].text);
@@ -134,4 +152,32 @@ fn lecturer_notes_ui(ui: &mut Ui, open: &OpenLesson) {
             }
         },
     );
+    action
+}
+
+/// What to do, with a column of times; the line of now is marked.
+fn script_ui(ui: &mut Ui, open: &OpenLesson) {
+    let lines = script(&open.lesson().lecturer);
+    let now = open.open_for(ui.input(|input| input.time));
+    let coming = lines.iter().position(|line| line.0 > now);
+    if let Some(next) = coming {
+        ui.ctx().request_repaint_after_secs((lines[next].0 - now) as f32);
+    }
+    let present = coming.unwrap_or(lines.len()).checked_sub(1);
+    for (number, (_, time, text)) in lines.iter().enumerate() {
+        let is_present = Some(number) == present && !time.is_empty();
+        let mark = if is_present { ui.visuals().selection.bg_fill } else { Color32::TRANSPARENT };
+        Frame::new().fill(mark.gamma_multiply(0.4)).inner_margin(2.0).show(ui, |ui| {
+            ui.horizontal_top(|ui| {
+                ui.allocate_ui_with_layout(vec2(TIME, 0.0), Layout::top_down(Align::Min), |ui| {
+                    ui.set_width(TIME);
+                    ui.label(RichText::new(*time).heading());
+                    if is_present {
+                        ui.label("now");
+                    }
+                });
+                ui.add(Label::new(plain(text)).wrap());
+            });
+        });
+    }
 }

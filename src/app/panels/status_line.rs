@@ -3,8 +3,8 @@
 use eframe::egui::{self, Id, RichText, Role, Sense, Ui, Vec2, accesskit::Live};
 
 use crate::app::session::{OFFER_TO_STOP, Session};
-use crate::app::ui::style::{BODY, STATUS, STATUS_COMPACT, Style};
-use crate::app::ui::widgets::kind_shapes;
+use crate::app::ui::style::{STATUS, STATUS_COMPACT, Style};
+use crate::app::ui::widgets::{fitting, kind_shapes, prose_ui};
 use crate::app::words::kind::Kind;
 use crate::app::words::meanings::meaning;
 use crate::app::words::status::Sentence;
@@ -20,21 +20,20 @@ const LINE: f32 = 17.0;
 const SMALL_LINE: f32 = 13.0;
 /// Width in points of a window below which hover text replaces that column.
 const NARROW: f32 = 640.0;
-const LEAST: f32 = 44.0;
-/// Height in points that the status line leaves around its text.
-const MARGIN: f32 = 10.0;
-/// Space in points beside its icon.
-const ICON: f32 = 14.0;
+/// Height in points of a row of the sentence at the size of body text.
+const ROW: f32 = 17.0;
+/// Height in points that the status line leaves around its rows.
+const MARGIN: f32 = 5.0;
+/// Width in points of a long sentence in one row.
+const LONG: f32 = 1050.0;
+/// Most rows of the line, in a window that is no wider than a column.
+const MOST_ROWS: f32 = 5.0;
 
-/// Height in points of the line: greater if the sentence takes more than two rows at its smallest text size.
-pub fn height(ui: &Ui, session: &Session, compact: bool) -> f32 {
-    let size = if compact { STATUS_COMPACT } else { STATUS };
-    let width = ui.available_width() - 24.0 - size - ICON;
-    let beside = if is_narrow(ui) { 0.0 } else { BESIDE + 16.0 };
-    let font = egui::FontId::proportional(BODY);
-    let text = session.sentence().whole();
-    let galley = ui.painter().layout(text, font, egui::Color32::PLACEHOLDER, width - beside);
-    (galley.size().y + MARGIN).max(LEAST)
+/// Height in points of the line, which no sentence changes: two rows, or more where the window is narrow.
+pub fn height(ui: &Ui) -> f32 {
+    let beside = if is_narrow(ui) { 60.0 } else { BESIDE + 76.0 };
+    let rows = (LONG / (ui.available_width() - beside).max(1.0)).ceil().clamp(2.0, MOST_ROWS);
+    rows * ROW + MARGIN
 }
 
 fn is_narrow(ui: &Ui) -> bool {
@@ -49,10 +48,7 @@ pub fn status_ui(
     compact: bool,
 ) {
     let sentence = session.sentence();
-    if let Some(seconds) = announcer.take(&sentence, ui.input(|input| input.time)) {
-        ui.ctx().request_repaint_after_secs(seconds as f32);
-    }
-    announcer.ui(ui);
+    announcer.say(ui, &sentence);
     let size = if compact { STATUS_COMPACT } else { STATUS };
     ui.horizontal_centered(|ui| {
         let (rect, _) = ui.allocate_exact_size(Vec2::splat(size + 6.0), Sense::hover());
@@ -69,8 +65,9 @@ pub fn status_ui(
             }
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 let text = sentence.whole();
-                let size = fitted(ui, &text, size);
-                let label = ui.add(egui::Label::new(RichText::new(text).size(size)).wrap());
+                let room = ui.available_size();
+                let (size, _) = fitting(ui, &[(&text, egui::FontFamily::Proportional)], room, size);
+                let label = prose_ui(ui, &text, size);
                 if label.hovered() {
                     let kind = meaning(&sentence.text).map_or_else(String::new, |text| format!("{text}\n\n"));
                     let trust = session.trust().filter(|_| is_narrow(ui));
@@ -135,14 +132,6 @@ pub fn covered_ui(ui: &mut Ui, by_lesson: bool) {
     });
 }
 
-/// The size at which a text fits into one line, or the smallest size, at which it takes two.
-fn fitted(ui: &Ui, text: &str, size: f32) -> f32 {
-    let font = egui::FontId::proportional(size);
-    let galley = ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::PLACEHOLDER);
-    let share = ui.available_width() / galley.size().x.max(1.0);
-    (size * share.min(1.0) - 0.05).clamp(BODY.min(size), size)
-}
-
 /// Time in s for which a sentence has to stay unchanged before it is spoken.
 const STILL: f64 = 0.5;
 
@@ -180,6 +169,14 @@ impl Announcer {
         }
         self.waiting = Some((text, since));
         Some(since + STILL - now)
+    }
+
+    /// Speaks the sentence of the frame once it is to be spoken.
+    pub fn say(&mut self, ui: &mut Ui, sentence: &Sentence) {
+        if let Some(seconds) = self.take(sentence, ui.input(|input| input.time)) {
+            ui.ctx().request_repaint_after_secs(seconds as f32);
+        }
+        self.ui(ui);
     }
 
     fn speak(&mut self, kind: Kind, text: String) {

@@ -47,27 +47,28 @@ const BAR: f32 = 20.0;
 
 /// Draws the transport bar; it shows no events while results are covered.
 pub fn transport_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) {
+    // the whole bar is grey while a lesson asks what is expected
+    let button_ui = |ui: &mut Ui, icon: Icon, size: f32, name: &str, hover: &str| {
+        let response = icon_button_ui(ui, icon, size, name, hover);
+        response.on_disabled_hover_text("First choose what you expect").clicked()
+    };
     ui.horizontal_centered(|ui| {
-        if icon_button_ui(ui, Icon::Restart, BUTTON, "restart", "From the start again").clicked() {
+        if button_ui(ui, Icon::Restart, BUTTON, "restart", "From the start again") {
             session.restart();
         }
         let previous = "To the event before: a release, a crossing, an impact (PageUp)";
-        if icon_button_ui(ui, Icon::PreviousEvent, BUTTON, "previous event", previous).clicked() {
+        if button_ui(ui, Icon::PreviousEvent, BUTTON, "previous event", previous) {
             session.player.seek_event(false, EVENT_AHEAD);
         }
         let playing = session.player.is_playing();
         let (icon, name) = if playing { (Icon::Pause, "pause") } else { (Icon::Play, "play") };
-        let button = icon_button_ui(ui, icon, BUTTON + 6.0, name, "Play and pause (space)");
-        if button.clicked() {
+        if button_ui(ui, icon, BUTTON + 6.0, name, "Play and pause (space)") {
             session.play_or_pause();
         }
-        let next = "To the next event (PageDown)";
-        if icon_button_ui(ui, Icon::NextEvent, BUTTON, "next event", next).clicked() {
+        if button_ui(ui, Icon::NextEvent, BUTTON, "next event", "To the next event (PageDown)") {
             session.player.seek_event(true, EVENT_AHEAD);
         }
-        if icon_button_ui(ui, Icon::Step, BUTTON, "step", "A little further, then stand (full stop)")
-            .clicked()
-        {
+        if button_ui(ui, Icon::Step, BUTTON, "step", "A little further, then stand (full stop)") {
             session.player.step();
         }
         speed_ui(ui, session);
@@ -145,7 +146,7 @@ fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool) {
     let width = (ui.available_width() - time).max(40.0);
     let has_legend = !covered && ui.available_height() >= HIGH;
     let height = if has_legend { BUTTON + LEGEND } else { BUTTON };
-    let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::drag());
+    let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::slider(true, session.player.time(), "time"));
     let watch = session.player.watch();
     let (begin, end) = (watch.begin(), watch.time());

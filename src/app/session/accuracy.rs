@@ -58,11 +58,14 @@ struct StepQuestion {
 }
 
 /// The error of the path, or the time up to which the path is reliable, in a few words.
-fn short(trust: &Trust, from: f64) -> String {
+fn short(trust: &Trust, from: f64, is_regular: bool) -> String {
     match trust.course {
         Course::Kept => format!("Path error {}", small_length(trust.error, trust.travel)),
-        Course::Chaotic { until, .. } => format!("Chaotic: path reliable up to {}", moment(from + until)),
-        Course::Sensitive { until } | Course::Coarse { until } => {
+        // a motion that comes to repeat was chaotic for a time alone
+        Course::Chaotic { until, .. } if !is_regular => {
+            format!("Chaotic: path reliable up to {}", moment(from + until))
+        }
+        Course::Chaotic { until, .. } | Course::Sensitive { until } | Course::Coarse { until } => {
             format!("Path reliable up to {}", moment(from + until))
         }
     }
@@ -147,13 +150,19 @@ impl Accuracy {
         });
     }
 
-    /// The error of the motion in a few words, and in full.
-    pub(super) fn descriptions(&self) -> Option<(String, String)> {
+    /// The live time in s up to which the path is reliable; `None` if that is not known.
+    pub(super) fn trusted_to(&self) -> Option<f64> {
+        let (run, trust) = (self.run.as_ref()?, self.trust.newest()?);
+        Some(run.from + trust.course.until().unwrap_or(trust.span))
+    }
+
+    /// The error of the motion in a few words, and in full; `is_regular` if it comes to repeat.
+    pub(super) fn descriptions(&self, is_regular: bool) -> Option<(String, String)> {
         let from = self.run.as_ref()?.from;
         let trust = self.trust.newest()?;
         // for a run that ended early its end is reported instead
         trust.short(from)?;
-        Some((short(trust, from), long(trust, from)))
+        Some((short(trust, from, is_regular), long(trust, from)))
     }
 
     /// Asks for the cost of digits and steps in `model`; to be called by a view in every frame. Unless the

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use crate::app::task::Identity;
 use crate::app::words::status;
-use crate::scene::{Excitation, Scene};
+use crate::scene::{Excitation, Scene, Start};
 use crate::study::{self, Task};
 
 use super::Session;
@@ -110,7 +110,8 @@ impl Session {
     /// of the run, and while the accuracy is unknown.
     pub fn trust(&self) -> Option<(String, String)> {
         let moves = self.fault.is_none() && !self.player.is_held() && self.player.ended().is_none();
-        self.accuracy.descriptions().filter(|_| moves)
+        let is_regular = self.settled.answer().is_some_and(|summary| summary.period.is_some());
+        self.accuracy.descriptions(is_regular).filter(|_| moves)
     }
 
     fn can_search(&self) -> bool {
@@ -120,9 +121,10 @@ impl Session {
     }
 }
 
-/// A scene with a sine of 0 g: scenes that differ only in the amplitude have the same thresholds.
-fn unshaken(scene: &Scene) -> Scene {
-    let mut scene = scene.clone();
+/// A scene from rest with a sine of 0 g: scenes that differ only in amplitude and start have the same
+/// thresholds.
+pub(super) fn unshaken(scene: &Scene) -> Scene {
+    let mut scene = Scene { start: Start::Rest, ..scene.clone() };
     if let Excitation::Sine { amplitude_g, .. } = &mut scene.excitation {
         *amplitude_g = 0.0;
     }

@@ -14,7 +14,7 @@ use crate::study::{
 };
 
 use super::Session;
-use super::map::ground;
+use super::map::{LOAD_POWER, ground};
 use super::sliders::reach;
 
 pub const LIMIT: &str = "stops.travel_limit_mm";
@@ -144,7 +144,7 @@ impl Session {
         }
         let range = DesignRange::new(LIMIT, (reach.low, reach.high), INTERVALS[0]);
         let duration_s = (!self.model().repeats()).then_some(scene.run.duration_s);
-        let column = if self.model().has_transducer() { "mean_load_power_w" } else { RMS_VELOCITY.name };
+        let column = if self.model().has_transducer() { LOAD_POWER } else { RMS_VELOCITY.name };
         Ok(Search { scene, range, column, duration_s })
     }
 

@@ -7,7 +7,8 @@ use std::path::Path;
 
 use crate::output::write_file;
 use crate::scene::{
-    Document, FileError, Files, Scene, SceneError, Source, Start, named_paths, numeric_fields, write,
+    Document, Excitation, FileError, Files, Scene, SceneError, Source, Start, named_paths, numeric_fields,
+    write,
 };
 use crate::system;
 
@@ -109,6 +110,19 @@ impl Editor {
 
     pub fn is_dirty(&self) -> bool {
         self.document.scene != self.saved
+    }
+
+    /// Whether nothing was changed but what one plays with: shaking, stops and start of a built-in scene.
+    pub fn is_play(&self) -> bool {
+        let (scene, mut played) = (&self.document.scene, self.saved.clone());
+        (played.stops, played.start) = (scene.stops, scene.start);
+        if let (Excitation::Sine { phase_deg, .. }, Excitation::Sine { phase_deg: before, .. }) =
+            (&scene.excitation, &played.excitation)
+            && phase_deg == before
+        {
+            played.excitation = scene.excitation.clone();
+        }
+        matches!(self.document.source, Source::BuiltIn(_)) && played == *scene
     }
 
     pub fn in_gesture(&self) -> bool {

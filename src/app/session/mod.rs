@@ -159,6 +159,7 @@ impl Session {
             wake,
         };
         session.map.trail.note(&session.built);
+        session.map.about_power = session.model.has_transducer();
         session.ask_settled();
         session.ask_thresholds();
         Ok(session)
@@ -172,6 +173,7 @@ impl Session {
         self.map.take();
         self.explore.poll();
         self.pins.poll();
+        self.note_thresholds();
         self.measured.poll();
         self.apply();
         self.follow_accuracy();
@@ -400,6 +402,7 @@ impl Session {
             thresholds: self.thresholds.answer(),
             origin: run.from,
             now: self.player.watch().time(),
+            trusted_to: self.accuracy.trusted_to(),
         })
     }
 }

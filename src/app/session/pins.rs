@@ -6,10 +6,11 @@ use std::time::Duration;
 use crate::app::task::{Background, Identity, Wake};
 use crate::dynamics::{Model, Outcome, Sample, Summary};
 use crate::scene::{Scene, Start, Stops};
-use crate::study::{self, Watch};
+use crate::study::{self, Thresholds, Watch};
 use crate::system::clock::WallClock;
 
 use super::Session;
+use super::ask::unshaken;
 use super::build::{self, CannotRun, fault_message};
 use super::editor::keep_start_inside;
 
@@ -18,6 +19,9 @@ const TWIN_OFFSET_MM: f64 = 1e-3;
 
 /// Names of the pinned motions, one for each that can be pinned at a time.
 const LETTERS: [char; 3] = ['A', 'B', 'C'];
+
+/// What to do where no further motion can be pinned.
+pub const FULL: &str = "Three motions are pinned: unpin one first, in the view Compare or by Motion, Unpin.";
 
 /// Computing time that one frame spends to bring a pinned motion up to the present.
 const FRAME_SHARE: Duration = Duration::from_millis(4);
@@ -45,6 +49,8 @@ pub struct Pin {
     known: Option<Summary>,
     /// What it settles to, if it had to be asked.
     settled: Background<Identity<Model>, Summary>,
+    /// Its thresholds, if they were searched for the open scene.
+    thresholds: Option<Thresholds>,
 }
 
 impl Pin {
@@ -86,6 +92,11 @@ impl Pin {
     /// What it settles to; `None` until it is known.
     pub fn settled(&self) -> Option<&Summary> {
         self.known.as_ref().or(self.settled.answer())
+    }
+
+    /// Its thresholds; `None` until they are known.
+    pub fn thresholds(&self) -> Option<&Thresholds> {
+        self.thresholds.as_ref()
     }
 
     fn ask(&mut self, wake: &Wake) {
@@ -171,7 +182,7 @@ impl Session {
     /// Pins a motion beside the present one. Returns the letter of the pin; the error says why there is none.
     pub fn pin(&mut self, kind: PinKind) -> Result<char, String> {
         let Some(letter) = self.pins.free_letter() else {
-            return Err(format!("{} motions are pinned already: unpin one first", LETTERS.len()));
+            return Err(FULL.to_owned());
         };
         self.end_gesture();
         self.apply();
@@ -198,7 +209,8 @@ impl Session {
         }
         let known = self.settled.answer().copied().filter(|_| kind == PinKind::Motion);
         let since = watch.time();
-        let mut pin = Pin { letter, kind, scene, model, watch, since, known, settled: Background::default() };
+        let settled = Background::default();
+        let mut pin = Pin { letter, kind, scene, model, watch, since, known, settled, thresholds: None };
         if known.is_none() {
             pin.ask(&self.wake);
         }
@@ -210,6 +222,16 @@ impl Session {
     pub fn take_back(&mut self, letter: char) -> bool {
         let Some(scene) = self.pins.get(letter).map(|pin| pin.scene().clone()) else { return false };
         self.edit_once(|edited| *edited = scene)
+    }
+
+    /// Notes the thresholds of the open scene at the pins whose scenes have the same.
+    pub(super) fn note_thresholds(&mut self) {
+        let (Some(asked), Some(found)) = (self.thresholds.question(), self.thresholds.answer()) else {
+            return;
+        };
+        for pin in self.pins.all.iter_mut().filter(|pin| pin.thresholds.is_none()) {
+            pin.thresholds = (unshaken(&pin.scene) == *asked).then_some(*found);
+        }
     }
 
     /// Continues the pinned motions to the live time; to be called after the motion has been advanced.

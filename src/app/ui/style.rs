@@ -11,7 +11,19 @@ use eframe::egui::{self, Color32, FontData, FontDefinitions, FontFamily, FontId,
 use crate::app::words::kind::Kind;
 use crate::output::{Ink, Role, Theme};
 
+/// Zoom of the projector in a window of 1280x720, which has room for this many points.
 pub const PROJECTOR_ZOOM: f32 = 1.5;
+const PROJECTED_HEIGHT: f32 = 480.0;
+/// Width in points that the bars and views need at least.
+const PROJECTED_WIDTH: f32 = 740.0;
+/// How much larger a view that fills the window is drawn by a projector.
+pub const FILLED_ZOOM: f32 = 1.25;
+
+/// The zoom of the projector in a window of `size` in points at zoom 1: text, marks and lines are always the
+/// same share of its height, if it is not too narrow for them.
+pub fn projector_zoom(size: egui::Vec2) -> f32 {
+    (size.y / PROJECTED_HEIGHT).min(size.x / PROJECTED_WIDTH).max(1.0)
+}
 
 /// Width in points below which the window is laid out for a projector: two controls in a row, two views.
 pub const COMPACT_BELOW: f32 = 1000.0;
@@ -19,6 +31,8 @@ pub const COMPACT_BELOW: f32 = 1000.0;
 /// Size in points of a window above which there is room for one more tile.
 pub const LARGE_FROM: egui::Vec2 = egui::Vec2::new(1600.0, 880.0);
 
+/// Size of a text that would not fit at another one.
+pub const LEAST: f32 = 9.5;
 pub const SMALL: f32 = 11.5;
 pub const BODY: f32 = 14.0;
 pub const STATUS: f32 = 18.0;
@@ -27,7 +41,7 @@ pub const STATUS_COMPACT: f32 = 16.0;
 
 /// Radius in points of the proof mass where it rides on a curve; stops are drawn this far outside their
 /// limit, so that the mass touches them at the limit.
-pub const BALL: f32 = 9.0;
+pub const BALL: f32 = 13.5;
 
 /// Distance in points within which something can be grabbed.
 pub const GRAB: f32 = 14.0;

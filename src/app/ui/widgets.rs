@@ -1,10 +1,14 @@
 //! Small widgets: dialogs, hover texts, icons, the shapes of regimes.
 
-use eframe::egui::{self, Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, pos2, vec2};
+use eframe::egui::text::{LayoutJob, TextFormat};
+use eframe::egui::{
+    self, Color32, FontFamily, FontId, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, pos2, vec2,
+};
 
 use crate::app::words::kind::Kind;
+use crate::app::words::numbers::unbroken;
 
-use super::style::COMPACT_BELOW;
+use super::style::{BODY, COMPACT_BELOW, LEAST};
 
 pub fn dialog(ctx: &egui::Context, id: &str) -> egui::Modal {
     let frame = egui::Frame::popup(&ctx.global_style()).inner_margin(16.0);
@@ -16,6 +20,51 @@ pub fn panel_frame(ui: &Ui, x: i8, y: i8) -> egui::Frame {
     egui::Frame::new().fill(ui.visuals().panel_fill).inner_margin(egui::Margin::symmetric(x, y))
 }
 
+/// A text for a label: code between backticks has letters of one width, and lines are not broken between a
+/// number and its unit.
+pub fn prose(ui: &Ui, text: &str, size: f32) -> LayoutJob {
+    let (mut job, ink) = (LayoutJob::default(), ui.visuals().text_color());
+    for (i, part) in text.split('`').enumerate() {
+        let font = if i % 2 == 0 { FontId::proportional(size) } else { FontId::monospace(size) };
+        job.append(&unbroken(part), 0.0, TextFormat::simple(font, ink));
+    }
+    job
+}
+
+/// A label with `text` as [`prose`]; a screen reader is told its words.
+pub fn prose_ui(ui: &mut Ui, text: &str, size: f32) -> Response {
+    let response = ui.add(egui::Label::new(prose(ui, text, size)).wrap());
+    let words = text.replace('`', "");
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, words.as_str()));
+    response
+}
+
+/// The largest text size up to `most` at which texts fit into `room` one after another: in one row, or else
+/// in several at the size of body text or less.
+///
+/// Returns the size, and the height in points that they take.
+pub fn fitting(ui: &Ui, texts: &[(&str, FontFamily)], room: Vec2, most: f32) -> (f32, f32) {
+    let taken = |size: f32, width: f32| {
+        let mut job = LayoutJob::default();
+        job.wrap.max_width = width;
+        for (text, family) in texts {
+            let font = FontId::new(size, family.clone());
+            job.append(&unbroken(text), 0.0, TextFormat::simple(font, Color32::PLACEHOLDER));
+        }
+        ui.fonts_mut(|fonts| fonts.layout_job(job)).size()
+    };
+    let body = BODY.min(most);
+    let in_a_row = most * (room.x / taken(most, f32::INFINITY).x.max(1.0)).min(1.0) - 0.05;
+    if in_a_row >= body - 0.05 {
+        return (in_a_row, taken(in_a_row, f32::INFINITY).y);
+    }
+    let mut size = body;
+    while size > LEAST && taken(size, room.x).y > room.y {
+        size -= 0.5;
+    }
+    (size, taken(size, room.x).y)
+}
+
 /// Width in points of a dialog: `wanted`, or less in a narrow window.
 pub fn dialog_width(ui: &Ui, wanted: f32) -> f32 {
     (ui.ctx().content_rect().width() - 60.0).clamp(60.0, wanted)
@@ -24,6 +73,9 @@ pub fn dialog_width(ui: &Ui, wanted: f32) -> f32 {
 /// Shows a hover text beside its widget where the window has a column of controls, since below it would cover
 /// the next one. After an input on the widget it stays hidden until the pointer has left and come back.
 pub fn hover_beside(response: Response, text: &str) -> Response {
+    if !response.enabled() {
+        return response.on_disabled_hover_text(text);
+    }
     let hidden = egui::Id::unique("hidden hover text");
     let is_hidden = || response.ctx.data(|data| data.get_temp(hidden)) == Some(response.id);
     if response.changed() || response.dragged() || response.is_pointer_button_down_on() {

@@ -1,17 +1,20 @@
 //! Charts over displacement: coordinates, axes, readout.
 //!
-//! All views share the x axis over their whole width, so that pictures above each other line up. The labels
-//! of the vertical axis are written inside the picture.
+//! All views share the x axis right of a column for the vertical axis, so that pictures above each other line
+//! up.
 
+use std::f32::consts::FRAC_PI_2;
+
+use eframe::egui::epaint::TextShape;
 use eframe::egui::{Align2, Painter, Pos2, Rect, Stroke, Ui, pos2, vec2};
 
 use crate::app::ui::style::Style;
 use crate::mechanics::Landscape;
-use crate::output::PlotAxis;
 
 use super::ViewContext;
-use super::labels::{haloed, plated};
+use super::labels::haloed;
 use super::legend::{LEGEND, Symbol, legend};
+use super::plot::named;
 use super::span::Span;
 
 /// Distance in points outside the picture at which positions are clamped.
@@ -23,8 +26,16 @@ pub const CURVE_STEP: f32 = 2.0;
 /// Radius in points of the mark of an equilibrium.
 const MARK: f32 = 5.0;
 
-/// Height in points of the label of the x axis.
-const NAME: f32 = 16.0;
+/// Width in points of the name and the numbers of a vertical axis, left of the picture.
+pub const GUTTER: f32 = 54.0;
+
+/// Height in points of the numbers of the x axis.
+pub const NUMBERS: f32 = 22.0;
+/// Height in points of its name.
+pub const NAME: f32 = 16.0;
+
+/// Smallest distance in points between the numbers of a vertical axis.
+const ROW: f32 = 13.0;
 
 /// Coordinates of a chart.
 #[derive(Debug, Clone, Copy)]
@@ -42,7 +53,7 @@ pub struct Chart {
 impl Chart {
     /// A picture in `area` with a vertical axis from `low` to `high`.
     pub fn new(area: Rect, span: Span, low: f64, high: f64) -> Self {
-        let rect = Rect::from_min_max(area.min + vec2(0.0, LEGEND), area.max - vec2(0.0, 22.0 + NAME));
+        let rect = Rect::from_min_max(area.min + vec2(GUTTER, LEGEND), area.max - vec2(0.0, NUMBERS + NAME));
         Self { area, rect, span, low, high }
     }
 
@@ -78,42 +89,13 @@ impl Chart {
         (0..=count).map(point).collect()
     }
 
-    /// The vertical axis in multiples of `unit`, with the ticks that it has room for.
-    fn axis(&self, name: &str, unit: f64) -> PlotAxis {
-        let rows = (self.rect.height() / 40.0).clamp(2.0, 7.0) as usize;
-        PlotAxis::between(self.low / unit, self.high / unit, name).with_ticks(rows)
-    }
-
-    /// Draws background, grid and x axis; grid lines lie at round multiples of `unit`.
-    pub fn axes(&self, ui: &Ui, context: &ViewContext<'_>, unit: f64) {
-        let (style, rect) = (context.style, self.rect);
+    /// Draws background, grid and axes; the vertical one has this name and is in multiples of `unit`. Unless
+    /// a readout takes its place, the name of the x axis stands below.
+    pub fn axes(&self, ui: &Ui, context: &ViewContext<'_>, (name, unit): (&str, f64), is_read: bool) {
         let painter = ui.painter().with_clip_rect(self.area);
-        painter.rect_filled(self.area, 0.0, style.ground());
-        x_axis(&painter, context, rect);
-        let below = pos2(rect.center().x, self.area.bottom() - 3.0);
-        painter.text(below, Align2::CENTER_BOTTOM, "displacement (mm)", style.small(), style.faint());
-        for (value, _) in self.axis("", unit).ticks {
-            let at = self.screen_from_world(self.span.low, value * unit).y;
-            let stroke = if value == 0.0 { style.ghost_stroke() } else { style.grid_stroke() };
-            painter.hline(rect.x_range(), at, stroke);
-        }
-    }
-
-    /// Draws the name of the vertical axis and its numbers, in multiples of `unit`, over the picture.
-    pub fn numbers(&self, ui: &Ui, style: &Style, name: &str, unit: f64) {
-        let painter = ui.painter().with_clip_rect(self.area);
-        let write = |at: Pos2, align: Align2, text: &str| {
-            plated(&painter, style, (at, align), text, (style.small(), style.faint()));
-        };
-        let axis = self.axis(name, unit);
-        for (value, text) in axis.ticks {
-            let at = self.screen_from_world(self.span.low, value * unit).y;
-            if at > self.rect.top() + 26.0 && at < self.rect.bottom() - 8.0 {
-                // above its grid line, so that the line does not cross it
-                write(pos2(self.rect.left() + 4.0, at - 1.0), Align2::LEFT_BOTTOM, &text);
-            }
-        }
-        write(self.rect.left_top() + vec2(4.0, 3.0), Align2::LEFT_TOP, &axis.label);
+        painter.rect_filled(self.area, 0.0, context.style.ground());
+        x_axis(&painter, context, self.rect, !is_read);
+        y_axis(&painter, &context.style, self.rect, (self.low / unit, self.high / unit), name);
     }
 
     /// Writes `text` below the picture, about the point under the pointer.
@@ -125,7 +107,7 @@ impl Chart {
 
     /// Draws the legend above the picture; entries that do not fit left of `right` are left out.
     pub fn legend(&self, ui: &Ui, style: &Style, right: f32, entries: &[(Symbol, &str)]) {
-        legend(ui, style, self.area, right, entries);
+        legend(ui, style, self.area.with_min_x(self.rect.left()), right, entries);
     }
 
     /// Marks the equilibria at 0 of the vertical axis: filled if stable, hollow if unstable.
@@ -138,22 +120,48 @@ impl Chart {
     }
 }
 
-/// Draws the ticks of the x axis, in mm, below `rect`.
-pub fn x_axis(painter: &Painter, context: &ViewContext<'_>, rect: Rect) {
-    let style = context.style;
-    let PlotAxis { ticks, label, .. } = context.span.axis().with_ticks((rect.width() / 55.0) as usize);
-    let unit = label.rsplit_once(" (").map_or("", |(_, unit)| unit.trim_end_matches(')'));
-    let last = ticks.len().saturating_sub(1);
-    for (i, (mm, text)) in ticks.into_iter().enumerate() {
-        let at = context.span.screen_from_world(mm / 1e3, rect);
+/// Draws the grid and the numbers of the x axis, in mm, and its name below `rect` if it has room.
+pub fn x_axis(painter: &Painter, context: &ViewContext<'_>, rect: Rect, is_named: bool) {
+    let (style, span) = (context.style, context.span);
+    let columns = f64::from(rect.width() / 55.0);
+    let axis = named(span.low * 1e3, span.high * 1e3, "displacement (mm)", columns);
+    for (mm, text) in axis.ticks {
+        let at = span.screen_from_world(mm / 1e3, rect);
         painter.vline(at, rect.y_range(), style.grid_stroke());
-        let text = if i == last { format!("{text} {unit}") } else { text };
         let galley = painter.layout_no_wrap(text, style.small(), style.faint());
         let half = 0.5 * galley.size().x + 2.0;
         // moved inwards at the edges, so that the number is not cut off
         let middle = at.clamp(rect.left() + half, (rect.right() - half).max(rect.left() + half));
         painter.galley(pos2(middle - half, rect.bottom() + 4.0), galley, style.faint());
     }
+    if is_named {
+        let below = pos2(rect.center().x, rect.bottom() + NUMBERS + NAME - 3.0);
+        painter.text(below, Align2::CENTER_BOTTOM, axis.label, style.small(), style.faint());
+    }
+}
+
+/// Draws the grid of a vertical axis with these ends, and its numbers and name left of `rect`; where the name
+/// is longer than the axis, the unit alone.
+pub fn y_axis(painter: &Painter, style: &Style, rect: Rect, (low, high): (f64, f64), name: &str) {
+    let axis = named(low, high, name, f64::from(rect.height() / 40.0));
+    let step = axis.ticks.windows(2).next().map_or(1.0, |pair| pair[1].0 - pair[0].0);
+    let rows = f64::from(ROW / rect.height()) * (high - low) / step;
+    let every = rows.ceil().clamp(1.0, 100.0) as i64;
+    for (value, text) in axis.ticks {
+        let y = rect.bottom() - ((value - low) / (high - low)) as f32 * rect.height();
+        let stroke = if value == 0.0 { style.ghost_stroke() } else { style.grid_stroke() };
+        painter.hline(rect.x_range(), y, stroke);
+        if (value / step).round() as i64 % every == 0 {
+            let at = pos2(rect.left() - 5.0, y);
+            painter.text(at, Align2::RIGHT_CENTER, text, style.small(), style.faint());
+        }
+    }
+    let unit = axis.label.rsplit_once(" (").map_or("", |(_, unit)| unit.trim_end_matches(')')).to_owned();
+    let galley = |text: String| painter.layout_no_wrap(text, style.small(), style.faint());
+    let whole = galley(axis.label);
+    let galley = if whole.size().x > rect.height() { galley(unit) } else { whole };
+    let corner = pos2(rect.left() - GUTTER + 2.0, rect.center().y + 0.5 * galley.size().x);
+    painter.add(TextShape::new(corner, galley, style.faint()).with_angle(-FRAC_PI_2));
 }
 
 #[cfg(test)]

@@ -1,37 +1,14 @@
 //! Table of the present motion and the pinned ones, with differences.
 
 use eframe::egui::TextWrapMode::Extend;
-use eframe::egui::{self, Button, FontId, Grid, Label, RichText, ScrollArea, TextStyle, Ui};
+use eframe::egui::{self, Button, Label, RichText, ScrollArea, Ui};
 
 use crate::app::session::Card;
-use crate::app::session::pins::{Pin, PinKind};
-use crate::app::ui::style::{SMALL, Style, strong_family};
-use crate::app::words::meanings::explained;
-use crate::app::words::status::seconds;
-use crate::dynamics::Summary;
+use crate::app::session::pins::{FULL, Pin, PinKind};
 use crate::scene::Stops;
 
 use super::ViewContext;
-use super::before_now::{reach, regime_ui, rms, shaking, stops, value};
-
-/// A row of the table: name, unit, text of a value, the value itself, and the decimals of a difference.
-type Row = (&'static str, &'static str, fn(&Card) -> String, fn(&Summary) -> Option<f64>, fn(f64) -> usize);
-
-const NUMBERS: [Row; 3] = [
-    ("RMS velocity", "mm/s", rms, |run| run.rms_velocity.map(|v| v * 1e3), |size| usize::from(size < 9.95)),
-    ("reach", "mm", reach, |run| run.max_abs_x.map(|x| x * 1e3), |size| if size < 0.95 { 2 } else { 1 }),
-    ("impacts take", "%", impacts, |run| run.impact_share.map(|share| share * 100.0), |_| 0),
-];
-
-/// Width in points of the column of names.
-const NAMES: f32 = 92.0;
-/// Smallest width in points of a column of values.
-const MIN_COLUMN: f32 = 44.0;
-/// Width in points from which on a column has text of full size beside the symbols.
-const WIDE_COLUMN: f32 = 96.0;
-
-/// Gap in points between columns.
-const COLUMN_GAP: f32 = 8.0;
+use super::table::{Column, WIDE_COLUMN, table_ui};
 
 /// An action on a pin.
 enum PinAction {
@@ -52,7 +29,7 @@ pub fn compare_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
                 ui.add(Label::new(RichText::new(text).color(style.faint())).wrap());
                 return;
             }
-            match table_ui(ui, context) {
+            match pinned_ui(ui, context) {
                 Some(PinAction::TakeBack(letter)) => _ = context.session.take_back(letter),
                 Some(PinAction::Unpin(letter)) => context.session.pins.unpin(letter),
                 None => {}
@@ -81,7 +58,7 @@ fn buttons_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     ui.horizontal_wrapped(|ui| {
         for (name, hover, kind) in all {
             let button = ui.add_enabled(!full, Button::new(name));
-            let button = button.on_hover_text(hover).on_disabled_hover_text("Unpin one first.");
+            let button = button.on_hover_text(hover).on_disabled_hover_text(FULL);
             if button.clicked() {
                 context.memory.pin = Some(kind);
             }
@@ -89,84 +66,23 @@ fn buttons_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     });
 }
 
-fn table_ui(ui: &mut Ui, context: &ViewContext<'_>) -> Option<PinAction> {
-    let style = context.style;
-    let now = context.session.now_card();
-    let pins: Vec<(&Pin, Card)> = context.session.pins.all().iter().map(|pin| (pin, card(pin))).collect();
-    let columns = (1 + pins.len()) as f32;
-    let width = ((ui.available_width() - NAMES) / columns - COLUMN_GAP).max(MIN_COLUMN);
-    let small = width < WIDE_COLUMN;
-    if small {
-        let styles = &mut ui.style_mut().text_styles;
-        styles.insert(TextStyle::Body, style.small());
-        styles.insert(TextStyle::Heading, FontId::new(SMALL, strong_family()));
-        (ui.spacing_mut().button_padding.x, ui.spacing_mut().interact_size.y) = (2.0, 0.0);
-    }
-    let mut action = None;
-    let name_ui = |ui: &mut Ui, name: &str, unit: &str| {
-        let unit = if unit.is_empty() { String::new() } else { format!(" ({unit})") };
-        let text = RichText::new(format!("{name}{unit}")).color(style.faint());
-        explained(cell_ui(ui, NAMES, |ui| ui.add(Label::new(text).wrap())), name);
+/// The table of the present motion and the pinned ones. Returns the action clicked.
+fn pinned_ui(ui: &mut Ui, context: &ViewContext<'_>) -> Option<PinAction> {
+    let pins = context.session.pins.all();
+    let pinned = |pin: &Pin| Column {
+        card: Some(card(context, pin)),
+        ended: pin.ended().and_then(|outcome| outcome.ended_at()),
+        differs: true,
     };
-    Grid::new("compare").num_columns(2 + pins.len()).spacing([COLUMN_GAP, 2.0]).show(ui, |ui| {
-        ui.label("");
-        cell_ui(ui, width, |ui| ui.label(RichText::new("now").heading()));
-        for (pin, _) in &pins {
-            let clicked = cell_ui(ui, width, |ui| heading_ui(ui, context, pin, width));
-            action = action.take().or(clicked);
-        }
-        ui.end_row();
-        for (name, unit, text) in [("shaking", "", shaking as fn(&_) -> String), ("stops", "mm", stops)] {
-            name_ui(ui, name, unit);
-            let present = text(&now.scene);
-            let write = |ui: &mut Ui, text: RichText| {
-                cell_ui(ui, width, |ui| ui.add(Label::new(text).wrap()));
-            };
-            write(ui, RichText::new(bare(&present, unit)).heading());
-            for (_, card) in &pins {
-                let text = text(&card.scene);
-                let shown = RichText::new(bare(&text, unit));
-                write(ui, if text == present { shown.color(style.faint()) } else { shown });
-            }
-            ui.end_row();
-        }
-        name_ui(ui, "motion", "");
-        cell_ui(ui, width, |ui| regime_ui(ui, context, now.settled.as_ref(), small));
-        for (pin, card) in &pins {
-            cell_ui(ui, width, |ui| match pin.ended().and_then(|outcome| outcome.ended_at()) {
-                Some(at) => {
-                    let text = format!("ended at {}, stays there", seconds(at));
-                    ui.add(Label::new(RichText::new(text).font(style.small())).wrap());
-                }
-                None => regime_ui(ui, context, card.settled.as_ref(), small),
-            });
-        }
-        ui.end_row();
-        for (name, unit, text, number, decimals) in NUMBERS {
-            name_ui(ui, name, unit);
-            let present = RichText::new(bare(&text(&now), unit)).heading();
-            cell_ui(ui, width, |ui| ui.label(present));
-            for (_, card) in &pins {
-                let delta = difference(card, &now, number, decimals);
-                cell_ui(ui, width, |ui| number_ui(ui, &style, &bare(&text(card), unit), delta.as_deref()));
-            }
-            ui.end_row();
-        }
+    let now = Column { card: Some(context.session.now_card()), ended: None, differs: false };
+    let columns: Vec<Column> = std::iter::once(now).chain(pins.iter().map(pinned)).collect();
+    let mut action = None;
+    table_ui(ui, context, (&columns, 0), &mut |ui, column, width| match column {
+        None => {}
+        Some(0) => _ = ui.label(RichText::new("now").heading()),
+        Some(i) => action = action.take().or(heading_ui(ui, context, &pins[i - 1], width)),
     });
     action
-}
-
-fn cell_ui<R>(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui) -> R) -> R {
-    let cell = ui.vertical(|ui| {
-        ui.set_width(width);
-        contents(ui)
-    });
-    cell.inner
-}
-
-/// A text without the unit that the heading of its row contains.
-fn bare(text: &str, unit: &str) -> String {
-    if unit.is_empty() { text.to_owned() } else { text.replace(&format!(" {unit}"), "") }
 }
 
 /// Name of a pin and the buttons that act on it. Returns the action clicked.
@@ -209,38 +125,7 @@ fn named(button: egui::Response, enabled: bool, name: String) -> egui::Response 
     button
 }
 
-/// A value, with its difference from the present motion in brackets.
-fn number_ui(ui: &mut Ui, style: &Style, text: &str, difference: Option<&str>) {
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing.x = 6.0;
-        ui.label(text);
-        if let Some(difference) = difference {
-            ui.label(RichText::new(format!("({difference})")).font(style.small()).color(style.faint()));
-        }
-    });
-}
-
-/// The value of a pin minus that of the present motion, as text. `None` while either is unknown.
-fn difference(
-    pin: &Card,
-    now: &Card,
-    number: fn(&Summary) -> Option<f64>,
-    decimals: fn(f64) -> usize,
-) -> Option<String> {
-    let of = |card: &Card| card.settled.as_ref().and_then(number);
-    let (pinned, now) = (of(pin)?, of(now)?);
-    let decimals = decimals(pinned.abs().max(now.abs()));
-    let text = format!("{:+.decimals$}", pinned - now);
-    // a difference that rounds to zero has no sign
-    let is_zero = text.trim_start_matches(['+', '-', '0', '.']).is_empty();
-    Some(if is_zero { "same".to_owned() } else { text })
-}
-
-/// Share of the work that impacts dissipate.
-fn impacts(card: &Card) -> String {
-    value(card, |settled| settled.impact_share.map(|share| format!("{:.0} %", 100.0 * share)))
-}
-
-fn card(pin: &Pin) -> Card {
-    Card { scene: pin.scene().clone(), settled: pin.settled().copied(), thresholds: None }
+fn card(context: &ViewContext<'_>, pin: &Pin) -> Card {
+    let thresholds = pin.thresholds().copied().filter(|_| !context.session.keeps_remedy);
+    Card { scene: pin.scene().clone(), settled: pin.settled().copied(), thresholds }
 }

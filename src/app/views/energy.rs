@@ -9,7 +9,7 @@ use crate::app::ui::style::Style;
 use crate::dynamics::LiveLedger;
 
 use super::ghosts::dashed;
-use super::ranges::{axis_end, floor};
+use super::ranges::{axis_end, bottom};
 use super::{ViewContext, too_small_ui};
 
 /// Width in points of the names.
@@ -74,12 +74,23 @@ pub fn decimals(ledger: &LiveLedger, unit: f64) -> usize {
     if largest / unit >= 100.0 { 1 } else { 3 }
 }
 
+/// Whether a value of the ledger rounds to nothing.
+fn is_nothing(joule: f64, unit: f64, decimals: usize) -> bool {
+    (joule / unit).abs() < 0.5 * 0.1_f64.powi(decimals as i32)
+}
+
+/// The share of the longest bar that a value is drawn as: 0 for what rounds to nothing.
+fn share(joule: f64, unit: f64, decimals: usize, largest: f64) -> f64 {
+    if is_nothing(joule, unit, decimals) { 0.0 } else { joule / largest }
+}
+
 /// A value of the ledger as text with its sign, in the given unit in J.
 pub fn written(joule: f64, unit: f64, decimals: usize) -> String {
     let value = joule / unit;
-    let text = format!("{value:+.decimals$}");
-    // a value that rounds to zero has no sign
-    if text.trim_start_matches(['+', '-', '0', '.']).is_empty() { text[1..].to_owned() } else { text }
+    match is_nothing(joule, unit, decimals) {
+        true => format!("{:.decimals$}", 0.0),
+        false => format!("{value:+.decimals$}"),
+    }
 }
 
 /// Percentage of the energy that the ledger accounts for, without decimals if it is 100.
@@ -113,7 +124,7 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let shaken = model.forcing_period().is_some();
     let columns = if shaken { 2.0 } else { 1.0 };
     let column = (area.width() - NAMES) / columns;
-    let heads: [(Option<LiveLedger>, &str, &str); 2] = [
+    let mut heads: [(Option<LiveLedger>, &str, &str); 2] = [
         (
             whole.map(|at| at.1),
             "since the start",
@@ -121,7 +132,19 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         ),
         (period, "last period", "The last whole forcing period. Steady motion repeats it."),
     ];
+    // both short where a long one would run into the other
+    let width = |text: &str| {
+        let font = egui::TextStyle::Body.resolve(ui.style());
+        ui.painter().layout_no_wrap(text.to_owned(), font, style.faint()).size().x
+    };
+    if shaken && heads.iter().any(|head| width(head.1) > column - GAP) {
+        (heads[0].1, heads[1].1) = ("total", "period");
+    }
     let heads = &heads[..if shaken { 2 } else { 1 }];
+    // the columns share a scale
+    let ghosts = pins.iter().flat_map(|pin| &pin.1[..heads.len()]);
+    let all = heads.iter().map(|head| &head.0).chain(ghosts).flatten();
+    let largest = all.flat_map(|ledger| LEDGER.map(|row| row.2(ledger).abs())).fold(0.0, f64::max);
     let mut y = area.top();
     for (i, (_, head, hover)) in heads.iter().rev().enumerate() {
         let rect = cell(area.left() + NAMES + column * i as f32, y, column, row);
@@ -148,16 +171,15 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             // the columns are drawn in reverse order of `heads`
             let column = heads.len() - 1 - i;
             let ghosts = pins.iter().filter_map(|pin| Some((pin.0, pin.1[column].as_ref()?)));
-            let ghosts: Vec<(usize, &LiveLedger)> = ghosts.collect();
-            let all = ghosts.iter().map(|ghost| ghost.1).chain([ledger]);
-            let largest = all.flat_map(|ledger| LEDGER.map(|row| row.2(ledger).abs())).fold(0.0, f64::max);
             let bars =
                 Rect::from_min_max(rect.min + vec2(GAP, 0.0), pos2(numbers.left() - 4.0, rect.bottom()));
-            bar(ui, &style, bars, value(ledger), largest, color(&style));
+            let decimals = decimals(ledger, unit);
+            let share = |joule: f64| share(joule, unit, decimals, largest);
+            bar(ui, &style, bars, share(value(ledger)), color(&style));
             for (place, ghost) in ghosts {
-                ghost_bar(ui, &style, bars, value(ghost) / largest, place);
+                ghost_bar(ui, &style, bars, share(value(ghost)), place);
             }
-            let number = written(value(ledger), unit, decimals(ledger, unit));
+            let number = written(value(ledger), unit, decimals);
             put_ui(ui, numbers, RichText::new(number), Align::Max, hover);
         }
         y += row;
@@ -191,16 +213,19 @@ fn put_ui(ui: &mut Ui, rect: Rect, text: RichText, align: Align, hover: &str) {
     ui.scope_builder(builder, |ui| ui.add(egui::Label::new(text).extend()).on_hover_text(hover));
 }
 
-/// Draws a bar from the middle: to the right for energy supplied, to the left for energy taken.
-fn bar(ui: &Ui, style: &Style, rect: Rect, value: f64, largest: f64, color: Color32) {
+/// Draws a bar from the middle, a `share` of the longest one: to the right for energy supplied, to the left
+/// for energy taken.
+fn bar(ui: &Ui, style: &Style, rect: Rect, share: f64, color: Color32) {
     let painter = ui.painter();
     let (middle, half) = (rect.center().x, 0.5 * rect.width() - 2.0);
-    if half > 4.0 && largest > 0.0 {
-        let end = middle + (value / largest) as f32 * half;
+    if half > 4.0 {
+        let end = middle + share as f32 * half;
         let thick = (0.5 * rect.height()).min(12.0);
         let from = pos2(middle, rect.center().y - 0.5 * thick);
         let to = pos2(end, rect.center().y + 0.5 * thick);
-        painter.rect_filled(Rect::from_two_pos(from, to), 0.0, color);
+        if share != 0.0 {
+            painter.rect_filled(Rect::from_two_pos(from, to), 0.0, color);
+        }
         painter.vline(middle, rect.y_range(), style.ghost_stroke());
     }
 }
@@ -208,7 +233,7 @@ fn bar(ui: &Ui, style: &Style, rect: Rect, value: f64, largest: f64, color: Colo
 /// Draws the bar of a pinned motion as a dashed line below the row, a `share` of the longest bar.
 fn ghost_bar(ui: &Ui, style: &Style, rect: Rect, share: f64, place: usize) {
     let (middle, half) = (rect.center().x, 0.5 * rect.width() - 2.0);
-    if half > 4.0 && share.is_finite() {
+    if half > 4.0 && share != 0.0 {
         let y = rect.bottom() - 1.0 - GHOSTS * place as f32;
         let ends = [pos2(middle, y), pos2(middle + share as f32 * half, y)];
         ui.painter().extend(dashed(&ends, place, style.motion_stroke()));
@@ -223,10 +248,8 @@ fn present_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect, (unit, nam
     let model = session.shown();
     let (kinetic, potential) = model.energies(state.x, state.v);
     let landscape = &model.mechanism().landscape;
-    let wells = landscape.equilibria.iter().filter(|point| point.stable);
-    let wells = wells.map(|well| model.mechanism().curve.potential(well.x)).reduce(f64::min);
     // without a well, energy is counted from the lower stop
-    let bottom = wells.or(floor(model)).unwrap_or(potential.min(0.0));
+    let bottom = bottom(model);
     let (potential, barrier) = (
         (potential - bottom).max(0.0),
         landscape.barrier.map(|barrier| model.mechanism().curve.potential(barrier.x) - bottom),
@@ -286,6 +309,8 @@ mod tests {
         assert_eq!(written(1.2345e-3, 1e-3, 3), "+1.234");
         assert_eq!(written(-0.25, 1e-3, 1), "-250.0");
         assert_eq!(written(-1e-9, 1e-3, 3), "0.000");
+        assert_eq!(share(4e-7, 1e-3, 3, 1e-6), 0.0);
+        assert_eq!((share(6e-7, 1e-3, 3, 1e-6), share(0.0, 1e-3, 3, 0.0)), (0.6, 0.0));
         // one large number sets the decimals of all
         let ledger = LiveLedger { work_j: 0.3, damping_j: 1e-3, ..LiveLedger::default() };
         assert_eq!((decimals(&ledger, 1e-3), decimals(&LiveLedger::default(), 1e-3)), (1, 3));

@@ -105,11 +105,11 @@ impl DrawingScale {
         lines
     }
 
-    /// A bar of 10 mm along the flexures.
-    pub fn bar(&self, painter: &egui::Painter, style: &Style, at: Pos2) {
+    /// Draws a bar of 10 mm along the flexures. Returns its rectangle.
+    pub fn bar(&self, painter: &egui::Painter, style: &Style, at: Pos2) -> Option<Rect> {
         let length = (0.01 * self.along) as f32;
         if !(6.0..400.0).contains(&length) {
-            return;
+            return None;
         }
         let (stroke, foot) = (style.ghost_stroke(), at - vec2(0.0, length));
         painter.line_segment([at, foot], stroke);
@@ -117,7 +117,8 @@ impl DrawingScale {
             painter.line_segment([end - vec2(4.0, 0.0), end + vec2(4.0, 0.0)], stroke);
         }
         let middle = at - vec2(8.0, 0.5 * length);
-        painter.text(middle, Align2::RIGHT_CENTER, "10 mm", style.small(), style.faint());
+        let name = painter.text(middle, Align2::RIGHT_CENTER, "10 mm", style.small(), style.faint());
+        Some(name.union(Rect::from_two_pos(at, foot)))
     }
 }
 

@@ -5,20 +5,19 @@
 //! Where the line is above the curve, the mass is driven to the right, where it is below, to the left. A mass
 //! on a stop is released when the line passes the curve at the stop.
 
-use eframe::egui::{Align2, Painter, Sense, Shape, Stroke, Ui, pos2, vec2};
+use eframe::egui::{Align2, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
-use crate::app::ui::style::BALL;
 use crate::app::words::numbers::three;
 use crate::dynamics::STANDARD_GRAVITY;
 
 use super::chart::Chart;
 use super::ghosts::ghosts;
 use super::hand::axes_input;
-use super::labels::plated;
+use super::labels::Taken;
 use super::legend::Symbol;
 use super::overlay::measured_force;
 use super::ranges::{axis_end, room_for_push};
-use super::stops::stops_ui;
+use super::stops::{WALL, stops_ui};
 use super::view::Axis;
 use super::{View, ViewContext, too_small_ui};
 
@@ -33,8 +32,11 @@ const LINE: f32 = 8.0;
 
 /// Distance in points of a label from its stop.
 const BESIDE: f32 = 16.0;
-/// Width in points that a label needs.
-const LABEL: f32 = 110.0;
+/// Heights in points of a label above the force at its stop, the first that is free.
+const ABOVE: [f32; 9] = [2.0, -14.0, 16.0, -28.0, 30.0, -42.0, 44.0, -56.0, 58.0];
+
+/// Radius in points of the mass on the curve.
+const BALL: f32 = 7.0;
 
 pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (area, response) = ui.allocate_exact_size(ui.available_size(), Sense::DRAG);
@@ -47,10 +49,11 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (low, high) = context.memory.axes.ends(Axis::Up(View::ForceCurve), ends);
     let chart = Chart::new(area, context.span, low, high);
     axes_input(ui, context.memory, View::ForceCurve, &response, (area, chart.rect));
-    chart.axes(ui, context, 1.0);
+    let pointer = response.hover_pos().filter(|at| chart.rect.contains(*at));
+    chart.axes(ui, context, ("force to the right (N)", 1.0), pointer.is_some());
     let painter = ui.painter().with_clip_rect(chart.rect);
     let measured = measured_force(&painter, context, &chart);
-    curve(&painter, context, &chart);
+    let lines = curve(&painter, context, &chart);
     let edges = (chart.rect.top(), chart.rect.bottom());
     stops_ui(ui, context, chart.rect, edges, 0.0);
     let painter = ui.painter().with_clip_rect(chart.rect);
@@ -74,18 +77,17 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         painter.extend(Shape::dashed_line(&[from, at], style.base_stroke(), 4.0, 3.0));
     }
     legend.extend(measured);
-    releases(&painter, context, &chart);
+    releases(&painter, context, &chart, lines);
     for ghost in ghosts(context) {
         let curve = &ghost.model.mechanism().curve;
         ghost.stops(&painter, context, chart.rect, 0.0);
         let at = chart.screen_from_world(ghost.state.x, curve.force(ghost.state.x));
-        ghost.ball(&painter, &style, at, BALL - 2.0);
+        ghost.ball(&painter, &style, at, BALL);
     }
     let at = chart.screen_from_world(state.x, curve.force(state.x));
-    painter.circle(at, BALL - 2.0, style.mass(), Stroke::new(1.5, style.mass_edge()));
-    chart.numbers(ui, &style, "force to the right (N)", 1.0);
+    painter.circle(at, BALL, style.mass(), Stroke::new(1.5, style.mass_edge()));
     chart.legend(ui, &style, area.right(), &legend);
-    if let Some(pointer) = response.hover_pos().filter(|at| chart.rect.contains(*at)) {
+    if let Some(pointer) = pointer {
         let (x, _) = chart.world_from_screen(pointer);
         let force = context.session.shown().mechanism().curve.force(x);
         if force.is_finite() {
@@ -121,8 +123,8 @@ fn end_of_axis(context: &ViewContext<'_>) -> f64 {
     axis_end((ROOM * largest).max(1.1 * push))
 }
 
-/// Draws the force curve: thick between the stops, dashed beyond them.
-fn curve(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
+/// Draws the force curve: thick between the stops, dashed beyond them. Returns its parts.
+fn curve(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) -> Vec<Vec<Pos2>> {
     let (style, model) = (context.style, context.session.shown());
     let curve = &model.mechanism().curve;
     let (left, right) = model.stop_positions();
@@ -130,34 +132,51 @@ fn curve(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
     let (low, high) = (context.span.low.max(domain.0), context.span.high.min(domain.1));
     let (inner, outer) = (left.unwrap_or(low).clamp(low, high), right.unwrap_or(high).clamp(low, high));
     let force = |x: f64| curve.force(x);
-    for (from, to) in [(low, inner), (outer, high)] {
-        painter.extend(Shape::dashed_line(&chart.curve(from, to, force), style.ghost_stroke(), 5.0, 5.0));
+    let parts = [(low, inner), (inner, outer), (outer, high)].map(|(a, b)| chart.curve(a, b, force));
+    for beyond in [&parts[0], &parts[2]] {
+        painter.extend(Shape::dashed_line(beyond, style.ghost_stroke(), 5.0, 5.0));
     }
-    painter.add(Shape::line(chart.curve(inner, outer, force), style.tray_stroke()));
+    painter.add(Shape::line(parts[1].clone(), style.tray_stroke()));
+    parts.into()
 }
 
-/// Marks the force at each stop that the mass can rest on: a larger push releases the mass.
-fn releases(painter: &Painter, context: &ViewContext<'_>, chart: &Chart) {
+/// Marks the force at each stop that the mass can rest on, and writes it with the push that frees the mass:
+/// beside the stop, clear of the `lines` of the curve.
+fn releases(painter: &Painter, context: &ViewContext<'_>, chart: &Chart, lines: Vec<Vec<Pos2>>) {
     let (style, model) = (context.style, context.session.shown());
     let (left, right) = model.stop_positions();
-    for (stop, side) in [(left, -1.0), (right, 1.0)] {
-        let Some(x) = stop else { continue };
+    let sides = [(left, -1.0_f32), (right, 1.0)].into_iter().filter_map(|(x, side)| Some((x?, side)));
+    let wall = |(x, side): (f64, f32)| {
+        let face = chart.screen_from_world(x, 0.0).x;
+        Rect::from_two_pos(pos2(face, chart.rect.top()), pos2(face + side * WALL, chart.rect.bottom()))
+    };
+    let mut taken = Taken { lines, places: sides.clone().map(wall).collect() };
+    let zero = chart.screen_from_world(0.0, 0.0).y;
+    taken.lines.push(vec![pos2(chart.rect.left(), zero), pos2(chart.rect.right(), zero)]);
+    for (x, side) in sides {
         let force = model.mechanism().curve.force(x);
         // only where the mechanism presses the mass onto the stop
-        if !(force * side < 0.0) {
+        if !(force * f64::from(side) < 0.0) {
             continue;
         }
         let at = chart.screen_from_world(x, force);
-        let inwards = -MARK * side as f32;
-        painter.line_segment([at, at + vec2(LINE * inwards, 0.0)], style.stop_stroke());
-        // outside the wall, away from the mass; inside it where the picture ends
-        let text = format!("frees at {} g", three(force.abs() / (model.mass() * STANDARD_GRAVITY)));
-        let room = if side > 0.0 { chart.rect.right() - at.x } else { at.x - chart.rect.left() };
-        let outwards = if room > LABEL { -inwards.signum() } else { inwards.signum() };
-        let align = if outwards > 0.0 { Align2::LEFT_BOTTOM } else { Align2::RIGHT_BOTTOM };
-        let off = if room > LABEL { BESIDE } else { BESIDE + LINE * MARK };
-        // above the line of the mark, so that the line does not cross it
-        let beyond = pos2(at.x + outwards * off, at.y - 2.0);
-        plated(painter, &style, (beyond, align), &text, (style.small(), style.faint()));
+        let end = at - vec2(LINE * MARK * side, 0.0);
+        painter.line_segment([at, end], style.stop_stroke());
+        taken.lines.push(vec![at, end]);
+        let push = three(force.abs() / (model.mass() * STANDARD_GRAVITY));
+        let short = format!("{} N = {push} g", three(force.abs()));
+        let long = format!("frees at {short}");
+        // outside the wall, away from the mass, or else inside it
+        let outwards = if side > 0.0 { Align2::LEFT_BOTTOM } else { Align2::RIGHT_BOTTOM };
+        let inwards = if side > 0.0 { Align2::RIGHT_BOTTOM } else { Align2::LEFT_BOTTOM };
+        let places = ABOVE.iter().flat_map(|above| {
+            let y = at.y - above;
+            let beyond = (pos2(at.x + BESIDE * side, y), outwards);
+            let before = (pos2(end.x - 4.0 * side, y), inwards);
+            let near = (pos2(at.x - 4.0 * side, y), inwards);
+            [(&long, beyond), (&short, beyond), (&long, before), (&short, before), (&short, near)]
+        });
+        let places = places.map(|(text, (at, align))| (text.as_str(), at, align));
+        taken.write(painter, chart.rect, (style.small(), style.faint()), places);
     }
 }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use eframe::egui::{Align2, Painter, Pos2, Rect, Shape, Stroke, Vec2, pos2, vec2};
+use egui_plot::LineStyle;
 
 use crate::app::session::pins::Pin;
 use crate::app::ui::style::Style;
@@ -13,7 +14,7 @@ use super::context::Drawn;
 use super::labels::haloed;
 
 /// Lengths in points of a dash and of the gap after it, for each pin.
-const DASHES: [(f32, f32); 3] = [(7.0, 4.0), (3.0, 3.0), (11.0, 3.0)];
+const DASHES: [(f32, f32); 3] = [(16.0, 6.0), (2.0, 4.0), (6.0, 4.0)];
 
 const MAX_DASHES: usize = 300;
 /// Distance in points within which points of a path are merged.
@@ -92,9 +93,13 @@ fn dash_factor(length: f32, place: usize) -> f32 {
     (length / ((dash + gap) * MAX_DASHES as f32)).max(1.0)
 }
 
-/// Length in points of a dash of a pin on a path of `length` points.
-pub(super) fn dash(place: usize, length: f32) -> f32 {
-    DASHES[place % DASHES.len()].0 * dash_factor(length, place)
+/// The dashes of a pin in a plot, on a path of `length` points; the shortest ones are dots.
+pub(super) fn plot_dashes(place: usize, length: f32) -> LineStyle {
+    let ((dash, gap), factor) = (DASHES[place % DASHES.len()], dash_factor(length, place));
+    match dash < gap {
+        true => LineStyle::Dotted { spacing: (dash + gap) * factor },
+        false => LineStyle::Dashed { length: dash * factor },
+    }
 }
 
 impl Ghost {
@@ -159,6 +164,16 @@ mod tests {
             let right = shapes.iter().map(|shape| shape.visual_bounding_rect().right()).fold(0.0, f32::max);
             assert!(right > 190.0, "{right}");
         }
-        assert_eq!(dash(0, 100.0), DASHES[0].0);
+        assert_eq!(plot_dashes(0, 100.0), LineStyle::Dashed { length: DASHES[0].0 });
+    }
+
+    /// On a plot and beside it, a dash of one pin is at least twice as long as that of the next.
+    #[test]
+    fn the_dashes_of_the_pins_can_be_told_apart() {
+        let mut lengths = DASHES.map(|(dash, _)| dash);
+        lengths.sort_by(f32::total_cmp);
+        assert!(lengths.windows(2).all(|pair| pair[1] >= 2.0 * pair[0]), "{lengths:?}");
+        let styles = [0, 1, 2].map(|place| plot_dashes(place, 100.0));
+        assert!(styles[0] != styles[1] && styles[1] != styles[2] && styles[2] != styles[0]);
     }
 }

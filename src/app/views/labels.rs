@@ -11,6 +11,9 @@ const HALO: f32 = 1.2;
 /// Time in s for which the pointer rests before a hint appears.
 const REST: f32 = 1.2;
 
+/// Distance in points of a label from what is drawn.
+const CLEAR: f32 = 2.0;
+
 /// Gap in points between texts in a row, and beside a wall.
 const GAP: f32 = 4.0;
 
@@ -61,6 +64,46 @@ pub fn free_place(middle: f32, width: f32, room: Rangef, taken: &[Rangef]) -> Op
     ((nearest - wanted).abs() <= width).then_some(nearest)
 }
 
+/// What is drawn of a picture, of which labels keep clear.
+#[derive(Debug, Default)]
+pub struct Taken {
+    pub lines: Vec<Vec<Pos2>>,
+    pub places: Vec<Rect>,
+}
+
+impl Taken {
+    /// Whether nothing lies in `place`.
+    pub fn is_free(&self, place: Rect) -> bool {
+        let wide = place.expand(CLEAR);
+        let crosses = |pair: &[Pos2]| {
+            let steps = (pair[0].distance(pair[1]) / CLEAR).ceil().clamp(1.0, 2000.0);
+            Rect::from_two_pos(pair[0], pair[1]).intersects(wide)
+                && (0..=steps as u32).any(|i| wide.contains(pair[0].lerp(pair[1], i as f32 / steps)))
+        };
+        let is_crossed = self.lines.iter().any(|line| line.windows(2).any(crosses));
+        !is_crossed && !self.places.iter().any(|taken| taken.intersects(wide))
+    }
+
+    /// Writes the first of these texts and places that is free and within `room`. Returns where.
+    pub fn write<'a>(
+        &mut self,
+        painter: &Painter,
+        room: Rect,
+        (font, colour): (FontId, Color32),
+        places: impl IntoIterator<Item = (&'a str, Pos2, Align2)>,
+    ) -> Option<Rect> {
+        let mut galleys = places.into_iter().map(|(text, at, align)| {
+            let galley = painter.layout_no_wrap(text.to_owned(), font.clone(), colour);
+            (align.anchor_size(at, galley.size()), galley)
+        });
+        let (place, galley) =
+            galleys.find(|(place, _)| room.contains_rect(*place) && self.is_free(*place))?;
+        painter.galley(place.min, galley, colour);
+        self.places.push(place);
+        Some(place)
+    }
+}
+
 /// Whether the pointer has rested long enough for a hint.
 pub fn pointer_rests(ui: &Ui) -> bool {
     ui.input(|input| input.pointer.time_since_last_movement()) > REST
@@ -77,6 +120,20 @@ pub fn ago(session: &Session) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_label_keeps_clear_of_lines_and_of_labels() {
+        let label = Rect::from_min_size(Pos2::new(10.0, 10.0), vec2(40.0, 12.0));
+        let line = |from: (f32, f32), to: (f32, f32)| Taken {
+            lines: vec![vec![Pos2::new(from.0, from.1), Pos2::new(to.0, to.1)]],
+            places: Vec::new(),
+        };
+        assert!(!line((0.0, 0.0), (60.0, 30.0)).is_free(label));
+        // its bounding box covers the label, and it does not
+        assert!(line((0.0, 20.0), (60.0, 200.0)).is_free(label));
+        let other = Taken { lines: Vec::new(), places: vec![label.translate(vec2(39.0, 0.0))] };
+        assert!(!other.is_free(label) && Taken::default().is_free(label));
+    }
 
     #[test]
     fn a_text_steps_aside_or_stays_away() {

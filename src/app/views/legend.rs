@@ -18,9 +18,10 @@ const GAP: f32 = 6.0;
 const ENTRY_GAP: f32 = 14.0;
 
 /// Short names of long entries.
-const SHORT: [(&str, &str); 5] = [
+const SHORT: [(&str, &str); 6] = [
     ("potential with the push", "with the push"),
     ("the mechanism's own", "its own"),
+    ("beyond the stops", "beyond"),
     ("holds the mass there", "holds it"),
     ("push of the base", "push"),
     ("at rest on a stop", "at rest"),

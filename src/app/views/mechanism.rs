@@ -6,7 +6,7 @@
 //! of the base is far larger than the travel and is drawn in an inset at another scale. An impact is a ring
 //! whose size shows the energy that it takes.
 
-use eframe::egui::{self, Align2, Color32, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use crate::app::ui::style::{BALL, RING_SECONDS};
 use crate::app::words::meanings::explained;
@@ -14,13 +14,14 @@ use crate::app::words::numbers::{decimals_for, three};
 use crate::dynamics::{EventKind, STANDARD_GRAVITY, Side};
 
 use super::beside::{Attachments, LowerFlexures, MIN_LABELLED, Places};
+use super::chart::GUTTER;
 use super::flexures::{CLAMP, DrawingArea, DrawingScale, bulge_words, clamp, state_at};
 use super::ghosts::ghosts;
-use super::labels::{ago, plated};
+use super::labels::{Taken, ago};
 use super::memory::Ring;
 use super::schematic::{Schematic, schematic};
 use super::stops::{WALL, stops_ui};
-use super::{ViewContext, mass::mass_ui, too_small_ui};
+use super::{Span, ViewContext, mass::mass_ui, too_small_ui};
 
 /// Height in points of the name of a stop above the foot of the stop, clear of the rail.
 const CLEAR: f32 = 6.0;
@@ -39,8 +40,9 @@ pub fn mechanism_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     if rect.width() < 60.0 || rect.height() < 60.0 {
         return too_small_ui(ui, &context.style, rect);
     }
-    // a true scale changes the x axis of this view only
+    // above the picture of the well; a true scale changes the x axis of this view only
     let shared = context.span;
+    context.span = shared.beside(GUTTER, rect);
     drawing_ui(ui, context, rect);
     context.span = shared;
 }
@@ -52,109 +54,109 @@ fn drawing_ui(ui: &mut Ui, context: &mut ViewContext<'_>, rect: Rect) {
     let state = context.drawn.state(context.session);
     let (top, bottom) = (rect.top() + 28.0, rect.bottom() - 12.0);
     // as wide as the ball on the well, so that it touches the stops when it should
-    let half = vec2(BALL, ((bottom - top) * 0.13).clamp(14.0, 30.0));
+    let half = vec2(BALL, ((bottom - top) * 0.19).clamp(21.0, 45.0));
     let place = DrawingArea { top, bottom, half };
     let beside = Attachments::of(context.drawn.model(context.session));
     let behind = painter.add(Shape::Noop);
-    let (middle, words, below) = match bent_ui(ui, &painter, context, rect, place, state.x) {
+    let mut taken = Taken::default();
+    let (middle, words, below) = match bent_ui(&painter, context, rect, place, state.x, &mut taken) {
         Some((middle, words, below)) => (middle, words, Some(below)),
         None => {
             let middle = 0.5 * (top + bottom);
             let x = context.span.screen_from_world(state.x, rect);
             let mass = pos2(x, middle);
-            (middle, schematic(&painter, context, rect, mass, half, (top, bottom), &beside), None)
+            let words = schematic(&painter, context, rect, (mass, half), (top, bottom), &beside, &mut taken);
+            (middle, words, None)
         }
     };
     let x = context.span.screen_from_world(state.x, rect);
     let body = Rect::from_center_size(pos2(x, middle), half * 2.0);
     let zero = context.span.screen_from_world(0.0, rect);
-    beside.draw(ui, &painter, &style, behind, &Places { rect, bottom, body, zero, below });
-    let edge = Stroke::new(1.5, style.mass_edge());
-    painter.rect(body, 3.0, style.mass(), edge, egui::StrokeKind::Inside);
     let heights = (middle - half.y - 4.0, middle + half.y + 4.0);
+    taken.places.push(body);
+    taken.places.extend(walls(context, rect, heights));
+    bulge_ui(ui, &painter, context, pos2(rect.left() + 12.0, bottom - 5.0), rect, &mut taken);
+    let places = Places { rect, bottom, body, zero, below };
+    beside.draw(ui, &painter, &style, behind, &places, &mut taken);
     for ghost in ghosts(context) {
         let walls = rect.with_min_y(heights.0).with_max_y(heights.1);
         ghost.stops(&painter, context, walls, BALL);
         let x = context.span.screen_from_world(ghost.state.x, rect);
         ghost.body(&painter, &style, Rect::from_center_size(pos2(x, middle), half * 2.0));
     }
+    // over the pinned ones
+    let edge = Stroke::new(1.5, style.mass_edge());
+    painter.rect(body, 3.0, style.mass(), edge, egui::StrokeKind::Inside);
     stops_ui(ui, context, rect, heights, BALL);
     mass_ui(ui, context, pos2(x, middle), rect);
     rings(ui, context, rect, middle);
     let arrow = body.translate(vec2(0.0, -beside.lift() * half.y));
     push_arrow(&painter, context, arrow, state.base_accel, rect);
-    part_names(&painter, context, rect, top, heights, body);
+    part_names(&painter, context, rect, top, heights, body, taken);
     caption_ui(ui, &painter, context, rect, &words, state.base_accel);
 }
 
-/// Names the kinds of parts, each once: the flexure at its clamp and the mass, each on the side away from the
-/// flexure, and a stop at its foot on the outer side, or on the inner side where there is no room.
+/// The walls of the stops between these heights.
+fn walls(context: &ViewContext<'_>, rect: Rect, (top, bottom): (f32, f32)) -> impl Iterator<Item = Rect> {
+    let (left, right) = context.drawn.model(context.session).stop_positions();
+    let wall = move |(x, side): (f64, f32), span: Span| {
+        let face = span.screen_from_world(x, rect) + side * BALL;
+        Rect::from_two_pos(pos2(face, top), pos2(face + side * WALL, bottom))
+    };
+    let (span, stops) = (context.span, [left.map(|x| (x, -1.0)), right.map(|x| (x, 1.0))]);
+    stops.into_iter().flatten().map(move |stop| wall(stop, span))
+}
+
+/// Names the kinds of parts, each once, where nothing is drawn: the flexure or the spring at its clamp, the
+/// mass at a corner, a stop at its foot.
 fn part_names(
     painter: &egui::Painter,
     context: &ViewContext<'_>,
     rect: Rect,
     top: f32,
-    walls: (f32, f32),
+    heights: (f32, f32),
     body: Rect,
+    mut taken: Taken,
 ) {
     if rect.width() < MIN_LABELLED.x || rect.height() < MIN_LABELLED.y {
         return;
     }
     let (style, model) = (context.style, context.drawn.model(context.session));
-    let width = |name: &str| painter.layout_no_wrap(name.to_owned(), style.small(), style.faint()).size().x;
-    // writes a name to the right of `x_right` or to the left of `x_left`
-    let put = |right: bool, (x_right, x_left): (f32, f32), y: f32, below: bool, name: &str| {
-        let fits = |right: bool| match right {
-            true => x_right + width(name) < rect.right(),
-            false => x_left - width(name) > rect.left(),
-        };
-        let right = if fits(right) { right } else { !right };
-        let align = match (right, below) {
-            (true, true) => Align2::LEFT_TOP,
-            (true, false) => Align2::LEFT_BOTTOM,
-            (false, true) => Align2::RIGHT_TOP,
-            (false, false) => Align2::RIGHT_BOTTOM,
-        };
-        let at = pos2(if right { x_right } else { x_left }, y);
-        // on a plate, since the side with room may be that of the flexure
-        plated(painter, &style, (at, align), name, (style.small(), style.faint()));
-    };
-    let (at_clamp, at_mass) = runs_right(context);
+    let look = (style.small(), style.faint());
     let barrier = model.mechanism().landscape.barrier.map_or(0.0, |barrier| barrier.x);
-    if model.mechanism().flexures.is_some() {
-        let zero = context.span.screen_from_world(0.0, rect);
-        put(!at_clamp, (zero + 8.0, zero - 8.0), top + 5.0, true, "flexure");
+    let named = if model.mechanism().flexures.is_some() {
+        Some(("flexure", context.span.screen_from_world(0.0, rect)))
     } else if Schematic::of(model.mechanism(), context.span) == Schematic::Spring {
-        let foot = context.span.screen_from_world(barrier, rect);
-        put(body.center().x < foot, (foot + 10.0, foot - 10.0), top + 5.0, true, "spring");
-    }
-    // above the stops, since the name may reach over them
-    let y = walls.0.min(body.top()) - 4.0;
-    put(!at_mass, (body.right() + 2.0, body.left() - 2.0), y, false, "mass");
-    let (left, right) = model.stop_positions();
-    let stop = left.map(|x| (x, -1.0)).or(right.map(|x| (x, 1.0)));
-    if let Some((x, side)) = stop {
-        let face = context.span.screen_from_world(x, rect) + side * BALL;
-        let sides = [face, face + side * WALL];
-        let (low, high) = (sides[0].min(sides[1]), sides[0].max(sides[1]));
-        put(side > 0.0, (high + 5.0, low - 5.0), walls.1 - CLEAR, false, "stop");
-    }
-}
-
-/// Whether the flexure above the mass, or the spring, runs to the right from its clamp, and from the mass.
-fn runs_right(context: &ViewContext<'_>) -> (bool, bool) {
-    let model = context.drawn.model(context.session);
-    let bent = context.memory.drawing.bent.as_ref().filter(|_| model.mechanism().flexures.is_some());
-    let Some(line) = bent.and_then(|bent| bent.lines.get(1)).filter(|line| line.points.len() > 8) else {
-        let barrier = model.mechanism().landscape.barrier.map_or(0.0, |barrier| barrier.x);
-        let left_of_it = context.drawn.state(context.session).x < barrier;
-        return (!left_of_it, left_of_it);
+        Some(("spring", context.span.screen_from_world(barrier, rect)))
+    } else {
+        None
     };
-    let near = line.points.len() / 6;
-    let ends = [(0, near), (line.points.len() - 1, line.points.len() - 1 - near)];
-    let runs = ends.map(|(end, near)| (line.points[end][1], line.points[near][2] > line.points[end][2]));
-    // the end that is farther along is the clamp
-    if runs[0].0 > runs[1].0 { (runs[0].1, runs[1].1) } else { (runs[1].1, runs[0].1) }
+    if let Some((name, foot)) = named {
+        let aside = [16.0, 26.0, 40.0].into_iter().flat_map(|aside| [aside, -aside]);
+        let places = aside.map(|aside| {
+            let align = if aside > 0.0 { Align2::LEFT_TOP } else { Align2::RIGHT_TOP };
+            (name, pos2(foot + aside, top + 5.0), align)
+        });
+        taken.write(painter, rect, look.clone(), places);
+    }
+    // above the stops, or below them
+    let (above, below) = (heights.0.min(body.top()) - 4.0, heights.1.max(body.bottom()) + 4.0);
+    let corners = [
+        (body.right() + 2.0, above, Align2::LEFT_BOTTOM),
+        (body.left() - 2.0, above, Align2::RIGHT_BOTTOM),
+        (body.right() + 2.0, below, Align2::LEFT_TOP),
+        (body.left() - 2.0, below, Align2::RIGHT_TOP),
+    ];
+    taken.write(painter, rect, look.clone(), corners.map(|(x, y, align)| ("mass", pos2(x, y), align)));
+    let y = heights.1 - CLEAR;
+    let places = walls(context, rect, heights).flat_map(|wall| {
+        let right = (wall.right() + 5.0, Align2::LEFT_BOTTOM);
+        let left = (wall.left() - 5.0, Align2::RIGHT_BOTTOM);
+        let is_left = wall.center().x < context.span.screen_from_world(0.0, rect);
+        let sides = if is_left { [left, right] } else { [right, left] };
+        sides.map(|(x, align)| ("stop", pos2(x, y), align))
+    });
+    taken.write(painter, rect, look, places);
 }
 
 fn explain(ui: &Ui, place: Rect, word: &str) {
@@ -165,12 +167,12 @@ fn explain(ui: &Ui, place: Rect, word: &str) {
 /// Draws the bent flexures. Returns the height of the middle of the body, the text on the scale and the
 /// flexures below the body. `None` if the mechanism has no flexures.
 fn bent_ui(
-    ui: &Ui,
     painter: &egui::Painter,
     context: &mut ViewContext<'_>,
     rect: Rect,
     place: DrawingArea,
     x: f64,
+    taken: &mut Taken,
 ) -> Option<(f32, String, LowerFlexures)> {
     let bent = state_at(context, x)?;
     let style = context.style;
@@ -189,15 +191,31 @@ fn bent_ui(
     }
     let lines = scale.lines(geometry, &bent, context.span, rect);
     let feet = lines[0].iter().map(|line| line[..line.len() / FOOT].to_vec()).collect();
-    painter.extend(lines.into_iter().flatten().map(|line| Shape::line(line, style.flexure_stroke())));
-    scale.bar(painter, &style, pos2(rect.right() - 18.0, place.bottom - 8.0));
-    let words = bulge_words(&bent);
-    // in the lower left corner, which the flexures never reach
-    let at = pos2(rect.left() + 12.0, place.bottom - 5.0);
-    let place = plated(painter, &style, (at, Align2::LEFT_BOTTOM), &words, (style.body(), style.ink()));
-    explain(ui, place, &words);
+    let lines = lines.into_iter().flatten();
+    taken.lines.extend(lines.inspect(|line| {
+        painter.add(Shape::line(line.clone(), style.flexure_stroke()));
+    }));
+    taken.places.extend(scale.bar(painter, &style, pos2(rect.right() - 18.0, place.bottom - 8.0)));
     let below = LowerFlexures { along: scale.along(), feet };
     Some((scale.middle(&bent), scale.words(context.span, rect), below))
+}
+
+/// Writes the bulge of the flexures in the lower left corner, where nothing is drawn.
+fn bulge_ui(
+    ui: &Ui,
+    painter: &egui::Painter,
+    context: &ViewContext<'_>,
+    corner: Pos2,
+    rect: Rect,
+    taken: &mut Taken,
+) {
+    let has_flexures = context.drawn.model(context.session).mechanism().flexures.is_some();
+    let Some(bent) = context.memory.drawing.bent.as_ref().filter(|_| has_flexures) else { return };
+    let (style, words) = (context.style, bulge_words(bent));
+    let place = (words.as_str(), corner, Align2::LEFT_BOTTOM);
+    if let Some(place) = taken.write(painter, rect, (style.body(), style.ink()), [place]) {
+        explain(ui, place, &words);
+    }
 }
 
 /// Draws the push -m a_b on the mass as an arrow, relative to the largest push. It lies at the height of the

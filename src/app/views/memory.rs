@@ -27,6 +27,10 @@ pub struct Memory {
     /// Whether measured data are to be opened.
     pub open_measured: bool,
     pub hovered: Option<View>,
+    /// A view that a lesson covers until its first prediction has been shown.
+    pub covered: Option<View>,
+    /// Displacements in mm of the stops about which a lesson asks, left and right.
+    pub asked_stops: [Option<f64>; 2],
     pub timeline: Timeline,
     pub cursors: Cursors,
     /// Ends of axes chosen by hand.
@@ -62,6 +66,18 @@ impl Memory {
         Span { low, high }
     }
 
+    /// The axis of displacements of the views that show where the mass goes.
+    pub(super) fn reach(&mut self, session: &Session, axis: Option<Axis>) -> Span {
+        let seen = self.ranges.follow(session).reach(session);
+        let wanted = Span::of(session, seen).within_stops(session, seen);
+        let x = session.player.state().x;
+        let is_seen = self.frozen.reach.0.is_none_or(|(low, high)| low < x && x < high);
+        let frozen = session.editor.in_gesture() && is_seen;
+        let ends = self.frozen.reach.keep((wanted.low, wanted.high), frozen);
+        let (low, high) = axis.map_or(ends, |axis| self.axes.ends(axis, ends));
+        Span { low, high }
+    }
+
     /// The state that remains when another scene is opened.
     pub fn for_another_scene(&self) -> Self {
         Self { axes: self.axes.held(), ..Self::default() }
@@ -75,6 +91,9 @@ pub(super) struct FrozenAxis(Option<(f64, f64)>);
 /// Share of the axis by which the wanted ends may exceed a frozen axis before it moves.
 const SPARE: f64 = 0.08;
 
+/// Length of a scale that holds, in multiples of what it has to show, at most.
+const MOST: f64 = 8.0;
+
 impl FrozenAxis {
     /// The `wanted` ends of the axis, or during a gesture the previous ones while they contain these.
     pub(super) fn keep(&mut self, wanted: (f64, f64), in_gesture: bool) -> (f64, f64) {
@@ -84,14 +103,32 @@ impl FrozenAxis {
         self.0 = Some(ends);
         ends
     }
+
+    /// The `wanted` ends of the axis, or the previous ones while they contain these and are no longer than
+    /// [`MOST`] times as long: the scale holds from one gesture to the next.
+    pub(super) fn hold(&mut self, wanted: (f64, f64), in_gesture: bool) -> (f64, f64) {
+        let length = wanted.1 - wanted.0;
+        let spare = if in_gesture { SPARE * length } else { 0.0 };
+        let holds = |old: &(f64, f64)| {
+            let contains = old.0 <= wanted.0 + spare && old.1 >= wanted.1 - spare;
+            contains && old.1 - old.0 <= MOST * length
+        };
+        let ends = self.0.filter(holds).unwrap_or(wanted);
+        self.0 = Some(ends);
+        ends
+    }
 }
 
 /// The axes that are frozen during a gesture.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct FrozenAxes {
     pub span: FrozenAxis,
+    /// Displacements within the stops.
+    pub reach: FrozenAxis,
     /// Potential energy.
     pub energy: FrozenAxis,
+    /// The push in m/s^2 that the axis of potential energy has room for.
+    pub room: f64,
     pub force: FrozenAxis,
 }
 

@@ -39,6 +39,7 @@ mod side_by_side;
 mod span;
 mod spectrum;
 mod stops;
+mod table;
 mod trace;
 mod up_and_down;
 mod view;
@@ -77,6 +78,9 @@ fn covered_ui(ui: &mut Ui, style: &Style) {
 }
 
 fn drawn_ui(ui: &mut Ui, view: View, context: &mut ViewContext<'_>) {
+    if context.memory.covered == Some(view) {
+        return covered_ui(ui, &context.style);
+    }
     match context.cover {
         Cover::None => {}
         Cover::Surveys if !view.is_survey() => {}

@@ -75,8 +75,11 @@ fn states_ui(ui: &mut Ui, context: &mut ViewContext<'_>, is_section: bool) {
     let speed = context.memory.ranges.follow(context.session).speed();
     let view = if is_section { View::Section } else { View::PhasePortrait };
     let (low, high) = context.memory.axes.ends(Axis::Up(view), (-speed, speed));
+    let shared = context.span;
+    context.span = context.memory.reach(context.session, Some(Axis::Reach));
     let chart = Chart::new(area, context.span, low, high);
-    chart.axes(ui, context, 1e-3);
+    let pointer = response.hover_pos().filter(|at| chart.rect.contains(*at));
+    chart.axes(ui, context, ("velocity (mm/s)", 1e-3), pointer.is_some());
     let painter = ui.painter().with_clip_rect(chart.rect);
     let mut legend = Vec::new();
     if separatrix(&painter, context, &chart) {
@@ -112,14 +115,14 @@ fn states_ui(ui: &mut Ui, context: &mut ViewContext<'_>, is_section: bool) {
         painter.extend(kind_shapes(Kind::Resting, at, STATE + 2.5, style.mass_edge()));
         painter.extend(kind_shapes(Kind::Resting, at, STATE, style.mass()));
     }
-    chart.numbers(ui, &style, "velocity (mm/s)", 1e-3);
     let right = match is_periodic && !is_section {
         true => points_ui(ui, area, &mut context.memory.points_only),
         false => area.right(),
     };
     chart.legend(ui, &style, right, &legend);
     axes_input(ui, context.memory, view, &response, (area, chart.rect));
-    start_ui(ui, &response, context, &chart);
+    start_ui(ui, &response, context, &chart, pointer);
+    context.span = shared;
 }
 
 /// Button in the row of the legend that hides the path. Returns its left edge.
@@ -143,8 +146,14 @@ fn points_ui(ui: &mut Ui, area: egui::Rect, points_only: &mut bool) -> f32 {
 }
 
 /// Shows the state under the pointer; a click lets the motion go on from there.
-fn start_ui(ui: &Ui, response: &egui::Response, context: &mut ViewContext<'_>, chart: &Chart) {
-    let Some(pointer) = response.hover_pos().filter(|at| chart.rect.contains(*at)) else { return };
+fn start_ui(
+    ui: &Ui,
+    response: &egui::Response,
+    context: &mut ViewContext<'_>,
+    chart: &Chart,
+    pointer: Option<Pos2>,
+) {
+    let Some(pointer) = pointer else { return };
     let (x, v) = chart.world_from_screen(pointer);
     let inside = within(context, x);
     if response.clicked() {

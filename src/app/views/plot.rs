@@ -48,9 +48,16 @@ pub fn marks(axis: &PlotAxis) -> Vec<GridMark> {
     axis.ticks.iter().map(|tick| GridMark { value: tick.0, step_size }).collect()
 }
 
-/// An axis with about `count` ticks.
+/// An axis with about `count` ticks, and at least three.
 pub fn even(low: f64, high: f64, count: f64) -> PlotAxis {
-    PlotAxis::between(low, high, "").with_ticks(count as usize)
+    named(low, high, "", count)
+}
+
+/// The same with a name.
+pub fn named(low: f64, high: f64, name: &str, count: f64) -> PlotAxis {
+    let least = count.clamp(2.0, 10.0) as usize;
+    let axis = |count| PlotAxis::between(low, high, name).with_ticks(count);
+    (least..least + 6).map(axis).find(|axis| axis.ticks.len() > 2).unwrap_or_else(|| axis(least))
 }
 
 /// Label of a tick, with the decimals that distinguish it from the next one.

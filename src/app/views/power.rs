@@ -14,7 +14,7 @@ use super::trace::{TraceQuantity, trace_ui};
 /// Smallest height in points of the trace below the whole text.
 const TRACE: f32 = 110.0;
 /// Smallest height in points of the trace below the first line of text; a lower view has no text.
-const LOW_TRACE: f32 = 70.0;
+const LOW_TRACE: f32 = 44.0;
 
 /// Text for a scene without a transducer.
 const HINT: &str = "The work of the base. This scene has no transducer: add one to its file, such as \

@@ -41,6 +41,13 @@ pub fn floor(model: &Model) -> Option<f64> {
     places.map(|x| model.mechanism().curve.potential(x)).reduce(f64::min)
 }
 
+/// The potential in J from which energy is counted: of the deepest well, or else the [`floor`], or else 0.
+pub fn bottom(model: &Model) -> f64 {
+    let wells = model.mechanism().landscape.equilibria.iter().filter(|point| point.stable);
+    let wells = wells.map(|well| model.mechanism().curve.potential(well.x)).reduce(f64::min);
+    wells.or(floor(model)).unwrap_or(0.0)
+}
+
 /// Largest speed in m/s, powers in W and kinetic energy in J, and the range of displacements in m.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct Extremes {

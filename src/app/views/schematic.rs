@@ -7,6 +7,7 @@ use crate::mechanics::Mechanism;
 
 use super::beside::{Attachments, coil};
 use super::flexures::{CLAMP, clamp};
+use super::labels::Taken;
 use super::{Span, ViewContext};
 
 /// Number of half turns of the spring.
@@ -73,20 +74,22 @@ fn other_force(mechanism: &Mechanism) -> f64 {
 }
 
 /// Draws the rail and, for a spring, the spring from above to the mass, whose middle is `mass` and half of
-/// whose size is `half`. Returns the caption.
+/// whose size is `half`; what is drawn is `taken`. Returns the caption.
 pub(super) fn schematic(
     painter: &egui::Painter,
     context: &ViewContext<'_>,
     rect: Rect,
-    mass: Pos2,
-    half: egui::Vec2,
+    (mass, half): (Pos2, egui::Vec2),
     (top, bottom): (f32, f32),
     beside: &Attachments,
+    taken: &mut Taken,
 ) -> String {
     let style = context.style;
     let mechanism = context.drawn.model(context.session).mechanism();
     let kind = Schematic::of(mechanism, context.span);
-    painter.hline(rect.x_range().shrink(6.0), mass.y + half.y + 3.0, Stroke::new(2.0, style.faint()));
+    let rail = mass.y + half.y + 3.0;
+    painter.hline(rect.x_range().shrink(6.0), rail, Stroke::new(2.0, style.faint()));
+    taken.lines.push(vec![pos2(rect.left(), rail), pos2(rect.right(), rail)]);
     let bar = |y: std::ops::RangeInclusive<f32>| Rect::from_x_y_ranges(rect.x_range().shrink(6.0), y);
     if beside.stands_below() {
         clamp(painter, &style, bar(bottom..=bottom + CLAMP), false);
@@ -96,7 +99,9 @@ pub(super) fn schematic(
         let barrier = mechanism.landscape.barrier;
         let foot = context.span.screen_from_world(barrier.map_or(0.0, |barrier| barrier.x), rect);
         let (from, to) = (pos2(foot, top), pos2(mass.x, mass.y - half.y));
-        painter.add(Shape::line(coil((from, to), COILS, COIL, END), style.flexure_stroke()));
+        let coil = coil((from, to), COILS, COIL, END);
+        painter.add(Shape::line(coil.clone(), style.flexure_stroke()));
+        taken.lines.push(coil);
     }
     kind.words(mechanism, beside.is_drawn())
 }

@@ -5,9 +5,9 @@ use eframe::egui::{self, Rect, RichText, Ui, UiBuilder, vec2};
 use crate::app::session::pins::PinKind;
 use crate::scene::{Scene, Stops};
 
-use super::before_now::{shaking, stops};
 use super::context::Drawn;
 use super::mechanism::mechanism_ui;
+use super::table::{shaking, stops};
 use super::well::well_ui;
 use super::{ViewContext, too_small_ui};
 

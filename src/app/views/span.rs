@@ -3,7 +3,6 @@
 use eframe::egui::Rect;
 
 use crate::app::session::Session;
-use crate::output::PlotAxis;
 
 use super::ranges::axis_end;
 
@@ -69,6 +68,27 @@ impl Span {
         Self { low: low - margin, high: high + margin }
     }
 
+    /// The range that the mass can reach: beside wells up to its stops, where the motion seen keeps to them,
+    /// else to the end of the range for the scene.
+    pub fn within_stops(self, session: &Session, seen: (f64, f64)) -> Self {
+        let model = session.shown();
+        if model.mechanism().landscape.barrier.is_none() {
+            return self;
+        }
+        let (left, right) = model.stop_positions();
+        let end = |stop: Option<f64>, seen: f64, end: f64| {
+            let near = stop.map(|stop| ROOM * stop.abs()).filter(|near| seen.abs() <= *near);
+            near.map_or(end, |near| near.min(end.abs()) * end.signum())
+        };
+        Self { low: end(left, seen.0.min(0.0), self.low), high: end(right, seen.1.max(0.0), self.high) }
+    }
+
+    /// The range over the whole of `rect` in which this one begins `left` points from its left edge.
+    pub fn beside(self, left: f32, rect: Rect) -> Self {
+        let scale = (self.high - self.low) / f64::from((rect.width() - left).max(1.0));
+        Self { low: self.low - f64::from(left) * scale, high: self.high }
+    }
+
     /// Screen position of a displacement in m, over `rect`.
     pub fn screen_from_world(&self, x: f64, rect: Rect) -> f32 {
         let share = (x - self.low) / (self.high - self.low);
@@ -83,11 +103,6 @@ impl Span {
     /// Points per m.
     pub fn scale(&self, rect: Rect) -> f64 {
         f64::from(rect.width()) / (self.high - self.low)
-    }
-
-    /// The axis in mm.
-    pub fn axis(&self) -> PlotAxis {
-        PlotAxis::between(self.low * 1e3, self.high * 1e3, "displacement (mm)")
     }
 }
 

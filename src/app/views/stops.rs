@@ -53,6 +53,14 @@ pub fn stops_ui(
     (top, bottom): (f32, f32),
     radius: f32,
 ) {
+    for (mm, side) in context.memory.asked_stops.into_iter().zip([-1.0_f32, 1.0]) {
+        let Some(mm) = mm else { continue };
+        let x = context.span.screen_from_world(mm / 1e3, rect) + side * radius;
+        let ends = [pos2(x, top), pos2(x + side * WALL, top), pos2(x + side * WALL, bottom), pos2(x, bottom)];
+        let outline =
+            Shape::dashed_line(&[&ends[..], &ends[..1]].concat(), context.style.stop_stroke(), 5.0, 4.0);
+        ui.painter().with_clip_rect(rect).extend(outline);
+    }
     let (stops, movable) = shown_stops(context.session, context.drawn);
     let step = key_step(context.session);
     let fine = FINE * step;

@@ -4,8 +4,8 @@
 //! under the pointer, so that they can be read below each other. Their vertical ranges come from the scene
 //! and from [`Ranges`](super::ranges::Ranges), not from what is visible.
 
-use eframe::egui::{Align2, Stroke, Ui, vec2};
-use egui_plot::{HLine, Line, LineStyle, PlotBounds, PlotPoint, PlotPoints, PlotUi, Span, VLine};
+use eframe::egui::{Align2, RichText, Stroke, Ui, vec2};
+use egui_plot::{HLine, Line, LineStyle, PlotBounds, PlotPoint, PlotPoints, PlotUi, Span, Text, VLine};
 
 use crate::app::session::Session;
 use crate::app::session::pins::Pin;
@@ -16,7 +16,7 @@ use crate::scene::Quantity;
 use crate::study::Watch;
 
 use super::cursors::{cursors_ui, readout_ui};
-use super::ghosts::{PINNED, dash};
+use super::ghosts::{PINNED, plot_dashes};
 use super::hand::axes_input;
 use super::labels::haloed;
 use super::legend::{LEGEND, Symbol, legend};
@@ -35,6 +35,9 @@ const MAX_SWINGS: f64 = 200.0;
 
 /// Position of the present in the range of time, as a share of it.
 const PRESENT: f64 = 0.94;
+
+/// Width of a pin's letter at the end of its line, as a share of the range of time.
+const LETTER: f64 = 0.019;
 
 /// Height in points of the numbers and the name below a plot.
 const BELOW: f32 = 40.0;
@@ -143,7 +146,10 @@ impl TraceQuantity {
     fn ends(self, context: &mut ViewContext<'_>) -> (f64, f64) {
         let both = |end: f64| (-end, end);
         match self {
-            Self::Displacement => (context.span.low * 1e3, context.span.high * 1e3),
+            Self::Displacement => {
+                let span = context.memory.reach(context.session, None);
+                (span.low * 1e3, span.high * 1e3)
+            }
             Self::Velocity => both(context.memory.ranges.follow(context.session).speed() * 1e3),
             Self::BaseAcceleration => both(
                 1.12 * room_for_push(context.session.shown().largest_base_acceleration()) / STANDARD_GRAVITY,
@@ -218,10 +224,17 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
             if let Some(trace) = measured {
                 trace.draw(plot, &style);
             }
+            // each has its letter at its end, beside those of the others
+            for (i, (place, path)) in ghosts.iter().enumerate() {
+                let Some(last) = path.last().filter(|last| last.y.is_finite()) else { continue };
+                let at = PlotPoint::new(last.x + LETTER * (i as f64 + 0.5) * window, last.y.clamp(low, high));
+                let letter = RichText::new(PINNED[place % PINNED.len()]).font(style.small());
+                plot.text(Text::new("letter", at, letter).color(style.ink()));
+            }
             for (place, path) in ghosts {
                 let length = path.windows(2).map(|pair| distance(&pair[0], &pair[1])).sum();
                 let line = Line::new("ghost", PlotPoints::Owned(path)).stroke(style.ghost_motion_stroke());
-                let line = line.style(LineStyle::Dashed { length: dash(place, length) });
+                let line = line.style(plot_dashes(place, length));
                 plot.line(line.allow_band(!is_displacement));
             }
             for path in paths {

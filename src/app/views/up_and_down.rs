@@ -44,8 +44,9 @@ pub fn up_and_down_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     ui.scope_builder(UiBuilder::new().max_rect(tools), |ui| tools_ui(ui, context, &axis));
     let below = area.with_min_y(tools.bottom());
     if let Some(problem) = context.session.explore.walks.problem.clone() {
-        ui.scope_builder(UiBuilder::new().max_rect(below.shrink(10.0)), |ui| {
-            ui.label(RichText::new(problem).color(context.style.faint()));
+        let place = below.shrink2(vec2(0.15 * below.width(), 0.4 * below.height()));
+        ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
+            ui.vertical_centered(|ui| ui.label(RichText::new(problem).color(context.style.faint())));
         });
         return;
     }

@@ -128,6 +128,8 @@ pub(super) enum Axis {
     Time,
     /// The displacement, in m.
     Place,
+    /// The displacement within the stops, in m.
+    Reach,
     /// The horizontal axis of one view.
     Across(View),
     /// The vertical axis of one view.
@@ -185,7 +187,8 @@ impl View {
     pub(super) fn axes(self) -> Option<[Axis; 2]> {
         let across = match self {
             Self::Displacement | Self::Velocity | Self::BaseAcceleration | Self::Power => Axis::Time,
-            Self::Well | Self::PhasePortrait | Self::Section | Self::ForceCurve | Self::Basins => Axis::Place,
+            Self::Well | Self::ForceCurve | Self::Basins => Axis::Place,
+            Self::PhasePortrait | Self::Section => Axis::Reach,
             Self::Distance | Self::UpAndDown | Self::Spectrum => Axis::Across(self),
             Self::SideBySide => return Self::Well.axes(),
             _ => return None,

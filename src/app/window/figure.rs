@@ -36,6 +36,8 @@ pub struct Figures {
     pub times: [String; 2],
     /// The panels of a run, in the order of [`RunPanel::ALL`].
     pub panels: [bool; RunPanel::ALL.len()],
+    /// Width and text size when the dialog was opened.
+    before: [String; 2],
     /// Why the last figure was not saved.
     pub(super) problem: Option<String>,
     /// Where the mass was when the dialog was opened, in m.
@@ -56,6 +58,7 @@ impl Default for Figures {
             data: false,
             times: <[String; 2]>::default(),
             panels: [false; RunPanel::ALL.len()],
+            before: <[String; 2]>::default(),
             problem: None,
             x: 0.0,
             had_focus: false,
@@ -90,6 +93,9 @@ impl Figures {
         self.times = times(session, memory)
             .map_or_else(Default::default, |(from, to)| [from, to].map(|t| t.to_string()));
         self.panels = RunPanel::ALL.map(|shown| panel(view) == Some(shown));
+        if !self.is_open() {
+            self.before = [self.width.clone(), self.font.clone()];
+        }
         self.x = session.player.state().x;
         (self.view, self.problem, self.had_focus) = (Some(view), None, false);
     }
@@ -249,12 +255,13 @@ impl Figures {
                 }
                 return;
             }
-            if ui.add_enabled(can_save, Button::new("Save")).clicked() || entered.inner && can_save {
+            let save = ui.add_enabled(can_save, Button::new("Save")).on_disabled_hover_text(&remark);
+            if save.clicked() || entered.inner && can_save {
                 action = Some(Action::Save);
             }
             let hover = "The command that makes the same file without a window.";
             let copy = ui.add_enabled(order.is_ok(), Button::new("Copy as command")).on_hover_text(hover);
-            if copy.clicked() {
+            if copy.on_disabled_hover_text(&remark).clicked() {
                 action = Some(Action::Copy);
             }
             if ui.button("Cancel").clicked() {
@@ -351,8 +358,10 @@ impl Window {
         match (action, order) {
             (Action::Browse, _) => self.choose(Wanted::Figure),
             (Action::Close, _) => {
-                self.figures.job.clear();
-                self.figures.view = None;
+                let Figures { view, width, font, before, job, .. } = &mut self.figures;
+                [*width, *font] = std::mem::take(before);
+                job.clear();
+                *view = None;
             }
             (_, Err(problem)) => self.figures.problem = Some(problem),
             (Action::Copy, Ok(order)) => {

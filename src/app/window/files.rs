@@ -77,12 +77,10 @@ impl Window {
         }
     }
 
-    /// Whether the scene has unsaved changes; the scene of a lesson does not count.
+    /// Whether the scene has unsaved changes that are worth a question; the scene of a lesson does not count.
     fn is_unsaved(&self) -> bool {
-        match self.lessons.suspended() {
-            Some(session) => session.editor.is_dirty(),
-            None => self.session.editor.is_dirty(),
-        }
+        let editor = &self.lessons.suspended().unwrap_or(&self.session).editor;
+        editor.is_dirty() && !editor.is_play()
     }
 
     fn proceed(&mut self, ctx: &egui::Context, next: Next) {

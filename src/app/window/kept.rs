@@ -7,6 +7,8 @@
 use eframe::egui::{Context, Vec2, ViewportCommand, vec2};
 use eframe::{Storage, get_value, set_value};
 
+use crate::app::ui::style::{FILLED_ZOOM, PROJECTOR_ZOOM, projector_zoom};
+
 use super::Window;
 
 const RECENT: &str = "recent";
@@ -49,7 +51,7 @@ impl Window {
     }
 }
 
-/// Number of frames after which sizes are those of the present zoom.
+/// Number of frames after a change of the zoom from which sizes are those of the present one.
 const SETTLED: u32 = 3;
 /// Number of frames within which the window system reports the size of the window's decoration.
 const DECORATED: u32 = 90;
@@ -59,18 +61,29 @@ const DECORATED: u32 = 90;
 pub(super) struct WindowSize {
     /// The size to restore; `None` once it has been requested.
     wanted: Option<Vec2>,
-    /// Number of frames with the wanted zoom.
+    /// Number of frames since the zoom last changed, and that zoom.
     frames: u32,
+    zoom: f32,
     /// Whether the window was larger than the screen and has been maximized.
     fitted: bool,
     /// The last size of the window that was neither maximized nor full-screen.
     size: Option<Vec2>,
+    /// The present size, in points at zoom 1.
+    present: Option<Vec2>,
 }
 
 impl WindowSize {
-    /// To be called in every frame, with the wanted zoom.
-    pub fn follow(&mut self, ctx: &Context, zoom: f32) {
-        self.frames = if (ctx.zoom_factor() - zoom).abs() < 1e-3 { self.frames.saturating_add(1) } else { 0 };
+    /// The zoom of the projector in the present window, which follows its size; larger for a view over it.
+    pub fn projector_zoom(&self, filled: bool) -> f32 {
+        let zoom = self.present.map_or(PROJECTOR_ZOOM, projector_zoom);
+        if filled { FILLED_ZOOM * zoom } else { zoom }
+    }
+
+    /// To be called in every frame.
+    pub fn follow(&mut self, ctx: &Context) {
+        let zoom = ctx.zoom_factor();
+        self.frames = if (zoom - self.zoom).abs() < 1e-3 { self.frames.saturating_add(1) } else { 0 };
+        self.zoom = zoom;
         if self.frames < SETTLED {
             ctx.request_repaint();
             return;
@@ -80,7 +93,13 @@ impl WindowSize {
             let fills_screen = view.maximized == Some(true) || view.fullscreen == Some(true);
             (view.inner_rect, view.outer_rect, view.monitor_size, fills_screen)
         });
-        let Some(inner) = inner.map(|rect| rect.size()).filter(|_| !fills_screen) else { return };
+        let Some(inner) = inner.map(|rect| rect.size()) else { return };
+        if fills_screen || self.wanted.is_none() {
+            self.present = Some(inner * zoom);
+        }
+        if fills_screen {
+            return;
+        }
         if let Some(wanted) = self.wanted.take() {
             if (inner * zoom - wanted).abs().max_elem() > 1.0 {
                 ctx.send_viewport_cmd(ViewportCommand::InnerSize(wanted / zoom));

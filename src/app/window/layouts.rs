@@ -3,7 +3,7 @@
 use eframe::egui::{self, Response, Ui, Vec2, WidgetText};
 use egui_tiles::{Container, SimplificationOptions, Tabs, Tile, TileId, Tiles, Tree, UiResponse};
 
-use crate::app::ui::style::{BODY, COMPACT_BELOW, LARGE_FROM};
+use crate::app::ui::style::{BODY, COMPACT_BELOW, LARGE_FROM, LEAST};
 use crate::app::ui::widgets::{Icon, icon_button_ui};
 use crate::app::views::{Memory, View, ViewContext, view_ui};
 use crate::scene::Layout;
@@ -15,7 +15,6 @@ mod trees;
 const TITLE_MARGIN: f32 = 6.0;
 /// Width in points of the buttons beside the titles.
 const BUTTONS: f32 = 58.0;
-const LEAST_TITLE: f32 = 9.5;
 
 /// Size class of the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -127,6 +126,8 @@ impl Tiling {
 
     /// Shows a view. A view without a tile becomes a tab beside `other`, if that is shown among tabs.
     pub fn show_beside(&mut self, view: View, other: View) {
+        // new tiles have no tabs until they are drawn
+        self.tree.simplify(&simplification());
         let tiles = &mut self.tree.tiles;
         let shown = tiles.find_pane(&other).filter(|id| tiles.is_visible(*id));
         let place = shown.and_then(|id| tiles.parent_of(id));
@@ -143,18 +144,26 @@ impl Tiling {
         self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(pane) if *pane == view));
     }
 
-    /// Brings the next tab to the front, in the group of `view` or else in the first group with several tabs.
-    pub fn next_tab(&mut self, view: Option<View>) {
+    pub fn has_tabs(&self) -> bool {
+        self.tab_after(None).is_some()
+    }
+
+    /// The next tab and its group: that of `view`, or else the first group with several tabs.
+    fn tab_after(&self, view: Option<View>) -> Option<(TileId, TileId)> {
         let tiles = &self.tree.tiles;
-        let next = view.into_iter().chain(View::ALL).find_map(|view| {
+        view.into_iter().chain(View::ALL).find_map(|view| {
             let place = tiles.parent_of(tiles.find_pane(&view)?)?;
             let Some(Tile::Container(Container::Tabs(tabs))) = tiles.get(place) else { return None };
             let shown: Vec<TileId> =
                 tabs.children.iter().copied().filter(|id| tiles.is_visible(*id)).collect();
             let active = shown.iter().position(|id| Some(*id) == tabs.active)?;
             (shown.len() > 1).then(|| (place, shown[(active + 1) % shown.len()]))
-        });
-        if let Some((place, tab)) = next
+        })
+    }
+
+    /// Brings the next tab to the front, in the group of `view` or else in the first group with several tabs.
+    pub fn next_tab(&mut self, view: Option<View>) {
+        if let Some((place, tab)) = self.tab_after(view)
             && let Some(Tile::Container(Container::Tabs(tabs))) = self.tree.tiles.get_mut(place)
         {
             tabs.set_active(tab);
@@ -194,7 +203,7 @@ impl Tiling {
             Some(BODY * room / widths.iter().sum::<f32>().max(1.0))
         };
         let least = self.tree.tiles.iter().filter_map(fitting).fold(BODY, f32::min);
-        least.max(LEAST_TITLE)
+        least.max(LEAST)
     }
 
     /// Draws the views; `fill` is set if a view is to fill the window.
@@ -203,6 +212,11 @@ impl Tiling {
         let mut behavior = Behavior { context, fill, title, room: self.room };
         self.tree.ui(&mut behavior, ui);
     }
+}
+
+/// Every view keeps its title.
+fn simplification() -> SimplificationOptions {
+    SimplificationOptions { all_panes_must_have_tabs: true, ..SimplificationOptions::default() }
 }
 
 struct Behavior<'a, 'b> {
@@ -279,7 +293,6 @@ impl egui_tiles::Behavior<View> for Behavior<'_, '_> {
     }
 
     fn simplification_options(&self) -> SimplificationOptions {
-        // every view keeps its title
-        SimplificationOptions { all_panes_must_have_tabs: true, ..SimplificationOptions::default() }
+        simplification()
     }
 }

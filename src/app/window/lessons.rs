@@ -7,16 +7,17 @@ use eframe::egui::{self, Id, Key, LayerId, Modifiers, Order, Panel, Rect, Stroke
 
 use crate::app::panels::controls;
 use crate::app::panels::hint::Hint;
-use crate::app::panels::lesson::{LessonAction, lesson_ui, letter};
+use crate::app::panels::lesson::{LessonAction, lesson_ui};
 use crate::app::panels::notes::lecturer_ui;
 use crate::app::session::editor::Editor;
+use crate::app::session::explore::WalkQuantity;
 use crate::app::session::lesson::{OpenLesson, Records, Turn, answers_text};
 use crate::app::session::{CannotRun, Session};
 use crate::app::ui::style::Style;
-use crate::app::ui::widgets::panel_frame;
+use crate::app::ui::widgets::{close_ui, dialog, dialog_width, panel_frame};
 use crate::app::views::{Cover, Memory, View};
 use crate::app::words::fields::name_and_unit;
-use crate::app::words::lesson::bold_words;
+use crate::app::words::lesson::{bold_words, letter, numbered};
 use crate::scene::lesson::{BuiltInLesson, LessonDocument, LessonError, Step};
 use crate::scene::{Document, PRESETS, SceneError};
 use crate::study::result_fields;
@@ -36,11 +37,27 @@ pub(super) struct Lessons {
     suspended: Option<Suspended>,
     pub records: Records,
     pub notes: bool,
+    /// The lesson that was finished, until its last words are closed.
+    finished: Option<Finished>,
+    /// Whether the button that goes on is to have the keyboard focus.
+    urged: bool,
     /// Rectangles of the controls in this frame.
     controls: Vec<(String, Rect)>,
 }
 
+/// What is said at the end of a lesson: its title, what was learnt, and the lesson that comes next.
+struct Finished {
+    title: String,
+    goal: String,
+    next: Option<&'static str>,
+}
+
 impl Lessons {
+    /// Whether a dialog of theirs is open.
+    pub fn ask(&self) -> bool {
+        self.finished.is_some() || self.open.as_ref().is_some_and(OpenLesson::was_begun_before)
+    }
+
     /// The session that comes back when the lesson is left.
     pub fn suspended(&self) -> Option<&Session> {
         self.suspended.as_ref().map(|state| &state.session)
@@ -56,7 +73,6 @@ struct Suspended {
     more: bool,
     filled: Option<View>,
     hint: Hint,
-    hint_row: bool,
     ways: bool,
 }
 
@@ -107,7 +123,6 @@ impl Window {
                 more: std::mem::take(&mut self.more),
                 filled: self.filled.take(),
                 hint: self.hint,
-                hint_row: self.hint_row,
                 ways: std::mem::take(&mut self.ways),
             });
         }
@@ -126,6 +141,9 @@ impl Window {
         session.player.speed = lesson.lesson().speed.unwrap_or(session.player.speed);
         session.player.set_playing(plays);
         session.explore.walks.chosen.clone_from(&lesson.lesson().walk);
+        if lesson.lesson().walk.is_some() {
+            session.explore.walks.quantity = WalkQuantity::RmsVelocity;
+        }
         session.keeps_remedy = !lesson.tells_remedy();
         // the best stops may be the answer to a lesson's question
         session.best.is_off = true;
@@ -142,7 +160,7 @@ impl Window {
             self.session = before.session;
             (self.tiling, self.arrangement) = (before.tiling, before.arrangement);
             (self.memory, self.more, self.filled) = (before.memory, before.more, before.filled);
-            (self.hint, self.hint_row, self.ways) = (before.hint, before.hint_row, before.ways);
+            (self.hint, self.ways) = (before.hint, before.ways);
             if self.tiling.room() != room {
                 self.arrange(room);
             }
@@ -198,12 +216,41 @@ impl Window {
         }
     }
 
+    /// What views show of the question of a lesson, and keep back for it.
+    pub(super) fn pose_question(&mut self) {
+        let lesson = self.lessons.open.as_ref();
+        let curve = View::ForceCurve;
+        let name = curve.name().to_lowercase();
+        self.memory.covered = lesson.filter(|open| open.keeps_back(&name)).map(|_| curve);
+        let present = self.session.scene().stops.limits_mm();
+        let asked = lesson.and_then(OpenLesson::asked).map(|scene| scene.stops.limits_mm());
+        let [left, right] = asked.filter(|asked| *asked != present).unwrap_or_default();
+        self.memory.asked_stops = [left.map(|mm| -mm), right];
+    }
+
     pub(super) fn act_in_lesson(&mut self, act: LessonAction) {
         let Some(lesson) = &mut self.lessons.open else { return };
+        // the strip, which a view over the whole window hides, says what follows
+        self.filled = self.filled.filter(|_| matches!(act, LessonAction::Vote(..)));
         let turn = match act {
             LessonAction::Choose(option) => lesson.choose(option),
             LessonAction::Back => lesson.go_back(),
+            LessonAction::Next if lesson.is_covering() || lesson.is_last() => {
+                self.lessons.urged = true;
+                let text = match (lesson.is_covering(), lesson.following()) {
+                    (true, _) => "Nobody has chosen yet: Reveal, or Enter, shows what it does".to_owned(),
+                    (false, Some(name)) => format!("The last step: Enter goes on to {}", numbered(name)),
+                    (false, None) => "The last step: Enter finishes the lesson".to_owned(),
+                };
+                return self.messages.notify(text);
+            }
             LessonAction::Next => lesson.go_on(),
+            LessonAction::Reveal => lesson.reveal(),
+            LessonAction::Finish => return self.finish_lesson(),
+            LessonAction::Vote(option, more) => {
+                lesson.vote(option, more);
+                Turn::Stay
+            }
             LessonAction::NextLesson(name) => return self.open_lesson(name),
             LessonAction::Hint => {
                 lesson.turn_hint();
@@ -211,6 +258,58 @@ impl Window {
             }
         };
         self.take_turn(turn);
+    }
+
+    /// Leaves the lesson with one sentence of what was learnt.
+    fn finish_lesson(&mut self) {
+        let Some(open) = &self.lessons.open else { return };
+        let (title, goal) = (open.lesson().title.clone(), open.lesson().goal.clone());
+        self.lessons.finished = Some(Finished { title, goal, next: open.following() });
+        self.leave_lesson();
+    }
+
+    /// The last words of a lesson, and the question whether one that was begun before begins anew.
+    pub(super) fn lesson_dialogs_ui(&mut self, ui: &Ui) {
+        if let Some(finished) = &self.lessons.finished {
+            let mut next = None;
+            let answer = dialog(ui.ctx(), "finished").show(ui.ctx(), |ui| {
+                ui.set_max_width(dialog_width(ui, 480.0));
+                ui.heading(format!("{}: done", finished.title));
+                ui.add_space(6.0);
+                ui.label(&finished.goal);
+                ui.add_space(8.0);
+                ui.horizontal(|ui| {
+                    let name = |name: &&str| format!("Go on to {}", numbered(name));
+                    next = finished.next.filter(|next| ui.button(name(next)).clicked());
+                    close_ui(ui)
+                })
+                .inner
+            });
+            if next.is_some() || answer.inner || answer.should_close() {
+                self.lessons.finished = None;
+                next.into_iter().for_each(|name| self.open_lesson(name));
+            }
+        }
+        let Some(lesson) = self.lessons.open.as_mut().filter(|open| open.was_begun_before()) else { return };
+        let mut anew = false;
+        let answer = dialog(ui.ctx(), "begun before").show(ui.ctx(), |ui| {
+            ui.set_max_width(dialog_width(ui, 480.0));
+            ui.heading(&lesson.lesson().title);
+            ui.add_space(6.0);
+            let (step, count) = (lesson.number() + 1, lesson.lesson().steps.len());
+            ui.label(format!("This lesson was begun before, and left at step {step} of {count}."));
+            ui.add_space(8.0);
+            ui.horizontal(|ui| {
+                anew = ui.button("Begin anew").clicked();
+                ui.button("Go on").clicked()
+            })
+            .inner
+        });
+        if anew {
+            self.begin_lesson_anew();
+        } else if answer.inner || answer.should_close() {
+            lesson.resume();
+        }
     }
 
     pub(super) fn begin_lesson_anew(&mut self) {
@@ -232,26 +331,31 @@ impl Window {
                     self.leave_lesson();
                 }
             },
-            Turn::Leave => self.leave_lesson(),
         }
     }
 
     pub(super) fn lesson_keys(&mut self, ctx: &egui::Context) {
         let Some(lesson) = self.lessons.open.as_ref().filter(|_| !ctx.text_edit_focused()) else { return };
-        let mut keys = vec![(Key::PageDown, LessonAction::Next), (Key::PageUp, LessonAction::Back)];
+        let plain = |key, act| (Modifiers::NONE, key, act);
+        let mut keys = vec![plain(Key::PageDown, LessonAction::Next), plain(Key::PageUp, LessonAction::Back)];
         if matches!(lesson.step(), Step::Do { .. }) {
-            keys.extend(lesson.offered_hint().map(|_| (Key::H, LessonAction::Hint)));
+            keys.extend(lesson.offered_hint().map(|_| plain(Key::H, LessonAction::Hint)));
         }
         if lesson.is_covering() {
             for option in 0..lesson.options().len() {
                 let names = [letter(option).to_string(), (option + 1).to_string()];
                 let pair = names.iter().filter_map(|name| Key::from_name(name));
-                keys.extend(pair.map(|key| (key, LessonAction::Choose(option))));
+                keys.extend(pair.clone().map(|key| plain(key, LessonAction::Choose(option))));
+                let vote = LessonAction::Vote(option, 1);
+                keys.extend(pair.take(1).map(|key| (Modifiers::SHIFT, key, vote)));
             }
         }
-        let pressed =
-            keys.into_iter().find(|(key, _)| ctx.input_mut(|input| input.consume_key(Modifiers::NONE, *key)));
-        if let Some((_, act)) = pressed {
+        // those with Shift first: a key without it would take them too
+        keys.sort_by_key(|key| !key.0.shift);
+        let is_pressed = |(modifiers, key, _): &(Modifiers, Key, LessonAction)| {
+            ctx.input_mut(|input| input.consume_key(*modifiers, *key))
+        };
+        if let Some((.., act)) = keys.into_iter().find(is_pressed) {
             self.act_in_lesson(act);
         }
     }
@@ -267,13 +371,14 @@ impl Window {
 
     /// The strip of the open lesson, and its controls; they are disabled while the motion is covered.
     pub(super) fn lesson_panels_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) {
+        let urged = std::mem::take(&mut self.lessons.urged);
         let Some(lesson) = &mut self.lessons.open else { return };
         // not a panel, whose height would follow its contents one frame late
         let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
         let strip = panel_frame(ui, 12, 6).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = spacing;
             ui.set_min_width(ui.available_width());
-            lesson_ui(ui, lesson, &self.session, style, compact)
+            lesson_ui(ui, lesson, &self.session, style, compact, urged)
         });
         ui.spacing_mut().item_spacing.y = spacing;
         let edge = ui.visuals().widgets.noninteractive.bg_stroke;

@@ -4,30 +4,25 @@ use std::sync::LazyLock;
 
 use eframe::egui::{self, Button, KeyboardShortcut, Modifiers, Response, Ui};
 
-use crate::app::session::Session;
 use crate::app::session::lesson::OpenLesson;
-use crate::app::session::map::Map;
 use crate::app::session::player::SPEEDS;
-use crate::app::ui::settings::{Setting, Settings};
+use crate::app::ui::settings::Setting;
 use crate::app::views::View;
 use crate::app::words::lesson::numbered;
 use crate::scene::lesson::{LESSONS, Lesson, LessonDocument};
 use crate::scene::{Document, PRESETS};
 use crate::study::result_fields;
 
+use super::Window;
 use super::command::{Command, DISCARD, MENUS, Part};
 use super::keys::SPEED_KEYS;
-use super::layouts::{Room, Tiling};
-use super::lessons::Lessons;
-use super::wanted::Wanted;
 
-/// What the menus show besides the commands, and the commands that were chosen in this frame.
+/// Name of the command that returns to the scene as it was opened, while nothing was changed.
+const BACK: &str = "Back to the start";
+
+/// The menus of a window, and the commands that were chosen in this frame.
 pub(super) struct Menus<'a> {
-    pub session: &'a Session,
-    pub tiling: &'a Tiling,
-    pub settings: Settings,
-    pub recent: &'a [String],
-    pub lessons: &'a Lessons,
+    pub window: &'a Window,
     pub chosen: Vec<Command>,
 }
 
@@ -45,7 +40,7 @@ impl Menus<'_> {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 let hover = "The scene as it was opened or last saved, its views, and time 0 (Home). Undo \
                              brings the changes back.";
-                if ui.button(DISCARD).on_hover_text(hover).clicked() {
+                if self.is_dirty() && ui.button(DISCARD).on_hover_text(hover).clicked() {
                     self.chosen.push(Command::BackToStart);
                 }
                 ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| self.title_ui(ui));
@@ -54,12 +49,16 @@ impl Menus<'_> {
         self.chosen
     }
 
+    fn is_dirty(&self) -> bool {
+        self.window.session.editor.is_dirty()
+    }
+
     /// The title of the lesson or scene, as a button that shows what it is about.
     fn title_ui(&mut self, ui: &mut Ui) {
-        let dirty = if self.session.editor.is_dirty() { " *" } else { "" };
-        let (text, hover) = match &self.lessons.open {
+        let dirty = if self.is_dirty() { " *" } else { "" };
+        let (text, hover) = match self.window.lesson() {
             Some(open) => (format!("Lesson: {}", open.lesson().title), "What this lesson is about"),
-            None => (format!("{}{dirty}", self.session.scene().title), "What this scene is about"),
+            None => (format!("{}{dirty}", self.window.session.scene().title), "What this scene is about"),
         };
         let title = egui::RichText::new(text).strong();
         let title = ui.add(Button::new(title).frame_when_inactive(false).truncate());
@@ -73,11 +72,14 @@ impl Menus<'_> {
             match part {
                 Part::Hidden(..) | Part::Row(..) => {}
                 Part::Item(name, key, command, _) => {
-                    let mut button = Button::new(*name);
+                    let is_back = *command == Command::BackToStart && !self.is_dirty();
+                    let mut button = Button::new(if is_back { BACK } else { *name });
                     if let Some(key) = key {
                         button = button.shortcut_text(ui.ctx().format_shortcut(key));
                     }
-                    let response = ui.add_enabled(self.is_enabled(command), button);
+                    let why = self.window.impossible(command);
+                    let response = ui.add_enabled(why.is_none(), button);
+                    let response = response.on_disabled_hover_text(why.unwrap_or_default());
                     self.choose(ui, &response, || command.clone());
                 }
                 Part::Menu(name, parts) => drop(ui.menu_button(*name, |ui| self.parts_ui(ui, parts))),
@@ -100,31 +102,6 @@ impl Menus<'_> {
         }
     }
 
-    fn is_enabled(&self, command: &Command) -> bool {
-        let Self { session, tiling, lessons, .. } = self;
-        let model = session.model();
-        if lessons.open.as_ref().is_some_and(OpenLesson::is_covering) && command.reveals_motion() {
-            return false;
-        }
-        match command {
-            Command::Save => session.editor.is_dirty() || session.editor.path().is_none(),
-            Command::OpenMeasured => lessons.open.is_none(),
-            Command::RemoveMeasured => session.measured.over.is_some(),
-            Command::SaveAs(Wanted::Map) => session.map.map().is_some_and(Map::is_whole),
-            Command::CopyMapCommand => session.map.map().is_some(),
-            Command::Undo => session.editor.can_undo(),
-            Command::Redo => session.editor.can_redo(),
-            Command::KeepOwn => tiling.room() != Room::Compact && lessons.open.is_none(),
-            Command::Arrange(_) | Command::ArrangeOwn => lessons.open.is_none(),
-            Command::LeaveLesson | Command::LessonAnew | Command::LecturerNotes => lessons.open.is_some(),
-            Command::NextRelease => model.stop_positions() != (None, None),
-            Command::NextCrossing => model.mechanism().landscape.barrier.is_some(),
-            Command::Notes if lessons.open.is_some() => true,
-            Command::Notes => !session.scene().notes.trim().is_empty(),
-            _ => true,
-        }
-    }
-
     fn presets_ui(&mut self, ui: &mut Ui) {
         ui.menu_button("Open built-in scene", |ui| {
             scroll_ui(ui, |ui| {
@@ -138,15 +115,16 @@ impl Menus<'_> {
     }
 
     fn recent_ui(&mut self, ui: &mut Ui) {
-        let recent = self.recent;
+        let recent = &self.window.recent;
         ui.add_enabled_ui(!recent.is_empty(), |ui| {
-            ui.menu_button("Open recent", |ui| {
+            let menu = ui.menu_button("Open recent", |ui| {
                 for path in recent {
                     let name = path.rsplit(['/', '\\']).next().unwrap_or(path);
                     let item = ui.button(name).on_hover_text(path);
                     self.choose(ui, &item, || Command::OpenRecent(path.clone()));
                 }
             });
+            menu.response.on_disabled_hover_text("No file was opened or saved yet");
         });
     }
 
@@ -156,10 +134,13 @@ impl Menus<'_> {
             (Setting::Dark, "Dark", "Light letters on a dark ground (D)"),
             (Setting::ReduceMotion, "Reduce motion", "No rings at impacts"),
         ] {
-            let is_enabled = setting != Setting::Dark || !self.settings.projector;
-            let checkbox = egui::Checkbox::new(self.settings.of(setting), name);
-            if ui.add_enabled(is_enabled, checkbox).on_hover_text(hover).clicked() {
-                self.chosen.push(Command::Toggle(setting));
+            let command = Command::Toggle(setting);
+            let why = self.window.impossible(&command);
+            let mut settings = self.window.settings;
+            let checkbox = egui::Checkbox::new(settings.of(setting), name);
+            let response = ui.add_enabled(why.is_none(), checkbox).on_hover_text(hover);
+            if response.on_disabled_hover_text(why.unwrap_or_default()).clicked() {
+                self.chosen.push(command);
             }
         }
     }
@@ -168,7 +149,7 @@ impl Menus<'_> {
         ui.menu_button("Views", |ui| {
             scroll_ui(ui, |ui| {
                 for view in View::ALL {
-                    let mut shown = self.tiling.shows(view);
+                    let mut shown = self.window.tiling.shows(view);
                     if ui.checkbox(&mut shown, view.name()).on_hover_text(view.about()).clicked() {
                         self.chosen.push(Command::Show(view, shown));
                     }
@@ -192,12 +173,12 @@ impl Menus<'_> {
 
     /// The built-in lessons in order; those that are done have a mark, and the open one is selected.
     fn lessons_ui(&mut self, ui: &mut Ui) {
-        let open = self.lessons.open.as_ref().map(OpenLesson::key);
+        let open = self.window.lesson().map(OpenLesson::key);
         for (name, lesson) in BUILT_IN.iter() {
             let is_open = open.as_deref() == Some(*name);
-            let done = match (is_open, &self.lessons.open) {
+            let done = match (is_open, self.window.lesson()) {
                 (true, Some(open)) => open.progress().done,
-                _ => self.lessons.records.get(*name).is_some_and(|record| record.done),
+                _ => self.window.lessons.records.get(*name).is_some_and(|record| record.done),
             };
             let mark = if done { "done" } else { "" };
             let text = format!("{}  {} ({} min)", numbered(name), lesson.title, lesson.minutes);

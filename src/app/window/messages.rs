@@ -3,7 +3,8 @@
 use eframe::egui::{self, Align2, Area, Id, Order, Ui, accesskit::Live, vec2};
 
 use crate::app::session::player::Reached;
-use crate::app::ui::widgets::{close_ui, dialog, dialog_width};
+use crate::app::ui::style::BODY;
+use crate::app::ui::widgets::{close_ui, dialog, dialog_width, prose_ui};
 
 pub(super) const CANNOT_OPEN: &str = "This scene cannot be opened";
 
@@ -65,7 +66,7 @@ impl Messages {
         let now = ui.input(|input| input.time);
         let left = *notice.since.get_or_insert(now) + SHOWN_FOR - now;
         let area = Area::new(Id::unique("told")).anchor(Align2::CENTER_BOTTOM, vec2(0.0, -ABOVE));
-        area.order(Order::Foreground).interactable(false).show(ui.ctx(), |ui| {
+        area.order(Order::Tooltip).interactable(false).show(ui.ctx(), |ui| {
             egui::Frame::popup(ui.style()).show(ui, |ui| {
                 ui.set_max_width(dialog_width(ui, 900.0));
                 let label = ui.label(&notice.text);
@@ -86,7 +87,7 @@ impl Messages {
             ui.heading(title);
             ui.add_space(6.0);
             let room = (ui.ctx().content_rect().height() - 160.0).clamp(80.0, 420.0);
-            egui::ScrollArea::vertical().max_height(room).show(ui, |ui| ui.label(text));
+            egui::ScrollArea::vertical().max_height(room).show(ui, |ui| prose_ui(ui, text, BODY));
             ui.add_space(8.0);
             close_ui(ui)
         });

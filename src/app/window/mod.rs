@@ -4,11 +4,12 @@
 
 use eframe::egui::{self, CentralPanel, Panel, RichText, Ui};
 
+use crate::app::panels::hint::guide_ui;
 use crate::app::panels::status_line::{self, covered_ui, status_ui};
 use crate::app::panels::{controls, notes, transport};
 use crate::app::session::lesson::Records;
 use crate::app::ui::settings::Settings;
-use crate::app::ui::style::{self, PROJECTOR_ZOOM, Style};
+use crate::app::ui::style::{self, Style};
 use crate::app::ui::widgets::{Icon, icon_button_ui, panel_frame};
 use crate::app::views::{self, Drawn, ViewContext};
 use crate::app::words::lesson::numbered;
@@ -20,13 +21,16 @@ const ROW: f32 = 28.0;
 /// Width in points of the column of controls that opens beside the views.
 const MORE: f32 = 276.0;
 
-/// Height in points of a window up to which the hint line is shown only with a hint.
-const LOW: f32 = 440.0;
-const HINT_ROW: f32 = 32.0;
+const MENU: f32 = 28.0;
+/// Delay in s with which no hover text comes.
+const NEVER: f32 = 1e3;
+/// Height in points of the guide line, whatever it says.
+const GUIDE: f32 = 29.0;
 
 mod command;
 mod figure;
 mod files;
+mod impossible;
 mod kept;
 mod keys;
 pub mod layouts;
@@ -50,15 +54,17 @@ impl Window {
     /// Updates the state before a frame is drawn: settings, input, results of the background, the motion.
     pub fn logic(&mut self, ctx: &egui::Context) {
         let Settings { dark, projector, .. } = self.settings;
-        let zoom = if projector { PROJECTOR_ZOOM } else { 1.0 };
         if self.applied != Some(self.settings) {
             ctx.set_theme(if dark && !projector { egui::Theme::Dark } else { egui::Theme::Light });
-            if projector || self.applied.is_some_and(|applied| applied.projector) {
-                ctx.set_zoom_factor(zoom);
-            }
             self.applied = Some(self.settings);
         }
-        self.window_size.follow(ctx, zoom);
+        let zoom = projector.then(|| self.window_size.projector_zoom(self.filled.is_some()));
+        let is_close = |a: f32, b: f32| (a - b).abs() < 0.01 * b;
+        if !zoom.zip(self.zoom).map_or(zoom == self.zoom, |(zoom, applied)| is_close(zoom, applied)) {
+            self.zoom = zoom;
+            ctx.set_zoom_factor(self.natural_zoom());
+        }
+        self.window_size.follow(ctx);
         self.take_choice(ctx);
         self.take_input(ctx);
         // a view that is no longer shown cannot release the mass itself
@@ -86,6 +92,7 @@ impl Window {
 
     pub fn ui(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
+        self.hide_hover_texts(&ctx);
         if !self.waits_for_answer() {
             self.keys(&ctx);
         }
@@ -97,16 +104,15 @@ impl Window {
         }
         let mut commands = self.bars_ui(ui, &style, compact);
         self.follow_lesson(&ctx);
-        if self.lessons.open.is_some() {
+        if self.filled.is_some() {
+            // the view has the whole window
+        } else if self.lessons.open.is_some() {
             self.lesson_panels_ui(ui, &style, compact);
         } else {
             commands.extend(self.controls_ui(ui, compact));
-            commands.extend(self.hint_row_ui(ui, &style));
-        }
-        self.session.follow_best();
-        if self.session.best.is_shown() && !self.covered {
-            let panel = Panel::top("best stops").frame(panel_frame(ui, 12, 4));
-            panel.show(ui, |ui| controls::best_stops_answer_ui(ui, &mut self.session));
+            self.session.follow_best();
+            let panel = Panel::top("guide").frame(panel_frame(ui, 12, 0)).exact_size(GUIDE);
+            commands.extend(panel.show(ui, |ui| self.guide_line_ui(ui, &style)).inner);
         }
         CentralPanel::no_frame().show(ui, |ui| self.views_ui(ui, style));
         self.pointing_ui(&ctx, &style);
@@ -122,24 +128,49 @@ impl Window {
         focus_ui(&ctx, &style);
     }
 
-    /// Menu bar, status line and transport bar. Returns the commands that were chosen.
+    /// Closes hover texts once a dialog has opened: one that is open would stay as long as the pointer does,
+    /// over the dialog.
+    fn hide_hover_texts(&mut self, ctx: &egui::Context) {
+        let waits = self.waits_for_answer();
+        let opens = waits && !self.waited;
+        let usual = egui::style::Interaction::default().tooltip_delay;
+        let delay = if opens { NEVER } else { usual };
+        if ctx.global_style().interaction.tooltip_delay != delay {
+            ctx.all_styles_mut(|style| style.interaction.tooltip_delay = delay);
+        }
+        self.waited = waits;
+    }
+
+    /// Menu bar, status line and transport bar; a view over the window leaves the last. Returns the commands
+    /// that were chosen.
     fn bars_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) -> Vec<Command> {
-        let bar = Panel::top("menu").frame(panel_frame(ui, 8, 2)).exact_size(32.0).show(ui, |ui| {
-            let Self { session, tiling, settings, recent, lessons, .. } = self;
-            let settings = *settings;
-            menu::Menus { session, tiling, settings, recent, lessons, chosen: Vec::new() }.ui(ui)
-        });
         let (line, covered) = (panel_frame(ui, 12, 4), self.motion_is_covered());
-        let height = status_line::height(ui, &self.session, compact);
-        Panel::top("status").frame(line).exact_size(height).show(ui, |ui| match covered {
-            true => covered_ui(ui, !self.covered),
-            false => status_ui(ui, &mut self.session, &mut self.announcer, style, compact),
-        });
+        let chosen = match self.filled {
+            None => self.head_ui(ui, style, compact),
+            Some(_) if covered => Vec::new(),
+            Some(_) => {
+                self.announcer.say(ui, &self.session.sentence());
+                Vec::new()
+            }
+        };
         Panel::bottom("transport").frame(line).exact_size(if compact { 46.0 } else { 60.0 }).show(ui, |ui| {
             if self.lesson_covers() {
                 ui.disable();
             }
             transport::transport_ui(ui, &mut self.session, style, covered);
+        });
+        chosen
+    }
+
+    /// Menu bar and status line. Returns the commands that were chosen.
+    fn head_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) -> Vec<Command> {
+        let bar = Panel::top("menu").frame(panel_frame(ui, 8, 2)).exact_size(MENU);
+        let bar = bar.show(ui, |ui| menu::Menus { window: self, chosen: Vec::new() }.ui(ui));
+        let covered = self.motion_is_covered();
+        let status = Panel::top("status").frame(panel_frame(ui, 12, 2)).exact_size(status_line::height(ui));
+        status.show(ui, |ui| match covered {
+            true => covered_ui(ui, !self.covered),
+            false => status_ui(ui, &mut self.session, &mut self.announcer, style, compact),
         });
         bar.inner
     }
@@ -155,7 +186,7 @@ impl Window {
             if self.more {
                 Panel::right("more").frame(line).resizable(false).exact_size(MORE).show(ui, |ui| {
                     let session = &mut self.session;
-                    egui::ScrollArea::vertical().show(ui, |ui| controls::more_ui(ui, session, 150.0));
+                    egui::ScrollArea::vertical().show(ui, |ui| controls::beside_ui(ui, session, 150.0));
                 });
             }
             return None;
@@ -175,41 +206,42 @@ impl Window {
         column.inner.then_some(Command::Notes)
     }
 
-    /// The row with the hint of the first minute or the ways to cross. Returns the chosen command.
-    fn hint_row_ui(&mut self, ui: &mut Ui, style: &Style) -> Option<Command> {
+    /// The guide line: the search for the best stops, the ways to cross, or the hint of the first minute.
+    /// Returns the chosen command.
+    fn guide_line_ui(&mut self, ui: &mut Ui, style: &Style) -> Option<Command> {
         let hinted = self.hint.is_shown(&self.session);
-        self.hint_row |= hinted;
-        let shows_ways = self.ways && !self.covered;
-        let has_room = ui.ctx().content_rect().height() > LOW;
-        // the line stays when the hint is done, so that the views below do not jump
-        if !shows_ways && !(self.hint_row && (has_room || hinted && !self.covered)) {
+        let (ink, faint) = (style.ink(), style.faint());
+        if self.session.best.is_shown() && !self.ways && !self.covered {
+            let words = self.session.best.words();
+            guide_ui(ui, ("", &words, ink), |ui| controls::best_stops_answer_ui(ui, &mut self.session));
             return None;
         }
-        let panel = Panel::top("hint").frame(panel_frame(ui, 12, 4)).min_size(HINT_ROW);
-        let row = panel.show(ui, |ui| {
-            if shows_ways {
-                ui.horizontal_wrapped(|ui| {
-                    ui.label(self.session.ways());
-                    if hinted {
-                        ui.label(RichText::new("H: back to the lesson").color(style.faint()));
-                    }
-                });
-                return None;
+        if self.ways && !self.covered {
+            let ways = self.session.ways();
+            let back = if hinted { "H: back to the lesson" } else { "H closes this" };
+            guide_ui(ui, ("", &ways, ink), |ui| ui.label(RichText::new(back).color(faint)));
+            return None;
+        }
+        let Some(next) = next_lesson(&self.lessons.records).filter(|_| hinted && !self.covered) else {
+            let has_barrier = self.session.model().mechanism().landscape.barrier.is_some();
+            let ways = if has_barrier { "H says what it would take to cross, " } else { "" };
+            guide_ui(ui, ("", &format!("{ways}F1 lists all keys."), faint), |_| ());
+            return None;
+        };
+        let (heading, text) = self.hint.text(&self.session);
+        guide_ui(ui, (heading, &text, ink), |ui| {
+            let hover = "Look, predict, try and explain, step by step. The scene waits as it is.";
+            let lesson = ui.small_button(numbered(next)).on_hover_text(hover).clicked();
+            if ui.small_button("Dismiss").clicked() {
+                self.hint.dismiss();
             }
-            if hinted && !self.covered {
-                let next = next_lesson(&self.lessons.records)?;
-                let clicked = self.hint.ui(ui, &self.session, &numbered(next));
-                return clicked.then_some(Command::OpenLesson(next));
-            }
-            let text = "H says what it would take to cross, F1 lists all keys.";
-            ui.label(RichText::new(text).color(style.faint()));
-            None
-        });
-        row.inner
+            lesson.then_some(Command::OpenLesson(next))
+        })
     }
 
     fn dialogs_ui(&mut self, ui: &mut Ui, ctx: &egui::Context) {
         self.lecturer_ui(ctx);
+        self.lesson_dialogs_ui(ui);
         self.questions_ui(ui, ctx);
         self.measured_ui(ui);
         self.take_figure();
@@ -223,6 +255,7 @@ impl Window {
     fn views_ui(&mut self, ui: &mut Ui, style: Style) {
         // a key may have advanced the motion
         self.session.follow_pins();
+        self.pose_question();
         let (span, cover) = (self.memory.span(&self.session), self.cover());
         let mut context = ViewContext {
             session: &mut self.session,

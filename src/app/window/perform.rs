@@ -1,16 +1,16 @@
 //! Execution of the commands.
 
-use eframe::egui;
+use eframe::egui::{self, gui_zoom};
 
 use crate::app::export;
 use crate::app::panels::hint;
 use crate::app::panels::transport::EVENT_AHEAD;
 use crate::app::session::measured::MeasuredData;
-use crate::app::session::pins::PinKind;
+use crate::app::session::pins::{Pin, PinKind};
 use crate::app::session::player::{Goal, SPEEDS};
-use crate::app::ui::settings::Setting;
 use crate::app::views::{Memory, View};
 use crate::dynamics::EventKind;
+use crate::scene::Layout;
 
 use super::Window;
 use super::command::{Command, UNDO};
@@ -47,19 +47,13 @@ impl Window {
     }
 
     pub fn carry_out(&mut self, ctx: &egui::Context, command: Command) {
-        if self.lesson_covers() && command.reveals_motion() {
-            return self.messages.notify("First choose what you expect");
+        if let Some(why) = self.impossible(&command) {
+            return self.messages.notify(why);
         }
         match command {
-            // a lesson has fixed views, and a pinned motion may be the answer to its question
-            Command::Arrange(_) | Command::ArrangeOwn | Command::KeepOwn | Command::Pin(_)
-                if self.lesson().is_some() => {}
             Command::OpenPreset(name) => self.leave_for(ctx, Next::Open(name.to_owned())),
             Command::OpenRecent(path) => self.leave_for(ctx, Next::Open(path)),
             Command::Open => self.leave_for(ctx, Next::Choose),
-            Command::OpenMeasured | Command::BestStops if self.lesson().is_some() => {
-                self.messages.notify("Leave the lesson first");
-            }
             Command::OpenMeasured => self.choose(Wanted::Measured),
             Command::RemoveMeasured => self.session.measured = MeasuredData::default(),
             Command::Save => self.save(ctx),
@@ -78,8 +72,8 @@ impl Window {
             Command::BackToStart => self.back_to_start(ctx),
             Command::PlayPause => self.session.play_or_pause(),
             Command::Step => self.session.player.step(),
-            Command::PreviousEvent => self.session.player.seek_event(false, EVENT_AHEAD),
-            Command::NextEvent => self.session.player.seek_event(true, EVENT_AHEAD),
+            Command::PreviousEvent => self.seek_event(false),
+            Command::NextEvent => self.seek_event(true),
             Command::NextRelease => self.go_to_first(EventKind::Release),
             Command::NextCrossing => self.go_to_first(EventKind::Crossing),
             Command::RunToEnd => match self.session.end_of_run() {
@@ -91,11 +85,19 @@ impl Window {
                     self.session.player.speed = speed.0;
                 }
             }
-            Command::Arrange(layout) => self.show_arrangement(Arrangement::Layout(layout)),
+            Command::Arrange(layout) => {
+                self.show_arrangement(Arrangement::Layout(layout));
+                // the other studies need shaking that repeats
+                if layout == Layout::Explore && !self.session.model().repeats() {
+                    self.tiling.show_beside(View::Spectrum, View::UpAndDown);
+                }
+            }
             Command::ArrangeOwn => {
                 // the custom arrangement begins as a copy of the present tiles
                 if self.custom.is_none() {
                     self.custom = self.tiling.tree_to_save().cloned();
+                    let text = "Your own arrangement begins as these views: drag their titles to change it";
+                    self.messages.notify(text);
                 }
                 self.show_arrangement(Arrangement::Custom);
             }
@@ -116,12 +118,12 @@ impl Window {
                 self.filled = if self.filled.is_some() { None } else { Some(wanted) };
             }
             Command::Cover => self.covered = !self.covered,
+            Command::Magnify(1) => gui_zoom::zoom_in(ctx),
+            Command::Magnify(-1) => gui_zoom::zoom_out(ctx),
+            Command::Magnify(_) => ctx.set_zoom_factor(self.natural_zoom()),
             Command::FullScreen => {
                 let full = ctx.input(|input| input.viewport().fullscreen.unwrap_or(false));
                 ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(!full));
-            }
-            Command::Toggle(Setting::Dark) if self.settings.projector => {
-                self.messages.notify("The projector is light: P leaves it");
             }
             Command::Toggle(setting) => {
                 let value = self.settings.of(setting);
@@ -129,15 +131,18 @@ impl Window {
             }
             Command::Grab => self.memory.grab = true,
             Command::Pin(kind) => self.pin(kind),
-            // in a lesson this would be the answer
-            Command::Ways => self.ways = !self.ways && self.lesson().is_none(),
-            Command::BestStops => self.session.find_best_stops(),
+            Command::Unpin(letter) => self.session.pins.unpin(letter),
+            Command::Ways => self.ways = !self.ways,
+            Command::BestStops => {
+                self.ways = false;
+                self.session.find_best_stops();
+            }
             Command::OpenLesson(name) => self.open_lesson(name),
             Command::OpenLessonFile => self.choose(Wanted::Lesson),
             Command::LeaveLesson => self.leave_lesson(),
             Command::LessonAnew => self.begin_lesson_anew(),
             Command::CopyAnswers => self.copy_answers(ctx),
-            Command::LecturerNotes => self.lessons.notes = !self.lessons.notes && self.lesson().is_some(),
+            Command::LecturerNotes => self.lessons.notes = !self.lessons.notes,
             Command::Glossary => self.glossary = true,
             Command::Notes => self.show_notes(),
             Command::Shortcuts => self.shortcuts = Some(ctx.input(|input| input.time)),
@@ -205,7 +210,7 @@ impl Window {
     }
 
     /// The view that keys act on: it fills the window, is under the pointer or has the focus.
-    fn active_view(&self) -> View {
+    pub(super) fn active_view(&self) -> View {
         self.filled.or(self.memory.hovered).unwrap_or(View::Displacement)
     }
 
@@ -218,28 +223,23 @@ impl Window {
                     PinKind::Twin => "a twin that begins a micrometre beside the mass",
                 };
                 self.messages.notify(format!("Pinned as {letter}, dashed: {what}"));
-                let view = if kind == PinKind::Twin { View::Distance } else { View::Compare };
-                self.tiling.show_beside(view, View::BeforeNow);
+                self.tiling.show_beside(self.view_of_pins(), View::BeforeNow);
             }
             Err(why) => self.messages.notify(why),
+        }
+    }
+
+    /// The view that opens with the newest pin.
+    pub(super) fn view_of_pins(&self) -> View {
+        match self.session.pins.all().last().map(Pin::kind) {
+            Some(PinKind::Twin) => View::Distance,
+            _ => View::Compare,
         }
     }
 
     /// Goes to the next event of a kind, as far ahead as the run length or, if that is more, `TIMES_AHEAD`.
     fn go_to_first(&mut self, kind: EventKind) {
         let model = self.session.model();
-        let impossible = match kind {
-            EventKind::Crossing if model.mechanism().landscape.barrier.is_none() => {
-                Some("No crossing can come: there is no barrier")
-            }
-            EventKind::Release if model.stop_positions() == (None, None) => {
-                Some("No release can come: there are no stops")
-            }
-            _ => None,
-        };
-        if let Some(why) = impossible {
-            return self.messages.notify(why);
-        }
         let ahead = model.duration().max(TIMES_AHEAD * model.characteristic_time());
         let until = self.session.player.watch().time() + ahead;
         self.session.player.go_to(Goal::First(kind, until));
@@ -251,10 +251,19 @@ impl Window {
             return self.messages.alert(title, goal);
         }
         let scene = self.session.scene();
-        let notes = scene.notes.trim();
-        let notes = if notes.is_empty() { "This scene has no notes." } else { notes };
         let changed = if self.session.editor.is_dirty() { " (before changes)" } else { "" };
-        self.messages.alert(format!("{}{changed}", scene.title), notes);
+        self.messages.alert(format!("{}{changed}", scene.title), scene.notes.trim());
+    }
+
+    /// Goes to the next (`later`) or the previous event, or says that there is none.
+    fn seek_event(&mut self, later: bool) {
+        self.session.player.seek_event(later, EVENT_AHEAD);
+        if self.session.player.event().is_none() {
+            self.messages.notify(match later {
+                true => format!("No event in the next {EVENT_AHEAD} s"),
+                false => "No event before".to_owned(),
+            });
+        }
     }
 
     fn alert_unnamed(&mut self) {

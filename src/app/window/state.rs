@@ -72,13 +72,15 @@ pub struct Window {
     pub columns: Option<MeasuredDialog>,
     pub(super) deferred: DeferredInput,
     pub(super) hint: hint::Hint,
-    /// Whether the hint line has been shown.
-    pub(super) hint_row: bool,
     pub(super) lessons: Lessons,
     pub(super) glossary: bool,
+    /// Whether a dialog was open in the last frame.
+    pub(super) waited: bool,
     pub(super) wake: Wake,
     /// The settings that were applied last; they are applied again only if they change.
     pub(super) applied: Option<Settings>,
+    /// The zoom of the projector that was applied last; `None` without a projector.
+    pub(super) zoom: Option<f32>,
 }
 
 impl Window {
@@ -144,11 +146,12 @@ impl Window {
             figures: Figures::default(),
             columns: None,
             deferred: DeferredInput::default(),
-            hint_row: false,
             lessons: Lessons::default(),
             glossary: false,
+            waited: false,
             wake,
             applied: None,
+            zoom: None,
         })
     }
 
@@ -164,6 +167,11 @@ impl Window {
         self.recent.retain(|recent| *recent != full);
         self.recent.insert(0, full);
         self.recent.truncate(MOST_RECENT);
+    }
+
+    /// The zoom to which Ctrl+0 returns.
+    pub(super) fn natural_zoom(&self) -> f32 {
+        self.zoom.unwrap_or(1.0)
     }
 
     pub fn message(&self) -> Option<&str> {
@@ -184,6 +192,7 @@ impl Window {
             || self.columns.is_some()
             || self.shortcuts.is_some()
             || self.glossary
+            || self.lessons.ask()
     }
 
     /// Builds the tiles of the arrangement for a window of the size class `room`.
@@ -198,5 +207,10 @@ impl Window {
             (Arrangement::Custom, None) => Tiling::new(Layout::Look, room),
             (Arrangement::Layout(layout), _) => Tiling::new(layout, room),
         };
+        // what is pinned keeps its view
+        let has_pins = !self.session.pins.all().is_empty();
+        if has_pins && self.arrangement != Arrangement::Custom && self.tiling.shows(View::BeforeNow) {
+            self.tiling.show_beside(self.view_of_pins(), View::BeforeNow);
+        }
     }
 }

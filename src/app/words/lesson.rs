@@ -26,6 +26,41 @@ pub fn expected(choice: Option<&str>, outcome: Option<&str>) -> String {
     }
 }
 
+/// The letter of an option of a prediction.
+pub fn letter(option: usize) -> char {
+    ('A'..='Z').nth(option).unwrap_or('?')
+}
+
+/// The votes of a class for the options of a prediction.
+pub fn tally(votes: &[u32]) -> String {
+    let each = votes.iter().enumerate().map(|(option, votes)| format!("{} {votes}", letter(option)));
+    format!("Votes: {}", each.collect::<Vec<_>>().join(", "))
+}
+
+/// What a lecturer is to do: from which time in s on, that time as written, and the text. A text before the
+/// first time has none.
+pub fn script(notes: &str) -> Vec<(f64, &str, &str)> {
+    let time = |word: &str| {
+        let (minutes, seconds) = word.split_once(':')?;
+        let are_digits = |part: &str| part.bytes().all(|byte| byte.is_ascii_digit());
+        let is_time = are_digits(minutes) && are_digits(seconds) && seconds.len() == 2;
+        is_time.then_some(60.0 * minutes.parse::<f64>().ok()? + seconds.parse::<f64>().ok()?)
+    };
+    let mut lines = Vec::new();
+    let (mut begin, mut from, mut written) = (0, 0.0, "");
+    let mut at = 0;
+    for word in notes.split_inclusive(' ') {
+        if let Some(seconds) = time(word.trim_end()) {
+            lines.push((from, written, notes[begin..at].trim()));
+            (begin, from, written) = (at + word.len(), seconds, word.trim_end());
+        }
+        at += word.len();
+    }
+    lines.push((from, written, notes[begin..].trim()));
+    lines.retain(|line| !line.2.is_empty());
+    lines
+}
+
 pub fn judged_by(lesson: &Lesson, start: Start) -> String {
     let from = if start == Start::Rest { "from rest" } else { "from the scene's start" };
     match (&lesson.walk, lesson.seeds) {
@@ -35,33 +70,124 @@ pub fn judged_by(lesson: &Lesson, start: Start) -> String {
     }
 }
 
-/// The sentence that a task is not done, with the first unmet condition if a few words can say it.
-pub fn not_yet(lack: &Lack) -> String {
-    let why = lack.asked.field().and_then(name_and_unit_of).and_then(|(name, unit)| {
-        let (found, fault) = match (&lack.found, &lack.asked) {
-            (Value::Word(word), Condition::Is(_, wanted)) => (word.clone(), format!("not {wanted}")),
-            (Value::Number(number), condition) => {
-                let (scaled, unit) = match unit {
-                    "m" | "m/s" => (1e3 * number, format!("m{unit}")),
-                    _ => (*number, unit.to_owned()),
-                };
-                let fault = match condition {
-                    Condition::AtLeast(..) | Condition::Above(..) => "too small".to_owned(),
-                    Condition::AtMost(..) | Condition::Below(..) => "too large".to_owned(),
-                    Condition::Between(_, low, _) if number < low => "too small".to_owned(),
-                    Condition::Between(..) => "too large".to_owned(),
-                    Condition::Is(_, wanted) => format!("not {wanted}"),
-                    _ => return None,
-                };
-                let text = if scaled.fract() == 0.0 { scaled.to_string() } else { three(scaled) };
-                (format!("{text} {unit}").trim_end().to_owned(), fault)
+/// The sentence that a task is not done, and why, by the first condition that does not hold. `on_stops` says
+/// whether stops hold the mass away from the bottoms of the wells, so that it can hop.
+pub fn not_yet(lack: &Lack, on_stops: bool) -> String {
+    format!("Not yet: {}.", lacking(&lack.asked, &lack.found, on_stops))
+}
+
+fn lacking(asked: &Condition, found: &Value, on_stops: bool) -> String {
+    let held = |part: &Condition| match part {
+        Condition::Is(field, word) if field.ends_with(REGIME) => motion(word, on_stops),
+        _ => "what is asked for holds",
+    };
+    match asked {
+        Condition::All(parts) => {
+            parts.first().map_or_else(String::new, |part| lacking(part, found, on_stops))
+        }
+        Condition::Any(_) => "none of what is asked for holds".to_owned(),
+        Condition::Not(part) => match part.as_ref() {
+            Condition::Is(field, word) if field.ends_with(REGIME) => {
+                format!("{}{}", coming(field), still(word, on_stops))
             }
-            (Value::Missing, Condition::Present(_)) => return Some(format!("Not yet ({name}: none).")),
-            _ => return None,
-        };
-        Some(format!("Not yet ({name}: {found}, {fault})."))
-    });
-    why.unwrap_or_else(|| "Not yet.".to_owned())
+            part => match part.field().and_then(name_and_unit_of) {
+                Some((name, _)) => format!("the {name} must not be what it is"),
+                None => "what must not be is so".to_owned(),
+            },
+        },
+        Condition::Every(starts, part) => {
+            format!("{} from fewer than all {} starts", held(part), starts.len())
+        }
+        Condition::ForSome(starts, part) => format!("{} from none of {} starts", held(part), starts.len()),
+        Condition::Same(_, _, starts) => format!("the {} starts lead to different motions", starts.len()),
+        _ => lacking_field(asked, found, on_stops),
+    }
+}
+
+/// Why a condition on one field does not hold.
+fn lacking_field(asked: &Condition, found: &Value, on_stops: bool) -> String {
+    let field = asked.field().unwrap_or_default();
+    let Some((name, unit)) = name_and_unit_of(field) else {
+        return "it differs from what is asked".to_owned();
+    };
+    match (found, asked) {
+        (Value::Word(word), Condition::Is(..)) if field.ends_with(REGIME) => {
+            format!("{}{}", coming(field), still(word, on_stops))
+        }
+        (Value::Word(word), Condition::Is(_, wanted)) => format!("the {name} is {word}, not {wanted}"),
+        (Value::Number(x), Condition::Below(..) | Condition::Above(..)) if field == "result.final_x_m" => {
+            format!("it ends on the {}-hand side", if *x > 0.0 { "right" } else { "left" })
+        }
+        (Value::Number(count), _) if field == "result.crossings" => crossings(*count, asked),
+        (Value::Number(number), condition) => {
+            let (scaled, unit) = match unit {
+                "m" | "m/s" => (1e3 * number, format!("m{unit}")),
+                _ if field.ends_with("_share") => (100.0 * number, "%".to_owned()),
+                _ => (*number, unit.to_owned()),
+            };
+            let value = if scaled.fract() == 0.0 { scaled.to_string() } else { three(scaled) };
+            let value = format!("{value} {unit}");
+            let too = match condition {
+                Condition::AtLeast(..) | Condition::Above(..) => "too small".to_owned(),
+                Condition::AtMost(..) | Condition::Below(..) => "too large".to_owned(),
+                Condition::Between(_, low, _) if number < low => "too small".to_owned(),
+                Condition::Between(..) => "too large".to_owned(),
+                Condition::Is(_, wanted) => format!("and not {wanted}"),
+                _ => return format!("there is a {name}, and there must be none"),
+            };
+            format!("the {name} is {}, {too}", value.trim_end())
+        }
+        (_, Condition::Absent(_)) => format!("the {name} must be off"),
+        (_, Condition::Present(_)) if name.ends_with('s') => format!("there are no {name}"),
+        (Value::Missing | Value::Word(_), _) => format!("there is no {name} yet"),
+    }
+}
+
+const REGIME: &str = ".regime";
+
+/// Which of several runs a field belongs to, in the words of a task.
+fn coming(field: &str) -> &'static str {
+    match field.split('.').next() {
+        Some("up") => "coming from below, ",
+        Some("down") => "coming from above, ",
+        _ => "",
+    }
+}
+
+fn motion(regime: &str, on_stops: bool) -> &'static str {
+    match regime {
+        "rest" if on_stops => "it rests on its stop",
+        "rest" => "it rests",
+        "intrawell" if on_stops => "it hops: it leaves its stop but does not cross",
+        "intrawell" => "it moves in one well and does not cross",
+        "interwell" => "it crosses in a lasting rhythm",
+        "crossing" => "it crosses",
+        _ => "it crosses, but in no lasting rhythm",
+    }
+}
+
+/// What it does although it should not.
+fn still(regime: &str, on_stops: bool) -> String {
+    motion(regime, on_stops).replacen("it ", "it still ", 1)
+}
+
+fn crossings(count: f64, asked: &Condition) -> String {
+    let times = |count: f64| match count {
+        0.0 => "not at all".to_owned(),
+        1.0 => "once".to_owned(),
+        2.0 => "twice".to_owned(),
+        count => format!("{count} times"),
+    };
+    let wanted = match asked {
+        Condition::Is(_, wanted) => wanted.trim().parse().map(times).unwrap_or_default(),
+        Condition::AtLeast(_, least) => format!("{} or more", times(*least)),
+        Condition::AtMost(_, most) => format!("{} at most", times(*most)),
+        _ => return format!("it crosses {}", times(count)),
+    };
+    match (count, asked) {
+        (0.0, Condition::AtLeast(..)) => "it does not cross".to_owned(),
+        _ => format!("it crosses {}, not {wanted}", times(count)),
+    }
 }
 
 fn name_and_unit_of(field: &str) -> Option<(String, &'static str)> {
@@ -123,6 +249,16 @@ mod tests {
     }
 
     #[test]
+    fn notes_are_a_script_with_times() {
+        let lines = script("0:00 Ask. Wait 2:3 s. 0:30 Vote, at 10:1. 12:05 End.");
+        let expected =
+            [(0.0, "0:00", "Ask. Wait 2:3 s."), (30.0, "0:30", "Vote, at 10:1."), (725.0, "12:05", "End.")];
+        assert_eq!(lines, expected);
+        assert_eq!(script("No times."), [(0.0, "", "No times.")]);
+        assert_eq!(tally(&[12, 0, 3]), "Votes: A 12, B 0, C 3");
+    }
+
+    #[test]
     fn a_prediction_is_compared_with_its_outcome() {
         assert_eq!(expected(Some("a"), Some("a")), "You expected: “a”. So it did.");
         assert_eq!(expected(Some("a"), Some("b")), "You expected: “a”. It did: “b”.");
@@ -130,21 +266,68 @@ mod tests {
     }
 
     #[test]
-    fn a_task_that_is_not_done_says_what_it_lacks() {
-        let field = |name: &str| name.to_owned();
-        let text = |asked: Condition, found: Value| not_yet(&Lack { asked, found });
-        let word = Value::Word("rest".to_owned());
-        let regime = Condition::Is(field("result.regime"), "interwell".to_owned());
-        assert_eq!(text(regime, word), "Not yet (regime: rest, not interwell).");
-        let shaking = Condition::AtMost(field("scene.excitation.amplitude_g"), 1.25);
-        assert_eq!(text(shaking, Value::Number(1.3)), "Not yet (amplitude: 1.30 g, too large).");
-        let speed = Condition::AtLeast(field("result.rms_velocity_m_per_s"), 0.05);
-        assert_eq!(text(speed, Value::Number(0.0421)), "Not yet (RMS velocity: 42.1 mm/s, too small).");
-        let count = Condition::Is(field("result.crossings"), "3".to_owned());
-        assert_eq!(text(count, Value::Number(1.0)), "Not yet (crossings: 1, not 3).");
-        assert_eq!(text(Condition::Present(field("scene.stops")), Value::Missing), "Not yet (stops: none).");
-        let gap = Condition::Above(field("walk.gap"), 0.1);
-        assert_eq!(text(gap, Value::Missing), "Not yet.");
-        assert_eq!(text(Condition::Any(Vec::new()), Value::Missing), "Not yet.");
+    fn a_task_that_is_not_done_says_what_it_lacks_in_plain_words() {
+        let name = |name: &str| name.to_owned();
+        let text = |asked: Condition, found: Value| not_yet(&Lack { asked, found }, true);
+        let word = |word: &str| Value::Word(word.to_owned());
+        let regime = |of: &str, word: &str| Condition::Is(format!("{of}.regime"), word.to_owned());
+        let hops = "Not yet: it still hops: it leaves its stop but does not cross.";
+        assert_eq!(text(regime("result", "interwell"), word("intrawell")), hops);
+        let lack = Lack { asked: regime("result", "interwell"), found: word("intrawell") };
+        assert_eq!(not_yet(&lack, false), "Not yet: it still moves in one well and does not cross.");
+        let rests = "Not yet: it still rests on its stop.";
+        assert_eq!(text(regime("result", "interwell"), word("rest")), rests);
+        let crosses = "Not yet: coming from below, it still crosses in a lasting rhythm.";
+        assert_eq!(text(regime("up", "intrawell"), word("interwell")), crosses);
+        let wild = "Not yet: it still crosses, but in no lasting rhythm.";
+        assert_eq!(text(regime("result", "interwell"), word("irregular")), wild);
+        let not = Condition::Not(Box::new(regime("result", "intrawell")));
+        assert_eq!(text(not, Value::Missing), hops);
+        let shaking = Condition::AtMost(name("scene.excitation.amplitude_g"), 1.25);
+        assert_eq!(text(shaking, Value::Number(1.3)), "Not yet: the amplitude is 1.30 g, too large.");
+        let speed = Condition::AtLeast(name("result.rms_velocity_m_per_s"), 0.05);
+        assert_eq!(text(speed, Value::Number(0.0421)), "Not yet: the RMS velocity is 42.1 mm/s, too small.");
+        let share = Condition::Below(name("result.impact_share"), 0.8);
+        assert!(text(share, Value::Number(0.93)).ends_with(" is 93 %, too large."));
+        let count = |wanted: &str| Condition::Is(name("result.crossings"), wanted.to_owned());
+        assert_eq!(text(count("3"), Value::Number(1.0)), "Not yet: it crosses once, not 3 times.");
+        let least = Condition::AtLeast(name("result.crossings"), 1.0);
+        assert_eq!(text(least, Value::Number(0.0)), "Not yet: it does not cross.");
+        let left = Condition::Below(name("result.final_x_m"), -0.001);
+        assert_eq!(text(left, Value::Number(0.0072)), "Not yet: it ends on the right-hand side.");
+        let stops = Condition::Present(name("scene.stops"));
+        assert_eq!(text(stops, Value::Missing), "Not yet: there are no stops.");
+        let same = Condition::Same(name("result.rms_velocity_m_per_s"), 1e-6, vec![Start::Rest; 3]);
+        assert_eq!(text(same, Value::Missing), "Not yet: the 3 starts lead to different motions.");
+        let every = Condition::Every(vec![Start::Rest; 3], Box::new(regime("result", "interwell")));
+        let each = "Not yet: it crosses in a lasting rhythm from fewer than all 3 starts.";
+        assert_eq!(text(every, Value::Missing), each);
+    }
+
+    #[test]
+    fn each_condition_of_a_built_in_task_has_such_words() {
+        fn parts(condition: &Condition) -> Vec<Condition> {
+            match condition {
+                Condition::All(all) => all.iter().flat_map(parts).collect(),
+                other => vec![other.clone()],
+            }
+        }
+        for own in crate::scene::lesson::LESSONS {
+            let results = crate::study::result_fields();
+            let read = crate::scene::lesson::LessonDocument::load(own.name, &results).unwrap();
+            let goals = read.lesson.steps.iter().filter_map(|step| match step {
+                crate::scene::lesson::Step::Do { goal, .. } => Some(goal),
+                _ => None,
+            });
+            for asked in goals.flat_map(parts) {
+                let is_regime = asked.field().is_some_and(|field| field.ends_with(REGIME));
+                let found = if is_regime { Value::Word("rest".to_owned()) } else { Value::Number(0.5) };
+                for found in [found, Value::Missing] {
+                    let text = not_yet(&Lack { asked: asked.clone(), found }, true);
+                    let spare = ["(", "_", "intrawell", "interwell", "differs"];
+                    assert!(spare.iter().all(|word| !text.contains(word)), "{}: {text}", own.name);
+                }
+            }
+        }
     }
 }

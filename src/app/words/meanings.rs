@@ -111,6 +111,26 @@ const MEANINGS: &[(&str, &str)] = &[
         "potential with the push",
         "The mechanism's potential, tipped by the push of the base: the mass moves as a ball on it.",
     ),
+    (
+        "potential",
+        "The energy that the mechanism stores with the mass at a place. Its slope is the force on the mass; \
+         it has a well at every place where the mass can rest.",
+    ),
+    (
+        "preload",
+        "How far the flexures were pushed together, end to end, when the device was built. It buckles them: \
+         the more of it, the higher the barrier.",
+    ),
+    (
+        "phase portrait",
+        "The velocity over the displacement, a point for every instant. A motion that repeats is a closed \
+         loop.",
+    ),
+    (
+        "path error",
+        "How far the computed path is from the true one at most, as estimated from its sensitivity to \
+         rounding.",
+    ),
     ("the mechanism's own", "The potential of the mechanism without any push."),
     (
         "holds the mass there",
@@ -129,8 +149,47 @@ pub fn meaning(label: &str) -> Option<&'static str> {
 }
 
 /// The terms of the glossary in alphabetical order; each has a meaning.
-pub const GLOSSARY: [&str; 8] =
-    ["barrier", "basin", "interwell", "intrawell", "period", "release", "restitution", "RMS velocity"];
+pub const GLOSSARY: [&str; 22] = [
+    "barrier",
+    "basin",
+    "bulge",
+    "chaotic",
+    "hopping",
+    "impact",
+    "interwell",
+    "intrawell",
+    "irregular",
+    "once a period",
+    "path error",
+    "period",
+    "phase portrait",
+    "potential",
+    "preload",
+    "push",
+    "reach",
+    "release",
+    "restitution",
+    "RMS velocity",
+    "separatrix",
+    "settling",
+];
+
+/// Those that are underlined in a text, where they have no other meaning.
+pub const UNDERLINED: [&str; 13] = [
+    "barrier",
+    "basin",
+    "chaotic",
+    "interwell",
+    "intrawell",
+    "period",
+    "phase portrait",
+    "potential",
+    "preload",
+    "release",
+    "restitution",
+    "RMS velocity",
+    "separatrix",
+];
 
 /// The byte ranges of glossary terms in a text, each with its term.
 pub fn terms(text: &str) -> Vec<(Range<usize>, &'static str)> {
@@ -138,7 +197,7 @@ pub fn terms(text: &str) -> Vec<(Range<usize>, &'static str)> {
     let small = text.to_ascii_lowercase();
     let is_letter = |c: Option<char>| c.is_some_and(char::is_alphanumeric);
     let mut found = Vec::new();
-    for word in GLOSSARY {
+    for word in UNDERLINED {
         for (at, matched) in small.match_indices(&word.to_ascii_lowercase()) {
             let mut end = at + matched.len();
             end += usize::from(small[end..].starts_with('s'));

@@ -48,6 +48,27 @@ pub fn exact(value: f64, least: usize) -> String {
     if decimals_in(&text) >= least { text } else { format!("{:.least$}", value + 0.0) }
 }
 
+/// Units that follow a number after a space.
+const UNITS: [&str; 26] = [
+    "g", "mm", "m", "um", "mm/s", "um/s", "m/s", "s", "ms", "Hz", "N", "mN", "N/m", "J", "mJ", "uJ", "W",
+    "mW", "uW", "V", "ohm", "kohm", "%", "min", "points", "N s/m",
+];
+
+/// A text for the screen: its lines are not broken between a number and its unit.
+pub fn unbroken(text: &str) -> String {
+    let mut whole = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(at) = rest.find(' ') {
+        let after = &rest[at + 1..];
+        let word = after.split(|c: char| c.is_whitespace() || ".,;:?!)".contains(c)).next().unwrap_or("");
+        let is_unit = rest[..at].ends_with(|c: char| c.is_ascii_digit()) && UNITS.contains(&word);
+        whole += &rest[..at];
+        whole.push(if is_unit { '\u{a0}' } else { ' ' });
+        rest = after;
+    }
+    whole + rest
+}
+
 /// A number with at least three significant digits, and no more decimals than these take.
 pub fn three(value: f64) -> String {
     let size = value.abs();
@@ -57,9 +78,12 @@ pub fn three(value: f64) -> String {
     format!("{value:.0$}", numeric::decimals(size, 3))
 }
 
+/// Powers in W that are given in mW, wherever they stand.
+const MILLIWATTS: std::ops::Range<f64> = 1e-5..1.0;
+
 /// The factor from W to the unit that suits powers up to `largest` in W, and the name of that unit.
 pub fn power_unit(largest: f64) -> (f64, &'static str) {
-    suited_unit("W", std::iter::once(largest))
+    if MILLIWATTS.contains(&largest) { (1e3, "mW") } else { suited_unit("W", std::iter::once(largest)) }
 }
 
 /// A power in W as text with a unit.
@@ -134,10 +158,14 @@ pub fn limit_mm(mm: f64) -> String {
     }
 }
 
-/// Energy in mJ: two decimals, or three significant digits below that.
+/// Energy in mJ with two decimals, or below that with three significant digits in a unit that suits it.
 pub fn energy(j: f64) -> String {
     let mj = j.max(0.0) * 1e3;
-    if mj == 0.0 || mj >= 0.1 { format!("{mj:.2} mJ") } else { format!("{} mJ", significant(mj, 3)) }
+    if mj == 0.0 || mj >= 0.1 {
+        return format!("{mj:.2} mJ");
+    }
+    let (factor, unit) = suited_unit("J", std::iter::once(j));
+    format!("{} {unit}", significant(j * factor, 3))
 }
 
 /// A displacement in m near the left and right stops in m, as text in mm: as `mm` formats it, or with more
@@ -204,8 +232,8 @@ mod tests {
         assert_eq!(texts, ["0.90", "1.137", "0.0377295", "1047.198", "15.0", "0.00", "1e-9"]);
         assert_eq!(exact(0.037_729_499_880_183_35, 2), "0.03772949988018335");
         assert_eq!([0.05, 0.01, 15.0, 2e-4].map(decimals), [2, 2, 0, 4]);
-        let powers = [0.0, 1.234, 0.012_34, 5e-6, -2e-9].map(power);
-        assert_eq!(powers, ["0 mW", "1.23 W", "12.3 mW", "5.00 µW", "-2.00 nW"]);
+        let powers = [0.0, 1.234, 0.012_34, 3.26e-4, 5e-6, -2e-9].map(power);
+        assert_eq!(powers, ["0 mW", "1.23 W", "12.3 mW", "0.326 mW", "5.00 µW", "-2.00 nW"]);
         assert_eq!([0.0384, 1.25, 1000.0].map(three), ["0.0384", "1.25", "1000"]);
     }
 
@@ -225,6 +253,12 @@ mod tests {
         }
         assert_eq!([0.6881, 1.15, 0.9991].map(grams_up), ["0.689", "1.15", "1.00"]);
         assert_eq!((grams_apart(0.2604), newtons(0.196_8)), ("0.26".into(), "0.20 N".into()));
+    }
+
+    #[test]
+    fn an_energy_has_the_unit_that_suits_it() {
+        let texts = [9.2e-4, 1.2, 5.12e-12, 4.56e-8, 0.0, -1.0].map(energy);
+        assert_eq!(texts, ["0.92 mJ", "1200.00 mJ", "5.12 pJ", "45.6 nJ", "0.00 mJ", "0.00 mJ"]);
     }
 
     #[test]

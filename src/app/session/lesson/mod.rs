@@ -11,6 +11,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use crate::app::task::{Background, Wake};
+use crate::app::words::lesson::bold_words;
 use crate::scene::lesson::{Choice, LESSONS, Lesson, LessonDocument, Step};
 use crate::scene::{Document, Scene, Source, arguments};
 use crate::study::{Lack, Subject, Task, Unjudged, goal_lack, options_that_hold};
@@ -19,11 +20,14 @@ use super::Session;
 
 pub use progress::{Answer, Progress, Records, answers_text};
 
+/// Greatest number of votes for an option.
+pub const MOST_VOTES: u32 = 999;
+
 /// Time in s for which a scene has to stay unchanged before it can complete a task.
 const STILL: f64 = 0.5;
 
-/// Time in s after which a hint is shown by itself.
-const HINT_AFTER: f64 = 45.0;
+/// Number of scenes that do not do a task after which its hint is offered.
+const TRIES: usize = 3;
 
 /// What the screen is to show after an action in the lesson.
 #[derive(Debug)]
@@ -34,7 +38,6 @@ pub enum Turn {
     Same,
     /// This scene from its start, and whether it plays.
     Show(Box<Document>, bool),
-    Leave,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -63,9 +66,13 @@ pub enum Outcome {
 pub struct OpenLesson {
     document: Arc<LessonDocument>,
     progress: Progress,
-    /// Time of the window in s at which the step began.
-    begun: Option<f64>,
+    /// Time of the window in s at which the lesson was opened.
+    opened: Option<f64>,
     hinted: bool,
+    /// Number of scenes that were judged and did not do the task; whether the present one is among them.
+    tries: (usize, bool),
+    /// Whether it goes on from where it was left, and nobody has said that it shall.
+    begun_before: bool,
     /// Which option of the prediction in the step of this number holds.
     options: Background<usize, Outcome>,
     /// What a run of the scene says about the task.
@@ -81,9 +88,11 @@ impl OpenLesson {
         let progress = Progress::of(&document.lesson, kept);
         let mut opened = Self {
             document: Arc::new(document),
+            begun_before: progress.step > 0,
             progress,
-            begun: None,
+            opened: None,
             hinted: false,
+            tries: (0, false),
             options: Background::default(),
             goal: Background::default(),
             still_since: 0.0,
@@ -151,6 +160,19 @@ impl OpenLesson {
         matches!(self.step(), Step::Predict { .. }) && !self.answer().shown
     }
 
+    /// The scene of the answer to a prediction, while it is covered.
+    pub fn asked(&self) -> Option<&Scene> {
+        self.is_covering().then(|| &self.document.end(self.progress.step).scene)
+    }
+
+    /// Whether a view is covered until the first prediction has been shown: one that tells the answer, unless
+    /// a step before names it, in lower case, in bold.
+    pub fn keeps_back(&self, view: &str) -> bool {
+        let steps = self.lesson().steps.iter();
+        let mut before = steps.take_while(|step| !matches!(step, Step::Predict { .. }));
+        self.hides_surveys() && !before.any(|step| bold_words(step.text()).any(|word| word == view))
+    }
+
     /// Whether results for other settings are covered: until the first prediction has been shown.
     pub fn hides_surveys(&self) -> bool {
         let is_prediction = |step: &Step| matches!(step, Step::Predict { .. });
@@ -196,19 +218,19 @@ impl OpenLesson {
         self.reveal()
     }
 
-    fn reveal(&mut self) -> Turn {
+    /// Shows the answer of a covered prediction, with or without a choice.
+    pub fn reveal(&mut self) -> Turn {
+        if !self.is_covering() {
+            return Turn::Stay;
+        }
         self.answer_mut().shown = true;
-        self.begun = None;
         Turn::Show(Box::new(self.document.end(self.progress.step).clone()), true)
     }
 
-    /// Goes on even if the step is not settled; a covered prediction is first shown, without a choice.
+    /// Goes on even if a task is not done, but neither past a covered prediction nor past the last step.
     pub fn go_on(&mut self) -> Turn {
-        if self.is_covering() {
-            return self.reveal();
-        }
-        if self.is_last() {
-            return Turn::Leave;
+        if self.is_covering() || self.is_last() {
+            return Turn::Stay;
         }
         self.enter(self.progress.step + 1)
     }
@@ -221,10 +243,22 @@ impl OpenLesson {
     /// Goes on from the step and with the answers that were kept.
     pub fn go_on_from(&mut self, kept: &Progress) -> Turn {
         self.progress = Progress::of(self.lesson(), Some(kept));
+        self.begun_before = self.progress.step > 0;
         self.enter_from_elsewhere(self.progress.step)
     }
 
+    /// Whether to ask if it is to begin anew: it was begun before, perhaps by another class.
+    pub fn was_begun_before(&self) -> bool {
+        self.begun_before
+    }
+
+    /// Goes on from where it was left.
+    pub fn resume(&mut self) {
+        self.begun_before = false;
+    }
+
     pub fn begin_anew(&mut self) -> Turn {
+        self.begun_before = false;
         let done = self.progress.done;
         self.progress = Progress { done, ..Progress::of(self.lesson(), None) };
         self.enter(0)
@@ -240,7 +274,7 @@ impl OpenLesson {
 
     fn enter(&mut self, number: usize) -> Turn {
         self.progress.step = number;
-        (self.begun, self.hinted) = (None, false);
+        (self.hinted, self.tries) = (false, (0, false));
         self.options.clear();
         self.goal.clear();
         let document = Arc::clone(&self.document);
@@ -283,7 +317,7 @@ impl OpenLesson {
     pub fn follow(&mut self, session: &Session, now: f64) -> Option<f64> {
         self.options.poll();
         self.goal.poll();
-        let begun = *self.begun.get_or_insert(now);
+        self.opened.get_or_insert(now);
         let mut next = None;
         match self.step() {
             Step::Predict { .. } => {
@@ -292,15 +326,7 @@ impl OpenLesson {
                     self.answer_mut().outcome = Some(text);
                 }
             }
-            Step::Do { hint, .. } => {
-                let left = begun + HINT_AFTER - now;
-                if hint.is_some() && !self.hinted && !self.answer().met {
-                    self.hinted = left <= 0.0;
-                    next = Some(left.max(0.0));
-                }
-                let wait = self.judge_task(session, now);
-                next = [next, wait].into_iter().flatten().reduce(f64::min);
-            }
+            Step::Do { .. } => next = self.judge_task(session, now),
             Step::Say(_) | Step::Explain(_) => {}
         }
         self.progress.done |= self.is_last() && self.may_go_on();
@@ -318,7 +344,7 @@ impl OpenLesson {
         }
         let scene = session.scene();
         if self.goal.question() != Some(scene) {
-            self.still_since = now;
+            (self.still_since, self.tries.1) = (now, false);
             let (document, number) = (Arc::clone(&self.document), self.progress.step);
             let (edited, mechanism) = (session.editor.runnable(), Arc::clone(session.model().mechanism()));
             let built = session.mechanism_of == edited.scene.mechanism;
@@ -330,6 +356,11 @@ impl OpenLesson {
                 .map(|state| state.unwrap_or_else(TaskState::Unjudged))
             });
             return Some(STILL);
+        }
+        // the scene with which the task begins is no try
+        let is_try = matches!(self.goal.answer(), Some(TaskState::NotYet(_))) && !self.tries.1;
+        if is_try && *scene != self.document.begin(self.progress.step).scene {
+            self.tries = (self.tries.0 + 1, true);
         }
         if self.goal.answer() != Some(&TaskState::Met) {
             return None;
@@ -363,15 +394,41 @@ impl OpenLesson {
         self.options.answer().cloned().unwrap_or(Outcome::Unknown)
     }
 
-    /// The hint of a task, while it is shown: on request, or because the task has taken long.
+    /// The hint of a task, while it is shown: on request, until the task is done.
     pub fn hint(&self) -> Option<&str> {
         self.offered_hint().filter(|_| self.hinted)
     }
 
+    /// The hint that a task can show; none once it is done.
     pub fn offered_hint(&self) -> Option<&str> {
         match self.step() {
-            Step::Do { hint, .. } => hint.as_deref(),
+            Step::Do { hint, .. } if !self.answer().met => hint.as_deref(),
             _ => None,
+        }
+    }
+
+    /// Whether the hint is to be offered, since several tries have failed.
+    pub fn offers_hint(&self) -> bool {
+        self.offered_hint().is_some() && !self.hinted && self.tries.0 >= TRIES
+    }
+
+    /// Time in s since the lesson was opened.
+    pub fn open_for(&self, now: f64) -> f64 {
+        self.opened.map_or(0.0, |opened| now - opened)
+    }
+
+    /// Votes for the options of a prediction, in their order.
+    pub fn votes(&self) -> &[u32] {
+        &self.answer().votes
+    }
+
+    /// Adds votes for an option of a covered prediction, or takes some away.
+    pub fn vote(&mut self, option: usize, more: i32) {
+        let count = self.options().len();
+        if option < count && self.is_covering() {
+            let votes = &mut self.answer_mut().votes;
+            votes.resize(count, 0);
+            votes[option] = votes[option].saturating_add_signed(more).min(MOST_VOTES);
         }
     }
 

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 
 use serde::{Deserialize, Serialize};
 
+use crate::app::words::lesson::tally;
 use crate::scene::lesson::{Lesson, Step};
 
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -13,6 +14,8 @@ pub struct Answer {
     /// The text of the question or task; the answer is dropped if it has changed.
     pub ask: String,
     pub choice: Option<String>,
+    /// Votes of a class for the options, in their order; empty without any.
+    pub votes: Vec<u32>,
     /// Whether the result of the prediction has been shown, with or without a choice.
     pub shown: bool,
     /// The option that holds, once it is known.
@@ -72,6 +75,9 @@ pub fn answers_text(records: &Records) -> Option<String> {
                 let with = if settings.is_empty() { String::new() } else { format!(" with {settings}") };
                 let _ = writeln!(text, "  Done{with}");
                 continue;
+            }
+            if answer.votes.iter().any(|votes| *votes > 0) {
+                let _ = writeln!(text, "  {}", tally(&answer.votes));
             }
             let _ = writeln!(text, "  I expected: {}", answer.choice.as_deref().unwrap_or("nothing"));
             if let Some(outcome) = &answer.outcome {

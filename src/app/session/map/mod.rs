@@ -25,6 +25,9 @@ const STILL: f64 = 0.25;
 
 const MAX_SCENES: usize = 400;
 
+/// The column of the mean power into the load of a transducer.
+pub const LOAD_POWER: &str = "mean_load_power_w";
+
 /// The question that a map answers: a scene, apart from the fields of the axes, and the axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Question {
@@ -38,8 +41,10 @@ pub struct Question {
 
 #[derive(Default)]
 pub struct Mapping {
-    /// The quantity that the map shows; `None` for the RMS velocity.
+    /// The quantity that the user has chosen.
     quantity: Option<&'static SummaryField>,
+    /// Whether the map opens on the mean power into the load, and not on the RMS velocity.
+    pub about_power: bool,
     pub trail: Trail,
     /// The axes that the user has chosen; `None` for the default axes.
     chosen: Option<[SweepAxis; 2]>,
@@ -105,7 +110,8 @@ impl Mapping {
     }
 
     pub fn quantity(&self) -> &'static SummaryField {
-        self.quantity.unwrap_or(&RMS_VELOCITY)
+        let power = || SummaryField::find(LOAD_POWER).filter(|_| self.about_power);
+        self.quantity.or_else(power).unwrap_or(&RMS_VELOCITY)
     }
 
     pub fn show(&mut self, quantity: &'static SummaryField) {

@@ -6,6 +6,8 @@
 //! section; its magnet hangs below the mass. Piezoelectric patches lie on the feet of the flexures. The load
 //! is on the right, where the flexures do not reach.
 
+use std::cell::RefCell;
+
 use eframe::egui::layers::ShapeIdx;
 use eframe::egui::{Align2, Painter, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, Ui, Vec2, pos2, vec2};
 
@@ -18,7 +20,7 @@ use crate::scene::Transducer;
 
 mod transducer;
 
-use super::labels::plated;
+use super::labels::Taken;
 
 /// Smallest size in points of a drawing whose parts are labelled.
 pub(super) const MIN_LABELLED: Vec2 = vec2(280.0, 140.0);
@@ -119,12 +121,21 @@ impl Attachments {
     }
 
     /// Draws the parts, most of them in the shape reserved `behind` the flexures.
-    pub fn draw(&self, ui: &Ui, painter: &Painter, style: &Style, behind: ShapeIdx, places: &Places) {
+    pub fn draw(
+        &self,
+        ui: &Ui,
+        painter: &Painter,
+        style: &Style,
+        behind: ShapeIdx,
+        places: &Places,
+        taken: &mut Taken,
+    ) {
         let mut shapes = Vec::new();
         let named = places.rect.width() >= MIN_LABELLED.x && places.rect.height() >= MIN_LABELLED.y;
         let is_free_on_the_right = self.transducer == Transducer::None;
         let has_magnets = self.has_magnets();
-        let pen = Pen { ui, painter, style, places, named, is_free_on_the_right, has_magnets };
+        let taken = RefCell::new(taken);
+        let pen = Pen { ui, painter, style, places, named, is_free_on_the_right, has_magnets, taken };
         pen.spring(self.stiffness, &mut shapes);
         if let Some((strength, gap)) = self.magnets {
             pen.magnets(strength, gap, self.pairs, &mut shapes);
@@ -148,6 +159,8 @@ struct Pen<'a> {
     is_free_on_the_right: bool,
     /// Whether magnets hang below the mass.
     has_magnets: bool,
+    /// What is drawn already.
+    taken: RefCell<&'a mut Taken>,
 }
 
 impl Pen<'_> {
@@ -155,16 +168,19 @@ impl Pen<'_> {
         Stroke::new(1.3, self.style.ink())
     }
 
-    /// Writes a name if it fits between these ends. Returns whether it fits.
-    fn name(&self, (at, align): (Pos2, Align2), text: &str, (left, right): (f32, f32)) -> bool {
-        let (font, colour) = (self.style.small(), self.style.faint());
-        let size = self.painter.layout_no_wrap(text.to_owned(), font.clone(), colour).size();
-        let place = align.anchor_size(at, size);
-        let has_room = self.named && place.left() >= left && place.right() <= right;
-        if has_room {
-            plated(self.painter, self.style, (at, align), text, (font, colour));
+    /// Writes the first of these names and places that is free, and fits between these ends.
+    fn name(&self, names: &[(&str, Pos2, Align2)], (left, right): (f32, f32)) {
+        if self.named && left < right {
+            let room = self.places.rect.with_min_x(left).with_max_x(right);
+            let look = (self.style.small(), self.style.faint());
+            self.taken.borrow_mut().write(self.painter, room, look, names.iter().copied());
         }
-        has_room
+    }
+
+    /// Has names keep clear of a line.
+    fn keep(&self, line: Vec<Pos2>) -> Vec<Pos2> {
+        self.taken.borrow_mut().lines.push(line.clone());
+        line
     }
 
     fn explain(&self, place: Rect, part: &str, words: &str) {
@@ -183,14 +199,13 @@ impl Pen<'_> {
         shapes.push(Shape::rect_filled(wall, 0.0, self.style.frame_colour()));
         let edge = [wall.right_top(), wall.right_bottom()];
         shapes.push(Shape::line_segment(edge, Stroke::new(1.5, self.style.faint())));
-        shapes.push(Shape::line(
-            coil((from, to), HALF_TURNS, SPRING, (END / (to.x - from.x)).min(0.25)),
-            self.style.flexure_stroke(),
-        ));
+        let line = self.keep(coil((from, to), HALF_TURNS, SPRING, (END / (to.x - from.x)).min(0.25)));
+        shapes.push(Shape::line(line, self.style.flexure_stroke()));
         let text = format!("spring {} N/m", short(stiffness));
-        // below the stops
-        let below = (pos2(from.x + 6.0, body.bottom() + 5.0), Align2::LEFT_TOP);
-        self.name(below, &text, (rect.left(), rect.right()));
+        // below the stops, or above them
+        let below = (text.as_str(), pos2(from.x + 6.0, body.bottom() + 7.0), Align2::LEFT_TOP);
+        let above = (text.as_str(), pos2(from.x + 6.0, body.top() - 7.0), Align2::LEFT_BOTTOM);
+        self.name(&[below, above], (rect.left(), rect.right()));
         let effect = if stiffness > 0.0 { "draws the mass there" } else { "pushes the mass away from there" };
         let words = format!(
             "A spring of {} N/m between the frame and the mass. It has no force at x = 0 and {effect}, \
@@ -220,12 +235,15 @@ impl Pen<'_> {
         self.magnet(hung, pole, true);
         self.magnet(stood, pole, attract);
         let verb = if attract { "attract" } else { "repel" };
-        // on the side away from the flexures
-        let beside = match body.center().x < zero && self.is_free_on_the_right {
-            true => (pos2(zero + MAGNET + 6.0, stood.y), Align2::LEFT_CENTER),
-            false => (pos2(zero - MAGNET - 6.0, stood.y), Align2::RIGHT_CENTER),
+        let name = format!("magnets {verb}");
+        let right = (name.as_str(), pos2(zero + MAGNET + 6.0, stood.y), Align2::LEFT_CENTER);
+        let left = (name.as_str(), pos2(zero - MAGNET - 6.0, stood.y), Align2::RIGHT_CENTER);
+        // the side away from the flexures first
+        let sides = match body.center().x < zero && self.is_free_on_the_right {
+            true => [right, left],
+            false => [left, right],
         };
-        self.name(beside, &format!("magnets {verb}"), (rect.left() + WORDS_ROOM, rect.right()));
+        self.name(&sides, (rect.left() + WORDS_ROOM, rect.right()));
         let effect = if attract { "draw the mass to x = 0" } else { "push the mass away from x = 0" };
         let mm = |metres: f64| three(1e3 * metres);
         let more = match pairs {
@@ -254,6 +272,7 @@ impl Pen<'_> {
             let (fill, letter) = if north { (ink, ground) } else { (ground, ink) };
             let edge = Stroke::new(1.2, ink);
             self.painter.rect(place, 0.0, fill, edge, StrokeKind::Inside);
+            self.taken.borrow_mut().places.push(place);
             if pole >= LETTERED {
                 let text = if north { "N" } else { "S" };
                 self.painter.text(place.center(), Align2::CENTER_CENTER, text, self.style.small(), letter);

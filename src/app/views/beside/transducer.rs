@@ -147,8 +147,8 @@ impl Pen<'_> {
         let beside = (pos2(end + 6.0, y[1] + 2.0), Align2::LEFT_BOTTOM);
         let above = (pos2(resistor.center().x, resistor.top() - 3.0), Align2::CENTER_BOTTOM);
         let whole = format!("{name}, {text}");
-        let names = [(beside, &whole), (above, &whole), (beside, &text), (above, &text)];
-        let _ = names.iter().any(|(place, words)| self.name(*place, words, (0.0, right)));
+        let names = [(&whole, beside), (&whole, above), (&text, beside), (&text, above)];
+        self.name(&names.map(|(words, (at, align))| (words.as_str(), at, align)), (0.0, right));
         self.explain(resistor, "load", &words);
     }
 }

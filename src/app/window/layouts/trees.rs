@@ -152,6 +152,12 @@ pub(super) fn lesson_tree(views: &[View]) -> Tree<View> {
     let is_left = |view: &&View| if has_wide { is_wide(**view) } else { view.is_along_x() };
     let (mut left, mut right): (Vec<View>, Vec<View>) = views.iter().partition(is_left);
     left.sort_by_key(|view| *view != View::Mechanism);
+    // a fourth view shares the place of the motion over time
+    if left.len() > 2 && right.len() == 1 {
+        right.extend(left.split_off(2));
+        let sides = columns(vec![column(&left), Tabs(right)], LEFT_SHARE);
+        return tree("lesson", sides);
+    }
     if left.is_empty() {
         std::mem::swap(&mut left, &mut right);
     }

@@ -4,13 +4,13 @@ use crate::dynamics::{First, Firsts, Model, Outcome, Place, Regime, STANDARD_GRA
 use crate::scene::{Excitation, Scene, Stops};
 use crate::study::Thresholds;
 
-use super::super::numbers::{between, grams, limit_mm, mm_beside, seconds, speed, times};
+use super::super::numbers::{between, grams, limit_mm, mm_beside, power, seconds, speed, times};
 use super::super::wells::wells_between;
 use super::remedy::{amplitude, remedy};
 use super::{Kind, Sentence, ended};
 
-/// Forcing periods after which a motion that does not repeat is described in the present tense.
-const SEEN_PERIODS: f64 = 5.0;
+/// Forcing periods of a motion that have to be drawn before it is described in the present tense.
+const SEEN_PERIODS: f64 = 3.0;
 
 /// Forcing periods within which a motion seems to settle at once.
 const AT_ONCE: f64 = 5.0;
@@ -26,6 +26,8 @@ pub struct DrivenMotion<'a> {
     /// Live time in s at which the run of the summary began.
     pub origin: f64,
     pub now: f64,
+    /// Live time in s up to which the path is reliable; `None` while that is not known.
+    pub trusted_to: Option<f64>,
 }
 
 impl DrivenMotion<'_> {
@@ -37,8 +39,10 @@ impl DrivenMotion<'_> {
         };
         let periods = match (summary.regime, summary.settles_at) {
             (Regime::Rest, Some(at)) => at / period,
-            (_, Some(at)) => at / period + f64::from(summary.period.unwrap_or(1)),
-            (_, None) => SEEN_PERIODS,
+            (_, settles_at) => {
+                let repeats = f64::from(summary.period.unwrap_or(1));
+                settles_at.unwrap_or(0.0) / period + SEEN_PERIODS.max(repeats)
+            }
         };
         self.origin + periods * period
     }
@@ -52,12 +56,20 @@ impl DrivenMotion<'_> {
         if self.is_seen() { present } else { future }
     }
 
+    /// The word before a forecast for the live time `t` in s, unless the path can be trusted up to then.
+    fn about(&self, t: f64) -> &'static str {
+        if t <= self.now || self.trusted_to.is_some_and(|trusted| t <= trusted) { "" } else { "about " }
+    }
+
     /// From when on the motion is settled, in words; empty if it already is or settles at once.
     fn settling_time(&self) -> String {
         let period = self.model.forcing_period().unwrap_or(0.0);
         let late = |at: &f64| *at > AT_ONCE * period && self.now < self.origin + *at;
         match self.summary.settles_at.filter(late) {
-            Some(at) => format!(" from {} on", seconds(self.origin + at)),
+            Some(at) => {
+                let t = self.origin + at;
+                format!(" from {}{} on", self.about(t), seconds(t))
+            }
             None => String::new(),
         }
     }
@@ -92,6 +104,11 @@ pub fn driven(facts: &DrivenMotion) -> Sentence {
     // the averages of a motion that does not repeat depend on the window
     let about = if summary.period.is_some() || summary.regime == Regime::Rest { "" } else { "about " };
     let rms = format!("RMS velocity {about}{} mm/s", speed(rms));
+    let load = summary.harvest.and_then(|harvest| harvest.mean_load_power);
+    let rms = match load.filter(|_| model.has_transducer()) {
+        Some(load) => format!("{about}{} into the load, {rms}", power(load)),
+        None => rms,
+    };
     let stops = model.stop_positions();
     let range = between(low, high, stops);
     let side = match summary.side {
@@ -117,11 +134,11 @@ pub fn driven(facts: &DrivenMotion) -> Sentence {
             let swing = if symmetric { format!("±{} mm", mm_beside(reach, stops)) } else { range };
             format!("No barrier: one well, so nothing to cross; {swings} {swing}, {rms}.")
         }
-        Regime::Rest if scene.stops == Stops::None => format!("Resting{from}: {stays} where it is."),
+        Regime::Rest if scene.stops == Stops::None => format!("Resting: {stays} where it is{from}."),
         Regime::Rest => {
             let push = amplitude(scene).map_or_else(|| "this".to_owned(), |g| format!("{} g", grams(g)));
             let frees = facts.tense("never frees it", "will never free it");
-            format!("Resting{from}: {stays} pressed on the {side} stop; {push} {frees}.")
+            format!("Resting: {stays} pressed on the {side} stop{from}; {push} {frees}.")
         }
         Regime::Crossing | Regime::Intrawell if !model.repeats() => {
             return unrepeated(facts, &rms, &range, &well);
@@ -133,21 +150,23 @@ pub fn driven(facts: &DrivenMotion) -> Sentence {
             };
             let (leaves, falls) = (facts.tense("leaves", "will leave"), facts.tense("falls", "fall"));
             format!(
-                "Hopping{from}: {leaves} the {side} stop {every} and {falls} back, {never} crossing; {rms}, \
+                "Hopping: {leaves} the {side} stop {every}{from} and {falls} back, {never} crossing; {rms}, \
                  {:.0} impacts a period.",
                 per_period(summary.impacts)
             )
         }
         Regime::Intrawell if summary.impacts > 0 => {
             let (hits, impacts) = (facts.tense("hits", "hit"), times(per_period(summary.impacts)));
-            format!("Intrawell{from}: {settles} in the {well} and {hits} its stop {impacts}; {rms}.")
+            format!("Intrawell: {settles} in the {well}{from} and {hits} its stop {impacts}; {rms}.")
         }
-        Regime::Intrawell => format!("Intrawell{from}: {settles} in the {well}, {range}; {rms}."),
+        Regime::Intrawell => format!("Intrawell: {settles} in the {well}{from}, {range}; {rms}."),
         Regime::Irregular if summary.crossing_periods >= summary.periods => {
             format!("Irregular: {crosses} in every period, never twice alike; {rms}.")
         }
         Regime::Irregular => format!(
-            "Irregular: {crosses} in {} of {periods:.0} periods, without a rhythm; {rms}, reach about {} mm.",
+            "Irregular: {crosses} in {}{} of {periods:.0} periods, without a rhythm; {rms}, reach about {} \
+             mm.",
+            facts.about(facts.origin + summary.window.1),
             summary.crossing_periods,
             mm_beside(reach, stops)
         ),
@@ -167,20 +186,22 @@ pub fn driven(facts: &DrivenMotion) -> Sentence {
 fn interwell(facts: &DrivenMotion, crosses: &str, rms: &str, range: &str) -> String {
     let DrivenMotion { model, summary, .. } = *facts;
     let rate = summary.crossings as f64 / summary.periods.max(1) as f64;
+    let from = facts.settling_time();
     let how = match summary.period {
         Some(n) if n > 1 && summary.crossing_periods >= summary.periods => {
-            format!("{crosses} every period and repeats after {n} periods")
+            let repeats = facts.tense("repeats", "repeat");
+            format!("{crosses} every period{from} and {repeats} after {n} periods")
         }
         Some(n) if n > 1 => {
-            format!("{crosses} {:.0} times in {n} periods and then repeats", (rate * f64::from(n)).round())
+            let (count, repeats) = ((rate * f64::from(n)).round(), facts.tense("repeats", "repeat"));
+            format!("{crosses} {count:.0} times in {n} periods{from} and then {repeats}")
         }
-        Some(_) => format!("{crosses} {}", times(rate)),
-        None => format!("{crosses} {}, each time a little differently", times(rate)),
+        Some(_) => format!("{crosses} {}{from}", times(rate)),
+        None => format!("{crosses} {}{from}, each time a little differently", times(rate)),
     };
     let (left, right) = model.stop_positions();
     let equal = left.zip(right).filter(|(left, right)| *left == -*right);
     let share = summary.impact_share.filter(|_| summary.impacts > 0).map(|share| share * 100.0);
-    let from = facts.settling_time();
     let place = match (equal, share) {
         (Some((_, limit)), Some(_)) => format!("from stop to stop at ±{} mm", limit_mm(limit * 1e3)),
         (None, Some(_)) => range.to_owned(),
@@ -189,7 +210,7 @@ fn interwell(facts: &DrivenMotion, crosses: &str, rms: &str, range: &str) -> Str
         }
     };
     let impacts = share.map_or_else(String::new, |share| format!(", impacts take {share:.0} % of the work"));
-    format!("Interwell{from}: {how}, {place}; {rms}{impacts}.")
+    format!("Interwell: {how}, {place}; {rms}{impacts}.")
 }
 
 /// The sentence about a motion under a drive without a period: what it does in the settled window.
@@ -204,7 +225,7 @@ fn unrepeated(facts: &DrivenMotion, rms: &str, range: &str, well: &str) -> Sente
         let crosses = if seen { "Crossed" } else { "Will cross" };
         let count = match summary.crossings {
             1 => "once".to_owned(),
-            n => format!("{n} times"),
+            n => format!("{}{n} times", facts.about(to)),
         };
         (Kind::Crossing, format!("{crosses} {count} {when}; {rms}."))
     };
@@ -215,12 +236,16 @@ fn unrepeated(facts: &DrivenMotion, rms: &str, range: &str, well: &str) -> Sente
 fn ramped(facts: &DrivenMotion, firsts: &Firsts) -> Sentence {
     let DrivenMotion { model, summary, origin, now, .. } = *facts;
     let end = origin + summary.window.1;
-    let place = |first: &First, at: &str| {
+    let about = |first: &First| facts.about(origin + first.t);
+    let place = |first: &First| {
         let amplitude = first.amplitude.map(|accel| accel / STANDARD_GRAVITY);
-        amplitude.map_or(String::new(), |g| format!("{at}{} g, ", grams(g)))
+        amplitude.map_or(String::new(), |g| format!("{}{} g, ", about(first), grams(g)))
     };
-    let time = |first: &First| seconds(origin + first.t);
-    let at = |first: &First| format!("{}after {}", place(first, "at "), time(first));
+    let time = |first: &First| format!("{}{}", about(first), seconds(origin + first.t));
+    let at = |first: &First| match place(first) {
+        place if place.is_empty() => format!("after {}", time(first)),
+        place => format!("at {place}after {}", time(first)),
+    };
     let passed = |first: &Option<First>| first.is_some_and(|first| now >= origin + first.t);
     let kind = match firsts {
         _ if passed(&firsts.crossing) => Kind::Crossing,
@@ -230,23 +255,33 @@ fn ramped(facts: &DrivenMotion, firsts: &Firsts) -> Sentence {
     };
     let mut parts = Vec::new();
     let stopped = summary.total_impacts > 0 || summary.rests > 0 || summary.regime == Regime::Rest;
+    let is_over = now >= end;
+    let tense = |is_past: bool, past: &'static str, future: &'static str| if is_past { past } else { future };
     match &firsts.release {
-        Some(first) => parts.push(format!("first released {}", at(first))),
+        Some(first) => {
+            let released = tense(passed(&firsts.release), "was first released", "will first be released");
+            parts.push(format!("{released} {}", at(first)));
+        }
         None if stopped && model.stop_positions() != (None, None) && firsts.crossing.is_none() => {
-            parts.push("never released".to_owned());
+            parts.push(tense(is_over, "was never released", "will never be released").to_owned());
         }
         None => {}
     }
     match (&firsts.crossing, &firsts.crossing_in_every_period) {
-        (Some(first), Some(always)) if first == always => {
-            parts.push(format!("crosses {}, and in every period from then on", at(first)));
-        }
         (Some(first), always) => {
-            parts.push(format!("first crosses {}", at(first)));
-            let always = always.as_ref().map(|first| format!("{}{}", place(first, ""), time(first)));
-            parts.extend(always.map(|start| format!("in every period from {start} on")));
+            let has_crossed = passed(&firsts.crossing);
+            let rest = match always {
+                Some(always) if first == always => ", and in every period from then on".to_owned(),
+                Some(always) => format!("; in every period from {}{} on", place(always), time(always)),
+                None => String::new(),
+            };
+            let crosses = match always == &Some(*first) {
+                true => tense(has_crossed, "crossed", "will cross"),
+                false => tense(has_crossed, "first crossed", "will first cross"),
+            };
+            parts.push(format!("{crosses} {}{rest}", at(first)));
         }
-        (None, _) => parts.push("never crosses".to_owned()),
+        (None, _) => parts.push(tense(is_over, "never crossed", "will never cross").to_owned()),
     }
     let until = match firsts.crossing_in_every_period {
         Some(_) => String::new(),

@@ -15,7 +15,7 @@ use super::numbers::{energy, mm, newtons};
 pub use super::numbers::{grams, mm_beside, seconds, speed};
 use super::wells::well_name;
 pub use driven::{DrivenMotion, driven};
-pub use remedy::ways;
+pub use remedy::{threshold, ways};
 
 /// What the status line says.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 
 use crate::dynamics::{Regime, Summary};
 use crate::scene::{Excitation, Scene, Stops};
-use crate::study::Thresholds;
+use crate::study::{Found, Thresholds};
 
 use super::super::capital;
 use super::super::numbers::{grams, grams_apart, grams_up};
@@ -19,17 +19,43 @@ pub(super) fn amplitude(scene: &Scene) -> Option<f64> {
 const NARROW: f64 = 1.03;
 
 /// The clause that says how far gaps reach above the least amplitude that crosses; empty without gaps.
-fn gaps(found: &Thresholds, from: f64) -> String {
-    match found.crossing.without_gap {
+fn gaps(found: &Found, from: f64) -> String {
+    match found.without_gap {
         Some(whole) if whole > NARROW * from => format!(", with gaps up to {} g", grams(whole)),
         None => ", with gaps above it".to_owned(),
         Some(_) => String::new(),
     }
 }
 
-/// The word before a threshold near which a motion may be a transient.
-fn about(found: &Thresholds) -> &'static str {
-    if found.crossing.undecided { "about " } else { "" }
+/// What is known of a threshold in g: the ends of the bracket where it is undecided, else twice the value.
+fn ends(found: &Found) -> Option<(f64, f64)> {
+    let value = found.value?;
+    match (found.low, found.high) {
+        (Some(low), Some(high)) if found.undecided => Some((low, high)),
+        _ => Some((value, value)),
+    }
+}
+
+/// A number, or the two ends of a bracket if they differ as written, with a word before it where neither is
+/// known.
+fn one_or_two(found: &Found, (low, high): (f64, f64), written: fn(f64) -> String) -> String {
+    let (low, high) = (written(low), written(high));
+    match low == high {
+        true if found.undecided => format!("about {low}"),
+        true => low,
+        false => format!("{low} to {high}"),
+    }
+}
+
+/// A threshold in g as every view writes it: a number or, where it is undecided, the bracket that holds it.
+pub fn threshold(found: &Found) -> Option<String> {
+    Some(one_or_two(found, ends(found)?, grams))
+}
+
+/// How far an amplitude is from a threshold, in g.
+fn distance(found: &Found, (low, high): (f64, f64), g: f64) -> String {
+    let (a, b) = ((low - g).abs(), (high - g).abs());
+    one_or_two(found, (a.min(b), a.max(b)), grams_apart)
 }
 
 /// What the thresholds, all from rest at this frequency, say of the present amplitude and motion.
@@ -39,27 +65,36 @@ pub(super) fn remedy(scene: &Scene, summary: &Summary, found: &Thresholds) -> St
         return String::new();
     }
     let crosses = summary.crossings > 0;
-    let Some(from) = found.crossing.value else {
+    let crossing = &found.crossing;
+    let (Some((low, high)), Some(least)) = (ends(crossing), threshold(crossing)) else {
         let limit = grams(found.searched_to);
         return match crosses {
             true => String::new(),
-            false if found.crossing.undecided => {
+            false if crossing.undecided => {
                 format!("From rest no shaking up to {limit} g was seen to cross.")
             }
             false => format!("From rest no shaking up to {limit} g crosses."),
         };
     };
-    let about = about(found);
-    let (least, gaps) = (format!("{about}{}", grams(from)), gaps(found, from));
-    let text = match (crosses, g >= from) {
-        (true, true) => format!("{about}{} g to spare: crosses from {least} g{gaps}.", grams_apart(g - from)),
+    let gaps = gaps(crossing, high);
+    let is_bracket = least.contains(" to ");
+    let from = if is_bracket {
+        format!("between {} g on", least.replace(" to ", " and "))
+    } else {
+        format!("{least} g")
+    };
+    let apart = distance(crossing, (low, high), g);
+    let text = match (crosses, g >= low) {
+        // in the bracket neither is known
+        _ if is_bracket && g >= low && g < high => {
+            format!("From rest it takes {least} g to cross{gaps}.")
+        }
+        (true, true) => format!("{apart} g to spare: crosses from {from}{gaps}."),
         (true, false) => format!("From rest it takes {least} g to cross{gaps}."),
-        (false, true) => format!("From rest it crosses from {least} g{gaps}."),
+        (false, true) => format!("From rest it crosses from {from}{gaps}."),
         (false, false) => match found.frees_at.filter(|frees| *frees > g) {
-            Some(frees) => format!("Frees at {} g, crosses from {least} g{gaps}.", grams_up(frees)),
-            None => {
-                format!("{about}{} g short of crossing at {least} g{gaps}.", grams_apart(from - g))
-            }
+            Some(frees) => format!("Frees at {} g, crosses from {from}{gaps}.", grams_up(frees)),
+            None => format!("{apart} g short of crossing at {least} g{gaps}."),
         },
     };
     capital(&text)
@@ -79,9 +114,9 @@ pub fn ways(scene: &Scene, settled: &Summary, thresholds: &Thresholds, stops_mm:
             None => "It crosses already, if not regularly.".to_owned(),
         },
         Regime::Rest | Regime::Intrawell => {
-            let more = thresholds.crossing.value.filter(|from| *from > g);
-            let about = about(thresholds);
-            let more = more.map(|from| format!("with {about}{} g more", grams_apart(from - g)));
+            let crossing = &thresholds.crossing;
+            let more = ends(crossing).filter(|ends| ends.0 > g);
+            let more = more.map(|ends| format!("with {} g more", distance(crossing, ends, g)));
             let make = if thresholds.crossing.undecided { "were seen to make" } else { "make" };
             match (more, stops) {
                 (Some(more), Some(stops)) => format!("Crosses {more}, or {stops}."),
@@ -110,7 +145,6 @@ mod tests {
     use crate::dynamics::{Model, Request};
     use crate::mechanics::Mechanism;
     use crate::scene::Document;
-    use crate::study::Found;
 
     #[test]
     fn what_is_not_known_is_said_to_be_about_or_as_far_as_seen() {
@@ -129,6 +163,13 @@ mod tests {
         let short = "About 0.30 g short of crossing at about 1.20 g.";
         let more = "Crosses with about 0.30 g more; no stops alone would do it.";
         assert_eq!(said(Some(1.2), true), [short, more]);
+        let bracket = Found { low: Some(1.15), high: Some(1.2), ..Found::default() };
+        let crossing = Found { value: Some(1.16), undecided: true, without_gap: Some(1.16), ..bracket };
+        let found = Thresholds { frees_at: None, crossing, searched_to: 30.0 };
+        assert_eq!(threshold(&crossing).unwrap(), "1.15 to 1.20");
+        let short = "0.25 to 0.30 g short of crossing at 1.15 to 1.20 g.";
+        let more = "Crosses with 0.25 to 0.30 g more; no stops alone would do it.";
+        assert_eq!([remedy(&scene, &settled, &found), ways(&scene, &settled, &found, None)], [short, more]);
         let nothing = "From rest no shaking up to 30.0 g crosses.";
         let neither = "From rest neither shaking up to 30.0 g nor any stops make it cross.";
         assert_eq!(said(None, false), [nothing, neither]);

@@ -75,6 +75,11 @@ fn basins() {
     speeds.iter().for_each(|own| near_relative(*own, speeds[0], 1e-9));
     told.says(&format!("all 31 end in the same motion, at {:.0} mm/s", speeds[0]));
     told.says("On these stops the mass comes to rest twice a period");
+    let line = "basins first-look --set excitation.amplitude_g=1.14 --set \
+                stops=Rigid(travel_limit_mm:2,restitution:0.36) --x-mm -2:2:15 --v -0.6:0.6:15 --quiet";
+    let ends = column(&stdout(line), "attractor");
+    assert!(ends.len() == 225 && ends.iter().all(|own| own == "1"));
+    told.says("With stops at 2 mm **Basins** has one colour");
 }
 
 #[test]
@@ -82,7 +87,8 @@ fn design() {
     let told = Told::new(8);
     let hill = |preload: &str| 1e3 * told.hill(&[preload]);
     let (stiff, soft) = (hill("mechanism.preload_mm=2.7"), hill("mechanism.preload_mm=1"));
-    told.says(&format!("{stiff:.2} mJ high at 2.7 mm, {soft:.2} mJ at 1.0 mm"));
+    told.says(&format!("{stiff:.2} mJ high at 2.7 mm"));
+    told.says(&format!("lowers the whole hill, to {soft:.2} mJ at 1.0 mm"));
     let preloaded = |preload: f64| format!("mechanism.preload_mm={preload}");
     let at = |preload: f64, limit: f64| told.run(&[&preloaded(preload), &stopped(limit)]);
     assert_eq!(at(2.7, 2.0).regime, Regime::Rest);

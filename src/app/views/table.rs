@@ -1,0 +1,428 @@
+//! Table of scenes and of what their motions settle to, a column each: for Before / now and for Compare.
+
+use eframe::egui::{FontId, Grid, Label, RichText, Sense, TextStyle, Ui, Vec2};
+
+use crate::app::session::Card;
+use crate::app::ui::style::{SMALL, strong_family};
+use crate::app::ui::widgets::kind_shapes;
+use crate::app::words::fields::{mechanism_name, name_and_unit};
+use crate::app::words::meanings::{explained, meaning};
+use crate::app::words::numbers::{decimals_for, exact, power_unit, shown, three};
+use crate::app::words::status::{Kind, mm_beside, seconds, speed, threshold};
+use crate::dynamics::{Outcome, Summary};
+use crate::scene::{Damping, Excitation, FieldPath, Scene, Start, Transducer, numeric_fields};
+
+use super::ViewContext;
+
+/// Height of a row in points.
+const ROW: f32 = 20.0;
+/// Largest and smallest gap between two rows in points.
+const ROW_GAP: (f32, f32) = (6.0, 1.0);
+/// Gap in points between columns.
+const COLUMN_GAP: f32 = 8.0;
+/// Share of the width that the column of names has, and its limits in points.
+const NAMES: (f32, f32, f32) = (0.32, 92.0, 140.0);
+/// Smallest width in points of a column of values.
+const MIN_COLUMN: f32 = 44.0;
+/// Width in points from which on a column has text of full size beside the symbols.
+pub(super) const WIDE_COLUMN: f32 = 96.0;
+
+const RMS: &str = "RMS velocity";
+const CROSSES: &str = "crosses from";
+
+/// Text of a value that is not known.
+const UNKNOWN: &str = "-";
+
+/// A column of the table.
+pub(super) struct Column {
+    /// `None` for a scene that there is not.
+    pub card: Option<Card>,
+    /// Live time in s at which its motion ended.
+    pub ended: Option<f64>,
+    /// Whether its numbers have their difference from the present ones in brackets.
+    pub differs: bool,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+struct Row {
+    name: String,
+    unit: &'static str,
+    /// The values of the columns, without the unit.
+    texts: Vec<String>,
+    /// Their differences from the present value, where known.
+    apart: Vec<Option<String>>,
+}
+
+impl Row {
+    fn new(name: &str, unit: &'static str, texts: Vec<String>) -> Self {
+        Self { name: name.to_owned(), unit, apart: vec![None; texts.len()], texts }
+    }
+
+    fn known(&self) -> impl Iterator<Item = &String> {
+        self.texts.iter().filter(|text| *text != UNKNOWN)
+    }
+
+    /// Whether two known values differ.
+    fn differs(&self) -> bool {
+        self.known().any(|text| Some(text) != self.known().next())
+    }
+}
+
+/// Draws the table. The column `now` is that of the present motion; `heading` draws the heading of a column,
+/// or of the column of names, with its width in points.
+pub(super) fn table_ui(
+    ui: &mut Ui,
+    context: &ViewContext<'_>,
+    (columns, now): (&[Column], usize),
+    heading: &mut dyn FnMut(&mut Ui, Option<usize>, f32),
+) {
+    let style = context.style;
+    let (share, least, most) = NAMES;
+    let names = (share * ui.available_width()).clamp(least, most);
+    let left = ui.available_width() - names;
+    let (width, names) = match left / columns.len() as f32 - COLUMN_GAP {
+        width if width >= WIDE_COLUMN => (width, names),
+        _ => {
+            let width = (ui.available_width() - least) / columns.len() as f32 - COLUMN_GAP;
+            (width.max(MIN_COLUMN), least)
+        }
+    };
+    let small = width < WIDE_COLUMN;
+    if small {
+        let styles = &mut ui.style_mut().text_styles;
+        styles.insert(TextStyle::Body, style.small());
+        styles.insert(TextStyle::Heading, FontId::new(SMALL, strong_family()));
+        (ui.spacing_mut().button_padding.x, ui.spacing_mut().interact_size.y) = (2.0, 0.0);
+    }
+    let scenes: Vec<Option<&Scene>> =
+        columns.iter().map(|column| column.card.as_ref().map(|card| &card.scene)).collect();
+    let before = scene_rows(&scenes);
+    let after = number_rows(columns, now, !context.session.keeps_remedy);
+    // the headings and the row of the motion
+    let count = (before.len() + after.len() + 3) as f32;
+    let gap = ((ui.available_height() - count * ROW) / (count - 1.0)).clamp(ROW_GAP.1, ROW_GAP.0);
+    let settled = columns[now].card.as_ref().and_then(|card| card.settled.as_ref());
+    let row_ui = |ui: &mut Ui, row: &Row| {
+        cell_ui(ui, names, |ui| {
+            ui.horizontal_wrapped(|ui| {
+                ui.spacing_mut().item_spacing.x = 4.0;
+                let name = ui.label(RichText::new(&row.name).color(style.faint()));
+                match settled.filter(|_| row.name == RMS) {
+                    Some(settled) => name.on_hover_text(rms_words(settled)),
+                    None => explained(name, &row.name),
+                };
+                if !row.unit.is_empty() {
+                    ui.label(RichText::new(row.unit).font(style.small()).color(style.faint()));
+                }
+            });
+        });
+        for (i, (text, apart)) in row.texts.iter().zip(&row.apart).enumerate() {
+            let written = RichText::new(text);
+            let written = match columns[i].differs && *text == row.texts[now] {
+                _ if i == now => written.heading(),
+                true => written.color(style.faint()),
+                false => written,
+            };
+            cell_ui(ui, width, |ui| {
+                ui.horizontal_wrapped(|ui| {
+                    ui.spacing_mut().item_spacing.x = 6.0;
+                    ui.add(Label::new(written).wrap());
+                    if let Some(apart) = apart {
+                        let text = format!("({apart})");
+                        ui.label(RichText::new(text).font(style.small()).color(style.faint()));
+                    }
+                });
+            });
+        }
+        ui.end_row();
+    };
+    Grid::new("table").num_columns(1 + columns.len()).spacing([COLUMN_GAP, gap]).show(ui, |ui| {
+        cell_ui(ui, names, |ui| heading(ui, None, names));
+        for i in 0..columns.len() {
+            cell_ui(ui, width, |ui| heading(ui, Some(i), width));
+        }
+        ui.end_row();
+        before.iter().for_each(|row| row_ui(ui, row));
+        ui.label(RichText::new(SETTLED).font(style.small())).on_hover_text(SETTLED_HOVER);
+        ui.end_row();
+        cell_ui(ui, names, |ui| ui.label(RichText::new("motion").color(style.faint())));
+        for column in columns {
+            cell_ui(ui, width, |ui| match column.ended {
+                Some(at) => {
+                    let text = format!("ended at {}, stays there", seconds(at));
+                    ui.add(Label::new(RichText::new(text).font(style.small())).wrap());
+                }
+                None => {
+                    let settled = column.card.as_ref().and_then(|card| card.settled.as_ref());
+                    regime_ui(ui, context, settled, small);
+                }
+            });
+        }
+        ui.end_row();
+        after.iter().for_each(|row| row_ui(ui, row));
+    });
+}
+
+/// Heading of the rows below it.
+const SETTLED: &str = "once settled";
+const SETTLED_HOVER: &str = "What the motion settles to, whether or not it has been played so far.";
+
+fn cell_ui<R>(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui) -> R) -> R {
+    let cell = ui.vertical(|ui| {
+        ui.set_width(width);
+        contents(ui)
+    });
+    cell.inner
+}
+
+/// Meaning of the RMS velocity, and the time over which it was taken.
+fn rms_words(settled: &Summary) -> String {
+    let (from, to) = settled.window;
+    let time = format!("from {} to {} after the start or the last change", seconds(from), seconds(to));
+    format!("{}\n\nHere it was taken {time}.", meaning(RMS).unwrap_or_default())
+}
+
+/// Rows of the scenes: shaking and stops, and whatever else differs between two of them.
+fn scene_rows(scenes: &[Option<&Scene>]) -> Vec<Row> {
+    let row = |name: &str, unit: &'static str, text: fn(&Scene) -> String| {
+        let bare = |scene: &Scene| match unit {
+            "" => text(scene),
+            unit => text(scene).replace(&format!(" {unit}"), ""),
+        };
+        let texts = scenes.iter().map(|scene| scene.map_or_else(|| UNKNOWN.to_owned(), bare));
+        Row::new(name, unit, texts.collect())
+    };
+    let mut rows = vec![row("shaking", "", shaking), row("stops", "mm", stops)];
+    let others = [
+        row("damping", "", damping),
+        row("mechanism", "", |scene| mechanism_name(&scene.mechanism)),
+        row("start", "", start),
+    ];
+    rows.extend(others.into_iter().filter(Row::differs));
+    let differs = |name: &str| rows.iter().any(|row| row.name == name && row.differs());
+    let (shaking_differs, stops_differ, start_differs) =
+        (differs("shaking"), differs("stops"), differs("start"));
+    let mut paths: Vec<String> = Vec::new();
+    for path in scenes.iter().flatten().flat_map(|scene| numeric_fields(scene)) {
+        if !paths.contains(&path) {
+            paths.push(path);
+        }
+    }
+    for path in paths {
+        let ((name, unit), field) = (name_and_unit(&path), FieldPath::new(&path));
+        let values: Vec<Option<f64>> =
+            scenes.iter().map(|scene| scene.and_then(|scene| field.get(scene))).collect();
+        let known = || values.iter().flatten();
+        // numbers that a row above contains already
+        let in_row_above = match path.split_once('.') {
+            Some(("excitation", number)) => {
+                shaking_differs
+                    && scenes
+                        .iter()
+                        .flatten()
+                        .all(|scene| field.get(scene).is_none() || in_shaking(&scene.excitation, number))
+            }
+            Some(("stops", number)) => stops_differ && number.ends_with("_mm") && number != "radius_mm",
+            Some(("start", _)) => start_differs,
+            Some(("app", _)) => true,
+            _ => false,
+        };
+        if in_row_above || known().all(|value| Some(value) == known().next()) {
+            continue;
+        }
+        // all digits if two rounded numbers are equal
+        let hidden = known().any(|a| known().any(|b| a != b && shown(*a, 0) == shown(*b, 0)));
+        let text = |value: &f64| if hidden { exact(*value, 0) } else { shown(*value, 0) };
+        let texts = values.iter().map(|value| value.as_ref().map_or_else(|| UNKNOWN.to_owned(), text));
+        rows.push(Row::new(&name, unit, texts.collect()));
+    }
+    rows
+}
+
+/// Rows of numbers of the settled motions.
+fn number_rows(columns: &[Column], now: usize, with_threshold: bool) -> Vec<Row> {
+    let row = |name: &str,
+               unit: &'static str,
+               text: &dyn Fn(&Card, &Summary) -> Option<String>,
+               value: &dyn Fn(&Summary) -> Option<f64>,
+               decimals: &dyn Fn(f64) -> usize| {
+        let settled = |column: &Column| column.card.as_ref().and_then(|card| card.settled);
+        let written = |column: &Column| text(column.card.as_ref()?, &settled(column)?);
+        let texts = columns.iter().map(|column| written(column).unwrap_or_else(|| UNKNOWN.to_owned()));
+        let present = settled(&columns[now]).and_then(|settled| value(&settled));
+        let apart = |column: &Column| {
+            let own = settled(column).filter(|_| column.differs).and_then(|settled| value(&settled))?;
+            Some(difference(own, present?, decimals))
+        };
+        Row { apart: columns.iter().map(apart).collect(), ..Row::new(name, unit, texts.collect()) }
+    };
+    let tenths = |below: f64| move |size: f64| usize::from(size < below);
+    let velocity = |run: &Summary| run.rms_velocity;
+    let in_mm = |run: &Summary| velocity(run).map(|v| v * 1e3);
+    let reach_mm = |run: &Summary| run.max_abs_x.map(|x| x * 1e3);
+    let share = |run: &Summary| run.impact_share.map(|share| share * 100.0);
+    let whole = |run: &Summary| share(run).map(|share| format!("{share:.0}"));
+    let mut rows = vec![
+        row(RMS, "mm/s", &|_, run| velocity(run).map(speed), &in_mm, &tenths(9.95)),
+        row("reach", "mm", &reach, &reach_mm, &|size| 1 + usize::from(size < 0.95)),
+    ];
+    rows.extend(Some(row("impacts take", "%", &|_, run| whole(run), &share, &|_| 0)).filter(Row::differs));
+    let has_load =
+        |column: &Column| column.card.as_ref().is_some_and(|card| card.scene.transducer != Transducer::None);
+    if columns.iter().any(has_load) {
+        let watt = |run: &Summary| run.harvest?.mean_load_power;
+        let all = columns.iter().filter_map(|column| watt(&column.card.as_ref()?.settled?));
+        let (factor, unit) = power_unit(all.fold(0.0, f64::max));
+        let text = |_: &Card, run: &Summary| watt(run).map(|watt| three(watt * factor));
+        rows.push(row("power into the load", unit, &text, &|run| Some(watt(run)? * factor), &decimals_for));
+    }
+    if with_threshold {
+        let found = |column: &Column| threshold(&column.card.as_ref()?.thresholds?.crossing);
+        let texts = columns.iter().map(|column| found(column).unwrap_or_else(|| UNKNOWN.to_owned()));
+        let row = Row::new(CROSSES, "g", texts.collect());
+        // left out where all are known and equal
+        if row.differs() || row.texts.iter().any(|text| text == UNKNOWN) {
+            rows.push(row);
+        }
+    }
+    rows
+}
+
+/// A value less the present one, as text.
+fn difference(own: f64, present: f64, decimals: &dyn Fn(f64) -> usize) -> String {
+    let decimals = decimals(own.abs().max(present.abs()));
+    let text = format!("{:+.decimals$}", own - present);
+    // a difference that rounds to zero has no sign
+    let is_zero = text.trim_start_matches(['+', '-', '0', '.']).is_empty();
+    if is_zero { "same".to_owned() } else { text }
+}
+
+fn reach(card: &Card, run: &Summary) -> Option<String> {
+    let [left, right] = card.scene.stops.limits_mm();
+    let stops = (left.map(|mm| -mm * 1e-3), right.map(|mm| mm * 1e-3));
+    run.max_abs_x.map(|reach| mm_beside(reach, stops))
+}
+
+/// Whether the row of the shaking contains this number.
+fn in_shaking(excitation: &Excitation, number: &str) -> bool {
+    let all: &[&str] = match excitation {
+        Excitation::Constant { .. } => &["accel_g"],
+        Excitation::Sine { .. } => &["amplitude_g", "frequency_hz"],
+        Excitation::AmplitudeRamp { .. } => &["from_g", "to_g"],
+        Excitation::Chirp { .. } => &["amplitude_g", "from_hz", "to_hz"],
+        Excitation::Noise { .. } => &["rms_g"],
+        _ => &[],
+    };
+    all.contains(&number)
+}
+
+pub(super) fn shaking(scene: &Scene) -> String {
+    // a difference that this rounding hides has a row of its own, from `changes`
+    let rounded = |value: f64| format!("{value:.3e}").parse().unwrap_or(value);
+    let g = |value: f64| shown(rounded(value), 2);
+    let hz = |value: f64| shown(rounded(value), 1);
+    match &scene.excitation {
+        Excitation::None => "none".to_owned(),
+        Excitation::Constant { accel_g } => format!("{} g, constant", g(*accel_g)),
+        Excitation::Sine { amplitude_g, frequency_hz, .. } => {
+            format!("{} g, {} Hz", g(*amplitude_g), hz(*frequency_hz))
+        }
+        Excitation::AmplitudeRamp { from_g, to_g, .. } => format!("{} to {} g", g(*from_g), g(*to_g)),
+        Excitation::Chirp { from_hz, to_hz, amplitude_g, .. } => {
+            format!("{} g, {} to {} Hz", g(*amplitude_g), hz(*from_hz), hz(*to_hz))
+        }
+        Excitation::Noise { rms_g, .. } => format!("noise, {} g", g(*rms_g)),
+        Excitation::Recorded { .. } => "recorded".to_owned(),
+        Excitation::Sum(terms) => format!("sum of {}", terms.len()),
+    }
+}
+
+pub(super) fn stops(scene: &Scene) -> String {
+    let (stops, mm) = (&scene.stops, |value: f64| format!("{} mm", shown(value, decimals_for(value).min(2))));
+    let side =
+        |stop: Option<f64>, sign: &str| stop.map_or("open".to_owned(), |stop| format!("{sign}{}", mm(stop)));
+    match (stops.travel_limit_mm(), stops.limits_mm()) {
+        (Some(limit), _) if stops.restitutions() == [None; 2] => format!("±{}, compliant", mm(limit)),
+        (Some(limit), _) => format!("±{}", mm(limit)),
+        (None, [None, None]) => "none".to_owned(),
+        (None, [left, right]) => format!("{}, {}", side(left, "-"), side(right, "+")),
+    }
+}
+
+/// The kind of damping; its value has another row.
+fn damping(scene: &Scene) -> String {
+    match scene.damping {
+        Damping::None => "none",
+        Damping::Ratio(_) => "by ratio",
+        Damping::Coefficient { .. } => "by coefficient",
+    }
+    .to_owned()
+}
+
+fn start(scene: &Scene) -> String {
+    match scene.start {
+        Start::Rest => "at rest".to_owned(),
+        Start::At { x_mm, v_m_per_s, .. } => format!("{} mm, {} m/s", shown(x_mm, 1), shown(v_m_per_s, 0)),
+    }
+}
+
+/// Symbol and name of the regime; if `small`, the name stands below the symbol in small text.
+fn regime_ui(ui: &mut Ui, context: &ViewContext<'_>, settled: Option<&Summary>, small: bool) {
+    let Some(settled) = settled else {
+        ui.label("-");
+        return;
+    };
+    if settled.outcome != Outcome::Done {
+        let text = RichText::new("the run ended early");
+        ui.add(Label::new(if small { text.font(context.style.small()) } else { text }).wrap());
+        return;
+    }
+    let kind = Kind::from(settled.regime);
+    let name = match kind {
+        Kind::Resting => "resting",
+        Kind::Intrawell if settled.releases > 0 => "hopping",
+        kind => kind.name(),
+    };
+    ui.horizontal(|ui| {
+        let (rect, _) = ui.allocate_exact_size(Vec2::splat(16.0), Sense::hover());
+        ui.painter().extend(kind_shapes(kind, rect.center(), 5.0, context.style.kind(kind)));
+        if !small {
+            explained(ui.label(name), name);
+        }
+    });
+    if small {
+        explained(ui.label(RichText::new(name).font(context.style.small())), name);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Document, PRESETS};
+
+    fn changes(scenes: [&Scene; 2]) -> Vec<Row> {
+        scene_rows(&scenes.map(Some)).into_iter().filter(Row::differs).collect()
+    }
+
+    /// Every difference has one row, whose two sides differ.
+    #[test]
+    fn every_number_that_differs_has_a_row() {
+        for preset in PRESETS {
+            let before = Document::load(preset.name).unwrap().scene;
+            for path in numeric_fields(&before).iter().filter(|path| !path.starts_with("app.")) {
+                let (mut now, field) = (before.clone(), FieldPath::new(path));
+                let Some(value) = field.get(&before) else { continue };
+                let changed = if value == 0.0 { 1.0 } else { value * 1.000_000_01 };
+                assert!(field.set(&mut now, changed));
+                // an integer field ignores so small a change
+                if now == before {
+                    assert!(field.set(&mut now, value + 1.0));
+                }
+                let rows = changes([&before, &now]);
+                assert!(rows.len() == 1, "{} {path}: {rows:?}", preset.name);
+                assert!(rows.iter().all(|row| row.texts[0] != row.texts[1]), "{path}: {rows:?}");
+            }
+            assert!(changes([&before, &before]).is_empty());
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! Why a command can do nothing at present: what a grey item of a menu and a key without effect say.
+
+use crate::app::panels::controls::NOT_SHAKEN;
+use crate::app::session::map::Map;
+use crate::app::ui::settings::Setting;
+
+use super::Window;
+use super::command::Command;
+use super::layouts::Room;
+use super::wanted::Wanted;
+
+impl Window {
+    /// Why a command can do nothing at present; `None` if it can.
+    pub fn impossible(&self, command: &Command) -> Option<&'static str> {
+        use Command as C;
+        if self.lesson_covers() && command.reveals_motion() {
+            return Some("First choose what you expect");
+        }
+        let (session, in_lesson) = (&self.session, self.lesson().is_some());
+        let is_compact = self.tiling.room() == Room::Compact;
+        let (is_so, why) = match command {
+            C::Arrange(_) | C::ArrangeOwn | C::KeepOwn if in_lesson => {
+                (true, "A lesson has its own views: leave the lesson first")
+            }
+            // a pinned motion may be the answer to a lesson's question, as the ways to cross may
+            C::Pin(_) => (in_lesson, "In a lesson no motion is pinned: leave the lesson first"),
+            C::Ways => (in_lesson, "A lesson has hints in its tasks only: leave the lesson first"),
+            C::OpenMeasured => (in_lesson, "Leave the lesson first"),
+            C::BestStops if in_lesson => (true, "Leave the lesson first"),
+            C::BestStops => (!session.model().is_shaken(), NOT_SHAKEN),
+            C::LeaveLesson | C::LessonAnew | C::LecturerNotes => (!in_lesson, "No lesson is open"),
+            C::ArrangeOwn => (
+                is_compact && self.custom.is_none(),
+                "You have no arrangement yet: a wider window has room to make one",
+            ),
+            C::KeepOwn => (is_compact, "A window of this size shows its views as tabs: widen it first"),
+            C::NextTab if self.filled.is_some() => (true, "One view fills the window: Z shows all of them"),
+            C::NextTab => (!self.tiling.has_tabs(), "No two views share a place"),
+            C::HoldAxes | C::FreeAxes | C::Zoom { .. } => {
+                (!self.active_view().has_axes(), "This view has no axes to hold or to zoom")
+            }
+            C::Save => {
+                let is_saved = session.editor.path().is_some() && !session.editor.is_dirty();
+                (is_saved, "Nothing was changed since the file was opened or saved")
+            }
+            C::RemoveMeasured => (session.measured.over.is_none(), "No measured data is shown"),
+            C::SaveAs(Wanted::Map) => (
+                !session.map.map().is_some_and(Map::is_whole),
+                "There is no whole map yet: show the Map first",
+            ),
+            C::Unpin(letter) => (session.pins.get(*letter).is_none(), "No motion is pinned by this letter"),
+            C::CopyMapCommand => (session.map.map().is_none(), "There is no map yet: show the Map first"),
+            C::Undo => (!session.editor.can_undo(), "There is nothing to undo"),
+            C::Redo => (!session.editor.can_redo(), "There is nothing to redo"),
+            C::NextRelease => {
+                (session.model().stop_positions() == (None, None), "No release can come: there are no stops")
+            }
+            C::NextCrossing => (
+                session.model().mechanism().landscape.barrier.is_none(),
+                "No crossing can come: there is no barrier",
+            ),
+            C::Notes => (!in_lesson && session.scene().notes.trim().is_empty(), "This scene has no notes"),
+            C::Toggle(Setting::Dark) => (self.settings.projector, "The projector is light: P leaves it"),
+            _ => return None,
+        };
+        is_so.then_some(why)
+    }
+}

@@ -1,0 +1,223 @@
+//! Lessons in a classroom: a strip that stays as high, what is lacking, hints, the end, notes, votes.
+
+use eframe::egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable as _;
+use interwell::app::ui::settings::Settings;
+use interwell::app::views::View;
+use interwell::app::window::Command;
+use interwell::app::words::meanings::{GLOSSARY, UNDERLINED, meaning};
+use interwell::scene::lesson::{LESSONS, Step};
+
+use crate::lessons::{OWN, Shown, go_on, go_to, is_anywhere, number, opened, own, until, written};
+use crate::support::{
+    PROJECTED, WIDE, click_on, command, is_painted, painted, press, press_with_ctrl, window_with,
+};
+
+/// The upper edge of the views, below the strip and the controls.
+fn edge(harness: &Shown) -> f32 {
+    let places = View::ALL.into_iter().filter_map(|view| harness.state().tiling.place_of(view));
+    places.map(|place| place.top()).fold(f32::MAX, f32::min)
+}
+
+#[test]
+fn the_strip_of_a_lesson_has_one_height_from_its_first_step_to_its_last() {
+    for size in [WIDE, PROJECTED] {
+        for own in LESSONS {
+            let mut harness = opened(own.name, size);
+            let first = edge(&harness);
+            while let Some(lesson) = harness.state().lesson() {
+                let at = (own.name, size, lesson.number());
+                if !lesson.is_covering() && lesson.offered_hint().is_some() {
+                    press(&mut harness, Key::H);
+                    assert!(is_painted(&harness, "Hint: "), "{at:?}");
+                }
+                assert_eq!(edge(&harness), first, "{at:?}");
+                go_on(&mut harness);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_hint_comes_when_asked_is_offered_after_three_tries_and_leaves_when_the_task_is_done() {
+    let mut harness = own(WIDE);
+    assert!(go_to(&mut harness, |step| matches!(step, Step::Do { .. })));
+    let limit = |harness: &mut Shown, mm: f64| {
+        harness.state_mut().session.set_number("stops.travel_limit_mm", mm).unwrap();
+        harness.state_mut().session.end_gesture();
+        harness.run_steps(1);
+    };
+    // time alone brings none
+    harness.run_steps(240);
+    assert!(!is_painted(&harness, "Hint: ") && is_painted(&harness, "Hint (H)"));
+    for (mm, is_offered) in [(3.9, false), (3.8, false), (3.7, true)] {
+        limit(&mut harness, mm);
+        until(&mut harness, "a verdict", |own| is_painted(own, "Not yet: it still rests on its stop."));
+        harness.run_steps(2);
+        assert_eq!(is_painted(&harness, "Would a hint help? (H)"), is_offered, "{mm}");
+    }
+    press(&mut harness, Key::H);
+    assert!(is_painted(&harness, "Hint: "));
+    limit(&mut harness, 1.5);
+    until(&mut harness, "the goal is met", |own| own.state().lesson().unwrap().answer().met);
+    harness.run_steps(2);
+    assert!(is_painted(&harness, "Done.") && !is_painted(&harness, "Hint"));
+}
+
+#[test]
+fn page_down_stops_at_a_covered_prediction_and_at_the_last_step() {
+    let mut harness = opened(LESSONS[0].name, WIDE);
+    assert!(go_to(&mut harness, |step| matches!(step, Step::Predict { .. })));
+    let at = number(&harness);
+    for _ in 0..3 {
+        press(&mut harness, Key::PageDown);
+        assert!(number(&harness) == at && harness.state().lesson().unwrap().is_covering());
+    }
+    assert!(harness.state().notice().is_some_and(|text| text.contains("Reveal")));
+    // the button has the keyboard
+    press(&mut harness, Key::Enter);
+    assert!(!harness.state().lesson().unwrap().is_covering());
+    assert_eq!(harness.state().lesson().unwrap().answer().choice, None);
+    // and no other has it after that
+    press(&mut harness, Key::Enter);
+    assert_eq!(number(&harness), at);
+    while !harness.state().lesson().unwrap().is_last() {
+        go_on(&mut harness);
+    }
+    for _ in 0..3 {
+        press(&mut harness, Key::PageDown);
+        assert!(harness.state().lesson().unwrap().is_last());
+    }
+    assert!(harness.state().notice().is_some_and(|text| text.contains("Lesson 2")));
+    press(&mut harness, Key::Enter);
+    assert_eq!(harness.state().lesson().unwrap().key(), LESSONS[1].name);
+}
+
+#[test]
+fn the_end_says_what_was_learnt_and_leads_to_the_next_lesson() {
+    let mut harness = opened(LESSONS[0].name, WIDE);
+    let goal = harness.state().lesson().unwrap().lesson().goal.clone();
+    while !harness.state().lesson().unwrap().is_last() {
+        go_on(&mut harness);
+    }
+    click_on(&mut harness, "Finish");
+    assert!(harness.state().lesson().is_none() && is_painted(&harness, &goal));
+    click_on(&mut harness, "Go on to Lesson 2");
+    assert_eq!(harness.state().lesson().unwrap().key(), LESSONS[1].name);
+    assert!(!is_painted(&harness, &goal));
+}
+
+#[test]
+fn a_lesson_that_was_begun_before_asks_where_to_begin() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = written(folder.path(), OWN);
+    let mut harness = opened(&path, WIDE);
+    press(&mut harness, Key::PageDown);
+    assert!(!is_anywhere(&harness, "begun before"));
+    for (answer, step) in [("Go on", 1), ("Begin anew", 0)] {
+        command(&mut harness, Command::LeaveLesson);
+        harness.state_mut().open_lesson(&path);
+        harness.run_steps(3);
+        assert!(is_anywhere(&harness, "left at step 2 of 4"));
+        // keys wait for the answer
+        press(&mut harness, Key::PageUp);
+        click_on(&mut harness, answer);
+        assert!(number(&harness) == step && !is_anywhere(&harness, "begun before"), "{answer}");
+    }
+}
+
+#[test]
+fn a_view_over_the_window_has_the_whole_window() {
+    let settings = Settings { projector: true, ..Settings::default() };
+    let mut harness = window_with("paper", PROJECTED, settings);
+    command(&mut harness, Command::Show(View::Map, true));
+    let map = harness.state().tiling.place_of(View::Map).unwrap();
+    harness.hover_at(map.center());
+    harness.run_steps(2);
+    press(&mut harness, Key::Z);
+    // beside the view only its title and the bar of time are left
+    assert!(harness.query_by_label("File").is_none() && harness.query_by_label("More").is_none());
+    let foot = harness.query_by_label("play").or(harness.query_by_label("pause")).unwrap().rect().top();
+    let head = harness.get_by_label("all views").rect().bottom();
+    let whole = harness.ctx.content_rect().height();
+    assert!(whole - (foot - head) < 90.0, "{head} {foot} of {whole}");
+    press(&mut harness, Key::Z);
+    harness.get_by_label("File");
+    // in a lesson a step on brings the text back
+    let mut harness = own(PROJECTED);
+    press(&mut harness, Key::Z);
+    assert!(!is_painted(&harness, "Shaken at 1 g"));
+    press(&mut harness, Key::PageDown);
+    assert!(is_painted(&harness, "We put stops at"));
+}
+
+#[test]
+fn the_notes_mark_the_line_of_now() {
+    let mut harness = opened(LESSONS[2].name, WIDE);
+    press_with_ctrl(&mut harness, Key::L);
+    let height = |harness: &Shown, text: &str| {
+        let all = painted(harness);
+        all.iter().find(|own| own.0 == text).map(|own| own.1.center().y).unwrap()
+    };
+    for time in ["0:00", "0:30", "1:30", "4:30"] {
+        assert!(is_painted(&harness, time), "{time}");
+    }
+    // a long line goes on below, beside its time
+    let all = painted(&harness);
+    let long = all.iter().find(|own| own.0.starts_with("Ask why it was stuck")).unwrap();
+    assert!(long.1.right() <= long.2.right() && long.1.height() > 20.0, "{long:?}");
+    let above = |harness: &Shown, time: &str| height(harness, "now") - height(harness, time);
+    assert!((1.0..30.0).contains(&above(&harness, "0:00")));
+    // 31 s later, at four frames a second
+    harness.run_steps(4 * 31);
+    assert!((1.0..30.0).contains(&above(&harness, "0:30")));
+}
+
+#[test]
+fn votes_are_counted_beside_a_prediction() {
+    let mut harness = own(WIDE);
+    assert!(go_to(&mut harness, |step| matches!(step, Step::Predict { .. })));
+    let shift = |harness: &mut Shown, key: Key| {
+        harness.key_press_modifiers(Modifiers::SHIFT, key);
+        harness.run_steps(3);
+    };
+    for key in [Key::A, Key::C, Key::C] {
+        shift(&mut harness, key);
+    }
+    assert!(harness.state().lesson().unwrap().is_covering());
+    assert!(is_painted(&harness, "A (1)   crosses") && is_painted(&harness, "C (2)   does not move"));
+    // in the notes by buttons
+    press_with_ctrl(&mut harness, Key::L);
+    harness.query_all_by_label("B 0").next().unwrap().click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().lesson().unwrap().votes(), [1, 1, 2]);
+    press_with_ctrl(&mut harness, Key::L);
+    click_on(&mut harness, "Reveal");
+    assert!(is_painted(&harness, "Votes: A 1, B 1, C 2"));
+    assert_eq!(harness.state().lesson().unwrap().answer().choice, None);
+}
+
+#[test]
+fn the_glossary_has_every_underlined_word_and_those_of_the_window() {
+    let named = [
+        "hopping",
+        "irregular",
+        "chaotic",
+        "separatrix",
+        "push",
+        "potential",
+        "bulge",
+        "reach",
+        "preload",
+        "phase portrait",
+        "path error",
+        "once a period",
+    ];
+    for word in named.into_iter().chain(UNDERLINED) {
+        assert!(GLOSSARY.contains(&word) && meaning(word).is_some(), "{word}");
+    }
+    assert!(GLOSSARY.iter().map(|word| word.to_lowercase()).is_sorted());
+    let mut harness = own(WIDE);
+    press(&mut harness, Key::F2);
+    assert!(is_anywhere(&harness, "separatrix") && is_anywhere(&harness, "preload"));
+}

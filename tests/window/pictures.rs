@@ -1,0 +1,277 @@
+//! What pictures over the displacement show: axes that fit, labels clear of lines, contact without overlap.
+
+use eframe::egui::{Color32, Pos2, Rect, Shape, Stroke, epaint::ColorMode};
+use egui_kittest::Harness;
+use interwell::app::views::View;
+use interwell::app::window::{Command, Window};
+
+use crate::support::{PROJECTED, WIDE, command, is_painted, painted, window};
+
+const MASS: Color32 = Color32::from_rgb(230, 159, 0);
+
+/// A window that shows these views alone.
+fn showing(preset: &str, size: [f32; 2], views: &[View]) -> Harness<'static, Window> {
+    let mut harness = window(preset, size);
+    for view in View::ALL {
+        command(&mut harness, Command::Show(view, views.contains(&view)));
+    }
+    harness.state_mut().session.player.set_playing(false);
+    harness.run_steps(8);
+    harness
+}
+
+fn set(harness: &mut Harness<'static, Window>, path: &str, value: f64) {
+    harness.state_mut().session.set_number(path, value).unwrap();
+    harness.state_mut().session.end_gesture();
+    harness.run_steps(8);
+}
+
+fn number(text: &str) -> Option<f64> {
+    text.replace('\u{2212}', "-").parse().ok()
+}
+
+/// Whether a text is the name of a vertical axis, or its unit alone.
+fn is_title(own: &(String, Rect, Rect), name: &str) -> bool {
+    own.0 == name && (own.1.height() > own.1.width() || name.len() < 5)
+}
+
+/// The numbers of the vertical axis of the picture that is called so at its side, with their heights; and
+/// those of the axis below it.
+fn axes(harness: &Harness<'static, Window>, name: &str) -> [Vec<(f64, f32)>; 2] {
+    let all = painted(harness);
+    let title =
+        all.iter().find(|own| is_title(own, name)).unwrap_or_else(|| panic!("{name}: {all:?}")).clone();
+    let beside = |own: &&(String, Rect, Rect)| {
+        let gap = own.1.left() - title.1.right();
+        (-8.0..60.0).contains(&gap) && title.2.intersects(own.1)
+    };
+    let numbers = all.iter().filter_map(|own| Some((number(&own.0)?, own))).collect::<Vec<_>>();
+    let up = numbers.iter().filter(|own| beside(&own.1));
+    let up: Vec<_> = up.map(|(value, own)| (*value, own.1.center().y)).collect();
+    // the lowest row of numbers in the picture
+    let inside = numbers.iter().map(|own| own.1).filter(|own| title.2.contains_rect(own.1));
+    let right: Vec<_> = inside.filter(|own| own.1.left() > title.1.right() + 30.0).collect();
+    let lowest = right.iter().map(|own| own.1.center().y).fold(0.0, f32::max);
+    let below = numbers.iter().filter(|(_, own)| right.contains(own) && own.1.center().y > lowest - 2.0);
+    [up, below.map(|(value, own)| (*value, own.1.center().x)).collect()]
+}
+
+fn shapes(harness: &Harness<'static, Window>) -> Vec<Shape> {
+    fn flat(shape: &Shape, into: &mut Vec<Shape>) {
+        match shape {
+            Shape::Vec(all) => all.iter().for_each(|shape| flat(shape, into)),
+            other => into.push(other.clone()),
+        }
+    }
+    let mut all = Vec::new();
+    harness.output().shapes.iter().for_each(|own| flat(&own.shape, &mut all));
+    all
+}
+
+/// The circle of the mass, and the box.
+fn masses(harness: &Harness<'static, Window>) -> (Option<Rect>, Option<Rect>) {
+    let all = shapes(harness);
+    let ball = all.iter().find_map(|shape| match shape {
+        Shape::Circle(own) if own.fill == MASS && own.radius > 10.0 => {
+            Some(Rect::from_center_size(own.center, eframe::egui::Vec2::splat(2.0 * own.radius)))
+        }
+        _ => None,
+    });
+    let body = all.iter().find_map(|shape| match shape {
+        Shape::Rect(own) if own.fill == MASS && own.rect.height() > 30.0 => Some(own.rect),
+        _ => None,
+    });
+    (ball, body)
+}
+
+fn wall(harness: &Harness<'static, Window>, name: &str) -> Rect {
+    use egui_kittest::kittest::Queryable as _;
+    let grab = harness.get_by_role_and_label(eframe::egui::accesskit::Role::Slider, name).rect();
+    Rect::from_center_size(grab.center(), eframe::egui::vec2(10.0, grab.height()))
+}
+
+#[test]
+fn the_well_has_an_axis_of_energy_and_the_height_of_its_barrier() {
+    let mut harness = showing("first-look", WIDE, &[View::Well]);
+    let [before, _] = axes(&harness, "energy (mJ)");
+    assert!(before.len() > 2, "{before:?}");
+    assert!(is_painted(&harness, "barrier 0.92 mJ"), "{:?}", painted(&harness));
+    // its scale holds while the preload moves, and afterwards
+    set(&mut harness, "mechanism.preload_mm", 1.6);
+    let [after, _] = axes(&harness, "energy (mJ)");
+    assert_eq!(before, after);
+    assert!(!is_painted(&harness, "barrier 0.92 mJ") && is_painted(&harness, "barrier 0."));
+    // energy is counted from the bottom of the deepest well
+    let height = harness.state().session.model().mechanism().landscape.barrier.unwrap().from_left_j;
+    assert!(is_painted(&harness, &format!("barrier {:.2} mJ", height * 1e3)), "{height}");
+    // another push has another scale
+    set(&mut harness, "excitation.amplitude_g", 0.5);
+    assert_ne!(axes(&harness, "energy (mJ)")[0], before);
+}
+
+#[test]
+fn every_curve_of_the_well_is_in_its_legend() {
+    let harness = showing("paper", WIDE, &[View::Well]);
+    for name in ["potential with the push", "the mechanism's own", "beyond the stops"] {
+        assert!(is_painted(&harness, name), "{name}");
+    }
+    assert!(!is_painted(&showing("first-look", WIDE, &[View::Well]), "beyond the stops"));
+}
+
+#[test]
+fn the_force_curve_has_the_force_and_the_push_that_frees_the_mass() {
+    for size in [WIDE, PROJECTED] {
+        let harness = showing("paper", size, &[View::ForceCurve]);
+        let all = painted(&harness);
+        let labels: Vec<_> = all.iter().filter(|own| own.0.contains(" N = ")).collect();
+        let model = harness.state().session.model();
+        let force = model.mechanism().curve.force(1.5e-3).abs();
+        let text = format!("{force:.3} N = {:.3} g", force / model.mass() / 9.80665);
+        assert!(labels.len() == 2 && labels.iter().all(|own| own.0.ends_with(&text)), "{text}: {labels:?}");
+        assert!(labels.iter().all(|own| own.2.contains_rect(own.1)), "{labels:?}");
+        keep_apart(&harness);
+    }
+}
+
+/// No two texts lie over each other.
+fn keep_apart(harness: &Harness<'static, Window>) {
+    let all = painted(harness);
+    let seen: Vec<_> = all.iter().filter(|own| own.2.intersects(own.1) && own.1.is_positive()).collect();
+    for (i, own) in seen.iter().enumerate() {
+        for other in &seen[i + 1..] {
+            let over = own.1.shrink(1.5).intersects(other.1.shrink(1.5));
+            assert!(!over || own.0 == other.0, "{own:?} {other:?}");
+        }
+    }
+}
+
+#[test]
+fn axes_fit_what_they_show() {
+    let ends = |view: View, name: &str| {
+        let harness = showing("paper", WIDE, &[view]);
+        let numbers = axes(&harness, name);
+        let own = &numbers[usize::from(view != View::Displacement)];
+        (own.len(), own.iter().map(|number| number.0.abs()).fold(0.0, f64::max))
+    };
+    // the stops are at 1.5 mm, the wells at 6.3 mm
+    for (view, name) in [
+        (View::Displacement, "displacement (mm)"),
+        (View::PhasePortrait, "velocity (mm/s)"),
+        (View::Section, "velocity (mm/s)"),
+    ] {
+        let (count, largest) = ends(view, name);
+        assert!(count > 2 && (1.5..2.5).contains(&largest), "{}: {count} {largest}", view.name());
+    }
+    for (view, name) in [(View::Well, "energy (mJ)"), (View::ForceCurve, "force to the right (N)")] {
+        let (count, largest) = ends(view, name);
+        assert!(count > 2 && (6.0..9.0).contains(&largest), "{}: {count} {largest}", view.name());
+    }
+}
+
+#[test]
+fn every_axis_has_three_numbers_and_its_unit_in_its_name() {
+    let names = [
+        (View::Well, ["energy (mJ)", "mJ"]),
+        (View::ForceCurve, ["force to the right (N)", "N"]),
+        (View::PhasePortrait, ["velocity (mm/s)", "mm/s"]),
+        (View::Displacement, ["displacement (mm)", "mm"]),
+    ];
+    for size in [WIDE, PROJECTED, [1920.0, 1080.0]] {
+        let mut harness = window("paper", size);
+        command(&mut harness, Command::Arrange(interwell::scene::Layout::Study));
+        harness.run_steps(8);
+        for (view, names) in names {
+            if !harness.state().tiling.shows(view) {
+                continue;
+            }
+            let all = painted(&harness);
+            // none where it is behind another tab
+            let Some(name) = names.into_iter().find(|name| all.iter().any(|own| is_title(own, name))) else {
+                continue;
+            };
+            let [up, _] = axes(&harness, name);
+            assert!(up.len() > 2, "{size:?} {}: {up:?}", view.name());
+        }
+        let with_unit = |text: &str| text.strip_suffix(" mm").is_some_and(|text| number(text).is_some());
+        assert!(painted(&harness).iter().all(|own| !with_unit(&own.0)));
+    }
+}
+
+#[test]
+fn the_mass_touches_its_stop_and_does_not_overlap_it() {
+    for (preset, view) in [("paper", View::Mechanism), ("paper", View::Well), ("duffing", View::Well)] {
+        let mut harness = showing(preset, WIDE, &[view]);
+        if preset == "duffing" {
+            assert!(masses(&harness).0.unwrap().width() > 26.0);
+            continue;
+        }
+        harness.state_mut().session.player.hold(1.5e-3);
+        harness.run_steps(3);
+        let (ball, body) = masses(&harness);
+        let mass = if view == View::Well { ball } else { body }.unwrap();
+        let stop = wall(&harness, "right stop");
+        assert!(mass.width() > 26.0 && (mass.right() - stop.left()).abs() < 1.0, "{mass:?} {stop:?}");
+    }
+}
+
+/// Whether a line of this colour runs through `place`.
+fn is_crossed(all: &[Shape], place: Rect, colour: Color32) -> bool {
+    let through = |points: &[Pos2]| {
+        points.windows(2).any(|pair| {
+            let steps = pair[0].distance(pair[1]).ceil().clamp(1.0, 2000.0);
+            (0..=steps as u32).any(|i| place.contains(pair[0].lerp(pair[1], i as f32 / steps)))
+        })
+    };
+    all.iter().any(|shape| match shape {
+        Shape::Path(path) => path.stroke.color == ColorMode::Solid(colour) && through(&path.points),
+        _ => false,
+    })
+}
+
+#[test]
+fn names_of_parts_keep_clear_of_what_is_drawn() {
+    let names = ["mass", "flexure", "stop", "spring", "bulge", "magnets", "load", "coil", "spring 50"];
+    for (preset, size) in [("paper", WIDE), ("first-look", WIDE), ("magnet", WIDE), ("harvester", PROJECTED)]
+    {
+        let mut harness = showing(preset, size, &[View::Mechanism]);
+        let mut count = 0;
+        for step in -8..=8 {
+            harness.state_mut().session.player.hold(f64::from(step) * 0.8e-3);
+            harness.run_steps(2);
+            let (_, body) = masses(&harness);
+            let all = shapes(&harness);
+            let ink = style(&harness).color;
+            for (text, place, _) in painted(&harness) {
+                if names.iter().any(|name| text.starts_with(name)) && !text.contains(" from ") {
+                    let inner = place.shrink(1.0);
+                    assert!(!is_crossed(&all, inner, ink), "{preset} at {step}: {text} {place:?}");
+                    assert!(!body.unwrap().intersects(inner), "{preset} at {step}: {text}");
+                    count += 1;
+                }
+            }
+        }
+        assert!(count > 17, "{preset}: {count}");
+    }
+}
+
+/// The line of a flexure.
+fn style(harness: &Harness<'static, Window>) -> Stroke {
+    interwell::app::ui::style::Style::of(&harness.ctx, false).flexure_stroke()
+}
+
+#[test]
+fn the_headings_of_energy_stand_apart() {
+    for size in [WIDE, PROJECTED, [1024.0, 700.0], [1920.0, 1080.0]] {
+        keep_apart(&showing("paper", size, &[View::Energy]));
+    }
+    let mut harness = window("paper", [1024.0, 700.0]);
+    command(&mut harness, Command::Arrange(interwell::scene::Layout::Study));
+    command(&mut harness, Command::Show(View::Energy, true));
+    let all = painted(&harness);
+    let heads = [["since the start", "last period"], ["total", "period"]];
+    let heads = heads.iter().find_map(|pair| {
+        let [a, b] = pair.map(|head| all.iter().find(|own| own.0 == head && own.2.intersects(own.1)));
+        Some((a?.1, b?.1))
+    });
+    assert!(heads.is_none_or(|(start, period)| period.right() + 6.0 < start.left()), "{heads:?}");
+}
