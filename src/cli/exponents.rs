@@ -2,7 +2,7 @@
 
 use clap::Args;
 use interwell::dynamics::Model;
-use interwell::output::{ExponentPicture, can_show_exponents, exponents_chart, exponents_manifest};
+use interwell::output::{ExponentPicture, can_show_exponents, exponents_chart};
 use interwell::scene::Document;
 use interwell::study::{
     ExponentCells, ExponentOptions, Exponents, Grid, NoExponents, Table, Tally, drive_fault, exponents,
@@ -11,8 +11,7 @@ use interwell::study::{
 
 use super::grid_job::GridJob;
 use super::support::{
-    counted, file_name, load_held, load_model, located, outputs, pool, refuse_electrical_state,
-    until_settled, warn,
+    counted, load_held, load_model, located, outputs, pool, refuse_electrical_state, until_settled, warn,
 };
 use super::{ChartOptions, Common, Failure, Output, Picture, interrupt, whole};
 
@@ -112,7 +111,7 @@ fn about(found: &Exponents, forced: bool) -> String {
 
 /// Computes the exponents of every cell of a grid, one row for each.
 fn over(options: &Arguments, common: &Common, picture: Option<Picture>) -> Result<(), Failure> {
-    let (document, warnings, manifest_out) = load_held(&options.scene, common, Some(&options.over))?;
+    let (document, warnings) = load_held(&options.scene, common, Some(&options.over))?;
     let grid = Grid::new(document.axes(&options.over)?)?;
     refuse_electrical_state(&document, grid.axes(), "exponents")?;
     if picture.is_some() {
@@ -127,16 +126,14 @@ fn over(options: &Arguments, common: &Common, picture: Option<Picture>) -> Resul
     warn(&document, common, &warnings, cells.first_mechanism().ok().as_deref());
     let outputs = outputs(&options.scene, &document, common)?;
     let grid = cells.grid();
-    let mut job = GridJob::open(&document, common, outputs, picture, manifest_out, pool)?;
+    let mut job = GridJob::open(&document, common, outputs, picture, Some(common.out()), pool)?;
     let columns: Vec<String> = cells.empty_table().columns().iter().map(|c| c.name.clone()).collect();
     let (tally, _) = job.stream(&cells, "cells", &columns)?;
     let chart = |rows: &Table, picture: &Picture| {
         let shown = ExponentPicture { rows, grid, scene: &document.scene, ranges: picture.ranges };
         Ok(exponents_chart(&shown)?)
     };
-    let wall_s = job.finish(chart, |origin| {
-        Ok(exponents_manifest(&document, grid, &tally, origin, &file_name(common.out())))
-    })?;
+    let wall_s = job.finish(chart, |manifest| Ok(manifest.of_exponents(grid, &tally)))?;
     if tally.cells == grid.cells() {
         common.say(&summary(&tally, wall_s));
     }

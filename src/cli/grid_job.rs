@@ -1,13 +1,13 @@
 //! Run of a study over a grid by a command: its outputs, progress, rows, picture and manifest.
 
-use std::path::PathBuf;
+use std::path::Path;
 
-use interwell::output::{Chart, Provenance, header, rows};
+use interwell::output::{Chart, Manifest, header, rows};
 use interwell::scene::Document;
 use interwell::study::{GridStudy, Question, Shard, Slice, SweepEnd, Table, Tally, Task};
 use interwell::system::threads::Pool;
 
-use super::support::{Watch, located};
+use super::support::{Watch, file_name, located, manifest_path};
 use super::{Common, Failure, Output, Outputs, Picture, bar, caption, interrupt};
 
 /// A study of a grid whose outputs are open.
@@ -18,26 +18,29 @@ pub struct GridJob<'a> {
     document: &'a Document,
     common: &'a Common,
     picture: Option<Picture<'a>>,
-    manifest: Option<PathBuf>,
+    /// The file with the rows, if a manifest stands beside it.
+    out: Option<&'a Path>,
     pool: Pool,
     watch: Watch,
 }
 
 impl<'a> GridJob<'a> {
-    /// Opens picture and manifest beside `outputs`, among which are the rows.
+    /// Opens the picture beside `outputs`, and the manifest beside the rows at `out` if that is a regular file.
     pub fn open(
         document: &'a Document,
         common: &'a Common,
         outputs: Outputs,
         picture: Option<Picture<'a>>,
-        manifest: Option<PathBuf>,
+        out: Option<&'a Path>,
         pool: Pool,
     ) -> Result<Self, Failure> {
+        let manifest = out.and_then(manifest_path);
         let mut outputs = outputs.with_picture(picture)?.with(Output::MANIFEST, manifest.as_deref())?;
         // It is opened again to be written, since a killed process would leave an unfinished file behind.
         outputs.leave(Output::MANIFEST);
         let (shown, watch) = (Table::new(), Watch::start());
-        Ok(Self { outputs, shown, document, common, picture, manifest, pool, watch })
+        let out = out.filter(|_| manifest.is_some());
+        Ok(Self { outputs, shown, document, common, picture, out, pool, watch })
     }
 
     /// Checks and runs the rows of a slice from `from` on, each called `unit`, and hands them to `write`,
@@ -86,15 +89,17 @@ impl<'a> GridJob<'a> {
     pub fn finish(
         mut self,
         chart: impl FnOnce(&Table, &Picture) -> Result<Chart, Failure>,
-        manifest: impl FnOnce(&Provenance) -> Result<String, Failure>,
+        manifest: impl FnOnce(&Manifest) -> Result<String, Failure>,
     ) -> Result<f64, Failure> {
         if let Some(picture) = self.picture {
             let chart = chart(&self.shown, &picture)?;
             picture.write(&mut self.outputs, &chart, &caption(self.document))?;
         }
-        if self.manifest.is_some() {
-            self.outputs = self.outputs.with(Output::MANIFEST, self.manifest.as_deref())?;
-            self.outputs.write(Output::MANIFEST, manifest(&self.watch.origin(self.pool.count()))?)?;
+        if let Some(out) = self.out {
+            let (origin, data) = (self.watch.origin(self.pool.count()), file_name(out));
+            self.outputs = self.outputs.with(Output::MANIFEST, manifest_path(out).as_deref())?;
+            let made = Manifest { document: self.document, origin: &origin, data: &data };
+            self.outputs.write(Output::MANIFEST, manifest(&made)?)?;
         }
         self.outputs.finish()?;
         Ok(self.watch.wall_s())

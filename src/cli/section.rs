@@ -1,15 +1,14 @@
 //! `section`: the state once a forcing period or at every impact; over a field the bifurcation diagram.
 
 use clap::Args;
-use interwell::output::{SectionPicture, manifest, section_chart};
+use interwell::output::{SectionPicture, section_chart};
 use interwell::study::{
     Carry, DIRECTION, Grid, MAX_SECTION, SectionAt, SectionOptions, Sections, Table, Tally, section,
 };
 
 use super::grid_job::GridJob;
 use super::support::{
-    counted, file_name, finite, load_held, load_model, outputs, pool, refuse_electrical_state, until_settled,
-    warn,
+    counted, finite, load_held, load_model, outputs, pool, refuse_electrical_state, until_settled, warn,
 };
 use super::{ChartOptions, Common, Failure, Output, Picture, caption, interrupt, refuse, say, whole};
 
@@ -114,7 +113,7 @@ fn phase(settings: &SectionOptions) -> Option<f64> {
 /// The sections of all cells, written as they are computed.
 fn diagram(options: &Arguments, common: &Common, settings: SectionOptions) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
-    let (document, warnings, manifest_out) = load_held(&options.scene, common, Some(&options.over))?;
+    let (document, warnings) = load_held(&options.scene, common, Some(&options.over))?;
     let grid = Grid::new(document.axes(&options.over)?)?;
     if settings.carry.is_some() {
         refuse_electrical_state(&document, grid.axes(), "--carry")?;
@@ -134,7 +133,7 @@ fn diagram(options: &Arguments, common: &Common, settings: SectionOptions) -> Re
     warn(&document, common, &warnings, first.as_ref().map(|model| &**model.mechanism()));
     let pool = pool(common)?;
     let outputs = outputs(&options.scene, &document, common)?;
-    let mut job = GridJob::open(&document, common, outputs, picture, manifest_out, pool)?;
+    let mut job = GridJob::open(&document, common, outputs, picture, Some(common.out()), pool)?;
     let mut names = sections.grid().columns().to_vec();
     names.extend(settings.carry.map(|_| DIRECTION.to_owned()));
     names.extend(settings.columns().iter().map(|name| (*name).to_owned()));
@@ -145,10 +144,8 @@ fn diagram(options: &Arguments, common: &Common, settings: SectionOptions) -> Re
         let shown = SectionPicture { rows, over, phase_deg, stops: (None, None), ranges };
         Ok(section_chart(&shown))
     };
-    let wall_s = job.finish(chart, |origin| {
-        let data = file_name(common.out());
-        Ok(manifest("section", &document, sections.grid(), &tally, None, origin, &data))
-    })?;
+    let grid = sections.grid();
+    let wall_s = job.finish(chart, |manifest| Ok(manifest.of_rows("section", grid, &tally, None)))?;
     if tally.cells == sections.rows() {
         common.say(&format!("{count} rows of {} in {wall_s:.2} s", runs(&tally)));
     }

@@ -63,9 +63,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     }
     let (document, model) = load_model(&options.scene, common)?;
     let until_settled = until_settled(options.until_settled.as_deref(), &document, &model)?;
-    let signal = Signal::ALL.into_iter().find(|signal| signal.name() == options.of);
     let settings = SpectrumOptions {
-        signal: signal.unwrap_or(Signal::Displacement),
+        signal: Signal::named(&options.of).unwrap_or(Signal::Displacement),
         taper: match options.taper.as_str() {
             "hann" => Some(Taper::Hann),
             "none" => Some(Taper::None),

@@ -74,18 +74,17 @@ pub fn check(document: &mut Document, over: Option<&[String]>) -> Result<Vec<Str
 }
 
 /// The same for a command that writes a manifest beside its rows if they go to a regular file: the scene then
-/// holds its files. Returns also the path of the manifest.
+/// holds its files.
 pub fn load_held(
     spec: &str,
     common: &Common,
     over: Option<&[String]>,
-) -> Result<(Document, Vec<String>, Option<PathBuf>), SceneError> {
+) -> Result<(Document, Vec<String>), SceneError> {
     let (mut document, warnings) = load(spec, common, over)?;
-    let manifest = manifest_path(common.out());
-    if manifest.is_some() {
+    if is_regular(common.out()) {
         document.hold_files();
     }
-    Ok((document, warnings, manifest))
+    Ok((document, warnings))
 }
 
 /// The scene without the check.

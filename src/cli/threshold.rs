@@ -82,7 +82,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if grid.axes().iter().any(|axis| axis.field == scan.field) {
         refuse!("--over {}: the threshold is over it; sweep another field", scan.field);
     }
-    let onset = Onset::ALL.into_iter().find(|onset| onset.name() == options.of).unwrap_or(Onset::Crossing);
+    let onset = Onset::named(&options.of).unwrap_or(Onset::Crossing);
     if picture.is_some() {
         can_show_thresholds(&grid)?;
     }

@@ -20,10 +20,10 @@ use crate::output::{
 };
 use crate::scene::{Document, Fault, FieldPath, arguments};
 use crate::study::{
-    Basins, CURVE_PICTURE_POINTS, Carry, EvenRange, Grid, Keep, MeasuredMotion, NoBasins, STANDARD_COLUMNS,
-    Sampling, SectionAt, SectionOptions, Sections, Signal, SpectrumOptions, Starts, SummaryField, Sweep,
-    SweepOptions, Table, Task, compare, compare_force, curve, default_positions, even_positions, metres,
-    sample_times, section, simulate_with_trace, spectrum, states, stop_positions,
+    Basins, CURVE_PICTURE_POINTS, Carry, EvenRange, Grid, GridStudy, Keep, MeasuredMotion, NoBasins,
+    Question, STANDARD_COLUMNS, Sampling, SectionOptions, Sections, Signal, SpectrumOptions, Starts,
+    SummaryField, Sweep, SweepOptions, Table, Task, compare, compare_force, curve, default_positions,
+    even_positions, metres, sample_times, section, simulate_with_trace, spectrum, states, stop_positions,
 };
 use crate::system::threads::Pool;
 
@@ -109,6 +109,17 @@ impl Drawing<'_> {
         self.document.error_from(faults).into()
     }
 
+    /// All rows of a study.
+    fn rows<Q: Question>(&self, study: &GridStudy<Q>) -> Result<Table> {
+        let (pool, mut rows) = (threads()?, Table::new());
+        study.validate(&pool, &self.task).map_err(|cell| self.faulty(cell.faults))?;
+        let end = study.run(&pool, &self.task, |table| {
+            rows.append(table);
+            Ok::<_, Infallible>(true)
+        });
+        end.map(|_| rows).map_err(|_| cancelled())
+    }
+
     fn run(&self, times: Option<(f64, f64)>, panels: &[RunPanel]) -> Result<Chart> {
         let (document, model) = (&self.document, self.model()?);
         let sample_times = sample_times(&document.scene, &model, &Sampling::Default, None)?;
@@ -153,19 +164,14 @@ impl Drawing<'_> {
     }
 
     fn sweep(&self, subject: &Subject, quantity: &str, view: View) -> Result<Chart> {
-        let (grid, pool) = (self.grid(subject)?, threads()?);
-        let scene = &self.document.scene;
+        let (grid, scene) = (self.grid(subject)?, &self.document.scene);
         let carry = subject.is_walked().then_some(Carry::Both);
         let names = STANDARD_COLUMNS.into_iter().filter(|name| *name != quantity).chain([quantity]);
         let columns = names.filter_map(SummaryField::find).collect();
         let options = SweepOptions { columns, until_settled: None, carry };
         let sweep = Sweep::new(scene, &self.document.files, grid).with(options);
         can_show(sweep.grid(), quantity, &view, &sweep.empty_table())?;
-        sweep.validate(&pool, &self.task).map_err(|cell| self.faulty(cell.faults))?;
-        let mut rows = Table::new();
-        let end = sweep.run(&pool, &self.task, |table| append(&mut rows, table));
-        end.map_err(|_| cancelled())?;
-        let grid = sweep.grid();
+        let (rows, grid) = (self.rows(&sweep)?, sweep.grid());
         let overlay = match carry {
             Some(_) => Overlay::default(),
             None => Overlay::of(scene, sweep.first_mechanism().ok().as_deref(), grid, &rows),
@@ -176,27 +182,18 @@ impl Drawing<'_> {
     }
 
     fn diagram(&self, subject: &Subject) -> Result<Chart> {
-        let (grid, pool) = (self.grid(subject)?, threads()?);
-        let options = strobe_options(Some(Carry::Both));
-        let sections = Sections::new(&self.document.scene, &self.document.files, grid).with(options);
-        sections.validate(&pool, &self.task).map_err(|cell| self.faulty(cell.faults))?;
-        let mut rows = Table::new();
-        let end = sections.run(&pool, &self.task, |table| append(&mut rows, table));
-        end.map_err(|_| cancelled())?;
+        let options = SectionOptions { carry: Some(Carry::Both), ..SectionOptions::default() };
+        let sections = Sections::new(&self.document.scene, &self.document.files, self.grid(subject)?);
+        let sections = sections.with(options);
         let over = sections.grid().columns().first().map(String::as_str);
-        Ok(self.of_section(&rows, over, (None, None)))
+        Ok(of_section(&self.rows(&sections)?, over, (None, None)))
     }
 
     fn section(&self) -> Result<Chart> {
-        let (model, options) = (self.model()?, strobe_options(None));
+        let (model, options) = (self.model()?, SectionOptions::default());
         let found = section(&model, &self.document.scene, &options, self.task.cancel);
         let (rows, _) = found.map_err(|fault| self.faulty(vec![fault]))?;
-        Ok(self.of_section(&rows, None, model.stop_positions()))
-    }
-
-    fn of_section(&self, rows: &Table, over: Option<&str>, stops: (Option<f64>, Option<f64>)) -> Chart {
-        let plot = SectionPicture { rows, over, phase_deg: Some(0.0), stops, ranges: Ranges::default() };
-        section_chart(&plot)
+        Ok(of_section(&rows, None, model.stop_positions()))
     }
 
     fn basins(&self, x_mm: (f64, f64), v: (f64, f64)) -> Result<Chart> {
@@ -221,11 +218,8 @@ impl Drawing<'_> {
     }
 }
 
-fn strobe_options(carry: Option<Carry>) -> SectionOptions {
-    SectionOptions { at: SectionAt::Phase(0.0), periods: None, until_settled: None, carry }
-}
-
-fn append(rows: &mut Table, more: &Table) -> Result<bool, Infallible> {
-    rows.append(more);
-    Ok(true)
+/// The stroboscopic states of one run, or of runs over a field.
+fn of_section(rows: &Table, over: Option<&str>, stops: (Option<f64>, Option<f64>)) -> Chart {
+    let ranges = Ranges::default();
+    section_chart(&SectionPicture { rows, over, phase_deg: Some(0.0), stops, ranges })
 }

@@ -12,8 +12,7 @@ use crate::app::session::map::{ground, over};
 use crate::app::session::measured::Overlay;
 use crate::numeric::short;
 use crate::output::{
-    Argument, Cut, Figure, Format, RMS, RunPanel, Sheet, Sink, View, header, picture_arguments, rows,
-    words_of,
+    Argument, Cut, Figure, Format, RMS, RunPanel, Sheet, Sink, View, csv, picture_arguments, words_of,
 };
 use crate::scene::{FieldPath, Scene, Start, SweepAxis, arguments};
 use crate::study::Signal;
@@ -283,8 +282,7 @@ impl FigureOrder {
         let mut sinks = vec![plot];
         sinks[0].put_bytes(&bytes).map_err(|error| failure(sinks[0].name(), error))?;
         if let Some(mut data) = data {
-            let text = header(&figure.data) + &rows(&figure.data, 0..usize::MAX);
-            data.put(&text).map_err(|error| failure(data.name(), error))?;
+            data.put(&csv(&figure.data)).map_err(|error| failure(data.name(), error))?;
             sinks.push(data);
         }
         // flush all of them first: a full disk is noticed before any file has its final name

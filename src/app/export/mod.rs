@@ -13,11 +13,11 @@ use crate::app::session::editor::keep_start_inside;
 use crate::app::session::map::over;
 use crate::app::session::player::Player;
 use crate::dynamics::Model;
-use crate::output::{header, rows};
+use crate::output::csv;
 use crate::scene::{FieldPath, Scene, arguments};
 use crate::study::{
-    CURVE_POINTS, Keep, OutsideCurve, Sampling, Table, continued_scene, curve, default_positions,
-    events_table, sample_times, samples_table, simulate, watched_events,
+    CURVE_POINTS, Keep, OutsideCurve, Sampling, continued_scene, curve, default_positions, events_table,
+    sample_times, samples_table, simulate, watched_events,
 };
 
 /// The remembered motion, in the columns of the command `simulate`.
@@ -49,10 +49,6 @@ pub fn curve_csv(session: &Session) -> Result<String, OutsideCurve> {
     let mechanism = &session.model().mechanism();
     let table = curve(mechanism, default_positions(session.scene(), mechanism, CURVE_POINTS as usize))?;
     Ok(csv(&table))
-}
-
-fn csv(table: &Table) -> String {
-    header(table) + &rows(table, 0..table.rows())
 }
 
 pub fn png(image: &ColorImage) -> Result<Vec<u8>, String> {

@@ -4,12 +4,12 @@ mod dry_run;
 mod prepared;
 mod rows;
 
-use interwell::output::{Chart, Made, Overlay, SweepPicture, header, manifest, rows, sweep_chart};
+use interwell::output::{Chart, Made, Overlay, SweepPicture, header, is_regular, rows, sweep_chart};
 use interwell::scene::Document;
 use interwell::study::{SweepOptions, Table, Tally};
 
 use super::grid_job::GridJob;
-use super::support::{counted, file_name, inputs, manifest_path, pool};
+use super::support::{counted, inputs, pool};
 use super::{Common, Failure, Output, Outputs, Picture, refuse};
 pub use prepared::Arguments;
 use prepared::Prepared;
@@ -23,12 +23,10 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         return dry_run::print(&prepared, &pool);
     }
     let Prepared { document, out, sweep, slice, picture, plan, .. } = &prepared;
-    let manifest_out = manifest_path(out).filter(|_| !options.check);
-    let in_blocks = manifest_out.is_some();
-    let outputs = Outputs::new(&inputs(&options.scene, document))
-        .with(Output::DATA, Some(&**out).filter(|_| !options.check))?;
-    let mut job = GridJob::open(document, common, outputs, *picture, manifest_out, pool)?;
-    let opened = prepared.open_rows(&mut job.outputs, in_blocks)?;
+    let out = Some(&**out).filter(|_| !options.check);
+    let outputs = Outputs::new(&inputs(&options.scene, document)).with(Output::DATA, out)?;
+    let mut job = GridJob::open(document, common, outputs, *picture, out, pool)?;
+    let opened = prepared.open_rows(&mut job.outputs)?;
     let Some((mut rows_out, mut all)) = opened else { return prepared.has_all_rows(common) };
     let from = all.cells;
     if let (Rows::Blocks(blocks), Some(_), 1..) = (&rows_out, picture, from) {
@@ -47,10 +45,10 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         common.say(&format!("{}: all {} rows are the same", prepared.data.display(), all.cells));
     }
     let chart = |rows: &Table, picture: &Picture| prepared.chart(rows, picture);
-    let wall_s = job.finish(chart, |origin| {
+    let wall_s = job.finish(chart, |manifest| {
         let sha256 = rows_out.close()?;
         let made = Made { plan, shard: slice.shard(), sha256: &sha256 };
-        Ok(manifest("sweep", document, sweep.grid(), &all, Some(made), origin, &file_name(out)))
+        Ok(manifest.of_rows("sweep", sweep.grid(), &all, Some(made)))
     })?;
     // The rows get their name last: until then --resume can continue them.
     rows_out.finish()?;
@@ -67,16 +65,16 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
 }
 
 impl Prepared<'_> {
-    /// Opens the rows, `in_blocks` if they go to a regular file. Returns the tally of those that an earlier
+    /// Opens the rows, in blocks if they go to a regular file. Returns the tally of those that an earlier
     /// process left; `None` if there are all of them.
-    fn open_rows(&self, outputs: &mut Outputs, in_blocks: bool) -> Result<Option<(Rows, Tally)>, Failure> {
+    fn open_rows(&self, outputs: &mut Outputs) -> Result<Option<(Rows, Tally)>, Failure> {
         let header = header(&self.sweep.empty_table().only(&self.columns));
         if self.options.check {
             let mut file = Compared::new(&self.data)?;
             file.put(&header)?;
             return Ok(Some((Rows::Compared(file), Tally::default())));
         }
-        if !in_blocks {
+        if !is_regular(&self.out) {
             outputs.write(Output::DATA, &header)?;
             return Ok(Some((Rows::Stream, Tally::default())));
         }

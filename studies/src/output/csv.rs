@@ -14,6 +14,11 @@ pub fn header(table: &Table) -> String {
     names.join(",") + "\n"
 }
 
+/// The header and all rows of `table`.
+pub fn csv(table: &Table) -> String {
+    header(table) + &rows(table, 0..table.rows())
+}
+
 /// The rows of `table` in `range`, which may go beyond the last row. Missing values are empty cells.
 pub fn rows(table: &Table, range: Range<usize>) -> String {
     let mut text = String::with_capacity(range.len().min(table.rows()) * 16 * table.columns().len());

@@ -33,35 +33,114 @@ pub struct Made<'a> {
     pub sha256: &'a str,
 }
 
-/// The manifest of the grid that `command` swept, as text. Sweeping the manifest, or a scene file with the
-/// text `scene_ron` beside the `files`, gives the same rows again. `scene_ron` has every argument applied,
-/// the swept fields at their unswept values, and the grid that ran as its `sweep`. `files` are the texts of
-/// the tables and records that the scene reads, by their paths in it.
-///
-/// `document` must hold its files. `data` is the name of the file with the rows; `made` describes that file
-/// if it may be a shard.
-pub fn manifest(
-    command: &str,
-    document: &Document,
-    grid: &Grid,
-    tally: &Tally,
-    made: Option<Made>,
-    origin: &Provenance,
-    data: &str,
-) -> String {
-    let mut more = json!({
-        "cells": tally.cells,
-        "mechanisms": made.map_or(tally.mechanisms, |_| grid.mechanisms()),
-        "outcomes": tally.outcomes,
-        "regimes": tally.regimes,
-    });
-    if let Some(Made { plan, shard, sha256 }) = made {
-        more["shard"] = json!(shard.to_string());
-        more["sha256"] = json!(sha256);
-        more["plan_sha256"] = json!(plan_checksum(plan));
-        more["plan"] = plan.clone();
+/// What manifests have in common.
+#[derive(Debug, Clone, Copy)]
+pub struct Manifest<'a> {
+    /// The document that was run, which holds its files.
+    pub document: &'a Document,
+    /// Where the rows come from.
+    pub origin: &'a Provenance,
+    /// The name of the file with the rows.
+    pub data: &'a str,
+}
+
+impl Manifest<'_> {
+    /// The manifest of the grid that `command` swept, as text. Sweeping the manifest, or a scene file with
+    /// the text `scene_ron` beside the `files`, gives the same rows again. `scene_ron` has every argument
+    /// applied, the swept fields at their unswept values, and the grid that ran as its `sweep`. `files` are
+    /// the texts of the tables and records that the scene reads, by their paths in it.
+    ///
+    /// `made` describes the file with the rows if it may be a shard.
+    pub fn of_rows(&self, command: &str, grid: &Grid, tally: &Tally, made: Option<Made>) -> String {
+        let mut more = json!({
+            "cells": tally.cells,
+            "mechanisms": made.map_or(tally.mechanisms, |_| grid.mechanisms()),
+            "outcomes": tally.outcomes,
+            "regimes": tally.regimes,
+        });
+        if let Some(Made { plan, shard, sha256 }) = made {
+            more["shard"] = json!(shard.to_string());
+            more["sha256"] = json!(sha256);
+            more["plan_sha256"] = json!(plan_checksum(plan));
+            more["plan"] = plan.clone();
+        }
+        self.swept(command, grid, more)
     }
-    swept(command, document, grid, more, origin, data)
+
+    /// The manifest of exponents over a grid as text. It is that of a sweep with the numbers of cells that
+    /// rest on a stop and of cells without exponents, in place of outcomes and regimes.
+    pub fn of_exponents(&self, grid: &Grid, tally: &Tally) -> String {
+        let more = json!({
+            "cells": tally.cells,
+            "resting": tally.resting,
+            "without_exponents": tally.without_exponents,
+        });
+        self.swept("exponents", grid, more)
+    }
+
+    /// The manifest of rows over a grid, with `more` entries of the command.
+    fn swept(&self, command: &str, grid: &Grid, more: Value) -> String {
+        let axes = grid.axes().iter().zip(grid.columns());
+        let axes = axes.map(|(axis, column)| {
+            json!({ "field": axis.field, "column": column, "values": numbers(&axis.values) })
+        });
+        let mut all = json!({ "grid": axes.collect::<Vec<_>>() });
+        extend(&mut all, more);
+        let sweep = grid.axes().iter().map(|axis| axis.to_scene(&self.document.scene)).collect();
+        self.written(&Scene { sweep, ..self.document.scene.clone() }, command, all)
+    }
+
+    /// The manifest of a map of basins as text. It is that of a sweep with the starts in place of the grid.
+    pub fn of_basins(&self, basins: &Basins, answer: &Answer) -> String {
+        let (length, speed) = (basins.model().scales().length, basins.model().scales().speed);
+        let more = json!({
+            "starts": answer.rows.len(),
+            "attractors": answer.attractors.len(),
+            "outside": answer.outside,
+            "not_sure": answer.unsure(),
+            "ended_early": answer.lost,
+            "out_of_work": answer.spent,
+            "undecided": answer.undecided,
+            "length_scale_m": length,
+            "speed_scale_m_per_s": speed,
+        });
+        self.written(&self.document.scene, "basins", more)
+    }
+
+    /// A manifest with `more` entries of the command; `scene` is the scene that ran.
+    fn written(&self, scene: &Scene, command: &str, more: Value) -> String {
+        let Self { document, origin, data } = self;
+        let mut all = json!({
+            "program": PROGRAM,
+            "version": origin.version,
+            "command": command,
+            "arguments": origin.arguments,
+            "data": data,
+            "scene_name": document.name,
+            "title": scene.title,
+            "tolerance": scene.run.tolerance,
+            "seed": seed(scene),
+        });
+        extend(&mut all, more);
+        let end = json!({
+            "jobs": origin.jobs,
+            "wall_s": origin.wall_s,
+            "cpu_s": origin.cpu_s,
+            "scene": scene_value(scene),
+            // null if it cannot be written, never an empty scene
+            "scene_ron": crate::scene::write(scene).ok(),
+            "files": document.files.held,
+        });
+        extend(&mut all, end);
+        pretty(&all)
+    }
+}
+
+/// Adds the entries of another object.
+fn extend(all: &mut Value, more: Value) {
+    if let (Value::Object(all), Value::Object(more)) = (all, more) {
+        all.extend(more);
+    }
 }
 
 /// The manifest of a whole sweep, from the manifests of its shards. `data` is the name of the merged file,
@@ -96,109 +175,6 @@ fn add(sum: &mut Value, other: &Value) {
             *sum = whole.or(real).unwrap_or(Value::Null);
         }
     }
-}
-
-/// The manifest of exponents over a grid as text. It is that of a sweep with the numbers of cells that rest
-/// on a stop and of cells without exponents, in place of outcomes and regimes.
-pub fn exponents_manifest(
-    document: &Document,
-    grid: &Grid,
-    tally: &Tally,
-    origin: &Provenance,
-    data: &str,
-) -> String {
-    let more = json!({
-        "cells": tally.cells,
-        "resting": tally.resting,
-        "without_exponents": tally.without_exponents,
-    });
-    swept("exponents", document, grid, more, origin, data)
-}
-
-/// The manifest of rows over a grid, with `more` entries of the command.
-fn swept(
-    command: &str,
-    document: &Document,
-    grid: &Grid,
-    more: Value,
-    origin: &Provenance,
-    data: &str,
-) -> String {
-    let axes: Vec<Value> = grid
-        .axes()
-        .iter()
-        .zip(grid.columns())
-        .map(|(axis, column)| {
-            json!({ "field": axis.field, "column": column, "values": numbers(&axis.values) })
-        })
-        .collect();
-    let sweep = grid.axes().iter().map(|axis| axis.to_scene(&document.scene)).collect();
-    let scene = &Scene { sweep, ..document.scene.clone() };
-    let mut all = json!({ "grid": axes });
-    if let (Value::Object(all), Value::Object(more)) = (&mut all, more) {
-        all.extend(more);
-    }
-    written(document, scene, command, all, origin, data)
-}
-
-/// The manifest of a map of basins as text. It is that of a sweep with the starts in place of the grid.
-pub fn basins_manifest(
-    document: &Document,
-    basins: &Basins,
-    answer: &Answer,
-    origin: &Provenance,
-    data: &str,
-) -> String {
-    let (length, speed) = (basins.model().scales().length, basins.model().scales().speed);
-    let more = json!({
-        "starts": answer.rows.len(),
-        "attractors": answer.attractors.len(),
-        "outside": answer.outside,
-        "not_sure": answer.unsure(),
-        "ended_early": answer.lost,
-        "out_of_work": answer.spent,
-        "undecided": answer.undecided,
-        "length_scale_m": length,
-        "speed_scale_m_per_s": speed,
-    });
-    written(document, &document.scene, "basins", more, origin, data)
-}
-
-/// A manifest with `more` entries of the command; `scene` is the scene that ran.
-fn written(
-    document: &Document,
-    scene: &Scene,
-    command: &str,
-    more: Value,
-    origin: &Provenance,
-    data: &str,
-) -> String {
-    let mut all = json!({
-        "program": PROGRAM,
-        "version": origin.version,
-        "command": command,
-        "arguments": origin.arguments,
-        "data": data,
-        "scene_name": document.name,
-        "title": scene.title,
-        "tolerance": scene.run.tolerance,
-        "seed": seed(scene),
-    });
-    let end = json!({
-        "jobs": origin.jobs,
-        "wall_s": origin.wall_s,
-        "cpu_s": origin.cpu_s,
-        "scene": scene_value(scene),
-        // null if it cannot be written, never an empty scene
-        "scene_ron": crate::scene::write(scene).ok(),
-        "files": document.files.held,
-    });
-    for part in [more, end] {
-        if let (Value::Object(all), Value::Object(part)) = (&mut all, part) {
-            all.extend(part);
-        }
-    }
-    pretty(&all)
 }
 
 /// The origin of a picture of `document`, without the arguments: names and values as in a manifest, and the

@@ -10,9 +10,9 @@ mod plan;
 mod plot;
 mod text;
 
-pub use csv::{csv_table, header, rows};
+pub use csv::{csv, csv_table, header, rows};
 pub use json::{identified, landscape, summary};
-pub use manifest::{Made, Provenance, basins_manifest, exponents_manifest, manifest, merged_manifest};
+pub use manifest::{Made, Manifest, Provenance, merged_manifest};
 pub use plan::{plan, plan_checksum, plan_differences};
 pub use plot::{
     Area, Argument, BLACK, Caption, Cell, Cells, Chart, Colours, Column, ComparisonPicture, Cut,

@@ -9,30 +9,19 @@ use super::{Table, Task, Values};
 use crate::dynamics::{Model, Outcome, Request, Sample};
 use crate::numeric::{Taper, periodogram, short};
 
-/// What the spectrum is of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Signal {
-    /// Displacement relative to the base, m.
-    Displacement,
-    /// Velocity relative to the base, m/s.
-    Velocity,
-    /// Acceleration of the base, m/s^2.
-    BaseAcceleration,
+words! {
+    /// What the spectrum is of.
+    Signal {
+        /// Displacement relative to the base, m.
+        Displacement = "x",
+        /// Velocity relative to the base, m/s.
+        Velocity = "v",
+        /// Acceleration of the base, m/s^2.
+        BaseAcceleration = "accel",
+    }
 }
 
 impl Signal {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Displacement, Self::Velocity, Self::BaseAcceleration];
-
-    /// The word on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Displacement => "x",
-            Self::Velocity => "v",
-            Self::BaseAcceleration => "accel",
-        }
-    }
-
     fn of(self, sample: &Sample) -> f64 {
         match self {
             Self::Displacement => sample.x,

@@ -329,15 +329,16 @@ impl Search<'_> {
     }
 }
 
-/// What begins at a threshold.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Onset {
-    /// The mass leaves the stop on which it rests.
-    Release,
-    /// The settled motion crosses the barrier at all.
-    Crossing,
-    /// The settled motion crosses, and its crossings repeat.
-    Interwell,
+words! {
+    /// What begins at a threshold.
+    Onset {
+        /// The mass leaves the stop on which it rests.
+        Release = "release",
+        /// The settled motion crosses the barrier at all.
+        Crossing = "crossing",
+        /// The settled motion crosses, and its crossings repeat.
+        Interwell = "interwell",
+    }
 }
 
 /// Verdict of a run on an onset.
@@ -357,18 +358,6 @@ impl Verdict {
 }
 
 impl Onset {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Release, Self::Crossing, Self::Interwell];
-
-    /// The word on the command line and in the CSV.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Release => "release",
-            Self::Crossing => "crossing",
-            Self::Interwell => "interwell",
-        }
-    }
-
     /// The verdict of the run with this summary.
     pub fn verdict(self, summary: &Summary) -> Verdict {
         let does = match self {

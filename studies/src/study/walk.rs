@@ -53,51 +53,29 @@ pub enum NoModel {
     Unsolved,
 }
 
-/// The direction in which the values of a field are gone through.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Direction {
-    /// In their order.
-    Up,
-    /// From the last to the first.
-    Down,
-}
-
-impl Direction {
-    /// The word in the CSV.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Up => "up",
-            Self::Down => "down",
-        }
+words! {
+    /// The direction in which the values of a field are gone through.
+    Direction {
+        /// In their order.
+        Up = "up",
+        /// From the last to the first.
+        Down = "down",
     }
 }
 
-/// In which directions the last field of a grid is walked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Carry {
-    /// In the order of its values.
-    Up,
-    /// Backwards.
-    Down,
-    /// Both, each for itself.
-    Both,
+words! {
+    /// In which directions the last field of a grid is walked.
+    Carry {
+        /// In the order of its values.
+        Up = "up",
+        /// Backwards.
+        Down = "down",
+        /// Both, each for itself.
+        Both = "both",
+    }
 }
 
 impl Carry {
-    /// What is called `up`, `down` or `both`.
-    pub fn named(word: &str) -> Option<Self> {
-        [Self::Up, Self::Down, Self::Both].into_iter().find(|carry| carry.name() == word)
-    }
-
-    /// The word in an argument.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Up => "up",
-            Self::Down => "down",
-            Self::Both => "both",
-        }
-    }
-
     /// The directions, in the order of the rows.
     pub fn directions(self) -> &'static [Direction] {
         match self {

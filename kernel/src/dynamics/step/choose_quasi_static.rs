@@ -4,7 +4,7 @@ use super::quasi_static::QuasiStatic;
 use super::stepper::{RESIDUAL, Stepper};
 use crate::dynamics::clock::Instant;
 use crate::dynamics::drive::Drive;
-use crate::dynamics::equation::End;
+use crate::dynamics::equation::{Compliant, End, Mode};
 use crate::dynamics::series::{MAX_ORDER, SEEDED, natural_steps, polynomial};
 use crate::dynamics::state::{Contact, MotionState};
 use crate::numeric::{Scalar, fast_log2};
@@ -45,7 +45,21 @@ pub(crate) struct QuasiStaticStep<T> {
     pub bound: T,
 }
 
-impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
+/// A mass on a stop that does not ring as far as the first term of its quasi-static motion shows.
+struct Calm<'a, T> {
+    stop: Compliant<T>,
+    mode: &'a Mode<T>,
+    /// Displacement of the surface of the stop from the origin of the mode.
+    surface: T,
+    /// Circular frequency of the ringing, and the speed of it that may be neglected.
+    ringing: T,
+    ring: T,
+    /// Speed and tolerance of a step of contact.
+    scale: T,
+    tolerance: f64,
+}
+
+impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
     /// A step of quasi-static motion; `None` if the mass rings beyond the tolerance or the load changes too
     /// fast.
     pub fn quasi_static_step(
@@ -55,6 +69,14 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         left: T,
         path: &mut QuasiStatic<T>,
     ) -> Option<QuasiStaticStep<T>> {
+        let calm = self.calm(state, end, path)?;
+        let order = self.solve_quasi_static(state, &calm, path)?;
+        self.fit_quasi_static(state, (end, left), &calm, order, path)
+    }
+
+    /// Whether the mass rings: the first term of its quasi-static motion shows whether the series is worth
+    /// it. `None` if it does.
+    fn calm(&mut self, state: &MotionState<T>, end: End, path: &mut QuasiStatic<T>) -> Option<Calm<'a, T>> {
         let (root, sign) = (state.depth.root, end.sign::<T>());
         let (speed, damping, mode) = (sign * state.v, self.equation.damping, self.mode(state));
         let stop = self.equation.compliant?;
@@ -64,7 +86,6 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         if !compressing || self.settings.tolerance < MIN_TOLERANCE {
             return None;
         }
-        // Does the mass ring? The first term of its quasi-static motion shows whether the series is worth it.
         let a = &mut path.series.a;
         self.drive.seed(&state.at, state.segment, a, &mut self.cursor);
         let (jerk, snap) = (-(sign * a[1]), a[2].abs() * T::of(2.0));
@@ -88,13 +109,24 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         if !(acceleration.abs() <= ringing * ring + slow + slow) {
             return None;
         }
-        // The series decides.
+        (path.stop, path.sign) = (stop, sign);
+        Some(Calm { stop, mode, surface, ringing, ring, scale, tolerance })
+    }
+
+    /// Solves for the series of the quasi-static motion and returns its order; `None` if the mass does not
+    /// follow it. Two terms show whether it does; all are needed for the step.
+    fn solve_quasi_static(
+        &mut self,
+        state: &MotionState<T>,
+        calm: &Calm<T>,
+        path: &mut QuasiStatic<T>,
+    ) -> Option<usize> {
+        let &Calm { mode, surface, ringing, ring, .. } = calm;
+        let (root, speed, damping) = (state.depth.root, path.sign * state.v, self.equation.damping);
         let sweeps = if self.settings.tolerance > COARSE { FEW_SWEEPS } else { MORE_SWEEPS };
         let order = (self.settings.order + 1).min(MAX_ORDER - 2 * sweeps);
-        (path.stop, path.sign) = (stop, sign);
         mode.force.about(surface, &mut path.about);
         path.about.resize(path.about.len().max(3), T::zero());
-        // Two terms show whether the mass follows the quasi-static motion; all terms are needed for the step.
         let few = 1 + 2 * sweeps;
         for k in SEEDED..=few {
             path.series.extend_drive(k, self.drive, &mut self.cursor);
@@ -111,6 +143,19 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         path.solve(root, (order, sweeps), surface, damping);
         self.evaluations += 1;
         self.work.add(self.costs.contact);
+        Some(order)
+    }
+
+    /// The longest step for which the series is good enough, by halving; `None` if none of use is.
+    fn fit_quasi_static(
+        &self,
+        state: &MotionState<T>,
+        (end, left): (End, T),
+        calm: &Calm<T>,
+        order: usize,
+        path: &QuasiStatic<T>,
+    ) -> Option<QuasiStaticStep<T>> {
+        let &Calm { stop, mode, surface, ringing, scale, tolerance, .. } = calm;
         let [natural] = natural_steps(
             order,
             |k| [path.depth[k].magnitude()],
@@ -136,10 +181,12 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             let half = length * T::of(0.5);
             let mut residual = T::zero();
             for t in [T::zero(), half, length] {
-                residual = residual.larger(path.residual(t, surface, &mode.force, damping).abs());
+                let off = path.residual(t, surface, &mode.force, self.equation.damping);
+                residual = residual.larger(off.abs());
             }
             let allowed = T::of(RESIDUAL * order as f64 * tolerance) * scale;
-            if deep && bound < start && stop.loss * fastest < T::of(1.0) && residual * length <= allowed {
+            let clear = deep && bound < path.depth[0] && stop.loss * fastest < T::of(1.0);
+            if clear && residual * length <= allowed {
                 let depth = polynomial::value(&path.depth[..=order], length);
                 let speed = polynomial::slope(&path.depth[..=order], length);
                 return Some(QuasiStaticStep { length, arrival, end: (depth.sqrt(), speed), bound });

@@ -7,7 +7,7 @@ use crate::app::session::editor::Editor;
 use crate::app::words::fields::in_words;
 use crate::mechanics::Mechanism;
 use crate::numeric::short;
-use crate::output::{Chart, Cut, NoPicture, Overlay, Ranges, SweepPicture, View, header, rows, sweep_chart};
+use crate::output::{Chart, Cut, NoPicture, Overlay, Ranges, SweepPicture, View, csv, sweep_chart};
 use crate::scene::{FieldPath, Scene, SceneError};
 use crate::study::{
     Cell, Edges, Grid, Levels, STRIDES, SummaryField, Sweep, SweepOptions, Table, first_crossing,
@@ -249,7 +249,6 @@ impl Map {
         let table = self.table(true, columns);
         let axes = self.grid().columns().iter().cloned();
         let names: Vec<String> = axes.chain(columns.iter().map(|name| (*name).to_owned())).collect();
-        let table = table.only(&names);
-        header(&table) + &rows(&table, 0..usize::MAX)
+        csv(&table.only(&names))
     }
 }

@@ -2,8 +2,7 @@
 
 use std::ops::Range;
 
-use super::restitution::median;
-use super::turns::noise;
+use super::{median, noise};
 use crate::numeric::extent;
 use crate::numeric::orthogonal::Orthogonal;
 

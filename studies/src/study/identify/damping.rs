@@ -4,8 +4,7 @@ use std::f64::consts::PI;
 
 use super::clipped::{Clipped, clipped};
 use super::peaks::{Peak, peaks};
-use super::turns::{noise, reach, turns};
-use super::{Identified, Identity, Unidentified, with_interval};
+use super::{Identified, Identity, Unidentified, noise, reach, turns, with_interval};
 use crate::numeric::regression::{least_squares, student};
 use crate::numeric::{Envelope, FEWEST_TURNS, TurningPoint, short};
 use crate::scene::Channel;

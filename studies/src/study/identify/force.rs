@@ -1,8 +1,7 @@
 //! Force curve from a slow pull, with its hysteresis, equilibria and barrier.
 
 use super::rests::Rest;
-use super::turns::{median, noise, turns};
-use super::{Identified, Identity, Unidentified, with_interval};
+use super::{Identified, Identity, Unidentified, median, noise, turns, with_interval};
 use crate::numeric::regression::{Fit, least_squares, powers, student};
 use crate::numeric::{extent, short};
 use crate::study::{Table, Values};

@@ -5,8 +5,7 @@ use std::ops::Range;
 
 use nalgebra::SVector;
 
-use super::Unidentified;
-use super::turns::{Turn, median};
+use super::{Turn, Unidentified, median};
 use crate::numeric::regression::{Fit, least_squares};
 use crate::numeric::{Envelope, FEWEST_TURNS, TurningPoint, short};
 

@@ -1,9 +1,147 @@
 //! Verdicts of lessons: whether a task is done, which option holds, and whether a whole lesson is right.
 
-mod check;
 mod judge;
 mod subject;
 
-pub use check::{LessonFinding, LessonReport, check_lesson};
+use std::rc::Rc;
+
+use super::Task;
+use crate::numeric::short;
+use crate::scene::lesson::{Condition, LessonDocument, Step};
+use crate::system::threads::Pool;
+use judge::holds;
 pub use judge::{Lack, Unjudged, Value, goal_lack, options_that_hold, result_fields};
 pub use subject::Subject;
+
+/// Relative change of a bound that shows whether a verdict is close to it.
+const MOVED: f64 = 0.01;
+
+/// Something that is wrong with a lesson, or close to it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LessonFinding {
+    /// Number of the step, from 0.
+    pub step: usize,
+    /// Path of the field in the lesson: `steps.2.goal`.
+    pub field: String,
+    /// The problem.
+    pub problem: String,
+}
+
+/// Result of the check of a lesson.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct LessonReport {
+    /// Predictions that were asked.
+    pub predictions: usize,
+    /// Tasks that were tried.
+    pub tasks: usize,
+    /// What is wrong: a start that meets its goal, a solution that does not, not one right option.
+    pub wrong: Vec<LessonFinding>,
+    /// Bounds that turn a verdict where they are moved by 1 %.
+    pub warnings: Vec<LessonFinding>,
+}
+
+/// Runs a lesson: the start of every task must fail, its solution must pass, of the options of every
+/// prediction exactly one must hold; then with each bound moved by 1 % up and down, except bounds on fields
+/// of the scene that no control of the lesson changes: they are exact settings.
+pub fn check_lesson(
+    document: &LessonDocument,
+    pool: Option<&Pool>,
+    task: &Task,
+) -> Result<LessonReport, Unjudged> {
+    let mut report = LessonReport::default();
+    let mut last: Option<Rc<Subject>> = None;
+    for number in 0..document.lesson.steps.len() {
+        // a step begins with the scene with which the one before ended, unless it changes that
+        let [begin, end] = [document.begin(number), document.end(number)].map(|stage| {
+            let same = last.take().filter(|last| last.is_of(&stage.scene, &stage.files));
+            let new = || Rc::new(Subject::new(&stage.scene, &stage.files, &document.lesson, task).on(pool));
+            Rc::clone(last.insert(same.unwrap_or_else(new)))
+        });
+        check_step(&mut report, document, number, (&begin, &end))?;
+    }
+    Ok(report)
+}
+
+/// The same for one step, by its number from 0, between two scenes.
+fn check_step(
+    report: &mut LessonReport,
+    document: &LessonDocument,
+    number: usize,
+    (begin, end): (&Subject, &Subject),
+) -> Result<(), Unjudged> {
+    let lesson = &document.lesson;
+    let finding = |part: &str, problem: String| {
+        let field = format!("steps.{number}.{part}");
+        LessonFinding { step: number, field, problem }
+    };
+    let mut near = |part: &str, condition: &Condition, subject: &Subject| {
+        let turned = turned_by(condition, &lesson.controls, subject, begin)?;
+        report.warnings.extend(turned.into_iter().map(|problem| finding(part, problem)));
+        Ok(())
+    };
+    let step = &lesson.steps[number];
+    match step {
+        Step::Say(_) | Step::Explain(_) => {}
+        Step::Predict { options, .. } => {
+            report.predictions += 1;
+            let hold = options_that_hold(step, end, begin)?;
+            let right: Vec<&str> =
+                options.iter().zip(&hold).filter(|pair| *pair.1).map(|pair| pair.0.text.as_str()).collect();
+            if right.len() != 1 {
+                let problem = match right.len() {
+                    0 => "none of the options holds; exactly one must".to_owned(),
+                    _ => format!("these options hold, and only one may: {}", right.join("; ")),
+                };
+                report.wrong.push(finding("options", problem));
+            }
+            for (index, option) in options.iter().enumerate() {
+                near(&format!("options.{index}.holds"), &option.holds, end)?;
+            }
+        }
+        Step::Do { goal, .. } => {
+            report.tasks += 1;
+            if goal_lack(step, begin, begin)?.is_none() {
+                report.wrong.push(finding("goal", "is met before anything is done".to_owned()));
+            }
+            if goal_lack(step, end, begin)?.is_some() {
+                report.wrong.push(finding("solution", "does not meet the goal".to_owned()));
+            }
+            near("goal", goal, begin)?;
+            near("goal", goal, end)?;
+        }
+    }
+    Ok(())
+}
+
+/// The bounds of a condition that turn its verdict where they are moved, a sentence each.
+fn turned_by(
+    condition: &Condition,
+    controls: &[String],
+    subject: &Subject,
+    before: &Subject,
+) -> Result<Vec<String>, Unjudged> {
+    let mut bounds = Vec::new();
+    condition.clone().for_each_bound(&mut |field, bound| bounds.push((field.to_owned(), *bound)));
+    let verdict = holds(condition, subject, before)?;
+    let mut turned = Vec::new();
+    for (index, (field, bound)) in bounds.iter().enumerate() {
+        let of_scene = field.strip_prefix("scene.");
+        if of_scene.is_some_and(|path| !controls.iter().any(|control| control == path)) {
+            continue;
+        }
+        for factor in [1.0 - MOVED, 1.0 + MOVED] {
+            let (mut moved, mut place) = (condition.clone(), 0);
+            moved.for_each_bound(&mut |_, bound| {
+                if place == index {
+                    *bound *= factor;
+                }
+                place += 1;
+            });
+            if holds(&moved, subject, before)? != verdict {
+                let to = short(bound * factor);
+                turned.push(format!("a bound of {to} on {field} in place of {bound} turns the verdict"));
+            }
+        }
+    }
+    Ok(turned)
+}

@@ -5,29 +5,18 @@ use nalgebra::Vector3;
 use super::SAME;
 use super::corrector::{Corrector, Point};
 
-/// What happens to a periodic motion at a value of the field.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum BranchEvent {
-    /// The branch turns back: a multiplier passes through 1.
-    Fold,
-    /// A multiplier passes through -1: a motion of twice the period begins.
-    Flip,
-    /// A multiplier passes through 1 at a motion that is its own mirror image: a pair of motions that are not
-    /// begins. A branch of such motions turns there and goes back as that of their mirror images.
-    Symmetry,
-    /// The motion begins or ceases to touch a stop.
-    Grazing,
-}
-
-impl BranchEvent {
-    /// The word in the CSV.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Fold => "fold",
-            Self::Flip => "flip",
-            Self::Symmetry => "symmetry",
-            Self::Grazing => "grazing",
-        }
+words! {
+    /// What happens to a periodic motion at a value of the field.
+    BranchEvent {
+        /// The branch turns back: a multiplier passes through 1.
+        Fold = "fold",
+        /// A multiplier passes through -1: a motion of twice the period begins.
+        Flip = "flip",
+        /// A multiplier passes through 1 at a motion that is its own mirror image: a pair of motions that are
+        /// not begins. A branch of such motions turns there and goes back as that of their mirror images.
+        Symmetry = "symmetry",
+        /// The motion begins or ceases to touch a stop.
+        Grazing = "grazing",
     }
 }
 

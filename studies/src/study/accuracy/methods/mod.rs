@@ -17,29 +17,17 @@ pub use fixed::fixed_step;
 use crate::dynamics::{Event, EventKind, Model, Phase, Request, Run, Sample, Side, StopAt, Summary};
 use crate::system::clock::ThreadClock;
 
-/// A scheme of fixed step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Scheme {
-    /// Semi-implicit (symplectic) Euler: velocity first, then displacement by the new velocity. First order.
-    SemiImplicitEuler,
-    /// Velocity Verlet; where the force depends on the velocity, its new value is predicted by an Euler step.
-    /// Second order.
-    VelocityVerlet,
-    /// The classical method of Runge and Kutta (Kutta 1901). Fourth order between impacts.
-    RungeKutta4,
-}
-
-impl Scheme {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::SemiImplicitEuler, Self::VelocityVerlet, Self::RungeKutta4];
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::SemiImplicitEuler => "semi-implicit Euler",
-            Self::VelocityVerlet => "velocity Verlet",
-            Self::RungeKutta4 => "RK4",
-        }
+words! {
+    /// A scheme of fixed step.
+    Scheme {
+        /// Semi-implicit (symplectic) Euler: velocity first, then displacement by the new velocity. First
+        /// order.
+        SemiImplicitEuler = "semi-implicit Euler",
+        /// Velocity Verlet; where the force depends on the velocity, its new value is predicted by an Euler
+        /// step. Second order.
+        VelocityVerlet = "velocity Verlet",
+        /// The classical method of Runge and Kutta (Kutta 1901). Fourth order between impacts.
+        RungeKutta4 = "RK4",
     }
 }
 

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::meeting::{Meeting, Sides};
 use super::{Motion, median};
-use crate::study::identify::turns::{Turn, turns};
+use crate::study::identify::{Turn, turns};
 
 /// A turning point at a stop.
 #[derive(Debug, Clone)]

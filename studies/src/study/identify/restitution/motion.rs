@@ -6,7 +6,7 @@ use crate::numeric::extent;
 use crate::numeric::orthogonal::{Orthogonal, Tangent};
 use crate::scene::Timing;
 use crate::study::identify::clipped::{CutOff, cut_off};
-use crate::study::identify::turns::{noise, reach};
+use crate::study::identify::{noise, reach};
 
 /// A record of displacement relative to the base, without the samples that were cut off. SI.
 pub struct Motion {
