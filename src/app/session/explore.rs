@@ -7,14 +7,14 @@ use std::sync::atomic::AtomicBool;
 use crate::app::session::Session;
 use crate::app::session::map::ground;
 use crate::app::task::{Background, Identity, pool};
-use crate::app::words::numbers::{decimal, three};
+use crate::app::words::numbers::decimal;
 use crate::dynamics::Model;
 use crate::mechanics::Mechanism;
-use crate::output::{Cells, Chart, Colours, Marks, basins_chart, suited_unit};
+use crate::output::{Chart, basins_chart, suited_unit};
 use crate::scene::{Axis, FieldPath, Scene, Start, SweepAxis};
 use crate::study::{
-    Answer, Attractor, Basins, EvenRange, Family, NoBasins, Signal, Spectrum, SpectrumOptions, Starts, Task,
-    Visit, followed_until, spectrum, up_and_down,
+    Answer, Basins, EvenRange, Family, NoBasins, Signal, Spectrum, SpectrumOptions, Starts, Task, Visit,
+    followed_until, spectrum, up_and_down,
 };
 
 /// The studies that the views of the layout Explore ask for.
@@ -247,72 +247,8 @@ fn find_basins(
         let Some(answer) = basins.run_level(&pool, &task).then(|| basins.answer(&task)).flatten() else {
             return Ok(());
         };
-        let (mut chart, words) = (basins_chart(&basins, &answer), words_apart(&answer.attractors));
-        for layer in chart.first_panel().into_iter().flat_map(|panel| &mut panel.layers) {
-            let Marks::Cells(Cells { colours: Colours::Categories(kinds), .. }) = &mut layer.marks else {
-                continue;
-            };
-            for ((kind, attractor), words) in kinds.iter_mut().zip(&answer.attractors).zip(&words) {
-                kind.1 = kind.1.replacen(&attractor.words(), words, 1);
-            }
-        }
+        let (chart, words) = (basins_chart(&basins, &answer), answer.words());
         each(Level { chart, words, per_speed, answer, room: basins.room() });
     }
     Ok(())
-}
-
-/// Relative difference from which two RMS velocities tell two motions apart.
-const FASTER: f64 = 0.02;
-
-/// What each attractor is in words; where these are those of another one, also its speed, or where it is when
-/// a period begins.
-fn words_apart(attractors: &[Attractor]) -> Vec<String> {
-    let speed = |attractor: &Attractor| attractor.rms_velocity.unwrap_or(0.0);
-    let place = |attractor: &Attractor| attractor.states.first().map_or(0.0, |state| state.0);
-    let words = |attractor: &Attractor| {
-        let same = attractors.iter().filter(|other| other.words() == attractor.words());
-        let others = same.filter(|other| !std::ptr::eq(*other, attractor)).collect::<Vec<_>>();
-        let most = |other: &&&Attractor| (speed(other) - speed(attractor)).abs() > FASTER * speed(attractor);
-        let apart = match others.is_empty() {
-            true => return attractor.words(),
-            false if others.iter().all(|other| most(&other)) => {
-                format!("{} mm/s", three(1e3 * speed(attractor)))
-            }
-            false => format!(
-                "at {} mm when a period begins",
-                three(1e3 * place(attractor)).replace('-', "\u{2212}")
-            ),
-        };
-        format!("{}, {apart}", attractor.words())
-    };
-    attractors.iter().map(words).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::dynamics::Regime;
-    use crate::study::Shares;
-
-    #[test]
-    fn no_two_attractors_have_the_same_words() {
-        let attractor = |rms: f64, x: f64| Attractor {
-            regime: Regime::Interwell,
-            period: Some(1),
-            side: None,
-            rms_velocity: Some(rms),
-            states: vec![(x, 0.0)],
-            starts: 1,
-            share: Shares::of(1, 2),
-        };
-        let words = |all: [(f64, f64); 2]| words_apart(&all.map(|(rms, x)| attractor(rms, x)));
-        assert_eq!(words_apart(&[attractor(0.05, 0.0)]), ["interwell, period 1"]);
-        assert_eq!(
-            words([(0.05, 0.0), (0.08, 0.0)]),
-            ["interwell, period 1, 50.0 mm/s", "interwell, period 1, 80.0 mm/s"]
-        );
-        let [left, right] = ["\u{2212}1.50", "1.50"].map(|mm| format!("at {mm} mm when a period begins"));
-        let ends = words([(0.05, -1.5e-3), (0.05, 1.5e-3)]);
-        assert!(ends[0].ends_with(&left) && ends[1].ends_with(&right), "{ends:?}");
-    }
 }

@@ -119,16 +119,16 @@ fn source_row(basins: &Basins) -> impl Fn(usize) -> usize {
 fn names(basins: &Basins, answer: &Answer) -> Vec<String> {
     let mut order: Vec<usize> = (0..answer.attractors.len()).collect();
     order.sort_by_key(|place| std::cmp::Reverse(answer.attractors[*place].starts));
-    let mut names = vec![String::new(); order.len()];
+    let (mut names, kinds) = (vec![String::new(); order.len()], answer.words());
     for place in order.into_iter().take(MAX_NAMED) {
-        names[place] = words(place, &answer.attractors[place], basins.starts().is_grid());
+        names[place] = words(place, &kinds[place], &answer.attractors[place], basins.starts().is_grid());
     }
     names
 }
 
 /// An attractor in words, with its number and its share; for random starts with the interval of the share.
-fn words(place: usize, attractor: &Attractor, is_grid: bool) -> String {
-    let mut words = format!("{} {}", place + 1, attractor.words());
+fn words(place: usize, kind: &str, attractor: &Attractor, is_grid: bool) -> String {
+    let mut words = format!("{} {kind}", place + 1);
     let percent = |share: f64| short((1e3 * share).round() / 10.0);
     let share = &attractor.share;
     words += &match is_grid {

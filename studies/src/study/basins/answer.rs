@@ -3,6 +3,7 @@
 use super::Basins;
 use super::rounds::{Fate, Kind, Way};
 use crate::dynamics::{Model, Outcome, Place, Regime, Request, Side, Summary};
+use crate::numeric::decimals;
 use crate::study::{State, Table, Task};
 
 /// The quantile of the normal distribution that leaves 95 % within.
@@ -10,6 +11,9 @@ const NORMAL_95: f64 = 1.959_963_984_540_054;
 
 /// Forcing periods over which an attractor is described: two of the longest period that is recognised.
 const WINDOW: u32 = 24;
+
+/// Relative difference from which two RMS velocities tell two attractors apart.
+const FASTER: f64 = 0.02;
 
 /// A share with its 95 % interval (Wilson 1927).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,7 +58,7 @@ pub struct Attractor {
 
 impl Attractor {
     /// Its regime, side and period in words.
-    pub fn words(&self) -> String {
+    fn kind(&self) -> String {
         let mut words = match self.regime.name() {
             "" => "one well",
             name => name,
@@ -102,6 +106,29 @@ impl Answer {
             .each("attractor", &rows, |row| self.rows[*row].map(|(number, _)| u64::from(number)))
             .each("periods", &rows, |row| self.rows[*row].map(|(_, periods)| u64::from(periods)))
             .each("sure", &rows, |row| self.rows[*row].and_then(|_| self.sure.get(*row).copied()))
+    }
+
+    /// What each attractor is, in words that no other one has: its regime, side and period, and where these
+    /// are those of another one its RMS velocity, or where it is when a period begins.
+    pub fn words(&self) -> Vec<String> {
+        let speed = |attractor: &Attractor| attractor.rms_velocity.unwrap_or(0.0);
+        let three = |value: f64| format!("{value:.0$}", decimals(value.abs(), 3));
+        let words = |attractor: &Attractor| {
+            let kind = attractor.kind();
+            let is_other = |other: &&Attractor| !std::ptr::eq(*other, attractor) && other.kind() == kind;
+            let others: Vec<&Attractor> = self.attractors.iter().filter(is_other).collect();
+            let velocity = speed(attractor);
+            let differs = |other: &&Attractor| (speed(other) - velocity).abs() > FASTER * velocity;
+            match others.is_empty() {
+                true => kind,
+                false if others.iter().all(differs) => format!("{kind}, {} mm/s", three(1e3 * velocity)),
+                false => {
+                    let mm = three(1e3 * attractor.states[0].0).replace('-', "\u{2212}");
+                    format!("{kind}, at {mm} mm when a period begins")
+                }
+            }
+        };
+        self.attractors.iter().map(words).collect()
     }
 
     /// How many rows have an answer that is not sure.
@@ -278,5 +305,34 @@ mod tests {
         assert!((none.high - 0.1611).abs() < 5e-5, "{none:?}");
         let all = Shares::of(20, 20);
         assert_eq!((all.share, all.high), (1.0, 1.0));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_two_attractors_have_the_same_words() {
+        let words = |all: &[(f64, f64)]| {
+            let attractor = |(rms, x): &(f64, f64)| Attractor {
+                regime: Regime::Interwell,
+                period: Some(1),
+                side: None,
+                rms_velocity: Some(*rms),
+                states: vec![(*x, 0.0)],
+                starts: 1,
+                share: Shares::of(1, 2),
+            };
+            let attractors = all.iter().map(attractor).collect();
+            let (rows, sure) = (Vec::new(), Vec::new());
+            Answer { attractors, rows, outside: 0, sure, lost: 0, spent: 0, undecided: 0 }.words()
+        };
+        assert_eq!(words(&[(0.05, 0.0)]), ["interwell, period 1"]);
+        let faster = ["interwell, period 1, 50.0 mm/s", "interwell, period 1, 80.0 mm/s"];
+        assert_eq!(words(&[(0.05, 0.0), (0.08, 0.0)]), faster);
+        let ends = words(&[(0.05, -1.5e-3), (0.05, 1.5e-3)]);
+        assert!(ends[0].ends_with(", at \u{2212}1.50 mm when a period begins"), "{ends:?}");
+        assert!(ends[1].ends_with(", at 1.50 mm when a period begins"), "{ends:?}");
     }
 }
