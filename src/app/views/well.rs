@@ -81,13 +81,15 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let (span, state) = (context.span, context.drawn.state(context.session));
     let model = Arc::clone(context.drawn.model(context.session));
     let potential = |model, tilt| Potential { model, tilt, per_joule };
-    let (own, tipped) = (potential(&model, 0.0), potential(&model, model.mass() * state.base_accel));
+    let (level, tipped) = (potential(&model, 0.0), potential(&model, model.mass() * state.base_accel));
     let points = tipped.points(span);
     // the potential of a pinned motion, where it differs from the present one
     let seen = 0.01 * (high - low) * per_joule;
     let all = ghosts(context);
-    let of_ghosts: Vec<Potential<'_>> =
-        all.iter().map(|own| potential(&own.model, own.model.mass() * own.state.base_accel)).collect();
+    let of_ghosts: Vec<Potential<'_>> = all
+        .iter()
+        .map(|ghost| potential(&ghost.model, ghost.model.mass() * ghost.state.base_accel))
+        .collect();
     let mut layers = Vec::new();
     for (ghost, curve) in all.iter().zip(&of_ghosts) {
         let pinned: Vec<_> = points.iter().map(|point| (point.0, curve.at(point.0))).collect();
@@ -104,7 +106,7 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let pane = kept_pane_ui(ui, &style, Place::in_line(ui, area, Sense::DRAG, (0.0, 0.0)), key, || {
         let across = PlotAxis::between(span.low * 1e3, span.high * 1e3, "displacement (mm)");
         let up = PlotAxis::between(low * per_joule, high * per_joule, &format!("energy ({unit})"));
-        still(&own, span, (across, up), &other)
+        still(&level, span, (across, up), &other)
     });
     let Some(frame) = pane.frame(0) else { return };
     axes_input(ui, context.memory, View::Well, &pane.response, (area, frame));
@@ -124,7 +126,7 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let balls: Vec<(Pos2, &Ghost)> =
         all.iter().zip(&of_ghosts).map(|(ghost, curve)| (on_curve(ghost.state.x, curve), ghost)).collect();
     all.iter().for_each(|ghost| ghost.stops(&painter, context, frame, BALL));
-    landmarks(&painter, context, (&pane, frame), &own);
+    landmarks(&painter, context, (&pane, frame), &level);
     let at = on_curve(state.x, &tipped);
     stops_ui(ui, context, frame, (frame.top() + 4.0, frame.bottom()), BALL);
     mass_ui(ui, context, at, frame);
@@ -138,11 +140,11 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 
 /// What stays the same from frame to frame: axes and the potential without the push, and the legend, that of
 /// the `other` motions too.
-fn still(own: &Potential<'_>, span: Span, (across, up): (PlotAxis, PlotAxis), other: &[Role]) -> Chart {
+fn still(level: &Potential<'_>, span: Span, (across, up): (PlotAxis, PlotAxis), other: &[Role]) -> Chart {
     let mut panel = Panel::new(across, up);
     panel.layer(Role::Curve, "potential with the push", Marks::Path(Vec::new()));
-    panel.layer(Role::Reference, "the mechanism's own", Marks::Path(own.points(span)));
-    if own.model.stop_positions() != (None, None) {
+    panel.layer(Role::Reference, "the mechanism's own", Marks::Path(level.points(span)));
+    if level.model.stop_positions() != (None, None) {
         panel.layer(Role::Beyond, "beyond the stops", Marks::Path(Vec::new()));
     }
     for role in other {
@@ -159,7 +161,7 @@ fn landmarks(
     painter: &egui::Painter,
     context: &ViewContext<'_>,
     (pane, rect): (&Pane, Rect),
-    own: &Potential<'_>,
+    level: &Potential<'_>,
 ) {
     let (style, model) = (context.style, context.drawn.model(context.session));
     let Some(barrier) = model.mechanism().landscape.barrier else { return };
@@ -174,7 +176,7 @@ fn landmarks(
     let mut taken = Taken { lines: Vec::new(), places: stops.map(wall).collect() };
     let joule = model.mechanism().curve.potential(barrier.x) - bottom(model);
     let place = |x: f64, energy: f64| pane.place(0, (x * 1e3, energy)).unwrap_or(rect.min);
-    let [top, foot] = [joule, 0.0].map(|joule| place(barrier.x, joule * own.per_joule));
+    let [top, foot] = [joule, 0.0].map(|joule| place(barrier.x, joule * level.per_joule));
     if foot.y - top.y > 4.0 * BRACKET && foot.y < rect.bottom() {
         let stroke = Stroke::new(style.width(1.3), style.faint());
         let ends = [top, foot].map(|at| vec![at - vec2(BRACKET, 0.0), at + vec2(BRACKET, 0.0)]);
@@ -185,7 +187,7 @@ fn landmarks(
     let largest = model.mass() * model.largest_base_acceleration();
     let swept = |x: f32| {
         let x = context.span.world_from_screen(x, rect);
-        let tipped = |tilt: f64| Potential { tilt, ..*own }.at(x * 1e3);
+        let tipped = |tilt: f64| Potential { tilt, ..*level }.at(x * 1e3);
         [-largest, 0.0, largest].map(|push| place(x, tipped(push))).into()
     };
     let count = (rect.width() / STEP) as usize;

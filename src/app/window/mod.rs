@@ -42,6 +42,7 @@ mod lessons;
 mod measured_dialog;
 mod menu;
 mod messages;
+mod pace;
 mod perform;
 mod state;
 mod wanted;
@@ -81,15 +82,14 @@ impl Window {
         if let Some(left) = self.session.follow_presses(ctx.input(|input| input.time)) {
             ctx.request_repaint_after_secs(left as f32);
         }
-        let seconds = ctx.input(|input| f64::from(input.stable_dt));
-        self.session.player.tick(seconds);
+        self.session.player.tick(self.pace.seconds(ctx));
         if let Some(reached) = self.session.player.take_reached().filter(|_| !self.motion_is_covered()) {
             self.messages.report_reached(reached, self.session.player.time());
         }
         self.session.follow_pins();
         let present = self.session.player.watch().time();
         if self.session.player.is_playing() || self.session.pins.are_behind(present) {
-            ctx.request_repaint();
+            self.pace.ask(ctx);
         }
     }
 

@@ -25,6 +25,7 @@ use super::lessons::CANNOT_OPEN_LESSON;
 use super::lessons::{self, Lessons};
 use super::measured_dialog::{MeasuredDialog, is_measured};
 use super::messages::{CANNOT_OPEN, Messages, WriteResult};
+use super::pace::Pace;
 use super::wanted::{Chosen, PathDialog};
 
 const MOST_RECENT: usize = 8;
@@ -79,6 +80,7 @@ pub struct Window {
     pub(super) wake: Wake,
     /// The settings that were applied last; they are applied again only if they change.
     pub(super) applied: Option<Settings>,
+    pub(super) pace: Pace,
     /// The zoom of the projector that was applied last; `None` without a projector.
     pub(super) zoom: Option<f32>,
 }
@@ -151,6 +153,7 @@ impl Window {
             waited: false,
             wake,
             applied: None,
+            pace: Pace::default(),
             zoom: None,
         })
     }

@@ -312,9 +312,9 @@ mod tests {
                 other => vec![other.clone()],
             }
         }
-        for own in crate::scene::lesson::LESSONS {
+        for lesson in crate::scene::lesson::LESSONS {
             let results = crate::study::result_fields();
-            let read = crate::scene::lesson::LessonDocument::load(own.name, &results).unwrap();
+            let read = crate::scene::lesson::LessonDocument::load(lesson.name, &results).unwrap();
             let goals = read.lesson.steps.iter().filter_map(|step| match step {
                 crate::scene::lesson::Step::Do { goal, .. } => Some(goal),
                 _ => None,
@@ -325,7 +325,7 @@ mod tests {
                 for found in [found, Value::Missing] {
                     let text = not_yet(&Lack { asked: asked.clone(), found }, true);
                     let spare = ["(", "_", "intrawell", "interwell", "differs"];
-                    assert!(spare.iter().all(|word| !text.contains(word)), "{}: {text}", own.name);
+                    assert!(spare.iter().all(|word| !text.contains(word)), "{}: {text}", lesson.name);
                 }
             }
         }
