@@ -1,5 +1,5 @@
-//! The look of the window: cards with one row for title, legend and tools, controls of one height, what covers
-//! a view, what a view without data says.
+//! The look of the window: cards with one row for title, legend and tools, controls of one height, what
+//! covers a view, what a view without data says.
 
 use eframe::egui::accesskit::Role;
 use eframe::egui::{self, Color32, Key, Rect, Shape, pos2};
