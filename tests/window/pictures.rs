@@ -298,10 +298,8 @@ fn what_is_read_under_the_pointer_lies_over_no_title() {
             harness.hover_at(place.center());
             harness.run_steps(3);
             let all = seen_in(&harness, view);
-            let read = all.iter().find(|own| {
-                own.0.contains(reading) && number(&own.0[..1]).is_some()
-                    || own.0.starts_with('\u{2212}') && own.0.contains(reading)
-            });
+            let begins = |text: &str| text.starts_with(|c: char| c == '\u{2212}' || c.is_ascii_digit());
+            let read = all.iter().find(|own| own.0.contains(reading) && begins(&own.0));
             let (_, read) = read.unwrap_or_else(|| panic!("{view:?}: {all:?}"));
             for title in titles {
                 let title =

@@ -182,7 +182,7 @@ fn without_a_transducer_it_says_how_to_add_one() {
     for size in [WIDE, PROJECTED] {
         let harness = alone("paper", size);
         assert!(is_painted(&harness, "This scene has no transducer: add one to its file"));
-        assert!(is_painted(&harness, "power (mW)") && !is_painted(&harness, "Into the load"));
+        assert!(is_painted(&harness, "power of the base (mW)") && !is_painted(&harness, "Into the load"));
         assert_eq!(sliced(&harness), [""; 0]);
     }
 }
