@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use eframe::egui::{Key, Modifiers, Rect, Role, Shape};
+use eframe::egui::{Key, Modifiers, Rect, Role, Shape, UiBuilder};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use interwell::app::session::Session;
@@ -45,9 +45,13 @@ pub fn window(preset: &str, size: [f32; 2]) -> Harness<'static, Window> {
 pub fn window_with(preset: &str, size: [f32; 2], settings: Settings) -> Harness<'static, Window> {
     let mut window = Window::open(Some(preset), settings, Arc::new(|| ())).unwrap();
     window.session.wait_settled(LONG);
+    // over the whole screen, as eframe draws it, and not within the margin of a harness
     let draw = |ui: &mut eframe::egui::Ui, window: &mut Window| {
         window.logic(&ui.ctx().clone());
-        window.ui(ui);
+        let screen = ui.ctx().content_rect();
+        let mut whole = ui.new_child(UiBuilder::new().max_rect(screen));
+        whole.set_clip_rect(screen);
+        window.ui(&mut whole);
     };
     let mut harness =
         Harness::builder().with_size(size).with_context_setup(prepare).build_ui_state(draw, window);
