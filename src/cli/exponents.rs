@@ -127,8 +127,7 @@ fn over(options: &Arguments, common: &Common, picture: Option<Picture>) -> Resul
     let outputs = outputs(&options.scene, &document, common)?;
     let grid = cells.grid();
     let mut job = GridJob::open(&document, common, outputs, picture, Some(common.out()), pool)?;
-    let columns: Vec<String> = cells.empty_table().columns().iter().map(|c| c.name.clone()).collect();
-    let (tally, _) = job.stream(&cells, "cells", &columns)?;
+    let (tally, _) = job.stream(&cells, "cells")?;
     let chart = |rows: &Table, picture: &Picture| {
         let shown = ExponentPicture { rows, grid, scene: &document.scene, ranges: picture.ranges };
         Ok(exponents_chart(&shown)?)

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use interwell::output::{Chart, Manifest, header, rows};
 use interwell::scene::Document;
-use interwell::study::{GridStudy, Question, Shard, Slice, SweepEnd, Table, Tally, Task};
+use interwell::study::{GridStudy, IMPACTS, Question, Shard, Slice, SweepEnd, Table, Tally, Task};
 use interwell::system::threads::Pool;
 
 use super::support::{Watch, file_name, located, manifest_path};
@@ -25,7 +25,8 @@ pub struct GridJob<'a> {
 }
 
 impl<'a> GridJob<'a> {
-    /// Opens the picture beside `outputs`, and the manifest beside the rows at `out` if that is a regular file.
+    /// Opens the picture beside `outputs`, and the manifest beside the rows at `out` if that is a regular
+    /// file.
     pub fn open(
         document: &'a Document,
         common: &'a Common,
@@ -67,19 +68,18 @@ impl<'a> GridJob<'a> {
         })
     }
 
-    /// Runs all rows and writes these of their columns to `--out` as they are computed. Returns the tally,
-    /// and the number of rows.
+    /// Runs all rows and writes them to `--out` as they are computed, without [`IMPACTS`], which pictures
+    /// alone need. Returns the tally, and the number of rows.
     pub fn stream<Q: Question>(
         &mut self,
         study: &GridStudy<Q>,
         unit: &str,
-        columns: &[String],
     ) -> Result<(Tally, usize), Failure> {
-        self.outputs.write(Output::DATA, header(&study.empty_table().only(columns)))?;
+        self.outputs.write(Output::DATA, header(&study.empty_table().without(IMPACTS)))?;
         let mut count = 0;
         let tally = self.run(study, &study.slice(Shard::WHOLE), 0, unit, |outputs, table, _| {
             count += table.rows();
-            outputs.stream(Output::DATA, &rows(&table.only(columns), 0..usize::MAX))
+            outputs.stream(Output::DATA, &rows(&table.without(IMPACTS), 0..usize::MAX))
         })?;
         Ok((tally, count))
     }

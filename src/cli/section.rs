@@ -3,7 +3,7 @@
 use clap::Args;
 use interwell::output::{SectionPicture, section_chart};
 use interwell::study::{
-    Carry, DIRECTION, Grid, MAX_SECTION, SectionAt, SectionOptions, Sections, Table, Tally, section,
+    Carry, Grid, IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, Table, Tally, section,
 };
 
 use super::grid_job::GridJob;
@@ -91,8 +91,7 @@ fn one(options: &Arguments, common: &Common, mut settings: SectionOptions) -> Re
     let found = section(&model, &document.scene, &settings, interrupt::listen());
     let (table, summary) = found.map_err(|fault| document.error_from(vec![fault]))?;
     interrupt::check()?;
-    let names: Vec<String> = settings.columns().iter().map(|name| (*name).to_owned()).collect();
-    outputs.table(Output::DATA, &table.only(&names))?;
+    outputs.table(Output::DATA, &table.without(IMPACTS))?;
     if let Some(picture) = picture {
         let (stops, ranges) = (model.stop_positions(), picture.ranges);
         let shown = SectionPicture { rows: &table, over: None, phase_deg: phase(&settings), stops, ranges };
@@ -134,10 +133,7 @@ fn diagram(options: &Arguments, common: &Common, settings: SectionOptions) -> Re
     let pool = pool(common)?;
     let outputs = outputs(&options.scene, &document, common)?;
     let mut job = GridJob::open(&document, common, outputs, picture, Some(common.out()), pool)?;
-    let mut names = sections.grid().columns().to_vec();
-    names.extend(settings.carry.map(|_| DIRECTION.to_owned()));
-    names.extend(settings.columns().iter().map(|name| (*name).to_owned()));
-    let (tally, count) = job.stream(&sections, "runs", &names)?;
+    let (tally, count) = job.stream(&sections, "runs")?;
     let chart = |rows: &Table, picture: &Picture| {
         let over = sections.grid().columns().first().map(String::as_str);
         let (phase_deg, ranges) = (phase(&settings), picture.ranges);

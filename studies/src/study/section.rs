@@ -195,19 +195,10 @@ impl SectionOptions {
     pub fn run_of(&self, model: &Model) -> Model {
         self.model(model.clone())
     }
-
-    /// The names of the columns of a section alone, in the order of its rows.
-    pub fn columns(&self) -> &'static [&'static str] {
-        match self.at {
-            SectionAt::Phase(_) => &["index", "t_s", "x_m", "v_m_per_s"],
-            SectionAt::Impacts => &["index", "t_s", "side", "phase_deg", "v_in_m_per_s"],
-        }
-    }
 }
 
-/// The section of a run of `model`, which is that of `scene`: its [columns](SectionOptions::columns), of
-/// states also [`IMPACTS`], and the summary. A fault if the drive does not repeat, or has no or too many
-/// periods.
+/// The section of a run of `model`, which is that of `scene`, of states with [`IMPACTS`], and the summary. A
+/// fault if the drive does not repeat, or has no or too many periods.
 pub fn section(
     model: &Model,
     scene: &Scene,

@@ -159,6 +159,12 @@ impl Table {
         Self { columns: names.iter().filter_map(|name| self.column(name)).cloned().collect() }
     }
 
+    /// The table without the column called `name`.
+    #[must_use]
+    pub fn without(&self, name: &str) -> Self {
+        Self { columns: self.columns.iter().filter(|column| column.name != name).cloned().collect() }
+    }
+
     /// Adds the rows of `more`, which has the same columns, below.
     pub fn append(&mut self, more: &Self) {
         if self.columns.is_empty() {
