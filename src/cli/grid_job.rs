@@ -25,7 +25,8 @@ pub struct GridJob<'a> {
 }
 
 impl<'a> GridJob<'a> {
-    /// Opens the picture beside `outputs`, and the manifest beside the rows at `out` if that is a regular file.
+    /// Opens the picture beside `outputs`, and the manifest beside the rows at `out` if that is a regular
+    /// file.
     pub fn open(
         document: &'a Document,
         common: &'a Common,

@@ -197,8 +197,8 @@ impl SectionOptions {
     }
 }
 
-/// The section of a run of `model`, which is that of `scene`, of states with [`IMPACTS`], and the summary. A fault if the drive does not repeat, or has no or too many
-/// periods.
+/// The section of a run of `model`, which is that of `scene`, of states with [`IMPACTS`], and the summary. A
+/// fault if the drive does not repeat, or has no or too many periods.
 pub fn section(
     model: &Model,
     scene: &Scene,
