@@ -68,6 +68,11 @@ pub fn run_chart(
     panels: &[RunPanel],
     ranges: Ranges,
 ) -> Chart {
+    // the usual picture, with its numbers, has an order of its own
+    let whole = RunPanel::USUAL.iter().all(|panel| panels.contains(panel));
+    let usual = RunPanel::ALL.into_iter().filter(|panel| panels.contains(panel));
+    let ordered: Vec<RunPanel> = if whole { usual.collect() } else { panels.to_vec() };
+    let panels = ordered.as_slice();
     let column = |name: &str| trace.path.numbers(name).unwrap_or_default();
     let stable = mechanism.landscape.equilibria.iter().filter(|equilibrium| equilibrium.stable);
     let seen = Seen {
@@ -93,7 +98,6 @@ pub fn run_chart(
     };
     let mut built: Vec<Panel> = panels.iter().map(|panel| seen.panel(*panel)).collect();
     let place = panels.iter().position(|panel| *panel == RunPanel::Portrait);
-    let whole = RunPanel::USUAL.iter().all(|panel| seen.has(*panel));
     if let Some(place) = place.filter(|_| whole && judged) {
         built[place].notes = account(summary, trace, seen.speed);
     }
