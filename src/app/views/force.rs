@@ -71,10 +71,14 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let push = -model.mass() * state.base_accel;
     let mm = state.x * 1e3;
     if model.is_shaken() {
-        let layer = |role, marks| Layer { marks, role, name: String::new() };
         let apart = vec![(mm, curve.force(state.x)), (mm, push)];
         let push = Marks::Horizontals(vec![push]);
-        pane.draw(&painter, &style, 0, &[layer(Role::Push, push), layer(Role::Apart, Marks::Path(apart))]);
+        pane.draw(
+            &painter,
+            &style,
+            0,
+            &[Layer::new(Role::Push, "", push), Layer::new(Role::Apart, "", Marks::Path(apart))],
+        );
     }
     releases(&painter, context, &pane, frame);
     let at = |x: f64, force: f64| pane.place(0, (x * 1e3, force)).unwrap_or(frame.min);
@@ -110,7 +114,7 @@ fn still(model: &Model, span: Span, axes: (PlotAxis, PlotAxis), measured: Option
     let mut panel = force_panel(model.mechanism(), axes, 1.0, stops, ("holds the mass there", points));
     panel.layers.retain(|layer| layer.role != Role::Stop);
     // what is drawn is named before what is marked
-    let named = |role, name: &str| Layer { marks: Marks::Path(Vec::new()), role, name: name.to_owned() };
+    let named = |role, name: &str| Layer::new(role, name, Marks::Path(Vec::new()));
     let push = model.is_shaken().then(|| named(Role::Push, "push of the base"));
     let first = [named(Role::Curve, "holds the mass there")].into_iter().chain(push).chain(measured);
     panel.layers.splice(0..0, first);

@@ -52,7 +52,7 @@ pub(super) fn measured_trace(
     let parted = |i: usize| follows_gap(i).then_some((f64::NAN, f64::NAN)).into_iter().chain([point(i)]);
     let points: Vec<(f64, f64)> = (first..last).flat_map(parted).collect();
     let marks = if last.saturating_sub(first) < DOTS { Marks::Cloud(points) } else { Marks::Trace(points) };
-    Some(Layer { marks, role: Role::Measured, name: NAME.to_owned() })
+    Some(Layer::new(Role::Measured, NAME, marks))
 }
 
 /// The measured force over position. `None` if no force was measured.
@@ -61,5 +61,5 @@ pub(super) fn measured_force(session: &Session) -> Option<Layer> {
     let samples = over.record.across.values.iter().zip(&over.record.values.values);
     let points: Vec<_> = samples.map(|(x, force)| ((x + over.offset) * 1e3, *force)).collect();
     let marks = if points.len() < DOTS { Marks::Cloud(points) } else { Marks::Path(points) };
-    Some(Layer { marks, role: Role::Measured, name: NAME.to_owned() })
+    Some(Layer::new(Role::Measured, NAME, marks))
 }

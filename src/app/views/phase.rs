@@ -57,10 +57,6 @@ fn state((x, v): (f64, f64)) -> State {
     (x * 1e3, v * 1e3)
 }
 
-fn layer(role: Role, name: &str, marks: Marks) -> Layer {
-    Layer { marks, role, name: name.to_owned() }
-}
-
 pub fn phase_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     states_ui(ui, context, false);
 }
@@ -105,7 +101,7 @@ fn states_ui(ui: &mut Ui, context: &mut ViewContext<'_>, is_section: bool) {
         ghost_trails(&mut layers, context, &pane);
         trail(&mut layers, context, &pane);
     }
-    layers.push(layer(Role::Strobe, "", Marks::Points(strobes(context))));
+    layers.push(Layer::new(Role::Strobe, "", Marks::Points(strobes(context))));
     let painter = ui.painter().with_clip_rect(frame.expand(STATE));
     pane.draw(&painter, &style, 0, &layers);
     let at = |sample: Sample| pane.place(0, state((sample.x, sample.v))).unwrap_or(frame.min);
@@ -133,13 +129,13 @@ fn states_ui(ui: &mut Ui, context: &mut ViewContext<'_>, is_section: bool) {
 fn still(model: &Model, axes: (PlotAxis, PlotAxis), points_only: bool) -> Chart {
     let mut named = Vec::new();
     if model.forcing_period().is_some() {
-        named.push(layer(Role::Strobe, "once a period", Marks::Points(Vec::new())));
+        named.push(Layer::new(Role::Strobe, "once a period", Marks::Points(Vec::new())));
     }
     if model.stop_positions() != (None, None) {
         if !points_only {
-            named.push(layer(Role::Jump(0.0), "impact", Marks::Path(Vec::new())));
+            named.push(Layer::new(Role::Jump(0.0), "impact", Marks::Path(Vec::new())));
         }
-        named.push(layer(Role::Resting, "at rest", Marks::Points(Vec::new())));
+        named.push(Layer::new(Role::Resting, "at rest", Marks::Points(Vec::new())));
     }
     let panel = portrait_panel((model.mechanism(), model.mass()), axes, 1e3, (f64::NAN, f64::NAN), named);
     Chart::stack(vec![panel], "", Table::new())
@@ -225,8 +221,8 @@ fn trail(layers: &mut Vec<Layer>, context: &ViewContext<'_>, pane: &Pane) {
     // the oldest lies below
     for (level, (part, jumps)) in parts.into_iter().zip(jumps).enumerate().rev() {
         let age = level as f64 / (FADES - 1) as f64;
-        layers.push(layer(Role::Past(age), "", Marks::Path(part)));
-        layers.push(layer(Role::Jump(age), "", Marks::Path(jumps)));
+        layers.push(Layer::new(Role::Past(age), "", Marks::Path(part)));
+        layers.push(Layer::new(Role::Jump(age), "", Marks::Path(jumps)));
     }
 }
 
@@ -250,7 +246,7 @@ fn ghost_trails(layers: &mut Vec<Layer>, context: &ViewContext<'_>, pane: &Pane)
             points.extend(between(watch.model_at(a.t), &a, &b, count).into_iter().map(state));
         }
         points.extend(path.last().map(|last| state((last.x, last.v))));
-        layers.push(layer(Role::Pin(pin.place()), "", Marks::Path(points)));
+        layers.push(Layer::new(Role::Pin(pin.place()), "", Marks::Path(points)));
     }
 }
 
@@ -297,7 +293,7 @@ fn strobes(context: &ViewContext<'_>) -> Vec<State> {
     let first = (begin / period).ceil().max(last - MAX_STROBES);
     let count = (last - first + 1.0).clamp(0.0, MAX_STROBES) as u32;
     let at = |i: u32| watch.state_at((first + f64::from(i)) * period);
-    (0..count).map(|i| at(i)).map(|sample| state((sample.x, sample.v))).collect()
+    (0..count).map(at).map(|sample| state((sample.x, sample.v))).collect()
 }
 
 #[cfg(test)]

@@ -206,7 +206,6 @@ pub fn trace_ui(ui: &mut Ui, quantity: TraceQuantity, context: &mut ViewContext<
 fn chart(session: &Session, quantity: TraceQuantity, (from, to): Point, (low, high): Point) -> Chart {
     let (watch, now) = (session.player.watch(), session.player.time());
     let samples = shown_samples(session, from, to);
-    let layer = |role, name: &str, marks| Layer { marks, role, name: name.to_owned() };
     let line = |watch: &Watch, samples: &mut dyn Iterator<Item = Sample>| {
         let points = samples.map(|sample| (sample.t, quantity.value_in(watch, &sample)));
         Marks::Trace(points.filter(|point| !point.1.is_nan()).collect())
@@ -215,20 +214,20 @@ fn chart(session: &Session, quantity: TraceQuantity, (from, to): Point, (low, hi
     let has_load = matches!(quantity, TraceQuantity::LoadPower { .. });
     // what was measured has the colour of a second quantity
     let role = if measured.is_some() { Role::Motion } else { quantity.panel().role(has_load) };
-    let mut lines = vec![layer(Role::Reference, "", Marks::Verticals(vec![now]))];
+    let mut lines = vec![Layer::new(Role::Reference, "", Marks::Verticals(vec![now]))];
     let mut stops = (f64::NAN, f64::NAN);
     if quantity == TraceQuantity::Displacement {
         match stop_lines(watch, from, to) {
             Moved::Not(places) => stops = places,
-            Moved::Line(points) => lines.push(layer(Role::Stop, "stop", Marks::Path(points))),
+            Moved::Line(points) => lines.push(Layer::new(Role::Stop, "stop", Marks::Path(points))),
         }
     }
     lines.extend(measured);
     for pin in pinned(session, quantity) {
         let path = line(pin.watch(), &mut ghost_samples(pin, from, now.min(to)));
-        lines.push(layer(Role::Pin(pin.place()), PINNED[pin.place() % PINNED.len()], path));
+        lines.push(Layer::new(Role::Pin(pin.place()), PINNED[pin.place() % PINNED.len()], path));
     }
-    lines.push(layer(role, "", line(watch, &mut samples.iter().copied())));
+    lines.push(Layer::new(role, "", line(watch, &mut samples.iter().copied())));
     let stable = session.shown().mechanism().landscape.equilibria.iter().filter(|point| point.stable);
     let beside = OverTime {
         time: PlotAxis::between(from, to, "time (s)"),

@@ -94,11 +94,7 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     for (ghost, curve) in all.iter().zip(&of_ghosts) {
         let pinned: Vec<_> = points.iter().map(|point| (point.0, curve.at(point.0))).collect();
         if pinned.iter().zip(&points).any(|(pinned, present)| (pinned.1 - present.1).abs() > seen) {
-            layers.push(Layer {
-                marks: Marks::Path(pinned),
-                role: Role::Pin(ghost.place),
-                name: String::new(),
-            });
+            layers.push(Layer::new(Role::Pin(ghost.place), "", Marks::Path(pinned)));
         }
     }
     let other: Vec<Role> = layers.iter().map(|layer| layer.role).collect();

@@ -142,6 +142,11 @@ impl Chart {
 }
 
 impl Layer {
+    /// Marks of a role, with their words in the legend.
+    pub fn new(role: Role, name: &str, marks: Marks) -> Self {
+        Self { marks, role, name: name.to_owned() }
+    }
+
     /// A curve, `y` over x from one of its `points` to the next: dashed beyond these stops.
     pub fn curve(name: &str, mut points: Vec<Point>, stops: (f64, f64), y: impl Fn(f64) -> f64) -> Vec<Self> {
         let ends = points.first().zip(points.last()).map_or((0.0, 0.0), |(first, last)| (first.0, last.0));
@@ -150,7 +155,7 @@ impl Layer {
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         let part = |role, name: &str, is_in: &dyn Fn(f64) -> bool| {
             let points = points.iter().copied().filter(|point| is_in(point.0)).collect();
-            Self { marks: Marks::Path(points), role, name: name.to_owned() }
+            Self::new(role, name, Marks::Path(points))
         };
         let mut layers = vec![
             part(Role::Beyond, "beyond the stops", &|x| x <= stops.0),

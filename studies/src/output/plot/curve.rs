@@ -55,7 +55,7 @@ pub fn force_panel(
     let force = |mm: f64| mechanism.curve.force(mm * 1e-3) * per_newton;
     let mut panel = curve_panel(axes, &mechanism.landscape, stops, line, force);
     let zero = Marks::Horizontals(vec![0.0]);
-    panel.layers.insert(0, Layer { marks: zero, role: Role::Reference, name: String::new() });
+    panel.layers.insert(0, Layer::new(Role::Reference, "", zero));
     panel.equilibria(&mechanism.landscape, |_| 0.0);
     panel
 }

@@ -241,7 +241,7 @@ struct Legend<'a> {
 }
 
 impl<'a> Legend<'a> {
-    /// These entries in rows that are no wider than `room`, of which the first one leaves some free `beside` it.
+    /// These entries in rows no wider than `room`, of which the first one leaves some free `beside` it.
     fn new(named: &'a [(Sample, String)], room: f64, beside: f64) -> Self {
         let (mut left, mut row) = (0.0, 0);
         let mut entries = Vec::new();

@@ -68,6 +68,11 @@ pub fn run_chart(
     panels: &[RunPanel],
     ranges: Ranges,
 ) -> Chart {
+    // the usual picture, with its numbers, has an order of its own
+    let whole = RunPanel::USUAL.iter().all(|panel| panels.contains(panel));
+    let usual = RunPanel::ALL.into_iter().filter(|panel| panels.contains(panel));
+    let ordered: Vec<RunPanel> = if whole { usual.collect() } else { panels.to_vec() };
+    let panels = ordered.as_slice();
     let column = |name: &str| trace.path.numbers(name).unwrap_or_default();
     let stable = mechanism.landscape.equilibria.iter().filter(|equilibrium| equilibrium.stable);
     let seen = Seen {
@@ -93,7 +98,6 @@ pub fn run_chart(
     };
     let mut built: Vec<Panel> = panels.iter().map(|panel| seen.panel(*panel)).collect();
     let place = panels.iter().position(|panel| *panel == RunPanel::Portrait);
-    let whole = RunPanel::USUAL.iter().all(|panel| seen.has(*panel));
     if let Some(place) = place.filter(|_| whole && judged) {
         built[place].notes = account(summary, trace, seen.speed);
     }
@@ -210,7 +214,7 @@ impl Seen<'_> {
         let Self { trace, .. } = *self;
         let pairs = self.rows(trace.shown_from).map(|i| (self.t[i], values[i] * scale));
         let marks = Marks::Trace(pairs.filter(|pair| pair.1.is_finite()).collect());
-        let line = Layer { marks, role: kind.role(trace.has_load), name: String::new() };
+        let line = Layer::new(kind.role(trace.has_load), "", marks);
         let mut beside = self.beside();
         if kind == RunPanel::Displacement {
             let times = trace.impacts.numbers("t_s").unwrap_or_default();
@@ -270,14 +274,13 @@ impl Seen<'_> {
         let shown = self.rows(trace.portrait_from);
         let (x, v) = (&self.x[shown.clone()], &self.v[shown]);
         let path = x.iter().zip(v).map(|(x, v)| (x * 1e3, v * self.speed.0)).collect();
-        let layer = |role, name: &str, marks| Layer { marks, role, name: name.to_owned() };
-        let mut motion = vec![layer(Role::Motion, "", Marks::Path(path))];
+        let mut motion = vec![Layer::new(Role::Motion, "", Marks::Path(path))];
         let strobes = self.strobes().map(|[_, x, v]| (x * 1e3, v * self.speed.0)).collect::<Vec<_>>();
         if !strobes.is_empty() {
-            motion.push(layer(Role::Strobe, "once a period", Marks::Points(strobes)));
+            motion.push(Layer::new(Role::Strobe, "once a period", Marks::Points(strobes)));
         }
         if let (Some(x), true, true) = (x.first(), is_still(x), is_still(v)) {
-            motion.push(layer(Role::Resting, "the mass at rest", Marks::Points(vec![(x * 1e3, 0.0)])));
+            motion.push(Layer::new(Role::Resting, "the mass at rest", Marks::Points(vec![(x * 1e3, 0.0)])));
         }
         let (of, axes) = ((self.mechanism, self.mass), (self.displacement(x), self.velocity(v)));
         let panel = portrait_panel(of, axes, self.speed.0, self.stops_mm(), motion);
