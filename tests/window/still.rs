@@ -110,7 +110,8 @@ fn the_lines_above_the_views_are_low_and_keep_their_height() {
             tops.reduce(f32::min).unwrap()
         };
         let before = top(&harness);
-        assert!(before <= 96.0, "{}: {before}", preset.name);
+        // beside the 8 points around a window that is tested
+        assert!(before <= 96.0 + 8.0, "{}: {before}", preset.name);
         press(&mut harness, Key::H);
         harness.state_mut().session.wait(LONG);
         harness.run_steps(2);
