@@ -331,7 +331,8 @@ fn the_tools_of_a_map_are_whole_and_its_quantities_are_in_groups() {
         let groups = ["Motion", "Events", "First", "Power", "Energy", "Contact", "Run"];
         groups.iter().for_each(|group| assert!(harness.query_all_by_label(group).count() > 0, "{group}"));
         assert!(harness.query_by_label("Reach").is_none());
-        click_on(&mut harness, "Motion");
+        harness.query_all_by_label("Motion").last().unwrap().click();
+        harness.run_steps(3);
         click_on(&mut harness, "Reach");
         assert_eq!(harness.state().session.map.quantity().name, "max_abs_x_m");
     }
