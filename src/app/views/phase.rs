@@ -297,7 +297,7 @@ fn strobes(context: &ViewContext<'_>) -> Vec<State> {
     let first = (begin / period).ceil().max(last - MAX_STROBES);
     let count = (last - first + 1.0).clamp(0.0, MAX_STROBES) as u32;
     let at = |i: u32| watch.state_at((first + f64::from(i)) * period);
-    (0..count).map(|i| at(i)).map(|sample| state((sample.x, sample.v))).collect()
+    (0..count).map(at).map(|sample| state((sample.x, sample.v))).collect()
 }
 
 #[cfg(test)]
