@@ -30,6 +30,8 @@ fn covered_nothing_of_the_motion_is_seen() {
     for view in View::ALL {
         command(&mut harness, Command::Show(view, true));
     }
+    // two motions side by side have opened over the window
+    press(&mut harness, Key::Z);
     harness.state_mut().session.player.set_playing(false);
     press(&mut harness, Key::PageDown);
     let seen = |harness: &Harness<'static, Window>| {
@@ -182,7 +184,7 @@ fn words_say_what_they_mean() {
     let drawing = harness.get_by_label("Mechanism").rect().left_bottom();
     let foot = harness.get_by_label("Well").rect().top();
     places.push((pos2(drawing.x + 40.0, foot - 36.0), "bows sideways between its two ends"));
-    places.push((pos2(drawing.x + 150.0, drawing.y + 14.0), "stretched across the flexures"));
+    places.push((pos2(drawing.x + 130.0, drawing.y - 14.0), "stretched across the flexures"));
     for (at, words) in places {
         harness.hover_at(at);
         harness.run_steps(90);

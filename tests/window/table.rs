@@ -22,7 +22,7 @@ fn rows(harness: &Harness<'static, Window>, view: View) -> Vec<Vec<String>> {
         painted(harness).into_iter().filter(|own| place.contains(own.1.center())).collect();
     texts.sort_by(|a, b| a.1.left().total_cmp(&b.1.left()));
     let is_name = |own: &&(String, eframe::egui::Rect, eframe::egui::Rect)| {
-        own.1.left() < place.left() + 12.0 && own.1.top() > place.top() + 30.0
+        own.1.left() < place.left() + 16.0 && own.1.top() > place.top() + 30.0
     };
     let mut names: Vec<_> = texts.iter().filter(is_name).collect();
     names.sort_by(|a, b| a.1.top().total_cmp(&b.1.top()));

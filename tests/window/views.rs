@@ -235,6 +235,8 @@ fn a_view_without_room_says_so() {
     for view in View::ALL {
         command(&mut harness, Command::Show(view, true));
     }
+    // two motions side by side have opened over the window
+    press(&mut harness, Key::Z);
     harness.run_steps(4);
     harness.get_by_label("Energy");
     // at least a digit of the ledger, or the word that there is no room for it

@@ -169,7 +169,9 @@ pub fn guide_ui<R>(
         let (strong, usual) = (strong_family(), FontFamily::Proportional);
         let texts = [(heading, strong), ("  ", usual.clone()), (text, usual)];
         let (size, taken) = fitting(ui, &texts, room.size(), BODY);
-        let place = room.with_min_y(ui.max_rect().center().y - 0.5 * taken);
+        let top = ui.max_rect().center().y - 0.5 * taken;
+        // a first row is as high as its place
+        let place = room.with_min_y(top).with_max_y(top + size);
         let rows = Layout::left_to_right(Align::Min).with_main_wrap(true);
         ui.spacing_mut().interact_size.y = 0.0;
         let mut ui = ui.new_child(UiBuilder::new().max_rect(place).layout(rows));

@@ -15,7 +15,7 @@ use crate::scene::{Damping, Excitation, FieldPath, Scene, Start, Transducer, num
 use super::ViewContext;
 
 /// Height of a row in points.
-const ROW: f32 = 20.0;
+const ROW: f32 = 18.0;
 /// Largest and smallest gap between two rows in points.
 const ROW_GAP: (f32, f32) = (6.0, 1.0);
 /// Gap in points between columns.
