@@ -306,11 +306,6 @@ mod tests {
         let all = Shares::of(20, 20);
         assert_eq!((all.share, all.high), (1.0, 1.0));
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
 
     #[test]
     fn no_two_attractors_have_the_same_words() {
