@@ -42,11 +42,11 @@ minute() {
     local width=$1 height=$2 style=$3
     name=${width}x$height-$style
     # where the number of the shaking, the switch of the stops and the number of the limit stand
-    local shaking="190 133" stops="19 224" limit="196 273"
+    local shaking="200 133" stops="19 232" limit="200 285"
     case $name in
-        1920*-light | 1920*-dark) shaking="240 133" limit="240 273" ;;
-        1280*-projector) shaking="481 127" stops="565 127" limit="1050 127" ;;
-        1920*-projector) shaking="282 200" stops="28 336" limit="294 410" ;;
+        1920*-light | 1920*-dark) shaking="249 133" limit="249 285" ;;
+        1280*-projector) shaking="403 128" stops="500 128" limit="905 128" ;;
+        1920*-projector) shaking="604 192" stops="750 192" limit="1357 192" ;;
     esac
     local kept display
     kept=$(mktemp -d)

@@ -21,7 +21,7 @@ const ROW_GAP: (f32, f32) = (6.0, 1.0);
 /// Gap in points between columns.
 const COLUMN_GAP: f32 = 8.0;
 /// Share of the width that the column of names has, and its limits in points.
-const NAMES: (f32, f32, f32) = (0.32, 92.0, 140.0);
+const NAMES: (f32, f32, f32) = (0.36, 92.0, 150.0);
 /// Smallest width in points of a column of values.
 const MIN_COLUMN: f32 = 44.0;
 /// Width in points from which on a column has text of full size beside the symbols.
