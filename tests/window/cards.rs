@@ -356,7 +356,7 @@ fn a_message_lies_over_hover_texts() {
 /// The colours of a coil's wires and frame.
 fn is_coil(shape: &Shape, frame: Color32) -> Option<Rect> {
     // as thin as a clamp, and not as long
-    let is_row = |rect: Rect| rect.height() < 9.0 && (100.0..300.0).contains(&rect.width());
+    let is_row = |rect: Rect| rect.height() < 9.0 && (60.0..300.0).contains(&rect.width());
     match shape {
         Shape::Rect(rect) if rect.fill == frame && is_row(rect.rect) => Some(rect.rect),
         _ => None,

@@ -7,8 +7,8 @@ use crate::scene::Transducer;
 
 use super::{MIN_POLE, POLE, Pen, Places};
 
-/// Half the length in points of a coil.
-const WINDING: f32 = 72.0;
+/// Half the length in points of a coil, and as a share of the width, which leaves room for the load.
+const WINDING: (f32, f32) = (72.0, 0.1);
 /// Thickness in points of the wires on each side of a coil.
 const WOUND: f32 = 7.0;
 /// Number of wires in a row of a coil.
@@ -80,9 +80,9 @@ impl Pen<'_> {
     /// Draws a coil around x = 0 in section, and in it the magnet of the mass, if there is room and no other
     /// magnet hangs there: then the coil lies on the clamp. Returns the right end of its lower row.
     fn coil(&self, shapes: &mut Vec<Shape>) -> Rect {
-        let Places { bottom, body, zero, .. } = *self.places;
-        let row =
-            |top: f32| Rect::from_center_size(pos2(zero, top + 0.5 * WOUND), vec2(2.0 * WINDING, WOUND));
+        let Places { bottom, body, zero, rect, .. } = *self.places;
+        let length = 2.0 * WINDING.0.min(WINDING.1 * rect.width());
+        let row = |top: f32| Rect::from_center_size(pos2(zero, top + 0.5 * WOUND), vec2(length, WOUND));
         let pole = POLE.min(0.5 * (bottom - body.bottom() - 2.0 * WOUND) - 3.0);
         let hangs = pole >= MIN_POLE && !self.has_magnets;
         let rows = match hangs {
