@@ -14,7 +14,7 @@ use super::trace::{TraceQuantity, trace_ui};
 /// Smallest height in points of the trace below the whole text.
 const TRACE: f32 = 110.0;
 /// Smallest height in points of the trace below the first line of text; a lower view has no text.
-const LOW_TRACE: f32 = 44.0;
+const LOW_TRACE: f32 = 28.0;
 
 /// Text for a scene without a transducer.
 const HINT: &str = "The work of the base. This scene has no transducer: add one to its file, such as \
@@ -26,13 +26,13 @@ pub fn power_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     ui.painter().rect_filled(area, 0.0, style.ground());
     let has_transducer = context.session.shown().has_transducer();
     let words = if has_transducer { harvested(context.session) } else { vec![HINT.to_owned()] };
-    let place = area.shrink2(vec2(10.0, 6.0));
+    let place = area.shrink2(vec2(10.0, 4.0));
     let wrapped = |text: &str| {
         let galley = ui.painter().layout(text.to_owned(), style.body(), style.ink(), place.width());
         galley.size().y + ui.spacing().item_spacing.y
     };
     let height = words.iter().map(|line| wrapped(line)).sum::<f32>() + 6.0;
-    let first = ui.text_style_height(&egui::TextStyle::Body) + 12.0;
+    let first = ui.text_style_height(&egui::TextStyle::Body) + 8.0;
     let coloured = |i: usize, line: &str| {
         let colour = if i == 0 && has_transducer { style.ink() } else { style.faint() };
         RichText::new(line).font(style.body()).color(colour)

@@ -101,7 +101,11 @@ pub(super) fn table_ui(
     let after = number_rows(columns, now, !context.session.keeps_remedy);
     // the headings and the row of the motion
     let count = (before.len() + after.len() + 2) as f32;
-    let gap = ((ui.available_height() - count * ROW) / (count - 1.0)).clamp(ROW_GAP.1, ROW_GAP.0);
+    // where not all rows fit, the last one that is seen is whole
+    let room = ui.available_height();
+    let seen = (room / (ROW + ROW_GAP.1)).floor().clamp(1.0, count);
+    let gaps = if seen < count { seen } else { count - 1.0 };
+    let gap = ((room - seen * ROW) / gaps).clamp(ROW_GAP.1, ROW_GAP.0);
     let settled = columns[now].card.as_ref().and_then(|card| card.settled.as_ref());
     let row_ui = |ui: &mut Ui, row: &Row| {
         cell_ui(ui, names, |ui| {

@@ -170,7 +170,7 @@ impl View {
     /// Whether its upper row is a legend, for which the row of its card may have room.
     pub fn has_legend(self) -> bool {
         matches!(self, Self::Mechanism | Self::Well | Self::ForceCurve | Self::PhasePortrait | Self::Section)
-            || self.is_over_time()
+            || self.is_over_time() && self != Self::Power
     }
 
     /// Whether its horizontal axis is time, so that it shows the cursors.

@@ -78,8 +78,12 @@ fn rows(ctx: &Context, heading: &str, projector: bool) -> Vec<(String, &'static 
     rows.into_iter().filter(|row| row.0 == heading).map(|(_, keys, text)| (keys, text)).collect()
 }
 
+/// Height in points of a row of the list.
+const ROW: f32 = 20.0;
+
 fn group_ui(ui: &mut Ui, group: &str, projector: bool) {
     ui.label(RichText::new(group).heading());
+    ui.spacing_mut().interact_size.y = ROW;
     Grid::new(group).num_columns(2).spacing([16.0, 2.0]).show(ui, |ui| {
         for (keys, does) in rows(ui.ctx(), group, projector) {
             ui.label(keys);

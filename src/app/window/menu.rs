@@ -20,6 +20,9 @@ use super::keys::SPEED_KEYS;
 /// Name of the command that returns to the scene as it was opened, while nothing was changed.
 const BACK: &str = "Back to the start";
 
+/// Height in points of an item.
+const ROW: f32 = 20.0;
+
 /// The menus of a window, and the commands that were chosen in this frame.
 pub(super) struct Menus<'a> {
     pub window: &'a Window,
@@ -68,6 +71,8 @@ impl Menus<'_> {
     }
 
     fn parts_ui(&mut self, ui: &mut Ui, parts: &[Part]) {
+        // less high than other controls, so that the longest menu fits into the smallest window
+        (ui.spacing_mut().interact_size.y, ui.spacing_mut().button_padding.y) = (ROW, 1.0);
         for part in parts {
             match part {
                 Part::Hidden(..) | Part::Row(..) => {}

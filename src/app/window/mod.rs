@@ -175,6 +175,8 @@ impl Window {
             if self.lesson_covers() {
                 ui.disable();
             }
+            // as high whatever its texts need
+            ui.set_height(ui.available_height());
             transport::transport_ui(ui, &mut self.session, style, covered);
         });
         chosen
