@@ -54,6 +54,9 @@ fn gesture(random: &mut ChaCha8Rng, screen: &mut Screen) -> (String, Vec<Vec<Eve
     let all: Vec<Rect> = screen.nodes.iter().filter_map(bounds).collect();
     let (rect, share) = (all[below(all.len())], below(100) as f32 / 100.0);
     let at = rect.min + vec2(share, 0.5) * rect.size();
+    // within its view: the space between two views is dragged to make one wider
+    let home = places(screen).into_iter().find(|place| place.1.contains(rect.center()));
+    let at = home.map_or(at, |place| place.1.shrink(6.0).clamp(at));
     let button = |pos: Pos2, pressed| Event::PointerButton {
         pos,
         button: PointerButton::Primary,

@@ -24,9 +24,9 @@ const TIME: (f32, f32) = (72.0, 140.0);
 /// Width in points of the length of the run.
 const LENGTH: f32 = 48.0;
 /// Height in points of the bar with the signs of events above and below it.
-const SIGNS: f32 = 34.0;
-/// Height in points of the row below the bar.
-const BELOW: f32 = 14.0;
+const SIGNS: f32 = 32.0;
+/// Height in points of the row below the bar, and of the note below the time.
+const BELOW: f32 = 16.0;
 
 /// Share of the bar by which an arrow key moves; with Shift, ten times as much.
 const KEY_SHARE: f64 = 0.002;
@@ -75,7 +75,7 @@ pub fn transport_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: 
             ui.allocate_ui_with_layout(place, egui::Layout::top_down(egui::Align::Min), |ui| {
                 ui.set_width(TIME.1);
                 ui.spacing_mut().item_spacing.y = 0.0;
-                ui.add_space(0.5 * (ui.available_height() - ONE_LINE));
+                ui.add_space((0.5 * (ui.available_height() - ONE_LINE - BELOW)).max(0.0));
                 ui.spacing_mut().interact_size.y = ONE_LINE;
                 ui.allocate_ui_with_layout(vec2(TIME.1, ONE_LINE), left, |ui| {
                     clock_ui(ui, session);

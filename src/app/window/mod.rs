@@ -176,7 +176,7 @@ impl Window {
                 ui.disable();
             }
             // as high whatever its texts need
-            ui.set_height(ui.available_height());
+            ui.expand_to_include_rect(ui.max_rect());
             transport::transport_ui(ui, &mut self.session, style, covered);
         });
         chosen
