@@ -116,6 +116,9 @@ fn every_curve_of_the_well_is_in_its_legend() {
         assert!(is_painted(&harness, name), "{name}");
     }
     assert!(!is_painted(&showing("first-look", WIDE, &[View::Well]), "beyond the stops"));
+    // where nothing shakes there is no push
+    let ball = showing("bouncing-ball", WIDE, &[View::Well]);
+    assert!(is_painted(&ball, "potential") && !is_painted(&ball, "with the push"));
 }
 
 #[test]

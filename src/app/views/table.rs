@@ -327,7 +327,7 @@ fn in_shaking(excitation: &Excitation, number: &str) -> bool {
 }
 
 pub(super) fn shaking(scene: &Scene) -> String {
-    // a difference that this rounding hides has a row of its own, from `changes`
+    // a difference that this rounding hides has another row, see `scene_rows`
     let rounded = |value: f64| format!("{value:.3e}").parse().unwrap_or(value);
     let g = |value: f64| shown(rounded(value), 2);
     let hz = |value: f64| shown(rounded(value), 1);

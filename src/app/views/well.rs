@@ -138,8 +138,12 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 /// the `other` motions too.
 fn still(level: &Potential<'_>, span: Span, (across, up): (PlotAxis, PlotAxis), other: &[Role]) -> Chart {
     let mut panel = Panel::new(across, up);
-    panel.layer(Role::Curve, "potential with the push", Marks::Path(Vec::new()));
-    panel.layer(Role::Reference, "the mechanism's own", Marks::Path(level.points(span)));
+    if level.model.is_shaken() {
+        panel.layer(Role::Curve, "potential with the push", Marks::Path(Vec::new()));
+        panel.layer(Role::Reference, "the mechanism's own", Marks::Path(level.points(span)));
+    } else {
+        panel.layer(Role::Curve, "potential", Marks::Path(Vec::new()));
+    }
     if level.model.stop_positions() != (None, None) {
         panel.layer(Role::Beyond, "beyond the stops", Marks::Path(Vec::new()));
     }
