@@ -36,8 +36,6 @@ const SEARCH_HOVER: &str = "Looks for the distance of the stops with which the s
                             far that is from where it is lost (B).";
 
 const STOPS_OFF: &str = "The stops are off. This is where they will stand: switch them on first.";
-/// Why there is no search for the best stops.
-pub const NOT_SHAKEN: &str = "Nothing shakes the mass: shake it first.";
 
 /// Of a sine.
 const FREQUENCY: &str = "excitation.frequency_hz";

@@ -1,6 +1,5 @@
 //! Why a command can do nothing at present: what a grey item of a menu and a key without effect say.
 
-use crate::app::panels::controls::NOT_SHAKEN;
 use crate::app::session::map::Map;
 use crate::app::ui::settings::Setting;
 
@@ -27,7 +26,7 @@ impl Window {
             C::Ways => (in_lesson, "A lesson has hints in its tasks only: leave the lesson first"),
             C::OpenMeasured => (in_lesson, "Leave the lesson first"),
             C::BestStops if in_lesson => (true, "Leave the lesson first"),
-            C::BestStops => (!session.model().is_shaken(), NOT_SHAKEN),
+            C::BestStops => (!session.model().is_shaken(), "Nothing shakes the mass: shake it first."),
             C::LeaveLesson | C::LessonAnew | C::LecturerNotes => (!in_lesson, "No lesson is open"),
             C::ArrangeOwn => (
                 is_compact && self.custom.is_none(),
