@@ -80,12 +80,12 @@ impl Piece {
 pub struct FitReport {
     /// Largest |fit - data| over the samples in N.
     pub worst_n: f64,
-    /// Position of that sample in m.
-    pub worst_at_m: f64,
+    /// Position of that sample in m, if it is known.
+    pub worst_at_m: Option<f64>,
     /// The force that the tolerance is relative to, in N.
     pub scale_n: f64,
-    /// Number of samples in the data.
-    pub samples: usize,
+    /// Number of samples, if it is known.
+    pub samples: Option<usize>,
     /// Warnings for the user, each a sentence.
     pub warnings: Vec<String>,
 }

@@ -80,7 +80,8 @@ pub fn fit_unless(
         ));
     }
     let (worst_n, worst_at_m) = worst(&curve, table);
-    let report = FitReport { worst_n, worst_at_m, scale_n: scale, samples: table.x.len(), warnings };
+    let (worst_at_m, samples) = (Some(worst_at_m), Some(table.x.len()));
+    let report = FitReport { worst_n, worst_at_m, scale_n: scale, samples, warnings };
     Ok(curve.with_fit(report))
 }
 

@@ -89,7 +89,8 @@ fn unit_curve() -> Result<&'static ForceCurve, String> {
             }
         }
         let warnings = Vec::new();
-        Ok(curve.with_fit(FitReport { worst_n, worst_at_m, scale_n, samples: checks + 1, warnings }))
+        let (worst_at_m, samples) = (Some(worst_at_m), Some(checks + 1));
+        Ok(curve.with_fit(FitReport { worst_n, worst_at_m, scale_n, samples, warnings }))
     })
     .as_ref()
     .map_err(Clone::clone)
@@ -119,7 +120,7 @@ pub fn magnet(strength: f64, gap: f64) -> Result<ForceCurve, String> {
     let (low, high) = unit.domain();
     let fit = unit.fit().map(|fit| FitReport {
         worst_n: fit.worst_n * scale.abs(),
-        worst_at_m: fit.worst_at_m * gap,
+        worst_at_m: fit.worst_at_m.map(|u| u * gap),
         scale_n: fit.scale_n * scale.abs(),
         ..fit.clone()
     });

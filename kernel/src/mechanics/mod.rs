@@ -3,6 +3,7 @@
 mod curve;
 mod fit;
 pub mod flexure;
+mod function;
 mod hertz;
 mod landscape;
 mod local;
@@ -12,6 +13,7 @@ mod table;
 pub use curve::{FitReport, ForceCurve, Piece};
 pub use fit::{fit, force_scale};
 pub use flexure::{FlexureError, Flexures};
+pub use function::FunctionError;
 pub use hertz::{ContactMaterial, Hertz};
 pub use landscape::{Barrier, Equilibrium, ForceExtremum, Kink, KinkAtWell, Landscape, Well};
 pub use magnet::{magnet_force, magnet_potential};
@@ -155,6 +157,9 @@ impl Mechanism {
                     return Err(Fault::new("mechanism.coefficients_si", value, problem).into());
                 }
                 Ok(Self::new(ForceCurve::polynomial(coefficients_si)))
+            }
+            scene::Mechanism::Pieces { ends_m, pieces, error_n } => {
+                Ok(Self::new(ForceCurve::as_written(ends_m, pieces, *error_n)))
             }
             scene::Mechanism::Table { path, tolerance } => {
                 let fault = |problem: String| Fault::new("mechanism.path", path, problem);

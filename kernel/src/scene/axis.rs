@@ -72,6 +72,17 @@ impl Axis {
         Self { field: field.to_owned(), values, steps, path: FieldPath::new(field) }.within(spec)
     }
 
+    /// An axis with these values of a numeric field of `scene`. The error is a sentence.
+    pub fn listed(field: &str, values: Vec<f64>, scene: &Scene) -> Result<Self, String> {
+        let spec = numeric(scene, field)?;
+        match values.len() {
+            0 => Err("has no values; give at least one".to_owned()),
+            count if count > MAX_AXIS_VALUES => Err(too_long(count)),
+            _ => Self { field: field.to_owned(), values, steps: None, path: FieldPath::new(field) }
+                .within(spec),
+        }
+    }
+
     /// Expands an axis of a scene's `sweep`, using the shortest decimals of its numbers. The error is the
     /// part of the axis at fault (`field`, `from`, `to`, `step` or `values`) and a sentence.
     pub fn from_scene(axis: &SweepAxis, scene: &Scene) -> Result<Self, (&'static str, String)> {

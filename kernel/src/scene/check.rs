@@ -10,6 +10,7 @@ use super::error::Fault;
 use super::field_table::{MAX_COEFFICIENTS, row};
 use super::fields::{Field, FieldPath, for_each, in_range};
 use super::mechanism::Mechanism;
+use super::pieces;
 use super::shape;
 use super::stops::Stops;
 use super::transducer::Transducer;
@@ -119,6 +120,7 @@ fn mechanism(field: &str, described: &Mechanism, checked: &mut Checked) {
                 mechanism(&format!("{field}.{i}"), part, checked);
             }
         }
+        Mechanism::Pieces { .. } => pieces::check(field, described, checked),
         _ => shape::check(field, described, checked),
     }
 }

@@ -70,7 +70,7 @@ impl Document {
     /// The scene in an argument of a command: anything that [`load`](Self::load) takes, the manifest of a
     /// sweep, or `-` for a scene on standard input.
     pub fn of_argument(spec: &str) -> Result<Self, SceneError> {
-        if let Some(document) = Self::preset(spec) {
+        if let Some(document) = Self::built_in(spec) {
             return document;
         }
         let (name, text, files) = if spec == "-" {
@@ -89,17 +89,28 @@ impl Document {
 
     /// Reads a scene file or the built-in scene of that name. A path such as `./paper` is always a file.
     pub fn load(spec: &str) -> Result<Self, SceneError> {
-        if let Some(document) = Self::preset(spec) {
+        if let Some(document) = Self::built_in(spec) {
             return document;
         }
-        let text = read_scene(spec, MAX_SCENE_BYTES)?;
-        let read = Self::from_text(&clip(spec), &text, Files::beside(Path::new(spec)))?;
-        Ok(Self { source: Source::File(PathBuf::from(spec)), ..read })
+        Self::from_file(Path::new(spec))
+    }
+
+    /// Reads a scene file.
+    pub fn from_file(path: &Path) -> Result<Self, SceneError> {
+        let spec = path.display().to_string();
+        let text = read_scene(&spec, MAX_SCENE_BYTES)?;
+        let read = Self::from_text(&clip(&spec), &text, Files::beside(path))?;
+        Ok(Self { source: Source::File(path.to_owned()), ..read })
+    }
+
+    /// Reads the built-in scene of that name.
+    pub fn preset(name: &str) -> Result<Self, SceneError> {
+        Self::built_in(name).unwrap_or_else(|| Err(no_such_scene(name)))
     }
 
     /// The built-in scene of that name. The inner result is an error only if the program was built with an
     /// invalid preset, which tests exclude.
-    fn preset(name: &str) -> Option<Result<Self, SceneError>> {
+    fn built_in(name: &str) -> Option<Result<Self, SceneError>> {
         let preset = PRESETS.iter().find(|preset| preset.name == name)?;
         let read = Self::from_text(&format!("built-in {name}"), preset.text, Files::default());
         Some(read.map(|read| Self { source: Source::BuiltIn(preset.name), ..read }))
@@ -270,8 +281,13 @@ impl Document {
             });
             axes.collect::<Result<_, SceneError>>()?
         };
+        self.check_axes(axes, if over.is_empty() { "sweep" } else { "--over" })
+    }
+
+    /// These axes, if no field is swept twice and the relations between fields hold on the whole grid; errors
+    /// name `argument`.
+    pub fn check_axes(&self, axes: Vec<Axis>, argument: &str) -> Result<Vec<Axis>, SceneError> {
         if let Some(field) = repeated(axes.iter().map(|axis| axis.field.as_str())) {
-            let argument = if over.is_empty() { "sweep" } else { "--over" };
             let problem = format!("{field} is swept twice; give each field one axis");
             return Err(ArgumentError { argument: argument.to_owned(), problem }.into());
         }
@@ -312,12 +328,14 @@ impl Document {
 /// The text of the file at `spec`, of at most `largest` bytes.
 fn read_scene(spec: &str, largest: usize) -> Result<String, SceneError> {
     read_text(Path::new(spec), largest).map_err(|error| match error {
-        ReadError::Missing => {
-            let spec = if spec.is_empty() { "\"\"".to_owned() } else { clip(spec) };
-            SceneError::NoSuchScene { spec, presets: presets::names() }
-        }
+        ReadError::Missing => no_such_scene(spec),
         ReadError::Unusable(problem) => SceneError::Unreadable { name: clip(spec), problem },
     })
+}
+
+fn no_such_scene(spec: &str) -> SceneError {
+    let spec = if spec.is_empty() { "\"\"".to_owned() } else { clip(spec) };
+    SceneError::NoSuchScene { spec, presets: presets::names() }
 }
 
 /// The error for a text that does not parse. Unknown field names are removed one by one and the text

@@ -265,6 +265,7 @@ pub const FIELDS: &[FieldInfo] = &[
     field("mechanism.barrier_mj", (1e-60, 1e60), "give the height of the barrier in mJ, such as 0.5")
         .named("barrier").axis(16),
     field("mechanism.coefficients_si", COEFFICIENT, "give finite coefficients in N/m^i; zeros are fine"),
+    field("mechanism.error_n", NOT_NEGATIVE, "give the error of the curve in N; 0 is an exact curve"),
     field("mechanism.tolerance", (1e-10, 1e-1), "1e-4 of the force maximum suits measured data"),
     field("mechanism.n_per_m", COEFFICIENT, "give a finite stiffness in N/m, such as 30")
         .control("spring", ((-100.0, 100.0, 1.0), Scale::Value), (-1e6, 1e6),

@@ -57,6 +57,18 @@ pub enum Mechanism {
         /// free mass.
         coefficients_si: Vec<f64>,
     },
+    /// A piecewise polynomial as it stands, such as one that a program made of a function.
+    Pieces {
+        /// Ends of the pieces in m, ascending, one more than there are pieces. The first and the last are the
+        /// ends of the curve; -inf and inf where it has none.
+        ends_m: Vec<f64>,
+        /// The pieces from left to right, 1 to 10000, continuous where they meet.
+        pieces: Vec<ForcePiece>,
+        /// Largest difference in N from the force that the curve stands for, 0 to 1e30. Bends of the curve
+        /// that are smaller count as none.
+        #[serde(default)]
+        error_n: f64,
+    },
     /// A measured or computed curve: CSV with columns `x_m,force_n`.
     Table {
         /// Path relative to the scene file, or the name of an embedded table.
@@ -93,6 +105,17 @@ impl Mechanism {
             _ => Vec::new(),
         }
     }
+}
+
+/// One polynomial of a piecewise force: F = c0 + c1 (x - origin) + c2 (x - origin)^2 + ...
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ForcePiece {
+    /// Origin of the polynomial in m.
+    #[serde(default)]
+    pub origin_m: f64,
+    /// 1 to 16 coefficients from the constant up, in N/m^i.
+    pub coefficients_si: Vec<f64>,
 }
 
 /// Equal flexures in parallel.

@@ -31,6 +31,7 @@ pub mod lesson;
 mod manifest;
 mod measured;
 mod mechanism;
+mod pieces;
 mod presets;
 mod record;
 mod scanner;
@@ -60,7 +61,7 @@ pub use measured::{
     Ask, AskOptions, Channel, ChosenColumn, MAX_MEASURED_BYTES, MAX_MEASURED_ROWS, Measured, MeasuredError,
     MeasuredText, read_measured,
 };
-pub use mechanism::{FlexureGroup, Mechanism};
+pub use mechanism::{FlexureGroup, ForcePiece, Mechanism};
 pub use presets::{EmbeddedTable, PRESETS, Preset, TABLES, export};
 pub use record::{Record, read_record};
 pub use scanner::{Place, Places, has_comments};

@@ -208,6 +208,7 @@ fields! {
         Self::Cubic { linear_n_per_m, cubic_n_per_m3 }
         Self::DoubleWell { equilibrium_mm, barrier_mj }
         Self::Polynomial { coefficients_si }
+        Self::Pieces { ends_m as leaf, pieces as leaf, error_n }
         Self::Table { path as text, tolerance }
         Self::Linear { n_per_m }
         Self::Magnet { strength_n_mm4, gap_mm }

@@ -30,7 +30,11 @@ pub fn sleep(time: Duration) {
 
 /// A pool of threads that share the parts of one study.
 #[derive(Debug)]
-pub struct Pool(rayon::ThreadPool);
+pub struct Pool {
+    threads: rayon::ThreadPool,
+    /// The process that started them: one that is forked from it has no threads of the pool.
+    process: u32,
+}
 
 /// Failure to start threads.
 #[derive(Debug, thiserror::Error)]
@@ -44,12 +48,18 @@ impl Pool {
     /// Starts `count` threads.
     pub fn new(count: usize) -> Result<Self, NoThreads> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(count).stack_size(STACK).build();
-        pool.map(Self).map_err(|error| NoThreads { count, reason: error.to_string() })
+        let threads = pool.map_err(|error| NoThreads { count, reason: error.to_string() })?;
+        Ok(Self { threads, process: std::process::id() })
     }
 
     /// Number of threads.
     pub fn count(&self) -> usize {
-        self.0.current_num_threads()
+        self.threads.current_num_threads()
+    }
+
+    /// Whether its threads are there: they are not in a process that was forked from the one of the pool.
+    pub fn is_alive(&self) -> bool {
+        self.process == std::process::id()
     }
 
     /// The results of parts 0 to `parts` (exclusive) in order, or an error of one of them, after which no
@@ -60,7 +70,7 @@ impl Pool {
         state: impl Fn() -> S + Sync,
         part: impl Fn(&mut S, usize) -> Result<R, E> + Sync,
     ) -> Result<Vec<R>, E> {
-        self.0.install(|| (0..parts).into_par_iter().with_max_len(1).map_init(&state, &part).collect())
+        self.threads.install(|| (0..parts).into_par_iter().with_max_len(1).map_init(&state, &part).collect())
     }
 
     /// The result of the first of parts 0 to `parts` (exclusive) that has one.
@@ -71,7 +81,7 @@ impl Pool {
         part: impl Fn(&mut S, u64) -> Option<R> + Sync,
     ) -> Option<R> {
         let all = || (0..parts).into_par_iter().map_init(&state, &part);
-        self.0.install(|| all().find_first(Option::is_some).flatten())
+        self.threads.install(|| all().find_first(Option::is_some).flatten())
     }
 
     /// Computes results on all threads and passes them to `leave` on this thread in order, while further
@@ -94,7 +104,7 @@ impl Pool {
     ) {
         let queue = Queue { ahead, ..Queue::new(count, self.count()) };
         let (sender, receiver) = channel();
-        self.0.in_place_scope(|scope| {
+        self.threads.in_place_scope(|scope| {
             scope.spawn_broadcast(|_, _| {
                 let sender = EndNotice(sender.clone());
                 let pending = RefCell::new((Vec::new(), Instant::now()));
@@ -160,7 +170,7 @@ impl Pool {
 
     /// Runs `work` on each thread.
     pub fn everywhere(&self, work: impl Fn() + Sync) {
-        self.0.broadcast(|_| work());
+        self.threads.broadcast(|_| work());
     }
 }
 

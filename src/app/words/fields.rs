@@ -25,6 +25,7 @@ pub fn mechanism_name(mechanism: &Mechanism) -> String {
         Mechanism::Cubic { .. } => "cubic".to_owned(),
         Mechanism::DoubleWell { .. } => "double well".to_owned(),
         Mechanism::Polynomial { coefficients_si } => format!("polynomial of {}", coefficients_si.len()),
+        Mechanism::Pieces { pieces, .. } => format!("{} polynomials", pieces.len()),
         Mechanism::Table { path, .. } => path.clone(),
         Mechanism::Linear { .. } => "spring".to_owned(),
         Mechanism::Magnet { .. } => "magnet".to_owned(),

@@ -124,12 +124,10 @@ fn force_curve(mechanism: &Mechanism) -> String {
         None => format!("force curve: {pieces}, exact"),
         Some(fit) => {
             let [worst, share] = [fit.worst_n, fit.worst_n / fit.scale_n].map(short);
-            let [scale, at] = [fit.scale_n, fit.worst_at_m * 1e3].map(short);
-            let samples = fit.samples;
-            format!(
-                "force curve: {pieces} through {samples} samples; off by at most {worst} N ({share} of \
-                 {scale} N) at x = {at} mm"
-            )
+            let scale = short(fit.scale_n);
+            let samples = fit.samples.map_or_else(String::new, |count| format!(" through {count} samples"));
+            let at = fit.worst_at_m.map_or_else(String::new, |x| format!(" at x = {} mm", short(x * 1e3)));
+            format!("force curve: {pieces}{samples}; off by at most {worst} N ({share} of {scale} N){at}")
         }
     }
 }

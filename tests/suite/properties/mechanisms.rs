@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, OnceLock};
 
 use interwell::mechanics::Mechanism as Built;
-use interwell::scene::{Files, FlexureGroup, Mechanism};
+use interwell::scene::{Files, FlexureGroup, ForcePiece, Mechanism};
 use proptest::prelude::*;
 
 use super::units::{PROTOTYPE, Units};
@@ -89,6 +89,8 @@ fn formula() -> impl Strategy<Value = Mechanism> {
             *all.last_mut().unwrap() = 1.0;
             polynomial(all)
         }),
+        1 => (-1.0..1.0f64, -1.0..1.0f64, 0.1..4.0f64, 0.1..4.0f64)
+            .prop_map(|(at, force, left, right)| corner(at, force, left, right)),
         1 => prop_oneof![
             Just(polynomial(vec![0.0])),
             (-2.0..2.0f64).prop_map(move |c| polynomial(vec![c])),
@@ -96,6 +98,13 @@ fn formula() -> impl Strategy<Value = Mechanism> {
             (0.1..4.0f64).prop_map(move |c| polynomial(vec![0.0, 0.0, 0.0, c])),
         ],
     ]
+}
+
+/// Two springs that meet in a corner.
+fn corner(at: f64, force: f64, left: f64, right: f64) -> Mechanism {
+    let piece = |stiffness| ForcePiece { origin_m: at, coefficients_si: vec![force, stiffness] };
+    let ends_m = vec![f64::NEG_INFINITY, at, f64::INFINITY];
+    Mechanism::Pieces { ends_m, pieces: vec![piece(left), piece(right)], error_n: 0.0 }
 }
 
 fn table() -> impl Strategy<Value = Mechanism> {

@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use interwell::dynamics::STANDARD_GRAVITY;
-use interwell::scene::{Damping, Excitation, Mechanism, Record, Start, Stops};
+use interwell::scene::{Damping, Excitation, ForcePiece, Mechanism, Record, Start, Stops};
 
 /// A mass in kg, a length in m and a time in s.
 #[derive(Debug, Clone, Copy)]
@@ -58,6 +58,11 @@ impl Units {
                     .map(|(i, c)| c * force / length.powi(i))
                     .collect(),
             },
+            Mechanism::Pieces { ends_m, pieces, error_n } => Mechanism::Pieces {
+                ends_m: ends_m.iter().map(|x| x * length).collect(),
+                pieces: pieces.iter().map(|piece| self.piece(piece)).collect(),
+                error_n: error_n * force,
+            },
             Mechanism::Linear { n_per_m } => Mechanism::Linear { n_per_m: n_per_m * force / length },
             Mechanism::Magnet { strength_n_mm4, gap_mm } => Mechanism::Magnet {
                 strength_n_mm4: strength_n_mm4 * force * length.powi(4),
@@ -66,6 +71,12 @@ impl Units {
             Mechanism::Sum(parts) => Mechanism::Sum(parts.iter().map(|part| self.mechanism(part)).collect()),
             Mechanism::Table { .. } | Mechanism::Flexures { .. } => natural.clone(),
         }
+    }
+
+    fn piece(self, natural: &ForcePiece) -> ForcePiece {
+        let (force, length) = (self.force(), self.length);
+        let coefficients = (0..).zip(&natural.coefficients_si).map(|(i, c)| c * force / length.powi(i));
+        ForcePiece { origin_m: natural.origin_m * length, coefficients_si: coefficients.collect() }
     }
 
     /// Stops whose distances are natural numbers in place of mm, the stiffness and the loss of compliant ones

@@ -39,6 +39,37 @@ fn every_relation_between_fields_is_checked() {
             "s.ron:5:27: mechanism.coefficients_si = a list of 17: must have 1 to 16",
         ),
         (&[("mechanism", "Polynomial(coefficients_si: [])")], "a list of 0: must have 1 to 16"),
+        (
+            &[("mechanism", "Pieces(ends_m: [0, 1], pieces: [])")],
+            "pieces = a list of 0: must have 1 to 10000",
+        ),
+        (
+            &[("mechanism", "Pieces(ends_m: [0], pieces: [(coefficients_si: [1])])")],
+            "mechanism.ends_m = a list of 1: 1 pieces have 2 ends",
+        ),
+        (
+            &[("mechanism", "Pieces(ends_m: [0, 1], pieces: [(coefficients_si: [])])")],
+            "mechanism.pieces.0.coefficients_si = a list of 0: must have 1 to 16",
+        ),
+        (
+            &[("mechanism", "Pieces(ends_m: [0, 1], pieces: [(coefficients_si: [NaN])])")],
+            "mechanism.pieces.0 = NaN: must be -1e200 to 1e200",
+        ),
+        (
+            &[("mechanism", "Pieces(ends_m: [1, 1], pieces: [(coefficients_si: [1])])")],
+            "mechanism.ends_m = 1: must ascend",
+        ),
+        (
+            &[(
+                "mechanism",
+                "Pieces(ends_m: [-1, 0, 1], pieces: [(coefficients_si: [1]), (coefficients_si: [2])])",
+            )],
+            "the force steps from 1 to 2 N at x = 0 m; it must be continuous",
+        ),
+        (
+            &[("mechanism", "Pieces(ends_m: [0, 1], pieces: [(coefficients_si: [1])], error_n: -1)")],
+            "mechanism.error_n = -1: must be 0 to 1e30",
+        ),
         (&[("mechanism", "Table(path: \"\")")], "mechanism.path = \"\": name a CSV file"),
         (
             &[("mechanism", "Table(path: \"a\", tolerance: 1)")],

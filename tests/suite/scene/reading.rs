@@ -40,6 +40,18 @@ fn every_mechanism_reads_and_writes() {
         ),
         ("Polynomial(coefficients_si: [0])", Mechanism::Polynomial { coefficients_si: vec![0.0] }),
         ("Table(path: \"a b.csv\")", table(1e-4)),
+        (
+            "Pieces(ends_m: [-inf, 0, inf], pieces: [(coefficients_si: [1, 2]), (origin_m: 1, \
+             coefficients_si: [3, 2])])",
+            Mechanism::Pieces {
+                ends_m: vec![f64::NEG_INFINITY, 0.0, f64::INFINITY],
+                pieces: vec![
+                    ForcePiece { origin_m: 0.0, coefficients_si: vec![1.0, 2.0] },
+                    ForcePiece { origin_m: 1.0, coefficients_si: vec![3.0, 2.0] },
+                ],
+                error_n: 0.0,
+            },
+        ),
         ("Linear(n_per_m: 30)", Mechanism::Linear { n_per_m: 30.0 }),
         (
             "Sum([Linear(n_per_m: -3), Magnet(strength_n_mm4: 20, gap_mm: 5), Table(path: \"a b.csv\")])",
@@ -170,7 +182,7 @@ fn structural_errors_have_a_place_and_the_known_names() {
         (
             ("mechanism", "Springs(k: 2.7)"),
             "s.ron:5:16: mechanism: unknown choice `Springs` in Mechanism; known: Flexures, Cubic, \
-             DoubleWell, Polynomial, Table",
+             DoubleWell, Polynomial, Pieces, Table",
         ),
         (("mechanism", "Flexures(preload_mm: 2.7)"), "`thickness_mm` is missing in Flexures"),
         (
