@@ -22,12 +22,11 @@
 //! # From a scene to a result
 //!
 //! ```
-//! use std::sync::Arc;
-//! use interwell::dynamics::{Model, Regime, Request};
-//! use interwell::mechanics::Mechanism;
-//! use interwell::scene::{Document, Files};
+//! use interwell::dynamics::{Regime, Request};
+//! use interwell::{Progress, Simulation, Sweep};
 //!
-//! let text = r#"(
+//! // A scene that has been checked, with its model; an error lists all faults with field, value and remedy.
+//! let simulation = Simulation::from_text("example.ron", r#"(
 //!     title: "Two wells at 7 mm, stops at 4 mm",
 //!     mass_g: 15.2,
 //!     mechanism: Cubic(linear_n_per_m: -40.0, cubic_n_per_m3: 816326.530612245),
@@ -35,19 +34,10 @@
 //!     stops: Rigid(travel_limit_mm: 4.0, restitution: 0.36),
 //!     excitation: Sine(frequency_hz: 3.0, amplitude_g: 1.5),
 //!     run: (duration_s: 10.0, tolerance: 1e-9),
-//! )"#;
+//! )"#)?;
 //!
-//! // Parse and check the scene; an error lists all faults with field, line, range and remedy.
-//! let document = Document::from_text("example.ron", text, Files::default())?;
-//! document.check()?;
-//!
-//! // Build the model: SI units, one force curve, always valid.
-//! let mechanism = Mechanism::build(&document.scene.mechanism, &document.files)?;
-//! let model = Model::build(&document.scene, Arc::new(mechanism))
-//!     .map_err(|faults| document.error_from(faults))?;
-//!
-//! // Run it: in every half period the mass leaves one stop, crosses, and comes to rest on the other stop.
-//! let run = model.run(&Request { events: true, ledger: true, ..Request::default() });
+//! // One run: in every half period the mass leaves one stop, crosses, and comes to rest on the other stop.
+//! let run = simulation.run(&Request { events: true, ledger: true, ..Request::default() });
 //! assert_eq!(run.summary.regime, Regime::Interwell);
 //! assert_eq!(run.summary.period, Some(1));
 //! assert!((run.summary.rms_velocity.unwrap() - 0.114_697_633_346).abs() < 1e-9);
@@ -56,7 +46,12 @@
 //! let ledger = run.summary.ledger.unwrap();
 //! assert!(ledger.impact_j > 0.9 * ledger.work_j);
 //! assert!(ledger.energy_residual < 1e-9);
-//! # Ok::<(), Box<dyn std::error::Error>>(())
+//!
+//! // A question about the scene: a struct with a method `run`, which answers with a table.
+//! let sweep = Sweep::over("excitation.amplitude_g", 0.5..=1.5, 5);
+//! let table = sweep.run(&simulation, &Progress::none())?;
+//! assert_eq!(table.words("regime"), ["intrawell", "intrawell", "interwell", "interwell", "interwell"]);
+//! # Ok::<(), interwell::Error>(())
 //! ```
 //!
 //! # The layers
@@ -70,7 +65,8 @@
 //! | [`scene`] | scene files: fields, units, ranges, tables, presets |
 //! | [`mechanics`] | the restoring force and its landscape of wells and barrier |
 //! | [`dynamics`] | motion: Taylor steps, contacts, rest, release, statistics, ledger |
-//! | [`study`] | studies that return a table: one run, a sweep, thresholds, accuracy |
+//! | `study` | studies that return a table: one run, a sweep, thresholds, accuracy |
+//! | [`questions`] | the studies as a program asks them |
 //! | [`output`] | conversion of tables to files |
 //!
 //! The command line is a part of the binary, and the window is the feature `app`; neither computes anything.
@@ -88,8 +84,15 @@ pub mod app;
 
 #[doc(inline)]
 pub use interwell_kernel::{dynamics, mechanics, numeric, scene, system};
+#[doc(hidden)]
+pub use interwell_studies::study;
 #[doc(inline)]
-pub use interwell_studies::{output, study};
+pub use interwell_studies::{output, questions};
+#[doc(no_inline)]
+pub use questions::{
+    Basins, Best, Branch, Compare, Curve, Error, Exponents, Identify, Orbit, Progress, Section, Simulation,
+    Spectrum, Sweep, Threshold,
+};
 
 /// Compiles the program in the README.
 #[cfg(doctest)]

@@ -3,6 +3,7 @@
 use clap::Args;
 use interwell::dynamics::Model;
 use interwell::output::{ExponentPicture, can_show_exponents, exponents_chart};
+use interwell::questions::{Error, refuse_electrical_state};
 use interwell::scene::Document;
 use interwell::study::{
     ExponentCells, ExponentOptions, Exponents, Grid, NoExponents, Table, Tally, drive_fault, exponents,
@@ -10,9 +11,7 @@ use interwell::study::{
 };
 
 use super::grid_job::GridJob;
-use super::support::{
-    counted, load_held, load_model, located, outputs, pool, refuse_electrical_state, until_settled, warn,
-};
+use super::support::{counted, load_held, load_model, outputs, pool, until_settled, warn};
 use super::{ChartOptions, Common, Failure, Output, Picture, interrupt, whole};
 
 const EXAMPLES: &str = "\
@@ -120,7 +119,7 @@ fn over(options: &Arguments, common: &Common, picture: Option<Picture>) -> Resul
     let cells = ExponentCells::new(&document.scene, &document.files, grid);
     let task = interrupt::silent_task();
     let pool = pool(common)?;
-    cells.validate(&pool, &task).map_err(|cell| located(&document, cell))?;
+    cells.validate(&pool, &task).map_err(|cell| Error::cells_of(&document, vec![cell]))?;
     let settings = settings(options, &document, cells.first_model(&task).as_ref())?;
     let cells = cells.with(settings);
     warn(&document, common, &warnings, cells.first_mechanism().ok().as_deref());

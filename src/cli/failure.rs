@@ -4,6 +4,7 @@ use std::fmt;
 use std::process::ExitCode;
 
 use interwell::output::{NoPicture, OpenError};
+use interwell::questions::Error;
 use interwell::scene::lesson::LessonError;
 use interwell::scene::{ArgumentError, SceneError};
 use interwell::study::accuracy::UnknownCase;
@@ -70,6 +71,21 @@ macro_rules! arguments_are_wrong {
             }
         }
     )*};
+}
+
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        match error {
+            Error::Scene(error) => error.into(),
+            Error::Argument { name, value, problem } => {
+                let option = format!("--{} {value}", name.replace('_', "-"));
+                Self::argument(format!("{}: {problem}", option.trim_end()))
+            }
+            Error::Failed { scene, problem } => Self::failed(format!("{scene}: {problem}")),
+            Error::Cancelled => Self::interrupted(),
+            error => Self::argument(error.message()),
+        }
+    }
 }
 
 arguments_are_wrong!(

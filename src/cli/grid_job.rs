@@ -3,11 +3,12 @@
 use std::path::Path;
 
 use interwell::output::{Chart, Manifest, header, rows};
+use interwell::questions::Error;
 use interwell::scene::Document;
 use interwell::study::{GridStudy, IMPACTS, Question, Shard, Slice, SweepEnd, Table, Tally, Task};
 use interwell::system::threads::Pool;
 
-use super::support::{Watch, file_name, located, manifest_path};
+use super::support::{Watch, file_name, manifest_path};
 use super::{Common, Failure, Output, Outputs, Picture, bar, caption, interrupt};
 
 /// A study of a grid whose outputs are open.
@@ -59,7 +60,7 @@ impl<'a> GridJob<'a> {
         let progress = bar(slice.rows(), from, unit, self.common);
         let task = Task { tick: &|| progress.inc(1), cancel: interrupt::listen() };
         let valid = study.validate_rows(slice, from, &self.pool, &task);
-        valid.map_err(|cell| SweepEnd::Write(located(self.document, cell)))?;
+        valid.map_err(|cell| SweepEnd::Write(Error::cells_of(self.document, vec![cell]).into()))?;
         study.run_rows(slice, from, &self.pool, &task, |table, tally| {
             if self.picture.is_some() {
                 self.shown.append(table);

@@ -1,16 +1,14 @@
 //! `identify`: damping, restitution or force curve from a measured record.
 
-use std::fmt::Display;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use interwell::output::{Caption, identified, identified_chart};
-use interwell::scene::{Ask, Channel, Measured, Quantity, Timing, read_measured};
-use interwell::study::{
-    FORCE_POINTS, Identified, Identity, Unidentified, damping, force, restitution, restitution_of_times,
-};
+use interwell::questions::{Identify, IdentifyAnswer, WhatToIdentify};
+use interwell::scene::Timing;
+use interwell::study::Identity;
 
-use super::measured::{ColumnOptions, PositionOptions, columns_read};
+use super::measured::{ColumnOptions, PositionOptions};
 use super::support::Watch;
 use super::{ChartOptions, Common, Failure, Output, Outputs, Picture, refuse};
 
@@ -83,13 +81,6 @@ pub struct Arguments {
     pub chart: ChartOptions,
 }
 
-struct Identification<'a> {
-    options: &'a Arguments,
-    common: &'a Common,
-    file: &'a Path,
-    of: &'a str,
-}
-
 /// Reads the record, identifies the quantity, and writes rows and summary.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let (Some(file), Some(of)) = (options.file.as_deref(), options.of.as_deref()) else {
@@ -97,16 +88,16 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             "identify needs a record and what to identify: identify FILE --of damping, restitution or force"
         );
     };
-    fits(options, of)?;
+    let question = question(options, WhatToIdentify::named(of).unwrap_or(WhatToIdentify::Damping));
+    question.check()?;
     let watch = Watch::start();
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     let mut outputs = Outputs::new(&[file.to_path_buf()])
         .with(Output::DATA, Some(common.out()))?
         .with(Output::SUMMARY, options.summary.as_deref())?
         .with_picture(picture)?;
-    let identification = Identification { options, common, file, of };
-    let Answer { timing, found, across, values } = identification.answer()?;
-    let found = found.map_err(|problem| identification.about(problem))?;
+    let IdentifyAnswer { timing, found, across, values, columns } = question.run(file)?;
+    common.say(&format!("{}: {columns}", file.display()));
     outputs.table(Output::DATA, &found.rows)?;
     outputs.write(Output::SUMMARY, identified(of, &found, timing.as_ref(), &watch.origin(1)))?;
     if let Some(picture) = picture {
@@ -123,141 +114,18 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Refuses options that do not belong to what is identified.
-fn fits(options: &Arguments, of: &str) -> Result<(), Failure> {
-    for (option, given, only) in [
-        ("--impact-times", options.impact_times, "restitution"),
-        ("--base", options.base.is_some(), "restitution"),
-        ("--base-unit", options.base_unit.is_some(), "restitution"),
-        ("--left-mm", options.left_mm.is_some(), "restitution"),
-        ("--right-mm", options.right_mm.is_some(), "restitution"),
-        ("--points", options.points.is_some(), "force"),
-        ("--position", options.positions.position.is_some(), "force"),
-        ("--position-unit", options.positions.position_unit.is_some(), "force"),
-    ] {
-        if given && of != only {
-            refuse!("{option} belongs to --of {only}, not to --of {of}");
-        }
-    }
-    for (option, given) in [("--from", options.from.is_some()), ("--to", options.to.is_some())] {
-        if given && of == "force" {
-            refuse!("{option} cuts a record over time; --of force has none");
-        }
-    }
-    if let (Some(from), Some(to)) = (options.from, options.to)
-        && !(from < to)
-    {
-        refuse!("--from {from} --to {to}: give a time before and one after");
-    }
-    of_record(options)
-}
-
-/// Refuses impossible positions of stops, and options that do not go with impact times.
-fn of_record(options: &Arguments) -> Result<(), Failure> {
-    for (option, place) in [("--left-mm", options.left_mm), ("--right-mm", options.right_mm)] {
-        if let Some(place) = place.filter(|place| !place.is_finite()) {
-            refuse!("{option} {place}: give the place of the stop in mm");
-        }
-    }
-    if let (Some(left), Some(right)) = (options.left_mm, options.right_mm)
-        && !(left < right)
-    {
-        let message = "the left stop is the one at the lesser displacement; exchange them";
-        refuse!("--left-mm {left} --right-mm {right}: {message}");
-    }
-    if options.base.is_none() && options.base_unit.is_some() {
-        refuse!("--base-unit is the unit of a column: name the column by --base");
-    }
-    for (option, given) in [
-        ("--base", options.base.is_some()),
-        ("--left-mm", options.left_mm.is_some()),
-        ("--right-mm", options.right_mm.is_some()),
-    ] {
-        if options.impact_times && given {
-            let message = "a record of impact times has no displacement; leave one of them out";
-            refuse!("{option} with --impact-times: {message}");
-        }
-    }
-    Ok(())
-}
-
-/// The identified quantity, and the record that it is identified from.
-struct Answer {
-    /// The sampling of a record over time.
-    timing: Option<Timing>,
-    found: Result<Identified, Unidentified>,
-    /// Times or positions.
-    across: Vec<f64>,
-    /// What was measured; empty for impact times.
-    values: Channel,
-}
-
-impl Identification<'_> {
-    fn answer(&self) -> Result<Answer, Failure> {
-        let options = self.options;
-        let (times, of_values) = (options.columns.times(), |asked: &[_]| options.columns.values(asked));
-        if self.of == "force" {
-            let asks = [options.positions.positions(), of_values(&[Quantity::Force])];
-            let [x, values] = self.read(&asks)?.channels;
-            let points = options.points.map_or(FORCE_POINTS, |points| points as usize);
-            let found = force(&x.values, &values.values, points);
-            return Ok(Answer { timing: None, found, across: x.values, values });
-        }
-        if self.of == "damping" {
-            let any = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
-            let [times, values] = self.cut(self.read(&[times, of_values(&any)])?)?.channels;
-            let found = damping(&times.values, &values);
-            return Ok(Answer {
-                timing: Some(Timing::of(&times.values)),
-                found,
-                across: times.values,
-                values,
-            });
-        }
-        if options.impact_times {
-            let [times] = self.cut(self.read(&[times])?)?.channels;
-            let found = restitution_of_times(&times.values);
-            let values = Channel { quantity: Quantity::Displacement, values: Vec::new(), ..times };
-            return Ok(Answer { timing: None, found, across: Vec::new(), values });
-        }
-        let values = of_values(&[Quantity::Displacement]);
-        let ([times, values], base) = if options.base.is_some() {
-            let names = ["--base", "--base-unit"];
-            let base = Ask::by_options(&[Quantity::Acceleration], &options.base, &options.base_unit, names);
-            let [times, values, base] = self.cut(self.read(&[times, values, base])?)?.channels;
-            ([times, values], Some(base.values))
-        } else {
-            (self.cut(self.read(&[times, values])?)?.channels, None)
-        };
-        let places = [options.left_mm, options.right_mm].map(|place| place.map(|mm| mm * 1e-3));
-        let found = restitution(&times.values, &values.values, base.as_deref(), places);
-        Ok(Answer { timing: Some(Timing::of(&times.values)), found, across: times.values, values })
-    }
-
-    fn read<const N: usize>(&self, asks: &[Ask; N]) -> Result<Measured<N>, Failure> {
-        let record = read_measured(self.file, asks).map_err(|problem| self.about(problem))?;
-        self.common.say(&format!("{}: {}", self.file.display(), columns_read(&record)));
-        Ok(record)
-    }
-
-    /// Keeps only the rows from `--from` to `--to`; the first channel is the time.
-    fn cut<const N: usize>(&self, mut record: Measured<N>) -> Result<Measured<N>, Failure> {
-        let times = &record.channels[0].values;
-        let from = times.partition_point(|t| *t < self.options.from.unwrap_or(f64::NEG_INFINITY));
-        let to = times.partition_point(|t| *t <= self.options.to.unwrap_or(f64::INFINITY));
-        if to < from + 2 {
-            let (first, last) = (times[0], times[times.len() - 1]);
-            return Err(self.about(format!(
-                "less than 2 samples from --from to --to; the record goes from {first} to {last} s"
-            )));
-        }
-        for channel in &mut record.channels {
-            channel.values = channel.values[from..to].to_vec();
-        }
-        Ok(record)
-    }
-
-    fn about(&self, problem: impl Display) -> Failure {
-        Failure::argument(format!("{}: {problem}", self.file.display()))
+fn question(options: &Arguments, of: WhatToIdentify) -> Identify {
+    let (ColumnOptions { time, time_unit, column, unit }, positions) = (&options.columns, &options.positions);
+    let both = |name: &Option<String>, unit: &Option<String>| [name.clone(), unit.clone()];
+    Identify {
+        of,
+        time: both(time, time_unit),
+        column: both(column, unit),
+        position: both(&positions.position, &positions.position_unit),
+        base: both(&options.base, &options.base_unit),
+        between: [options.from, options.to],
+        impact_times: options.impact_times,
+        stops_mm: [options.left_mm, options.right_mm],
+        points: options.points,
     }
 }

@@ -9,7 +9,8 @@ use interwell::dynamics::Model;
 use interwell::mechanics::Mechanism;
 use interwell::numeric::short;
 use interwell::output::aligned;
-use interwell::scene::{Ask, Channel, Measured, Quantity, Scene, read_measured};
+use interwell::questions::columns_read;
+use interwell::scene::{Ask, Measured, Quantity, Scene, read_measured};
 use interwell::study::{
     Comparison, ForceComparison, MeasuredMotion, NoComparison, compare, compare_force, metres,
 };
@@ -68,13 +69,6 @@ impl PositionOptions {
         let names = ["--position", "--position-unit"];
         Ask::by_options(&[Quantity::Displacement], &self.position, &self.position_unit, names)
     }
-}
-
-/// The columns that a record was read from, in words.
-pub fn columns_read<const N: usize>(record: &Measured<N>) -> String {
-    let from = |channel: &Channel| format!("{} from `{}`", channel.quantity.name(), channel.column);
-    let commas = if record.decimal_commas { ", with decimal commas" } else { "" };
-    format!("{}{commas}", record.channels.each_ref().map(from).join(", "))
 }
 
 /// The answer without `--measured`: nothing to compare, an error if a column of the record is `chosen`.

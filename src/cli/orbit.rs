@@ -2,11 +2,12 @@
 
 use clap::Args;
 use interwell::output::branch_chart;
+use interwell::questions::{can_have_orbits, no_orbit};
 use interwell::scene::{Axis, Document, is_whole};
-use interwell::study::{Branch, BranchEnd, Family, NoOrbit, Table, Task, branch, orbit, orbit_table};
+use interwell::study::{Family, Table, Task, branch, orbit, orbit_table};
 
 use super::progress::bar_on_terminal;
-use super::support::{check, finite, mechanism, model, outputs, read, refuse_electrical_state, warn};
+use super::support::{check, finite, mechanism, model, outputs, read, warn};
 use super::{ChartOptions, Common, Failure, Output, Picture, caption, interrupt, refuse, whole};
 
 const EXAMPLES: &str = "\
@@ -61,21 +62,11 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let mechanism = mechanism(&document)?;
     warn(&document, common, &warnings, Some(&mechanism));
     let model = model(&document, &mechanism)?;
-    if !model.repeats() || !model.is_shaken() {
-        refuse!(
-            "{}: excitation: a periodic motion needs a drive that repeats and is not 0; take a Sine, or a \
-             Sum of sines whose frequencies have a common period",
-            document.name
-        );
-    }
-    refuse_electrical_state(&document, &[], "orbit")?;
+    can_have_orbits(&document, &model)?;
     let cancel = interrupt::listen();
     let mut outputs = outputs(&options.scene, &document, common)?.with_picture(picture)?;
     let phase = phase_deg / 360.0;
-    let failed = |error: NoOrbit, at: &str| match error {
-        NoOrbit::Cancelled => Failure::interrupted(),
-        _ => Failure::failed(format!("{}: {at}{error}", document.name)),
-    };
+    let failed = |error, at: &str| no_orbit(&document, error, at);
     let table: Table = match branch_range {
         None => {
             let found = orbit(&model, phase, options.period, cancel);
@@ -93,33 +84,12 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
                 let chart = branch_chart(&found, phase_deg, picture.ranges);
                 picture.write(&mut outputs, &chart, &caption(&document))?;
             }
-            remarks(&found, (from, to)).iter().for_each(|line| common.say(line));
+            found.remarks((from, to)).iter().for_each(|line| common.say(line));
             found.table()
         }
     };
     outputs.table(Output::DATA, &table)?;
     outputs.finish()
-}
-
-/// Remarks that the table of a branch cannot hold: events that were not located, and where and why the branch
-/// ended, unless it reached the end of its range.
-fn remarks(branch: &Branch, (from, to): (f64, f64)) -> Vec<String> {
-    let field = &branch.field;
-    let unlocated = |(before, after): &(f64, f64)| {
-        format!(
-            "between {field} = {before} and {after} the motion changes how it touches the stops, or its \
-             stability; no event was located there, and the table has none"
-        )
-    };
-    let mut lines: Vec<String> = branch.unlocated.iter().map(unlocated).collect();
-    let at = branch.values.last().copied().unwrap_or(f64::NAN);
-    let why = match branch.end {
-        BranchEnd::Range if (at - to).abs() < (at - from).abs() => return lines,
-        BranchEnd::Range => "it came back to the value at which it began".to_owned(),
-        other => other.to_string(),
-    };
-    lines.push(format!("the branch ends at {field} = {at}: {why}"));
-    lines
 }
 
 /// The field of `--branch FIELD=A:B` and the ends of its range.

@@ -12,6 +12,9 @@ use super::{Failure, interrupt, refuse};
 /// Rows that are formatted at a time.
 const ROWS: usize = 1 << 15;
 
+/// Endings of tables that are not text.
+const BINARY_TABLES: [&str; 9] = ["arrow", "feather", "h5", "hdf5", "mat", "nc", "npy", "parquet", "xlsx"];
+
 /// What a command writes, by the option that says where it goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Output(&'static str);
@@ -58,6 +61,14 @@ impl Outputs {
     /// if a manifest would replace a file that is no manifest, or if an earlier output is the same.
     pub fn with(mut self, output: Output, path: Option<&Path>) -> Result<Self, Failure> {
         let (Some(path), option) = (path, output.option()) else { return Ok(self) };
+        let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        if BINARY_TABLES.contains(&&*ending) {
+            refuse!(
+                "{option} {}: tables are written as CSV: name a .csv, or take the Python package, whose \
+                 tables become data frames (to_pandas)",
+                path.display()
+            );
+        }
         let would_overwrite = |what: &str| {
             let path = path.display();
             refuse!("{option} {path} would overwrite {what}: name another file")

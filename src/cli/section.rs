@@ -2,14 +2,13 @@
 
 use clap::Args;
 use interwell::output::{SectionPicture, section_chart};
+use interwell::questions::refuse_electrical_state;
 use interwell::study::{
     Carry, Grid, IMPACTS, MAX_SECTION, SectionAt, SectionOptions, Sections, Table, Tally, section,
 };
 
 use super::grid_job::GridJob;
-use super::support::{
-    counted, finite, load_held, load_model, outputs, pool, refuse_electrical_state, until_settled, warn,
-};
+use super::support::{counted, finite, load_held, load_model, outputs, pool, until_settled, warn};
 use super::{ChartOptions, Common, Failure, Output, Picture, caption, interrupt, refuse, say, whole};
 
 const EXAMPLES: &str = "\

@@ -3,9 +3,10 @@
 use clap::Args;
 use interwell::numeric::Taper;
 use interwell::output::{SpectrumQuantity, spectrum_chart};
-use interwell::study::{NoSpectrum, Signal, SpectrumOptions, spectrum};
+use interwell::questions::{Progress, Spectrum};
+use interwell::study::Signal;
 
-use super::support::{is_positive, load_model, number, outputs, until_settled};
+use super::support::{is_positive, load_simulation, number, outputs, waits};
 use super::{ChartOptions, Common, Failure, Output, Picture, caption, interrupt, refuse};
 
 const EXAMPLES: &str = "\
@@ -61,28 +62,20 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             "--plot-y {low}:{high}: the axis is logarithmic; give two numbers above 0, such as 1e-9:1e-2"
         );
     }
-    let (document, model) = load_model(&options.scene, common)?;
-    let until_settled = until_settled(options.until_settled.as_deref(), &document, &model)?;
-    let settings = SpectrumOptions {
-        signal: Signal::named(&options.of).unwrap_or(Signal::Displacement),
+    let question = Spectrum {
+        of: Signal::named(&options.of).unwrap_or(Signal::Displacement),
         taper: match options.taper.as_str() {
             "hann" => Some(Taper::Hann),
             "none" => Some(Taper::None),
             _ => None,
         },
         rate_hz: options.rate_hz.as_deref().map(rate).transpose()?,
-        until_settled,
+        until_settled: waits(options.until_settled.as_deref())?,
     };
-    let mut outputs = outputs(&options.scene, &document, common)?.with_picture(picture)?;
-    let found = spectrum(&model, &settings, &interrupt::silent_task()).map_err(|problem| match problem {
-        NoSpectrum::Cancelled => Failure::interrupted(),
-        NoSpectrum::EndedEarly { .. } => Failure::failed(format!("{}: {problem}", document.name)),
-        NoSpectrum::NoWindow(..) => Failure::argument(format!("{}: {problem}", document.name)),
-        NoSpectrum::Rate { .. } => {
-            let given = options.rate_hz.as_deref().unwrap_or("(default)");
-            Failure::argument(format!("--rate-hz {given}: {}: {problem}", document.name))
-        }
-    })?;
+    let simulation = load_simulation(&options.scene, common)?;
+    let document = simulation.document();
+    let mut outputs = outputs(&options.scene, document, common)?.with_picture(picture)?;
+    let found = question.run(&simulation, &Progress::none().stopped_by(interrupt::listen()))?;
     outputs.table(Output::DATA, &found.table)?;
     if let Some(picture) = picture {
         let quantity = match options.quantity.as_str() {
@@ -90,7 +83,7 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
             _ => SpectrumQuantity::Amplitude,
         };
         let chart = spectrum_chart(&found, quantity, picture.ranges);
-        picture.write(&mut outputs, &chart, &caption(&document))?;
+        picture.write(&mut outputs, &chart, &caption(document))?;
     }
     outputs.finish()?;
     common.say(&format!("{}: {}", document.name, found.describe()));

@@ -5,10 +5,10 @@ use std::str::FromStr;
 use std::sync::Arc;
 
 use interwell::dynamics::Model;
-use interwell::mechanics::{BuildError, Mechanism};
+use interwell::mechanics::Mechanism;
 use interwell::output::{Provenance, is_regular};
-use interwell::scene::{self, Axis, Damping, Document, Scene, SceneError, Start, Stops, Transducer};
-use interwell::study::{CellFaults, ELECTRICAL_STATE};
+use interwell::questions::{Error, Simulation, check_until_settled};
+use interwell::scene::{Document, Scene, SceneError, Start};
 use interwell::system::clock::{ProcessClock, WallClock};
 use interwell::system::threads::{Pool, processors};
 
@@ -46,9 +46,6 @@ impl Watch {
 pub fn arguments() -> Vec<String> {
     std::env::args_os().skip(1).map(|argument| argument.to_string_lossy().into_owned()).collect()
 }
-
-/// Longest `--until-settled` in s, which is the longest duration of a run.
-const LONGEST_WAIT: f64 = 1e9;
 
 /// Loads the scene called `spec`, applies `--set` and `--tolerance`, checks it, and returns it with its
 /// warnings. With the arguments of `--over` its first cell is checked, since the scene's own values of the
@@ -114,7 +111,7 @@ pub fn outputs(spec: &str, document: &Document, common: &Common) -> Result<Outpu
 /// The scene's mechanism.
 pub fn mechanism(document: &Document) -> Result<Arc<Mechanism>, Failure> {
     let built = Mechanism::build(&document.scene.mechanism, &document.files);
-    built.map(Arc::new).map_err(|error| unbuilt(document, error))
+    built.map(Arc::new).map_err(|error| Error::unbuilt(document, error).into())
 }
 
 /// The model of a scene with its mechanism.
@@ -129,30 +126,6 @@ pub fn model_from_rest(document: &Document, mechanism: &Arc<Mechanism>) -> Resul
     Model::build(&trial, Arc::clone(mechanism)).map_err(|faults| document.error_from(faults).into())
 }
 
-/// A model for the check of `--until-settled`: a mass on a linear spring with the drive and the run of
-/// `scene`, on which alone the check depends. The scene's mechanism may be replaced by a grid or a design.
-pub fn drive_alone(document: &Document, scene: Scene) -> Result<Model, Failure> {
-    let mut alone = document.clone();
-    alone.scene = Scene {
-        mass_g: 1.0,
-        mechanism: scene::Mechanism::Linear { n_per_m: 1.0 },
-        damping: Damping::None,
-        stops: Stops::None,
-        transducer: Transducer::None,
-        ..scene
-    };
-    model_from_rest(&alone, &mechanism(&alone)?)
-}
-
-/// The failure for a mechanism that cannot be built: wrong fields are a wrong scene; valid flexures without
-/// a solution are a failed run.
-pub fn unbuilt(document: &Document, error: BuildError) -> Failure {
-    match error {
-        BuildError::Wrong(fault) => document.error_from(vec![fault]).into(),
-        BuildError::Unsolved(error) => Failure::failed(format!("{}: {error}", document.name)),
-    }
-}
-
 /// Loads the scene and its mechanism and prints the warnings of both.
 pub fn load_with_mechanism(spec: &str, common: &Common) -> Result<(Document, Arc<Mechanism>), Failure> {
     let (document, warnings) = load(spec, common, None)?;
@@ -163,9 +136,15 @@ pub fn load_with_mechanism(spec: &str, common: &Common) -> Result<(Document, Arc
 
 /// Loads the scene and builds its model; prints the warnings of both.
 pub fn load_model(spec: &str, common: &Common) -> Result<(Document, Model), Failure> {
-    let (document, mechanism) = load_with_mechanism(spec, common)?;
-    let model = model(&document, &mechanism)?;
-    Ok((document, model))
+    let simulation = load_simulation(spec, common)?;
+    Ok((simulation.document().clone(), simulation.model().clone()))
+}
+
+/// Loads the scene and builds its model; prints the warnings of both.
+pub fn load_simulation(spec: &str, common: &Common) -> Result<Simulation, Failure> {
+    let simulation = Simulation::new(&read(spec, common)?)?;
+    simulation.warnings().for_each(|warning| common.say(&format!("warning: {warning}")));
+    Ok(simulation)
 }
 
 /// Prints the warnings of a scene and of its mechanism, unless `--quiet` is given.
@@ -218,51 +197,18 @@ pub fn range(option: &str, text: &str, form: &str) -> Result<(f64, f64), Failure
     }
 }
 
-/// The time in s of `--until-settled`, if given; an error if runs of `model` cannot go on to that time.
-pub fn until_settled(text: Option<&str>, document: &Document, model: &Model) -> Result<Option<f64>, Failure> {
-    let Some(text) = text else { return Ok(None) };
-    let until: f64 = finite("--until-settled", text, "not a time; give seconds, such as 300")?;
-    let (option, scene, duration) = (format!("--until-settled {text}"), &document.name, model.duration());
-    if !model.can_settle() {
-        match model.forcing_period() {
-            Some(period) if model.repeats() => refuse!(
-                "{option}: {scene}: its settled window of {} s holds less than two forcing periods of \
-                 {period} s, too few to tell whether the motion repeats; lengthen run.duration_s",
-                duration - model.settle()
-            ),
-            _ => refuse!(
-                "{option}: {scene}: its excitation does not repeat, so the motion has no period to wait \
-                 for; take a Sine, or a Sum of sines whose frequencies have a common period"
-            ),
-        }
-    }
-    if until < duration {
-        refuse!(
-            "{option}: {scene}: its run already lasts {duration} s; give at least that, or shorten \
-             run.duration_s"
-        );
-    }
-    if until > LONGEST_WAIT {
-        refuse!("{option}: at most {LONGEST_WAIT:e} s");
-    }
-    Ok(Some(until))
+/// The time in s of `--until-settled`, if given.
+pub fn waits(text: Option<&str>) -> Result<Option<f64>, Failure> {
+    text.map(|text| finite("--until-settled", text, "not a time; give seconds, such as 300")).transpose()
 }
 
-/// Refuses a scene whose transducer has an electrical state, in the scene or in a cell of the swept fields.
-/// Used by studies whose state is displacement and velocity alone.
-pub fn refuse_electrical_state(document: &Document, axes: &[Axis], what: &str) -> Result<(), Failure> {
-    let swept = |name: &str| axes.iter().any(|axis| axis.field == format!("transducer.{name}"));
-    let may_have = match document.scene.transducer {
-        Transducer::None => false,
-        Transducer::Electromagnetic { inductance_mh, .. } => {
-            swept("inductance_mh") || inductance_mh > 0.0 && swept("load_ohm")
-        }
-        Transducer::Piezoelectric { .. } => swept("load_kohm"),
-    };
-    if may_have || document.scene.transducer.has_state() {
-        refuse!("{}: {what}: {ELECTRICAL_STATE}", document.name);
+/// The time in s of `--until-settled`, if given; an error if runs of `model` cannot go on to that time.
+pub fn until_settled(text: Option<&str>, document: &Document, model: &Model) -> Result<Option<f64>, Failure> {
+    let until = waits(text)?;
+    if let Some((until, text)) = until.zip(text) {
+        check_until_settled(until, text, document, model)?;
     }
-    Ok(())
+    Ok(until)
 }
 
 /// The path of the manifest beside the rows at `out`. Returns `None` if `out` is no regular file.
@@ -283,33 +229,4 @@ pub fn file_name(out: &Path) -> String {
 pub fn pool(common: &Common) -> Result<Pool, Failure> {
     let count = common.jobs.map_or_else(processors, usize::from);
     Pool::new(count).map_err(|error| Failure::Failed(error.into()))
-}
-
-/// The failure for a wrong cell, with the places of its faults.
-pub fn located(document: &Document, cell: CellFaults) -> Failure {
-    let error = document.error_from(cell.faults);
-    match cell.cell.as_str() {
-        "" => error.into(),
-        name => Failure::Wrong(anyhow::anyhow!("in the cell {name}:\n{error}")),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use interwell::mechanics::FlexureError;
-    use interwell::scene::Fault;
-
-    #[test]
-    fn a_geometry_without_a_solution_is_a_failed_run_and_no_wrong_scene() {
-        let document = Document::load("paper").unwrap();
-        let error = FlexureError::NotConverged { x: 1.5e-3, residual: 0.25, is_preloaded: true };
-        let failure = unbuilt(&document, error.into());
-        assert!(matches!(failure, Failure::Failed(_)));
-        let text = failure.to_string();
-        assert!(text.starts_with("built-in paper: ") && text.lines().count() == 1, "{text}");
-        assert!(text.contains("1.5 mm") && text.contains("0.25") | text.contains("2.5e-1"), "{text}");
-        let fault = Fault { field: "mechanism".into(), value: "v".into(), problem: "p".into() };
-        assert!(matches!(unbuilt(&document, fault.into()), Failure::Wrong(_)));
-    }
 }

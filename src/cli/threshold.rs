@@ -3,12 +3,11 @@
 use clap::Args;
 use interwell::numeric::extent;
 use interwell::output::{ThresholdPicture, can_show_thresholds, threshold_chart};
-use interwell::scene::{Axis, Document, is_whole};
-use interwell::study::{CellFaults, Grid, NoThresholds, Onset, Scan, Table, threshold_table};
+use interwell::questions::{Error, Threshold, drive_alone};
+use interwell::scene::Document;
+use interwell::study::{Grid, NoThresholds, Onset, Scan, Table, threshold_table};
 
-use super::support::{
-    drive_alone, is_positive, load, located, mechanism, number, outputs, pool, until_settled, warn,
-};
+use super::support::{finite, load, mechanism, outputs, pool, until_settled, warn};
 use super::{ChartOptions, Common, Failure, Output, Picture, caption, refuse, with_bar};
 
 const EXAMPLES: &str = "\
@@ -31,7 +30,7 @@ pub struct Arguments {
     #[arg(
         long,
         value_name = "FIELD=FROM:TO[:STEP]",
-        default_value = AMPLITUDES,
+        default_value = "excitation.amplitude_g=0:2",
         allow_hyphen_values = true
     )]
     pub field: String,
@@ -62,19 +61,18 @@ pub struct Arguments {
     pub chart: ChartOptions,
 }
 
-const AMPLITUDES: &str = "excitation.amplitude_g=0:2";
-
-const STEPS: f64 = 200.0;
-
-const MAX_NAMED: usize = 8;
-
 /// Searches and writes the table.
 pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
     // without --over the sweep in the scene is ignored
     let over = Some(options.over.as_slice()).filter(|over| !over.is_empty());
     let (document, warnings) = load(&options.scene, common, over)?;
-    let mut scan = scan(options, &document)?;
+    let onset = Onset::named(&options.of).unwrap_or(Onset::Crossing);
+    let remedy = "give a number above 0, in the unit of the field";
+    let resolution = options.resolution.as_deref();
+    let resolution = resolution.map(|text| finite("--resolution", text, remedy)).transpose()?;
+    let field = options.field.clone();
+    let mut scan = Threshold { field, of: onset, resolution, ..Threshold::default() }.scan(&document)?;
     let grid = match over {
         None => Grid::of_one(),
         Some(over) => Grid::new(document.axes(over)?)?,
@@ -82,7 +80,6 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
     if grid.axes().iter().any(|axis| axis.field == scan.field) {
         refuse!("--over {}: the threshold is over it; sweep another field", scan.field);
     }
-    let onset = Onset::named(&options.of).unwrap_or(Onset::Crossing);
     if picture.is_some() {
         can_show_thresholds(&grid)?;
     }
@@ -101,8 +98,8 @@ pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
         threshold_table(scene, files, &grid, &scan, onset, &pool, task)
     });
     let table = found.map_err(|end| match end {
-        NoThresholds::Cancelled => Failure::interrupted(),
-        NoThresholds::Wrong(cells) => wrong(&document, cells),
+        NoThresholds::Cancelled => Error::Cancelled,
+        NoThresholds::Wrong(cells) => Error::cells_of(&document, cells),
     })?;
     outputs.table(Output::DATA, &table)?;
     let remarks = [missing(&table, &scan, onset, &grid), undecided(&table)];
@@ -157,71 +154,4 @@ fn missing(table: &Table, scan: &Scan, onset: Onset, grid: &Grid) -> Option<Stri
          smaller steps",
         scan.field
     ))
-}
-
-fn wrong(document: &Document, cells: Vec<CellFaults>) -> Failure {
-    let more = cells.len().saturating_sub(MAX_NAMED);
-    let mut text: Vec<String> =
-        cells.into_iter().take(MAX_NAMED).map(|cell| located(document, cell).to_string()).collect();
-    if more > 0 {
-        text.push(format!("and {more} more cells are wrong"));
-    }
-    Failure::argument(text.join("\n"))
-}
-
-fn scan(options: &Arguments, document: &Document) -> Result<Scan, Failure> {
-    let argument = options.field.trim();
-    let default = if argument == AMPLITUDES { " (the default; give another)" } else { "" };
-    let option = format!("--field {argument}{default}");
-    let parsed = |text: &str| -> Result<Axis, Failure> {
-        let axis = Axis::parse(text, &document.scene);
-        let axis = axis.map_err(|problem| Failure::argument(format!("{option}: {problem}")))?;
-        if !axis.values.iter().all(|value| value.is_finite()) {
-            refuse!("{option}: the ends of the range must be finite");
-        }
-        Ok(axis)
-    };
-    let (mut full, mut end) = (argument.to_owned(), None);
-    if let Some((from, to)) = argument.split_once(':').filter(|(_, to)| !to.contains(':')) {
-        // parsed as a list, so that the message names a wrong end
-        let ends = parsed(&format!("{from},{to}"))?;
-        let [low, high] = ends.values[..] else {
-            refuse!(
-                "{option}: write FIELD=FROM:TO or FIELD=FROM:TO:STEP, such as excitation.amplitude_g=0:2"
-            );
-        };
-        if low == high {
-            refuse!("{option}: FROM and TO are both {low}; give a range, such as 0:2");
-        }
-        if low > high {
-            refuse!("{option}: TO must be above FROM; write {high}:{low}");
-        }
-        let step = (high - low) / STEPS;
-        let step = if is_whole(&document.scene, &ends.field) { step.ceil() } else { step };
-        (full, end) = (format!("{argument}:{step}"), Some(high));
-    }
-    let axis = parsed(&full)?;
-    let mut values = axis.values;
-    values.sort_by(f64::total_cmp);
-    values.dedup();
-    if values.len() < 2 {
-        refuse!("{option}: it is a single value; give a range of which STEP is a part, such as 0:2:0.1");
-    }
-    let step = (values[values.len() - 1] - values[0]) / (values.len() - 1) as f64;
-    if let Some(high) = end {
-        // the range may be no whole number of steps, and rounding may place the last one just below its end
-        values.retain(|value| *value < high - 1e-6 * step);
-        values.push(high);
-    }
-    let whole = is_whole(&document.scene, &axis.field);
-    let resolution = match &options.resolution {
-        None if whole => 1.0,
-        None => 1e-3 * step,
-        Some(text) => {
-            let fits = |value: &f64| is_positive(value) && (!whole || value.fract() == 0.0);
-            let kind = if whole { "whole number" } else { "number" };
-            number("--resolution", text, fits, &format!("give a {kind} above 0, in the unit of the field"))?
-        }
-    };
-    Ok(Scan { field: axis.field, values, resolution, until_settled: None })
 }

@@ -7,4 +7,6 @@
 pub(crate) use interwell_kernel::{dynamics, mechanics, numeric, scene, system};
 
 pub mod output;
+#[macro_use]
 pub mod study;
+pub mod questions;

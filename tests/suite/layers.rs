@@ -21,7 +21,18 @@ const ORDERS: [Order; 3] = [
     // `cli` and `app` stand side by side
     Order {
         root: &[],
-        names: &["system", "numeric", "scene", "mechanics", "dynamics", "study", "output", "cli", "app"],
+        names: &[
+            "system",
+            "numeric",
+            "scene",
+            "mechanics",
+            "dynamics",
+            "study",
+            "questions",
+            "output",
+            "cli",
+            "app",
+        ],
         with_tests: true,
     },
     Order {

@@ -4,6 +4,7 @@ use std::sync::Mutex;
 use std::time::Duration;
 
 use interwell::output::rows;
+use interwell::questions::Error;
 use interwell::study::{Shard, Sweep, Task};
 use interwell::system::clock::WallClock;
 use interwell::system::threads::{Pool, within};
@@ -11,7 +12,7 @@ use interwell::system::threads::{Pool, within};
 use super::super::Failure;
 use super::super::progress::duration;
 use super::super::shard::{command, value};
-use super::super::support::{arguments, located};
+use super::super::support::arguments;
 use super::prepared::Prepared;
 
 /// Cells of the first sample for each thread.
@@ -35,7 +36,7 @@ pub fn print(prepared: &Prepared, pool: &Pool) -> Result<(), Failure> {
     let (picture, sharded) = (prepared.picture.is_some(), prepared.options.shard.is_some());
     let wrong =
         within(PATIENCE, |cancel| sweep.validate_rows(slice, 0, pool, &Task { tick: &|| (), cancel }));
-    wrong.map_err(|cell| located(document, cell))?;
+    wrong.map_err(|cell| Error::cells_of(document, vec![cell]))?;
     let (count, threads) = (slice.rows(), pool.count());
     // Multiples of the golden section are evenly spread and do not resonate with the axes (Weyl 1916).
     let place = |i: u64| ((i as f64 + 0.5) * 0.618_033_988_749_895).fract() * count as f64;

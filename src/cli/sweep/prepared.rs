@@ -6,14 +6,13 @@ use std::sync::Arc;
 use clap::Args;
 use interwell::mechanics::{BuildError, Mechanism};
 use interwell::output::{Cut, View, can_show, plan};
+use interwell::questions::{Error, column_names, refuse_electrical_state};
 use interwell::scene::{Document, is_manifest};
-use interwell::study::{
-    Carry, DIRECTION, Grid, STANDARD_COLUMNS, SUMMARY_FIELDS, Shard, Slice, SummaryField, Sweep, SweepOptions,
-};
+use interwell::study::{Carry, Grid, Shard, Slice, SummaryField, Sweep, SweepOptions};
 use serde_json::{Value, json};
 
 use super::super::shard::{placed, shard};
-use super::super::support::{load, refuse_electrical_state, unbuilt, until_settled, warn};
+use super::super::support::{load, until_settled, warn};
 use super::super::{ChartOptions, Common, Failure, Picture, interrupt, refuse};
 
 #[derive(Debug, Args)]
@@ -129,7 +128,7 @@ impl<'a> Prepared<'a> {
             refuse_electrical_state(&document, sweep.grid().axes(), "--carry")?;
         }
         let chosen = if options.columns.is_empty() { &swept.columns } else { &options.columns };
-        let columns = columns(chosen, sweep.grid(), carry)?;
+        let columns = column_names(chosen, sweep.grid(), carry)?;
         // a fault of the first cell is reported when the cells are checked, with its place
         let first = sweep.first_model(&interrupt::silent_task());
         let until = options.until_settled.clone().or(swept.until_settled.map(|limit| limit.to_string()));
@@ -150,33 +149,6 @@ impl<'a> Prepared<'a> {
         (plan["rows"], plan["unit"]) = (json!(sweep.rows()), json!(slice.unit()));
         Ok(Self { options, document, out, data, sweep, slice, mechanism, columns, plan, picture, view })
     }
-}
-
-/// The names of all columns: those of the swept fields, the direction of a walk, and the chosen ones.
-fn columns(chosen: &[String], grid: &Grid, carry: Option<Carry>) -> Result<Vec<String>, Failure> {
-    let mut names = grid.columns().to_vec();
-    names.extend(carry.map(|_| DIRECTION.to_owned()));
-    match chosen {
-        [] => names.extend(STANDARD_COLUMNS.map(str::to_owned)),
-        [all] if all == "all" => {
-            let more = SUMMARY_FIELDS.iter().map(|field| field.name);
-            let more = more.filter(|name| !STANDARD_COLUMNS.contains(name));
-            names.extend(STANDARD_COLUMNS.into_iter().chain(more).map(str::to_owned));
-        }
-        list => {
-            for name in list.iter().map(|name| name.trim()) {
-                let Some(field) = SummaryField::find(name) else {
-                    let known: Vec<&str> = SUMMARY_FIELDS.iter().map(|field| field.name).collect();
-                    refuse!("--columns {name}: no such column; there are all, {}", known.join(", "));
-                };
-                if names.iter().any(|known| known == field.name) {
-                    refuse!("--columns {name}: named twice; name it once");
-                }
-                names.push(field.name.to_owned());
-            }
-        }
-    }
-    Ok(names)
 }
 
 const MAX_CUTS: usize = 2;
@@ -223,6 +195,6 @@ fn first_mechanism(document: &Document, sweep: &Sweep) -> Result<Option<Arc<Mech
     match sweep.first_mechanism() {
         Ok(mechanism) => Ok(Some(mechanism)),
         Err(BuildError::Unsolved(_)) if sweep.grid().changes_mechanism() => Ok(None),
-        Err(error) => Err(unbuilt(document, error)),
+        Err(error) => Err(Error::unbuilt(document, error).into()),
     }
 }

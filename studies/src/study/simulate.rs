@@ -197,6 +197,16 @@ pub enum TimesError {
     Outside(f64, f64),
 }
 
+impl TimesError {
+    /// The argument that is wrong.
+    pub fn argument(&self) -> &'static str {
+        match self {
+            Self::SamplingStep(_) | Self::TooMany(..) => "dt",
+            Self::Outside(..) => "at",
+        }
+    }
+}
+
 /// A positive rational number: exactly what decimal text says, or a fraction of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Fraction {

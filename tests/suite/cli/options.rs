@@ -69,6 +69,18 @@ fn a_table_that_a_scene_reads_is_not_overwritten() {
 }
 
 #[test]
+fn a_table_of_another_kind_is_not_csv_under_its_name() {
+    let folder = tempfile::tempdir().unwrap();
+    for ending in ["parquet", "H5", "nc", "xlsx", "feather"] {
+        let path = folder.path().join(format!("map.{ending}"));
+        let line = format!("sweep paper --over mass_g=15,16 --out {}", path.display());
+        refused(headless(&line), &["--out", "CSV", "Python"]);
+        refused(headless(&format!("simulate paper --events {}", path.display())), &["--events", "CSV"]);
+    }
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
 fn help_lists_no_option_that_a_command_does_not_use() {
     for (command, unused) in [
         ("presets", &["--set", "--tolerance", "--jobs"][..]),

@@ -8,12 +8,14 @@
 mod evaluate;
 mod search;
 mod varied;
+mod words;
 
 use super::{SummaryField, Table, Task};
 use crate::scene::{Fault, Files, Scene, column_names};
 use crate::system::threads::Pool;
 use evaluate::Evaluator;
 pub use varied::SAMPLES;
+pub use words::{names, place, quantity};
 
 /// A field that the design may change, and between which values, in its own unit.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,0 +1,97 @@
+//! `best`: the best design for an environment, one row, with its margins.
+
+use clap::Args;
+use interwell::questions::Best;
+use interwell::study::{NoBest, Task, best, names, place, quantity, scan_runs};
+
+use super::support::{load, outputs, pool, waits, warn};
+use super::{Common, Failure, Output, bar, interrupt, say};
+
+const EXAMPLES: &str = "\
+Examples:
+  interwell --headless best paper --over stops.travel_limit_mm=0.5:7
+  interwell --headless best paper --over stops.travel_limit_mm=0.5:7 --subject-to 'max_abs_x_m<=0.001'
+  interwell --headless best paper --over stops.travel_limit_mm=0.5:7 \\
+      --environment excitation.amplitude_g=0.8,1,1.2 --vary excitation.amplitude_g=+-2%
+  interwell --headless best paper --over stops.travel_limit_mm=0.2:2 --environment walking
+  interwell --headless best random-shaking --over stops.travel_limit_mm=0.2:3 \\
+      --environment excitation.seed=1,2,3,4,5
+  interwell --headless best paper --over mechanism.preload_mm=1:3 --over stops.travel_limit_mm=0.5:5";
+
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Arguments {
+    /// Scene file or built-in scene
+    #[arg(value_name = "SCENE", default_value = "paper")]
+    pub scene: String,
+
+    /// A field of the design and its range (repeatable, at most four); a step is that of the first scan
+    /// [default: a 256th of the range; of two fields a 32nd, of three a 12th, of four an 8th]
+    #[arg(long, value_name = "FIELD=A:B[:STEP]", allow_hyphen_values = true)]
+    pub over: Vec<String>,
+
+    /// What is to be largest: a number of the summary. mean_power_w, the power into the load, needs a scene
+    /// with a transducer
+    #[arg(long, value_name = "COLUMN", default_value = "rms_velocity_m_per_s", visible_alias = "maximize")]
+    pub maximise: String,
+
+    /// What every environment must keep to, such as 'max_abs_x_m<=0.003' (repeatable)
+    #[arg(long, value_name = "COLUMN<=VALUE|COLUMN>=VALUE")]
+    pub subject_to: Vec<String>,
+
+    /// What the design is for, in place of the scene's own excitation: the excitation and run of another
+    /// scene, a record (CSV), or values of a field; *WEIGHT after one is its weight, otherwise 1
+    /// (repeatable; the weighted mean over all is what is to be largest)
+    #[arg(long, value_name = "SCENE|FILE|FIELD=a,b,c", allow_hyphen_values = true)]
+    pub environment: Vec<String>,
+
+    /// A tolerance of a field: writes the worst of 200 samples and what all but a twentieth of them reach
+    /// (repeatable)
+    #[arg(long, value_name = "FIELD=+-1%|+-0.05", allow_hyphen_values = true)]
+    pub vary: Vec<String>,
+
+    /// Follow each run, window after window, until its motion repeats, or up to this time in s; where the
+    /// drive never repeats, each run is as long as the scene says [default: 1000 forcing periods after the
+    /// scene's run]
+    #[arg(long, value_name = "MAX_S", allow_hyphen_values = true)]
+    pub until_settled: Option<String>,
+
+    /// Seed of the samples of --vary
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    pub seed: u64,
+}
+
+/// Searches and writes the row.
+pub fn run(options: &Arguments, common: &Common) -> Result<(), Failure> {
+    let (document, warnings) = load(&options.scene, common, None)?;
+    let asked = Best {
+        over: options.over.clone(),
+        maximise: options.maximise.clone(),
+        subject_to: options.subject_to.clone(),
+        environment: options.environment.clone(),
+        vary: options.vary.clone(),
+        seed: options.seed,
+        until_settled: waits(options.until_settled.as_deref())?,
+    };
+    let question = asked.question(&document)?;
+    warn(&document, common, &warnings, None);
+    let pool = pool(common)?;
+    let mut outputs = outputs(&options.scene, &document, common)?;
+    let bar = bar(scan_runs(&question), 0, "runs", common);
+    // the number of runs after the scan is not known in advance
+    let tick = || bar.inc_beyond();
+    let task = Task { tick: &tick, cancel: interrupt::listen() };
+    let mut so_far = None;
+    let found = best(&question, &pool, &task, &mut |design| so_far = Some(design.clone()));
+    drop(bar);
+    if let (Err(NoBest::Cancelled), Some(design)) = (&found, &so_far) {
+        let maximised = question.maximise.name;
+        let at = place(&names(&question), &design.at);
+        let value = quantity(design.value, maximised);
+        say(&format!("{}: best so far at {at}: {maximised} {value}", document.name));
+    }
+    let design = found.map_err(|why| asked.no_best(why, &question, &document))?;
+    outputs.table(Output::DATA, &design.table(&question))?;
+    design.words(&question).iter().for_each(|line| common.say(&format!("{}: {line}", document.name)));
+    outputs.finish()
+}

@@ -1,0 +1,402 @@
+//! Questions about designs: scenes side by side, and the best design for an environment.
+
+use super::grid::drive_alone;
+use super::{Error, Progress, Simulation, check_until_settled};
+use crate::numeric::number_text;
+use crate::scene::{Axis, Document, Excitation, FieldPath, RunSettings, Start, Transducer, is_whole};
+use crate::study::{
+    Alternative, BestDesign, BestQuestion, Constraint, DesignRange, Environment, INTERVALS, MOST_FIELDS,
+    NoBest, Rated, Read, SUMMARY_FIELDS, SummaryField, Table, Variation, alternatives, best,
+    comparison_parts, comparison_table, names, place, quantity, scan_runs,
+};
+use crate::system::files::{canonical, is_file};
+
+/// Scenes side by side under the sine and with the run of the one that asks.
+#[derive(Debug, Clone, Default)]
+pub struct Compare {
+    /// The other scenes, each with its name.
+    pub with: Vec<(String, Simulation)>,
+    /// The name of the scene that asks.
+    pub name: String,
+    /// Each run goes on until its motion repeats, or up to this time in s.
+    pub until_settled: Option<f64>,
+}
+
+impl Compare {
+    /// Rates all scenes; a row each.
+    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Vec<Rated>, Error> {
+        needs_a_sine(simulation.document())?;
+        let first = (self.name.clone(), simulation);
+        let others = self.with.iter().map(|(name, other)| (name.clone(), other));
+        let mut all = Vec::new();
+        for (name, other) in std::iter::once(first).chain(others) {
+            let lent = Simulation::new(&lend(other.document(), simulation.document()))?;
+            lent.check_until_settled(self.until_settled)?;
+            let (document, mechanism) = (lent.document().clone(), lent.mechanism().clone());
+            all.push(Alternative { name, scene: document.scene, files: document.files, mechanism });
+        }
+        let rated = progress.pool(|pool| {
+            progress
+                .task(Some(comparison_parts(&all)), |task| alternatives(&all, self.until_settled, pool, task))
+        })?;
+        rated.ok_or(Error::Cancelled)
+    }
+
+    /// The table of an answer.
+    pub fn table(rated: &[Rated]) -> Table {
+        comparison_table(rated)
+    }
+}
+
+/// Refuses an excitation whose amplitude and frequency cannot be searched.
+pub fn needs_a_sine(environment: &Document) -> Result<(f64, f64), Error> {
+    let Excitation::Sine { frequency_hz, amplitude_g, .. } = environment.scene.excitation else {
+        let problem = "its excitation is no Sine; amplitude and frequency of one are searched: name a scene \
+                       with a Sine first, or by --environment";
+        return Err(Error::unfit(environment, problem));
+    };
+    Ok((frequency_hz, amplitude_g))
+}
+
+/// A scene at rest under the excitation and with the run of another.
+pub fn lend(document: &Document, environment: &Document) -> Document {
+    let mut lent = document.clone();
+    lent.scene.excitation = environment.scene.excitation.clone();
+    lent.scene.run = environment.scene.run;
+    lent.scene.start = Start::Rest;
+    lent.scene.sweep.clear(); // the other excitation may not have its fields
+    lent
+}
+
+/// The best design for an environment.
+///
+/// Its texts are those of the command `best`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Best {
+    /// Fields of the design and their ranges, `FIELD=A:B[:STEP]`; at most four.
+    pub over: Vec<String>,
+    /// The number of the summary that is to be largest.
+    pub maximise: String,
+    /// What every environment must keep to, such as `max_abs_x_m<=0.003`.
+    pub subject_to: Vec<String>,
+    /// Environments in place of the scene's own excitation: another scene, a record (CSV), or values of a
+    /// field, `FIELD=a,b,c`; `*WEIGHT` after one is its weight.
+    pub environment: Vec<String>,
+    /// Fields that vary and their tolerances, `FIELD=+-1%` or `FIELD=+-0.05`.
+    pub vary: Vec<String>,
+    /// Seed of the samples of what varies.
+    pub seed: u64,
+    /// Each run goes on until its motion repeats, or up to this time in s.
+    pub until_settled: Option<f64>,
+}
+
+impl Default for Best {
+    fn default() -> Self {
+        Self {
+            over: Vec::new(),
+            maximise: "rms_velocity_m_per_s".to_owned(),
+            subject_to: Vec::new(),
+            environment: Vec::new(),
+            vary: Vec::new(),
+            seed: 1,
+            until_settled: None,
+        }
+    }
+}
+
+/// The best design, with the question in numbers.
+#[derive(Debug, Clone)]
+pub struct BestAnswer {
+    /// What was searched.
+    pub question: BestQuestion,
+    /// What was found.
+    pub design: BestDesign,
+}
+
+impl BestAnswer {
+    /// One row: the design, its value and its margins.
+    pub fn table(&self) -> Table {
+        self.design.table(&self.question)
+    }
+
+    /// The result in sentences.
+    pub fn words(&self) -> Vec<String> {
+        self.design.words(&self.question)
+    }
+}
+
+impl Best {
+    /// Over a field between two values, in the unit of the field.
+    pub fn over(field: &str, low: f64, high: f64) -> Self {
+        Self { over: vec![format!("{field}={low}:{high}")], ..Self::default() }
+    }
+
+    /// Searches the design.
+    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<BestAnswer, Error> {
+        let question = self.question(simulation.document())?;
+        let found = progress.pool(|pool| {
+            progress.task(Some(scan_runs(&question)), |task| best(&question, pool, task, &mut |_| ()))
+        })?;
+        match found {
+            Ok(design) => Ok(BestAnswer { question, design }),
+            Err(why) => Err(self.no_best(why, &question, simulation.document())),
+        }
+    }
+
+    /// The question in numbers.
+    pub fn question(&self, document: &Document) -> Result<BestQuestion, Error> {
+        let mut question = BestQuestion {
+            over: ranges(&self.over, document)?,
+            maximise: number("maximise", &self.maximise, &self.maximise)?,
+            subject_to: self.subject_to.iter().map(|text| constraint(text)).collect::<Result<_, _>>()?,
+            environments: environments(&self.environment, document)?,
+            vary: self.vary.iter().map(|text| variation(text, document)).collect::<Result<_, _>>()?,
+            seed: self.seed,
+            until_settled: None,
+        };
+        has_fields(&question)?;
+        if let (Some(until), [first, ..]) = (self.until_settled, &question.environments[..]) {
+            let model = drive_alone(document, first.scene.clone())?;
+            check_until_settled(until, &number_text(until), document, &model)?;
+            question.until_settled = Some(until);
+        }
+        Ok(question)
+    }
+
+    /// Why there is no best design.
+    pub fn no_best(&self, why: NoBest, question: &BestQuestion, document: &Document) -> Error {
+        match why {
+            NoBest::Cancelled => Error::Cancelled,
+            NoBest::Invalid(faults) => Error::faults_of(document, faults),
+            NoBest::NoValue => {
+                let without = |environment: &Environment| environment.scene.transducer == Transducer::None;
+                let columns = std::iter::once(question.maximise)
+                    .chain(question.subject_to.iter().map(|constraint| constraint.of));
+                let electrical = columns.map(|field| field.name).find(|name| OF_TRANSDUCER.contains(name));
+                let missing = electrical.filter(|_| question.environments.iter().any(without));
+                match missing {
+                    Some(name) => Error::unfit(
+                        document,
+                        format!(
+                            "{name} needs a transducer, and the scene has none; name one with --set \
+                             'transducer=Electromagnetic(coupling_v_s_per_m: 5, coil_ohm: 40, load_ohm: 60)'"
+                        ),
+                    ),
+                    None => {
+                        let constrained =
+                            if question.subject_to.is_empty() { "" } else { ", or one of --subject-to" };
+                        let problem = format!(
+                            "no design of the range has this result{constrained} in a run that reaches its \
+                             end"
+                        );
+                        Error::argument("maximise", &self.maximise, problem)
+                    }
+                }
+            }
+            NoBest::NoneMeets { nearest, results } => {
+                let results = question.subject_to.iter().zip(results);
+                let results = results.map(|(constraint, value)| {
+                    format!("{} is {}", constraint.of.name, quantity(value, constraint.of.name))
+                });
+                let problem = format!(
+                    "nothing that was tried in the range keeps to it; nearest is {}, where {}",
+                    place(&names(question), &nearest),
+                    results.collect::<Vec<_>>().join(", ")
+                );
+                Error::argument("subject_to", self.subject_to.join(", "), problem)
+            }
+        }
+    }
+}
+
+/// Checks that every field that is changed exists in every environment: a record has no amplitude.
+fn has_fields(question: &BestQuestion) -> Result<(), Error> {
+    let over = question.over.iter().map(|range| ("over", &range.field));
+    let vary = question.vary.iter().map(|variation| ("vary", &variation.field));
+    for (name, field) in over.chain(vary) {
+        let missing = |environment: &&Environment| FieldPath::new(field).get(&environment.scene).is_none();
+        if let Some(environment) = question.environments.iter().find(missing) {
+            let problem = format!(
+                "the environment {} has no such number; change a field that all have",
+                environment.name
+            );
+            return Err(Error::argument(name, field, problem));
+        }
+    }
+    Ok(())
+}
+
+fn ranges(over: &[String], document: &Document) -> Result<Vec<DesignRange>, Error> {
+    let mut ranges: Vec<DesignRange> = Vec::new();
+    if over.is_empty() {
+        let problem = "is missing: name a field of the design, such as stops.travel_limit_mm=0.5:7";
+        return Err(Error::argument("over", "", problem));
+    }
+    let intervals = INTERVALS[over.len().min(MOST_FIELDS) - 1];
+    for text in over {
+        let wrong = |problem: String| Error::argument("over", text, problem);
+        let form = || wrong("write FIELD=A:B, such as stops.travel_limit_mm=0.5:7".into());
+        let (field, values) = text.split_once('=').ok_or_else(form)?;
+        let parts: Vec<&str> = values.split(':').collect();
+        let ends = match parts[..] {
+            [low, high] | [low, high, _] => format!("{field}={low},{high}"),
+            _ => return Err(form()),
+        };
+        let axis = Axis::parse(&ends, &document.scene).map_err(wrong)?;
+        let (low, high) = (axis.values[0], axis.values[1]);
+        if !(low.is_finite() && high.is_finite()) {
+            return Err(wrong("the ends of the range must be finite".into()));
+        }
+        if low >= high {
+            return Err(wrong(format!("the range must go upward: {low} is not below {high}")));
+        }
+        let whole = is_whole(&document.scene, &axis.field);
+        let intervals = match parts.get(2) {
+            None if whole => intervals.min((high - low) as usize),
+            None => intervals,
+            Some(step) => {
+                let fits = |step: &f64| *step > 0.0 && step.is_finite() && (!whole || step.fract() == 0.0);
+                let kind = if whole { "whole number" } else { "number" };
+                let step = step.trim().parse().ok().filter(fits);
+                let step = step.ok_or_else(|| wrong(format!("the step must be a {kind} above 0")))?;
+                let intervals = ((high - low) / step).round();
+                if !(1.0..=1e5).contains(&intervals) {
+                    return Err(wrong(format!("takes {intervals} steps; give one with 1 to 100000")));
+                }
+                intervals as usize
+            }
+        };
+        if ranges.iter().any(|range| range.field == axis.field) {
+            return Err(wrong("is given twice; give each field one range".into()));
+        }
+        ranges.push(DesignRange::new(axis.field, (low, high), intervals));
+    }
+    if ranges.len() > MOST_FIELDS {
+        let problem = format!("{} fields; at most {MOST_FIELDS} are searched together", ranges.len());
+        return Err(Error::argument("over", "", problem));
+    }
+    Ok(ranges)
+}
+
+/// Columns that only a scene with a transducer has.
+const OF_TRANSDUCER: [&str; 3] = ["mean_load_power_w", "mean_coil_power_w", "voltage_rms_v"];
+
+/// A shorter name for the column of the power into the load, and the column.
+const POWER: (&str, &str) = ("mean_power_w", "mean_load_power_w");
+
+/// The column called `name`; an error of the argument `of` with its value if it is not a number.
+fn number(of: &str, value: &str, name: &str) -> Result<&'static SummaryField, Error> {
+    let is_number = |field: &&SummaryField| matches!(field.read, Read::Number(_) | Read::Count(_));
+    let column = if name == POWER.0 { POWER.1 } else { name };
+    let found = SummaryField::find(column).filter(is_number);
+    found.ok_or_else(|| {
+        let known: Vec<&str> = SUMMARY_FIELDS.iter().filter(is_number).map(|field| field.name).collect();
+        let which = if value == name { String::new() } else { format!("{name}: ") };
+        Error::argument(of, value, format!("{which}no such number; there are {}", known.join(", ")))
+    })
+}
+
+fn constraint(text: &str) -> Result<Constraint, Error> {
+    let wrong = || {
+        let problem = "write COLUMN<=VALUE or COLUMN>=VALUE, such as 'max_abs_x_m<=0.003'";
+        Error::argument("subject_to", text, problem)
+    };
+    let (name, limit, at_most) = match (text.split_once("<="), text.split_once(">=")) {
+        (Some((name, limit)), _) => (name, limit, true),
+        (None, Some((name, limit))) => (name, limit, false),
+        _ => return Err(wrong()),
+    };
+    let limit = limit.trim().parse().ok().filter(|limit: &f64| limit.is_finite()).ok_or_else(wrong)?;
+    Ok(Constraint { of: number("subject_to", text, name.trim())?, at_most, limit })
+}
+
+fn variation(text: &str, document: &Document) -> Result<Variation, Error> {
+    let wrong = |problem: &str| Error::argument("vary", text, problem);
+    let form = "write FIELD=+-1% or FIELD=+-0.05, such as stops.travel_limit_mm=+-1%";
+    let (field, by) = text.split_once('=').ok_or_else(|| wrong(form))?;
+    let field = field.trim();
+    let Some(value) = FieldPath::new(field).get(&document.scene) else {
+        // this error lists the fields
+        Axis::parse(&format!("{field}=1"), &document.scene).map_err(|problem| wrong(&problem))?;
+        return Err(wrong("the scene leaves this field out; give it a value with --set"));
+    };
+    if is_whole(&document.scene, field) {
+        return Err(wrong(
+            "holds whole numbers, which do not come out a little otherwise; vary another field",
+        ));
+    }
+    let by = by.trim().trim_start_matches("+-").trim_start_matches('\u{b1}');
+    let (number, relative) = by.strip_suffix('%').map_or((by, false), |share| (share, true));
+    let number = number.trim().parse().ok().filter(|number: &f64| *number >= 0.0 && number.is_finite());
+    let number = number.ok_or_else(|| wrong(form))?;
+    if relative && value == 0.0 {
+        return Err(wrong("a share of 0 is nothing; give the tolerance in the unit of the field"));
+    }
+    let by = if relative { number / 100.0 } else { number };
+    Ok(Variation { field: field.to_owned(), by, relative })
+}
+
+/// Splits a text from the weight after its last `*`, which is 1 if left out.
+fn weighted<'a>(text: &'a str, whole: &str) -> Result<(&'a str, f64), Error> {
+    let Some((text, weight)) = text.rsplit_once('*') else { return Ok((text.trim(), 1.0)) };
+    let weight = weight.trim().parse().ok().filter(|weight: &f64| *weight > 0.0 && weight.is_finite());
+    let problem = "the weight after * must be a number above 0";
+    Ok((text.trim(), weight.ok_or_else(|| Error::argument("environment", whole, problem))?))
+}
+
+const MAX_ENVIRONMENTS: usize = 1000;
+
+/// The environments of the design; if none are given, that of the scene.
+fn environments(given: &[String], document: &Document) -> Result<Vec<Environment>, Error> {
+    let of = |name: String, weight: f64, document: &Document| Environment {
+        name,
+        weight,
+        scene: document.scene.clone(),
+        files: document.files.clone(),
+    };
+    if given.is_empty() {
+        return Ok(vec![of(document.name.clone(), 1.0, document)]);
+    }
+    let mut all = Vec::new();
+    for text in given {
+        let wrong = |problem: String| Error::argument("environment", text, problem);
+        let mut changed = document.clone();
+        changed.scene.sweep.clear(); // the other excitation may not have its fields
+        if let Some((field, values)) = text.split_once('=').filter(|_| !is_file(text.as_ref())) {
+            for value in values.split(',') {
+                let (value, weight) = weighted(value, text)?;
+                let axis = Axis::parse(&format!("{field}={value}"), &document.scene).map_err(wrong)?;
+                axis.apply(&mut changed.scene, 0);
+                changed.check()?;
+                all.push(of(format!("{} = {value}", axis.field), weight, &changed));
+            }
+        } else {
+            let (name, weight) = weighted(text, text)?;
+            if name.to_ascii_lowercase().ends_with(".csv") {
+                // a name that is no file may be that of a built-in table
+                let path = canonical(name.as_ref()).unwrap_or_else(|| name.into());
+                let set =
+                    changed.set(&format!("excitation=Recorded(path: {:?})", path.display().to_string()));
+                let set = set.map_err(|error| error.to_string());
+                let checked = set.and_then(|()| changed.check().map_err(|error| error.to_string()));
+                checked.map_err(|problem| match is_file(name.as_ref()) {
+                    true => wrong(problem),
+                    false => wrong("no such file; give a record with columns t_s and accel_m_per_s2".into()),
+                })?;
+            } else {
+                let other = Document::of_argument(name).map_err(|error| wrong(error.to_string()))?;
+                other.check()?;
+                let RunSettings { tolerance, recurrence, .. } = document.scene.run;
+                changed.scene.excitation = other.scene.excitation;
+                changed.scene.run = RunSettings { tolerance, recurrence, ..other.scene.run };
+            }
+            changed.check()?;
+            all.push(of(name.to_owned(), weight, &changed));
+        }
+    }
+    if all.len() > MAX_ENVIRONMENTS {
+        let problem = format!("{} of them; at most {MAX_ENVIRONMENTS} are run", all.len());
+        return Err(Error::argument("environment", "", problem));
+    }
+    Ok(all)
+}

@@ -1,0 +1,247 @@
+//! The one error of questions.
+
+use std::fmt;
+
+use crate::dynamics::Model;
+use crate::mechanics::BuildError;
+use crate::numeric::number_text;
+use crate::scene::{Document, Fault, Origin, SceneError};
+use crate::study::{CellFaults, GridError};
+
+/// Why a question has no answer.
+///
+/// [`faults`](Self::faults) lists what is wrong, each with file, field, value and remedy; the message has the
+/// same, a line each.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Error {
+    /// The scene cannot be read or has faults.
+    Scene(SceneError),
+    /// Cells of a grid over the scene have faults: each cell in words, and its error.
+    Cells(Vec<(String, SceneError)>),
+    /// An argument of the question is wrong.
+    Argument {
+        /// Its name, such as `until_settled`.
+        name: String,
+        /// Its value as given.
+        value: String,
+        /// What is wrong, and the remedy.
+        problem: String,
+    },
+    /// The scene is valid, but the question does not apply to it.
+    Unfit {
+        /// Name of the scene.
+        scene: String,
+        /// What is missing, and the remedy.
+        problem: String,
+    },
+    /// The computation did not come to an answer.
+    Failed {
+        /// Name of the scene.
+        scene: String,
+        /// The reason.
+        problem: String,
+    },
+    /// It was told to stop.
+    Cancelled,
+}
+
+/// One thing that is wrong with a scene or an argument.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct FaultAt {
+    /// The scene file, or `built-in NAME`; empty for an argument.
+    pub file: String,
+    /// Line in the file, where the value is written there.
+    pub line: Option<usize>,
+    /// Dotted path of the field, or name of the argument.
+    pub field: String,
+    /// The value as written.
+    pub value: String,
+    /// The problem and its remedy.
+    pub problem: String,
+}
+
+/// The most cells whose faults a message lists.
+const MAX_NAMED: usize = 8;
+
+impl Error {
+    /// A wrong argument.
+    pub fn argument(name: impl Into<String>, value: impl fmt::Display, problem: impl fmt::Display) -> Self {
+        Self::Argument { name: name.into(), value: value.to_string(), problem: problem.to_string() }
+    }
+
+    /// A wrong number.
+    pub fn number(name: impl Into<String>, value: f64, problem: impl fmt::Display) -> Self {
+        Self::argument(name, number_text(value), problem)
+    }
+
+    /// A scene to which the question does not apply.
+    pub fn unfit(document: &Document, problem: impl fmt::Display) -> Self {
+        Self::Unfit { scene: document.name.clone(), problem: problem.to_string() }
+    }
+
+    /// A computation without an answer.
+    pub fn failed(document: &Document, problem: impl fmt::Display) -> Self {
+        Self::Failed { scene: document.name.clone(), problem: problem.to_string() }
+    }
+
+    /// Faults of a scene.
+    pub fn faults_of(document: &Document, faults: Vec<Fault>) -> Self {
+        Self::Scene(document.error_from(faults))
+    }
+
+    /// Faults of cells of a grid.
+    pub fn cells_of(document: &Document, cells: Vec<CellFaults>) -> Self {
+        let error = |cell: CellFaults| (cell.cell, document.error_from(cell.faults));
+        Self::Cells(cells.into_iter().map(error).collect())
+    }
+
+    /// A mechanism that cannot be built: wrong fields are a wrong scene, valid flexures without a solution a
+    /// failed computation.
+    pub fn unbuilt(document: &Document, error: BuildError) -> Self {
+        match error {
+            BuildError::Wrong(fault) => Self::faults_of(document, vec![fault]),
+            BuildError::Unsolved(error) => Self::failed(document, error),
+        }
+    }
+
+    /// All that is wrong; empty where the computation failed or was told to stop.
+    pub fn faults(&self) -> Vec<FaultAt> {
+        match self {
+            Self::Scene(error) => of_scene(error),
+            Self::Cells(cells) => cells.iter().flat_map(|(_, error)| of_scene(error)).collect(),
+            Self::Argument { name, value, problem } => {
+                vec![FaultAt { field: name.clone(), value: value.clone(), ..FaultAt::new("", problem) }]
+            }
+            Self::Unfit { scene, problem } => vec![FaultAt::new(scene, problem)],
+            Self::Failed { .. } | Self::Cancelled => Vec::new(),
+        }
+    }
+
+    /// The message with the options of the command line in its remedies.
+    pub fn message(&self) -> String {
+        match self {
+            Self::Scene(error) => error.to_string(),
+            Self::Cells(cells) => {
+                let lines = cells.iter().take(MAX_NAMED).map(|(cell, error)| match cell.as_str() {
+                    "" => error.to_string(),
+                    cell => format!("in the cell {cell}:\n{error}"),
+                });
+                let more = cells.len().saturating_sub(MAX_NAMED);
+                let more = (more > 0).then(|| format!("and {more} more cells are wrong"));
+                lines.chain(more).collect::<Vec<_>>().join("\n")
+            }
+            Self::Argument { name, value, problem } if value.is_empty() => format!("{name}: {problem}"),
+            Self::Argument { name, value, problem } => format!("{name} = {value}: {problem}"),
+            Self::Unfit { scene, problem } | Self::Failed { scene, problem } => format!("{scene}: {problem}"),
+            Self::Cancelled => "cancelled".to_owned(),
+        }
+    }
+
+    /// Whether scene or arguments are wrong; else the computation failed or was told to stop.
+    pub fn is_wrong_input(&self) -> bool {
+        !matches!(self, Self::Failed { .. } | Self::Cancelled)
+    }
+}
+
+impl FaultAt {
+    fn new(file: &str, problem: &str) -> Self {
+        let (file, problem) = (file.to_owned(), plain(problem));
+        Self { file, line: None, field: String::new(), value: String::new(), problem }
+    }
+}
+
+fn of_scene(error: &SceneError) -> Vec<FaultAt> {
+    match error {
+        SceneError::NoSuchScene { spec, .. } => vec![FaultAt::new(spec, &error.to_string())],
+        SceneError::Unreadable { name, problem } => vec![FaultAt::new(name, problem)],
+        SceneError::Structure { name, place, problem, .. } => {
+            vec![FaultAt { line: Some(place.line), ..FaultAt::new(name, problem) }]
+        }
+        SceneError::Faults { name, faults, .. } => {
+            let fault = |placed: &crate::scene::PlacedFault| FaultAt {
+                line: if let Origin::Text(place) = &placed.origin { Some(place.line) } else { None },
+                field: placed.fault.field.clone(),
+                value: placed.fault.value.clone(),
+                ..FaultAt::new(name, &placed.fault.problem)
+            };
+            faults.iter().map(fault).collect()
+        }
+        SceneError::Argument(error) => {
+            vec![FaultAt { field: error.argument.clone(), ..FaultAt::new("", &error.problem) }]
+        }
+    }
+}
+
+/// A text with the names of arguments in place of the options of the command line: `until_settled` for
+/// `--until-settled`.
+fn plain(text: &str) -> String {
+    let word = |word: &str| match word.find("--").map(|at| word.split_at(at)) {
+        Some((before, option)) if option[2..].starts_with(|c: char| c.is_ascii_lowercase()) => {
+            format!("{before}{}", option[2..].replace('-', "_"))
+        }
+        _ => word.to_owned(),
+    };
+    text.split(' ').map(word).collect::<Vec<_>>().join(" ")
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&plain(&self.message()))
+    }
+}
+
+impl std::error::Error for Error {}
+
+impl From<SceneError> for Error {
+    fn from(error: SceneError) -> Self {
+        Self::Scene(error)
+    }
+}
+
+impl From<crate::scene::ArgumentError> for Error {
+    fn from(error: crate::scene::ArgumentError) -> Self {
+        Self::Scene(error.into())
+    }
+}
+
+impl From<GridError> for Error {
+    fn from(error: GridError) -> Self {
+        Self::argument("over", "", error)
+    }
+}
+
+/// Longest `until_settled` in s, which is the longest duration of a run.
+const LONGEST_WAIT: f64 = 1e9;
+
+/// Whether runs of `model` can go on up to `until` s, given as `text`; an error with the reason if not.
+pub fn check_until_settled(until: f64, text: &str, document: &Document, model: &Model) -> Result<(), Error> {
+    let duration = model.duration();
+    let wrong = |problem: String| {
+        Err(Error::argument("until_settled", text, format!("{}: {problem}", document.name)))
+    };
+    if !model.can_settle() {
+        return match model.forcing_period() {
+            Some(period) if model.repeats() => wrong(format!(
+                "its settled window of {} s holds less than two forcing periods of {period} s, too few to \
+                 tell whether the motion repeats; lengthen run.duration_s",
+                duration - model.settle()
+            )),
+            _ => wrong(
+                "its excitation does not repeat, so the motion has no period to wait for; take a Sine, or a \
+                 Sum of sines whose frequencies have a common period"
+                    .to_owned(),
+            ),
+        };
+    }
+    if !(until >= duration) {
+        return wrong(format!(
+            "its run already lasts {duration} s; give at least that, or shorten run.duration_s"
+        ));
+    }
+    if until > LONGEST_WAIT {
+        return Err(Error::argument("until_settled", text, format!("at most {LONGEST_WAIT:e} s")));
+    }
+    Ok(())
+}

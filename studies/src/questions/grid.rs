@@ -1,0 +1,401 @@
+//! Questions that are asked of every cell of a grid: sweeps, sections, exponents and thresholds.
+
+use std::ops::RangeInclusive;
+use std::sync::Arc;
+
+use super::{Error, Progress, Simulation, check_until_settled};
+use crate::dynamics::Model;
+use crate::mechanics::{ForceCurve, Mechanism};
+use crate::numeric::number_text;
+use crate::scene::Mechanism::Linear;
+use crate::scene::{Axis, Damping, Document, Scene, Start, Stops, Transducer, is_whole};
+use crate::study::{
+    self, Carry, DIRECTION, ELECTRICAL_STATE, ExponentCells, ExponentOptions, Grid, GridStudy, IMPACTS,
+    NoExponents, NoThresholds, Onset, Question, STANDARD_COLUMNS, SUMMARY_FIELDS, Scan, SectionOptions,
+    Sections, SummaryField, SweepEnd, SweepOptions, Table, Task, drive_fault, exponents, exponents_row,
+    section, threshold_table,
+};
+
+/// Fields and the values that each takes.
+type Over = Vec<(String, Vec<f64>)>;
+
+/// `count` values over a range, evenly spaced, each the double nearest to its decimal of 15 digits: 0.58 is
+/// 0.58.
+fn even(range: RangeInclusive<f64>, count: usize) -> Vec<f64> {
+    let (from, to) = (*range.start(), *range.end());
+    let last = count.saturating_sub(1).max(1) as f64;
+    let value = |i: usize| {
+        let plain = from + (to - from) * (i as f64 / last);
+        format!("{plain:.14e}").parse().unwrap_or(plain)
+    };
+    (0..count).map(value).collect()
+}
+
+/// Methods that name the fields of a grid.
+macro_rules! over_fields {
+    ($($question:ident)*) => {$(
+        impl $question {
+            /// Over a field, with `count` values from one end of the range to the other.
+            pub fn over(field: impl Into<String>, range: RangeInclusive<f64>, count: usize) -> Self {
+                Self::default().and(field, range, count)
+            }
+
+            /// Over these values of a field.
+            pub fn over_values(field: impl Into<String>, values: impl Into<Vec<f64>>) -> Self {
+                Self::default().and_values(field, values)
+            }
+
+            /// And over a further field, whose values change faster.
+            #[must_use]
+            pub fn and(self, field: impl Into<String>, range: RangeInclusive<f64>, count: usize) -> Self {
+                self.and_values(field, even(range, count))
+            }
+
+            /// And over these values of a further field, which change faster.
+            #[must_use]
+            pub fn and_values(mut self, field: impl Into<String>, values: impl Into<Vec<f64>>) -> Self {
+                self.over.push((field.into(), values.into()));
+                self
+            }
+        }
+    )*};
+}
+
+over_fields!(Sweep Section Exponents Threshold);
+
+/// A run for each cell of a grid, a row a cell: the map of a study.
+///
+/// ```
+/// use interwell_studies::questions::{Progress, Simulation, Sweep};
+///
+/// let simulation = Simulation::preset("nominal-cubic")?;
+/// let sweep = Sweep::over("stops.travel_limit_mm", 2.0..=6.0, 3);
+/// let sweep = sweep.and("excitation.amplitude_g", 0.5..=1.5, 3);
+/// let table = sweep.run(&simulation, &Progress::none())?;
+/// assert_eq!(table.rows(), 9);
+/// assert!(table.numbers("rms_velocity_m_per_s").is_some());
+/// # Ok::<(), interwell_studies::questions::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Sweep {
+    /// The fields, the slowest first; without one the scene is run once.
+    pub over: Over,
+    /// Columns after those of the fields: names of the summary, or `all`; none are the standard ones.
+    pub columns: Vec<String>,
+    /// Each run goes on until its motion repeats, or up to this time in s.
+    pub until_settled: Option<f64>,
+    /// The last field is walked, each run begins in the state of the one before.
+    pub carry: Option<Carry>,
+}
+
+impl Sweep {
+    /// Runs the cells.
+    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Table, Error> {
+        let (document, grid) = (simulation.document(), simulation.grid(&self.over)?);
+        if self.carry.is_some() {
+            refuse_electrical_state(document, grid.axes(), "carry")?;
+        }
+        let columns = column_names(&self.columns, &grid, self.carry)?;
+        let study = study::Sweep::new(&document.scene, &document.files, grid);
+        let until_settled = until_settled(self.until_settled, &study, document, progress)?;
+        let fields = columns.iter().filter_map(|name| SummaryField::find(name)).collect();
+        let study = study.with(SweepOptions { columns: fields, until_settled, carry: self.carry });
+        Ok(all_rows(&study, document, progress)?.only(&columns))
+    }
+}
+
+/// The names of all columns of a sweep: those of the swept fields, the direction of a walk, and the chosen
+/// ones.
+pub fn column_names(chosen: &[String], grid: &Grid, carry: Option<Carry>) -> Result<Vec<String>, Error> {
+    let mut names = grid.columns().to_vec();
+    names.extend(carry.map(|_| DIRECTION.to_owned()));
+    match chosen {
+        [] => names.extend(STANDARD_COLUMNS.map(str::to_owned)),
+        [all] if all == "all" => {
+            let more = SUMMARY_FIELDS.iter().map(|field| field.name);
+            let more = more.filter(|name| !STANDARD_COLUMNS.contains(name));
+            names.extend(STANDARD_COLUMNS.into_iter().chain(more).map(str::to_owned));
+        }
+        list => {
+            for name in list.iter().map(|name| name.trim()) {
+                let Some(field) = SummaryField::find(name) else {
+                    let known: Vec<&str> = SUMMARY_FIELDS.iter().map(|field| field.name).collect();
+                    let problem = format!("no such column; there are all, {}", known.join(", "));
+                    return Err(Error::argument("columns", name, problem));
+                };
+                if names.iter().any(|known| known == field.name) {
+                    return Err(Error::argument("columns", name, "named twice; name it once"));
+                }
+                names.push(field.name.to_owned());
+            }
+        }
+    }
+    Ok(names)
+}
+
+/// The state once a forcing period or at every impact, of one motion or over a grid: a bifurcation diagram.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Section {
+    /// The fields, the slowest first; without one the section is that of the scene.
+    pub over: Over,
+    /// Where it is taken, forcing periods, and how runs go on.
+    pub options: SectionOptions,
+}
+
+impl Section {
+    /// Takes the section, or one for each cell.
+    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Table, Error> {
+        let document = simulation.document();
+        if self.over.is_empty() {
+            let run = self.options.run_of(simulation.model());
+            check_until(self.options.until_settled, document, &run)?;
+            let found = section(simulation.model(), simulation.scene(), &self.options, progress.stop());
+            let (table, _) = found.map_err(|fault| Error::faults_of(document, vec![fault]))?;
+            return unless_stopped(progress, table.without(IMPACTS));
+        }
+        let grid = simulation.grid(&self.over)?;
+        if self.options.carry.is_some() {
+            refuse_electrical_state(document, grid.axes(), "carry")?;
+        }
+        let study = Sections::new(&document.scene, &document.files, grid).with(self.options);
+        let until_settled = until_settled(self.options.until_settled, &study, document, progress)?;
+        let study = study.with(SectionOptions { until_settled, ..self.options });
+        Ok(all_rows(&study, document, progress)?.without(IMPACTS))
+    }
+}
+
+/// Lyapunov exponents of a settled motion, or of every cell of a grid.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Exponents {
+    /// The fields, the slowest first; without one the exponents are those of the scene.
+    pub over: Over,
+    /// Forcing periods of an average, and the time that a motion may take to settle.
+    pub options: ExponentOptions,
+}
+
+impl Exponents {
+    /// Computes the exponents.
+    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Table, Error> {
+        let document = simulation.document();
+        if self.over.is_empty() {
+            if let Some(fault) = drive_fault(simulation.model(), simulation.scene()) {
+                return Err(Error::faults_of(document, vec![fault]));
+            }
+            refuse_electrical_state(document, &[], "exponents")?;
+            simulation.check_until_settled(self.options.until_settled)?;
+            let found = exponents(simulation.model(), &self.options, progress.stop());
+            return match found {
+                Ok(found) => Ok(exponents_row(&found)),
+                Err(NoExponents::Cancelled) => Err(Error::Cancelled),
+                Err(problem) => Err(Error::failed(document, problem)),
+            };
+        }
+        let grid = simulation.grid(&self.over)?;
+        refuse_electrical_state(document, grid.axes(), "exponents")?;
+        let study = ExponentCells::new(&document.scene, &document.files, grid);
+        let until_settled = until_settled(self.options.until_settled, &study, document, progress)?;
+        let study = study.with(ExponentOptions { until_settled, ..self.options });
+        all_rows(&study, document, progress)
+    }
+}
+
+/// The least value of a field at which something begins, of one scene or in every cell of a grid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Threshold {
+    /// The fields of the grid, the slowest first; without one there is one row.
+    pub over: Over,
+    /// The field that is searched and its range: `FIELD=FROM:TO` or `FIELD=FROM:TO:STEP`.
+    pub field: String,
+    /// What begins.
+    pub of: Onset,
+    /// How closely the threshold is located, in the unit of the field; by default a 1000th of the step.
+    pub resolution: Option<f64>,
+    /// Each run goes on until its motion repeats, or up to this time in s.
+    pub until_settled: Option<f64>,
+}
+
+impl Default for Threshold {
+    fn default() -> Self {
+        let field = AMPLITUDES.to_owned();
+        Self { over: Vec::new(), field, of: Onset::Crossing, resolution: None, until_settled: None }
+    }
+}
+
+/// The range that is searched where none is named.
+const AMPLITUDES: &str = "excitation.amplitude_g=0:2";
+
+/// Steps of a range without a step of its own.
+const STEPS: f64 = 200.0;
+
+impl Threshold {
+    /// Searches the thresholds.
+    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<Table, Error> {
+        let document = simulation.document();
+        let mut scan = self.scan(document)?;
+        let grid = match self.over.is_empty() {
+            true => Grid::of_one(),
+            false => simulation.grid(&self.over)?,
+        };
+        if grid.axes().iter().any(|axis| axis.field == scan.field) {
+            let problem = "the threshold is over it; sweep another field";
+            return Err(Error::argument("over", &scan.field, problem));
+        }
+        if self.until_settled.is_some() {
+            let mut first = document.scene.clone();
+            grid.apply(0, &mut first);
+            check_until(self.until_settled, document, &drive_alone(document, first)?)?;
+            scan.until_settled = self.until_settled;
+        }
+        let values = grid.cells() * scan.values.len() as u64;
+        let (scene, files) = (&document.scene, &document.files);
+        let found = progress.pool(|pool| {
+            progress
+                .task(Some(values), |task| threshold_table(scene, files, &grid, &scan, self.of, pool, task))
+        })?;
+        found.map_err(|end| match end {
+            NoThresholds::Cancelled => Error::Cancelled,
+            NoThresholds::Wrong(cells) => Error::cells_of(document, cells),
+        })
+    }
+
+    /// The values that are tried first, and how closely a threshold is located.
+    pub fn scan(&self, document: &Document) -> Result<Scan, Error> {
+        let argument = self.field.trim();
+        let default = if argument == AMPLITUDES { " (the default; give another)" } else { "" };
+        let wrong = |problem: String| Error::argument("field", format!("{argument}{default}"), problem);
+        let parsed = |text: &str| -> Result<Axis, Error> {
+            let axis = Axis::parse(text, &document.scene).map_err(wrong)?;
+            match axis.values.iter().all(|value| value.is_finite()) {
+                true => Ok(axis),
+                false => Err(wrong("the ends of the range must be finite".into())),
+            }
+        };
+        let (mut full, mut end) = (argument.to_owned(), None);
+        if let Some((from, to)) = argument.split_once(':').filter(|(_, to)| !to.contains(':')) {
+            // parsed as a list, so that the message names a wrong end
+            let ends = parsed(&format!("{from},{to}"))?;
+            let [low, high] = ends.values[..] else {
+                let problem = "write FIELD=FROM:TO or FIELD=FROM:TO:STEP, such as excitation.amplitude_g=0:2";
+                return Err(wrong(problem.into()));
+            };
+            if low == high {
+                return Err(wrong(format!("FROM and TO are both {low}; give a range, such as 0:2")));
+            }
+            if low > high {
+                return Err(wrong(format!("TO must be above FROM; write {high}:{low}")));
+            }
+            let step = (high - low) / STEPS;
+            let step = if is_whole(&document.scene, &ends.field) { step.ceil() } else { step };
+            (full, end) = (format!("{argument}:{step}"), Some(high));
+        }
+        let axis = parsed(&full)?;
+        let mut values = axis.values;
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+        if values.len() < 2 {
+            let problem = "it is a single value; give a range of which STEP is a part, such as 0:2:0.1";
+            return Err(wrong(problem.into()));
+        }
+        let step = (values[values.len() - 1] - values[0]) / (values.len() - 1) as f64;
+        if let Some(high) = end {
+            // rounding may place the last of the steps just below the end of the range
+            values.retain(|value| *value < high - 1e-6 * step);
+            values.push(high);
+        }
+        let whole = is_whole(&document.scene, &axis.field);
+        let resolution = match self.resolution {
+            None if whole => 1.0,
+            None => 1e-3 * step,
+            Some(value) if value > 0.0 && value.is_finite() && (!whole || value.fract() == 0.0) => value,
+            Some(value) => {
+                let kind = if whole { "whole number" } else { "number" };
+                let problem = format!("give a {kind} above 0, in the unit of the field");
+                return Err(Error::number("resolution", value, problem));
+            }
+        };
+        Ok(Scan { field: axis.field, values, resolution, until_settled: None })
+    }
+}
+
+/// Refuses a scene whose transducer has an electrical state, in the scene or in a cell of the swept fields.
+/// Used by studies whose state is displacement and velocity alone.
+pub fn refuse_electrical_state(document: &Document, axes: &[Axis], what: &str) -> Result<(), Error> {
+    let swept = |name: &str| axes.iter().any(|axis| axis.field == format!("transducer.{name}"));
+    let may_have = match document.scene.transducer {
+        Transducer::None => false,
+        Transducer::Electromagnetic { inductance_mh, .. } => {
+            swept("inductance_mh") || inductance_mh > 0.0 && swept("load_ohm")
+        }
+        Transducer::Piezoelectric { .. } => swept("load_kohm"),
+    };
+    match may_have || document.scene.transducer.has_state() {
+        true => Err(Error::unfit(document, format!("{what}: {ELECTRICAL_STATE}"))),
+        false => Ok(()),
+    }
+}
+
+fn check_until(until: Option<f64>, document: &Document, model: &Model) -> Result<(), Error> {
+    until.map_or(Ok(()), |until| check_until_settled(until, &number_text(until), document, model))
+}
+
+/// The time up to which runs of a grid go on, checked by its first cell. A fault of that cell is reported
+/// when the cells are checked, with its place.
+fn until_settled<Q: Question>(
+    until: Option<f64>,
+    study: &GridStudy<Q>,
+    document: &Document,
+    progress: &Progress,
+) -> Result<Option<f64>, Error> {
+    let task = Task { tick: &|| (), cancel: progress.stop() };
+    match study.first_model(&task) {
+        Some(model) => check_until(until, document, &model).map(|()| until),
+        None => Ok(None),
+    }
+}
+
+/// Checks all cells, then runs them.
+fn all_rows<Q: Question>(
+    study: &GridStudy<Q>,
+    document: &Document,
+    progress: &Progress,
+) -> Result<Table, Error> {
+    let mut all = study.empty_table();
+    progress.pool(|pool| {
+        let silent = Task { tick: &|| (), cancel: progress.stop() };
+        study.validate(pool, &silent).map_err(|cell| Error::cells_of(document, vec![cell]))?;
+        let write = |rows: &Table| -> Result<bool, std::convert::Infallible> {
+            all.append(rows);
+            Ok(true)
+        };
+        let end = progress.task(Some(study.rows()), |task| study.run(pool, task, write));
+        match end {
+            Ok(_) => Ok(()),
+            Err(SweepEnd::Cancelled) => Err(Error::Cancelled),
+            Err(SweepEnd::Write(never)) => match never {},
+        }
+    })??;
+    Ok(all)
+}
+
+fn unless_stopped<T>(progress: &Progress, answer: T) -> Result<T, Error> {
+    match progress.stop().load(std::sync::atomic::Ordering::Relaxed) {
+        true => Err(Error::Cancelled),
+        false => Ok(answer),
+    }
+}
+
+/// A model for the check of `until_settled`: a mass on a linear spring with the drive and the run of `scene`,
+/// on which alone the check depends. The mechanism may be replaced by a grid or a design.
+pub fn drive_alone(document: &Document, scene: Scene) -> Result<Model, Error> {
+    let alone = Scene {
+        mass_g: 1.0,
+        mechanism: Linear { n_per_m: 1.0 },
+        damping: Damping::None,
+        stops: Stops::None,
+        transducer: Transducer::None,
+        start: Start::Rest,
+        ..scene
+    };
+    let mechanism = Mechanism::new(ForceCurve::polynomial(&[0.0, 1.0]));
+    Model::build(&alone, Arc::new(mechanism)).map_err(|faults| Error::faults_of(document, faults))
+}

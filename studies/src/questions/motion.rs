@@ -1,0 +1,280 @@
+//! Questions about one scene: force curve, periodic motions, spectrum and basins of attraction.
+
+use super::grid::refuse_electrical_state;
+use super::{Error, Progress, Simulation};
+use crate::dynamics::Model;
+use crate::numeric::{Taper, number_text};
+use crate::scene::{Axis, Document, is_whole};
+use crate::study::{
+    self, Answer, BranchEnd, CURVE_POINTS, EvenRange, Family, NoBasins, NoOrbit, NoSpectrum, Signal,
+    SpectrumOptions, Starts, StartsError, Table, Task, branch, curve, default_positions, orbit, orbit_table,
+    spectrum,
+};
+
+/// Force, potential and stiffness of the mechanism.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Curve {
+    /// Positions in m; by default 401 that show equilibria and stops.
+    pub positions: Option<Vec<f64>>,
+}
+
+impl Curve {
+    /// The table `x_m,force_n,potential_j,stiffness_n_per_m`.
+    pub fn run(&self, simulation: &Simulation) -> Result<Table, Error> {
+        let default = || default_positions(simulation.scene(), simulation.mechanism(), CURVE_POINTS as usize);
+        let positions = self.positions.clone().unwrap_or_else(default);
+        curve(simulation.mechanism(), positions).map_err(|problem| Error::argument("positions", "", problem))
+    }
+}
+
+/// The periodic motion near the settled motion of a run.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Orbit {
+    /// Forcing periods after which it repeats; by default those of the settled motion.
+    pub period: Option<u32>,
+    /// Phase of the drive at which the state is taken, in degrees.
+    pub phase_deg: f64,
+}
+
+impl Orbit {
+    /// Finds the motion by Newton's method.
+    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<study::Orbit, Error> {
+        can_have_orbits(simulation.document(), simulation.model())?;
+        let found = orbit(simulation.model(), phase(self.phase_deg)?, self.period, progress.stop());
+        found.map_err(|error| no_orbit(simulation.document(), error, ""))
+    }
+}
+
+impl study::Orbit {
+    /// One row: period, state, multipliers and what happens on the motion.
+    pub fn table(&self) -> Table {
+        orbit_table(std::slice::from_ref(self))
+    }
+}
+
+/// A branch of periodic motions over a field, through folds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Branch {
+    /// The field.
+    pub field: String,
+    /// Its value at the first motion, and that towards which it goes.
+    pub range: (f64, f64),
+    /// Forcing periods after which the first motion repeats; by default those of the settled motion.
+    pub period: Option<u32>,
+    /// Phase of the drive at which states are taken, in degrees.
+    pub phase_deg: f64,
+}
+
+impl Branch {
+    /// Over a field, from one value towards another.
+    pub fn over(field: impl Into<String>, from: f64, to: f64) -> Self {
+        Self { field: field.into(), range: (from, to), period: None, phase_deg: 0.0 }
+    }
+
+    /// Follows the branch; the field of the scene begins at the first value of the range.
+    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<study::Branch, Error> {
+        let (from, to) = self.range;
+        let shown = format!("{}={from}:{to}", self.field);
+        let wrong = |problem: String| Error::argument("branch", &shown, problem);
+        Axis::listed(&self.field, vec![from, to], simulation.scene()).map_err(wrong)?;
+        if is_whole(simulation.scene(), &self.field) {
+            return Err(wrong(format!(
+                "{} holds whole numbers, and a branch takes all values between A and B; follow the motion by \
+                 a sweep with carry over it",
+                self.field
+            )));
+        }
+        if from == to {
+            return Err(wrong(format!("A and B are both {from}; give a range, such as 0.5:2")));
+        }
+        let first = simulation.with(&self.field, from)?;
+        let (document, mechanism) = (first.document(), first.mechanism());
+        can_have_orbits(document, first.model())?;
+        let phase = phase(self.phase_deg)?;
+        let family = Family::new(&document.scene, &document.files, mechanism, &self.field);
+        let found =
+            progress.task(None, |task| branch(&family, &self.field, (from, to), phase, self.period, task));
+        found.map_err(|error| no_orbit(document, error, &format!("at {} = {from}: ", self.field)))
+    }
+}
+
+impl study::Branch {
+    /// Remarks that the table cannot hold: events that were not located, and where and why the branch ended,
+    /// unless it reached the end of its range.
+    pub fn remarks(&self, (from, to): (f64, f64)) -> Vec<String> {
+        let field = &self.field;
+        let unlocated = |(before, after): &(f64, f64)| {
+            format!(
+                "between {field} = {before} and {after} the motion changes how it touches the stops, or its \
+                 stability; no event was located there, and the table has none"
+            )
+        };
+        let mut lines: Vec<String> = self.unlocated.iter().map(unlocated).collect();
+        let at = self.values.last().copied().unwrap_or(f64::NAN);
+        let why = match self.end {
+            BranchEnd::Range if (at - to).abs() < (at - from).abs() => return lines,
+            BranchEnd::Range => "it came back to the value at which it began".to_owned(),
+            other => other.to_string(),
+        };
+        lines.push(format!("the branch ends at {field} = {at}: {why}"));
+        lines
+    }
+}
+
+/// The phase in forcing periods.
+fn phase(degrees: f64) -> Result<f64, Error> {
+    match degrees.is_finite() {
+        true => Ok(degrees / 360.0),
+        false => Err(Error::number("phase_deg", degrees, "give a phase in degrees, such as 90")),
+    }
+}
+
+/// Refuses a scene without periodic motions whose state is displacement and velocity.
+pub fn can_have_orbits(document: &Document, model: &Model) -> Result<(), Error> {
+    if !model.repeats() || !model.is_shaken() {
+        let problem = "excitation: a periodic motion needs a drive that repeats and is not 0; take a Sine, \
+                       or a Sum of sines whose frequencies have a common period";
+        return Err(Error::unfit(document, problem));
+    }
+    refuse_electrical_state(document, &[], "orbit")
+}
+
+/// The error for a motion that was not found at a place in words, such as `at FIELD = VALUE: `.
+pub fn no_orbit(document: &Document, error: NoOrbit, at: &str) -> Error {
+    match error {
+        NoOrbit::Cancelled => Error::Cancelled,
+        _ => Error::failed(document, format!("{at}{error}")),
+    }
+}
+
+/// Amplitude and power spectral density of a settled motion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spectrum {
+    /// The signal.
+    pub of: Signal,
+    /// How the samples are weighted; by default not if the motion repeats, else by the window of von Hann.
+    pub taper: Option<Taper>,
+    /// Samples a second, raised until a whole number falls into a forcing period.
+    pub rate_hz: Option<f64>,
+    /// The run goes on until its motion repeats, or up to this time in s.
+    pub until_settled: Option<f64>,
+}
+
+impl Default for Spectrum {
+    fn default() -> Self {
+        Self { of: Signal::Displacement, taper: None, rate_hz: None, until_settled: None }
+    }
+}
+
+impl Spectrum {
+    /// Runs the scene and transforms its settled window.
+    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<study::Spectrum, Error> {
+        simulation.check_until_settled(self.until_settled)?;
+        let Self { of: signal, taper, rate_hz, until_settled } = *self;
+        let options = SpectrumOptions { signal, taper, rate_hz, until_settled };
+        let task = Task { tick: &|| (), cancel: progress.stop() };
+        let document = simulation.document();
+        spectrum(simulation.model(), &options, &task).map_err(|problem| match problem {
+            NoSpectrum::Cancelled => Error::Cancelled,
+            NoSpectrum::EndedEarly { .. } => Error::failed(document, problem),
+            NoSpectrum::NoWindow(..) => Error::unfit(document, problem),
+            NoSpectrum::Rate(_) => {
+                let given = rate_hz.map_or_else(|| "(default)".to_owned(), number_text);
+                Error::argument("rate_hz", given, format!("{}: {problem}", document.name))
+            }
+        })
+    }
+}
+
+/// The attractor that each start goes to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Basins {
+    /// Smallest and largest displacement of the starts in mm, and how many.
+    pub x_mm: EvenRange,
+    /// Smallest and largest velocity in m/s, and how many.
+    pub v: EvenRange,
+    /// Draws so many starts from both ranges with this seed, in place of a grid.
+    pub random: Option<(u64, u64)>,
+}
+
+/// Basins of attraction.
+#[derive(Debug)]
+pub struct BasinsAnswer {
+    /// The starts and how they were followed.
+    pub basins: study::Basins,
+    /// The attractors, and where each start goes.
+    pub answer: Answer,
+}
+
+impl Basins {
+    /// A grid of starts.
+    pub fn of(x_mm: (f64, f64, u64), v: (f64, f64, u64)) -> Self {
+        let even = |(from, to, count): (f64, f64, u64)| EvenRange { from, to, count };
+        Self { x_mm: even(x_mm), v: even(v), random: None }
+    }
+
+    fn starts(&self) -> Result<Starts, Error> {
+        let EvenRange { from, to, count } = self.x_mm;
+        let shown = |range: EvenRange| format!("{}:{}:{}", range.from, range.to, range.count);
+        let wrong = |name: &str, value: String, problem: StartsError| Error::argument(name, value, problem);
+        match self.random {
+            None => {
+                self.x_mm.check().map_err(|problem| wrong("x_mm", shown(self.x_mm), problem))?;
+                self.v.check().map_err(|problem| wrong("v", shown(self.v), problem))?;
+                Starts::grid(&self.x_mm, &self.v)
+                    .map_err(|problem| wrong("x_mm", format!("{from}:{to}:{count}"), problem))
+            }
+            Some((count, seed)) => {
+                let (x_mm, v) = ((from, to), (self.v.from, self.v.to));
+                Starts::random(x_mm, (0.0, 0.0), 1, 0)
+                    .map_err(|problem| wrong("x_mm", format!("{from}:{to}"), problem))?;
+                Starts::random(v, (0.0, 0.0), 1, 0)
+                    .map_err(|problem| wrong("v", format!("{}:{}", v.0, v.1), problem))?;
+                Starts::random(x_mm, v, count, seed)
+                    .map_err(|problem| wrong("random", count.to_string(), problem))
+            }
+        }
+    }
+
+    /// Follows the starts, and repeats those whose answer may be uncertain.
+    pub fn run(&self, simulation: &Simulation, progress: &Progress) -> Result<BasinsAnswer, Error> {
+        let (document, starts) = (simulation.document(), self.starts()?);
+        let count = starts.count() as u64;
+        let basins = study::Basins::new(simulation.scene(), simulation.mechanism().clone(), starts);
+        let mut basins = basins.map_err(|problem| no_basins(document, problem, self.x_mm))?;
+        let answer = progress.pool(|pool| {
+            let mut answer = progress.task(Some(count), |task| {
+                while !basins.is_whole() && basins.run_level(pool, task) {}
+                basins.answer(task).filter(|_| basins.is_whole())
+            })?;
+            let uncertain = basins.rows_to_check(&answer).len() as u64;
+            let whole = progress.task(Some(uncertain), |task| basins.check(&mut answer, pool, task));
+            whole.then_some(answer)
+        })?;
+        let answer = answer.ok_or(Error::Cancelled)?;
+        Ok(BasinsAnswer { basins, answer })
+    }
+}
+
+/// The error of a scene without basins.
+fn no_basins(document: &Document, problem: NoBasins, x_mm: EvenRange) -> Error {
+    match problem {
+        NoBasins::Faults(faults) => Error::faults_of(document, faults),
+        NoBasins::Beyond { .. } => {
+            Error::argument("x_mm", format!("{}:{}:{}", x_mm.from, x_mm.to, x_mm.count), problem)
+        }
+        _ => Error::unfit(document, problem),
+    }
+}
+
+impl BasinsAnswer {
+    /// A row a start.
+    pub fn table(&self) -> Table {
+        self.answer.table(&self.basins, 0, self.answer.rows.len())
+    }
+
+    /// A row an attractor.
+    pub fn attractors(&self) -> Table {
+        self.answer.attractors_table()
+    }
+}

@@ -1,0 +1,254 @@
+//! Questions about measured records.
+
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
+
+use super::Error;
+use crate::scene::{Ask, Channel, Measured, Quantity, Timing, read_measured};
+use crate::study::{
+    FORCE_POINTS, Identified, Table, Unidentified, damping, force, restitution, restitution_of_times,
+};
+
+words! {
+    /// What is identified from a record.
+    WhatToIdentify {
+        /// The damping ratio, of a free decay.
+        Damping = "damping",
+        /// The coefficient of restitution, of impacts on stops.
+        Restitution = "restitution",
+        /// The force over position, of a slow pull.
+        Force = "force",
+    }
+}
+
+/// Identifies a quantity from a record: CSV with a header.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Identify {
+    /// What.
+    pub of: WhatToIdentify,
+    /// Column of the times and its unit; by default the one whose name ends with a unit of time.
+    pub time: [Option<String>; 2],
+    /// Column of the values and its unit; by default the one whose name ends with such a unit.
+    pub column: [Option<String>; 2],
+    /// Of a force: column of the positions and its unit.
+    pub position: [Option<String>; 2],
+    /// Of restitution: column of the acceleration of the base and its unit.
+    pub base: [Option<String>; 2],
+    /// Leaves out what was recorded before and after these times in s.
+    pub between: [Option<f64>; 2],
+    /// Of restitution: the rows are impacts, and their times are all that is known.
+    pub impact_times: bool,
+    /// Of restitution: about where the left and the right stop are, in mm.
+    pub stops_mm: [Option<f64>; 2],
+    /// Of a force: points of the curve, 4 to 100000; by default 101.
+    pub points: Option<u32>,
+}
+
+/// The identified quantity, and the record that it is identified from.
+#[derive(Debug, Clone)]
+pub struct IdentifyAnswer {
+    /// What was identified.
+    pub found: Identified,
+    /// The sampling of a record over time.
+    pub timing: Option<Timing>,
+    /// Times or positions.
+    pub across: Vec<f64>,
+    /// What was measured; empty for impact times.
+    pub values: Channel,
+    /// The columns that were read, in words.
+    pub columns: String,
+}
+
+impl IdentifyAnswer {
+    /// The rows: over amplitude, impact or position.
+    pub fn table(&self) -> &Table {
+        &self.found.rows
+    }
+}
+
+/// The columns that a record was read from, in words.
+pub fn columns_read<const N: usize>(record: &Measured<N>) -> String {
+    let from = |channel: &Channel| format!("{} from `{}`", channel.quantity.name(), channel.column);
+    let commas = if record.decimal_commas { ", with decimal commas" } else { "" };
+    format!("{}{commas}", record.channels.each_ref().map(from).join(", "))
+}
+
+impl Identify {
+    /// Of a record whose columns are found by the units in their names.
+    pub fn of(of: WhatToIdentify) -> Self {
+        let none = || [None, None];
+        Self {
+            of,
+            time: none(),
+            column: none(),
+            position: none(),
+            base: none(),
+            between: [None, None],
+            impact_times: false,
+            stops_mm: [None, None],
+            points: None,
+        }
+    }
+
+    /// Reads the record at `path` and identifies the quantity.
+    pub fn run(&self, path: &Path) -> Result<IdentifyAnswer, Error> {
+        self.check()?;
+        Record { question: self, file: path.to_owned() }.answer()
+    }
+
+    /// Refuses what does not belong to the question, and impossible values.
+    pub fn check(&self) -> Result<(), Error> {
+        use WhatToIdentify::{Force, Restitution};
+        let of = self.of;
+        for (name, given, only) in [
+            ("impact_times", self.impact_times, Restitution),
+            ("base", self.base[0].is_some(), Restitution),
+            ("base_unit", self.base[1].is_some(), Restitution),
+            ("left_mm", self.stops_mm[0].is_some(), Restitution),
+            ("right_mm", self.stops_mm[1].is_some(), Restitution),
+            ("points", self.points.is_some(), Force),
+            ("position", self.position[0].is_some(), Force),
+            ("position_unit", self.position[1].is_some(), Force),
+        ] {
+            if given && of != only {
+                let problem = format!("belongs to --of {}, not to --of {}", only.name(), of.name());
+                return Err(Error::argument(name, "", problem));
+            }
+        }
+        for (name, given) in [("from", self.between[0].is_some()), ("to", self.between[1].is_some())] {
+            if given && of == Force {
+                return Err(Error::argument(name, "", "cuts a record over time; --of force has none"));
+            }
+        }
+        if let [Some(from), Some(to)] = self.between
+            && !(from < to)
+        {
+            let problem = "give a time before and one after";
+            return Err(Error::argument("from", format!("{from} --to {to}"), problem));
+        }
+        if self.points.is_some_and(|points| !(4..=100_000).contains(&points)) {
+            let value = self.points.unwrap_or_default();
+            return Err(Error::argument("points", value, "give 4 to 100000 points"));
+        }
+        self.check_restitution()
+    }
+
+    /// Refuses impossible positions of stops, and what does not go with impact times.
+    fn check_restitution(&self) -> Result<(), Error> {
+        for (name, place) in ["left_mm", "right_mm"].into_iter().zip(self.stops_mm) {
+            if let Some(place) = place.filter(|place| !place.is_finite()) {
+                return Err(Error::argument(name, place, "give the place of the stop in mm"));
+            }
+        }
+        if let [Some(left), Some(right)] = self.stops_mm
+            && !(left < right)
+        {
+            let problem = "the left stop is the one at the lesser displacement; exchange them";
+            return Err(Error::argument("left_mm", format!("{left} --right-mm {right}"), problem));
+        }
+        if let [None, Some(_)] = self.base {
+            let problem = "is the unit of a column: name the column by --base";
+            return Err(Error::argument("base_unit", "", problem));
+        }
+        for (name, given) in [
+            ("base", self.base[0].is_some()),
+            ("left_mm", self.stops_mm[0].is_some()),
+            ("right_mm", self.stops_mm[1].is_some()),
+        ] {
+            if self.impact_times && given {
+                let problem = "a record of impact times has no displacement; leave one of them out";
+                return Err(Error::argument(name, "with --impact-times", problem));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A record and what is asked of it.
+struct Record<'a> {
+    question: &'a Identify,
+    file: PathBuf,
+}
+
+impl Record<'_> {
+    fn answer(&self) -> Result<IdentifyAnswer, Error> {
+        let question = self.question;
+        let ask = |quantities: &[Quantity], [column, unit]: &[Option<String>; 2], names| {
+            Ask::by_options(quantities, column, unit, names)
+        };
+        let times = ask(&[Quantity::Time], &question.time, ["--time", "--time-unit"]);
+        let of_values = |asked: &[_]| ask(asked, &question.column, ["--column", "--unit"]);
+        let done = |found: Result<Identified, Unidentified>, timing, across, values, columns| {
+            let found = found.map_err(|problem| self.about(problem))?;
+            Ok(IdentifyAnswer { found, timing, across, values, columns })
+        };
+        match question.of {
+            WhatToIdentify::Force => {
+                let positions = &question.position;
+                let positions = ask(&[Quantity::Displacement], positions, ["--position", "--position-unit"]);
+                let (record, columns) = self.read(&[positions, of_values(&[Quantity::Force])])?;
+                let [x, values] = record.channels;
+                let points = question.points.map_or(FORCE_POINTS, |points| points as usize);
+                let found = force(&x.values, &values.values, points);
+                done(found, None, x.values, values, columns)
+            }
+            WhatToIdentify::Damping => {
+                let any = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
+                let (record, columns) = self.read(&[times, of_values(&any)])?;
+                let [times, values] = self.cut(record)?.channels;
+                let found = damping(&times.values, &values);
+                done(found, Some(Timing::of(&times.values)), times.values, values, columns)
+            }
+            WhatToIdentify::Restitution if question.impact_times => {
+                let (record, columns) = self.read(&[times])?;
+                let [times] = self.cut(record)?.channels;
+                let found = restitution_of_times(&times.values);
+                let values = Channel { quantity: Quantity::Displacement, values: Vec::new(), ..times };
+                done(found, None, Vec::new(), values, columns)
+            }
+            WhatToIdentify::Restitution => {
+                let values = of_values(&[Quantity::Displacement]);
+                let ([times, values], base, columns) = if question.base[0].is_some() {
+                    let base = ask(&[Quantity::Acceleration], &question.base, ["--base", "--base-unit"]);
+                    let (record, columns) = self.read(&[times, values, base])?;
+                    let [times, values, base] = self.cut(record)?.channels;
+                    ([times, values], Some(base.values), columns)
+                } else {
+                    let (record, columns) = self.read(&[times, values])?;
+                    (self.cut(record)?.channels, None, columns)
+                };
+                let places = question.stops_mm.map(|place| place.map(|mm| mm * 1e-3));
+                let found = restitution(&times.values, &values.values, base.as_deref(), places);
+                done(found, Some(Timing::of(&times.values)), times.values, values, columns)
+            }
+        }
+    }
+
+    fn read<const N: usize>(&self, asks: &[Ask; N]) -> Result<(Measured<N>, String), Error> {
+        let record = read_measured(&self.file, asks).map_err(|problem| self.about(problem))?;
+        let columns = columns_read(&record);
+        Ok((record, columns))
+    }
+
+    /// Keeps only the rows between two times; the first channel is the time.
+    fn cut<const N: usize>(&self, mut record: Measured<N>) -> Result<Measured<N>, Error> {
+        let times = &record.channels[0].values;
+        let [from, to] = self.question.between;
+        let from = times.partition_point(|t| *t < from.unwrap_or(f64::NEG_INFINITY));
+        let to = times.partition_point(|t| *t <= to.unwrap_or(f64::INFINITY));
+        if to < from + 2 {
+            let (first, last) = (times[0], times[times.len() - 1]);
+            return Err(self.about(format!(
+                "less than 2 samples from --from to --to; the record goes from {first} to {last} s"
+            )));
+        }
+        for channel in &mut record.channels {
+            channel.values = channel.values[from..to].to_vec();
+        }
+        Ok(record)
+    }
+
+    fn about(&self, problem: impl Display) -> Error {
+        Error::Unfit { scene: self.file.display().to_string(), problem: problem.to_string() }
+    }
+}

@@ -1,0 +1,184 @@
+//! A scene with its model.
+
+use std::fmt::Display;
+use std::path::Path;
+use std::sync::Arc;
+
+use super::{Error, Progress, check_until_settled};
+use crate::dynamics::{Model, Outcome, Request, Run, Summary};
+use crate::mechanics::{ForceCurve, Mechanism};
+use crate::numeric::number_text;
+use crate::scene::{Axis, Document, Files, Scene};
+use crate::study::{Grid, Keep, Sampling, Table, sample_times, simulate};
+
+/// A scene that has been checked, with its model.
+///
+/// ```
+/// use interwell_kernel::dynamics::Request;
+/// use interwell_studies::questions::Simulation;
+///
+/// let simulation = Simulation::preset("paper")?;
+/// let stronger = simulation.with("excitation.amplitude_g", 1.3)?;
+/// let run = stronger.run(&Request::default());
+/// assert!(run.summary.crossings > 0);
+/// # Ok::<(), interwell_studies::questions::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Simulation {
+    document: Document,
+    model: Model,
+    warnings: Vec<String>,
+}
+
+/// One run with its samples and events.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recorded {
+    /// `t_s,x_m,v_m_per_s,base_accel_m_per_s2,phase`, with a transducer also `voltage_v,current_a,power_w`.
+    pub samples: Table,
+    /// `t_s,kind,side,v_in_m_per_s,v_out_m_per_s` in order of time.
+    pub events: Table,
+    /// Statistics, outcome and energy ledger.
+    pub summary: Summary,
+}
+
+impl Simulation {
+    /// The simulation of a built-in scene, such as `paper`.
+    pub fn preset(name: &str) -> Result<Self, Error> {
+        Self::of(Document::preset(name)?)
+    }
+
+    /// The simulation of a scene file.
+    pub fn from_file(path: impl AsRef<Path>) -> Result<Self, Error> {
+        Self::of(Document::from_file(path.as_ref())?)
+    }
+
+    /// The simulation of a scene in RON. `name` stands for it in messages; the files that it names have
+    /// absolute paths, or are built-in tables.
+    pub fn from_text(name: &str, text: &str) -> Result<Self, Error> {
+        Self::of(Document::from_text(name, text, Files::default())?)
+    }
+
+    /// The simulation of a scene that has been read.
+    pub fn new(document: &Document) -> Result<Self, Error> {
+        Self::of(document.clone())
+    }
+
+    fn of(mut document: Document) -> Result<Self, Error> {
+        let moved = document.settle_within();
+        let warnings = moved.into_iter().chain(document.check()?).collect();
+        let built = Mechanism::build(&document.scene.mechanism, &document.files);
+        let mechanism = built.map_err(|error| Error::unbuilt(&document, error))?;
+        Self::with_mechanism(document, Arc::new(mechanism), warnings)
+    }
+
+    fn with_mechanism(
+        document: Document,
+        mechanism: Arc<Mechanism>,
+        warnings: Vec<String>,
+    ) -> Result<Self, Error> {
+        match Model::build(&document.scene, mechanism) {
+            Ok(model) => Ok(Self { document, model, warnings }),
+            Err(faults) => Err(Error::faults_of(&document, faults)),
+        }
+    }
+
+    /// The same with one field changed. The value is a number, or any value as a scene file has it.
+    pub fn with(&self, field: &str, value: impl Display) -> Result<Self, Error> {
+        self.with_all(&[(field.to_owned(), value.to_string())])
+    }
+
+    /// The same with several fields changed, in this order; the scene is checked once, after all changes.
+    pub fn with_all(&self, changes: &[(String, String)]) -> Result<Self, Error> {
+        let mut document = self.document.clone();
+        for (field, value) in changes {
+            document.set(&format!("{field}={value}"))?;
+        }
+        let same = document.scene.mechanism == self.document.scene.mechanism;
+        if !same || document.files != self.document.files {
+            return Self::of(document);
+        }
+        let moved = document.settle_within();
+        let warnings = moved.into_iter().chain(document.check()?).collect();
+        Self::with_mechanism(document, Arc::clone(self.mechanism()), warnings)
+    }
+
+    /// The same with this force in place of that of its mechanism. Fields of the mechanism are then those of
+    /// [`Pieces`](crate::scene::Mechanism::Pieces).
+    pub fn with_force(&self, curve: &ForceCurve) -> Result<Self, Error> {
+        let mut document = self.document.clone();
+        document.scene.mechanism = curve.to_scene();
+        document.scene.sweep.retain(|axis| !axis.field.starts_with("mechanism"));
+        Self::of(document)
+    }
+
+    /// Runs the scene once.
+    pub fn run(&self, request: &Request) -> Run {
+        self.model.run(request)
+    }
+
+    /// Runs the scene once and keeps samples and events. With `until_settled` in s the run goes on, window
+    /// after window, until the motion repeats, or up to that time.
+    pub fn record(
+        &self,
+        sampling: &Sampling,
+        until_settled: Option<f64>,
+        progress: &Progress,
+    ) -> Result<Recorded, Error> {
+        self.check_until_settled(until_settled)?;
+        let times = sample_times(&self.document.scene, &self.model, sampling, until_settled)
+            .map_err(|problem| Error::argument(problem.argument(), "", problem))?;
+        let keep = Keep { times, events: true, until_settled };
+        let run = simulate(&self.model, &keep, Some(progress.stop()));
+        match run.summary.outcome {
+            Outcome::Cancelled { .. } => Err(Error::Cancelled),
+            _ => Ok(Recorded { samples: run.samples, events: run.events, summary: run.summary }),
+        }
+    }
+
+    /// The scene with its text and the changes to it.
+    pub fn document(&self) -> &Document {
+        &self.document
+    }
+
+    /// The fields of the scene.
+    pub fn scene(&self) -> &Scene {
+        &self.document.scene
+    }
+
+    /// The model in SI units.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The mechanism: its force curve, wells and barrier.
+    pub fn mechanism(&self) -> &Arc<Mechanism> {
+        self.model.mechanism()
+    }
+
+    /// Warnings about values that are valid but probably not meant, and about tables, each a sentence.
+    pub fn warnings(&self) -> impl Iterator<Item = String> {
+        let name = &self.document.name;
+        let of_tables = self.mechanism().warnings().map(move |warning| format!("{name}: {warning}"));
+        self.warnings.iter().cloned().chain(of_tables)
+    }
+
+    pub(super) fn check_until_settled(&self, until: Option<f64>) -> Result<(), Error> {
+        let check = |until: f64| check_until_settled(until, &number_text(until), &self.document, &self.model);
+        until.map_or(Ok(()), check)
+    }
+
+    /// The grid over these fields; without any that of the scene's own sweep.
+    pub fn grid(&self, over: &[(String, Vec<f64>)]) -> Result<Grid, Error> {
+        if over.is_empty() {
+            return Ok(Grid::new(self.document.axes::<&str>(&[])?)?);
+        }
+        let axis = |(field, values): &(String, Vec<f64>)| {
+            let count = values.len();
+            let value = if count == 1 { number_text(values[0]) } else { format!("{count} values") };
+            let axis = Axis::listed(field, values.clone(), &self.document.scene);
+            axis.map_err(|problem| Error::argument(field, value, problem))
+        };
+        let axes = over.iter().map(axis).collect::<Result<Vec<Axis>, Error>>()?;
+        Ok(Grid::new(self.document.check_axes(axes, "over")?)?)
+    }
+}
