@@ -1,0 +1,171 @@
+from typing import Any, Callable, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+__version__: str
+
+_Over = Sequence[tuple[str, Sequence[float]]]
+_Told = Callable[[int, int | None], None] | None
+
+class Answer:
+    @property
+    def names(self) -> list[str]: ...
+    @property
+    def units(self) -> list[str]: ...
+    @property
+    def words(self) -> list[str]: ...
+    def values(self, name: str) -> npt.NDArray[np.float64] | list[Any]: ...
+    def csv(self) -> str: ...
+    def picture(
+        self,
+        kind: str,
+        quantity: str | None = None,
+        x: tuple[float, float] | None = None,
+        y: tuple[float, float] | None = None,
+        dark: bool = False,
+        width_mm: float | None = None,
+        height_mm: float | None = None,
+    ) -> bytes: ...
+
+class Run:
+    @property
+    def samples(self) -> Answer: ...
+    @property
+    def events(self) -> Answer: ...
+    def summary(self) -> str: ...
+    def outcome(self) -> str: ...
+
+class Simulation:
+    @staticmethod
+    def load(spec: str) -> Simulation: ...
+    @staticmethod
+    def preset(name: str) -> Simulation: ...
+    @staticmethod
+    def from_text(name: str, text: str) -> Simulation: ...
+    def with_all(self, changes: Sequence[tuple[str, str]]) -> Simulation: ...
+    def with_force(
+        self,
+        force: Callable[[float], float],
+        range: tuple[float, float],
+        tolerance: float,
+        breaks: Sequence[float],
+    ) -> tuple[Simulation, float]: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def title(self) -> str: ...
+    @property
+    def notes(self) -> str: ...
+    @property
+    def text(self) -> str: ...
+    @property
+    def warnings(self) -> list[str]: ...
+    @property
+    def fields(self) -> list[str]: ...
+    def get(self, field: str) -> tuple[float | None, str | None]: ...
+    def landscape(self) -> tuple[list[tuple[float, bool]], tuple[float, float] | None]: ...
+    def run(
+        self,
+        dt: float | None = None,
+        at: Sequence[float] | None = None,
+        until_settled: float | None = None,
+    ) -> Run: ...
+    def curve(self, positions: Sequence[float] | None = None) -> Answer: ...
+    def sweep(
+        self,
+        over: _Over,
+        columns: Sequence[str],
+        until_settled: float | None = None,
+        carry: str | None = None,
+        threads: int | None = None,
+        progress: _Told = None,
+    ) -> Answer: ...
+    def section(
+        self,
+        over: _Over,
+        at: str,
+        phase_deg: float = 0.0,
+        skip: int | None = None,
+        keep: int | None = None,
+        until_settled: float | None = None,
+        carry: str | None = None,
+        threads: int | None = None,
+        progress: _Told = None,
+    ) -> Answer: ...
+    def exponents(
+        self,
+        over: _Over,
+        periods: int | None = None,
+        until_settled: float | None = None,
+        threads: int | None = None,
+        progress: _Told = None,
+    ) -> Answer: ...
+    def threshold(
+        self,
+        over: _Over,
+        field: str,
+        of: str,
+        resolution: float | None = None,
+        until_settled: float | None = None,
+        threads: int | None = None,
+        progress: _Told = None,
+    ) -> Answer: ...
+    def orbit(self, period: int | None = None, phase_deg: float = 0.0) -> Answer: ...
+    def branch(
+        self,
+        field: str,
+        range: tuple[float, float],
+        period: int | None = None,
+        phase_deg: float = 0.0,
+        progress: _Told = None,
+    ) -> Answer: ...
+    def spectrum(
+        self,
+        of: str,
+        taper: str,
+        rate_hz: float | None = None,
+        until_settled: float | None = None,
+    ) -> Answer: ...
+    def basins(
+        self,
+        x_mm: tuple[float, float, int],
+        v: tuple[float, float, int],
+        random: tuple[int, int] | None = None,
+        threads: int | None = None,
+        progress: _Told = None,
+    ) -> tuple[Answer, Answer]: ...
+    def compare(
+        self,
+        name: str,
+        others: Sequence[tuple[str, Simulation]],
+        until_settled: float | None = None,
+        threads: int | None = None,
+        progress: _Told = None,
+    ) -> Answer: ...
+    def best(
+        self,
+        over: Sequence[str],
+        maximise: str,
+        subject_to: Sequence[str],
+        environment: Sequence[str],
+        vary: Sequence[str],
+        seed: int,
+        until_settled: float | None = None,
+        threads: int | None = None,
+        progress: _Told = None,
+    ) -> Answer: ...
+
+def identify(
+    path: str,
+    of: str,
+    time: Sequence[str | None],
+    column: Sequence[str | None],
+    position: Sequence[str | None],
+    base: Sequence[str | None],
+    between: Sequence[float | None],
+    impact_times: bool,
+    stops_mm: Sequence[float | None],
+    points: int | None = None,
+) -> tuple[Answer, str]: ...
+def presets() -> list[tuple[str, str]]: ...

@@ -1,0 +1,28 @@
+//! Errors of questions as Python exceptions.
+
+use interwell_studies::questions::Error;
+use pyo3::exceptions::PyKeyboardInterrupt;
+use pyo3::prelude::*;
+
+/// The exception for an error: `SceneError` with its faults where scene or arguments are wrong,
+/// `ComputationError` where there is no answer.
+pub fn raised(py: Python<'_>, error: &Error) -> PyErr {
+    if *error == Error::Cancelled {
+        return PyKeyboardInterrupt::new_err(());
+    }
+    let exception = || -> PyResult<PyErr> {
+        let errors = py.import("interwell._errors")?;
+        let message = error.to_string();
+        if !error.is_wrong_input() {
+            return Ok(PyErr::from_value(errors.getattr("ComputationError")?.call1((message,))?));
+        }
+        let fault = errors.getattr("Fault")?;
+        let faults = error
+            .faults()
+            .into_iter()
+            .map(|found| fault.call1((found.file, found.line, found.field, found.value, found.problem)));
+        let faults = faults.collect::<PyResult<Vec<_>>>()?;
+        Ok(PyErr::from_value(errors.getattr("SceneError")?.call1((message, faults))?))
+    };
+    exception().unwrap_or_else(|error| error)
+}

@@ -1,0 +1,582 @@
+//! Scenes and the questions about them.
+
+use std::cell::RefCell;
+use std::path::PathBuf;
+
+use interwell_kernel::dynamics::Summary;
+use interwell_kernel::mechanics::{FitReport, ForceCurve};
+use interwell_kernel::numeric::Taper;
+use interwell_kernel::scene::{FieldPath, PRESETS, all_fields, write};
+use interwell_studies::output::{
+    Caption, ComparisonPicture, ExponentPicture, Overlay, Provenance, Ranges, RunPanel, SectionPicture,
+    SpectrumQuantity, SweepPicture, ThresholdPicture, View, basins_chart, branch_chart, comparison_chart,
+    curve_chart, exponents_chart, identified, identified_chart, run_chart, section_chart, spectrum_chart,
+    summary, sweep_chart, threshold_chart,
+};
+use interwell_studies::questions::{
+    self, Basins, Best, Branch, Compare, Curve, Error, Exponents, Identify, Orbit, Section, Spectrum, Sweep,
+    Threshold, WhatToIdentify, needs_a_sine,
+};
+use interwell_studies::study::{
+    Carry, ExponentOptions, Identity, Keep, Onset, Sampling, SectionAt, SectionOptions, Signal, Table,
+    sample_times, simulate_with_trace, stop_positions,
+};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::answer::{Answer, Asked};
+use crate::errors::raised;
+use crate::work::{Way, work, work_here};
+
+/// Fields and the values that each takes.
+type Over = Vec<(String, Vec<f64>)>;
+
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// Steps of free flight in a time scale of the motion, about.
+const STEPS_PER_SCALE: f64 = 10.0;
+
+/// Work of a run that takes some milliseconds: such a run is done at once, without a thread that watches for
+/// signals.
+const SHORT: f64 = 3e6;
+
+/// A scene that has been checked, with its model.
+#[pyclass(frozen, module = "interwell._interwell")]
+pub struct Simulation {
+    inner: questions::Simulation,
+}
+
+/// What came of a question, or the exception.
+fn checked<T>(py: Python<'_>, found: Result<T, Error>) -> PyResult<T> {
+    found.map_err(|error| raised(py, &error))
+}
+
+/// The variant that is called `word`, or the exception that lists all.
+fn named<T: Copy>(
+    py: Python<'_>,
+    argument: &str,
+    word: &str,
+    all: &[T],
+    name: fn(T) -> &'static str,
+) -> PyResult<T> {
+    let found = all.iter().copied().find(|one| name(*one) == word);
+    found.ok_or_else(|| {
+        let known: Vec<&str> = all.iter().map(|one| name(*one)).collect();
+        raised(py, &Error::argument(argument, word, format!("give one of {}", known.join(", "))))
+    })
+}
+
+impl Simulation {
+    fn caption(&self) -> Caption {
+        Caption::new(self.inner.document(), VERSION)
+    }
+
+    fn new(inner: questions::Simulation) -> Self {
+        Self { inner }
+    }
+
+    /// Whether a run takes some milliseconds at most.
+    fn is_short(&self, until_settled: Option<f64>) -> bool {
+        let model = self.inner.model();
+        let steps = STEPS_PER_SCALE * model.duration() / model.scales().time;
+        let (cost, _) = model.cost_of_a_step(model.tolerance());
+        until_settled.is_none() && model.compliant().is_none() && steps * (cost as f64) < SHORT
+    }
+}
+
+#[pymethods]
+impl Simulation {
+    /// A scene file or a built-in scene of that name.
+    #[staticmethod]
+    fn load(py: Python<'_>, spec: &str) -> PyResult<Self> {
+        let read = interwell_kernel::scene::Document::load(spec);
+        let document = checked(py, read.map_err(Error::from))?;
+        work(py, &Way::default(), |_| questions::Simulation::new(&document)).map(Self::new)
+    }
+
+    #[staticmethod]
+    fn preset(py: Python<'_>, name: &str) -> PyResult<Self> {
+        work(py, &Way::default(), |_| questions::Simulation::preset(name)).map(Self::new)
+    }
+
+    #[staticmethod]
+    fn from_text(py: Python<'_>, name: &str, text: &str) -> PyResult<Self> {
+        work(py, &Way::default(), |_| questions::Simulation::from_text(name, text)).map(Self::new)
+    }
+
+    fn with_all(&self, py: Python<'_>, changes: Vec<(String, String)>) -> PyResult<Self> {
+        let of_mechanism = changes.iter().any(|(field, _)| field.starts_with("mechanism"));
+        match of_mechanism {
+            true => work(py, &Way::default(), |_| self.inner.with_all(&changes)),
+            false => work_here(py, |_| self.inner.with_all(&changes)),
+        }
+        .map(Self::new)
+    }
+
+    /// The scene with the force of a function, and the largest error in N that was found.
+    fn with_force(
+        &self,
+        py: Python<'_>,
+        force: &Bound<'_, PyAny>,
+        range: (f64, f64),
+        tolerance: f64,
+        breaks: Vec<f64>,
+    ) -> PyResult<(Self, f64)> {
+        let failed = RefCell::new(None);
+        let call = |x: f64| {
+            if failed.borrow().is_some() {
+                return f64::NAN;
+            }
+            let value = force.call1((x,)).and_then(|value| value.extract::<f64>());
+            value.unwrap_or_else(|error| {
+                *failed.borrow_mut() = Some(error);
+                f64::NAN
+            })
+        };
+        let curve = ForceCurve::from_fn(call, range, tolerance, &breaks);
+        if let Some(error) = failed.into_inner() {
+            return Err(error);
+        }
+        let curve = curve.map_err(|problem| raised(py, &Error::argument("force", "", problem)))?;
+        let error = curve.fit().map_or(0.0, |FitReport { worst_n, .. }| *worst_n);
+        let inner = work(py, &Way::default(), |_| self.inner.with_force(&curve))?;
+        Ok((Self::new(inner), error))
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.inner.document().name
+    }
+
+    #[getter]
+    fn title(&self) -> &str {
+        &self.inner.scene().title
+    }
+
+    #[getter]
+    fn notes(&self) -> &str {
+        &self.inner.scene().notes
+    }
+
+    /// The scene as RON text.
+    #[getter]
+    fn text(&self) -> PyResult<String> {
+        write(self.inner.scene()).map_err(|error| PyValueError::new_err(error.to_string()))
+    }
+
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.inner.warnings().collect()
+    }
+
+    /// Dotted paths of all fields.
+    #[getter]
+    fn fields(&self) -> Vec<String> {
+        all_fields(self.inner.scene())
+    }
+
+    /// The number at a path, and otherwise its value as one word.
+    fn get(&self, field: &str) -> (Option<f64>, Option<String>) {
+        let path = FieldPath::new(field);
+        (path.get(self.inner.scene()), path.word(self.inner.scene()))
+    }
+
+    /// Equilibria (position in m, whether stable) and the height of the barrier in J from the left and from
+    /// the right well.
+    fn landscape(&self) -> (Vec<(f64, bool)>, Option<(f64, f64)>) {
+        let landscape = &self.inner.mechanism().landscape;
+        let equilibria = landscape.equilibria.iter().map(|found| (found.x, found.stable)).collect();
+        let barrier = landscape.barrier.map(|barrier| (barrier.from_left_j, barrier.from_right_j));
+        (equilibria, barrier)
+    }
+
+    #[pyo3(signature = (dt=None, at=None, until_settled=None))]
+    fn run(
+        &self,
+        py: Python<'_>,
+        dt: Option<f64>,
+        at: Option<Vec<f64>>,
+        until_settled: Option<f64>,
+    ) -> PyResult<Run> {
+        let sampling = match (dt, at) {
+            (Some(_), Some(_)) => {
+                let error = Error::argument("dt", "", "give a step dt or the times at, not both");
+                return Err(raised(py, &error));
+            }
+            (None, Some(times)) => Sampling::At(times),
+            (Some(step), None) => Sampling::Every(step),
+            (None, None) => Sampling::Default,
+        };
+        let question = |progress: &questions::Progress| self.inner.record(&sampling, until_settled, progress);
+        let found = match self.is_short(until_settled) {
+            true => work_here(py, question),
+            false => work(py, &Way::default(), question),
+        }?;
+        let caption = self.caption();
+        let shown = self.inner.clone();
+        let drawn = move |_: &Table, asked: &Asked| {
+            let panels = match &asked.quantity {
+                None => RunPanel::USUAL.to_vec(),
+                Some(names) => {
+                    let panel = |name: &str| {
+                        let known = || RunPanel::ALL.map(RunPanel::name).join(", ");
+                        RunPanel::named(name.trim())
+                            .ok_or_else(|| format!("no panel `{name}`; there are {}", known()))
+                    };
+                    names.split(',').map(panel).collect::<Result<Vec<_>, String>>()?
+                }
+            };
+            let model = shown.model();
+            let times = sample_times(shown.scene(), model, &Sampling::At(Vec::new()), until_settled);
+            let keep = Keep { times: times.unwrap_or_default(), events: false, until_settled };
+            let (run, trace) = simulate_with_trace(model, &keep, asked.ranges.x, None);
+            let ranges = Ranges { x: None, y: asked.ranges.y };
+            Ok(run_chart(&trace, &run.summary, (model.mechanism(), model.mass()), &panels, ranges))
+        };
+        Ok(Run {
+            samples: Py::new(py, Answer::new(py, found.samples, caption.clone()).drawn(drawn))?,
+            events: Py::new(py, Answer::new(py, found.events, caption))?,
+            summary: found.summary,
+            simulation: self.inner.clone(),
+        })
+    }
+
+    #[pyo3(signature = (positions=None))]
+    fn curve(&self, py: Python<'_>, positions: Option<Vec<f64>>) -> PyResult<Answer> {
+        let table = checked(py, Curve { positions }.run(&self.inner))?;
+        let shown = self.inner.clone();
+        Ok(Answer::new(py, table, self.caption()).drawn(move |rows, asked| {
+            Ok(curve_chart(rows, shown.mechanism(), stop_positions(shown.scene()), asked.ranges))
+        }))
+    }
+
+    #[pyo3(signature = (over, columns, until_settled=None, carry=None, threads=None, progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+    fn sweep(
+        &self,
+        py: Python<'_>,
+        over: Over,
+        columns: Vec<String>,
+        until_settled: Option<f64>,
+        carry: Option<&str>,
+        threads: Option<usize>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Answer> {
+        let carry = carry.map(|word| named(py, "carry", word, &Carry::ALL, Carry::name)).transpose()?;
+        let question = Sweep { over, columns, until_settled, carry };
+        let grid = checked(py, self.inner.grid(&question.over))?;
+        let way = Way { threads, progress };
+        let table = work(py, &way, |progress| question.run(&self.inner, progress))?;
+        let shown = self.inner.clone();
+        Ok(Answer::new(py, table, self.caption()).drawn(move |rows, asked| {
+            let (scene, mechanism) = (shown.scene(), shown.mechanism());
+            let mechanism = (!grid.changes_mechanism()).then_some(&**mechanism);
+            let overlay = match carry {
+                Some(_) => Overlay::default(),
+                None => Overlay::of(scene, mechanism, &grid, rows),
+            };
+            let quantity = asked.quantity.as_deref().unwrap_or("rms_velocity_m_per_s");
+            let (grid, view, ranges) = (&grid, View::Top, asked.ranges);
+            let picture = SweepPicture { rows, grid, scene, until_settled, quantity, overlay, view, ranges };
+            sweep_chart(&picture).map_err(|problem| problem.to_string())
+        }))
+    }
+
+    #[pyo3(signature = (over, at, phase_deg=0.0, skip=None, keep=None, until_settled=None, carry=None,
+                        threads=None, progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+    fn section(
+        &self,
+        py: Python<'_>,
+        over: Over,
+        at: &str,
+        phase_deg: f64,
+        skip: Option<u64>,
+        keep: Option<u64>,
+        until_settled: Option<f64>,
+        carry: Option<&str>,
+        threads: Option<usize>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Answer> {
+        let wrong = |name: &str, problem: &str| Err(raised(py, &Error::argument(name, "", problem)));
+        if skip.is_some() != keep.is_some() {
+            return wrong("skip", "skip and keep belong together: give both, in forcing periods");
+        }
+        if !phase_deg.is_finite() {
+            return wrong("phase_deg", "give an angle in degrees, such as 90");
+        }
+        let carry = carry.map(|word| named(py, "carry", word, &Carry::ALL, Carry::name)).transpose()?;
+        let at = match at {
+            "phase" => SectionAt::Phase(phase_deg),
+            "impacts" => SectionAt::Impacts,
+            _ => return wrong("at", "give phase or impacts"),
+        };
+        let options = SectionOptions { at, periods: skip.zip(keep), until_settled, carry };
+        let question = Section { over, options };
+        let table = work(py, &Way { threads, progress }, |progress| question.run(&self.inner, progress))?;
+        let over = match question.over.is_empty() {
+            true => None,
+            false => checked(py, self.inner.grid(&question.over))?.columns().first().cloned(),
+        };
+        let stops = if over.is_none() { self.inner.model().stop_positions() } else { (None, None) };
+        Ok(Answer::new(py, table, self.caption()).drawn(move |rows, asked| {
+            let phase_deg = if let SectionAt::Phase(degrees) = at { Some(degrees) } else { None };
+            let (over, ranges) = (over.as_deref(), asked.ranges);
+            Ok(section_chart(&SectionPicture { rows, over, phase_deg, stops, ranges }))
+        }))
+    }
+
+    #[pyo3(signature = (over, periods=None, until_settled=None, threads=None, progress=None))]
+    fn exponents(
+        &self,
+        py: Python<'_>,
+        over: Over,
+        periods: Option<u32>,
+        until_settled: Option<f64>,
+        threads: Option<usize>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Answer> {
+        let periods = periods.unwrap_or(ExponentOptions::PERIODS);
+        if !(1..=10_000_000).contains(&periods) {
+            return Err(raised(py, &Error::argument("periods", periods, "give 1 to 10000000")));
+        }
+        let question = Exponents { over, options: ExponentOptions { periods, until_settled } };
+        let table = work(py, &Way { threads, progress }, |progress| question.run(&self.inner, progress))?;
+        let answer = Answer::new(py, table, self.caption());
+        if question.over.is_empty() {
+            return Ok(answer);
+        }
+        let (grid, shown) = (checked(py, self.inner.grid(&question.over))?, self.inner.clone());
+        Ok(answer.drawn(move |rows, asked| {
+            let picture = ExponentPicture { rows, grid: &grid, scene: shown.scene(), ranges: asked.ranges };
+            exponents_chart(&picture).map_err(|problem| problem.to_string())
+        }))
+    }
+
+    #[pyo3(signature = (over, field, of, resolution=None, until_settled=None, threads=None, progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+    fn threshold(
+        &self,
+        py: Python<'_>,
+        over: Over,
+        field: String,
+        of: &str,
+        resolution: Option<f64>,
+        until_settled: Option<f64>,
+        threads: Option<usize>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Answer> {
+        let of = named(py, "of", of, &Onset::ALL, Onset::name)?;
+        let question = Threshold { over, field, of, resolution, until_settled };
+        let table = work(py, &Way { threads, progress }, |progress| question.run(&self.inner, progress))?;
+        let answer = Answer::new(py, table, self.caption());
+        if question.over.is_empty() {
+            return Ok(answer);
+        }
+        let (grid, shown) = (checked(py, self.inner.grid(&question.over))?, self.inner.clone());
+        let field = checked(py, question.scan(self.inner.document()))?.field;
+        Ok(answer.drawn(move |rows, asked| {
+            let (grid, scene, field, ranges) = (&grid, shown.scene(), field.as_str(), asked.ranges);
+            let picture = ThresholdPicture { rows, grid, scene, field, onset: of, ranges };
+            threshold_chart(&picture).map_err(|problem| problem.to_string())
+        }))
+    }
+
+    #[pyo3(signature = (period=None, phase_deg=0.0))]
+    fn orbit(&self, py: Python<'_>, period: Option<u32>, phase_deg: f64) -> PyResult<Answer> {
+        let question = Orbit { period, phase_deg };
+        let found = work(py, &Way::default(), |progress| question.run(&self.inner, progress))?;
+        Ok(Answer::new(py, found.table(), self.caption()))
+    }
+
+    #[pyo3(signature = (field, range, period=None, phase_deg=0.0, progress=None))]
+    fn branch(
+        &self,
+        py: Python<'_>,
+        field: String,
+        range: (f64, f64),
+        period: Option<u32>,
+        phase_deg: f64,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Answer> {
+        let question = Branch { field, range, period, phase_deg };
+        let way = Way { threads: None, progress };
+        let found = work(py, &way, |progress| question.run(&self.inner, progress))?;
+        let (table, remarks) = (found.table(), found.remarks(range));
+        let answer = Answer::new(py, table, self.caption()).told(remarks);
+        Ok(answer.drawn(move |_, asked| Ok(branch_chart(&found, phase_deg, asked.ranges))))
+    }
+
+    #[pyo3(signature = (of, taper, rate_hz=None, until_settled=None))]
+    fn spectrum(
+        &self,
+        py: Python<'_>,
+        of: &str,
+        taper: &str,
+        rate_hz: Option<f64>,
+        until_settled: Option<f64>,
+    ) -> PyResult<Answer> {
+        let of = named(py, "of", of, &Signal::ALL, Signal::name)?;
+        let taper = match taper {
+            "auto" => None,
+            "hann" => Some(Taper::Hann),
+            "none" => Some(Taper::None),
+            _ => return Err(raised(py, &Error::argument("taper", taper, "give auto, hann or none"))),
+        };
+        let question = Spectrum { of, taper, rate_hz, until_settled };
+        let found = work(py, &Way::default(), |progress| question.run(&self.inner, progress))?;
+        let answer = Answer::new(py, found.table.clone(), self.caption()).told(vec![found.describe()]);
+        Ok(answer.drawn(move |_, asked| {
+            let quantity = match asked.quantity.as_deref() {
+                None | Some("amplitude") => SpectrumQuantity::Amplitude,
+                Some("psd") => SpectrumQuantity::Density,
+                Some(other) => return Err(format!("no column `{other}`; give amplitude or psd")),
+            };
+            Ok(spectrum_chart(&found, quantity, asked.ranges))
+        }))
+    }
+
+    /// A row a start, and a row an attractor.
+    #[pyo3(signature = (x_mm, v, random=None, threads=None, progress=None))]
+    fn basins(
+        &self,
+        py: Python<'_>,
+        x_mm: (f64, f64, u64),
+        v: (f64, f64, u64),
+        random: Option<(u64, u64)>,
+        threads: Option<usize>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<(Answer, Answer)> {
+        let question = Basins { random, ..Basins::of(x_mm, v) };
+        let way = Way { threads, progress };
+        let found = work(py, &way, |progress| question.run(&self.inner, progress))?;
+        let attractors = Answer::new(py, found.attractors(), self.caption());
+        let starts = Answer::new(py, found.table(), self.caption()).told(found.answer.words());
+        let starts = starts.drawn(move |_, _| Ok(basins_chart(&found.basins, &found.answer)));
+        Ok((starts, attractors))
+    }
+
+    /// This scene, called `name`, beside others under its sine.
+    #[pyo3(signature = (name, others, until_settled=None, threads=None, progress=None))]
+    fn compare(
+        &self,
+        py: Python<'_>,
+        name: String,
+        others: Vec<(String, Py<Self>)>,
+        until_settled: Option<f64>,
+        threads: Option<usize>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Answer> {
+        let (frequency_hz, _) = checked(py, needs_a_sine(self.inner.document()))?;
+        let with = others.into_iter().map(|(name, other)| (name, other.get().inner.clone())).collect();
+        let question = Compare { with, name, until_settled };
+        let way = Way { threads, progress };
+        let rated = work(py, &way, |progress| question.run(&self.inner, progress))?;
+        Ok(Answer::new(py, Compare::table(&rated), self.caption())
+            .drawn(move |_, _| Ok(comparison_chart(&ComparisonPicture { rated: &rated, frequency_hz }))))
+    }
+
+    #[pyo3(signature = (over, maximise, subject_to, environment, vary, seed, until_settled=None, threads=None,
+                        progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+    fn best(
+        &self,
+        py: Python<'_>,
+        over: Vec<String>,
+        maximise: String,
+        subject_to: Vec<String>,
+        environment: Vec<String>,
+        vary: Vec<String>,
+        seed: u64,
+        until_settled: Option<f64>,
+        threads: Option<usize>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Answer> {
+        let question = Best { over, maximise, subject_to, environment, vary, seed, until_settled };
+        let way = Way { threads, progress };
+        let found = work(py, &way, |progress| question.run(&self.inner, progress))?;
+        Ok(Answer::new(py, found.table(), self.caption()).told(found.words()))
+    }
+}
+
+/// One run.
+#[pyclass(frozen, module = "interwell._interwell")]
+pub struct Run {
+    #[pyo3(get)]
+    samples: Py<Answer>,
+    #[pyo3(get)]
+    events: Py<Answer>,
+    summary: Summary,
+    simulation: questions::Simulation,
+}
+
+#[pymethods]
+impl Run {
+    /// The summary as JSON, as the command line writes it.
+    fn summary(&self) -> String {
+        let origin = Provenance {
+            version: VERSION.to_owned(),
+            arguments: Vec::new(),
+            wall_s: f64::NAN,
+            cpu_s: self.summary.cpu_s,
+            jobs: 1,
+        };
+        summary(&self.summary, self.simulation.scene(), &origin)
+    }
+
+    /// Why the run ended before its duration, or is inaccurate; None if it is done.
+    fn outcome(&self) -> &'static str {
+        self.summary.outcome.name()
+    }
+}
+
+/// Identifies a quantity from a record; the summary is JSON as the command line writes it.
+#[pyfunction]
+#[pyo3(signature = (path, of, time, column, position, base, between, impact_times, stops_mm, points=None))]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+pub fn identify(
+    py: Python<'_>,
+    path: PathBuf,
+    of: &str,
+    time: [Option<String>; 2],
+    column: [Option<String>; 2],
+    position: [Option<String>; 2],
+    base: [Option<String>; 2],
+    between: [Option<f64>; 2],
+    impact_times: bool,
+    stops_mm: [Option<f64>; 2],
+    points: Option<u32>,
+) -> PyResult<(Answer, String)> {
+    let of = named(py, "of", of, &WhatToIdentify::ALL, WhatToIdentify::name)?;
+    let question = Identify { of, time, column, position, base, between, impact_times, stops_mm, points };
+    let answer = work(py, &Way::default(), |_| question.run(&path))?;
+    let origin = Provenance {
+        version: VERSION.to_owned(),
+        arguments: Vec::new(),
+        wall_s: f64::NAN,
+        cpu_s: f64::NAN,
+        jobs: 1,
+    };
+    let summary = identified(of.name(), &answer.found, answer.timing.as_ref(), &origin);
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let caption = Caption::of_record(&name, of.name(), VERSION);
+    let identities = answer.found.summary.iter().map(Identity::describe);
+    let words = std::iter::once(answer.columns.clone()).chain(identities);
+    let words = words.chain(answer.found.remarks.iter().cloned()).collect();
+    let rows = Answer::new(py, answer.found.rows.clone(), caption).told(words);
+    let drawn = move |_: &Table, asked: &Asked| {
+        let record = (&answer.across[..], &answer.values.values[..]);
+        Ok(identified_chart(of.name(), &answer.found, record, answer.values.quantity, asked.ranges))
+    };
+    Ok((rows.drawn(drawn), summary))
+}
+
+/// Names and titles of the built-in scenes.
+#[pyfunction]
+pub fn presets() -> Vec<(&'static str, String)> {
+    let title = |name: &str| {
+        interwell_kernel::scene::Document::preset(name)
+            .map_or_else(|_| String::new(), |read| read.scene.title)
+    };
+    PRESETS.iter().map(|preset| (preset.name, title(preset.name))).collect()
+}
