@@ -42,7 +42,7 @@ use std::cell::OnceCell;
 use crate::dynamics::equation::Compliant;
 use crate::dynamics::series::Series;
 use crate::numeric::{
-    Collocation, GROUP, Lanes, MOST_GROUPS, Number, Scalar, Values, fast_exp2, fast_log2, widest,
+    Collocation, GROUP, Lanes, MAX_GROUPS, Number, Scalar, Values, fast_exp2, fast_log2, widest,
 };
 
 /// w/q as a series in p = a q: G(w) = q^2/2 is p^2/2 = z - ln(1 + z) for z = a w.
@@ -142,7 +142,7 @@ pub(crate) struct Separation<T> {
 
 impl<T: Scalar> Impact<T> {
     pub fn new(stop: Compliant<T>) -> Self {
-        let zeros = [Lanes::zero(); MOST_GROUPS];
+        let zeros = [Lanes::zero(); MAX_GROUPS];
         Self {
             series: Series::new(0),
             about: Vec::new(),
@@ -288,7 +288,7 @@ impl<T: Scalar> Impact<T> {
     fn sweep(&mut self, (m, t): (T, T)) {
         let all = Lanes::<GROUP, T>::all;
         let (inverse_time, inverse_amplitude) = (all(T::of(1.0) / t), all(T::of(3.0) / m));
-        let none: Values<T> = [Lanes::zero(); MOST_GROUPS];
+        let none: Values<T> = [Lanes::zero(); MAX_GROUPS];
         let (mut passing, mut gains) = (none, none);
         for group in 0..self.rule.groups() {
             let (m, t, y) = (self.amplitude[group], self.time[group], self.rule.places(group));

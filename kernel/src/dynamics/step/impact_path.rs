@@ -4,7 +4,7 @@ use super::impact::{DRIVE_TERMS, Impact, Place};
 use super::path::{InStop, Path};
 use crate::dynamics::result::Phase;
 use crate::dynamics::series::ROOM;
-use crate::numeric::{GROUP, GaussLegendre, Lanes, MOST_GROUPS, Number, Scalar, Values, bisect};
+use crate::numeric::{GROUP, GaussLegendre, Lanes, MAX_GROUPS, Number, Scalar, Values, bisect};
 
 /// Numbers at the points of a group.
 type Group<T> = Lanes<GROUP, T>;
@@ -39,7 +39,7 @@ impl<T: Scalar> Impact<T> {
     fn exactly_at(&self, y: T) -> (Place<T>, T) {
         let start = T::of(-1.0);
         let (mut m, mut t): (Values<T>, Values<T>) =
-            ([Lanes::zero(); MOST_GROUPS], [Lanes::zero(); MOST_GROUPS]);
+            ([Lanes::zero(); MAX_GROUPS], [Lanes::zero(); MAX_GROUPS]);
         for group in 0..self.rule.groups() {
             let point = self.between((start, y), group).0;
             (m[group], t[group]) = (point.amplitude_slope, point.time_slope);
@@ -86,7 +86,7 @@ impl<T: Scalar> Impact<T> {
     fn integral(&self, (from, to): (T, T), of: impl Fn(Group<T>, Group<T>, Group<T>) -> Group<T>) -> T {
         let (one, whole) = (T::of(1.0), from == T::zero() && to == T::of(2.0));
         let half = if whole { one } else { (to - from) * T::of(0.5) };
-        let mut values: Values<T> = [Lanes::zero(); MOST_GROUPS];
+        let mut values: Values<T> = [Lanes::zero(); MAX_GROUPS];
         for (group, value) in values[..self.rule.groups()].iter_mut().enumerate() {
             let (t, u, w, slope) = if whole {
                 (self.time[group], self.root[group], self.speed[group], self.time_slope[group])

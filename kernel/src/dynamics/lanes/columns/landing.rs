@@ -187,7 +187,7 @@ fn roots<const W: usize>(
         let pair = |(value, slope): (Lanes<W>, Lanes<W>)| (value.0[lane], slope.0[lane]);
         share.0[lane] = single_root::guess(pair(first), pair(last));
     }
-    for _ in 0..single_root::MOST_STEPS {
+    for _ in 0..single_root::MAX_STEPS {
         let (value, slope, half_curvature) = single_root::expansion(g, share);
         let mut missing = false;
         for lane in 0..W {
