@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use interwell::output::{Caption, identified, identified_chart};
-use interwell::scene::{Ask, Channel, Measured, Quantity, Timing, read_measured};
+use interwell::scene::{Channel, ColumnRequest, Measured, Quantity, Timing, read_measured};
 use interwell::study::{
     FORCE_POINTS, Identified, Identity, Unidentified, damping, force, restitution, restitution_of_times,
 };
@@ -223,7 +223,12 @@ impl Identification<'_> {
         let values = of_values(&[Quantity::Displacement]);
         let ([times, values], base) = if options.base.is_some() {
             let names = ["--base", "--base-unit"];
-            let base = Ask::by_options(&[Quantity::Acceleration], &options.base, &options.base_unit, names);
+            let base = ColumnRequest::by_options(
+                &[Quantity::Acceleration],
+                &options.base,
+                &options.base_unit,
+                names,
+            );
             let [times, values, base] = self.cut(self.read(&[times, values, base])?)?.channels;
             ([times, values], Some(base.values))
         } else {
@@ -234,7 +239,7 @@ impl Identification<'_> {
         Ok(Answer { timing: Some(Timing::of(&times.values)), found, across: times.values, values })
     }
 
-    fn read<const N: usize>(&self, asks: &[Ask; N]) -> Result<Measured<N>, Failure> {
+    fn read<const N: usize>(&self, asks: &[ColumnRequest; N]) -> Result<Measured<N>, Failure> {
         let record = read_measured(self.file, asks).map_err(|problem| self.about(problem))?;
         self.common.say(&format!("{}: {}", self.file.display(), columns_read(&record)));
         Ok(record)

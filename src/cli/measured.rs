@@ -9,7 +9,7 @@ use interwell::dynamics::Model;
 use interwell::mechanics::Mechanism;
 use interwell::numeric::short;
 use interwell::output::aligned;
-use interwell::scene::{Ask, Channel, Measured, Quantity, Scene, read_measured};
+use interwell::scene::{Channel, ColumnRequest, Measured, Quantity, Scene, read_measured};
 use interwell::study::{
     Comparison, ForceComparison, MeasuredMotion, NoComparison, compare, compare_force, metres,
 };
@@ -40,13 +40,13 @@ pub struct ColumnOptions {
 
 impl ColumnOptions {
     /// The request to the record for the times.
-    pub fn times(&self) -> Ask {
-        Ask::by_options(&[Quantity::Time], &self.time, &self.time_unit, ["--time", "--time-unit"])
+    pub fn times(&self) -> ColumnRequest {
+        ColumnRequest::by_options(&[Quantity::Time], &self.time, &self.time_unit, ["--time", "--time-unit"])
     }
 
     /// The request to the record for values of the first of these quantities that it has.
-    pub fn values(&self, quantities: &[Quantity]) -> Ask {
-        Ask::by_options(quantities, &self.column, &self.unit, ["--column", "--unit"])
+    pub fn values(&self, quantities: &[Quantity]) -> ColumnRequest {
+        ColumnRequest::by_options(quantities, &self.column, &self.unit, ["--column", "--unit"])
     }
 }
 
@@ -64,9 +64,9 @@ pub struct PositionOptions {
 
 impl PositionOptions {
     /// The request to the record for the positions.
-    pub fn positions(&self) -> Ask {
+    pub fn positions(&self) -> ColumnRequest {
         let names = ["--position", "--position-unit"];
-        Ask::by_options(&[Quantity::Displacement], &self.position, &self.position_unit, names)
+        ColumnRequest::by_options(&[Quantity::Displacement], &self.position, &self.position_unit, names)
     }
 }
 
@@ -240,7 +240,8 @@ impl MeasuredForceOptions {
         };
         let offset = offset(self.offset_mm.as_deref())?;
         let name = path.display();
-        let force = Ask::by_options(&[Quantity::Force], &self.column, &self.unit, ["--column", "--unit"]);
+        let force =
+            ColumnRequest::by_options(&[Quantity::Force], &self.column, &self.unit, ["--column", "--unit"]);
         let about =
             |problem: &dyn std::fmt::Display| Failure::argument(format!("--measured {name}: {problem}"));
         let record =
