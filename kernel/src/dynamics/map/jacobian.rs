@@ -76,7 +76,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn eigenvalues_of_both_kinds() {
+    fn real_and_complex_eigenvalues() {
         let real = Jacobian { rows: [[2.0, 1.0], [1.0, 2.0]] };
         let parts = |jacobian: &Jacobian| {
             jacobian.multipliers(jacobian.determinant()).map(|multiplier| (multiplier.re, multiplier.im))

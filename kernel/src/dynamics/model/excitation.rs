@@ -109,9 +109,9 @@ pub struct NoisePart {
 impl ExcitationParts {
     /// Fails if a record has not been read.
     pub(crate) fn new(excitation: &Excitation) -> Result<Self, Fault> {
-        let mut motion = Self::default();
-        motion.add(excitation, "excitation")?;
-        Ok(motion)
+        let mut parts = Self::default();
+        parts.add(excitation, "excitation")?;
+        Ok(parts)
     }
 
     fn add(&mut self, excitation: &Excitation, path: &str) -> Result<(), Fault> {

@@ -41,7 +41,7 @@ impl<T: Scalar> Penetration<T> {
     /// The fraction of a step of length `h` at which the mass separates from the stop.
     pub fn separation(&self, h: T, changes: &Changes<T>) -> Option<T> {
         let rise = self.root[1] * h;
-        // (at touch the root is 0 and rises)
+        // at touch the root is 0 and rises
         if self.root[0] > changes.root || self.root[0] == T::zero() && rise + rise > changes.root {
             return None;
         }
@@ -52,8 +52,8 @@ impl<T: Scalar> Penetration<T> {
         if g[from] > T::zero() { PolynomialRoots::new(&g[from..n]).first() } else { Some(T::zero()) }
     }
 
-    /// The fraction of a step of length `h` at which the contact becomes clipped or ceases to be: 1 + a w
-    /// changes its sign. `passed`: it is 0 by definition at the start of the step.
+    /// The fraction of a step of length `h` at which clipping begins or ends: 1 + a w changes its sign.
+    /// `passed`: it is 0 by definition at the start of the step.
     pub fn clip_change(&self, h: T, passed: bool, changes: &Changes<T>) -> Option<T> {
         let start = T::of(1.0) + self.stop.loss * self.speed[0];
         if !(self.stop.loss > T::zero()) || start.abs() > self.stop.loss * changes.speed {

@@ -192,7 +192,7 @@ impl<T: Scalar> Impact<T> {
         }
         let end = self.motion(|value| value, T::sqrt, [amplitude, time, T::of(1.0)]).speed;
         let groups = self.amplitude[..self.rule.groups()].iter();
-        // (between the points too)
+        // also between the points
         self.max_root = groups.flat_map(|group| group.0).fold(self.first, T::larger) * T::of(1.001);
         (end < T::zero() && -end <= speed * T::of(MAX_GAIN)).then_some(Separation { time, speed: end })
     }
@@ -269,7 +269,7 @@ impl<T: Scalar> Impact<T> {
             let change = self.rule.total(&self.change);
             if sweep > 0 {
                 rate = rate.larger(change / last);
-                // (the first change is relative to slopes of 0 and does not measure the rate)
+                // the first change is relative to slopes of 0 and does not measure the rate
                 if sweep > 1 && change * rate <= tolerance {
                     return Some((m, t));
                 }

@@ -124,7 +124,7 @@ impl<T: Scalar> Path<T> for Impact<T> {
     }
     fn position(&self, parameter: T) -> T {
         let y = parameter - T::of(1.0);
-        // (the position at the turn is needed for nearly every impact)
+        // the position at the turn is needed for nearly every impact
         let root = if y == T::zero() { self.turn() } else { self.exactly_at(y).0.root };
         self.surface + self.sign * (root * root)
     }
@@ -165,7 +165,7 @@ impl<T: Scalar> InStop<T> for Impact<T> {
         self.stop.stiffness * self.stop.loss * self.integral((from, to), |_, u, w| u * u * u * (w * w))
     }
 
-    /// (The force is largest on the way in, when the loss adds to it.)
+    /// The force is largest while the depth increases, when the loss adds to it.
     fn peak(&self, _: T, _: T, known: T) -> T {
         if !(self.stop.force(self.max_root, self.touch_speed) > known) {
             return known;
