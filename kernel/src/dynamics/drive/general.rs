@@ -106,7 +106,8 @@ impl<T: Scalar> Tail<T> for General<T> {
 }
 
 impl<T: Scalar> Base<T> for General<T> {
-    /// As the first coefficient, with the same order of sums, but records are evaluated by their lines.
+    /// Equal to the first coefficient, summed in the same order, except that records are evaluated by their
+    /// lines.
     fn acceleration(&self, at: &Instant<T>, segment: usize) -> T {
         if let Some(sine) = &self.sine {
             return sine.acceleration(at, segment);

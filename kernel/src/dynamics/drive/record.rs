@@ -86,7 +86,7 @@ impl<T: Scalar> Record<T> {
         }
     }
 
-    /// The value by the lines: at the last sample its value, and zero after it.
+    /// The value of the lines: that of the last sample at its time, and zero after it.
     pub fn exact(&self, at: &Instant<T>, segment: usize) -> T {
         match self.place(at, segment) {
             Place::Line(_) if self.is_last_sample(at) => {

@@ -1,9 +1,9 @@
 //! Live run: a motion that is changed while it runs.
 //!
 //! A [`Live`] run is the integrator of [`Model::run`] without an end. It steps ahead of the time that it has
-//! been advanced to, and its output does not depend on how often it is advanced: a run that is advanced in
-//! any pieces takes the same steps as one that is not, to the bit. The state at a time between two steps is
-//! computed by repeating the last step up to that time.
+//! been advanced to, and its output does not depend on how often it is advanced: the steps have the same bits
+//! for any sequence of calls. The state at a time between two steps is computed by repeating the last step up
+//! to that time.
 //!
 //! A change of the model takes effect at the present time: the state is kept as far as the new stops and the
 //! new curve allow, and the drive continues in phase. Energy that a change adds or removes (a stop dragged

@@ -39,7 +39,7 @@ impl Jacobian {
         self.rows[0][0] + self.rows[1][1]
     }
 
-    /// The chain rule: these derivatives, of the later part of a motion, times those of the part before it.
+    /// The chain rule: these derivatives, of the later part of a motion, times those of the `earlier` part.
     #[must_use]
     pub fn after(&self, earlier: &Self) -> Self {
         let (later, other) = (&self.rows, &earlier.rows);

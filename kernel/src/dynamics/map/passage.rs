@@ -52,7 +52,7 @@ impl Passage {
         self.misses.iter().map(|miss| miss.gap).reduce(f64::min)
     }
 
-    /// This passage followed by its mirror image, `later` seconds after it, which ends mirrored too.
+    /// This passage followed by its mirror image, `later` seconds after it; the final state is mirrored.
     #[must_use]
     pub fn with_mirror_image(mut self, later: f64) -> Self {
         let image = |event: &Event| Event {

@@ -238,7 +238,7 @@ impl ExcitationParts {
         }
     }
 
-    /// Amplitude in m/s^2 and angular frequency in 1/s (a constant, a record: 0) of each part, for the
+    /// Amplitude in m/s^2 and angular frequency in 1/s (0 for a constant and a record) of each part, for the
     /// scales.
     pub(crate) fn parts(&self) -> Vec<(f64, f64)> {
         let mut parts = vec![(self.constant.abs(), 0.0)];

@@ -232,8 +232,8 @@ impl Model {
         alike && self.mechanism.curve.is_odd() && self.crossing_level.is_none_or(|level| level == 0.0)
     }
 
-    /// Whether the mirror image of a motion is a motion half a forcing period later. The drive is mirrored
-    /// then if each of its tones makes an odd number of turns in the period.
+    /// Whether the mirror image of a motion, half a forcing period later, is a motion too. The drive is
+    /// mirrored after that time if each of its tones makes an odd number of turns in the period.
     pub fn mirrors_in_half_a_period(&self) -> bool {
         let ExcitationParts { constant, tones, .. } = &self.excitation;
         let odd = |period: f64| tones.iter().all(|tone| (tone.frequency * period).round() % 2.0 == 1.0);

@@ -12,7 +12,7 @@ use crate::mechanics::{Hertz, Mechanism};
 use crate::numeric::{DoubleDouble, Number, Scalar};
 use crate::scene;
 
-/// Defines a method of [`Model`] for each of these fields, which returns it.
+/// Defines, for each of these fields, a method of [`Model`] that returns it.
 macro_rules! accessors {
     ($($(#[$doc:meta])* $field:ident: $type:ty,)*) => {
         impl Model {

@@ -6,7 +6,7 @@
 //! - rate w: the square root of the largest stiffness magnitude over mass among the wells' inner sides and
 //!   the barrier (one well: at the well; none: at the start); without stiffness the drive's fastest tone;
 //!   without both, sqrt(acceleration over length), or speed over length. The inner side of a well that lies
-//!   beyond a kink is the slope just inside the kink, as for a damping ratio: flexures rest some um beyond
+//!   beyond a kink is the slope just inside the kink, as for a damping ratio: flexures rest a few um beyond
 //!   their kink, where the stiffness is 30 times as large, and the scales must not jump when a slider moves
 //!   the well across the kink;
 //! - length L: the largest of half the distance between the wells, the start's distance from the barrier (or

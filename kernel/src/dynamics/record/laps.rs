@@ -52,7 +52,7 @@ impl<T: Scalar> Recorder<'_, T> {
         }
     }
 
-    /// The number of half cycles of the clock between two instants, if it is odd and whole.
+    /// The number of half cycles of the clock between two instants, if it is an odd whole number.
     pub fn odd_half_cycles(&self, from: &Instant<T>, to: &Instant<T>) -> Option<i64> {
         let halves = self.clock.between(from, to) / (self.clock.period * T::of(0.5));
         let whole = (halves + T::of(0.5)).floor();
@@ -60,8 +60,8 @@ impl<T: Scalar> Recorder<'_, T> {
         ((halves - whole).abs() <= T::of(CLEAR) && count % 2 == 1).then_some(count)
     }
 
-    /// Number of laps of `cycles` cycles of the clock from `at` on, up to `end`, that are on the same side of
-    /// the window's borders as the last one, which was `inside` or not.
+    /// Number of whole laps of `cycles` cycles of the clock between `at` and `end` that lie on the same side
+    /// of the window's borders as the last lap, which lay `inside` the window or not.
     pub fn laps_on_this_side(&self, at: &Instant<T>, end: &Instant<T>, cycles: i64, inside: bool) -> i64 {
         let (from, to) = self.window;
         let border =

@@ -16,7 +16,7 @@ pub(crate) const MAX_STROBES: u32 = 1 << 22;
 #[derive(Debug, Clone)]
 pub(crate) struct Listing<T> {
     next: Instant<T>,
-    /// Number of states still to be listed; `None` if only the last state is kept, of any number.
+    /// Number of states still to be listed; `None` if only the last state is kept.
     left: Option<u64>,
     /// Cycles of the clock between two states.
     cycles: i64,

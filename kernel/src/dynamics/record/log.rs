@@ -125,7 +125,7 @@ impl<T: Scalar> Log<T> {
         self.marks[mark].point.state.at
     }
 
-    /// The last mark from `first` on that, shifted by `later`, is not after `end`.
+    /// The last mark, `first` or a later one, that is not after `end` when shifted by `later`.
     pub fn last_before(&self, first: usize, later: CycleShift, end: &Instant<T>, clock: &Clock<T>) -> usize {
         let reached = |mark: &Mark<T>| clock.between(&later.instant(&mark.point.state.at), end) >= T::zero();
         first + self.marks[first + 1..].partition_point(reached)
@@ -172,8 +172,8 @@ impl<T: Scalar> Log<T> {
         (entries.len(), impacts)
     }
 
-    /// Appends the mirror image of everything from mark `first` on, later by half a cycle and `cycles` whole
-    /// cycles of the clock; `modes` is the number of modes.
+    /// Appends the mirror image of everything from mark `first` on, delayed by half a cycle and `cycles`
+    /// whole cycles of the clock; `modes` is the number of modes.
     pub fn append_mirrored(&mut self, first: usize, cycles: i64, modes: usize, clock: &Clock<T>) {
         let half = clock.period * T::of(0.5);
         let instant = |at: &Instant<T>| {

@@ -1,4 +1,4 @@
-//! Repetition of a motion: of its stroboscopic states and of its crossings, determined while they arrive.
+//! Repetition of a motion, by its stroboscopic states and by its crossings, updated as they arrive.
 //!
 //! Only the last twelve forcing periods and some states at the start and the middle of the window are kept,
 //! so a window may have any length.
@@ -11,7 +11,7 @@ use crate::dynamics::result::Side;
 pub(crate) const LONGEST: usize = 12;
 
 /// Two crossings repeat if their times within the period agree to this share of a forcing period: well above
-/// the rest of a transient after half a run, well below the scatter of irregular motion.
+/// what is left of a transient after half a run, well below the scatter of irregular motion.
 const CROSSING_MATCH: f64 = 1e-2;
 
 /// Two stroboscopic states repeat if they agree to this share of the scene's scales: fine enough to see a
@@ -155,9 +155,9 @@ impl Strobes {
         Some((q as u32, self.since[q as usize - 1]))
     }
 
-    /// Whether a motion whose states come back after `q` of them stays where it is. In a slow drift
-    /// neighbouring states are equal too, so the last states of the window are compared with those about half
-    /// a window and a whole window earlier.
+    /// Whether a motion whose states repeat after `q` states does not drift. In a slow drift neighbouring
+    /// states are equal too, so the last states of the window are compared with those about half a window and
+    /// a whole window earlier.
     fn stands_still(&self, q: u64) -> bool {
         let apart = self.periods / (2 * q) * q;
         let whole = 2 * apart;
@@ -350,7 +350,7 @@ mod tests {
                     let case = format!("{rate} {window} {remains}: {found:?}");
                     if let Some((period, _)) = found {
                         assert!(period == 1 || (period == 2 && rate < 0.0), "{case}");
-                        // it stays where it is, or has moved by no more than can be detected
+                        // it does not drift, or by less than can be detected
                         let moves = (first - last).abs() > 2.5 * MAX_STILL_CHANGE;
                         assert!(!moves || (last <= 2.0 * STATE_MATCH && rate.abs() < 1.0), "{case}");
                     } else if first.max(last) <= 0.5 * STATE_MATCH && window >= 4 {

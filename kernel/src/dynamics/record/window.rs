@@ -71,7 +71,7 @@ impl<'a, T: Scalar> Recorder<'a, T> {
         }
     }
 
-    /// Start and end of the part of the settled window, in s, that a run reached that ended at `end`.
+    /// Start and end, in s, of the part of the settled window that is reached by a run that ends at `end`.
     pub(crate) fn window_seconds(&self, end: &Instant<T>) -> (f64, f64) {
         let (from, to) = &self.window;
         let reached = if self.clock.between(to, end) > T::zero() { to } else { end };
@@ -129,7 +129,8 @@ impl<'a, T: Scalar> Recorder<'a, T> {
         }
     }
 
-    /// Closes the listings at `end`, the end of the run. Returns the section and the state to be carried on.
+    /// Closes the listings at `end`, the end of the run. Returns the section, and the state from which
+    /// another run can continue.
     pub(crate) fn listed(
         &mut self,
         end: &Instant<T>,

@@ -21,7 +21,7 @@ const MIN_SPEED_SHARE: f64 = 1e-4;
 
 /// Tolerance of a step in contact relative to that of free flight. A contact takes a dozen steps whose errors
 /// have one sign, and an elastic mass makes thousands of contacts; with this share its energy drifts by
-/// thousandths of the tolerance in each. It costs one step in ten.
+/// thousandths of the tolerance in each contact. The share adds one step in ten.
 const CONTACT_SHARE: f64 = 0.03;
 
 /// Orders by which the series of a contact exceeds that of free flight, because of this tolerance.

@@ -103,7 +103,7 @@ impl<T: Scalar> Penetration<T> {
         self.surface + self.sign * (at.root * at.root)
     }
 
-    /// Forces over mass in a state: the given one of the mechanism, the base's by its series, the stop's.
+    /// Forces over mass in a state: of the mechanism (as given), of the base (by its series) and of the stop.
     fn forces(&self, at: &ContactState<T>, force: T) -> (T, T, T) {
         let levels = self.known_drive.min(self.terms.of_drive());
         let base = polynomial::value(&self.inner.a[..levels], at.time);
@@ -113,7 +113,7 @@ impl<T: Scalar> Penetration<T> {
 }
 
 impl<T: Scalar> InStop<T> for Penetration<T> {
-    /// By the loss of the stop or, if the contact is clipped, the energy that it had stored.
+    /// The loss of the stop or, while the contact is clipped, the stored energy that is not returned.
     fn loss(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T {
         if self.clipped {
             return self.stop.stored(self.root_at(from)) - self.stop.stored(self.root_at(to));
@@ -181,8 +181,8 @@ impl<T: Scalar> Path<T> for Penetration<T> {
     fn time(&self, parameter: T) -> T {
         self.at(&self.time, parameter)
     }
-    /// Time increases along a step of contact, but its slope is 0 at touch and separation, where it can be
-    /// inverted to half the digits only; the mass moves correspondingly little there.
+    /// Time increases along a step of contact, but its slope is 0 at touch and separation, so it can be
+    /// inverted there only to half the digits; the mass moves correspondingly little.
     fn parameter(&self, time: T, length: T) -> T {
         if !(time > T::zero()) {
             return T::zero();

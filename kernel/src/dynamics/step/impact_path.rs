@@ -35,7 +35,8 @@ impl<T: Scalar> Impact<T> {
         (self.motion(|value| value, T::sqrt, [m, t, y]), t)
     }
 
-    /// The same, as accurate as at the ends: the interpolated slopes are less accurate than their integrals.
+    /// The same, as accurate as at the ends, by integrals of the slopes up to `y`: the interpolated slopes
+    /// are less accurate than their integrals.
     fn exactly_at(&self, y: T) -> (Place<T>, T) {
         let start = T::of(-1.0);
         let (mut m, mut t): (Values<T>, Values<T>) =

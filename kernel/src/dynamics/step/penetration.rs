@@ -157,7 +157,7 @@ impl<T: Scalar> Penetration<T> {
         let sign = self.sign;
         let stiffness = if self.clipped { T::zero() } else { self.stop.stiffness };
         let constants = Constants {
-            // As forces outward of the stop over depth; the odd ones keep their sign.
+            // As outward forces over depth; the odd coefficients keep their sign.
             force: [sign * f0, f1, sign * f2, f3, sign * f4],
             stiffness,
             loss: stiffness * self.stop.loss,

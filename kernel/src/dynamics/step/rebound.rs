@@ -16,7 +16,8 @@ use crate::numeric::Scalar;
 const MAX_STEPS: usize = 12;
 
 impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
-    /// Whether the next step has the full order and starts from no surface or leaves one by its speed.
+    /// Whether the next step has the full order, and either touches no surface at its start or leaves one
+    /// with speed.
     pub fn flies_freely(&mut self, state: &MotionState<T>) -> bool {
         match state.touch {
             None => true,
