@@ -113,8 +113,7 @@ impl Hertz {
         (2.5 * mass * self.energy_speed(speed).powi(2) / (2.0 * self.stiffness)).powf(0.4)
     }
 
-    /// Duration in s of the impact of `mass` in kg at `speed` in m/s; without other forces. Infinite
-    /// at speed 0.
+    /// Duration in s of the impact of `mass` in kg at `speed` in m/s, above 0; without other forces.
     ///
     /// Without loss it is (4/5) B(2/5, 1/2) d/v = 2.943 d/v, where d is the largest depth; with loss it is
     /// integrated by Gauss' rule over the angle, to about 1e-13.

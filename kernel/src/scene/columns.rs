@@ -91,7 +91,6 @@ pub fn read_columns<const N: usize>(
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Separators {
-    /// A comma.
     Comma,
     /// A semicolon or a tab if the header has one, with decimal points or commas in the numbers; otherwise a
     /// comma. A header of numbers is rejected, as is a row with more values than the header has names.

@@ -99,7 +99,6 @@ pub(crate) struct Impact<T: Copy> {
     pub rule: &'static Collocation,
     /// Inward acceleration by everything but the stop at touch, A0.
     pub pressing: T,
-    /// Speed at touch.
     pub touch_speed: T,
     /// m at touch.
     pub first: T,
