@@ -1,7 +1,8 @@
-//! Scenes, mechanisms and their motion: what the studies, the command line and the window of interwell use.
+//! Scenes, mechanisms and the integrator: the base of the studies, the command line and the window of
+//! interwell.
 //!
-//! It is a crate of its own so that a change above it compiles no integrator. Programs use it by the crate
-//! `interwell`, which shows its modules as its own and says what each layer holds.
+//! It is a separate crate so that a change in the studies or the window does not recompile the integrator.
+//! Programs use the crate `interwell`, which re-exports these modules and describes each layer.
 
 pub mod dynamics;
 pub mod mechanics;

@@ -10,7 +10,7 @@ use interwell::mechanics::Mechanism;
 use interwell::numeric::short;
 use interwell::output::aligned;
 use interwell::questions::columns_read;
-use interwell::scene::{Ask, Measured, Quantity, Scene, read_measured};
+use interwell::scene::{ColumnRequest, Measured, Quantity, Scene, read_measured};
 use interwell::study::{
     Comparison, ForceComparison, MeasuredMotion, NoComparison, compare, compare_force, metres,
 };
@@ -41,13 +41,13 @@ pub struct ColumnOptions {
 
 impl ColumnOptions {
     /// The request to the record for the times.
-    pub fn times(&self) -> Ask {
-        Ask::by_options(&[Quantity::Time], &self.time, &self.time_unit, ["--time", "--time-unit"])
+    pub fn times(&self) -> ColumnRequest {
+        ColumnRequest::by_options(&[Quantity::Time], &self.time, &self.time_unit, ["--time", "--time-unit"])
     }
 
     /// The request to the record for values of the first of these quantities that it has.
-    pub fn values(&self, quantities: &[Quantity]) -> Ask {
-        Ask::by_options(quantities, &self.column, &self.unit, ["--column", "--unit"])
+    pub fn values(&self, quantities: &[Quantity]) -> ColumnRequest {
+        ColumnRequest::by_options(quantities, &self.column, &self.unit, ["--column", "--unit"])
     }
 }
 
@@ -65,9 +65,9 @@ pub struct PositionOptions {
 
 impl PositionOptions {
     /// The request to the record for the positions.
-    pub fn positions(&self) -> Ask {
+    pub fn positions(&self) -> ColumnRequest {
         let names = ["--position", "--position-unit"];
-        Ask::by_options(&[Quantity::Displacement], &self.position, &self.position_unit, names)
+        ColumnRequest::by_options(&[Quantity::Displacement], &self.position, &self.position_unit, names)
     }
 }
 
@@ -234,7 +234,8 @@ impl MeasuredForceOptions {
         };
         let offset = offset(self.offset_mm.as_deref())?;
         let name = path.display();
-        let force = Ask::by_options(&[Quantity::Force], &self.column, &self.unit, ["--column", "--unit"]);
+        let force =
+            ColumnRequest::by_options(&[Quantity::Force], &self.column, &self.unit, ["--column", "--unit"]);
         let about =
             |problem: &dyn std::fmt::Display| Failure::argument(format!("--measured {name}: {problem}"));
         let record =

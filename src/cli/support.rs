@@ -79,7 +79,7 @@ pub fn load_held(
 ) -> Result<(Document, Vec<String>), SceneError> {
     let (mut document, warnings) = load(spec, common, over)?;
     if is_regular(common.out()) {
-        document.hold_files();
+        document.cache_files();
     }
     Ok((document, warnings))
 }

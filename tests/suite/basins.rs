@@ -238,9 +238,9 @@ fn a_pursuit_has_the_same_bits_in_any_number_of_lanes() {
                 known: &[],
                 regions: &[],
                 repeats_from: 0,
-                most_periods: 60,
+                max_periods: 60,
                 releases: own as u32 % 3,
-                most_work: u64::MAX,
+                max_work: u64::MAX,
             })
             .collect();
         let texts = |all: Vec<Pursued>| {
@@ -275,9 +275,9 @@ fn a_pursuit_comes_to_the_first_release_of_the_run() {
         for own in 0..60_u32 {
             let start = (1.5e-3 * (f64::from(own) / 30.0 - 1.0), f64::from(own % 11) / 10.0 - 0.5);
             let (known, regions, repeats_from, releases) = (&[], &[], u64::MAX, own % 2);
-            let most_work = u64::MAX;
+            let max_work = u64::MAX;
             let pursuit =
-                Pursuit { start, known, regions, repeats_from, most_periods: 60, releases, most_work };
+                Pursuit { start, known, regions, repeats_from, max_periods: 60, releases, max_work };
             let run = model.with_start(start).with_duration(10.0 * period, 0.0);
             let events = run.run(&Request { events: true, ..Request::default() }).events;
             let release =
@@ -301,9 +301,9 @@ fn a_pursuit_ends_where_its_work_is_done() {
         known: &[],
         regions: &[],
         repeats_from: u64::MAX,
-        most_periods: 1000,
+        max_periods: 1000,
         releases: 0,
-        most_work: 1_000_000,
+        max_work: 1_000_000,
     };
     for width in [1, 4, 8, 16] {
         for pursued in model.pursue_in_lanes(&[pursuit; 20], width).unwrap_or_default() {

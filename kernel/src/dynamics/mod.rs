@@ -7,7 +7,7 @@
 //! - `model`: a scene prepared for a run, in SI: its data, checks, scales and description.
 //! - `equation`: the model in kernel units, cut into modes of one polynomial each, and the laws of the stops.
 //! - `series`: Taylor series of displacement and force, and functions of their polynomials.
-//! - `drive`: the excitation in kernel units, continued as a series, and the search for its release roots.
+//! - `drive`: the excitation in kernel units, its series, and the search for release roots.
 //! - `state`: all data that the next step depends on.
 //! - `step`: the stepper, which makes a step from a state: its length, its first event, its evaluation.
 //! - `record`: the recorder, which takes statistics, events and samples from steps, and the log of its calls.
@@ -15,8 +15,8 @@
 //! - `contact`: events of a motion: impact, rest, release, compliant contact, breaks.
 //! - `run`: the loop from event to event, the fast path of event-free steps, recurrence, and the verdict.
 //! - `map`: the stroboscopic map with its derivatives, through every event.
-//! - `lanes`: batches: event-free steps of several runs by the same instructions.
-//! - `live`: a run without an end, which may be changed while it runs.
+//! - `lanes`: batches, which take event-free steps of several runs by the same instructions.
+//! - `live`: a run without a fixed end, whose model may be changed while it runs.
 //!
 //! [`Model::run`] is defined in `run`, [`Model::run_all`] in `lanes`.
 
@@ -37,8 +37,7 @@ mod state;
 mod step;
 
 pub use live::{Live, LiveLedger, LiveOutput};
-pub use map::Miss;
-pub use map::{Jacobian, Multiplier, Passage, StroboscopicMap};
+pub use map::{Jacobian, Miss, Multiplier, Passage, StroboscopicMap};
 pub use model::Model;
 pub use model::excitation::{ChirpPart, ExcitationParts, NoisePart, STANDARD_GRAVITY, TonePart};
 pub use model::scales::Scales;

@@ -8,10 +8,10 @@
 //!
 //! Three rules keep events reliable:
 //!
-//! - After a located event the state is put exactly on the surface, and the next step knows it ([`Touch`]):
-//!   the gap polynomial starts with coefficients that are 0 by definition (one after a rebound or a break,
-//!   two after a plastic impact, three after a release). It is divided by that power of time, so the same
-//!   contact cannot be found again, however short the flight. Since x = D exactly, the gap needs no
+//! - After a located event the state is put exactly on the surface, which the next step takes into account
+//!   ([`Touch`]): the gap polynomial starts with coefficients that are 0 by definition (one after a rebound
+//!   or a break, two after a plastic impact, three after a release). It is divided by that power of time, so
+//!   the same contact cannot be found again, however short the flight. Since x = D exactly, the gap needs no
 //!   difference of large numbers: a flight at 1e-6 m/s has the same relative accuracy as one at 1 m/s.
 //! - A rebound that is pressed back lasts about 2 v / a, so the series is extended only until its terms are
 //!   negligible over that time: four or five coefficients, where a full step has sixteen. Its end is the one
@@ -42,7 +42,7 @@ pub(crate) struct Motion<'a, T: Scalar, D: Drive<T>> {
     pub log: Option<Box<Log<T>>>,
     pub steps: u64,
     /// The segment of the drive and the instant since which the search has found no release.
-    pub searched: Option<(usize, Instant<T>)>,
+    pub no_release_since: Option<(usize, Instant<T>)>,
     /// Whether windows may be completed from a recurrence.
     pub may_recur: bool,
     /// Whether the present window may still be completed from a recurrence.
@@ -51,7 +51,7 @@ pub(crate) struct Motion<'a, T: Scalar, D: Drive<T>> {
     pub symmetric: bool,
     /// The identity of the release that has just happened.
     pub label: Option<Label<T>>,
-    /// Latest time in s to which the run goes on until the motion repeats.
+    /// Latest time in s to which the run is extended until the motion repeats.
     pub until_settled: Option<f64>,
 }
 
@@ -83,7 +83,7 @@ impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
             record,
             log: None,
             steps: 0,
-            searched: None,
+            no_release_since: None,
             may_recur: false,
             recurs: false,
             symmetric: false,
@@ -108,7 +108,7 @@ impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
         self.record.barrier_side = self.record.barrier.map_or(0, |barrier| side_of(x, barrier));
     }
 
-    /// The present state, from which another motion of the same scene can go on.
+    /// The present state, from which another motion of the same scene can continue.
     pub fn checkpoint(&self) -> Checkpoint<T> {
         Checkpoint { state: self.state, barrier_side: self.record.barrier_side }
     }
@@ -120,7 +120,7 @@ impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
     }
 
     /// Passes a call to the recorder, and to the log if there is one.
-    #[inline(always)] // so that only what is kept of the call is made
+    #[inline(always)] // so that unused fields of the call are not computed
     pub fn report(&mut self, call: Call<T>) {
         if let Some(log) = &mut self.log {
             log.add(call);

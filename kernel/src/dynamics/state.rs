@@ -5,7 +5,7 @@ use super::equation::End;
 use super::result::{Outcome, Phase};
 use crate::numeric::Scalar;
 
-/// A surface that the mass touches at the start of a step, and what opens the gap to it.
+/// A surface that the mass touches at the start of a step, and the derivative that opens the gap to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Touch {
     pub end: End,
@@ -23,7 +23,7 @@ pub(crate) enum Opening {
     /// None of these; the next coefficients decide.
     Undecided,
     /// The surface is ignored for one step: the mass leaves a break on neither side.
-    Held,
+    Ignored,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,9 +32,9 @@ pub(crate) enum Contact {
     Resting(End),
     /// At rest in an equilibrium that nothing disturbs.
     Motionless,
+    /// In the compliant stop at this end, which pushes back.
     Compressing(End),
-    /// In clipped contact with it: behind its untouched surface, which does not follow the mass, since the
-    /// stop would have to pull.
+    /// In the compliant stop at this end, with the force clipped to 0, since the stop would have to pull.
     Clipped(End),
 }
 
@@ -43,7 +43,7 @@ pub(crate) enum Contact {
 pub(crate) struct Depth<T> {
     /// Root of the depth; 0 outside.
     pub root: T,
-    /// Whether the contact became clipped, or ceased to be, at this instant.
+    /// Whether clipping of the contact force began or ended at this instant.
     pub clip_changed: bool,
 }
 
@@ -61,7 +61,7 @@ pub(crate) struct MotionState<T> {
     pub touch: Option<Touch>,
     pub contact: Contact,
     /// The instant of a release after which the mass did not leave the stop.
-    pub refused: Option<Instant<T>>,
+    pub failed_release: Option<Instant<T>>,
     /// Whether the mass has changed its mode at a break without moving.
     pub turned_back: bool,
     pub depth: Depth<T>,
@@ -79,7 +79,7 @@ impl<T: Scalar> MotionState<T> {
             segment: 0,
             touch: None,
             contact,
-            refused: None,
+            failed_release: None,
             turned_back: false,
             depth: Depth { root: T::zero(), clip_changed: false },
         }
@@ -145,5 +145,5 @@ pub(crate) struct Label<T> {
     pub phase: T,
 }
 
-/// `None` while the motion goes on; otherwise how the run has ended.
+/// `None` while the motion continues; otherwise how the run has ended.
 pub(crate) type Flow = Option<Outcome>;

@@ -2,9 +2,9 @@
 //! several.
 //!
 //! Each piece between two breaks is a polynomial about its own origin. Potential and stiffness follow
-//! exactly, by integration and differentiation of the same coefficients. The piece is a *mode* of the motion.
-//! A run changes it only at a located crossing of a break and never looks it up by x, because rounding could
-//! put x on the wrong side of the break.
+//! exactly, by integration and differentiation of the same coefficients. During a run the piece is a *mode*
+//! of the motion: it changes only at a located crossing of a break and is never looked up by x, because
+//! rounding could put x on the wrong side of the break.
 
 /// One polynomial piece: `F(x) = sum coefficients[i] (x - origin)^i`.
 #[derive(Debug, Clone, PartialEq)]
@@ -253,7 +253,7 @@ const SAME_BREAK: f64 = 8.0 * f64::EPSILON;
 /// The sum of `parts` on the intersection of their domains; `None` if that is empty. Its breaks are those of
 /// all parts, and each of its pieces is the sum of their polynomials.
 ///
-/// Guarantee: exact but for rounding. Polynomials about the same origin are added coefficient by coefficient;
+/// Guarantee: exact up to rounding. Polynomials about the same origin are added coefficient by coefficient;
 /// others are first expanded about a common origin. The sum is odd bit for bit if every part is.
 ///
 /// Precondition: at least one curve.

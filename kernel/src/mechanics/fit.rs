@@ -29,8 +29,8 @@ use super::curve::{FitReport, ForceCurve, Piece};
 use super::local::{between, corners, roughness, slopes};
 use super::table::ForceTable;
 
-/// Limits of the degree that are tried. Above 13 the monomial form loses digits, and a step costs more than
-/// the restart that a longer piece saves.
+/// Limits of the degree that are tried. Above 13 the monomial form loses digits, and the steps cost more than
+/// the restarts that longer pieces save.
 const DEGREES: [usize; 5] = [5, 7, 9, 11, 13];
 
 /// Estimated number of steps of a traversal of the whole curve without breaks; each break adds about one.
@@ -59,11 +59,11 @@ const MANY_PIECES: usize = 24;
 /// A smaller `tolerance` gives a closer fit with more pieces, which slow every run; below the roughness of
 /// the data the curve follows the roughness.
 pub fn fit(table: &ForceTable, tolerance: f64) -> Result<ForceCurve, String> {
-    fit_unless(table, tolerance, None)
+    fit_cancellable(table, tolerance, None)
 }
 
-/// Like [`fit`], but fails with an arbitrary message soon after `cancel` is set.
-pub fn fit_unless(
+/// Like [`fit`], but fails, with any message, soon after `cancel` is set.
+pub fn fit_cancellable(
     table: &ForceTable,
     tolerance: f64,
     cancel: Option<&AtomicBool>,
@@ -92,7 +92,7 @@ pub(super) fn allowed_error(table: &ForceTable, tolerance: f64) -> f64 {
 }
 
 /// Fits a curve, without a report, that differs from each sample of a table by at most the `allowed` error in
-/// N, using the limit among `degrees` with the lowest running cost. Fails like [`fit_unless`].
+/// N, using the limit among `degrees` with the lowest running cost. Fails like [`fit_cancellable`].
 pub(super) fn fit_within(
     table: &ForceTable,
     allowed: &[f64],

@@ -95,7 +95,7 @@ impl Hertz {
     /// alone. It is 0 at a restitution of 1; `None` at 0 and outside 0 to 1.
     ///
     /// Method: bisection of its logarithm, to a few units of rounding; the restitution falls monotonically.
-    pub fn struck_for(restitution: f64) -> Option<f64> {
+    pub fn loss_times_speed(restitution: f64) -> Option<f64> {
         if restitution == 1.0 {
             return Some(0.0);
         } else if !(restitution > 0.0 && restitution < 1.0) {
@@ -113,8 +113,7 @@ impl Hertz {
         (2.5 * mass * self.energy_speed(speed).powi(2) / (2.0 * self.stiffness)).powf(0.4)
     }
 
-    /// Duration in s of the impact of `mass` in kg at `speed` in m/s; without other forces. Infinite
-    /// at speed 0.
+    /// Duration in s of the impact of `mass` in kg at `speed` in m/s, above 0; without other forces.
     ///
     /// Without loss it is (4/5) B(2/5, 1/2) d/v = 2.943 d/v, where d is the largest depth; with loss it is
     /// integrated by Gauss' rule over the angle, to about 1e-13.
@@ -142,7 +141,7 @@ impl Hertz {
             let q = q_max * angle.cos();
             deepest * angle.sin().powf(1.2) * (1.0 + q * z_over_q(q))
         };
-        // Golden section: the force has one maximum on the way in.
+        // Golden section: the force has one maximum while the depth increases.
         let ratio = 0.5 * (5.0_f64.sqrt() - 1.0);
         let (mut low, mut high) = (0.0, 0.5 * PI);
         for _ in 0..PEAK_STEPS {
@@ -279,15 +278,15 @@ mod tests {
     }
 
     #[test]
-    fn a_restitution_gives_the_loss_that_it_takes() {
+    fn the_loss_for_a_restitution_gives_that_restitution() {
         // ln((1 + a v)/(1 - a v e)) = a v (1 + e)
-        assert!((Hertz::struck_for(0.36).unwrap() / 2.426_877_191_846 - 1.0).abs() < 1e-11);
+        assert!((Hertz::loss_times_speed(0.36).unwrap() / 2.426_877_191_846 - 1.0).abs() < 1e-11);
         for e in [1e-9, 1e-3, 0.1, 0.36, 0.7, 0.99, 1.0 - 1e-7] {
-            let found = Hertz::struck_for(e).unwrap();
+            let found = Hertz::loss_times_speed(e).unwrap();
             assert!((stop(1.0).restitution(found) / e - 1.0).abs() < 1e-12, "{e}: {found}");
         }
-        assert_eq!(Hertz::struck_for(1.0), Some(0.0));
-        assert!([0.0, -0.1, 1.1, f64::NAN].into_iter().all(|e| Hertz::struck_for(e).is_none()));
+        assert_eq!(Hertz::loss_times_speed(1.0), Some(0.0));
+        assert!([0.0, -0.1, 1.1, f64::NAN].into_iter().all(|e| Hertz::loss_times_speed(e).is_none()));
     }
 
     #[test]

@@ -19,8 +19,8 @@ const KINK_JUMP: f64 = 1e-6;
 const AT_BREAK: f64 = 1e-10;
 
 /// Largest distance of a kink from a well that it belongs to, relative to the well's distance from the
-/// barrier (from x = 0 without a barrier): a motion that is small against the well still swings over
-/// both its sides.
+/// barrier (from x = 0 without a barrier): even a motion much smaller than the well swings over both sides of
+/// the kink.
 const KINK_NEAR_WELL: f64 = 0.01;
 
 /// A position where the restoring force is 0.
@@ -218,8 +218,8 @@ impl Landscape {
     }
 
     /// The kink on either side of the right-most stable equilibrium within 1 % of its distance from the
-    /// barrier, if the force rises on both sides of that kink. The stiffness of such a well depends on the
-    /// side that is chosen.
+    /// barrier, if the force rises on both sides of that kink. The stiffness of such a well differs between
+    /// its two sides.
     pub fn kink_at_right_well(&self) -> Option<KinkAtWell> {
         let well = self.right_stable()?;
         let middle = self.middle();
@@ -275,7 +275,7 @@ fn mirror_right_half<T: Clone>(all: &mut Vec<T>, x: impl Fn(&T) -> f64, mirrored
 }
 
 /// Positions at which a polynomial of each piece (its force or its stiffness) may change sign, ascending: its
-/// roots inside the piece and every break. A break for which `is_root` holds replaces the roots beside it.
+/// roots inside the piece, and every break. A break for which `is_root` holds replaces the roots close to it.
 fn candidates(
     curve: &ForceCurve,
     polynomial: impl Fn(&Piece) -> Vec<f64>,

@@ -24,7 +24,7 @@ const REACH: f64 = 100.0;
 /// 2e-6 of itself.
 const TOLERANCE: f64 = 1e-8;
 
-/// Largest degree of a piece: the one that makes a run near the other magnet the cheapest.
+/// Largest degree of a piece, chosen so that a run near the other magnet costs least.
 const DEGREE: usize = 9;
 
 /// Number of samples that the pieces are fitted to: enough for local interpolation between them to be more

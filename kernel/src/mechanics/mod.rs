@@ -22,7 +22,7 @@ pub use table::{ForceTable, MAX_POINTS, MIN_POINTS, TableError};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use self::fit::fit_unless;
+use self::fit::fit_cancellable;
 use self::flexure::{Geometry, Group};
 use crate::scene::{self, Fault, Files, FlexureGroup};
 
@@ -76,16 +76,16 @@ impl From<Fault> for BuildError {
     }
 }
 
-/// Error of the force of flexures, relative to its maximum between the wells. It is the same for every study
-/// and far below the difference between a beam model and a real flexure.
+/// Error of the force of flexures, relative to its maximum between the wells: the same for every study, and
+/// far below the difference between a beam model and a real flexure.
 pub const FLEXURE_TOLERANCE: f64 = 1e-8;
 
 impl Mechanism {
     /// Builds the curve of the mechanism in a scene that has passed its range check.
     ///
-    /// Polynomials enter exactly, as one piece; a table is read from `files` and fitted; flexures are solved,
-    /// which takes by far the longest. The fault of a table names `mechanism.path`; that of a polynomial with
-    /// too many terms names `mechanism.coefficients_si`.
+    /// A polynomial becomes one exact piece; a table is read from `files` and fitted; flexures are solved,
+    /// which takes much longer than anything else. The fault of a table names `mechanism.path`; that of a
+    /// polynomial with too many terms names `mechanism.coefficients_si`.
     pub fn build(described: &scene::Mechanism, files: &Files) -> Result<Self, BuildError> {
         Self::build_with(described, files, FLEXURE_TOLERANCE)
     }
@@ -97,21 +97,21 @@ impl Mechanism {
         files: &Files,
         flexure_tolerance: f64,
     ) -> Result<Self, BuildError> {
-        Self::built(described, files, flexure_tolerance, None)
+        Self::build_inner(described, files, flexure_tolerance, None)
     }
 
     /// Like [`build`](Self::build), but returns `None` soon after `cancel` is set. The flag is checked at
     /// each state of flexures and each piece of a table, which take a few milliseconds at most.
-    pub fn build_unless(
+    pub fn build_cancellable(
         described: &scene::Mechanism,
         files: &Files,
         cancel: &AtomicBool,
     ) -> Option<Result<Self, BuildError>> {
-        let built = Self::built(described, files, FLEXURE_TOLERANCE, Some(cancel));
+        let built = Self::build_inner(described, files, FLEXURE_TOLERANCE, Some(cancel));
         (!cancel.load(Ordering::Relaxed)).then_some(built)
     }
 
-    fn built(
+    fn build_inner(
         described: &scene::Mechanism,
         files: &Files,
         flexure_tolerance: f64,
@@ -140,7 +140,7 @@ impl Mechanism {
                     parallel: group(parallel),
                     buckling: group(buckling),
                 };
-                let (curve, flexures) = Flexures::solve_unless(&geometry, flexure_tolerance, cancel)?;
+                let (curve, flexures) = Flexures::solve_cancellable(&geometry, flexure_tolerance, cancel)?;
                 Ok(Self { flexures: Some(Arc::new(flexures)), ..Self::new(curve) })
             }
             scene::Mechanism::Cubic { linear_n_per_m, cubic_n_per_m3 } => {
@@ -165,7 +165,7 @@ impl Mechanism {
                 let fault = |problem: String| Fault::new("mechanism.path", path, problem);
                 let text = files.read(path).map_err(|e| fault(e.to_string()))?;
                 let table = ForceTable::parse(&text).map_err(|e| fault(e.to_string()))?;
-                Ok(Self::new(fit_unless(&table, *tolerance, cancel).map_err(fault)?))
+                Ok(Self::new(fit_cancellable(&table, *tolerance, cancel).map_err(fault)?))
             }
             scene::Mechanism::Linear { n_per_m } => {
                 let element = Some(Element::Spring { stiffness: *n_per_m });
@@ -180,7 +180,7 @@ impl Mechanism {
             }
             scene::Mechanism::Sum(parts) => {
                 let part = |(index, part): (usize, &scene::Mechanism)| {
-                    let mut built = Self::built(part, files, flexure_tolerance, cancel);
+                    let mut built = Self::build_inner(part, files, flexure_tolerance, cancel);
                     if let Err(BuildError::Wrong(fault)) = &mut built {
                         fault.field = fault.field.replacen("mechanism.", &format!("mechanism.{index}."), 1);
                     }
@@ -222,7 +222,7 @@ impl Mechanism {
     }
 
     /// The parts of a sum; for any other mechanism, the mechanism itself.
-    pub fn side_by_side(&self) -> &[Self] {
+    pub fn parts_or_self(&self) -> &[Self] {
         if self.parts.is_empty() { std::slice::from_ref(self) } else { &self.parts }
     }
 

@@ -10,10 +10,10 @@ use super::scalar::{Number, Scalar};
 pub const GROUP: usize = 8;
 
 /// Largest number of groups.
-pub const MOST_GROUPS: usize = 6;
+pub const MAX_GROUPS: usize = 6;
 
 /// Values at the points, group by group; values beyond the last point are not used.
-pub type Values<T> = [Lanes<GROUP, T>; MOST_GROUPS];
+pub type Values<T> = [Lanes<GROUP, T>; MAX_GROUPS];
 
 /// Gauss-Legendre points on \[-1, 1], ascending, with their weights and integration matrices.
 ///
@@ -35,13 +35,13 @@ pub struct Collocation {
 impl Collocation {
     /// The rule with at least `points` points, up to the largest number; each rule is computed once.
     pub fn of(points: usize) -> &'static Self {
-        static ALL: [OnceLock<Collocation>; MOST_GROUPS] = [const { OnceLock::new() }; MOST_GROUPS];
-        let groups = points.div_ceil(GROUP).clamp(1, MOST_GROUPS);
+        static ALL: [OnceLock<Collocation>; MAX_GROUPS] = [const { OnceLock::new() }; MAX_GROUPS];
+        let groups = points.div_ceil(GROUP).clamp(1, MAX_GROUPS);
         ALL[groups - 1].get_or_init(|| Self::new(groups))
     }
 
     fn new(groups: usize) -> Self {
-        let none = [Lanes([0.0; GROUP]); MOST_GROUPS];
+        let none = [Lanes([0.0; GROUP]); MAX_GROUPS];
         let points = groups * GROUP;
         let all = || vec![none; points];
         let (legendre, integrals) = (all(), all());
@@ -110,7 +110,7 @@ impl Collocation {
 
     /// The coefficients of the interpolating polynomial in Legendre polynomials of degree k, over 2 k + 1.
     pub fn coefficients<T: Scalar>(&self, values: &Values<T>) -> Values<T> {
-        let mut coefficients = [Lanes::zero(); MOST_GROUPS];
+        let mut coefficients = [Lanes::zero(); MAX_GROUPS];
         for (k, row) in self.legendre.iter().enumerate() {
             coefficients[k / GROUP].0[k % GROUP] = self.product(row, values);
         }

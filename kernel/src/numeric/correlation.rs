@@ -11,9 +11,11 @@ pub struct Alignment {
     pub ambiguous: bool,
 }
 
-/// Lags fit equally well up to this factor on the smallest mean square difference, plus this share of the
-/// first record's mean square.
-const EQUAL_FIT: (f64, f64) = (1.05, 1e-4);
+/// Factor on the smallest mean square difference up to which another lag fits equally well.
+const EQUAL_FIT_FACTOR: f64 = 1.05;
+
+/// Share of the first record's mean square that is added to that limit.
+const EQUAL_FIT_SHARE: f64 = 1e-4;
 
 /// The lag of `other` against `one` with the smallest mean square difference, among lags at which at least
 /// `min_overlap` values overlap. Both records are spaced by one step. Of equally good lags the smallest wins.
@@ -33,7 +35,7 @@ pub fn alignment(one: &[f64], other: &[f64], min_overlap: usize) -> Option<Align
     };
     let mut product = transformed(one)?;
     product.iter_mut().zip(transformed(other)?).for_each(|(a, b)| *a *= b.conj());
-    // the first and last line must be real; rounding leaves an imaginary part
+    // the first and the last line are real; rounding leaves an imaginary part
     let last = product.len() - 1;
     (product[0].im, product[last].im) = (0.0, 0.0);
     let mut correlation = inverse.make_output_vec();
@@ -45,7 +47,7 @@ pub fn alignment(one: &[f64], other: &[f64], min_overlap: usize) -> Option<Align
         sums
     };
     let (one_squares, other_squares) = (squares(one), squares(other));
-    let mean = |lag: i64| -> Option<f64> {
+    let mean_square = |lag: i64| -> Option<f64> {
         let from = lag.max(0);
         let to = (one.len() as i64).min(other.len() as i64 + lag);
         let count = to - from;
@@ -58,16 +60,17 @@ pub fn alignment(one: &[f64], other: &[f64], min_overlap: usize) -> Option<Align
         Some(sum.max(0.0) / count as f64)
     };
     let (low, high) = (1 - other.len() as i64, one.len() as i64 - 1);
-    let best = (low..=high).filter_map(mean).fold(f64::INFINITY, f64::min);
-    let good = EQUAL_FIT.0 * best + EQUAL_FIT.1 * one_squares[one.len()] / one.len() as f64;
+    let best = (low..=high).filter_map(mean_square).fold(f64::INFINITY, f64::min);
+    let good = EQUAL_FIT_FACTOR * best + EQUAL_FIT_SHARE * one_squares[one.len()] / one.len() as f64;
     let is_minimum = |lag: &i64| {
-        let is_lower = |here: f64| [lag - 1, lag + 1].into_iter().filter_map(mean).all(|near| here <= near);
-        mean(*lag).is_some_and(|here| here <= good && is_lower(here))
+        let is_lower =
+            |here: f64| [lag - 1, lag + 1].into_iter().filter_map(mean_square).all(|near| here <= near);
+        mean_square(*lag).is_some_and(|here| here <= good && is_lower(here))
     };
     let minima: Vec<i64> = (low..=high).filter(is_minimum).collect();
     let lag = minima.iter().copied().min_by_key(|lag| lag.abs())?;
     let vertex = || {
-        let (before, here, after) = (mean(lag - 1)?, mean(lag)?, mean(lag + 1)?);
+        let (before, here, after) = (mean_square(lag - 1)?, mean_square(lag)?, mean_square(lag + 1)?);
         let step = 0.5 * (before - after) / (before - 2.0 * here + after);
         Some(step).filter(|step| step.abs() <= 1.0)
     };

@@ -4,18 +4,20 @@ use super::bisect::{bisect, golden_section};
 use super::regression::{least_squares, student};
 
 /// Smallest number of turning points: four numbers are fitted to them.
-pub const FEWEST_TURNS: usize = 6;
+pub const MIN_TURNS: usize = 6;
 
 /// Number of trial rates on either side of the estimate from the first and the last swing.
 const TRIALS: u32 = 20;
-/// Half the range of the trial rates: a share of the estimate, or nepers over the record if that is more.
-const TRIAL_RANGE: (f64, f64) = (0.5, 0.2);
+/// Half the range of the trial rates, as a share of the estimate.
+const TRIAL_RANGE: f64 = 0.5;
+/// Smallest half of that range, in nepers over the record.
+const MIN_TRIAL_RANGE: f64 = 0.2;
 
 /// Largest number of times that the range moves because its outermost rate is the best.
 const MAX_MOVES: usize = 100;
 
 /// Steps of the search for the best rate, and for each end of its interval.
-const HALVINGS: u32 = 60;
+const SEARCH_STEPS: u32 = 60;
 
 /// Largest distance, in nepers over the record, at which the end of an interval is searched for.
 const MAX_DISTANCE: f64 = 60.0;
@@ -25,7 +27,7 @@ const MAX_DISTANCE: f64 = 60.0;
 pub struct TurningPoint {
     /// Time.
     pub t: f64,
-    /// Its value.
+    /// Value.
     pub value: f64,
     /// Whether it is a maximum.
     pub maximum: bool,
@@ -45,17 +47,17 @@ pub struct Envelope {
     drift: f64,
     swing: f64,
     middle: f64,
-    square: f64,
+    sum_of_squares: f64,
 }
 
 impl Envelope {
-    /// The envelope with the smallest weighted sum of squares; `None` for fewer than [`FEWEST_TURNS`] points,
+    /// The envelope with the smallest weighted sum of squares; `None` for fewer than [`MIN_TURNS`] points,
     /// or if they do not determine it.
     ///
     /// Method: level, drift and swing follow from the rate by linear least squares; the rate is found by
     /// trials and a golden-section search around the best one.
     pub fn fit(points: &[TurningPoint]) -> Option<Self> {
-        if points.len() < FEWEST_TURNS {
+        if points.len() < MIN_TURNS {
             return None;
         }
         let last = points.len() - 1;
@@ -66,18 +68,19 @@ impl Envelope {
         if !rate.is_finite() || !(length > 0.0) {
             return None;
         }
-        let square = |rate: f64| Self::of(points, rate).map_or(f64::INFINITY, |envelope| envelope.square);
-        let step = (TRIAL_RANGE.0 * rate.abs()).max(TRIAL_RANGE.1 / length) / f64::from(TRIALS);
+        let sum_of_squares =
+            |rate: f64| Self::of(points, rate).map_or(f64::INFINITY, |envelope| envelope.sum_of_squares);
+        let step = (TRIAL_RANGE * rate.abs()).max(MIN_TRIAL_RANGE / length) / f64::from(TRIALS);
         for _ in 0..MAX_MOVES {
             let trials = (0..=2 * TRIALS).map(|i| rate + (f64::from(i) - f64::from(TRIALS)) * step);
-            let best = trials.map(|rate| (rate, square(rate))).min_by(|a, b| a.1.total_cmp(&b.1))?.0;
+            let best = trials.map(|rate| (rate, sum_of_squares(rate))).min_by(|a, b| a.1.total_cmp(&b.1))?.0;
             let outermost = (best - rate).abs() > (f64::from(TRIALS) - 0.5) * step;
             rate = best;
             if !outermost {
                 break;
             }
         }
-        Self::of(points, golden_section(rate - step, rate + step, HALVINGS, square))
+        Self::of(points, golden_section(rate - step, rate + step, SEARCH_STEPS, sum_of_squares))
     }
 
     /// The best envelope with this rate.
@@ -91,7 +94,7 @@ impl Envelope {
         };
         let fit = least_squares(&points.iter().map(row).collect::<Vec<_>>())?;
         let [level, drift, swing] = fit.coefficients.into();
-        Some(Self { rate, level, drift, swing, middle, square: fit.variance * fit.freedom as f64 })
+        Some(Self { rate, level, drift, swing, middle, sum_of_squares: fit.variance * fit.freedom as f64 })
     }
 
     /// The 95 % confidence interval of the rate, given the scatter of the turning points.
@@ -101,11 +104,12 @@ impl Envelope {
     /// turning points. An end that is not found is infinite.
     pub fn interval(&self, points: &[TurningPoint]) -> (f64, f64) {
         let freedom = points.len().saturating_sub(4).max(1);
-        let limit = self.square * (1.0 + student(freedom).powi(2) / freedom as f64);
+        let limit = self.sum_of_squares * (1.0 + student(freedom).powi(2) / freedom as f64);
         let unit = 1.0 / (points[points.len() - 1].t - points[0].t);
         let end = |side: f64| {
             let inside = |away: f64| {
-                Self::of(points, self.rate + side * away * unit).is_some_and(|other| other.square <= limit)
+                Self::of(points, self.rate + side * away * unit)
+                    .is_some_and(|other| other.sum_of_squares <= limit)
             };
             let mut away = 1e-12;
             while inside(away) {
@@ -114,7 +118,7 @@ impl Envelope {
                     return side * f64::INFINITY;
                 }
             }
-            self.rate + side * unit * bisect(0.5 * away, away, HALVINGS, inside).1
+            self.rate + side * unit * bisect(0.5 * away, away, SEARCH_STEPS, inside).1
         };
         (end(-1.0), end(1.0))
     }

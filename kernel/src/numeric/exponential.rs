@@ -62,7 +62,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_is_the_exponential_function() {
+    fn decay_is_the_exponential_function() {
         for x in [0.0, 1e-300, 1e-9, 0.1, 0.125, 0.126, 1.0, 3.7, 40.0, 700.0, 2e4, f64::INFINITY] {
             let (exponential, mean) = decay(x);
             assert!((exponential - (-x).exp()).abs() < 4.0 * f64::EPSILON, "{x}");
@@ -77,7 +77,7 @@ mod tests {
     }
 
     #[test]
-    fn quick_logarithms_are_good_enough_for_a_step() {
+    fn fast_logarithms_and_powers_keep_their_stated_errors() {
         for i in 1..2000 {
             let x = f64::from(i) * 0.37;
             assert!((fast_log2(x) - x.log2()).abs() < 0.01);

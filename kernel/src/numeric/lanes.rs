@@ -129,7 +129,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_lane_is_a_number_of_its_own() {
+    fn each_lane_computes_like_a_single_number() {
         let a = Lanes([1.5, -2.0, 0.1, 1e300]);
         let b = Lanes([0.5, 3.0, 0.2, 1e-300]);
         for i in 0..4 {

@@ -25,12 +25,12 @@ mod text;
 mod turns;
 
 pub use bisect::{bisect, golden_section};
-pub(crate) use collocation::{Collocation, GROUP, MOST_GROUPS, Values};
+pub(crate) use collocation::{Collocation, GROUP, MAX_GROUPS, Values};
 pub use correlation::{Alignment, alignment};
 pub use decimal::{Decimal, Ratio, greatest_common_divisor};
 pub use double_double::DoubleDouble;
 pub use dual::Dual;
-pub use envelope::{Envelope, FEWEST_TURNS, TurningPoint};
+pub use envelope::{Envelope, MIN_TURNS, TurningPoint};
 pub(crate) use exponential::{decay, fast_exp2, fast_log2};
 pub use lanes::Lanes;
 pub(crate) use lanes::widest;

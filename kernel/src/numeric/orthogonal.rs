@@ -1,9 +1,9 @@
 //! Least-squares polynomials of several degrees through samples, with the errors of their values and slopes.
 
 /// Largest number of coefficients.
-pub const MOST_TERMS: usize = 7;
+pub const MAX_TERMS: usize = 7;
 
-/// Least-squares polynomials with up to [`MOST_TERMS`] coefficients.
+/// Least-squares polynomials with up to [`MAX_TERMS`] coefficients.
 ///
 /// Method: a sum of polynomials orthonormal over the samples (Forsythe 1957), whose coefficients are
 /// independent. If the errors of the samples have variance 1, so has each coefficient; dropping the last
@@ -13,11 +13,11 @@ pub struct Orthogonal {
     centre: f64,
     scale: f64,
     /// Coefficients of the recurrence b p_next = (u - a) p - b_before p_before, which begins with `first`.
-    a: [f64; MOST_TERMS],
-    b: [f64; MOST_TERMS],
+    a: [f64; MAX_TERMS],
+    b: [f64; MAX_TERMS],
     first: f64,
-    coefficients: [f64; MOST_TERMS],
-    squares: [f64; MOST_TERMS],
+    coefficients: [f64; MAX_TERMS],
+    squared_residuals: [f64; MAX_TERMS],
     terms: usize,
     samples: usize,
 }
@@ -33,11 +33,11 @@ pub struct Tangent {
     /// The second derivative.
     pub bend: f64,
     /// Variance of the value.
-    pub of_value: f64,
+    pub value_variance: f64,
     /// Variance of the slope.
-    pub of_slope: f64,
+    pub slope_variance: f64,
     /// Covariance of value and slope.
-    pub of_both: f64,
+    pub covariance: f64,
 }
 
 impl Orthogonal {
@@ -47,16 +47,16 @@ impl Orthogonal {
         let (from, to) = (places.first().map_or(0.0, |x| *x), places.last().map_or(0.0, |x| *x));
         let (centre, scale) = (0.5 * (from + to), (0.5 * (to - from)).max(f64::MIN_POSITIVE));
         let first = 1.0 / (samples as f64).sqrt();
-        let zero = [0.0; MOST_TERMS];
-        let (mut a, mut b, mut coefficients, mut squares) = (zero, zero, zero, zero);
+        let zero = [0.0; MAX_TERMS];
+        let (mut a, mut b, mut coefficients, mut squared_residuals) = (zero, zero, zero, zero);
         let places: Vec<f64> = places.iter().map(|x| (x - centre) / scale).collect();
         let mut rest = values.to_vec();
         let (mut now, mut before) = (vec![first; samples], vec![0.0; samples]);
-        let terms = MOST_TERMS.min(samples);
+        let terms = MAX_TERMS.min(samples);
         for k in 0..terms {
             coefficients[k] = now.iter().zip(&rest).map(|(p, r)| p * r).sum();
             rest.iter_mut().zip(&now).for_each(|(r, p)| *r -= coefficients[k] * p);
-            squares[k] = rest.iter().map(|r| r * r).sum();
+            squared_residuals[k] = rest.iter().map(|r| r * r).sum();
             a[k] = places.iter().zip(&now).map(|(u, p)| u * p * p).sum();
             let before_b = if k == 0 { 0.0 } else { b[k - 1] };
             for ((u, p), q) in places.iter().zip(&mut now).zip(&mut before) {
@@ -65,7 +65,7 @@ impl Orthogonal {
             b[k] = now.iter().map(|p| p * p).sum::<f64>().sqrt();
             now.iter_mut().for_each(|p| *p /= b[k]);
         }
-        Self { centre, scale, a, b, first, coefficients, squares, terms, samples }
+        Self { centre, scale, a, b, first, coefficients, squared_residuals, terms, samples }
     }
 
     /// Number of samples.
@@ -75,8 +75,8 @@ impl Orthogonal {
 
     /// The sum of the squared residuals of the polynomial with `terms` coefficients; `None` if there
     /// are fewer samples.
-    pub fn square(&self, terms: usize) -> Option<f64> {
-        (1..=self.terms).contains(&terms).then(|| self.squares[terms - 1])
+    pub fn squared_residuals(&self, terms: usize) -> Option<f64> {
+        (1..=self.terms).contains(&terms).then(|| self.squared_residuals[terms - 1])
     }
 
     /// The polynomial with `terms` coefficients, at most the number of samples, at `place`.
@@ -90,9 +90,9 @@ impl Orthogonal {
             tangent.value += c * p[0];
             tangent.slope += c * p[1] / self.scale;
             tangent.bend += c * p[2] / self.scale.powi(2);
-            tangent.of_value += p[0] * p[0];
-            tangent.of_slope += (p[1] / self.scale).powi(2);
-            tangent.of_both += p[0] * p[1] / self.scale;
+            tangent.value_variance += p[0] * p[0];
+            tangent.slope_variance += (p[1] / self.scale).powi(2);
+            tangent.covariance += p[0] * p[1] / self.scale;
             let (shift, below) = (u - self.a[k], if k == 0 { 0.0 } else { self.b[k - 1] });
             let next = [
                 shift * p[0] - below * before[0],
@@ -119,15 +119,15 @@ mod tests {
         let rows: Vec<([f64; 4], f64)> =
             places.iter().zip(&values).map(|(x, y)| (powers((x - at) / scale), *y)).collect();
         let exact = least_squares(&rows).unwrap();
-        let variance = fit.square(4).unwrap() / exact.freedom as f64;
+        let variance = fit.squared_residuals(4).unwrap() / exact.freedom as f64;
         let found = fit.at(at, 4);
         let pairs = [
             (found.value, exact.coefficients[0]),
             (found.slope * scale, exact.coefficients[1]),
             (found.bend * scale * scale, 2.0 * exact.coefficients[2]),
-            (found.of_value * variance, exact.covariance[(0, 0)]),
-            (found.of_both * scale * variance, exact.covariance[(0, 1)]),
-            (found.of_slope * scale * scale * variance, exact.covariance[(1, 1)]),
+            (found.value_variance * variance, exact.covariance[(0, 0)]),
+            (found.covariance * scale * variance, exact.covariance[(0, 1)]),
+            (found.slope_variance * scale * scale * variance, exact.covariance[(1, 1)]),
         ];
         for (found, exact) in pairs {
             assert!((found - exact).abs() < 1e-10 * exact.abs(), "{found} for {exact}");
@@ -135,10 +135,10 @@ mod tests {
     }
 
     #[test]
-    fn as_many_terms_as_samples_leave_nothing_over() {
+    fn as_many_terms_as_samples_leave_no_residual() {
         let fit = Orthogonal::fit(&[0.0, 1.0, 2.0, 4.0], &[1.0, -1.0, 3.0, 2.0]);
-        assert!(fit.square(4).unwrap() < 1e-28 && fit.square(5).is_none());
+        assert!(fit.squared_residuals(4).unwrap() < 1e-28 && fit.squared_residuals(5).is_none());
         assert!((fit.at(2.0, 4).value - 3.0).abs() < 1e-13);
-        assert!((fit.at(2.0, 4).of_value - 1.0).abs() < 1e-13);
+        assert!((fit.at(2.0, 4).value_variance - 1.0).abs() < 1e-13);
     }
 }

@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn a_taper_tells_a_sine_that_is_no_line() {
+    fn a_taper_confines_a_sine_between_two_lines() {
         // halfway between two lines: it leaks into all lines without a taper, into four with one
         let (n, at) = (1000, 100.5);
         let values: Vec<f64> = (0..n).map(|k| (TAU * at * k as f64 / n as f64).sin()).collect();

@@ -34,7 +34,7 @@ pub struct Piece {
 /// they differ only by rounding.
 pub fn pieces(times: &[f64], values: &[f64], limits: (f64, f64)) -> Vec<Piece> {
     let last = times.len() - 1;
-    let fitted = |first: usize, lines: usize| {
+    let fit = |first: usize, lines: usize| {
         let samples = first..=first + lines;
         fitted(&times[samples.clone()], &values[samples], limits).map(Box::new)
     };
@@ -43,18 +43,18 @@ pub fn pieces(times: &[f64], values: &[f64], limits: (f64, f64)) -> Vec<Piece> {
     while first < last {
         let left = last - first;
         let mut lines = guess.min(left);
-        let mut polynomial = fitted(first, lines);
+        let mut polynomial = fit(first, lines);
         if polynomial.is_some() {
             let mut more = lines.div_ceil(4);
             while lines < left {
                 let longer = (lines + more).min(left);
-                let Some(found) = fitted(first, longer) else { break };
+                let Some(found) = fit(first, longer) else { break };
                 (lines, polynomial, more) = (longer, Some(found), 2 * more);
             }
         }
         while polynomial.is_none() && lines / 2 >= MIN_LINES {
             lines /= 2;
-            polynomial = fitted(first, lines);
+            polynomial = fit(first, lines);
         }
         guess = lines.max(2 * MIN_LINES);
         match all.last_mut() {
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn polynomials_of_samples_stand_for_them_to_the_limits() {
+    fn polynomials_agree_with_the_samples_within_the_limits() {
         let sine = |t: f64| 10.0 * (std::f64::consts::TAU * 3.0 * t).sin();
         for (rate, limits, fewest) in [(1e4, (1e-10, 1e-12), 150.0), (1e3, (1e-7, 1e-10), 15.0)] {
             let (times, values) = sampled(rate, sine);

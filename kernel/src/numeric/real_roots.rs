@@ -157,7 +157,7 @@ fn monotone_roots(coefficients: &[f64], low: f64, high: f64) -> Vec<f64> {
 fn bracketed(coefficients: &[f64], slope: &[f64], mut low: f64, mut high: f64, sign_low: f64) -> f64 {
     let mut x = 0.5 * (low + high);
     let mut width = high - low;
-    let mut since = 0;
+    let mut newton_steps = 0;
     loop {
         let (value, _) = value_and_magnitude(coefficients, x);
         if value == 0.0 {
@@ -174,11 +174,11 @@ fn bracketed(coefficients: &[f64], slope: &[f64], mut low: f64, mut high: f64, s
         if (newton - x).abs() <= 0.5 * f64::EPSILON * x.abs() && newton >= low && newton <= high {
             return newton;
         }
-        since += 1;
+        newton_steps += 1;
         let halved = high - low <= 0.5 * width;
         if halved {
             width = high - low;
-            since = 0;
+            newton_steps = 0;
         }
         let middle = 0.5 * (low + high);
         if middle <= low || middle >= high {
@@ -188,10 +188,10 @@ fn bracketed(coefficients: &[f64], slope: &[f64], mut low: f64, mut high: f64, s
             return if miss(low) <= miss(high) { low } else { high };
         }
         // After five Newton steps that do not halve the bracket, bisect once.
-        x = if newton > low && newton < high && since < 5 {
+        x = if newton > low && newton < high && newton_steps < 5 {
             newton
         } else {
-            since = 0;
+            newton_steps = 0;
             middle
         };
     }
@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn multiple_roots_come_once() {
+    fn multiple_roots_are_returned_once() {
         assert_eq!(real_roots(&product(&[1.0, 1.0]), LINE.0, LINE.1), vec![1.0]);
         assert_eq!(real_roots(&[0.0, 0.0, 0.0, 1.0], LINE.0, LINE.1), vec![0.0]);
         let found = real_roots(&product(&[1.0, 1.0, 1.0, -2.0]), LINE.0, LINE.1);
@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn none_where_there_are_none() {
+    fn polynomials_without_roots_have_none() {
         for p in [&[][..], &[0.0, 0.0], &[3.0], &[1.0, 0.0, 1.0], &[1.0, 1.0, 1.0]] {
             assert_eq!(real_roots(p, LINE.0, LINE.1), Vec::<f64>::new());
         }

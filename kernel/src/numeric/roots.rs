@@ -88,7 +88,9 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
     /// it returns false.
     pub fn each_sign_change(&self, visit: &mut dyn FnMut(T) -> bool) {
         let reduced = self.without_a_root_at_0();
-        reduced.each_bracket(&mut |above, bracket| visit(completed(self.g, reduced.polish(above, bracket))));
+        reduced.each_bracket(&mut |first_sign_at_low, bracket| {
+            visit(completed(self.g, reduced.polish(first_sign_at_low, bracket)))
+        });
     }
 
     /// The number of sign changes in (0, 1], without locating them.
@@ -134,7 +136,9 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
             lower_slope = slope + lower_slope.smaller(zero);
             upper_slope = slope + upper_slope.larger(zero);
         }
-        if if g[0] > zero { g[0] + lower.smaller(zero) > zero } else { g[0] + upper.larger(zero) < zero } {
+        let keeps_sign =
+            if g[0] > zero { g[0] + lower.smaller(zero) > zero } else { g[0] + upper.larger(zero) < zero };
+        if keeps_sign {
             return;
         }
         if upper_slope < zero || lower_slope > zero {
@@ -196,9 +200,9 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
     }
 
     /// The root between `low` and `high`, by Chebyshev's steps (third order) kept inside a shrinking bracket.
-    /// `above` is the sign at `low` by which the bracket was found: if `low` is a root to within rounding,
+    /// `first_sign_at_low` is the sign by which the bracket was found: if `low` is a root to within rounding,
     /// another way to evaluate the polynomial there may give the opposite sign.
-    fn polish(&self, above: bool, (mut low, mut high): (T, T)) -> T {
+    fn polish(&self, first_sign_at_low: bool, (mut low, mut high): (T, T)) -> T {
         let half = T::of(0.5);
         let mut s = self.guess(low, high).unwrap_or_else(|| (low + high) * half);
         let close = T::of(T::ROUGH);
@@ -210,11 +214,11 @@ impl<'a, T: Scalar> PolynomialRoots<'a, T> {
             // sign is determined by rounding.
             let falls = (expansion.1 > T::zero()) != (self.g[0] > T::zero());
             let middle = (low + high) * half;
-            if falls != above && step.abs() <= close && s != middle {
+            if falls != first_sign_at_low && step.abs() <= close && s != middle {
                 (s, last_move) = (middle, high - low);
                 continue;
             }
-            if self.has_first_sign(expansion.0) == above {
+            if self.has_first_sign(expansion.0) == first_sign_at_low {
                 low = s
             } else {
                 high = s

@@ -1,5 +1,5 @@
-//! Number types of the integrator: branch-free arithmetic, also of several motions in one vector, and scalars
-//! with comparison and a few functions.
+//! Number types of the integrator: branch-free arithmetic, for one motion or for several in a vector, and
+//! scalars with comparison and a few functions.
 //!
 //! `f64` is the working type, [`DoubleDouble`](super::DoubleDouble) the reference.
 

@@ -6,7 +6,7 @@
 use super::scalar::{Number, Scalar};
 
 /// Largest number of steps to the root; each cubes the error.
-pub(crate) const MOST_STEPS: usize = 3;
+pub(crate) const MAX_STEPS: usize = 3;
 
 /// An approximate root of the cubic with these values and slopes at 0 and at 1. The values must
 /// differ in sign.
@@ -46,7 +46,7 @@ pub(crate) fn next<T: Scalar>(s: T, expansion: (T, T, T)) -> (T, bool) {
 #[inline]
 pub(crate) fn single_root<T: Scalar>(g: &[T], guess: T) -> Option<T> {
     let mut s = guess;
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         let (next, found) = next(s, expansion(g, s));
         s = next;
         if found {
@@ -57,7 +57,7 @@ pub(crate) fn single_root<T: Scalar>(g: &[T], guess: T) -> Option<T> {
     None
 }
 
-/// The root of a polynomial that an iteration has found; see [`Scalar::at_root`].
+/// Completes a root of a polynomial that an iteration has found; see [`Scalar::at_root`].
 #[inline(always)]
 pub(crate) fn completed<T: Scalar>(g: &[T], root: T) -> T {
     T::at_root(root, |s| {
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn a_root_beyond_1_is_none_and_so_is_one_that_is_not_there() {
+    fn a_root_beyond_1_and_a_missing_root_give_none() {
         let g = times_roots(&[1.0, 0.4], &[1.25]);
         assert_eq!(single_root(&g, 1.2), None);
         assert_eq!(single_root(&[1.0, 0.1, 1.0], 0.5), None);

@@ -50,9 +50,11 @@ pub fn short(value: f64) -> String {
     }
 }
 
-/// The number of decimals that shows a number of this size with `digits` significant digits; at most 12.
+/// The number of decimals that shows a number of this size with `digits` significant digits; at most 12, and
+/// none for 0.
 pub fn decimals(value: f64, digits: i32) -> usize {
-    (digits - 1 - decade(value.abs())).clamp(0, 12) as usize
+    let power = if value == 0.0 { digits } else { decade(value.abs()) };
+    (digits - 1 - power).clamp(0, 12) as usize
 }
 
 #[cfg(test)]
@@ -63,6 +65,7 @@ mod tests {
     fn numbers_are_short() {
         let written = [7.18234e-3, -0.0, 1.0 / 3.0, 4123.4, 8.2e5, 1.2e-9, 8.2e7].map(short);
         assert_eq!(written, ["0.007182", "0", "0.3333", "4123", "820000", "1.2e-9", "8.2e7"]);
+        assert_eq!([0.0, 7.18e-3, 41.2, 4123.4].map(|value| decimals(value, 3)), [0, 5, 1, 0]);
     }
 
     fn shortest(value: f64) -> String {

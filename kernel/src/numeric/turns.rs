@@ -9,9 +9,9 @@ pub struct Turn {
     pub maximum: bool,
 }
 
-/// The alternating maxima and minima of `values` from which they retreat by more than `back`. The first one
-/// is the extremum at the beginning, which may be the first sample.
-pub fn turns(values: &[f64], back: f64) -> Vec<Turn> {
+/// The alternating maxima and minima of `values` from which they retreat by more than `retreat`. The first
+/// one is the extremum at the beginning, which may be the first sample.
+pub fn turns(values: &[f64], retreat: f64) -> Vec<Turn> {
     let mut turns = Vec::new();
     let (mut lowest, mut highest) = (0, 0);
     // whether the values rise; `None` until the first turning point
@@ -23,10 +23,10 @@ pub fn turns(values: &[f64], back: f64) -> Vec<Turn> {
         if *value < values[lowest] {
             lowest = i;
         }
-        if rising != Some(false) && values[highest] - value > back {
+        if rising != Some(false) && values[highest] - value > retreat {
             turns.push(Turn { at: highest, maximum: true });
             (rising, lowest) = (Some(false), i);
-        } else if rising != Some(true) && value - values[lowest] > back {
+        } else if rising != Some(true) && value - values[lowest] > retreat {
             turns.push(Turn { at: lowest, maximum: false });
             (rising, highest) = (Some(true), i);
         }

@@ -1,4 +1,4 @@
-//! Axes of a sweep: their values and the names of their columns.
+//! Axes of a sweep: their values and column names.
 //!
 //! Even steps are counted in whole units of the last decimal of their three numbers, in 128-bit integers, and
 //! every value is the double nearest to its decimal: 0.58 is 0.58, whereas repeated addition of 0.02 would
@@ -45,10 +45,10 @@ impl Axis {
         let read = |text: &str| {
             let text = text.trim();
             let finite = Decimal::parse(text).filter(|decimal| decimal.value().is_finite());
-            let endless = if spec.range.high == f64::INFINITY { "; inf stands in a list alone" } else { "" };
+            let hint = if spec.range.high == f64::INFINITY { "; inf stands in a list alone" } else { "" };
             finite.ok_or_else(|| {
                 let text = clip(text);
-                format!("`{text}` is not a finite decimal number; {}{endless}", spec.remedy)
+                format!("`{text}` is not a finite decimal number; {}{hint}", spec.remedy)
             })
         };
         let mut steps = None;
@@ -62,8 +62,8 @@ impl Axis {
             even_steps(parts)?
         } else {
             // infinity is valid for some fields, as for an open circuit
-            let endless = |text: &str| text.trim() == "inf" && spec.range.high == f64::INFINITY;
-            let listed = values.split(',').map(|text| match endless(text) {
+            let is_infinite = |text: &str| text.trim() == "inf" && spec.range.high == f64::INFINITY;
+            let listed = values.split(',').map(|text| match is_infinite(text) {
                 true => Ok(f64::INFINITY),
                 false => Ok(read(text)?.value()),
             });

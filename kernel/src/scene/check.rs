@@ -217,7 +217,7 @@ fn transducer(scene: &Scene, checked: &mut Checked) {
     }
 }
 
-/// Whether a field already has a fault, so that it gets no second one.
+/// Whether a field already has a fault, in which case it gets no second one.
 pub(super) fn has_fault(field: &str, checked: &Checked) -> bool {
     checked.faults.iter().any(|fault| fault.field == field)
 }

@@ -7,7 +7,7 @@
 use super::error::clip;
 
 /// Largest number of rows that are read.
-pub const MOST_ROWS: usize = 1_000_000;
+pub const MAX_ROWS: usize = 1_000_000;
 
 /// Error in a CSV text.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -53,7 +53,8 @@ pub enum ColumnsError {
     /// More rows than are read.
     #[error("has more than {0} rows, the most that are read: thin it out, or cut it to what the run needs")]
     TooMany(usize),
-    /// The text is no CSV, its first row is not a header, or a row has more values than the header has names.
+    /// The text is not CSV, its first row is not a header, or a row has more values than the header has
+    /// names.
     #[error("{0}")]
     Unusable(String),
 }
@@ -90,7 +91,6 @@ pub fn read_columns<const N: usize>(
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Separators {
-    /// A comma.
     Comma,
     /// A semicolon or a tab if the header has one, with decimal points or commas in the numbers; otherwise a
     /// comma. A header of numbers is rejected, as is a row with more values than the header has names.

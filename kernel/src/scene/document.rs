@@ -20,7 +20,7 @@ use crate::system::files;
 const MAX_FAULTS: usize = 50;
 
 /// Largest number of values of all axes of a sweep together. Three axes with more values make more cells than
-/// a sweep may have, even if no axis is too long. They are rejected before all of them are expanded.
+/// a sweep may have, even if no axis is too long, and are rejected before all are expanded.
 const MAX_VALUES: usize = 2 * MAX_AXIS_VALUES;
 
 /// Name in messages of a scene from standard input.
@@ -52,9 +52,10 @@ pub struct Document {
     pub files: Files,
     /// Options of its sweep, if it came from a manifest.
     pub swept: Option<SweepRequest>,
-    /// Changes by arguments; of several of one field the last one counts.
+    /// Changes by arguments; the last one of each field counts.
     assigned: Vec<Assignment>,
-    unread: Vec<Fault>,
+    /// Faults of recorded accelerations that could not be read.
+    record_faults: Vec<Fault>,
 }
 
 #[derive(Debug, Clone)]
@@ -131,9 +132,9 @@ impl Document {
             let stem = Path::new(name).file_stem().unwrap_or_default();
             scene.title = stem.to_string_lossy().into_owned();
         }
-        let unread = record::attach(&mut scene.excitation, "excitation", &files);
-        let (name, text) = (name.to_owned(), text.to_owned());
-        Ok(Self { scene, source: Source::Text, name, text, files, swept: None, assigned: Vec::new(), unread })
+        let record_faults = record::attach(&mut scene.excitation, "excitation", &files);
+        let (name, text, source) = (name.to_owned(), text.to_owned(), Source::Text);
+        Ok(Self { scene, source, name, text, files, swept: None, assigned: Vec::new(), record_faults })
     }
 
     /// Applies `FIELD=VALUE` as given to `--set`: a number, or any value in RON
@@ -165,7 +166,8 @@ impl Document {
                 let (field, argument) = (field.to_owned(), clip(argument));
                 self.assigned.push(Assignment { field, argument, change: None });
                 if is_excitation {
-                    self.unread = record::attach(&mut self.scene.excitation, "excitation", &self.files);
+                    self.record_faults =
+                        record::attach(&mut self.scene.excitation, "excitation", &self.files);
                 }
                 Ok(())
             }
@@ -213,11 +215,11 @@ impl Document {
     }
 
     /// Reads the files that the scene names into memory, so that later changes of the files have no effect;
-    /// this replaces all texts held before. A file that cannot be read is skipped: the code that needs it
+    /// this replaces all texts read before. A file that cannot be read is skipped: the code that needs it
     /// reports the error.
-    pub fn hold_files(&mut self) {
+    pub fn cache_files(&mut self) {
         let read = |path: String| self.files.read(&path).ok().map(|text| (path, text));
-        self.files.held = self.paths().into_iter().filter_map(read).collect();
+        self.files.cached = self.paths().into_iter().filter_map(read).collect();
     }
 
     /// Checks the scene. Returns the warnings, each with the file's name, or one error with all faults.
@@ -229,7 +231,7 @@ impl Document {
             let sweep_field = |field: &str| field.starts_with("sweep.") && field.ends_with(".field");
             checked.faults.retain(|fault| !sweep_field(&fault.field));
         }
-        checked.faults.extend(self.unread.iter().cloned());
+        checked.faults.extend(self.record_faults.iter().cloned());
         if checked.faults.is_empty() {
             let duration = self.scene.run.duration_s;
             checked.warnings.extend(record::warnings(&self.scene.excitation, duration));

@@ -101,7 +101,7 @@ fn further(lines: &[String]) -> String {
     lines.iter().map(|line| format!("\n{line}")).collect()
 }
 
-/// The faults of the scene called `name`, one a line, and the number of those that are not listed.
+/// The faults of the scene called `name`, one per line, and the number of those that are not listed.
 fn lines(name: &str, faults: &[PlacedFault], more: usize) -> String {
     let line = |PlacedFault { fault, origin }: &PlacedFault| {
         let origin = match origin {

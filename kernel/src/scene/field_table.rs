@@ -89,7 +89,7 @@ pub struct FieldInfo {
     pub name: Option<&'static str>,
     /// Its control in the window, if it has one.
     pub control: Option<Control>,
-    /// Its place among the fields that are offered as axes of a map, if it is.
+    /// Its place among the fields that are offered as axes of a map, if it is offered.
     pub axis: Option<u8>,
 }
 
@@ -196,7 +196,7 @@ const DECADES: Slider = ((1.0, 1e4, 0.1), Scale::Ratio);
 
 const LENGTH_REMEDY: &str = "give the length of each flexure in mm, such as 26";
 const WIDTH_REMEDY: &str = "give the width of each flexure in mm, such as 20";
-const POISSON_REMEDY: &str = "metals have some 0.3";
+const POISSON_REMEDY: &str = "about 0.3 for metals";
 const REBOUND_REMEDY: &str = "0 keeps no speed at an impact, 1 keeps all of it";
 const AMPLITUDE_REMEDY: &str = "give an amplitude in g, of either sign or 0";
 
@@ -210,7 +210,7 @@ const LOAD_HOVER: &str = "Increase: the same motion gives more voltage over the 
                           through it. The power is largest somewhere between a short circuit (0) and an \
                           open one (inf), which take none. Both may be typed.";
 const COUPLING_HOVER: &str = "Increase: the same speed gives more voltage, and the load brakes the mass \
-                              harder. That is more power at first, and less once the mass crosses no longer.";
+                              harder. That is more power at first, and less once the mass no longer crosses.";
 const DAMPING_HOVER: &str = "Increase: the motion dies away faster.";
 
 /// All numeric fields, in the order of a scene.

@@ -18,7 +18,7 @@ pub struct Files {
     /// Folder of relative paths; `None` for a preset or a pasted scene.
     pub folder: Option<PathBuf>,
     /// Texts of files that are already in memory, by the path in the scene.
-    pub held: BTreeMap<String, String>,
+    pub cached: BTreeMap<String, String>,
 }
 
 /// Reason why a file that a scene names cannot be read. The messages give the path that was tried.
@@ -57,12 +57,12 @@ impl Files {
         }
     }
 
-    /// The text of a file that a scene names, from memory if it is held there.
+    /// The text of a file that a scene names, from the cache if it is there.
     ///
     /// An absolute path is read as it is. A relative path starts at the folder of the scene; without a folder
     /// it is the name of an embedded table.
     pub fn read(&self, path: &str) -> Result<String, FileError> {
-        if let Some(text) = self.held.get(path) {
+        if let Some(text) = self.cached.get(path) {
             return Ok(text.clone());
         }
         let embedded = presets::TABLES.iter().find(|table| table.name == path);

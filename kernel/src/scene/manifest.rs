@@ -6,8 +6,7 @@ use std::path::Path;
 use serde::Deserialize;
 
 use super::document::Document;
-use super::error::SceneError;
-use super::error::clip;
+use super::error::{SceneError, clip};
 use super::files::{Files, MAX_TABLE_BYTES, read_text};
 
 /// Value of the key `program` in manifests of this program.
@@ -73,7 +72,7 @@ pub(super) fn read(name: &str, text: &str, files: Files) -> Result<Document, Sce
             format!("is JSON, but no manifest of a sweep: {problem}; give a scene (.ron) or a manifest");
         SceneError::Unreadable { name: name.to_owned(), problem }
     })?;
-    let files = Files { held: manifest.files, ..files };
+    let files = Files { cached: manifest.files, ..files };
     let Manifest { shard, data, version, .. } = manifest;
     let swept = SweepRequest { shard: shard.filter(|shard| shard != "1/1"), data, version, ..manifest.plan };
     let mut document = Document::from_text(&format!("{name} (scene_ron)"), &manifest.scene_ron, files)?;

@@ -17,16 +17,16 @@ pub const MAX_MEASURED_BYTES: usize = 1 << 30;
 
 /// Request for a column.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Ask {
+pub struct ColumnRequest {
     /// Accepted quantities. Without a column name, the first quantity of which a column has a unit is chosen.
     pub quantities: Vec<Quantity>,
-    /// What options say of the column; without options the header alone decides.
-    pub options: Option<AskOptions>,
+    /// The column and unit given by options; without them, the header alone decides.
+    pub options: Option<ColumnOptions>,
 }
 
 /// Options that may name a column and its unit.
 #[derive(Debug, Clone, PartialEq)]
-pub struct AskOptions {
+pub struct ColumnOptions {
     /// Name of the column; if `None`, the column is chosen by its unit.
     pub column: Option<String>,
     /// Unit of the column; if `None`, the unit at the end of its name.
@@ -58,7 +58,7 @@ pub struct Measured<const N: usize> {
 /// Reason why a measured record cannot be read, as a clause.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MeasuredError {
-    /// The text is no table of numbers.
+    /// The text is not a table of numbers.
     #[error(transparent)]
     Columns(#[from] ColumnsError),
     /// No column has a unit of the quantity.
@@ -75,7 +75,10 @@ pub enum MeasuredError {
 }
 
 /// Reads the record in the file at `path`.
-pub fn read_measured<const N: usize>(path: &Path, requests: &[Ask; N]) -> Result<Measured<N>, MeasuredError> {
+pub fn read_measured<const N: usize>(
+    path: &Path,
+    requests: &[ColumnRequest; N],
+) -> Result<Measured<N>, MeasuredError> {
     Measured::parse(&text_of(path)?, requests)
 }
 
@@ -138,12 +141,12 @@ impl MeasuredText {
 impl<const N: usize> Measured<N> {
     /// Parses a record: CSV with a header and values separated by commas, or by semicolons or tabs with
     /// decimal points or decimal commas.
-    pub fn parse(text: &str, requests: &[Ask; N]) -> Result<Self, MeasuredError> {
-        let wanted: Vec<String> = requests.iter().map(Ask::wanted).collect();
+    pub fn parse(text: &str, requests: &[ColumnRequest; N]) -> Result<Self, MeasuredError> {
+        let wanted: Vec<String> = requests.iter().map(ColumnRequest::wanted).collect();
         let sheet = Sheet::open(text, &wanted.join(","), Separators::Any, MAX_MEASURED_ROWS)?;
         let mut chosen = Vec::with_capacity(N);
-        for ask in requests {
-            chosen.push(ask.choose(&sheet)?);
+        for request in requests {
+            chosen.push(request.choose(&sheet)?);
         }
         Self::of(&sheet, std::array::from_fn(|k| chosen[k]))
     }
@@ -175,7 +178,7 @@ impl<const N: usize> Measured<N> {
     }
 }
 
-impl Ask {
+impl ColumnRequest {
     /// A request by the options `names` for column and unit.
     pub fn by_options(
         quantities: &[Quantity],
@@ -183,7 +186,7 @@ impl Ask {
         unit: &Option<String>,
         names: [&'static str; 2],
     ) -> Self {
-        let options = AskOptions { column: column.clone(), unit: unit.clone(), names };
+        let options = ColumnOptions { column: column.clone(), unit: unit.clone(), names };
         Self { quantities: quantities.to_vec(), options: Some(options) }
     }
 
@@ -195,7 +198,7 @@ impl Ask {
 
     /// The column's index and unit.
     fn choose(&self, sheet: &Sheet) -> Result<(usize, Unit), MeasuredError> {
-        let Some(AskOptions { column, unit, names: [_, unit_option] }) = &self.options else {
+        let Some(ColumnOptions { column, unit, names: [_, unit_option] }) = &self.options else {
             return self.choose_by_unit(sheet, None);
         };
         let quantity =

@@ -47,7 +47,7 @@ pub use arguments::arguments;
 pub use axis::{Axis, MAX_AXES, MAX_AXIS_VALUES, column_names};
 pub(crate) use check::is_sound;
 pub use check::{Checked, check, corners};
-pub use columns::{Columns, ColumnsError, MOST_ROWS, read_columns};
+pub use columns::{Columns, ColumnsError, MAX_ROWS, read_columns};
 pub use data::*;
 pub use document::{Document, Source, is_scene_file, named_paths};
 pub use error::{ArgumentError, Fault, Origin, PlacedFault, SceneError};
@@ -58,8 +58,8 @@ pub use fields::{FieldPath, all_fields, is_whole, numeric_fields};
 pub use files::{FileError, Files, MAX_TABLE_BYTES};
 pub use manifest::{PROGRAM, SweepRequest, is_manifest};
 pub use measured::{
-    Ask, AskOptions, Channel, ChosenColumn, MAX_MEASURED_BYTES, MAX_MEASURED_ROWS, Measured, MeasuredError,
-    MeasuredText, read_measured,
+    Channel, ChosenColumn, ColumnOptions, ColumnRequest, MAX_MEASURED_BYTES, MAX_MEASURED_ROWS, Measured,
+    MeasuredError, MeasuredText, read_measured,
 };
 pub use mechanism::{FlexureGroup, ForcePiece, Mechanism};
 pub use presets::{EmbeddedTable, PRESETS, Preset, TABLES, export};

@@ -6,11 +6,11 @@
 use std::path::Path;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use super::columns::{ColumnsError, MOST_ROWS, read_columns};
+use super::columns::{ColumnsError, MAX_ROWS, read_columns};
 use super::data::Excitation;
 use super::error::Fault;
 use super::files::Files;
-use super::measured::{Ask, Measured, MeasuredError, too_few};
+use super::measured::{ColumnRequest, Measured, MeasuredError, too_few};
 use super::timing::Timing;
 use super::unit::Quantity;
 use crate::numeric::pieces::{Piece, pieces};
@@ -89,7 +89,7 @@ impl Record {
     /// Parses a record: CSV with the columns `t_s` and `accel_m_per_s2`, or with one column of time and one
     /// of acceleration identified by the units in their names, like a measured record. The error is a clause.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let columns = match read_columns(text, [TIME, ACCELERATION], MOST_ROWS, false) {
+        let columns = match read_columns(text, [TIME, ACCELERATION], MAX_ROWS, false) {
             Err(ColumnsError::MissingColumn(problem)) => {
                 return Self::by_units(text).map_err(|error| match error {
                     // no column has a unit of time: report the missing standard column
@@ -118,10 +118,10 @@ impl Record {
 
     fn by_units(text: &str) -> Result<Self, MeasuredError> {
         let requests = [Quantity::Time, Quantity::Acceleration]
-            .map(|quantity| Ask { quantities: vec![quantity], options: None });
+            .map(|quantity| ColumnRequest { quantities: vec![quantity], options: None });
         let [times, accelerations] = Measured::parse(text, &requests)?.channels.map(|channel| channel.values);
-        if times.len() > MOST_ROWS {
-            return Err(ColumnsError::TooMany(MOST_ROWS).into());
+        if times.len() > MAX_ROWS {
+            return Err(ColumnsError::TooMany(MAX_ROWS).into());
         }
         Ok(Self::new(times, accelerations))
     }

@@ -3,7 +3,7 @@
 //! serde keeps no positions. This is not a second parser, which could disagree with RON: it only follows
 //! brackets, strings, comments and `name:`, and never fails. It makes one pass and takes linear time. In a
 //! text that RON accepts, it finds every field by the same path as the traversal in `fields`. In any other
-//! text it finds some of the fields, which is enough to name the field near which a parser stopped.
+//! text it finds some of the fields, enough to name the field near which a parser stopped.
 
 use std::ops::Range;
 
@@ -344,7 +344,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn comments_are_told_from_text() {
+    fn comments_are_distinguished_from_text() {
         assert!(has_comments("( // what\n)") && has_comments("(/* what */)"));
         assert!(!has_comments("(notes: \"http://a \\\" // b\", mass_g: 1)"));
         assert!(has_comments("(notes: \"a\\\\\") // b"));
@@ -412,7 +412,7 @@ mod tests {
     }
 
     #[test]
-    fn a_field_left_out_is_found_at_what_surrounds_it() {
+    fn a_missing_field_is_found_at_the_field_around_it() {
         let text = "(\nrun:\n(duration_s: 1))";
         assert_eq!(line(text, "run.settle_s"), Some(2));
         assert_eq!(line(text, "stops.left_mm"), None);

@@ -75,7 +75,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rate_jitter_and_gaps_are_those_of_the_times() {
+    fn rate_jitter_and_gaps_are_found() {
         // steps of 1 ms, alternately 0.1 ms late and early, with a gap of 20 ms
         let late = |i: u32| if i % 2 == 1 { 1e-4 } else { 0.0 };
         let times: Vec<f64> =

@@ -186,7 +186,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_end_of_a_name_is_its_unit() {
+    fn the_ending_of_a_name_gives_its_unit() {
         for (name, quantity, one) in [
             ("t_s", Quantity::Time, 1.0),
             ("Time (ms)", Quantity::Time, 1e-3),

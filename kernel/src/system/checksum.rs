@@ -2,7 +2,7 @@
 
 use sha2::{Digest, Sha256};
 
-/// A checksum to which bytes are added.
+/// A checksum of bytes that are added one after another.
 #[derive(Debug, Clone, Default)]
 pub struct Checksum(Sha256);
 
@@ -30,7 +30,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_is_that_of_the_standard() {
+    fn checksums_are_those_of_the_standard() {
         // FIPS 180-2, appendix B.1 and B.2
         let abc = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
         assert_eq!(checksum(b"abc"), abc);

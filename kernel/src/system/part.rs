@@ -173,9 +173,9 @@ impl Opened {
     }
 
     /// Continues after the last complete block and drops everything after it. Returns the blocks that are
-    /// kept. If a block has been changed, this fails without changing anything, or, if `mend`, keeps only the
-    /// blocks before it.
-    pub fn go_on(self, mend: bool) -> Result<(Part, Vec<Block>), PartError> {
+    /// kept. If a block has been changed, this fails without changing anything, or, if `repair`, keeps only
+    /// the blocks before it.
+    pub fn resume(self, repair: bool) -> Result<(Part, Vec<Block>), PartError> {
         let Self { paths, lock, mut journal, .. } = self;
         let path = paths.part.clone();
         let refused = |problem| PartError::Refused { path: path.clone(), problem };
@@ -202,7 +202,7 @@ impl Opened {
             kept.push(block);
         }
         let after = || format!("what its journal says after row {rows} is changed since it was written");
-        if let Some(what) = damage.or(journal.damaged.then(after)).filter(|_| !mend || kept.is_empty()) {
+        if let Some(what) = damage.or(journal.damaged.then(after)).filter(|_| !repair || kept.is_empty()) {
             return Err(PartError::Damaged { part: path.display().to_string(), what, rows });
         }
         let cut = part.set_len(length).and_then(|()| part.seek(SeekFrom::Start(length)));

@@ -182,7 +182,7 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), String> {
 }
 
 /// Whether an output at `path` would be a regular file, and not standard output, a device or a pipe. This
-/// does not open `path`, since opening and closing a pipe would end it.
+/// does not open `path`, since opening and closing a pipe ends it for its reader.
 pub fn is_regular(path: &Path) -> bool {
     let existing = fs::metadata(follow_links(path));
     !is_stdout(path) && existing.map_or(true, |existing| existing.is_file() && !is_descriptor(path))
@@ -325,7 +325,7 @@ mod tests {
     }
 
     #[test]
-    fn one_file_by_two_names_is_found() {
+    fn two_names_of_one_file_are_recognised() {
         let folder = tempfile::tempdir().unwrap();
         let a = Sink::open(&folder.path().join("a.csv")).unwrap();
         let b = Sink::open(&folder.path().join(".").join("a.csv")).unwrap();
@@ -335,7 +335,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_places_are_named() {
+    fn bad_paths_are_reported() {
         let folder = tempfile::tempdir().unwrap();
         let missing = Sink::open(&folder.path().join("none").join("a.csv")).unwrap_err();
         assert!(matches!(missing, OpenError::MissingFolder { .. }), "{missing}");

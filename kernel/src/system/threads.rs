@@ -84,23 +84,23 @@ impl Pool {
         self.threads.install(|| all().find_first(Option::is_some).flatten())
     }
 
-    /// Computes results on all threads and passes them to `leave` on this thread in order, while further
-    /// results are still being computed.
+    /// Computes results on all threads and passes them in order to `receive` on this thread, while further
+    /// results are being computed.
     ///
-    /// Each thread calls `work` once. The first argument of `work` gives the next number from 0 to `count`
-    /// (exclusive), as from a [`Queue`]; the second one takes the results. Each number has `each` results,
-    /// whose indices continue from one number to the next; the results of one number must come in order.
-    /// `leave` gets several results at a time, and all results of a number together if there are at most 256.
-    /// At most `ahead` numbers are begun beyond the last one whose results have all been passed on. The
-    /// function returns early if `leave` returns false. It also does so if a `work` returns while numbers
-    /// remain, after it has passed on the results that are complete and in order.
+    /// Each thread calls `work` once. The first argument of `work` returns the next task, an index below
+    /// `count`, as from a [`Queue`]; the second one takes an index of a result and the result. Each task has
+    /// `per_task` results with consecutive indices, which must be delivered in order. `receive` gets several
+    /// results at a time, and all results of a task together if there are at most 256. At most `ahead` tasks
+    /// are begun beyond the last one whose results have all been received. The function returns early if
+    /// `receive` returns false. It also returns early if a `work` returns while tasks remain, after passing
+    /// on the results that are complete and in order.
     pub fn in_order<R: Send>(
         &self,
         count: usize,
-        each: usize,
+        per_task: usize,
         ahead: usize,
         work: impl Fn(&dyn Fn(UnderWay) -> Option<usize>, &dyn Fn(usize, R)) + Sync,
-        mut leave: impl FnMut(Vec<R>) -> bool,
+        mut receive: impl FnMut(Vec<R>) -> bool,
     ) {
         let queue = Queue { ahead, ..Queue::new(count, self.count()) };
         let (sender, receiver) = channel();
@@ -120,8 +120,8 @@ impl Pool {
                         queue.wait()
                     })
                 };
-                let done = |number, result| {
-                    pending.borrow_mut().0.push((number, result));
+                let done = |index, result| {
+                    pending.borrow_mut().0.push((index, result));
                     if pending.borrow().1.elapsed() > SEND_INTERVAL {
                         send();
                     }
@@ -129,14 +129,14 @@ impl Pool {
                 work(&take, &done);
                 send();
             });
-            // Stops the queue on every exit, including a panic of `leave`, so that no thread keeps waiting.
+            // Stops the queue on every exit, including a panic of `receive`, so that no thread keeps waiting.
             let _stop = StopOnDrop(&queue);
             let (mut waiting, mut passed, mut working) = (BTreeMap::new(), 0, self.count());
             while working > 0 {
                 match receiver.recv() {
                     Ok(Message::Done(results)) => waiting.extend(results),
                     Ok(Message::Ended) => {
-                        // If numbers remain, this thread has given up or panicked (the scope propagates the
+                        // If tasks remain, this thread has given up or panicked (the scope propagates the
                         // panic after all threads have ended). Some results will then be missing, and no
                         // thread may wait for them.
                         queue.stop();
@@ -145,10 +145,10 @@ impl Pool {
                     Err(_) => break,
                 }
                 loop {
-                    // all results of one or more numbers, or a part of the results of one large number
-                    let (step, limit) = match each <= MAX_BATCH {
-                        true => (each, MAX_BATCH),
-                        false => (1, MAX_BATCH.min(each - passed % each)),
+                    // all results of one or more tasks, or a part of the results of one large task
+                    let (step, limit) = match per_task <= MAX_BATCH {
+                        true => (per_task, MAX_BATCH),
+                        false => (1, MAX_BATCH.min(per_task - passed % per_task)),
                     };
                     let ends = (1..=limit / step).map(|steps| passed + steps * step);
                     let until = ends.take_while(|end| waiting.contains_key(&(end - 1))).last();
@@ -159,8 +159,8 @@ impl Pool {
                         break;
                     }
                     passed += next.len();
-                    queue.set_finished(passed / each);
-                    if !leave(next) {
+                    queue.set_finished(passed / per_task);
+                    if !receive(next) {
                         return;
                     }
                 }
@@ -174,9 +174,9 @@ impl Pool {
     }
 }
 
-/// The results of all numbers from 0 to `count` (exclusive) in order, or an error of one of them. Each thread
-/// of the pool, or this thread without a pool, calls `work`, which takes numbers as from a [`Queue`] and
-/// returns their results.
+/// The results of tasks 0 to `count` (exclusive) in order, or an error of one of them. Each thread of the
+/// pool, or this thread without a pool, calls `work`, which takes tasks as from a [`Queue`] and returns their
+/// results.
 pub fn share<R: Send, E: Send>(
     pool: Option<&Pool>,
     count: usize,
@@ -186,7 +186,7 @@ pub fn share<R: Send, E: Send>(
     share_from(pool, &|under_way| queue.take(under_way), work)
 }
 
-/// Like [`share`], for the numbers that `take` returns, as from a [`Queue`].
+/// Like [`share`], for the tasks that `take` returns, as from a [`Queue`].
 pub fn share_from<R: Send, E: Send>(
     pool: Option<&Pool>,
     take: &(dyn Fn(UnderWay) -> Option<usize> + Sync),
@@ -207,25 +207,25 @@ const SEND_INTERVAL: Duration = Duration::from_millis(1);
 /// Largest number of results that are passed on at once.
 const MAX_BATCH: usize = 256;
 
-/// Work in progress of a thread that takes a number.
+/// Work in progress of a thread that asks for a task.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct UnderWay {
     /// Number of runs in progress.
     pub runs: usize,
-    /// Whether these runs fill the lanes of the thread. A [`Queue`] then gives it only numbers near the end,
-    /// 16 for each thread. These runs start early and alternate with the others, so that all end at about the
-    /// same time. Runs that start one after another would leave more and more lanes empty at the end.
+    /// Whether these runs fill the lanes of the thread. A [`Queue`] then gives it only the last tasks, 16 per
+    /// thread. Their runs start early and take turns with the others, so that all end at about the same time.
+    /// Runs that start one after another would leave more and more lanes empty at the end.
     pub full: bool,
 }
 
-/// Threads with full lanes may take only the last numbers of a queue: this many for each thread.
+/// Number of tasks per thread, at the end of a queue, that threads with full lanes may take.
 const LAST_PER_THREAD: usize = 16;
 
-/// Numbers from 0 that several threads take, each number once.
+/// Queue of tasks, given by their indices; each is taken once, by one of several threads.
 #[derive(Debug)]
 pub struct Queue {
     count: usize,
-    /// Largest number of unfinished numbers that have been taken.
+    /// Largest number of unfinished tasks that have been taken.
     ahead: usize,
     threads: usize,
     state: Mutex<Progress>,
@@ -240,19 +240,20 @@ struct Progress {
 }
 
 impl Queue {
-    /// A queue of `count` numbers for `threads` threads.
+    /// A queue of `count` tasks for `threads` threads.
     pub fn new(count: usize, threads: usize) -> Self {
         Self { count, ahead: usize::MAX, threads, state: Mutex::default(), changed: Condvar::new() }
     }
 
-    /// The next number for a thread with this work in progress. Returns `None` if no number is left, or if
-    /// the thread should not get one now, as when it already has its share of a few numbers.
+    /// The next task for a thread with this work in progress. Returns `None` if no task is left, or if the
+    /// thread should not get one now, for example because it already has its share of a small number of
+    /// tasks.
     pub fn take(&self, under_way: UnderWay) -> Option<usize> {
         self.take_from(&mut self.lock(), under_way)
     }
 
-    /// The next number for a thread without work in progress; waits until there is one. Returns `None` only
-    /// if no number is left.
+    /// The next task for a thread without work in progress; waits until there is one. Returns `None` only if
+    /// no task is left.
     fn wait(&self) -> Option<usize> {
         let must_wait =
             |state: &mut Progress| !state.stopped && state.next < self.count && self.is_full(state);
@@ -277,7 +278,7 @@ impl Queue {
         state.next - state.finished >= self.ahead
     }
 
-    /// Records that the first `finished` numbers are finished.
+    /// Records that the first `finished` tasks are finished.
     fn set_finished(&self, finished: usize) {
         self.lock().finished = finished;
         self.changed.notify_all();

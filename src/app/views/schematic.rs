@@ -61,7 +61,7 @@ impl Schematic {
 
 /// The parts of a mechanism except springs and magnets.
 fn other_parts(mechanism: &Mechanism) -> impl Iterator<Item = &Mechanism> {
-    mechanism.side_by_side().iter().filter(|part| part.element.is_none())
+    mechanism.parts_or_self().iter().filter(|part| part.element.is_none())
 }
 
 /// The force of these parts at x = 0.

@@ -115,7 +115,7 @@ impl<'a> Prepared<'a> {
         let picture = Picture::of_chart(&options.chart, "--plot-x", common)?;
         let (mut document, warnings) = load(&options.scene, common, Some(&options.over))?;
         // Rows, plan and manifest then refer to the same bytes, even if the files change during the sweep.
-        document.hold_files();
+        document.cache_files();
         let swept = document.swept.clone().unwrap_or_default();
         let number = options.shard.as_ref().or(swept.shard.as_ref());
         let variable = |name: &str| std::env::var(name).ok();

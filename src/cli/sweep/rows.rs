@@ -122,7 +122,7 @@ impl Prepared<'_> {
                  or start anew with --force and --columns all"
             ),
             Some(_) => {
-                let (part, blocks) = opened.go_on(force).map_err(refused)?;
+                let (part, blocks) = opened.resume(force).map_err(refused)?;
                 let mut tally = Tally::default();
                 let notes = blocks.iter().filter_map(|block| serde_json::from_str(&block.note).ok());
                 notes.for_each(|note| tally.add(&note));

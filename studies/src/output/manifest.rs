@@ -129,7 +129,7 @@ impl Manifest<'_> {
             "scene": scene_value(scene),
             // null if it cannot be written, never an empty scene
             "scene_ron": crate::scene::write(scene).ok(),
-            "files": document.files.held,
+            "files": document.files.cached,
         });
         extend(&mut all, end);
         pretty(&all)

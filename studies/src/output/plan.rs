@@ -22,7 +22,7 @@ pub fn plan(document: &Document, sweep: &Sweep, columns: &[String], version: &st
         ["title", "notes", "sweep", "app"].iter().for_each(|key| drop(scene.remove(*key)));
     }
     let files =
-        document.files.held.iter().map(|(path, text)| (path.clone(), json!(checksum(text.as_bytes()))));
+        document.files.cached.iter().map(|(path, text)| (path.clone(), json!(checksum(text.as_bytes()))));
     let grid: Vec<String> = sweep.grid().axes().iter().map(axis).collect();
     json!({
         "program": PROGRAM,

@@ -4,7 +4,7 @@ use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use super::Error;
-use crate::scene::{Ask, Channel, Measured, Quantity, Timing, read_measured};
+use crate::scene::{Channel, ColumnRequest, Measured, Quantity, Timing, read_measured};
 use crate::study::{
     FORCE_POINTS, Identified, Table, Unidentified, damping, force, restitution, restitution_of_times,
 };
@@ -174,7 +174,7 @@ impl Record<'_> {
     fn answer(&self) -> Result<IdentifyAnswer, Error> {
         let question = self.question;
         let ask = |quantities: &[Quantity], [column, unit]: &[Option<String>; 2], names| {
-            Ask::by_options(quantities, column, unit, names)
+            ColumnRequest::by_options(quantities, column, unit, names)
         };
         let times = ask(&[Quantity::Time], &question.time, ["--time", "--time-unit"]);
         let of_values = |asked: &[_]| ask(asked, &question.column, ["--column", "--unit"]);
@@ -224,7 +224,7 @@ impl Record<'_> {
         }
     }
 
-    fn read<const N: usize>(&self, asks: &[Ask; N]) -> Result<(Measured<N>, String), Error> {
+    fn read<const N: usize>(&self, asks: &[ColumnRequest; N]) -> Result<(Measured<N>, String), Error> {
         let record = read_measured(&self.file, asks).map_err(|problem| self.about(problem))?;
         let columns = columns_read(&record);
         Ok((record, columns))

@@ -172,7 +172,7 @@ impl Rating<'_> {
         let path = FieldPath::new(field);
         // the scene has the field, which is one of its sizes
         path.get(&trial).filter(|value| path.set(&mut trial, value * (1.0 + by))).ok_or(Cancelled)?;
-        let built = Mechanism::build_unless(&trial.mechanism, &scene.files, self.task.cancel);
+        let built = Mechanism::build_cancellable(&trial.mechanism, &scene.files, self.task.cancel);
         let Ok(mechanism) = built.ok_or(Cancelled)? else { return Ok(None) };
         let found = self.crossing(&trial, &Arc::new(mechanism), Above::Skipped)?;
         Ok(found.and_then(|found| found.value))

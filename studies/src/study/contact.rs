@@ -115,7 +115,7 @@ pub fn strikes_in_words(model: &Model, scene: &Scene) -> Option<String> {
         return None;
     }
     let Strikes { speed, count, settled } = threads::within(PATIENCE, |cancel| strikes(model, cancel))?;
-    let loss = |restitution: f64| Hertz::struck_for(restitution).map(|struck| short(struck / speed));
+    let loss = |restitution: f64| Hertz::loss_times_speed(restitution).map(|struck| short(struck / speed));
     let window = if settled { "in the settled window" } else { "in the run, before its settled window" };
     let what = match model.compliant() {
         Some(stop) => {

@@ -110,7 +110,7 @@ impl Cells {
     pub fn mechanism(&self, index: u64, scene: &mut Scene, cancel: &AtomicBool) -> Option<Built> {
         self.grid.apply(index, scene);
         let build = || {
-            let built = Mechanism::build_unless(&scene.mechanism, &self.files, cancel)?;
+            let built = Mechanism::build_cancellable(&scene.mechanism, &self.files, cancel)?;
             self.built.fetch_add(1, Ordering::Relaxed);
             Some(built.map(Arc::new))
         };

@@ -123,7 +123,7 @@ impl Question for SectionOptions {
         let (from, to) = run.summary.window;
         let strikes = run.events.iter().filter(|event| {
             matches!(event.kind, EventKind::Impact | EventKind::Contact)
-                && event.v_in.abs() > model.least_impact_speed()
+                && event.v_in.abs() > model.min_impact_speed()
                 && event.t >= from
                 && event.t < to
         });

@@ -1,13 +1,13 @@
 //! The text of a measured record: layouts and units that are read, and refusals with line and remedy.
 
-use interwell::scene::{Ask, Measured, MeasuredError, Quantity};
+use interwell::scene::{ColumnRequest, Measured, MeasuredError, Quantity};
 
-fn ask(quantities: &[Quantity], column: Option<&str>, unit: Option<&str>) -> Ask {
+fn ask(quantities: &[Quantity], column: Option<&str>, unit: Option<&str>) -> ColumnRequest {
     let own = |text: Option<&str>| text.map(str::to_owned);
-    Ask::by_options(quantities, &own(column), &own(unit), ["--column", "--unit"])
+    ColumnRequest::by_options(quantities, &own(column), &own(unit), ["--column", "--unit"])
 }
 
-fn asks() -> [Ask; 2] {
+fn asks() -> [ColumnRequest; 2] {
     [ask(&[Quantity::Time], None, None), ask(&[Quantity::Displacement, Quantity::Acceleration], None, None)]
 }
 

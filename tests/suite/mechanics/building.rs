@@ -43,7 +43,7 @@ fn building_ends_once_it_is_told_to() {
         let document = Document::load(name).unwrap();
         let build = |told: bool| {
             let cancel = AtomicBool::new(told);
-            Mechanism::build_unless(&document.scene.mechanism, &document.files, &cancel)
+            Mechanism::build_cancellable(&document.scene.mechanism, &document.files, &cancel)
         };
         let whole = Mechanism::build(&document.scene.mechanism, &document.files);
         assert!(build(true).is_none(), "{name}");

@@ -145,7 +145,7 @@ fn every_record_tells_one_story() {
         check_samples(&run, &limits);
         assert_eq!(run.samples.len(), 547);
         let count = |kind| of_kind(&run, kind).len() as u64;
-        let fast = |event: &Event| event.v_in.abs() > model.least_impact_speed();
+        let fast = |event: &Event| event.v_in.abs() > model.min_impact_speed();
         let impacts_that_count = of_kind(&run, EventKind::Impact).into_iter().filter(fast).count();
         assert_eq!(impacts_that_count as u64, summary.total_impacts);
         assert_eq!(count(EventKind::Crossing), summary.total_crossings);

@@ -29,7 +29,7 @@ fn fields(drawn: &Drawn) -> [String; 3] {
 /// count: rounding decides whether such a one does.
 fn clear(model: &Model) -> Option<Summary> {
     let run = model.run(&Request { events: true, ..Request::default() });
-    let edge = |speed: f64| (speed / model.least_impact_speed() - 1.0).abs() < 1e-3;
+    let edge = |speed: f64| (speed / model.min_impact_speed() - 1.0).abs() < 1e-3;
     let near = run.events.iter().any(|event| event.kind == EventKind::Impact && edge(event.v_in.abs()));
     (run.summary.outcome == Outcome::Done && run.summary.period.is_some() && !near).then_some(run.summary)
 }

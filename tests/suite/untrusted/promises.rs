@@ -12,7 +12,7 @@ use std::time::Duration;
 use interwell::dynamics::{Model, Outcome, Request};
 use interwell::mechanics::{BuildError, ForceTable, Mechanism, fit, force_scale};
 use interwell::scene::{
-    self, Document, Excitation, FieldPath, Files, MAX_AXIS_VALUES, MOST_ROWS, Record, Start, arguments,
+    self, Document, Excitation, FieldPath, Files, MAX_AXIS_VALUES, MAX_ROWS, Record, Start, arguments,
     read_columns, write,
 };
 use interwell::study::{Grid, MAX_CELLS};
@@ -102,7 +102,7 @@ pub fn recorded(bytes: &[u8]) {
     assert_eq!(Record::parse(&written).as_ref(), Ok(&record));
     // others are chosen by their units
     let names = ["t_s", "accel_m_per_s2"];
-    if read_columns(text, names, MOST_ROWS, true).is_ok() {
+    if read_columns(text, names, MAX_ROWS, true).is_ok() {
         rows_stand_on_lines(text, names);
     }
     let mut document = small();
@@ -201,7 +201,7 @@ fn small() -> Document {
 /// Each row of a CSV text that was read stands on its own line: none was swallowed, none counted wrongly.
 #[track_caller]
 fn rows_stand_on_lines(text: &str, names: [&'static str; 2]) {
-    let columns = read_columns(text, names, MOST_ROWS, true).unwrap();
+    let columns = read_columns(text, names, MAX_ROWS, true).unwrap();
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let lines: Vec<&str> =
         text.split('\n').flat_map(|l| l.strip_suffix('\r').unwrap_or(l).split('\r')).collect();

@@ -1,14 +1,14 @@
 //! Contact with a compliant stop: touch, compression, separation.
 //!
-//! Contact is a phase of the motion like free flight: its steps are series (`penetration`), the drive goes
-//! on, and every event is a root of the step's polynomials. It begins where free flight reaches the surface
-//! and ends where the root of the depth is 0 again; outside it the stop costs the steps of free flight
-//! nothing.
+//! Contact is a phase of the motion like free flight: each step is a series (`penetration`) that includes the
+//! drive, and every event is a root of the step's polynomials. Contact begins where free flight reaches the
+//! surface and ends where the depth returns to 0. Steps of free flight cost the same with and without a
+//! compliant stop.
 //!
 //! A mass that rests on such a stop oscillates at some kilohertz about a depth of a tenth of a micrometre.
 //! The oscillation is integrated while it is above the tolerance: on the prototype's stops at tolerance 1e-9
-//! this takes some 36 steps a period if the oscillation reaches the surface, and one or two if it is small.
-//! Below the tolerance the mass follows its load (`quasi_static`).
+//! this takes about 36 steps per period if the oscillation reaches the surface, and one or two if it is
+//! small. Below the tolerance the mass follows its load (`quasi_static`).
 //!
 //! Most impacts end before anything but the stop force changes much. Such an impact is a single step
 //! (`impact`); any other takes 12 to 18 steps at tolerances from 1e-3 to 1e-14.
@@ -26,9 +26,9 @@ use crate::dynamics::step::penetration::Penetration;
 use crate::dynamics::step::quasi_static::QuasiStatic;
 use crate::numeric::Scalar;
 
-/// Minimum speed of a touch, in eps^2 times the speed scale. The parameter of a contact needs a speed at its
-/// start. A mass pressed onto the surface at rest gets this speed, which no output shows: it grows by some
-/// e-foldings within one or two steps.
+/// Minimum speed of a touch, in eps^2 times the speed scale. The series of a contact needs a speed at touch
+/// that is not 0. A mass pressed onto the surface at rest gets this speed, which is too small to appear in
+/// any output.
 const MIN_TOUCH_SPEED: f64 = 1.0;
 
 impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
@@ -72,8 +72,8 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
 
     /// The mass enters the compliant stop of `end` through its surface at `speed`.
     pub fn enter_stop(&mut self, end: End, speed: T) {
-        let least = self.stepper.settings.speed * T::of(MIN_TOUCH_SPEED * T::EPSILON * T::EPSILON);
-        let speed = speed.larger(least);
+        let min_speed = self.stepper.settings.speed * T::of(MIN_TOUCH_SPEED * T::EPSILON * T::EPSILON);
+        let speed = speed.larger(min_speed);
         self.state.v = end.sign::<T>() * speed;
         self.state.enter(end);
         self.state.depth = Depth { root: T::zero(), clip_changed: false };
@@ -117,7 +117,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         found.is_some()
     }
 
-    /// Takes a quasi-static step if the mass does not oscillate. Returns whether it was taken.
+    /// Takes a quasi-static step if the mass does not ring. Returns whether it was taken.
     fn take_quasi_static_step(&mut self, end: End, left: T, stop: Compliant<T>) -> bool {
         let new = || Box::new(QuasiStatic::new(stop));
         let mut path = self.stepper.quasi_static.take().unwrap_or_else(new);
@@ -193,7 +193,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     fn leave_stop(&mut self, end: End) {
         self.record.separate(&self.state.at, end.side(), self.state.v);
         let sign = end.sign::<T>();
-        // one mode inward; more if a break lies so close outside the surface that the step has passed both
+        // one mode inward, or more if the step has also passed a break just outside the surface
         while sign * (self.stepper.mode(&self.state).end(end).0 - self.state.x) > T::zero() {
             self.state.enter(end.other());
         }
@@ -202,7 +202,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         if outward < T::zero() {
             self.state.touch = Some(Touch { end, opening: Opening::Speed });
         } else {
-            self.meet(end, T::zero()); // it has come to rest right at the surface
+            self.meet(end, T::zero()); // it has come to rest exactly at the surface
         }
     }
 
@@ -215,7 +215,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         if outward > T::zero() {
             self.enter_neighbour(at);
         } else {
-            self.state.touch = Some(Touch { end: at, opening: Opening::Held });
+            self.state.touch = Some(Touch { end: at, opening: Opening::Ignored });
         }
         None
     }

@@ -49,8 +49,8 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
             EndKind::Stop if outward > T::zero() => self.strike(end, outward),
             EndKind::Stop if at_once => {
                 // It was released where the contact acceleration is 0 to rounding, and does not leave: it
-                // rests on.
-                self.state.refused = Some(self.state.at);
+                // stays at rest.
+                self.state.failed_release = Some(self.state.at);
                 self.state.v = T::zero();
                 self.begin_rest(end);
             }
@@ -64,7 +64,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
                 if !at_once {
                     self.balance(end);
                 } else if self.state.turned_back {
-                    self.state.touch = Some(Touch { end, opening: Opening::Held });
+                    self.state.touch = Some(Touch { end, opening: Opening::Ignored });
                 } else {
                     self.state.turned_back = true;
                     self.enter_neighbour(end);
@@ -110,14 +110,14 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
                 (end.other(), opening)
             }
             Some((opening, _)) => (end, opening),
-            None => (end, Opening::Held),
+            None => (end, Opening::Ignored),
         };
         self.state.touch = Some(Touch { end, opening });
     }
 }
 
-/// The first of an acceleration, known to `rounding`, and its first two derivatives that is not 0, and
-/// whether it is positive.
+/// The first nonzero one of an acceleration (known to `rounding`) and its first two derivatives, and whether
+/// it is positive.
 fn first_rate<T: Scalar>(rates: [T; 3], rounding: T) -> Option<(Opening, bool)> {
     let openings = [Opening::Acceleration, Opening::Jerk, Opening::Snap];
     let sizes = [rounding, T::zero(), T::zero()];

@@ -17,7 +17,7 @@ const TOUCH_SKIP: f64 = 1e-6;
 
 impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// The touch with which a mass that stands at the stop of `end` with no speed leaves it, or `None` if it
-    /// is pressed onto the stop. The first of the contact acceleration and its derivatives that is not 0
+    /// is pressed onto the stop. The first nonzero one of the contact acceleration and its derivatives
     /// decides; if all are 0, the mass stays at the stop in free flight.
     pub fn leaves(&mut self, end: End) -> Option<Touch> {
         let rates = self.stepper.contact_acceleration(&self.state, end);
@@ -45,6 +45,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         self.report(Call::Rest { at: self.state.at, side: end.side() });
     }
 
+    /// The mass stands still until `until`.
     pub fn stand(&mut self, until: Instant<T>, phase: Phase) {
         let MotionState { at, x, v, circuit: state, .. } = self.state;
         let samples = self.record.samples.len();
@@ -63,8 +64,9 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         self.steps += 1;
         let until = self.stepper.segment_limit(&self.state);
         let mut from = self.state.at;
-        if self.state.refused == Some(self.state.at) {
-            // The contact acceleration only touched 0 here, to rounding: search beyond this instant.
+        if self.state.failed_release == Some(self.state.at) {
+            // The contact acceleration only touched 0 here, to rounding: the search begins after this
+            // instant.
             from = self.stepper.clock.advance(&from, self.stepper.clock.period * T::of(TOUCH_SKIP));
         }
         let threshold = self.stepper.equation.stop(end).map_or(T::zero(), |s| s.acceleration);
@@ -73,7 +75,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
             self.state.circuit * decay(circuit.decay * time).0
         });
         let acceleration = ContactAcceleration { threshold, sign: end.sign::<T>(), circuit };
-        let since = self.searched.take().filter(|(segment, _)| *segment == self.state.segment);
+        let since = self.no_release_since.take().filter(|(segment, _)| *segment == self.state.segment);
         let since = since.map_or(from, |(_, since)| since);
         let span = Span { from, until, segment: self.state.segment, since };
         let Stepper { drive, cursor, .. } = &mut self.stepper;
@@ -86,7 +88,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
                 self.label = turn.filter(|_| self.recurs).map(|turn| Label { end, turn, phase: root.phase });
             }
             ReleaseRoot::NotBefore(later) => {
-                self.searched = Some((self.state.segment, since));
+                self.no_release_since = Some((self.state.segment, since));
                 self.stand(later, phase);
             }
             ReleaseRoot::Never => {

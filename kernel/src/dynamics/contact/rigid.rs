@@ -3,7 +3,7 @@
 use crate::dynamics::clock::Instant;
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::End;
-use crate::dynamics::model::scales::LEAST_IMPACT;
+use crate::dynamics::model::scales::MIN_IMPACT;
 use crate::dynamics::motion::Motion;
 use crate::dynamics::record::events::Call;
 use crate::dynamics::result::Phase;
@@ -40,7 +40,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         let [acceleration, jerk, snap] = rates;
         if !(acceleration > T::zero()
             && stop.restitution < one
-            && speed < self.stepper.settings.speed * T::of(LEAST_IMPACT))
+            && speed < self.stepper.settings.speed * T::of(MIN_IMPACT))
         {
             return false;
         }
@@ -67,8 +67,8 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     }
 
     /// After a rebound that is pressed back with this acceleration, in a pursuit: if this rebound and those
-    /// after it are sure to end in rest before the next stroboscopic state, they are skipped, since the later
-    /// motion does not depend on them. Returns whether they were.
+    /// after it are certain to end in rest before the next stroboscopic state, they are skipped, since the
+    /// later motion does not depend on them. Returns whether they were skipped.
     ///
     /// As long as the acceleration towards the stop stays between a and b, a flight that starts at speed v
     /// takes at most 2 v / a, reaches at most v^2 / (2 a), and is followed by one that starts at no more than
@@ -78,9 +78,12 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// a is at least half the present acceleration and b at most 4 a.
     pub fn will_rest(&mut self, end: End, acceleration: T) -> bool {
         let Self { stepper, record, state, .. } = &self;
-        let (Some(_), Some(stop), Some(bend), Some(strobe)) =
-            (&record.goal, stepper.equation.stop(end), stepper.drive.bend(), &record.next_strobe)
-        else {
+        let (Some(_), Some(stop), Some(bend), Some(strobe)) = (
+            &record.goal,
+            stepper.equation.stop(end),
+            stepper.drive.second_derivative_bound(),
+            &record.next_strobe,
+        ) else {
             return false;
         };
         let (one, two, speed) = (T::of(1.0), T::of(2.0), state.v.abs());
@@ -111,7 +114,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         rests
     }
 
-    /// The mass, whose last flight ends at `until`, rests from then on.
+    /// The mass, whose last flight ends at `until`, is at rest from then on.
     pub fn rest_after(&mut self, until: Instant<T>, end: End) {
         self.stand(until, Phase::Free);
         self.state.v = T::zero();

@@ -6,7 +6,7 @@ use super::general::{FEW_TONES, General};
 use super::lines::Lines;
 use super::record::{Line, Record};
 use super::tone::{Chirp, Ramp, Sine, Tone, TurnsPerCycle};
-use super::{Base, Circuit, Still};
+use super::{Base, Circuit, Constant};
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
@@ -53,10 +53,10 @@ impl<T: Scalar> Kernel<T> {
     }
 }
 
-/// A drive in the type that is fastest for it.
+/// A drive in its fastest type.
 #[derive(Debug)]
 pub(crate) enum Form<T> {
-    Still(Still<T>),
+    Constant(Constant<T>),
     Sine(Sine<T>),
     General(General<T>),
 }
@@ -65,7 +65,7 @@ pub(crate) enum Form<T> {
 macro_rules! with_drive {
     ($form:expr, $drive:ident => $call:expr) => {
         match $form {
-            $crate::dynamics::drive::form::Form::Still($drive) => $call,
+            $crate::dynamics::drive::form::Form::Constant($drive) => $call,
             $crate::dynamics::drive::form::Form::Sine($drive) => $call,
             $crate::dynamics::drive::form::Form::General($drive) => $call,
         }
@@ -73,12 +73,12 @@ macro_rules! with_drive {
 }
 pub(crate) use with_drive;
 
-/// This model's drive in the type that is fastest for it.
+/// This model's drive in its fastest type.
 pub(crate) fn form<T: Scalar>(model: &Model, clock: &Clock<T>) -> Form<T> {
     let (drive, unit) = (&model.excitation, clock.unit);
     let alone = drive.has_only_tones() && model.circuit().is_none();
     match drive.tones.as_slice() {
-        [] if alone => Form::Still(Still { acceleration: T::of(drive.constant * (unit * unit)) }),
+        [] if alone => Form::Constant(Constant { acceleration: T::of(drive.constant * (unit * unit)) }),
         [part] if alone && drive.constant == 0.0 && part.ramp.is_none() => {
             Form::Sine(Sine { tone: tone(part, part.frequency, unit, |_| None), clock: *clock })
         }
@@ -89,7 +89,7 @@ pub(crate) fn form<T: Scalar>(model: &Model, clock: &Clock<T>) -> Form<T> {
 /// This model's drive as the general type, which any drive fits.
 pub(crate) fn general<T: Scalar>(model: &Model, clock: &Clock<T>) -> General<T> {
     match form(model, clock) {
-        Form::Still(_) => General { still: true, ..sum(model, clock) },
+        Form::Constant(_) => General { only_constant: true, ..sum(model, clock) },
         Form::Sine(sine) => General { sine: Some(sine), ..sum(model, clock) },
         Form::General(general) => general,
     }
@@ -111,7 +111,7 @@ fn circuit<T: Scalar>(model: &Model, unit: f64) -> Option<Circuit<T>> {
     let (coupling, decay) = (circuit.coupling * unit, circuit.decay * unit);
     let Scales { speed, time, .. } = model.scales;
     let (speed, time) = (speed * unit, time / unit);
-    // The size that the motion gives it: limited by what the mass moves and by what the coupling supplies.
+    // The size of the state during the motion, limited by the decay and by the speed of the mass.
     let moved = speed * (coupling.abs() * time / (1.0 + decay * time)).min(1.0);
     let scale = if moved > 0.0 { moved } else { circuit.state(model.start_electrical) * unit };
     Some(Circuit::new(T::of(coupling), T::of(decay), T::of(scale.abs())))
@@ -179,7 +179,7 @@ fn sum<T: Scalar>(model: &Model, clock: &Clock<T>) -> General<T> {
     General {
         clock: *clock,
         sine: None,
-        still: false,
+        only_constant: false,
         circuit: circuit(model, unit),
         constant: T::of(drive.constant * square),
         tones,
@@ -204,7 +204,7 @@ fn corners(source: &scene::Record, pieces: &[Piece]) -> impl Iterator<Item = f64
     ends.map(|sample| source.times[sample]).chain(source.times.last().copied())
 }
 
-/// The lines of a record and the polynomials that replace lines, as far as the run goes.
+/// The lines of a record, and the polynomials that replace lines, up to the end of the run.
 fn record<T: Scalar>(
     (source, pieces): (&Arc<scene::Record>, Arc<Vec<Piece>>),
     model: &Model,
@@ -242,9 +242,9 @@ fn record<T: Scalar>(
     Record { lines, source: Arc::clone(source), pieces, clock: *clock }
 }
 
-/// The pieces of a record, with polynomials in place of lines as the tolerance allows. There are no
-/// polynomials in double-double arithmetic, nor with another part of the drive, a circuit or rigid stops: the
-/// search for a release uses the lines of a record, and a flight along a polynomial might begin pressed back.
+/// The pieces of a record, with polynomials in place of lines if the tolerance allows. Polynomials are not
+/// used in double-double arithmetic, nor with another part of the drive, a circuit or rigid stops: the search
+/// for a release uses the lines of a record, and a flight along a polynomial might begin pressed back.
 fn pieces<T: Scalar>(model: &Model, source: &scene::Record) -> Arc<Vec<Piece>> {
     let drive = &model.excitation;
     let parts = drive.tones.len() + drive.chirps.len() + drive.records.len();

@@ -1,9 +1,8 @@
 //! General drive: a constant and any number of tones, chirps and records, and the circuit of a transducer
-//! that has a state of its own.
+//! with an electrical state.
 //!
-//! A constant alone and a sine alone also have faster types, [`Still`](super::Still) and [`Sine`]. In
-//! double-double arithmetic every drive is of the general type; a constant or a sine alone has the same
-//! arithmetic here as there.
+//! A constant alone and a sine alone also have faster types, [`Constant`](super::Constant) and [`Sine`], with
+//! the same arithmetic. In double-double arithmetic every drive is of the general type.
 
 use super::lines::{Lines, LinesCursor};
 use super::record::{Record, RecordSeries};
@@ -21,7 +20,7 @@ pub(super) const FEW_TONES: usize = 8;
 #[derive(Debug, Clone, Default)]
 pub(crate) struct General<T> {
     pub clock: Clock<T>,
-    /// The sine, if the drive is nothing else; the other parts are then not evaluated.
+    /// The sine, if the drive is a sine alone; the other parts are then not evaluated.
     pub sine: Option<Sine<T>>,
     pub constant: T,
     pub tones: Vec<Tone<T>>,
@@ -30,14 +29,14 @@ pub(crate) struct General<T> {
     pub chirps: Vec<Chirp<T>>,
     pub records: Vec<Record<T>>,
     pub circuit: Option<Circuit<T>>,
-    /// Whether the drive is nothing but the constant.
-    pub still: bool,
+    /// Whether the drive is the constant alone.
+    pub only_constant: bool,
     /// Ends of ramps and chirps and the samples of records, ascending.
     pub segment_ends: Vec<Instant<T>>,
     /// Cycles of the clock after which all parts repeat, from the start of the last segment on. `None` if
     /// they do not repeat within the run, or if it is not known whether they do.
     pub common_cycles: Option<i64>,
-    /// Bound of the acceleration without the constant.
+    /// Bound of the magnitude of the acceleration, without the constant.
     pub reach: T,
     /// Angular frequency of the fastest part that moves, kernel units; 0 without one.
     pub fastest: T,
@@ -74,7 +73,7 @@ impl<T: Scalar> Tail<T> for General<T> {
 
     #[inline(always)]
     fn zero_from(&self) -> Option<usize> {
-        self.still.then_some(1)
+        self.only_constant.then_some(1)
     }
 
     #[inline(always)]
@@ -107,7 +106,8 @@ impl<T: Scalar> Tail<T> for General<T> {
 }
 
 impl<T: Scalar> Base<T> for General<T> {
-    /// As the first coefficient, with the same order of sums, but records are evaluated by their lines.
+    /// Equal to the first coefficient, summed in the same order, except that records are evaluated by their
+    /// lines.
     fn acceleration(&self, at: &Instant<T>, segment: usize) -> T {
         if let Some(sine) = &self.sine {
             return sine.acceleration(at, segment);
@@ -139,8 +139,8 @@ impl<T: Scalar> Drive<T> for General<T> {
         cursor.state[0] = state;
     }
 
-    fn bend(&self) -> Option<T> {
-        self.sine.as_ref().and_then(Sine::bend)
+    fn second_derivative_bound(&self) -> Option<T> {
+        self.sine.as_ref().and_then(Sine::second_derivative_bound)
     }
 
     fn common_cycles(&self) -> i64 {
@@ -227,9 +227,9 @@ impl<T: Scalar> Drive<T> for General<T> {
         self.segment_ends.get(segment).copied()
     }
 
-    /// The push of the circuit on a mass at rest decays. While it lasts, the contact acceleration is a
-    /// polynomial over strides short enough for the decay too, so no root is missed; after that the search
-    /// goes on without the push. A push that does not decay is part of the threshold.
+    /// The push of the circuit on a mass at rest decays. Until it is negligible, the strides are short enough
+    /// for its decay too, so no root is missed; after that the search continues without it. A push that does
+    /// not decay is part of the threshold.
     fn next_release(
         &self,
         span: &Span<T>,
@@ -257,9 +257,9 @@ impl<T: Scalar> Drive<T> for General<T> {
             return self.next_release_without_push(&span, without(threshold), cursor);
         }
         if level == T::zero() {
-            return (ReleaseRoot::Never, 0); // it keeps its sign
+            return (ReleaseRoot::Never, 0); // the push keeps its sign
         }
-        // (a little longer, so that it is negligible then)
+        // slightly longer, so that the push is negligible at the end
         let lasts = T::of((push.abs() / negligible).to_f64().ln() + 1.0) / rate;
         let fades = lasts < self.clock.between(&span.from, &span.until);
         let until = if fades { self.clock.advance(&span.from, lasts) } else { span.until };
@@ -282,7 +282,7 @@ impl<T: Scalar> General<T> {
         acceleration: ContactAcceleration<T>,
         cursor: &mut Cursor<T>,
     ) -> (ReleaseRoot<T>, u64) {
-        if self.still || acceleration.threshold - acceleration.sign * self.constant > self.reach {
+        if self.only_constant || acceleration.threshold - acceleration.sign * self.constant > self.reach {
             return (ReleaseRoot::Never, 0);
         }
         self.search(acceleration, span.segment).first(span, cursor)

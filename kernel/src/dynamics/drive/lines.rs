@@ -1,7 +1,7 @@
 //! Steady tones side by side: the lines of a noise.
 //!
-//! Sixteen tones take each step by the same instructions, as wide as the processor has them. The sums run
-//! over sixteen columns, which are added at the end, so that they have the same bits for any width.
+//! Sixteen tones are advanced by the same vector instructions, of whatever width the processor has. The sums
+//! are taken in sixteen columns, which are added at the end, so that they have the same bits for any width.
 
 use super::tone::{Tone, TurnsPerCycle};
 use crate::dynamics::clock::Instant;
@@ -29,7 +29,7 @@ pub(crate) struct Lines<T> {
     count: usize,
 }
 
-/// What continues the series of the tones.
+/// State that continues the series of the tones.
 #[derive(Debug, Clone)]
 pub(crate) struct LinesCursor<T> {
     /// The cycle of the clock for which `starts` holds.
@@ -82,7 +82,7 @@ impl<T: Scalar> Lines<T> {
         let zero = [T::zero(); GROUP_SIZE];
         cursor.terms.iter_mut().for_each(|term| term.resize(self.groups.len(), zero));
         let [even, odd] = &mut cursor.terms;
-        let of_all = widest(
+        let column_sums = widest(
             #[inline(always)]
             || {
                 let mut columns = [zero; SEEDED];
@@ -111,7 +111,7 @@ impl<T: Scalar> Lines<T> {
                 columns
             },
         );
-        for (sum, columns) in sums.iter_mut().zip(of_all) {
+        for (sum, columns) in sums.iter_mut().zip(column_sums) {
             *sum += total(columns);
         }
     }
@@ -122,7 +122,7 @@ impl<T: Scalar> Lines<T> {
             return T::zero();
         }
         let (terms, share) = (&mut cursor.terms[k % 2], inverse[k]);
-        let of_all = widest(
+        let column_sums = widest(
             #[inline(always)]
             || {
                 let mut columns = [T::zero(); GROUP_SIZE];
@@ -137,7 +137,7 @@ impl<T: Scalar> Lines<T> {
                 columns
             },
         );
-        total(of_all)
+        total(column_sums)
     }
 
     /// Their acceleration at an instant, the first coefficient bit for bit.

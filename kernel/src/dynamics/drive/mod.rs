@@ -1,8 +1,8 @@
 //! Drive: acceleration of the base in kernel units, as a series about any instant.
 //!
-//! There are three types: a constant, one sine, and a sum of anything with or without a circuit. One is
-//! chosen for a run, so that a scene pays only for what it uses. A tone is evaluated from the clock's exact
-//! phase at the start of a step and continued by its series, d\[k+2\] = -w^2 d\[k\] / ((k+1)(k+2)), so
+//! There are three types: a constant, a single sine, and a general sum with or without a circuit. One is
+//! chosen for each run, so that a scene pays only for what it uses. A tone is evaluated from the clock's
+//! exact phase at the start of a step and continued by its series, d\[k+2\] = -w^2 d\[k\] / ((k+1)(k+2)), so
 //! nothing drifts and no library function is called.
 
 pub(crate) mod form;
@@ -29,7 +29,7 @@ pub(crate) trait Base<T: Scalar> {
 
 /// Acceleration of the base, in kernel units.
 pub(crate) trait Drive<T: Scalar>: Tail<T> + Base<T> {
-    /// Whether the drive half a cycle of the clock later is always the opposite.
+    /// Whether the drive changes its sign after half a cycle of the clock.
     fn is_odd(&self) -> bool {
         false
     }
@@ -59,7 +59,7 @@ pub(crate) trait Drive<T: Scalar>: Tail<T> + Base<T> {
     }
 
     /// Bound of the second derivative at any time, if a simple one is known.
-    fn bend(&self) -> Option<T> {
+    fn second_derivative_bound(&self) -> Option<T> {
         None
     }
 
@@ -99,7 +99,8 @@ pub(crate) enum ReleaseRoot<T> {
     /// cycle within the common period comes with it: roots of equal cycle and phase are the same.
     At(Instant<T>, Option<i64>),
     Never,
-    /// Not before this instant, from which the search goes on: it is interrupted so that its work is counted.
+    /// Not before this instant, from which the search must continue: it was interrupted so that its work is
+    /// counted.
     NotBefore(Instant<T>),
 }
 
@@ -121,10 +122,10 @@ pub(crate) struct Span<T> {
 }
 
 /// Contact acceleration: threshold - sign a(t), the outward acceleration that a mass at rest on a stop would
-/// have if the stop were not there. While it is positive the mass stays.
+/// have without the stop. While it is positive, the mass stays at rest.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ContactAcceleration<T> {
-    /// What the mechanism contributes.
+    /// The part of the mechanism.
     pub threshold: T,
     /// -1 on the left stop, 1 on the right one.
     pub sign: T,
@@ -132,7 +133,7 @@ pub(crate) struct ContactAcceleration<T> {
     pub circuit: T,
 }
 
-/// Circuit of a transducer that has a state of its own, in kernel units.
+/// Circuit of a transducer with an electrical state, in kernel units.
 ///
 /// The state w of the circuit (a current or a voltage) is scaled so that w^2/2 is its energy over the mass.
 /// It then has the unit of a velocity, and the coupling is the same in both directions:
@@ -173,11 +174,11 @@ impl<T: Scalar> Circuit<T> {
 
 /// A constant acceleration, 0 included.
 #[derive(Debug, Clone)]
-pub(crate) struct Still<T> {
+pub(crate) struct Constant<T> {
     pub acceleration: T,
 }
 
-impl<T: Scalar> Tail<T> for Still<T> {
+impl<T: Scalar> Tail<T> for Constant<T> {
     type Cursor = ();
 
     #[inline(always)]
@@ -189,13 +190,13 @@ impl<T: Scalar> Tail<T> for Still<T> {
     fn extend(&self, _: usize, _: &mut [T; ROOM], _: &[T; ROOM], (): &mut ()) {}
 }
 
-impl<T: Scalar> Base<T> for Still<T> {
+impl<T: Scalar> Base<T> for Constant<T> {
     fn acceleration(&self, _: &Instant<T>, _: usize) -> T {
         self.acceleration
     }
 }
 
-impl<T: Scalar> Drive<T> for Still<T> {
+impl<T: Scalar> Drive<T> for Constant<T> {
     #[inline]
     fn seed(&self, _: &Instant<T>, _: usize, a: &mut [T; ROOM], (): &mut ()) {
         a[0] = self.acceleration; // the others stay 0

@@ -64,7 +64,7 @@ impl<T: Scalar> Record<T> {
         let times = &self.source.times;
         let (begin, end) = (times[piece.first], times[piece.first + piece.lines]);
         let half = 0.5 * (end - begin);
-        // (a run may begin within it)
+        // a run may begin within the piece
         let before = begin.min(0.0) / -half - 1.0;
         Place::Piece(
             piece,
@@ -73,7 +73,7 @@ impl<T: Scalar> Record<T> {
         )
     }
 
-    /// The value in flight.
+    /// The value that acts on the motion: that of a polynomial if one replaces the line.
     pub fn value(&self, at: &Instant<T>, segment: usize) -> T {
         match self.place(at, segment) {
             Place::Before => T::zero(),
@@ -86,7 +86,7 @@ impl<T: Scalar> Record<T> {
         }
     }
 
-    /// The value by the lines: at the last sample its value, and zero after it.
+    /// The value of the lines: that of the last sample at its time, and zero after it.
     pub fn exact(&self, at: &Instant<T>, segment: usize) -> T {
         match self.place(at, segment) {
             Place::Line(_) if self.is_last_sample(at) => {

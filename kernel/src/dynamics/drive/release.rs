@@ -1,7 +1,7 @@
 //! Search for the release root under a drive of any form.
 //!
 //! The search advances in strides. Over a stride the contact acceleration is a polynomial, the series of the
-//! drive; its first root is the release. If it has none, the search goes on with the next stride.
+//! drive; its first root is the release. Without a root the search continues with the next stride.
 
 use super::{ContactAcceleration, Drive, ReleaseRoot, Span};
 use crate::dynamics::clock::{Clock, Instant};
@@ -13,8 +13,8 @@ const STRIDE_RADIANS: f64 = 2.0;
 /// Order of the series of a stride: the first neglected term, 2^27/27!, is below rounding.
 const STRIDE_ORDER: usize = 26;
 
-/// Work after which a search is interrupted: some milliseconds, and for two or three tones of everyday
-/// frequencies more than their common period needs.
+/// Work after which a search is interrupted: a few milliseconds, more than the common period of two or three
+/// tones of usual frequencies takes.
 const SEARCH_WORK: u64 = 500_000;
 
 /// Cost of a stride without the parts of the drive, in units of [`work`](crate::dynamics::step::work).
@@ -138,15 +138,15 @@ impl<T: Scalar, D: Drive<T>> Search<'_, T, D> {
         Stride { g, order }
     }
 
-    /// The root near `found`, computed from the drive alone, and the clock's cycle within the common period:
-    /// the same number whenever the search began. `None` if the drive does not repeat, or if the two roots
-    /// differ by more than rounding.
+    /// The release near `root`, computed from the drive alone so that it does not depend on where the search
+    /// began, and the clock's cycle within the common period. `None` if the drive does not repeat, or if the
+    /// two roots differ by more than rounding.
     fn exact_root(&mut self, root: &Instant<T>, cursor: &mut D::Cursor) -> Option<(Instant<T>, i64)> {
         let cycles = self.common_cycles?;
         if !(self.fastest > T::zero()) {
             return None;
         }
-        // Quarters of the cycle: strides that do not depend on the search and are alike in each cycle.
+        // Quarters of the cycle: strides that are the same for every search and in every cycle.
         let clock = self.clock;
         let stride = clock.period * T::of(0.25);
         let quarter = (root.phase / stride).floor().smaller(T::of(3.0));

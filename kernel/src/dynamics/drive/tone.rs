@@ -166,7 +166,7 @@ impl<T: Scalar> Drive<T> for Sine<T> {
         true
     }
 
-    fn bend(&self) -> Option<T> {
+    fn second_derivative_bound(&self) -> Option<T> {
         Some((self.tone.amplitude * self.tone.curvature()).abs())
     }
 
@@ -205,7 +205,7 @@ impl<T: Scalar> Drive<T> for Sine<T> {
         }
         let mut turns = T::of(height.to_f64().asin() / std::f64::consts::TAU);
         for _ in 0..3 {
-            // Newton: settles the last bits, and all of them in a longer number type
+            // Newton's method corrects the last bits, and in a longer number type all of them
             let (s, c) = T::sin_cos_turns(turns);
             let slope = c * T::tau();
             if slope.to_f64() > 1e-6 {
@@ -225,7 +225,7 @@ impl<T: Scalar> Drive<T> for Sine<T> {
         let behind = from.phase - phase;
         // A root that lies in the past by no more than rounding counts as now.
         let slack = self.clock.period * T::of(8.0 * T::EPSILON);
-        // There is one root in each cycle; "now" only approximates it.
+        // There is one root in each cycle. `from` only approximates it and gets no cycle.
         let (root, turn) = if behind <= T::zero() {
             (Instant { cycle: from.cycle, phase }, Some(0))
         } else if behind <= slack {
@@ -273,7 +273,7 @@ impl<T: Scalar> Chirp<T> {
 }
 
 /// The next coefficients of sine and cosine of a phase with rate w and growth b, from the last two of each:
-/// (k + 1) s\[k+1\] = w c\[k\] + b c\[k-1\], and the cosine likewise with the sign turned.
+/// (k + 1) s\[k+1\] = w c\[k\] + b c\[k-1\], and the cosine likewise with the opposite sign.
 pub(crate) fn next_chirp<T: Scalar>(last: &mut ChirpState<T>, share: T) {
     let ChirpState { sine, cosine, rate, growth, .. } = *last;
     let s = (rate * cosine[1] + growth * cosine[0]) * share;
@@ -282,7 +282,7 @@ pub(crate) fn next_chirp<T: Scalar>(last: &mut ChirpState<T>, share: T) {
     last.cosine = [cosine[1], c];
 }
 
-/// The last two coefficients of a chirp's sine and cosine, and what their recurrence needs.
+/// The last two coefficients of a chirp's sine and cosine, and the parameters of their recurrence.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ChirpState<T> {
     pub sine: [T; 2],

@@ -1,7 +1,7 @@
 //! Equation of motion in kernel units: time in a power of two of a second, mass 1.
 //!
-//! Each piece of the force curve becomes a *mode*: the interval in which the mass moves under one polynomial,
-//! and what stands at its ends (a stop, a break before the next piece, the end of the known curve).
+//! Each piece of the force curve becomes a *mode*: the interval in which one polynomial gives the force, and
+//! the kind of its ends (a stop, a break before the next piece, the end of the known curve).
 
 pub(crate) mod force;
 mod mode;
@@ -16,7 +16,7 @@ use mode::cut;
 pub(crate) use mode::{End, EndKind, Mode};
 pub(crate) use stop::{Compliant, Stop};
 
-/// Stands for an end that does not exist: far away, yet safe to compute with.
+/// Displacement of an end that does not exist: far away, but safe to compute with.
 pub(crate) const FAR: f64 = 1e200;
 
 #[derive(Debug, Clone)]
@@ -26,7 +26,7 @@ pub(crate) struct Equation<T> {
     pub modes: Vec<Mode<T>>,
     pub left: Option<Stop<T>>,
     pub right: Option<Stop<T>>,
-    /// What the two stops are made of, where they are compliant.
+    /// The contact law of both stops, if they are compliant.
     pub compliant: Option<Compliant<T>>,
     /// Seconds per kernel time unit.
     pub unit: f64,

@@ -1,4 +1,4 @@
-//! Mode of the motion: the interval in which the mass moves under one polynomial, and what is at its ends.
+//! Mode of the motion: the interval in which one polynomial gives the force, and the kind of its ends.
 
 use super::force::PieceForce;
 use crate::dynamics::result::Side;
@@ -47,7 +47,7 @@ impl End {
     }
 }
 
-/// The interval in which the mass moves under one polynomial.
+/// The interval in which one polynomial gives the force.
 #[derive(Debug, Clone)]
 pub(crate) struct Mode<T> {
     /// The piece of the force curve that it lies in.

@@ -6,7 +6,7 @@
 
 use crate::numeric::Scalar;
 
-/// What a stop does to the mass that touches it.
+/// A stop as seen by the mass that touches it, in kernel units.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Stop<T> {
     pub restitution: T,

@@ -24,8 +24,8 @@ const BATCH_STEPS: u64 = 256;
 /// lanes if the forces have two or three different degrees.
 const MOTIONS_PER_LANE: usize = 4;
 
-/// Fewer motions than this are faster one after the other: a step of all lanes takes as long as some five
-/// single steps, however many lanes are in use.
+/// Below this number, motions are faster one after another: a step of all lanes takes as long as about five
+/// single steps, no matter how many lanes are in use.
 const MIN_MOTIONS: usize = 5;
 
 /// A run and the data it needs.
@@ -40,7 +40,8 @@ pub(super) struct Prepared<'a> {
 
 /// Supplier of runs and receiver of their results.
 pub(super) trait Source<'a> {
-    /// The next run; `None` if there is none at present, or no more at all if no run is under way.
+    /// The next run. `None` means that no run is available now; while no run is under way, it means that
+    /// there will be no more.
     fn next(&mut self, under_way: UnderWay) -> Option<Prepared<'a>>;
 
     /// Takes a motion that has ended, its initial values, and its outcome.
@@ -65,7 +66,7 @@ struct Group<const W: usize> {
     series: Box<Series<Lanes<W>>>,
     trial: Box<Trial<W>>,
     lanes: [Option<usize>; W],
-    /// Motions that wait for a lane, first come first served.
+    /// Motions that wait for a lane, in order of arrival.
     waiting: VecDeque<usize>,
     rounds: u64,
 }
@@ -105,7 +106,7 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
     }
 
     /// The group with the most motions ready for it, once it can fill its lanes or no more runs can be
-    /// started. Returns `None` at the end. The last few motions are finished alone.
+    /// started. Returns `None` at the end. The last few motions are finished one by one.
     fn fullest(&mut self) -> Option<usize> {
         loop {
             let fullest = (0..self.groups.len()).max_by_key(|group| self.groups[*group].ready());
@@ -123,7 +124,7 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         }
     }
 
-    #[inline(never)] // once a batch
+    #[inline(never)] // called once per batch
     fn finish_alone(&mut self) {
         for group in 0..self.groups.len() {
             for lane in 0..W {
@@ -136,7 +137,7 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         }
         for place in 0..self.members.len() {
             if let Some(member) = &mut self.members[place] {
-                let outcome = member.motion.go_on();
+                let outcome = member.motion.run_to_end();
                 self.end(place, outcome);
             }
         }
@@ -179,8 +180,8 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         }
     }
 
-    /// Runs a motion alone until its steps are event-free. Returns the group of its force, or `None` at its
-    /// end.
+    /// Runs a motion alone until its steps are event-free. Returns the group of its force, or `None` if the
+    /// motion has ended.
     fn prepare(&mut self, place: usize) -> Option<usize> {
         while let Some(member) = &mut self.members[place] {
             let left = match member.motion.left() {
@@ -199,7 +200,7 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
                 let settings = &motion.stepper.settings;
                 let (order, tolerance_log2) = (settings.order, settings.tolerance_log2);
                 let alike = |group: &Group<W>| {
-                    group.columns.takes(force)
+                    group.columns.accepts(force)
                         && (group.order, group.tolerance_log2) == (order, tolerance_log2)
                 };
                 let found = self.groups.iter().position(alike);
@@ -225,7 +226,7 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         None
     }
 
-    /// Steps a group until it has fewer motions than lanes, but at least once.
+    /// Steps a group until it has fewer motions than lanes; at least once.
     #[inline(always)]
     fn step(&mut self, group: usize) {
         loop {
@@ -278,8 +279,8 @@ impl<'a, 'r, const W: usize> Batch<'a, 'r, W> {
         Some((place, group, member))
     }
 
-    /// Stores a lane back to its motion, which alone takes the step on which an event is possible; loads it
-    /// again if it stays in the group.
+    /// Stores a lane back to its motion, which takes the step with a possible event alone; loads it again if
+    /// it stays in the group.
     fn store(&mut self, group: usize, lane: usize) {
         let Some((place, current, member)) = self.member(group, lane) else { return };
         let trial = &current.trial;

@@ -4,7 +4,7 @@
 //! their data (series, step length, end state, residual, clock and drive, sums and extremes of the settled
 //! window) lies in columns and is computed for all lanes by the same instructions. Breaks of the force curve
 //! and turning points are found there too, if a step has one. A step on which another event is possible (near
-//! a stop or the barrier, a border of the window, a stroboscopic state) is not taken there: the lane is
+//! a stop or the barrier, a border of the window, a stroboscopic state) is not taken in the lane: the lane is
 //! stored back to its motion, which takes that step alone and is then loaded again. The lanes of a group hold
 //! forces of one degree; a motion that enters a piece of the curve of another degree waits for a lane of the
 //! group of that degree. A run that has ended makes room for the next. The arithmetic is that of a single
@@ -31,29 +31,32 @@ use crate::system::threads::UnderWay;
 use batch::{Batch, Prepared, Source};
 use columns::LaneMotion;
 
-/// Lanes if registers hold eight numbers: two registers a column, so that additions need not wait for others.
+/// Number of lanes if registers hold eight numbers: two registers per column, to hide the latency of
+/// additions.
 const MAX_LANES: usize = 16;
 
-/// Runs whose data is kept together, and freed when all of them have ended.
+/// Number of runs whose data are allocated together and freed when all of them have ended.
 const RUNS_PER_BLOCK: usize = 1024;
 
 impl Model {
-    /// Runs several models without any lists, many at once if the processor can. Returns in order what
+    /// Runs several models without any lists, in as many lanes as the processor has. Returns in order what
     /// [`run`](Self::run) gives for each, bit for bit; `until_settled` as in [`Request`]. The CPU time is
     /// shared evenly between the runs.
     pub fn run_all(models: &[Self], until_settled: Option<f64>, cancel: Option<&AtomicBool>) -> Vec<Run> {
         Self::run_together(models, &Request { cancel, until_settled, ..Request::default() })
     }
 
-    /// The same with `request` for each. With a ledger, events or samples they are run one by one.
+    /// Like [`run_all`](Self::run_all), with `request` for each. With a ledger, events or samples, the models
+    /// are run one by one.
     pub fn run_together(models: &[Self], request: &Request) -> Vec<Run> {
         run_all(models, request, MAX_LANES)
     }
 
-    /// The same with models that are requested while others are under way, so that several threads can share
-    /// them. `next` gets what is under way here and returns a number, a model and its request, or `None` if
-    /// there is none at present; if nothing is under way, `None` means that there will be no more. `ended`
-    /// gets each run with its number and model as soon as it has ended. No CPU time is measured.
+    /// Like [`run_together`](Self::run_together), but takes models one by one while others are running, so
+    /// that several threads can share them. `next` gets the work in progress on this thread and returns a
+    /// number, a model and its request. `None` means that no model is available now; with no work in
+    /// progress, it means that there will be no more. `ended` gets each run with its number and model as soon
+    /// as the run has ended. No CPU time is measured.
     pub fn run_from<'q>(
         next: &mut dyn FnMut(UnderWay) -> Option<(usize, Self, Request<'q>)>,
         ended: &mut dyn FnMut(usize, &Self, Run),
@@ -61,11 +64,12 @@ impl Model {
         run_from(MAX_LANES, next, ended);
     }
 
-    /// Pursues motions of this model from given starts, many at once if the processor can. `next` gives the
-    /// places of the pursuits to be made here, as for [`run_from`](Self::run_from); `ended` gets the result
-    /// of each, the same bit for bit in any company. All use the model's scales, so that motions that meet in
-    /// one release from rest continue alike. The model's start and duration do not matter. Precondition: its
-    /// drive [repeats](Self::repeats), and the starts lie in its curve and between its stops.
+    /// Pursues motions of this model from given starts, in as many lanes as the processor has. `next` returns
+    /// the index of the next pursuit, as for [`run_from`](Self::run_from); `ended` gets the index and result
+    /// of each. A result has the same bits whatever else runs in the batch. All use the model's scales, so
+    /// that motions that meet in one release from rest have the same continuation. The model's start and
+    /// duration have no effect. Precondition: its drive [repeats](Self::repeats), and the starts lie in its
+    /// curve and between its stops.
     pub fn pursue(
         &self,
         pursuits: &[Pursuit],
@@ -76,7 +80,8 @@ impl Model {
         pursue(self, pursuits, &Request { cancel, ..Request::default() }, MAX_LANES, next, ended);
     }
 
-    /// [`pursue`](Self::pursue) one by one or in 4, 8 or 16 lanes, for tests; `None` without such lanes.
+    /// [`pursue`](Self::pursue) one by one or in 4, 8 or 16 lanes, for tests; `None` if the processor lacks
+    /// them.
     #[doc(hidden)]
     pub fn pursue_in_lanes(&self, pursuits: &[Pursuit], width: usize) -> Option<Vec<Pursued>> {
         let request = Request::default();
@@ -130,7 +135,7 @@ struct PreparedRun<'q> {
     drive: Sine<f64>,
 }
 
-/// Runs of models. Those that cannot share their steps with others are run alone.
+/// Runs of models. A model whose steps cannot be taken in lanes is run alone.
 struct Runs<'a, 'q, 'r> {
     slots: std::slice::Iter<'a, OnceCell<Box<PreparedRun<'q>>>>,
     next: &'r mut dyn FnMut(UnderWay) -> Option<(usize, Model, Request<'q>)>,
@@ -220,7 +225,7 @@ fn has_lanes(width: usize) -> bool {
     }
 }
 
-/// Runs what a source gives in as many lanes as the processor has, at most `max_lanes`.
+/// Executes the runs of a source in as many lanes as the processor has, at most `max_lanes`.
 fn run_batch<'a>(source: &mut dyn Source<'a>, max_lanes: usize) {
     debug_assert!(max_lanes >= 4, "every processor has 4 lanes");
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -239,8 +244,8 @@ fn run_batch<'a>(source: &mut dyn Source<'a>, max_lanes: usize) {
     Batch::<4>::new(source).run();
 }
 
-/// A batch to be run by instructions that not every processor has. (A type and not a closure, since the body
-/// of a closure would be compiled separately, for any processor.)
+/// A batch to be run by instructions that not every processor has. It is a type and not a closure, since the
+/// body of a closure would be compiled separately for the baseline processor.
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 struct Wide<'a, 'r, const W: usize>(Batch<'a, 'r, W>);
 

@@ -67,7 +67,7 @@ pub(crate) struct Trial<const W: usize> {
     pub taken: [bool; W],
     /// Lanes that took the step up to a break of the force curve and are to enter the neighbouring mode.
     pub passed: [bool; W],
-    /// Whether the polynomial satisfies the equation at the step's end.
+    /// Whether the polynomial satisfies the equation of motion at the step's end.
     pub holds: [bool; W],
     pub length: Lanes<W>,
     pub end: Endpoint<Lanes<W>>,

@@ -1,7 +1,7 @@
 //! Kernel of a live run: continues from a step's end, samples within a step, stops within one.
 //!
 //! A kernel is built once for a model. Each call makes a [`Motion`] from it and drops it afterwards, which
-//! costs some microseconds; the integrator then needs no code for being continued.
+//! costs a few microseconds, so that the integrator needs no code for continuation.
 
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::drive::form::{self, Form, with_drive};
@@ -45,6 +45,7 @@ pub(crate) struct Kernel {
     drive: std::sync::Arc<Form<f64>>,
 }
 
+/// The steps of one call.
 pub(crate) struct Stretch {
     pub samples: Vec<Sample>,
     pub events: Vec<Event>,
@@ -68,13 +69,13 @@ impl Kernel {
         self.equation.unit
     }
 
-    pub fn seconds(&self, carried: &Checkpoint<f64>) -> f64 {
-        self.clock.seconds(&carried.state.at)
+    pub fn seconds(&self, checkpoint: &Checkpoint<f64>) -> f64 {
+        self.clock.seconds(&checkpoint.state.at)
     }
 
     /// Acceleration of the base in m/s^2 at the instant of a checkpoint.
-    pub fn base(&self, carried: &Checkpoint<f64>) -> f64 {
-        self.base_within(carried.state.segment, &carried.state.at)
+    pub fn base(&self, checkpoint: &Checkpoint<f64>) -> f64 {
+        self.base_within(checkpoint.state.segment, &checkpoint.state.at)
     }
 
     /// Acceleration of the base in m/s^2 at a time in s.
@@ -104,7 +105,7 @@ impl Kernel {
         from: Option<&Checkpoint<f64>>,
     ) -> Motion<'a, f64, D> {
         let mut motion = Motion::new(model, request, model.tolerance, &self.equation, self.clock, drive);
-        motion.record.next_strobe = None; // a live run is not judged
+        motion.record.next_strobe = None; // a live run is not classified
         if let Some(from) = from {
             motion.resume(from);
         }
@@ -154,7 +155,7 @@ impl Kernel {
         })
     }
 
-    /// Takes the steps from `tail` to `head` again for the samples at `times`, all before the head.
+    /// Repeats the steps from `tail` to `head` for the samples at `times`, all before the head.
     pub fn resample(
         &self,
         model: &Model,

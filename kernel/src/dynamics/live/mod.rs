@@ -1,34 +1,31 @@
 //! Live run: a motion that is changed while it runs.
 //!
 //! A [`Live`] run is the integrator of [`Model::run`] without an end. It steps ahead of the time that it has
-//! been advanced to, and its output does not depend on how often it is advanced: a run that is advanced in
-//! any pieces takes the same steps as one that is not, to the bit. The state at a time between two steps is
-//! computed by repeating the last step up to that time.
+//! been advanced to, and its output does not depend on how often it is advanced: the steps have the same bits
+//! for any sequence of calls. The state at a time between two steps is computed by repeating the last step up
+//! to that time.
 //!
 //! A change of the model takes effect at the present time: the state is kept as far as the new stops and the
-//! new curve allow, and the drive goes on in phase. Energy that a change itself adds or removes (a stop
-//! dragged over the mass, a new potential, a mass put elsewhere) is in the ledger as moved by hand.
+//! new curve allow, and the drive continues in phase. Energy that a change adds or removes (a stop dragged
+//! over the mass, a new potential, a mass put elsewhere) is recorded in the ledger as moved by hand.
 
 mod kernel;
 
-use crate::dynamics::model::Model;
 use crate::dynamics::model::excitation::{ExcitationParts, TonePart};
+use crate::dynamics::model::{MAX_PERIODS, Model};
 use crate::dynamics::result::{Event, EventKind, Outcome, Phase, Sample, Side};
 use crate::dynamics::state::{Checkpoint, Contact};
 use crate::numeric::{DoubleDouble, Scalar};
 use kernel::{Kernel, Sums};
 
 /// Longest live run in kernel time units: some years for the prototype. The clock of an undriven scene is
-/// still that of [`Model::run`].
+/// that of [`Model::run`].
 const HORIZON_UNITS: f64 = 8_589_934_592.0;
-
-/// Maximum number of periods of the fastest tone that the clock counts exactly.
-const MAX_PERIODS: f64 = 9e15;
 
 /// Samples and events of a time interval, each in order of time. The caller may drain them at any time.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct LiveOutput {
-    /// The state at the times asked for, and right after every change.
+    /// The state at the requested times, and right after every change.
     pub samples: Vec<Sample>,
     /// The events.
     pub events: Vec<Event>,
@@ -59,13 +56,13 @@ pub struct LiveLedger {
 pub struct Live {
     /// The present model, its drive shifted so that its phase is continuous through every change.
     model: Model,
-    /// Duration and begin of the settled window of the scene.
+    /// Duration, and start of the settled window, of the scene.
     scene_times: (f64, f64),
     kernel: Kernel,
     /// Turns by which each tone is ahead of its scene.
     shifts: Vec<f64>,
     now: f64,
-    /// The begin of the step in which the present time lies.
+    /// The start of the step in which the present time lies.
     tail: Checkpoint<f64>,
     /// The end of that step.
     head: Checkpoint<f64>,
@@ -176,31 +173,32 @@ impl Live {
 
     /// The state at the present time.
     pub fn state(&self) -> Sample {
-        let (carried, _) = self.present();
-        self.sample(&carried)
+        let (checkpoint, _) = self.present();
+        self.sample(&checkpoint)
     }
 
-    fn sample(&self, carried: &Checkpoint<f64>) -> Sample {
+    fn sample(&self, checkpoint: &Checkpoint<f64>) -> Sample {
         Sample {
             t: self.now,
-            x: carried.state.x,
-            v: carried.state.v / self.kernel.unit(),
-            base_accel: self.kernel.base(carried),
-            phase: carried.state.phase(),
-            electrical: self.electrical(carried),
+            x: checkpoint.state.x,
+            v: checkpoint.state.v / self.kernel.unit(),
+            base_accel: self.kernel.base(checkpoint),
+            phase: checkpoint.state.phase(),
+            electrical: self.electrical(checkpoint),
         }
     }
 
-    /// Electrical state of the transducer, in A or V; 0 where it has none.
-    fn electrical(&self, carried: &Checkpoint<f64>) -> f64 {
-        let (state, unit) = (carried.state.circuit, self.kernel.unit());
+    /// Electrical state of the transducer, in A or V; 0 without one.
+    fn electrical(&self, checkpoint: &Checkpoint<f64>) -> f64 {
+        let (state, unit) = (checkpoint.state.circuit, self.kernel.unit());
         self.model.circuit().map_or(0.0, |circuit| circuit.amount * state / unit)
     }
 
     /// Energy in J of a state: kinetic, potential, and that stored in the transducer.
-    fn energy(&self, carried: &Checkpoint<f64>) -> f64 {
-        let v = carried.state.v / self.kernel.unit();
-        energy(&self.model, (carried.state.x, v)) + self.model.electrical_energy(self.electrical(carried))
+    fn energy(&self, checkpoint: &Checkpoint<f64>) -> f64 {
+        let v = checkpoint.state.v / self.kernel.unit();
+        energy(&self.model, (checkpoint.state.x, v))
+            + self.model.electrical_energy(self.electrical(checkpoint))
     }
 
     /// The state at the present time and the energies from the tail to there.
@@ -210,16 +208,16 @@ impl Live {
 
     /// The energies up to the present time.
     pub fn ledger(&self) -> LiveLedger {
-        let (carried, sums) = self.present();
+        let (checkpoint, sums) = self.present();
         let mut ledger = self.past;
         ledger.add(&sums, &self.model);
-        ledger.stored_j = self.energy(&carried) - self.start_energy;
+        ledger.stored_j = self.energy(&checkpoint) - self.start_energy;
         ledger
     }
 
     /// Replaces the model from now on. The start, duration and settled window of `model` have no effect.
     ///
-    /// The time goes on, and with it any function of time (a record, a chirp, a ramp). Tones stay in phase
+    /// Time continues, and with it every function of time (a record, a chirp, a ramp). Tones stay in phase
     /// even if their frequency changes. The mass keeps its place and speed; a stop that now lies on the other
     /// side of it carries it along and takes its speed, as does the end of the known curve.
     pub fn change(&mut self, model: &Model, into: &mut LiveOutput) {
@@ -228,7 +226,7 @@ impl Live {
         let mut next = without_end(model.clone());
         shift_phases(&mut next.excitation, &self.shifts);
         let state = self.state();
-        self.go_on(next, (state.x, state.v), state.phase, into);
+        self.continue_with(next, (state.x, state.v), state.phase, into);
     }
 
     /// Puts the mass at `x` in m with velocity `v` in m/s, as far as the stops permit. Nothing changes if a
@@ -241,26 +239,27 @@ impl Live {
         if !energy(&next, next.held_within((x, v), 0.0)).is_finite() {
             return;
         }
-        self.go_on(next, (x, v), Phase::Free, into);
+        self.continue_with(next, (x, v), Phase::Free, into);
     }
 
-    fn go_on(&mut self, mut next: Model, wanted: (f64, f64), previous: Phase, into: &mut LiveOutput) {
-        let (carried, sums) = self.present();
-        let before = self.energy(&carried);
+    /// Continues with the model `next` from the `wanted` state, as far as its stops and curve permit.
+    fn continue_with(&mut self, mut next: Model, wanted: (f64, f64), previous: Phase, into: &mut LiveOutput) {
+        let (checkpoint, sums) = self.present();
+        let before = self.energy(&checkpoint);
         self.past.add(&sums, &self.model);
-        // A stop that was pressed in stays so: a mass is carried along only as far as a stop moves over it.
+        // A stop that is pressed in stays pressed in: it moves the mass only if it is moved over it.
         let depth = self.model.pressed_depth(wanted.0).filter(|_| previous != Phase::Free);
         let depth = depth.filter(|_| next.compliant.is_some()).map_or(0.0, |depth| depth.0);
         next.start = next.held_within(wanted, depth);
         next.motionless = false;
-        next.start_electrical = next.electrical_after(&self.model, self.electrical(&carried));
+        next.start_electrical = next.electrical_after(&self.model, self.electrical(&checkpoint));
         let charged = next.electrical_energy(next.start_electrical);
         self.past.by_hand_j += energy(&next, next.start) + charged - before;
         let (was_compliant, is_compliant) = (self.model.compliant.is_some(), next.compliant.is_some());
         self.model = next;
         self.kernel = Kernel::new(&self.model);
         let (start, mut happened) = self.kernel.start(&self.model, self.now);
-        // A rest that continues is no event; one that ends is.
+        // A rest that continues is not an event; the end of a rest is.
         let rests = start.state.phase();
         match previous {
             Phase::Free => {}
@@ -280,9 +279,9 @@ impl Live {
         into.samples.push(self.sample(&start));
     }
 
-    /// A model whose run begins at the present state and phase and lasts as long as the scene's: it shows
-    /// what becomes of this motion. `None` under a ramp, a chirp or a record, which are functions of the time
-    /// since the start.
+    /// A model whose run begins at the present state and phase and lasts as long as the scene's: it shows how
+    /// this motion continues. `None` under a ramp, a chirp or a record, which are functions of the time since
+    /// the start.
     pub fn from_here(&self) -> Option<Model> {
         let drive = &self.model.excitation;
         if !drive.has_only_tones() || drive.tones.iter().any(|tone| tone.ramp.is_some()) {
@@ -293,10 +292,10 @@ impl Live {
         advance_phases(&mut model.excitation, self.now);
         let turns = model.forcing_period.map_or(0.0, |period| self.now / period);
         model.start_phase = (model.start_phase + turns).rem_euclid(1.0);
-        let (carried, _) = self.present();
-        model.start = (carried.state.x, carried.state.v / self.kernel.unit());
-        model.start_electrical = self.electrical(&carried);
-        model.motionless = carried.state.contact == Contact::Motionless;
+        let (checkpoint, _) = self.present();
+        model.start = (checkpoint.state.x, checkpoint.state.v / self.kernel.unit());
+        model.start_electrical = self.electrical(&checkpoint);
+        model.motionless = checkpoint.state.contact == Contact::Motionless;
         Some(model)
     }
 }
@@ -348,7 +347,7 @@ impl LiveLedger {
     }
 }
 
-/// The model with a very long duration, none of it settled.
+/// The model with a very long duration and an empty settled window.
 fn without_end(mut model: Model) -> Model {
     let unit = model.scales.unit();
     let counted = MAX_PERIODS / model.excitation.fastest().unwrap_or(0.0);
@@ -364,7 +363,7 @@ fn energy(model: &Model, (x, v): (f64, f64)) -> f64 {
 }
 
 /// The turns by which each tone of `new` has to be ahead of its scene from `now` in s on, if those of `old`
-/// were ahead by `shifts`. Tones correspond by their order; 0 if there is another number of them.
+/// were ahead by `shifts`. Tones correspond by their order; all shifts are 0 if the number of tones differs.
 fn phase_shifts(old: &Model, new: &Model, shifts: &[f64], now: f64) -> Vec<f64> {
     let (from, to) = (&old.excitation.tones, &new.excitation.tones);
     if from.len() != to.len() {

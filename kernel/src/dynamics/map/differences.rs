@@ -41,7 +41,7 @@ fn differences(model: &Model, seconds: f64, (x, v): (f64, f64)) -> Jacobian {
     Jacobian { rows: [[by_x[0], by_v[0]], [by_x[1], by_v[1]]] }
 }
 
-/// Asserts that both agree to a share of the largest derivative, and that the `must` events happen.
+/// Asserts that both agree to `share` of the largest derivative, and that the events in `must` happen.
 #[track_caller]
 fn agree(fields: &str, seconds: f64, start: (f64, f64), must: &[EventKind], share: f64) {
     let model = model(fields);
@@ -91,7 +91,7 @@ fn a_plastic_impact_that_leaves_at_once() {
 }
 
 #[test]
-fn a_chatter_that_does_not_end_in_rest_by_then() {
+fn a_chatter_that_does_not_end_within_the_passage() {
     let fields = format!(
         "mechanism: Polynomial(coefficients_si: [-1]), {DAMPED}, \
          stops: Uneven(right_mm: 100, restitution_right: 0.7)"
@@ -100,7 +100,7 @@ fn a_chatter_that_does_not_end_in_rest_by_then() {
 }
 
 #[test]
-fn a_rest_forgets_where_it_came_from() {
+fn the_state_after_a_rest_does_not_depend_on_the_start() {
     let stops = "stops: Rigid(travel_limit_mm: 500, restitution: 0.3)";
     let weak = "excitation: Sine(frequency_hz: 0.2, amplitude_g: 0.04)";
     let model = model(&format!("{WELL}, {weak}, {DAMPED}, {stops}"));
@@ -143,6 +143,6 @@ fn compliant_stops() {
     for loss in ["0", "0.4", "3"] {
         agree(&format!("{WELL}, {SINE}, {DAMPED}, {}", stops(loss)), 2.0, (0.3, 0.6), &kinds, 1e-8);
     }
-    // it ends within the contact
+    // the passage ends during the contact
     agree(&format!("{WELL}, {SINE}, {}", stops("0.4")), 0.33, (0.3, 0.6), &kinds[..1], 1e-8);
 }

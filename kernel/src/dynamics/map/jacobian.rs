@@ -39,7 +39,7 @@ impl Jacobian {
         self.rows[0][0] + self.rows[1][1]
     }
 
-    /// The chain rule: these derivatives, of the later part of a motion, times those of the part before it.
+    /// The chain rule: these derivatives, of the later part of a motion, times those of the `earlier` part.
     #[must_use]
     pub fn after(&self, earlier: &Self) -> Self {
         let (later, other) = (&self.rows, &earlier.rows);
@@ -76,7 +76,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn eigenvalues_of_both_kinds() {
+    fn real_and_complex_eigenvalues() {
         let real = Jacobian { rows: [[2.0, 1.0], [1.0, 2.0]] };
         let parts = |jacobian: &Jacobian| {
             jacobian.multipliers(jacobian.determinant()).map(|multiplier| (multiplier.re, multiplier.im))

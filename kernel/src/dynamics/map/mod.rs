@@ -17,9 +17,8 @@ use super::model::Model;
 use crate::numeric::{Dual, Scalar};
 
 pub use jacobian::{Jacobian, Multiplier};
-pub use passage::Miss;
-pub use passage::Passage;
 use passage::Traced;
+pub use passage::{Miss, Passage};
 
 /// Length of one application of the map.
 #[derive(Debug, Clone, Copy)]
@@ -45,7 +44,7 @@ pub struct StroboscopicMap {
 
 impl Model {
     /// The map from the state at a phase of the drive, in forcing periods from 0 to 1, to the state one
-    /// forcing period later. `None` if the drive has no period, or if a transducer has a state of its own.
+    /// forcing period later. `None` if the drive has no period, or if a transducer has an electrical state.
     pub fn stroboscopic_map(&self, phase: f64) -> Option<StroboscopicMap> {
         let alone = self.repeats() && !self.has_electrical_state();
         let period = self.forcing_period.filter(|_| alone)?;

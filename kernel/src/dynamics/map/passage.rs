@@ -29,7 +29,7 @@ pub struct Passage {
     pub misses: Vec<Miss>,
     /// `Done`, or how the motion ended early.
     pub outcome: Outcome,
-    /// Number of impacts faster than [`least_impact_speed`](Model::least_impact_speed), with the contacts of
+    /// Number of impacts faster than [`min_impact_speed`](Model::min_impact_speed), with the contacts of
     /// compliant stops.
     pub impacts: u64,
 }
@@ -52,7 +52,7 @@ impl Passage {
         self.misses.iter().map(|miss| miss.gap).reduce(f64::min)
     }
 
-    /// This passage followed by its mirror image, `later` seconds after it, which ends mirrored too.
+    /// This passage followed by its mirror image, `later` seconds after it; the final state is mirrored.
     #[must_use]
     pub fn with_mirror_image(mut self, later: f64) -> Self {
         let image = |event: &Event| Event {
@@ -192,8 +192,8 @@ fn add_misses<T: Scalar>(
         return;
     }
     let length = clock.between(&before.at, &until).to_f64();
-    // where it leaves a surface, coefficients that are 0 by definition may differ from 0 by rounding
-    let opening = before.touch.map(|touch| touch.opening).filter(|opening| *opening != Opening::Held);
+    // at a surface that the mass leaves, coefficients that are 0 by definition may differ from 0 by rounding
+    let opening = before.touch.map(|touch| touch.opening).filter(|opening| *opening != Opening::Ignored);
     let multiplicity = opening.map_or(1, |opening| opening as usize);
     let (mut velocity, mut power) = (Vec::with_capacity(series.known), 1.0);
     for (k, c) in series.coefficients().iter().enumerate().skip(1) {

@@ -1,4 +1,4 @@
-//! Characteristic times, accelerations and signal ranges of a model, by which pictures are scaled.
+//! Characteristic times, accelerations and signal ranges of a model, which set the scales of plots.
 
 use std::f64::consts::TAU;
 
@@ -6,7 +6,7 @@ use super::Model;
 use super::excitation::TonePart;
 
 /// Range of an axis of base acceleration without an excitation, in m/s^2.
-const UNSHAKEN: f64 = super::excitation::STANDARD_GRAVITY;
+const RANGE_WITHOUT_EXCITATION: f64 = super::excitation::STANDARD_GRAVITY;
 
 /// Range of a noise, as a multiple of its root mean square; larger values are rare.
 const NOISE_ROOM: f64 = 2.5;
@@ -15,17 +15,17 @@ impl Model {
     /// Characteristic time of the motion in s: the forcing period; if there is none, the period of the
     /// excitation's middle frequency; without an excitation the [`natural_time`](Self::natural_time).
     pub fn characteristic_time(&self) -> f64 {
-        self.forcing_period.or_else(|| self.rhythm()).unwrap_or_else(|| self.natural_time())
+        self.forcing_period.or_else(|| self.excitation_time()).unwrap_or_else(|| self.natural_time())
     }
 
     /// Characteristic period in s of an excitation without a forcing period: of the middle of a noise's band,
     /// of the fast end of a chirp, of the mean crossings of a record.
-    fn rhythm(&self) -> Option<f64> {
+    fn excitation_time(&self) -> Option<f64> {
         let drive = &self.excitation;
         let noises = drive.noises.iter().map(|noise| 2.0 / (noise.low + noise.high));
         let chirps = drive.chirps.iter().map(|chirp| 1.0 / chirp.from.max(chirp.to));
         let records =
-            drive.records.iter().map(|record| 2.0 * between_passages(&record.times, &record.accelerations));
+            drive.records.iter().map(|record| 2.0 * crossing_interval(&record.times, &record.accelerations));
         let all = noises.chain(chirps).chain(records);
         all.filter(|time| time.is_finite() && *time > 0.0).reduce(f64::min)
     }
@@ -68,7 +68,7 @@ impl Model {
         let records = drive.records.iter().map(|record| record.peak());
         let parts: Vec<f64> = tones.chain(noises).chain(chirps).chain(records).collect();
         if parts.is_empty() && drive.constant == 0.0 {
-            return UNSHAKEN;
+            return RANGE_WITHOUT_EXCITATION;
         }
         drive.constant.abs() + parts.iter().sum::<f64>()
     }
@@ -94,7 +94,7 @@ impl Model {
 }
 
 /// Mean time between two crossings of a signal through its mean.
-fn between_passages(times: &[f64], values: &[f64]) -> f64 {
+fn crossing_interval(times: &[f64], values: &[f64]) -> f64 {
     let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
     let passages = values.windows(2).filter(|pair| (pair[0] > mean) != (pair[1] > mean)).count();
     let length = times.last().copied().unwrap_or(0.0) - times.first().copied().unwrap_or(0.0);
@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn the_pace_is_that_of_what_happens() {
+    fn characteristic_times_are_those_of_excitation_or_mechanism() {
         near(model("paper", &[]).characteristic_time(), 1.0 / 3.0);
         // 2 pi sqrt(m/k), k = 40 N/m
         let unshaken = model("monostable", &["excitation=None"]);
@@ -136,7 +136,7 @@ mod tests {
         near(model("random-shaking", &[]).characteristic_time(), 1.0 / 3.5);
         let wave: Vec<f64> = (0..1000).map(|i| (0.05 * f64::from(i)).sin()).collect();
         let times: Vec<f64> = (0..1000).map(f64::from).collect();
-        assert!((between_passages(&times, &wave) / (20.0 * std::f64::consts::PI) - 1.0).abs() < 0.1);
+        assert!((crossing_interval(&times, &wave) / (20.0 * std::f64::consts::PI) - 1.0).abs() < 0.1);
         let walking = model("walking", &[]).characteristic_time();
         assert!((0.05..1.0).contains(&walking), "{walking}");
         let nothing = model("elastic-box", &["stops=None", "start=At(x_mm: 0, v_m_per_s: 0)"]);
@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn the_push_is_what_the_parts_add_up_to() {
+    fn the_largest_base_acceleration_is_the_sum_of_its_parts() {
         let g = super::super::excitation::STANDARD_GRAVITY;
         near(model("paper", &["excitation.amplitude_g=1.25"]).largest_base_acceleration(), 1.25 * g);
         near(model("paper", &["excitation=None"]).largest_base_acceleration(), g);

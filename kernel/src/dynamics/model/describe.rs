@@ -100,13 +100,15 @@ impl Model {
     }
 }
 
-/// Impact speeds in m/s at which a compliant stop is described: a gentle one and a hard one of the prototype.
+/// Impact speeds in m/s at which a compliant stop is described: a slow and a fast one of the prototype.
 const SPEEDS: [f64; 2] = [0.1, 0.5];
 
-/// Steps of the integrator in a period of the oscillation on a compliant stop, measured on the prototype at
-/// the default tolerance: in a quiet rest, whose depth follows the drive, and in an oscillation without loss
-/// that reaches the surface.
-const STEPS_PER_PERIOD: (f64, f64) = (1.5, 36.0);
+/// Steps of the integrator per period of the contact's oscillation, measured on the prototype at the default
+/// tolerance, for a mass that rests on a compliant stop and follows the drive.
+const QUIET_STEPS_PER_PERIOD: f64 = 1.5;
+
+/// The same for an oscillation without loss that reaches the surface.
+const RINGING_STEPS_PER_PERIOD: f64 = 36.0;
 
 /// Description of a compliant stop, of an impact on it, and of the cost of a rest on it.
 fn compliant(model: &Model, stop: &Hertz, [left, right]: [f64; 2]) -> Vec<String> {
@@ -142,11 +144,11 @@ fn compliant(model: &Model, stop: &Hertz, [left, right]: [f64; 2]) -> Vec<String
             many if many >= 1.0 => many.round(),
             few => few,
         };
-        let (quiet, trembling) = (steps(STEPS_PER_PERIOD.0), steps(STEPS_PER_PERIOD.1));
-        let [hz, um, quiet, trembling] = [frequency, depth * 1e6, quiet, trembling].map(short);
+        let (quiet, ringing) = (steps(QUIET_STEPS_PER_PERIOD), steps(RINGING_STEPS_PER_PERIOD));
+        let [hz, um, quiet, ringing] = [frequency, depth * 1e6, quiet, ringing].map(short);
         lines.push(format!(
-            "resting on one is an oscillation of {hz} Hz about a depth of {um} um, and it is followed: each \
-             second of it takes some {quiet} steps where it is quiet and up to {trembling} where it trembles"
+            "a mass that rests on one oscillates at {hz} Hz about a depth of {um} um, and this is integrated: \
+             a second takes about {quiet} steps while it is quiet and up to {ringing} while it rings"
         ));
     }
     lines

@@ -109,9 +109,9 @@ pub struct NoisePart {
 impl ExcitationParts {
     /// Fails if a record has not been read.
     pub(crate) fn new(excitation: &Excitation) -> Result<Self, Fault> {
-        let mut motion = Self::default();
-        motion.add(excitation, "excitation")?;
-        Ok(motion)
+        let mut parts = Self::default();
+        parts.add(excitation, "excitation")?;
+        Ok(parts)
     }
 
     fn add(&mut self, excitation: &Excitation, path: &str) -> Result<(), Fault> {
@@ -238,7 +238,7 @@ impl ExcitationParts {
         }
     }
 
-    /// Amplitude in m/s^2 and angular frequency in 1/s (a constant, a record: 0) of each part, for the
+    /// Amplitude in m/s^2 and angular frequency in 1/s (0 for a constant and a record) of each part, for the
     /// scales.
     pub(crate) fn parts(&self) -> Vec<(f64, f64)> {
         let mut parts = vec![(self.constant.abs(), 0.0)];

@@ -20,10 +20,10 @@ use stops::{StopAt, StopPair};
 use transducer::Transducer;
 
 /// Maximum number of periods of the fastest tone that the clock counts exactly, about 2^53.
-const MAX_PERIODS: f64 = 9e15;
+pub(in crate::dynamics) const MAX_PERIODS: f64 = 9e15;
 
-/// The first nonzero acceleration of an excitation that begins at 0 is searched for from the duration divided
-/// by two to this power on.
+/// Number of halvings of the duration at which an excitation that begins at 0 is searched for its first
+/// nonzero acceleration.
 const PROBES: i32 = 60;
 
 /// A scene prepared for a run.
@@ -59,14 +59,14 @@ pub struct Model {
     pub(in crate::dynamics) start_phase: f64,
 }
 
-/// The faults of a scene, except those of its sweep, which no model has.
+/// The faults of a scene, except those of its sweep, which a model does not use.
 fn faults_of_check(scene: &Scene) -> Vec<Fault> {
     let mut faults = scene::check(scene).faults;
     faults.retain(|fault| !fault.field.starts_with("sweep"));
     faults
 }
 
-/// The value, or 0 and the fault among the others.
+/// The value; for a fault, adds it to `faults` and returns the default value.
 fn value_or_fault<T: Default>(value: Result<T, Fault>, faults: &mut Vec<Fault>) -> T {
     value.unwrap_or_else(|fault| {
         faults.push(fault);
@@ -98,9 +98,9 @@ fn damping_coefficient(scene: &Scene, mechanism: &Mechanism, mass: f64) -> Resul
 }
 
 impl Model {
-    /// Converts a scene that has passed its check. Returns all faults that only show here (no equilibrium to
-    /// rest at, a damping ratio without a stable equilibrium, a start beyond a stop or the curve), and those
-    /// of the check if a number of the scene is out of range.
+    /// Converts a scene that has passed its check. Returns all faults that can only be found here (no
+    /// equilibrium to rest at, a damping ratio without a stable equilibrium, a start beyond a stop or the
+    /// curve), and those of the check if a number of the scene is out of range.
     pub fn build(scene: &Scene, mechanism: Arc<Mechanism>) -> Result<Self, Vec<Fault>> {
         let mut faults = Vec::new();
         let mass = scene.mass_g / 1e3;
@@ -110,8 +110,8 @@ impl Model {
         if transducer.is_some_and(|transducer| !transducer.is_finite()) {
             let piezoelectric = matches!(scene.transducer, scene::Transducer::Piezoelectric { .. });
             let value = if piezoelectric { "Piezoelectric(..)" } else { "Electromagnetic(..)" };
-            let problem = "its numbers make no finite rates, damping and power with this mass; give some \
-                           nearer to those of a real one";
+            let problem = "its rates, damping or power are not finite with this mass; give numbers closer to \
+                           those of a real transducer";
             faults.push(fault("transducer", value, problem));
         }
         let stops = StopPair::of(&scene.stops);
@@ -232,8 +232,8 @@ impl Model {
         alike && self.mechanism.curve.is_odd() && self.crossing_level.is_none_or(|level| level == 0.0)
     }
 
-    /// Whether the mirror image of a motion is a motion half a forcing period later. The drive is mirrored
-    /// then if each of its tones makes an odd number of turns in the period.
+    /// Whether the mirror image of a motion, half a forcing period later, is a motion too. The drive is
+    /// mirrored after that time if each of its tones makes an odd number of turns in the period.
     pub fn mirrors_in_half_a_period(&self) -> bool {
         let ExcitationParts { constant, tones, .. } = &self.excitation;
         let odd = |period: f64| tones.iter().all(|tone| (tone.frequency * period).round() % 2.0 == 1.0);
@@ -266,8 +266,8 @@ impl Model {
         self.rhythm == Rhythm::Periodic
     }
 
-    /// Whether a run may go on until the motion repeats: the drive repeats, and the settled window holds at
-    /// least two periods of it.
+    /// Whether a run may continue until the motion repeats: the drive repeats, and the settled window holds
+    /// at least two periods of it.
     pub fn can_settle(&self) -> bool {
         self.repeats() && self.window_periods().0 >= 2
     }

@@ -1,10 +1,10 @@
-//! Accessors of a model, and copies of it that differ in their run alone.
+//! Accessors of a model, and copies of it with another run.
 
 use std::sync::Arc;
 
 use super::Model;
 use super::excitation::ExcitationParts;
-use super::scales::{LEAST_IMPACT, Scales};
+use super::scales::{MIN_IMPACT, Scales};
 use super::stops::StopPair;
 use super::transducer::{Circuit, Output};
 use crate::dynamics::result::Sample;
@@ -12,7 +12,7 @@ use crate::mechanics::{Hertz, Mechanism};
 use crate::numeric::{DoubleDouble, Number, Scalar};
 use crate::scene;
 
-/// Defines a method of [`Model`] for each of these fields, which returns it.
+/// Defines, for each of these fields, a method of [`Model`] that returns it.
 macro_rules! accessors {
     ($($(#[$doc:meta])* $field:ident: $type:ty,)*) => {
         impl Model {
@@ -40,7 +40,7 @@ accessors! {
     crossing_level: Option<f64>,
     /// Duration in s.
     duration: f64,
-    /// Begin of the settled window in s.
+    /// Start of the settled window in s.
     settle: f64,
     /// Period of the excitation in s, if it has one.
     forcing_period: Option<f64>,
@@ -74,8 +74,8 @@ impl Model {
         self.transducer.map(|transducer| transducer.output(sample.v, sample.electrical))
     }
 
-    /// Whether the transducer has a state of its own, a current or a voltage, that is integrated with
-    /// the motion.
+    /// Whether the transducer has an electrical state, a current or a voltage, that is integrated with the
+    /// motion.
     pub fn has_electrical_state(&self) -> bool {
         self.circuit().is_some()
     }
@@ -124,8 +124,8 @@ impl Model {
 
     /// The speed in m/s above which an impact is counted. A chatter has infinitely many impacts, and how many
     /// of the slower ones are computed one by one depends on the tolerance.
-    pub fn least_impact_speed(&self) -> f64 {
-        LEAST_IMPACT * self.scales.speed
+    pub fn min_impact_speed(&self) -> f64 {
+        MIN_IMPACT * self.scales.speed
     }
 
     /// The same model with another tolerance.

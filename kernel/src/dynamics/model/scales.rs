@@ -6,7 +6,7 @@
 //! - rate w: the square root of the largest stiffness magnitude over mass among the wells' inner sides and
 //!   the barrier (one well: at the well; none: at the start); without stiffness the drive's fastest tone;
 //!   without both, sqrt(acceleration over length), or speed over length. The inner side of a well that lies
-//!   beyond a kink is the slope just inside the kink, as for a damping ratio: flexures rest some um beyond
+//!   beyond a kink is the slope just inside the kink, as for a damping ratio: flexures rest a few um beyond
 //!   their kink, where the stiffness is 30 times as large, and the scales must not jump when a slider moves
 //!   the well across the kink;
 //! - length L: the largest of half the distance between the wells, the start's distance from the barrier (or
@@ -26,7 +26,7 @@ use crate::scene::Scene;
 
 /// Impacts slower than this share of the speed scale are not counted and may be part of a chatter that is
 /// summed in closed form. It is far above rounding and far below the slowest impact visible in a trace.
-pub(in crate::dynamics) const LEAST_IMPACT: f64 = 1e-6;
+pub(in crate::dynamics) const MIN_IMPACT: f64 = 1e-6;
 
 /// Length in m, speed in m/s, time in s; all above 0 and finite.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,11 +46,11 @@ pub struct Scales {
 /// The longest step in units of the time scale, at high and at low order. It limits only motions far smaller
 /// than the length, since the tolerance is relative to the length. At high order a longer step would add
 /// rounding errors. At low order the limit keeps the series of an oscillation accurate relative to its size
-/// (at order 16 to 3^17/17! = 4e-7), so that small motions are accurate too and not noise.
+/// (at order 16 to 3^17/17! = 4e-7), so that small motions are accurate too.
 const LONGEST_STEP: (f64, f64) = (8.0, 3.0);
 
 /// Largest ratio of the length to the room between the stops.
-const FAR: f64 = 100.0;
+const MAX_LENGTH_OVER_ROOM: f64 = 100.0;
 
 /// The input of the rule. All SI, magnitudes.
 #[derive(Debug, Clone, Default)]
@@ -97,7 +97,8 @@ impl Scales {
         } else {
             (l.start_distance, 1.0 / l.duration)
         };
-        let room = l.room.filter(|room| usable(*room) && usable(length) && length > FAR * room);
+        let room =
+            l.room.filter(|room| usable(*room) && usable(length) && length > MAX_LENGTH_OVER_ROOM * room);
         let length = if usable(length) { length } else { 1.0 };
         let rate = if usable(rate) { rate } else { 1.0 };
         let longest = |radians: f64| if rated { radians * (1.0 / rate) } else { l.duration };
@@ -105,7 +106,7 @@ impl Scales {
         let (length, rate) = match room {
             None => (length, rate),
             Some(room) => {
-                let within = room.max(FAR * room * (FAR * room / length));
+                let within = room.max(MAX_LENGTH_OVER_ROOM * room * (MAX_LENGTH_OVER_ROOM * room / length));
                 let driven = if rated { reach(rate) } else { acceleration / (rate * rate) };
                 let faster = (driven / within).sqrt().max(l.start_speed / rate / within);
                 (within, rate * faster.max(1.0))

@@ -2,6 +2,7 @@
 
 use super::stops::StopPair;
 use crate::mechanics::{Hertz, Mechanism};
+use crate::numeric::bisect;
 use crate::scene::{Fault, Scene, Start};
 
 pub(crate) fn fault(field: &str, value: impl ToString, problem: impl Into<String>) -> Fault {
@@ -62,12 +63,6 @@ fn pressed_in(mechanism: &Mechanism, hertz: &Hertz, surface: f64, equilibrium: f
             *(if excess(guess) > 0.0 { &mut high } else { &mut low }) = guess;
         }
     }
-    for _ in 0..200 {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            break;
-        }
-        *(if excess(middle) > 0.0 { &mut high } else { &mut low }) = middle;
-    }
-    surface + sign * high
+    let pressed_too_little = |depth: f64| !(excess(depth) > 0.0);
+    surface + sign * bisect(low, high, 200, pressed_too_little).1
 }

@@ -57,7 +57,7 @@ impl Circuit {
     }
 }
 
-/// Multiple of the motion's rate from which a circuit is fast.
+/// Multiple of the motion's rate above which a circuit is fast.
 const FAST_RATIO: f64 = 100.0;
 
 /// Relative error of the motion up to which a fast circuit may be left out.
@@ -152,8 +152,8 @@ impl Transducer {
         self.voltage.abs() * signal
     }
 
-    /// The state of this transducer if it takes over from `before` in the state `electrical`: a current goes
-    /// on as a current and a voltage as a voltage.
+    /// The state of this transducer if it takes over from `before` in the state `electrical`: a current
+    /// continues as a current and a voltage as a voltage.
     pub fn electrical_after(&self, before: &Self, electrical: f64) -> f64 {
         match (&self.circuit, &before.circuit) {
             (Some(circuit), Some(previous)) if circuit.is_voltage == previous.is_voltage => electrical,
@@ -174,8 +174,8 @@ impl Transducer {
         if !(apart < NEGLIGIBLE_SHARE) {
             let storage = if circuit.is_voltage { "capacitance_nf" } else { "inductance_mh" };
             return Some(format!(
-                "mass and circuit exchange their energy in {} s, and a step covers but a few of it; a larger \
-                 {storage} or a weaker coupling makes that slower",
+                "mass and circuit exchange their energy in {} s, and a step covers only a few such times; a \
+                 larger {storage} or a weaker coupling makes that slower",
                 short(1.0 / coupling)
             ));
         }
@@ -184,7 +184,7 @@ impl Transducer {
             let [coupling, load] = [force * load, load].map(short);
             format!(
                 "transducer=Electromagnetic(coupling_v_s_per_m: {coupling}, coil_ohm: 0, load_ohm: {load}) \
-                 gives the same voltage, current and power without a state of its own"
+                 gives the same voltage, current and power without an electrical state"
             )
         } else if coupling * coupling / decay * time < OPEN_CIRCUIT_SHARE {
             "load_ohm: inf is the open circuit that this is".to_owned()
@@ -193,8 +193,8 @@ impl Transducer {
         };
         let constant = short(1.0 / decay);
         Some(format!(
-            "the circuit's time constant is {constant} s, and a step covers but a few of it; \
-             {alternative}, but for a share of some {apart:.0e}"
+            "the circuit's time constant is {constant} s, and a step covers only a few time constants; \
+             {alternative}, to a relative error of about {apart:.0e}"
         ))
     }
 

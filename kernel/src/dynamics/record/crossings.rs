@@ -13,7 +13,7 @@ impl<T: Scalar> Recorder<'_, T> {
     /// Records the crossings within a step that starts `gap` to the right of the barrier and ends on
     /// `end_side`.
     pub fn crossings<P: Path<T>>(&mut self, path: &P, step: &StepData<T>, gap: T, end_side: i8) {
-        // If the velocity keeps its sign, the ends decide.
+        // If the velocity keeps its sign, the ends of the step decide.
         if end_side == self.barrier_side
             && end_side == side_of(gap, T::zero())
             && let Some(y) = path.in_time()
@@ -78,7 +78,7 @@ impl<T: Scalar> Recorder<'_, T> {
         if self.in_window(&at) {
             self.counts.crossings += 1;
         }
-        self.judge.crossing(self.in_periods(&at), side, self.clock.seconds(&at));
+        self.classifier.crossing(self.in_periods(&at), side, self.clock.seconds(&at));
         self.event(&at, EventKind::Crossing, side, v, v);
     }
 }

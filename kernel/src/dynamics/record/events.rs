@@ -1,7 +1,7 @@
 //! Recording of events between steps: rests, impacts, releases, contacts.
 
 use super::recorder::Recorder;
-use super::window::STILL;
+use super::window::STILL_STATES;
 use crate::dynamics::clock::Instant;
 use crate::dynamics::result::{EventKind, Phase, Sample, Side};
 use crate::numeric::Scalar;
@@ -20,7 +20,7 @@ pub(crate) enum Call<T> {
 }
 
 impl<T: Scalar> Call<T> {
-    pub fn when(mut self, instant: impl Fn(&Instant<T>) -> Instant<T>) -> Self {
+    pub fn map_instants(mut self, instant: impl Fn(&Instant<T>) -> Instant<T>) -> Self {
         match &mut self {
             Self::Stand { at, until, .. } => (*at, *until) = (instant(at), instant(until)),
             Self::Impact { at, .. }
@@ -90,7 +90,7 @@ impl<T: Scalar> Recorder<'_, T> {
             }
             self.strobe(x, T::zero());
             recorded += 1;
-            if recorded == STILL {
+            if recorded == STILL_STATES {
                 recorded = 0;
                 self.skip_strobes(x, until);
             }
@@ -122,7 +122,7 @@ impl<T: Scalar> Recorder<'_, T> {
 
     /// Counts an impact at this signed velocity, if it is fast enough.
     fn count_impact(&mut self, at: &Instant<T>, v: T) {
-        if v.to_f64().abs() / self.unit <= self.model.least_impact_speed() {
+        if v.to_f64().abs() / self.unit <= self.model.min_impact_speed() {
             return;
         }
         self.counts.total_impacts += 1;
@@ -169,7 +169,7 @@ impl<T: Scalar> Recorder<'_, T> {
         if self.in_window(at) {
             self.counts.releases += 1;
         }
-        self.judge.release(self.in_periods(at), self.clock.seconds(at));
+        self.classifier.release(self.in_periods(at), self.clock.seconds(at));
         self.event(at, EventKind::Release, side, 0.0, 0.0);
     }
 }

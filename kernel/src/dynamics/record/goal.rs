@@ -1,9 +1,9 @@
 //! Goal of a pursued motion: the motion, region or event that ends the pursuit.
 
-use super::regime::Judge;
+use super::regime::Classifier;
 use crate::dynamics::result::{Arrival, Pursuit};
 
-/// Number of stroboscopic states, beyond two periods of the motion, that must also have come back.
+/// Number of stroboscopic states, beyond two periods of the motion, that must also repeat.
 const CONFIRMING_STATES: u64 = 12;
 
 #[derive(Debug)]
@@ -17,18 +17,18 @@ impl<'a> Goal<'a> {
         Self { pursuit, reached: None }
     }
 
-    /// Checks another stroboscopic state, which `judge` already holds.
-    pub fn strobe(&mut self, judge: &Judge, state: (f64, f64)) {
+    /// Checks another stroboscopic state, which `classifier` already holds.
+    pub fn strobe(&mut self, classifier: &Classifier, state: (f64, f64)) {
         if self.reached.is_some() {
             return;
         }
-        let periods = judge.strobes.seen - 1;
+        let periods = classifier.strobes.seen - 1;
         if let Some(which) = self.pursuit.known.iter().position(|known| known.is_reached(state)) {
             self.reached = Some(Arrival::Captured { which, periods });
         } else if let Some(which) = self.pursuit.regions.iter().position(|region| region.holds(state)) {
             self.reached = Some(Arrival::Entered { which, periods });
         } else if periods >= self.pursuit.repeats_from {
-            let period = judge.strobes.repeats_for(CONFIRMING_STATES);
+            let period = classifier.strobes.repeats_for(CONFIRMING_STATES);
             self.reached = period.map(|period| Arrival::Repeats { period, state, periods });
         }
     }

@@ -17,8 +17,8 @@ pub(crate) struct Totals<T> {
     covered: CompensatedSum<T>,
     work_moved: f64,
     counts: Counts,
-    /// Number of observations that the judge has kept.
-    taped: usize,
+    /// Number of observations that the classifier has kept.
+    observed: usize,
     next_strobe: Option<Instant<T>>,
     listed: Listed<T>,
 }
@@ -31,14 +31,14 @@ impl<T: Scalar> Recorder<'_, T> {
             covered: self.covered,
             work_moved: self.work_moved,
             counts: self.counts,
-            taped: self.judge.taped(),
+            observed: self.classifier.observed(),
             next_strobe: self.next_strobe,
             listed: self.listings.listed(),
         }
     }
 
-    /// Whether the time from `start` to `end` lies wholly inside the settled window (true) or wholly outside
-    /// it (false); `None` if it does neither, or ends within rounding of a border.
+    /// Whether the time from `start` to `end` lies entirely inside the settled window (true) or entirely
+    /// outside it (false); `None` if it does neither, or ends within rounding of a border.
     pub fn lies_inside(&self, start: &Instant<T>, end: &Instant<T>) -> Option<bool> {
         let clear = self.clock.period * T::of(CLEAR);
         let (from, to) = &self.window;
@@ -52,7 +52,7 @@ impl<T: Scalar> Recorder<'_, T> {
         }
     }
 
-    /// The number of half cycles of the clock between two instants, if it is odd and whole.
+    /// The number of half cycles of the clock between two instants, if it is an odd whole number.
     pub fn odd_half_cycles(&self, from: &Instant<T>, to: &Instant<T>) -> Option<i64> {
         let halves = self.clock.between(from, to) / (self.clock.period * T::of(0.5));
         let whole = (halves + T::of(0.5)).floor();
@@ -60,8 +60,8 @@ impl<T: Scalar> Recorder<'_, T> {
         ((halves - whole).abs() <= T::of(CLEAR) && count % 2 == 1).then_some(count)
     }
 
-    /// Number of laps of `cycles` cycles of the clock from `at` on, up to `end`, that are on the same side of
-    /// the window's borders as the last one, which was `inside` or not.
+    /// Number of whole laps of `cycles` cycles of the clock between `at` and `end` that lie on the same side
+    /// of the window's borders as the last lap, which lay `inside` the window or not.
     pub fn laps_on_this_side(&self, at: &Instant<T>, end: &Instant<T>, cycles: i64, inside: bool) -> i64 {
         let (from, to) = self.window;
         let border =
@@ -79,7 +79,7 @@ impl<T: Scalar> Recorder<'_, T> {
         if self.events.is_some() { Some(*at) } else { sample }
     }
 
-    /// Restores sums and counts to earlier values; events and samples listed since then stay.
+    /// Restores sums and counts to earlier values; events and samples listed since then are kept.
     pub fn restore(&mut self, totals: &Totals<T>) {
         self.whole = totals.whole;
         self.settled = totals.settled;
@@ -90,7 +90,7 @@ impl<T: Scalar> Recorder<'_, T> {
     }
 
     /// Adds `laps` more laps of `cycles` cycles of the clock, each like the one from `before` to `after`, the
-    /// present. All of them lie inside or all of them outside the window.
+    /// present. All lie inside the window, or all outside.
     pub fn repeat(&mut self, before: &Totals<T>, after: &Totals<T>, laps: i64, cycles: i64) {
         let times = T::of(laps as f64);
         let more = |sum: &mut CompensatedSum<T>, before: &CompensatedSum<T>, after: &CompensatedSum<T>| {
@@ -105,7 +105,7 @@ impl<T: Scalar> Recorder<'_, T> {
         let squared =
             (after.settled.squared_velocity.value() - before.settled.squared_velocity.value()).to_f64();
         let gained = (squared, after.counts.crossings - before.counts.crossings);
-        self.judge.repeat((before.taped, after.taped), laps as u64, periods as u64, gained);
+        self.classifier.repeat((before.observed, after.observed), laps as u64, periods as u64, gained);
         if let Some(strobe) = &mut self.next_strobe {
             strobe.cycle += laps * cycles;
         }

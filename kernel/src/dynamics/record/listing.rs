@@ -9,14 +9,14 @@ use crate::numeric::Scalar;
 pub(super) const SAME: f64 = 1e-9;
 
 /// Maximum number of stroboscopic states that are recorded one by one: some tenths of a second of one core,
-/// and more than a run has whose steps are shorter than a forcing period. Later states are ignored.
+/// and more than a run with steps shorter than a forcing period has. Later states are ignored.
 pub(crate) const MAX_STROBES: u32 = 1 << 22;
 
-/// States listed once a forcing period.
+/// States listed once per forcing period.
 #[derive(Debug, Clone)]
 pub(crate) struct Listing<T> {
     next: Instant<T>,
-    /// Number of states still to be listed; `None` if only the last state is kept, of any number.
+    /// Number of states still to be listed; `None` if only the last state is kept.
     left: Option<u64>,
     /// Cycles of the clock between two states.
     cycles: i64,
@@ -126,7 +126,7 @@ impl<T: Scalar> Listings<T> {
         for (listing, next) in [&mut self.section, &mut self.carried].into_iter().zip([0, 1]) {
             let Some(listing) = listing else { continue };
             if before.next[next] == after.next[next] {
-                continue; // the lap lies before all of them
+                continue; // the lap precedes all listed states
             }
             listing.next.cycle += laps * cycles;
             if let Some(left) = &mut listing.left {

@@ -17,13 +17,13 @@ const MAX_ENTRIES: usize = 1 << 15;
 /// One recorder call, kept for replay.
 #[derive(Debug, Clone)]
 enum Entry<T: Copy> {
-    Step(KeptStep<T>),
+    Step(LoggedStep<T>),
     Call(Call<T>),
 }
 
 /// A step of flight; its coefficients lie in the log.
 #[derive(Debug, Clone)]
-struct KeptStep<T: Copy> {
+struct LoggedStep<T: Copy> {
     data: StepData<T>,
     /// Index of its first coefficient in the log.
     first: usize,
@@ -86,7 +86,7 @@ impl<T: Scalar> Log<T> {
         let first = self.coefficients.len();
         self.coefficients.extend_from_slice(y);
         self.coefficients.extend_from_slice(a);
-        self.entries.push(Entry::Step(KeptStep {
+        self.entries.push(Entry::Step(LoggedStep {
             data: *step,
             first,
             known: y.len(),
@@ -125,7 +125,7 @@ impl<T: Scalar> Log<T> {
         self.marks[mark].point.state.at
     }
 
-    /// The last mark from `first` on that, shifted by `later`, is not after `end`.
+    /// The last mark, `first` or a later one, that is not after `end` when shifted by `later`.
     pub fn last_before(&self, first: usize, later: CycleShift, end: &Instant<T>, clock: &Clock<T>) -> usize {
         let reached = |mark: &Mark<T>| clock.between(&later.instant(&mark.point.state.at), end) >= T::zero();
         first + self.marks[first + 1..].partition_point(reached)
@@ -133,13 +133,13 @@ impl<T: Scalar> Log<T> {
 
     pub fn point_later(&self, mark: usize, later: CycleShift) -> Checkpoint<T> {
         let Checkpoint { state, barrier_side } = self.marks[mark].point;
-        let state = MotionState { at: later.instant(&state.at), refused: None, ..state };
+        let state = MotionState { at: later.instant(&state.at), failed_release: None, ..state };
         Checkpoint { state, barrier_side }
     }
 
     /// Replays the recorder calls between two marks (up to the end without a second one), shifted by `later`,
     /// in this segment of the drive, with each step in `series`. Returns the number of calls and of impacts.
-    pub fn play(
+    pub fn replay(
         &self,
         (record, series): (&mut Recorder<T>, &mut Series<T>),
         (from, to): (usize, Option<usize>),
@@ -165,15 +165,15 @@ impl<T: Scalar> Log<T> {
                 }
                 Entry::Call(call) => {
                     impacts += u64::from(matches!(call, Call::Impact { .. }));
-                    record.report(&call.when(|at| later.instant(at)), segment);
+                    record.report(&call.map_instants(|at| later.instant(at)), segment);
                 }
             }
         }
         (entries.len(), impacts)
     }
 
-    /// Appends the mirror image of everything from mark `first` on, later by half a cycle and `cycles` whole
-    /// cycles of the clock; `modes` is the number of modes.
+    /// Appends the mirror image of everything from mark `first` on, delayed by half a cycle and `cycles`
+    /// whole cycles of the clock; `modes` is the number of modes.
     pub fn append_mirrored(&mut self, first: usize, cycles: i64, modes: usize, clock: &Clock<T>) {
         let half = clock.period * T::of(0.5);
         let instant = |at: &Instant<T>| {
@@ -185,7 +185,7 @@ impl<T: Scalar> Log<T> {
         let from = self.marks[first].entries;
         for index in first..marks {
             let Mark { point: Checkpoint { state, barrier_side }, entries: before } = self.marks[index];
-            let state = MotionState { at: instant(&state.at), refused: None, ..state.mirrored(modes) };
+            let state = MotionState { at: instant(&state.at), failed_release: None, ..state.mirrored(modes) };
             self.marks.push(Mark {
                 point: Checkpoint { state, barrier_side: -barrier_side },
                 entries: before + entries - from,
@@ -206,9 +206,9 @@ impl<T: Scalar> Log<T> {
                         v: minus(v),
                         ..step.data
                     };
-                    Entry::Step(KeptStep { data, first, ..step })
+                    Entry::Step(LoggedStep { data, first, ..step })
                 }
-                Entry::Call(call) => Entry::Call(call.when(instant).mirrored()),
+                Entry::Call(call) => Entry::Call(call.map_instants(instant).mirrored()),
             };
             self.entries.push(mirrored);
         }

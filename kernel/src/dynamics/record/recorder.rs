@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use super::barrier::side_of;
 use super::goal::Goal;
 use super::listing::{Listings, MAX_STROBES};
-use super::regime::Judge;
+use super::regime::Classifier;
 use super::sums::{Counts, Sums};
 use crate::dynamics::clock::{Clock, Instant};
 use crate::dynamics::drive::Base;
@@ -42,11 +42,11 @@ pub(crate) struct Recorder<'a, T: Copy> {
     pub work_moved: f64,
     pub peak_kinetic: f64,
     /// Lowest and highest displacement at the ends of steps over the whole run, if there is a ledger.
-    pub places: (f64, f64),
+    pub step_range: (f64, f64),
     pub barrier: Option<T>,
-    /// -1, 0 (on it since the start) or 1.
+    /// -1, 1, or 0 if the mass has been on the barrier since the start.
     pub barrier_side: i8,
-    pub judge: Judge,
+    pub classifier: Classifier,
     pub goal: Option<Goal<'a>>,
     /// The first instant of the run at the window's phase.
     pub origin: Instant<T>,
@@ -117,10 +117,10 @@ impl<'a, T: Scalar> Recorder<'a, T> {
             covered: CompensatedSum::new(),
             work_moved: 0.0,
             peak_kinetic: 0.5 * (start.1 * start.1).to_f64(),
-            places: (start.0.to_f64(), start.0.to_f64()),
+            step_range: (start.0.to_f64(), start.0.to_f64()),
             barrier,
             barrier_side: side,
-            judge: Judge::new(model.rhythm, scales, periods, first),
+            classifier: Classifier::new(model.rhythm, scales, periods, first),
             goal: None,
             origin,
             next_strobe: (periods > 0).then_some(origin),
@@ -160,7 +160,7 @@ impl<'a, T: Scalar> Recorder<'a, T> {
     }
 
     pub(crate) fn lists_crossings(&self) -> bool {
-        self.events.is_some() || self.judge.times_all_crossings()
+        self.events.is_some() || self.classifier.times_all_crossings()
     }
 
     #[inline]

@@ -66,10 +66,10 @@ impl PeriodsWith {
     }
 }
 
-/// The data by which a run is classified. Times are in forcing periods since the first stroboscopic state,
-/// which is the first instant of the run at the window's phase, unless stated otherwise.
+/// Classifier of a run, with the data that it needs. Times are in forcing periods since the first
+/// stroboscopic state, which is the first instant of the run at the window's phase, unless stated otherwise.
 #[derive(Debug, Clone)]
-pub(crate) struct Judge {
+pub(crate) struct Classifier {
     rhythm: Rhythm,
     periods: u64,
     /// Number of the forcing period at which the window begins.
@@ -78,18 +78,18 @@ pub(crate) struct Judge {
     crossings: Crossings,
     crossing_periods: PeriodsWith,
     release_periods: PeriodsWith,
-    /// Integral of the squared velocity over each period of either half of the window.
+    /// Integral of the squared velocity over each period, for both halves of the window.
     speed: [Half; 2],
-    /// Crossings in each period of either half of the window.
+    /// Crossings in each period, for both halves of the window.
     crossed: [Half; 2],
     last: Gain,
     firsts: Firsts,
     /// Forcing period of the last crossing of the whole run.
     last_crossing: Option<i64>,
-    tape: Option<Vec<Observation>>,
+    observations: Option<Vec<Observation>>,
 }
 
-impl Judge {
+impl Classifier {
     /// For a settled window of `periods` forcing periods that begins with stroboscopic state number `from`.
     pub fn new(rhythm: Rhythm, scales: (f64, f64), periods: u64, from: u64) -> Self {
         Self {
@@ -105,7 +105,7 @@ impl Judge {
             last: (0.0, 0),
             firsts: Firsts::default(),
             last_crossing: None,
-            tape: None,
+            observations: None,
         }
     }
 
@@ -116,13 +116,13 @@ impl Judge {
     }
 
     fn keep(&mut self, observation: Observation) {
-        if let Some(tape) = &mut self.tape {
-            tape.push(observation);
+        if let Some(observations) = &mut self.observations {
+            observations.push(observation);
         }
     }
 
     /// Adds a stroboscopic state, with the integral of the squared velocity and the number of crossings since
-    /// the begin of the window.
+    /// the start of the window.
     pub fn strobe(&mut self, state: Strobe, total: Gain) {
         let gain = (total.0 - self.last.0, total.1 - self.last.1);
         self.last = total;
@@ -131,7 +131,7 @@ impl Judge {
         self.strobes.add(state);
     }
 
-    /// Adds the gain before the stroboscopic state of this number, and before `times` in all, `lap` periods
+    /// Adds the gain that precedes stroboscopic state `number`, for `times` states that are `lap` periods
     /// apart.
     fn gain(&mut self, number: u64, times: u64, lap: u64, gain: Gain) {
         let up_to = |end: u64| (end + 1).saturating_sub(number).div_ceil(lap).min(times);
@@ -177,30 +177,30 @@ impl Judge {
         }
     }
 
-    /// The time since the begin of the window, if it is inside the window.
+    /// The time since the start of the window, if it is inside the window.
     fn in_window(&self, time: f64) -> Option<f64> {
         let inside = time - self.from as f64;
         (inside >= 0.0 && inside < self.periods as f64).then_some(inside)
     }
 
     /// Begins to keep the observations for replay.
-    pub fn begin_tape(&mut self) {
-        self.tape = Some(Vec::with_capacity(64));
+    pub fn begin_observations(&mut self) {
+        self.observations = Some(Vec::with_capacity(64));
     }
 
-    pub fn end_tape(&mut self) {
-        self.tape = None;
+    pub fn end_observations(&mut self) {
+        self.observations = None;
     }
 
-    pub fn taped(&self) -> usize {
-        self.tape.as_ref().map_or(0, Vec::len)
+    pub fn observed(&self) -> usize {
+        self.observations.as_ref().map_or(0, Vec::len)
     }
 
     /// Adds `laps` more laps like the one kept between these two indices, each of `periods` forcing periods
     /// and with the gain `total`.
     pub fn repeat(&mut self, (from, to): (usize, usize), laps: u64, periods: u64, total: Gain) {
-        let Some(tape) = self.tape.take() else { return };
-        let lap = tape.get(from..to).unwrap_or_default();
+        let Some(observations) = self.observations.take() else { return };
+        let lap = observations.get(from..to).unwrap_or_default();
         let strobe = |entry: &Observation| match entry {
             Observation::Strobe(state, gain) => Some((*state, *gain)),
             _ => None,
@@ -213,7 +213,7 @@ impl Judge {
             *first = later_states.iter().fold(total, rest);
         }
         self.last = (self.last.0 + total.0 * laps as f64, self.last.1 + total.1.saturating_mul(laps));
-        // Replay as many laps as any classification looks back, and one more to see what a lap adds.
+        // Replay as many laps as any classification looks back, and one more that shows what a lap adds.
         let replayed = laps.min(2 * self.strobes.longest as u64 / periods.max(1) + 4);
         let mut before = (0, 0);
         for number in 1..=replayed {
@@ -251,7 +251,7 @@ impl Judge {
             self.crossings.skip(later as f64);
             self.last_crossing = self.last_crossing.map(|last| last + later as i64);
         }
-        self.tape = Some(tape);
+        self.observations = Some(observations);
     }
 
     /// Adds `more` stroboscopic states equal to `state`, the last one, up to the next border of the window.
@@ -275,7 +275,7 @@ impl Judge {
         self.repeats().map(|(period, _)| period)
     }
 
-    /// Whether the motion has settled: it repeats, or `rests` throughout the window. `None` under a drive
+    /// Whether the motion has settled: it repeats, or `rests` during the whole window. `None` under a drive
     /// that changes, for which this is not defined.
     pub fn settled(&self, rests: bool) -> Option<bool> {
         match self.rhythm {
@@ -318,7 +318,7 @@ impl Judge {
         (self.rhythm == Rhythm::Changing).then_some(firsts)
     }
 
-    /// Begins another settled window at the end of the last one, where the run is.
+    /// Begins another settled window at the present instant, the end of the last one.
     pub fn open_window(&mut self) {
         self.from += self.periods;
         self.strobes.open_window();
@@ -332,16 +332,16 @@ impl Judge {
 mod tests {
     use super::*;
 
-    fn judge(periods: u64) -> Judge {
-        Judge::new(Rhythm::Periodic, (1.0, 1.0), periods, 0)
+    fn classifier(periods: u64) -> Classifier {
+        Classifier::new(Rhythm::Periodic, (1.0, 1.0), periods, 0)
     }
 
     /// One lap of `period` periods with a crossing in each but the last, and a state at each.
-    fn lap(judge: &mut Judge, first: u64, period: u64) {
+    fn lap(classifier: &mut Classifier, first: u64, period: u64) {
         for place in 0..period {
-            judge.strobe(Strobe { x: place as f64, v: 0.0 }, total(first + place, period));
+            classifier.strobe(Strobe { x: place as f64, v: 0.0 }, total(first + place, period));
             if place + 1 < period {
-                judge.crossing((first + place) as f64 + 0.5, Side::Right, 0.0);
+                classifier.crossing((first + place) as f64 + 0.5, Side::Right, 0.0);
             }
         }
     }
@@ -353,27 +353,28 @@ mod tests {
     }
 
     #[test]
-    fn laps_that_are_not_replayed_count() {
+    fn laps_that_are_not_replayed_are_counted() {
         for period in [1, 2, 5, 13] {
             let laps = 200;
             for more in [0, 1, 250] {
                 let periods = laps * period + more;
-                let (mut long, mut short) = (judge(periods), judge(periods));
-                // the motion before the laps may have been different
-                let transient = |judge: &mut Judge| {
-                    (1..=more)
-                        .for_each(|i| judge.strobe(Strobe { x: -((i * i) as f64), v: 0.0 }, (i as f64, 0)));
-                    judge.last = (0.0, 0);
+                let (mut long, mut short) = (classifier(periods), classifier(periods));
+                // the motion before the laps may be different
+                let transient = |classifier: &mut Classifier| {
+                    (1..=more).for_each(|i| {
+                        classifier.strobe(Strobe { x: -((i * i) as f64), v: 0.0 }, (i as f64, 0))
+                    });
+                    classifier.last = (0.0, 0);
                 };
                 transient(&mut long);
                 transient(&mut short);
-                long.begin_tape();
+                long.begin_observations();
                 lap(&mut long, 0, period);
                 let gained = total(period, period);
-                long.repeat((0, long.taped()), laps - 1, period, gained);
+                long.repeat((0, long.observed()), laps - 1, period, gained);
                 (0..laps).for_each(|number| lap(&mut short, number * period, period));
-                for judge in [&mut long, &mut short] {
-                    judge.strobe(Strobe { x: 0.0, v: 0.0 }, total(laps * period, period));
+                for classifier in [&mut long, &mut short] {
+                    classifier.strobe(Strobe { x: 0.0, v: 0.0 }, total(laps * period, period));
                 }
                 let case = format!("{period} {more}");
                 assert_eq!(long.period(), short.period(), "{case}");
@@ -384,7 +385,8 @@ mod tests {
                 assert_eq!(long.strobes.seen, short.strobes.seen);
                 assert_eq!(long.settles_at(|at| at as f64), short.settles_at(|at| at as f64));
                 // whole numbers, whose sums are exact
-                let halves = |judge: &Judge| format!("{:?} {:?}", judge.speed, judge.crossed);
+                let halves =
+                    |classifier: &Classifier| format!("{:?} {:?}", classifier.speed, classifier.crossed);
                 assert_eq!(halves(&long), halves(&short), "{case}");
             }
         }
@@ -394,13 +396,13 @@ mod tests {
     fn irregular_motion_never_settles_and_is_steady_where_its_halves_agree() {
         let noise = |i: u64| f64::from((i * 7919 % 1009) as u32) / 1009.0;
         let run = |periods: u64, drift: f64| {
-            let (mut judge, mut sum) = (judge(periods), 0.0);
+            let (mut classifier, mut sum) = (classifier(periods), 0.0);
             for i in 0..=periods {
-                judge.strobe(Strobe { x: noise(i), v: 0.0 }, (sum, 0));
+                classifier.strobe(Strobe { x: noise(i), v: 0.0 }, (sum, 0));
                 sum += 1.0 + noise(i) + drift * i as f64;
             }
-            assert_eq!((judge.period(), judge.settled(false)), (None, Some(false)));
-            judge.steady(false)
+            assert_eq!((classifier.period(), classifier.settled(false)), (None, Some(false)));
+            classifier.steady(false)
         };
         assert_eq!(run(300, 0.0), Some(true));
         assert_eq!(run(300, 0.01), Some(false));
@@ -410,17 +412,20 @@ mod tests {
 
     #[test]
     fn under_a_drive_that_changes_the_first_events_are_known() {
-        let mut judge = Judge::new(Rhythm::Changing, (1.0, 1.0), 10, 0);
-        judge.release(2.2, 2.2);
+        let mut classifier = Classifier::new(Rhythm::Changing, (1.0, 1.0), 10, 0);
+        classifier.release(2.2, 2.2);
         for time in [3.5, 6.5, 7.5, 8.5, 9.5] {
-            judge.crossing(time, Side::Left, time);
+            classifier.crossing(time, Side::Left, time);
         }
-        let firsts = judge.firsts(10.0, |t| Some(0.1 * t)).unwrap();
+        let firsts = classifier.firsts(10.0, |t| Some(0.1 * t)).unwrap();
         assert_eq!(firsts.release.unwrap().t, 2.2);
         assert_eq!(firsts.crossing.unwrap().t, 3.5);
         assert_eq!(firsts.crossing_in_every_period, Some(First { t: 6.5, amplitude: Some(0.1 * 6.5) }));
-        assert_eq!(judge.firsts(12.0, |_| None).unwrap().crossing_in_every_period, None);
-        assert_eq!((judge.settled(false), judge.steady(false), judge.period()), (None, None, None));
-        assert!(super::tests::judge(4).firsts(1.0, |_| None).is_none());
+        assert_eq!(classifier.firsts(12.0, |_| None).unwrap().crossing_in_every_period, None);
+        assert_eq!(
+            (classifier.settled(false), classifier.steady(false), classifier.period()),
+            (None, None, None)
+        );
+        assert!(super::tests::classifier(4).firsts(1.0, |_| None).is_none());
     }
 }

@@ -1,6 +1,6 @@
-//! Repetition of a motion: of its stroboscopic states and of its crossings, determined while they arrive.
+//! Repetition of a motion, by its stroboscopic states and by its crossings, updated as they arrive.
 //!
-//! Only the last twelve forcing periods and some states at the begin and the middle of the window are kept,
+//! Only the last twelve forcing periods and some states at the start and the middle of the window are kept,
 //! so a window may have any length.
 
 use std::collections::VecDeque;
@@ -11,16 +11,16 @@ use crate::dynamics::result::Side;
 pub(crate) const LONGEST: usize = 12;
 
 /// Two crossings repeat if their times within the period agree to this share of a forcing period: well above
-/// the rest of a transient after half a run, well below the scatter of irregular motion.
+/// what is left of a transient after half a run, well below the scatter of irregular motion.
 const CROSSING_MATCH: f64 = 1e-2;
 
 /// Two stroboscopic states repeat if they agree to this share of the scene's scales: fine enough to see a
 /// period doubling soon after its onset, coarse enough for a transient that has decayed to a thousandth.
 const STATE_MATCH: f64 = 1e-3;
 
-/// A motion that moves by no more than this share of the scales over half a window stands still: well above
+/// Largest change over half a window, as a share of the scales, of a motion that stands still: well above
 /// rounding and the errors of the usual tolerances, and a hundredth of [`STATE_MATCH`].
-const STILL: f64 = 1e-5;
+const MAX_STILL_CHANGE: f64 = 1e-5;
 
 /// The state at a whole number of forcing periods after the window's start. SI.
 #[derive(Debug, Clone, Copy, Default)]
@@ -106,7 +106,7 @@ impl Strobes {
         self.seen > self.from + self.periods
     }
 
-    /// Keeps the state of this number if it is at the begin or the middle of the window.
+    /// Keeps the state of this number if it is near the start or the middle of the window.
     fn keep(&mut self, number: u64, state: Strobe) {
         let Some(inside) = number.checked_sub(self.from) else { return };
         if let Some(kept) = self.opening.get_mut(inside as usize) {
@@ -118,14 +118,14 @@ impl Strobes {
         }
     }
 
-    /// Forcing periods from the begin of the window to the first state kept around its middle.
+    /// Forcing periods from the start of the window to the first state kept around its middle.
     fn before_middle(&self) -> u64 {
         self.periods.div_ceil(2).saturating_sub(LONGEST as u64 - 1)
     }
 
-    /// Adds `more` states of a motion that repeats exactly after every `lap` states, which divides `more`,
-    /// and has done so for four laps and twice as many states as are looked back at; `state` gives those of a
-    /// lap.
+    /// Adds `more` states, a multiple of `lap`, of a motion that repeats exactly every `lap` states and has
+    /// done so for four laps and for twice the number of states that are compared. `state` gives the states
+    /// of a lap.
     pub fn skip(&mut self, more: u64, lap: u64, state: impl Fn(u64) -> Strobe) {
         if self.is_complete() {
             return;
@@ -137,7 +137,7 @@ impl Strobes {
             }
         }
         for since in &mut self.since {
-            // a period that has not come back lately will not do so either
+            // a period that has not repeated recently will not start to repeat
             if *since + self.longest as u64 + lap >= self.seen {
                 *since += more;
             }
@@ -155,9 +155,9 @@ impl Strobes {
         Some((q as u32, self.since[q as usize - 1]))
     }
 
-    /// Whether a motion whose states come back after `q` of them stays where it is. In a slow drift
-    /// neighbouring states are alike too, so the last states of the window are compared with those about half
-    /// a window and a window before.
+    /// Whether a motion whose states repeat after `q` states does not drift. In a slow drift neighbouring
+    /// states are equal too, so the last states of the window are compared with those about half a window and
+    /// a whole window earlier.
     fn stands_still(&self, q: u64) -> bool {
         let apart = self.periods / (2 * q) * q;
         let whole = 2 * apart;
@@ -183,9 +183,9 @@ impl Strobes {
         let (before, after) = (first.change(middle, self.scales), middle.change(last, self.scales));
         let [moved_before, moved] = [before, after].map(|change| product(change, change).sqrt());
         let ratio = product(before, after) / product(before, before);
-        // growing changes lead away, also if they alternate in sign or follow a spiral
-        let shrinks = moved <= moved_before + STILL;
-        moved <= STILL || (shrinks && ratio < 1.0 && moved * ratio / (1.0 - ratio) <= STATE_MATCH)
+        // growing changes lead away, even if they alternate in sign or follow a spiral
+        let shrinks = moved <= moved_before + MAX_STILL_CHANGE;
+        moved <= MAX_STILL_CHANGE || (shrinks && ratio < 1.0 && moved * ratio / (1.0 - ratio) <= STATE_MATCH)
     }
 
     /// Begins another settled window with the last state.
@@ -202,8 +202,9 @@ pub(crate) struct Crossings {
     /// entered.
     recent: VecDeque<(f64, Side)>,
     /// Number of crossings before the first of `recent`.
-    gone: u64,
-    /// For each period, the first crossing without a partner one period later; `None` if one was missing.
+    dropped: u64,
+    /// For each period, the number of the first crossing without a partner one period later yet; `None` if a
+    /// partner was missing.
     waiting: [Option<u64>; LONGEST],
     paired: [bool; LONGEST],
 }
@@ -214,24 +215,24 @@ impl Crossings {
     pub fn new(periods: u64) -> Self {
         let waiting = std::array::from_fn(|index| (2 * (index as u64 + 1) <= periods).then_some(0));
         let paired = [false; LONGEST];
-        Self { periods: periods as f64, recent: VecDeque::new(), gone: 0, waiting, paired }
+        Self { periods: periods as f64, recent: VecDeque::new(), dropped: 0, waiting, paired }
     }
 
     pub fn add(&mut self, time: f64, side: Side) {
-        let number = self.gone + self.recent.len() as u64;
+        let number = self.dropped + self.recent.len() as u64;
         for (index, waiting) in self.waiting.iter_mut().enumerate() {
             let (q, Some(first)) = (index as f64 + 1.0, *waiting) else { continue };
             if time < q - CROSSING_MATCH {
                 continue;
             }
-            let partner = self.recent.get((first - self.gone) as usize).filter(|_| first < number);
+            let partner = self.recent.get((first - self.dropped) as usize).filter(|_| first < number);
             let meets = partner
                 .is_some_and(|partner| partner.1 == side && (time - partner.0 - q).abs() <= CROSSING_MATCH);
             if meets {
                 *waiting = Some(first + 1);
                 self.paired[index] = true;
             } else if !(time <= q + CROSSING_MATCH && first == 0) {
-                // (one near the edge may have its partner before the window)
+                // a crossing near the edge may have its partner before the window
                 *waiting = None;
             }
         }
@@ -240,13 +241,13 @@ impl Crossings {
         }
         self.recent.push_back((time, side));
         let needed = self.waiting.iter().flatten().min().copied().unwrap_or(number + 1);
-        while self.gone < needed && self.recent.pop_front().is_some() {
-            self.gone += 1;
+        while self.dropped < needed && self.recent.pop_front().is_some() {
+            self.dropped += 1;
         }
     }
 
-    /// Adds whole repetitions that last `periods` in all, of a motion that has repeated exactly for the
-    /// longest period searched for, and once more.
+    /// Adds whole repetitions, `periods` long in total, of a motion that has repeated exactly for more than
+    /// the longest period searched for.
     pub fn skip(&mut self, periods: f64) {
         for crossing in &mut self.recent {
             crossing.0 += periods;
@@ -259,7 +260,7 @@ impl Crossings {
             let q = index as f64 + 1.0;
             paired
                 && waiting.is_some_and(|first| {
-                    let alone = self.recent.get((first - self.gone) as usize);
+                    let alone = self.recent.get((first - self.dropped) as usize);
                     alone.is_none_or(|alone| alone.0 + q >= self.periods - CROSSING_MATCH)
                 })
         })
@@ -290,7 +291,7 @@ mod tests {
     }
 
     #[test]
-    fn twice_a_period_repeats() {
+    fn two_crossings_per_period_repeat() {
         assert!(repeat(15, 0..30, twice_a_period));
         let off_the_edge = |i: i32| if i % 4 == 0 { 1e-4 } else { 0.0 };
         assert!(repeat(15, 0..30, |i| 0.5 * f64::from(i) + off_the_edge(i)));
@@ -298,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lone_crossing_or_scatter_does_not() {
+    fn a_lone_crossing_and_scattered_ones_do_not_repeat() {
         for few in [&[][..], &[6.1], &[6.1, 7.3]] {
             assert!(!repeat(15, 0..few.len() as i32, |i| few[i as usize]));
         }
@@ -309,12 +310,12 @@ mod tests {
     }
 
     #[test]
-    fn skipped_crossings_are_as_if_added() {
+    fn skipped_crossings_count_as_if_they_were_added() {
         let mut crossings = Crossings::new(1_000_000);
         add(&mut crossings, 0..60, twice_a_period);
         crossings.skip(1_000_000.0 - 30.0);
         assert!(crossings.repeat());
-        // the last period is another
+        // the last period differs
         crossings.add(1e6 - 0.1, Side::Right);
         assert!(!crossings.repeat());
     }
@@ -337,7 +338,7 @@ mod tests {
     }
 
     #[test]
-    fn an_approach_repeats_once_what_remains_of_it_is_small() {
+    fn an_approach_repeats_once_its_remainder_is_small() {
         // Towards 0 at this rate per period, from one side or alternating, or away from it: neighbours may
         // have agreed for a long time.
         for rate in [0.5, 0.9, 0.99, 0.999, 0.9999, 1.0001, 1.01, -0.5, -0.9, -0.99, -0.9999, -1.01_f64] {
@@ -349,8 +350,8 @@ mod tests {
                     let case = format!("{rate} {window} {remains}: {found:?}");
                     if let Some((period, _)) = found {
                         assert!(period == 1 || (period == 2 && rate < 0.0), "{case}");
-                        // it stays where it is, or has moved by no more than can be detected
-                        let moves = (first - last).abs() > 2.5 * STILL;
+                        // it does not drift, or by less than can be detected
+                        let moves = (first - last).abs() > 2.5 * MAX_STILL_CHANGE;
                         assert!(!moves || (last <= 2.0 * STATE_MATCH && rate.abs() < 1.0), "{case}");
                     } else if first.max(last) <= 0.5 * STATE_MATCH && window >= 4 {
                         assert!(rate.abs() > 1.0, "{case}");
@@ -361,7 +362,7 @@ mod tests {
     }
 
     #[test]
-    fn a_spiral_repeats_where_it_goes_inward() {
+    fn a_spiral_repeats_if_it_goes_inward() {
         for turn in [0.1, 1.0, 2.0, 3.1_f64] {
             for growth in [0.9, 0.99, 1.01, 1.02, 1.05_f64] {
                 for window in [7, 30, 101] {
@@ -391,7 +392,7 @@ mod tests {
     }
 
     #[test]
-    fn skipped_states_are_as_if_added() {
+    fn skipped_states_count_as_if_they_were_added() {
         for lap in [1, 2, 5, 12, 13, 30] {
             for (from, periods) in [(0, 1200), (7, 41), (100, 23), (3, 1090), (600, 500)] {
                 let state = |i: u64| Strobe { x: (i % lap) as f64, v: 0.0 };

@@ -35,7 +35,7 @@ impl<T: Scalar> Recorder<'_, T> {
             self.work_moved += av.to_f64().abs();
             self.peak_kinetic = self.peak_kinetic.max(0.5 * (step.v * step.v).to_f64());
             let x = step.x.to_f64();
-            self.places = (self.places.0.min(x), self.places.1.max(x));
+            self.step_range = (self.step_range.0.min(x), self.step_range.1.max(x));
             if full {
                 self.settled.squared_velocity.add(squared);
                 self.settled.work.add(-av);
@@ -45,7 +45,7 @@ impl<T: Scalar> Recorder<'_, T> {
             self.circuit(state, step.length, rule, overlap);
         }
         if let Some((begin, end)) = overlap {
-            // (A time in contact can be inverted to half its digits only, so a whole step is not inverted.)
+            // A time in contact can be inverted only to half its digits, so a whole step is not inverted.
             let (from, to) = match full {
                 true => (T::zero(), step.length),
                 false => (path.parameter(begin, step.length), path.parameter(end, step.length)),
@@ -101,8 +101,8 @@ impl<T: Scalar> Recorder<'_, T> {
         }
     }
 
-    /// The time in s of the next sample, if it comes before `end`. One step or rest may hold all samples, and
-    /// each sample sums the tones of the drive. So the cancel flag is checked here too, and a cancelled run
+    /// The time in s of the next sample, if it comes before `end`. One step or rest may contain all samples,
+    /// and each sample sums the tones of the drive, so the cancel flag is checked here too; a cancelled run
     /// takes no further samples.
     pub fn next_sample(&mut self, end: f64) -> Option<f64> {
         let next = self.times.get(self.next_time).copied().filter(|t| *t < end)?;

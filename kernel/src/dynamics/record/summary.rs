@@ -8,8 +8,8 @@ use crate::dynamics::result::{Harvest, Ledger, Outcome, Place, Regime, Run, Samp
 use crate::dynamics::state::MotionState;
 use crate::numeric::{CompensatedSum, Scalar};
 
-/// Share of the length scale below which a motion is rounding: the mass has not moved.
-const STILL: f64 = 1e-12;
+/// Share of the length scale up to which a motion is rounding: the mass has not moved.
+pub(crate) const MAX_ROUNDING: f64 = 1e-12;
 
 /// The end of a run, as the recorder needs it.
 pub(crate) struct Ending<T> {
@@ -42,11 +42,11 @@ impl<T: Scalar> Recorder<'_, T> {
         let travel = (self.high - self.low).to_f64();
         let scales = &self.model.scales;
         let counts = self.counts;
-        let left = counts.crossings + counts.impacts + counts.releases > 0;
+        let has_events = counts.crossings + counts.impacts + counts.releases > 0;
         let compliant = self.model.compliant;
-        // A mass pressed onto a compliant stop throughout oscillates there but has not left it.
+        // A mass pressed onto a compliant stop during the whole window oscillates there without leaving it.
         let pressed = compliant.is_some() && value(&self.settled.rested) == covered;
-        let moved = seen && (left || (travel > STILL * scales.length && !pressed));
+        let moved = seen && (has_events || (travel > MAX_ROUNDING * scales.length && !pressed));
         let rests = seen && !moved;
         let force = compliant.map(|_| self.peak_contact.to_f64() * self.model.mass / (self.unit * self.unit));
         let pressure = compliant.zip(force).and_then(|(stop, force)| stop.pressure(force));
@@ -67,7 +67,7 @@ impl<T: Scalar> Recorder<'_, T> {
             () if high <= top => Some(Place::Left),
             () => Some(Place::Both),
         });
-        let (crossing_periods, release_periods) = self.judge.periods_with();
+        let (crossing_periods, release_periods) = self.classifier.periods_with();
         let ramped = |t: f64| self.model.excitation.ramped_amplitude(t);
         let summary = Summary {
             final_x,
@@ -86,17 +86,17 @@ impl<T: Scalar> Recorder<'_, T> {
             periods: self.periods,
             crossing_periods,
             release_periods,
-            settled: self.judge.settled(rests).map(|settled| settled && done),
-            steady: self.judge.steady(rests).filter(|_| done),
-            settles_at: self.judge.settles_at(strobed).filter(|_| done),
-            firsts: self.judge.firsts(self.in_periods(&end), ramped),
+            settled: self.classifier.settled(rests).map(|settled| settled && done),
+            steady: self.classifier.steady(rests).filter(|_| done),
+            settles_at: self.classifier.settles_at(strobed).filter(|_| done),
+            firsts: self.classifier.firsts(self.in_periods(&end), ramped),
             impact_share: has_work.then(|| value(&self.settled.impact) / work),
             rested_share: seen.then(|| value(&self.settled.rested) / covered),
             total_crossings: counts.total_crossings,
             total_impacts: counts.total_impacts,
             chatter_sums: counts.sums,
             rests: counts.rests,
-            period: self.judge.period().filter(|_| done && moved),
+            period: self.classifier.period().filter(|_| done && moved),
             peak_contact_force: force,
             peak_contact_pressure: pressure,
             contact_yields: yields,
@@ -134,7 +134,7 @@ impl<T: Scalar> Recorder<'_, T> {
         self.model.mass / (self.unit * self.unit)
     }
 
-    /// The energies of the whole run, and what they leave unexplained.
+    /// The energies of the whole run, and their residual.
     fn energy_ledger(&self, ending: &Ending<T>) -> Ledger {
         let &Ending { state: MotionState { v, circuit, .. }, start_v, start_circuit, potential, .. } = ending;
         let (energy, transducer) = (self.energy_unit(), self.model.transducer);
@@ -160,8 +160,8 @@ impl<T: Scalar> Recorder<'_, T> {
         Ledger { work_j, damping_j, impact_j, harvested_j, coil_j, stored_j, residual_j, energy_residual }
     }
 
-    /// What the transducer delivers in the settled window, of which `covered` is recorded and in which the
-    /// base does `work`, if that is known and not 0; both in kernel units.
+    /// Output of the transducer in the settled window, of which the time `covered` is recorded and in which
+    /// the base does `work`, if that is known and not 0; both in kernel units.
     fn harvest(&self, seen: bool, covered: f64, work: Option<f64>) -> Option<Harvest> {
         let transducer = self.model.transducer?;
         let load = transducer.energies(self.squared_signal(&self.settled)).0;
@@ -186,7 +186,7 @@ impl<T: Scalar> Recorder<'_, T> {
             Regime::Intrawell
         } else if self.model.rhythm != Rhythm::Periodic {
             Regime::Crossing
-        } else if self.judge.crossings_repeat() {
+        } else if self.classifier.crossings_repeat() {
             Regime::Interwell
         } else {
             Regime::Irregular

@@ -4,7 +4,7 @@
 use super::goal::Goal;
 use super::listing::SAME;
 use super::recorder::Recorder;
-use super::regime::Judge;
+use super::regime::Classifier;
 use super::repeats::{LONGEST, Strobe};
 use super::sums::Sums;
 use crate::dynamics::clock::Instant;
@@ -14,7 +14,7 @@ use crate::numeric::{CompensatedSum, Scalar};
 
 /// Number of stroboscopic states of a mass at rest that are recorded one by one before some are skipped: more
 /// than the longest period that is searched for.
-pub(crate) const STILL: u32 = 32;
+pub(crate) const STILL_STATES: u32 = 32;
 
 /// Forcing periods of the settled window of a pursuit.
 const PURSUIT_WINDOW: u64 = 100;
@@ -40,14 +40,14 @@ impl<'a, T: Scalar> Recorder<'a, T> {
         }
         let state = Strobe { x: x.to_f64(), v: v.to_f64() / self.unit };
         let squared = self.settled.squared_velocity.value().to_f64();
-        self.judge.strobe(state, (squared, self.counts.crossings));
+        self.classifier.strobe(state, (squared, self.counts.crossings));
         if let Some(goal) = &mut self.goal {
-            goal.strobe(&self.judge, (state.x, state.v));
+            goal.strobe(&self.classifier, (state.x, state.v));
         }
     }
 
-    /// Skips stroboscopic states of a mass that stands still at `x` up to `until`, which equal the last ones,
-    /// except for some before the next border of the window.
+    /// Skips stroboscopic states, all equal, of a mass that stands still at `x` up to `until`, but not the
+    /// last ones before the next border of the window.
     pub(crate) fn skip_strobes(&mut self, x: T, until: &Instant<T>) {
         let Some(strobe) = &mut self.next_strobe else { return };
         let left = |border: &Instant<T>| {
@@ -55,11 +55,11 @@ impl<'a, T: Scalar> Recorder<'a, T> {
             Some(periods).filter(|periods| *periods > 0.0)
         };
         let borders = [until, &self.window.0, &self.window.1];
-        let fewest = borders.into_iter().filter_map(left).fold(f64::INFINITY, f64::min);
-        let more = (fewest - f64::from(STILL)).floor() as i64;
-        if more > 0 && fewest.is_finite() {
+        let to_border = borders.into_iter().filter_map(left).fold(f64::INFINITY, f64::min);
+        let more = (to_border - f64::from(STILL_STATES)).floor() as i64;
+        if more > 0 && to_border.is_finite() {
             strobe.cycle += more * self.period_cycles;
-            self.judge.skip_still(more as u64, Strobe { x: x.to_f64(), v: 0.0 });
+            self.classifier.skip_still(more as u64, Strobe { x: x.to_f64(), v: 0.0 });
         }
     }
 
@@ -71,22 +71,22 @@ impl<'a, T: Scalar> Recorder<'a, T> {
         }
     }
 
-    /// Begin and end of the settled window in s, as far as a run that ended at `end` reached it.
+    /// Start and end, in s, of the part of the settled window that is reached by a run that ends at `end`.
     pub(crate) fn window_seconds(&self, end: &Instant<T>) -> (f64, f64) {
         let (from, to) = &self.window;
         let reached = if self.clock.between(to, end) > T::zero() { to } else { end };
-        // the number of the scene, if the instant is that number
-        let written = [self.model.settle, self.model.duration];
+        // the number in the scene, if it gives this instant
+        let in_scene = [self.model.settle, self.model.duration];
         let seconds = |at: &Instant<T>| {
-            let as_written = written.into_iter().find(|t| self.clock.at(*t) == *at);
-            as_written.unwrap_or_else(|| self.clock.seconds(at))
+            let as_in_scene = in_scene.into_iter().find(|t| self.clock.at(*t) == *at);
+            as_in_scene.unwrap_or_else(|| self.clock.seconds(at))
         };
         let (from, reached) = (seconds(from), seconds(reached));
         (from, reached.max(from))
     }
 
-    /// Begins another settled window at the end of the last one, where the run is. Returns its end, or `None`
-    /// if that is after `until` in s or the window has too many stroboscopic states.
+    /// Begins another settled window at the present instant, the end of the last one. Returns its end, or
+    /// `None` if that is after `until` in s or the window has too many stroboscopic states.
     pub fn next_window(&mut self, until: f64) -> Option<Instant<T>> {
         let from = self.window.1;
         let length = self.periods as i64 * self.period_cycles;
@@ -101,7 +101,7 @@ impl<'a, T: Scalar> Recorder<'a, T> {
         (self.low, self.high) = (T::of(f64::INFINITY), T::of(f64::NEG_INFINITY));
         self.impact_speed = T::zero();
         (self.counts.crossings, self.counts.impacts, self.counts.releases) = (0, 0, 0);
-        self.judge.open_window();
+        self.classifier.open_window();
         self.listings.next_window(self.periods);
         Some(to)
     }
@@ -129,7 +129,8 @@ impl<'a, T: Scalar> Recorder<'a, T> {
         }
     }
 
-    /// Closes the listings at `end`, the end of the run. Returns the section and the state to be carried on.
+    /// Closes the listings at `end`, the end of the run. Returns the section, and the state from which
+    /// another run can continue.
     pub(crate) fn listed(
         &mut self,
         end: &Instant<T>,
@@ -154,8 +155,8 @@ impl<'a, T: Scalar> Recorder<'a, T> {
         self.origin = at(0);
         self.next_strobe = Some(self.origin);
         let scales = (self.model.scales.length, self.model.scales.speed);
-        self.judge = Judge::new(self.model.rhythm, scales, self.periods, from);
-        self.judge.strobes.longest = LONGEST; // however short the window is
+        self.classifier = Classifier::new(self.model.rhythm, scales, self.periods, from);
+        self.classifier.strobes.longest = LONGEST; // however short the window is
         self.goal = Some(goal);
         self.window.1
     }

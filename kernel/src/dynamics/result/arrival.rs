@@ -1,4 +1,4 @@
-//! Arrival of a pursued motion: what it goes to, and what is searched for on the way.
+//! Arrival of a pursued motion: its known attractors and regions, and what ended the pursuit.
 
 use super::event::Side;
 use super::summary::Summary;
@@ -79,18 +79,18 @@ pub struct Pursuit<'a> {
     pub known: &'a [Capture],
     /// Known regions that it may enter.
     pub regions: &'a [Region],
-    /// The number of the stroboscopic state from which on a repetition ends it.
+    /// The number of the stroboscopic state from which a repetition ends it.
     pub repeats_from: u64,
     /// Forcing periods after which it is given up.
-    pub most_periods: u64,
-    /// Number of releases with an identity that do not end it.
+    pub max_periods: u64,
+    /// Number of releases with an identity before the one that ends it.
     pub releases: u32,
     /// Work after which it is given up, in units of some ten nanoseconds; at most the work budget of a run.
-    pub most_work: u64,
+    pub max_work: u64,
 }
 
 impl Pursuit<'_> {
-    /// The number of a state from which no repetition ends a pursuit.
+    /// Value of [`repeats_from`](Self::repeats_from) with which no repetition ends a pursuit.
     pub const NEVER: u64 = u64::MAX;
 }
 
@@ -137,8 +137,8 @@ pub enum Arrival {
         /// See above.
         periods: u64,
     },
-    /// The stroboscopic states have come back, to a thousandth of the scales, for two periods of the motion
-    /// and twelve states more.
+    /// The stroboscopic states repeat, to a thousandth of the scales, for two periods of the motion and
+    /// twelve more states.
     Repeats {
         /// Period of the motion in forcing periods, at most 12.
         period: u32,

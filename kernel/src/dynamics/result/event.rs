@@ -22,7 +22,7 @@ impl Phase {
     }
 }
 
-/// The state at a requested time; at the instant of an event, the state after it.
+/// The state at a requested time; at the instant of an event, the state after the event.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
     /// Time in s, as requested.

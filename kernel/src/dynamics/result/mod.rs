@@ -23,11 +23,11 @@ pub struct Request<'a> {
     pub ledger: bool,
     /// A flag that another thread sets to end the run early with the outcome `Cancelled`.
     pub cancel: Option<&'a AtomicBool>,
-    /// The run goes on, window after window, until the motion repeats or the next window would end after
+    /// The run is extended, window after window, until the motion repeats or the next window would end after
     /// this time in s. No effect under a drive that does not repeat, or if the window holds less than two
     /// forcing periods.
     pub until_settled: Option<f64>,
-    /// Phase of the drive in turns at which the states of the settled window are kept, one a forcing period
+    /// Phase of the drive in turns at which the states of the settled window are kept, one per forcing period
     /// ([`Run::section`]).
     pub section: Option<f64>,
     /// Whether to keep the state from which another run can continue ([`Run::carried`]).
@@ -42,8 +42,8 @@ pub struct Run {
     pub samples: Vec<Sample>,
     /// Events in order of time, if they were requested.
     pub events: Vec<Event>,
-    /// The states of the settled window at the requested phase, one a forcing period, if they were requested
-    /// and the drive repeats; at most some 4 million, and up to the end of the run.
+    /// The states of the settled window at the requested phase, one per forcing period, if they were
+    /// requested and the drive repeats; at most some 4 million, and up to the end of the run.
     pub section: Vec<SectionPoint>,
     /// Displacement in m and velocity in m/s at the last instant that is a whole number of forcing periods
     /// after the start, if it was requested and the drive repeats.

@@ -77,7 +77,7 @@ pub struct Summary {
     /// Crossings in the settled window.
     pub crossings: u64,
     /// Impacts in the settled window faster than
-    /// [`least_impact_speed`](crate::dynamics::Model::least_impact_speed), including the contacts of a
+    /// [`min_impact_speed`](crate::dynamics::Model::min_impact_speed), including the contacts of a
     /// compliant stop.
     pub impacts: u64,
     /// Speed in m/s of the fastest impact in the settled window; `None` without one.
@@ -93,7 +93,7 @@ pub struct Summary {
     pub mean_x: Option<f64>,
     /// Side of the barrier in the settled window; `None` if the run ended before it, and for one well.
     pub side: Option<Place>,
-    /// Begin and end of the settled window in s, as far as the run came.
+    /// Start and end of the settled window in s, or of the part that the run reached.
     pub window: (f64, f64),
     /// Forcing periods in the settled window; 0 if the drive has none.
     pub periods: u64,

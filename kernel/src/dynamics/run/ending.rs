@@ -8,7 +8,7 @@ use crate::dynamics::drive::Drive;
 use crate::dynamics::equation::Equation;
 use crate::dynamics::model::Model;
 use crate::dynamics::motion::Motion;
-use crate::dynamics::record::summary::Ending;
+use crate::dynamics::record::summary::{Ending, MAX_ROUNDING};
 use crate::dynamics::result::{Ledger, Outcome, Run};
 use crate::dynamics::state::MotionState;
 use crate::numeric::Scalar;
@@ -18,7 +18,7 @@ const TOLERANCES: f64 = 100.0;
 
 /// Tolerance below which the residual of a ledger is rounding.
 const MIN_TOLERANCE: f64 = 1e-13;
-/// Roundings of force and displacement that add up in a ledger.
+/// Number of roundings of force and displacement that add up in a ledger.
 const FORCE_ROUNDINGS: f64 = 16.0;
 
 /// Steps whose errors add up to no more than the tolerance. The errors of an undamped mass between elastic
@@ -28,14 +28,12 @@ const STEPS_WITHIN_TOLERANCE: f64 = 1000.0;
 /// Share of the energy moved that may be missing in a motion so small that the tolerance, which is relative
 /// to the scene's scales, does not limit the error further.
 const MAX_MISSING_SHARE: f64 = 0.1;
-/// Share of the length scale below which nothing has moved.
-const STILL: f64 = 1e-12;
 
-/// Ratio of coupling to the motion's rate above which a circuit holds the mass fast. The small motion that is
-/// left must balance its energy even if it is below the rounding of displacement and force.
+/// Ratio of coupling to the motion's rate above which a circuit nearly locks the mass. The small motion that
+/// is left must balance its energy even if it is below the rounding of displacement and force.
 const STRONG_COUPLING: f64 = 1e3;
 
-/// The first instant of a run.
+/// The state at the start of a run.
 pub(crate) struct Initial<T> {
     v: T,
     circuit: T,
@@ -58,14 +56,14 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// Closes the record.
     pub fn finish(self, model: &Model, start: &Initial<T>, outcome: Outcome) -> Run {
         let Self { stepper, state, record, steps, .. } = self;
-        let places = record.places;
+        let step_range = record.step_range;
         let speed = (2.0 * record.peak_kinetic).sqrt() / stepper.equation.unit;
         let potential = potential_change(model, stepper.equation, start, &state);
         let (start_v, start_circuit) = (start.v, start.circuit);
         let mut run = record.finish(&Ending { state, start_v, start_circuit, potential, outcome });
         run.summary.steps = steps;
         run.summary.evaluations = stepper.evaluations;
-        run.summary.outcome = checked_outcome(model, &run, places, speed);
+        run.summary.outcome = checked_outcome(model, &run, step_range, speed);
         run
     }
 }
@@ -92,9 +90,9 @@ fn stop_energy<T: Scalar>(model: &Model, equation: &Equation<T>, state: &MotionS
     stop.stored(state.depth.root).to_f64() * model.mass / (equation.unit * equation.unit)
 }
 
-/// The outcome of a run after the check; `places` is the range of the motion in m, `speed` its largest in
+/// The outcome of a run after the check; `step_range` is the range of the motion in m, `speed` its largest in
 /// m/s.
-fn checked_outcome(model: &Model, run: &Run, places: (f64, f64), speed: f64) -> Outcome {
+fn checked_outcome(model: &Model, run: &Run, step_range: (f64, f64), speed: f64) -> Outcome {
     let summary = &run.summary;
     if summary.outcome != Outcome::Done {
         return summary.outcome;
@@ -116,14 +114,14 @@ fn checked_outcome(model: &Model, run: &Run, places: (f64, f64), speed: f64) -> 
     if strong && residual_j.abs() > MAX_MISSING_SHARE * moved {
         return Outcome::Inaccurate { residual: energy_residual };
     }
-    let missing = residual_j.abs() - rounding(model, places, summary.steps);
+    let missing = residual_j.abs() - rounding(model, step_range, summary.steps);
     if !(missing > 0.0) {
         return Outcome::Done;
     }
     let many = (summary.steps as f64 / STEPS_WITHIN_TOLERANCE).max(1.0);
     let allowed = TOLERANCES * model.tolerance.max(MIN_TOLERANCE) * many;
     let by_tolerance = allowed * (moved + model.mass * model.scales.speed * speed);
-    let moves = places.1 - places.0 > STILL * model.scales.length;
+    let moves = step_range.1 - step_range.0 > MAX_ROUNDING * model.scales.length;
     match missing > by_tolerance || (moves && missing > MAX_MISSING_SHARE * moved) {
         true => Outcome::Inaccurate { residual: energy_residual },
         false => Outcome::Done,

@@ -19,11 +19,11 @@ use crate::numeric::Scalar;
 
 /// How a sequence of event-free steps has ended.
 pub(crate) enum FastPath<T> {
-    /// It has not ended: budgets and the cancel flag are to be checked.
+    /// It has not ended: budgets and the cancel flag must be checked.
     Paused,
     /// At this step, on which an event is possible; the series holds it.
     EventPossible(Step<T>),
-    /// Before a step of up to this length, which the general step must choose; the series holds it.
+    /// Before a step of at most this length, whose length the general step must choose; the series holds it.
     TooLong(T),
     /// No step was taken.
     NotTaken,
@@ -51,7 +51,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         if self.stepper.pass_segment_end(&mut self.state) {
             return FastPath::Paused;
         }
-        let mut now = self.record.begin_event_free(&self.state.at, &self.stepper.segment_limit(&self.state));
+        let mut part = self.record.begin_event_free(&self.state.at, &self.stepper.segment_limit(&self.state));
         let mode = self.stepper.mode(&self.state);
         let (origin, limits) = (mode.origin, (mode.low, mode.high));
         let Self { stepper, state, record, .. } = self;
@@ -70,7 +70,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
             series.extend(settings.order, &mode.force, damping, *drive, cursor);
             let length =
                 T::of(series.natural_step(settings.speed_log2, settings.tolerance_log2, settings.longest));
-            let left = clock.between(&at, &now.border) - margin;
+            let left = clock.between(&at, &part.border) - margin;
             if !(length > T::zero() && length < left) {
                 ended = FastPath::TooLong(length);
                 break;
@@ -101,22 +101,22 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
                 Chord { deviations: deviations(), curvatures, ..chord }.stays_clear()
             };
             let mut event_free = clear && end.v.is_finite();
-            // (a missing barrier counts as infinitely far away)
-            let gap = chord.start - now.barrier.unwrap_or(T::of(f64::NEG_INFINITY));
+            // a missing barrier counts as infinitely far away
+            let gap = chord.start - part.barrier.unwrap_or(T::of(f64::NEG_INFINITY));
             if event_free && !(gap.abs() > end.bound * T::of(CLEARANCE)) {
                 let step = (&series.y[..=settings.order], length);
-                match now.crossings(&chord, step, length + length < left) {
+                match part.crossings(&chord, step, length + length < left) {
                     Some((side, count)) => {
-                        now.side = side;
+                        part.side = side;
                         crossed += count;
                     }
                     None => event_free = false,
                 }
             }
-            if now.inside && event_free {
+            if part.inside && event_free {
                 let y = &series.y[..=settings.order];
                 let squared = polynomial::integrals::<_, false>(y, &[], rule, T::zero(), length).0;
-                event_free = now.record_step(&chord, deviations, (length, squared));
+                event_free = part.record_step(&chord, deviations, (length, squared));
                 if !event_free {
                     series.measured.set(Some(Integrals { until: length, squared, work: T::zero() }));
                 }
@@ -131,7 +131,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         if steps > 0 {
             state.turned_back = false;
             (state.at, state.x, state.v) = (at, x, v);
-            record.end_event_free((now.low, now.high), now.squared, now.covered, now.side, crossed);
+            record.end_event_free((part.low, part.high), part.squared, part.covered, part.side, crossed);
         }
         self.steps += steps;
         work.add(steps * costs.step);
@@ -171,8 +171,8 @@ impl<T: Scalar> EventFree<T> {
     }
 
     /// Records a step inside the settled window of this length and integral of the squared velocity. Returns
-    /// false if a turning point within it may be an extreme. The deviations from the chords are computed if
-    /// needed.
+    /// false if a turning point within it may be an extreme. `deviations` computes the deviations from the
+    /// chords, if they are needed.
     #[inline(always)]
     fn record_step(
         &mut self,

@@ -48,7 +48,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         self.take_any(step)
     }
 
-    /// Goes along the step that was chosen; none is the end of the run.
+    /// Takes the chosen step. Without one the series is not finite, which ends the run.
     pub fn take_any(&mut self, step: Option<Step<T>>) -> Flow {
         match step {
             Some(step) => self.take(&step),
@@ -56,7 +56,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         }
     }
 
-    /// Goes along a step of flight up to its end or the first surface.
+    /// Takes a step of free flight, up to its end or to the first surface.
     pub fn take(&mut self, &Step { length: h, arrival, end }: &Step<T>) -> Flow {
         let mode = self.stepper.mode(&self.state);
         match self.stepper.find_exit(&self.state, h, &end) {

@@ -1,4 +1,4 @@
-//! Run from event to event, up to its end or until it is known what the motion goes to.
+//! Runs from event to event, up to the end or until the goal of a pursuit is reached.
 
 pub(crate) mod ending;
 pub(crate) mod event_free;
@@ -24,8 +24,8 @@ use event_free::FastPath;
 impl Model {
     /// Runs the model once.
     ///
-    /// Returns samples, events and statistics in SI. Never fails: if a run cannot go on, its outcome says so.
-    /// The motion does not depend on what is requested or on threads.
+    /// Returns samples, events and statistics in SI. Never fails: if a run cannot continue, its outcome says
+    /// so. The motion does not depend on the request or on threads.
     pub fn run(&self, request: &Request) -> Run {
         let watch = ThreadClock::start();
         let Kernel { equation, clock, drive } = Kernel::<f64>::new(self);
@@ -66,12 +66,12 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     /// Runs from start to end.
     fn run(mut self, model: &Model) -> Run {
         let start = self.begin(model);
-        let outcome = self.go_on();
+        let outcome = self.run_to_end();
         self.finish(model, &start, outcome)
     }
 
-    /// Goes on from event to event until the run has ended.
-    pub fn go_on(&mut self) -> Outcome {
+    /// Runs from event to event until the run has ended.
+    pub fn run_to_end(&mut self) -> Outcome {
         loop {
             let left = match self.left() {
                 Ok(left) => left,
@@ -107,7 +107,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
             if self.record.cut_short {
                 return Err(Outcome::Cancelled { at: self.stepper.seconds(&self.state) });
             }
-            if !self.goes_on() {
+            if !self.begin_next_window() {
                 return Err(Outcome::Done);
             }
             left = self.stepper.left(&self.state);
@@ -116,12 +116,12 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         Ok(left)
     }
 
-    /// At the end of a settled window: begins another one if the motion does not repeat yet and the run may
-    /// go on. Returns whether it does.
-    fn goes_on(&mut self) -> bool {
+    /// At the end of a settled window, begins another one if the motion does not repeat yet and the run may
+    /// be extended. Returns whether it has begun.
+    fn begin_next_window(&mut self) -> bool {
         let Some(until) = self.until_settled else { return false };
         self.record.last_strobe(&self.state.at, (self.state.x, self.state.v));
-        if self.record.judge.period().is_some() {
+        if self.record.classifier.period().is_some() {
             return false;
         }
         let Some(end) = self.record.next_window(until) else { return false };
@@ -130,7 +130,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         true
     }
 
-    /// How the run ends if a budget is spent or it is cancelled.
+    /// The outcome if a budget is spent or the run is cancelled.
     #[inline]
     pub fn spent(&mut self) -> Flow {
         let cancelled = self.stepper.work.check_cancelled();
@@ -171,8 +171,8 @@ impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
     pub fn pursuing(mut self, pursuit: &Pursuit<'a>) -> Self {
         let start = (T::of(pursuit.start.0), T::of(pursuit.start.1 * self.stepper.equation.unit));
         self.put(start, Instant { cycle: 0, phase: T::zero() });
-        self.stepper.work.limit(pursuit.most_work);
-        self.stepper.end = self.record.pursue(Goal::new(*pursuit), pursuit.most_periods);
+        self.stepper.work.limit(pursuit.max_work);
+        self.stepper.end = self.record.pursue(Goal::new(*pursuit), pursuit.max_periods);
         (self.recurs, self.until_settled) = (true, None);
         self
     }
@@ -186,14 +186,14 @@ impl<'a, T: Scalar, D: Drive<T>> Motion<'a, T, D> {
     }
 }
 
-/// Pursues a motion alone.
+/// Pursues one motion outside a batch.
 pub(crate) fn pursue_alone(model: &Model, pursuit: &Pursuit, request: &Request) -> Pursued {
     let Kernel { equation, clock, drive } = Kernel::<f64>::new(model);
     with_drive!(&drive, drive => {
         let motion = Motion::new(model, request, model.tolerance, &equation, clock, drive);
         let mut motion = motion.pursuing(pursuit);
         let start = motion.begin(model);
-        let outcome = motion.go_on();
+        let outcome = motion.run_to_end();
         motion.arrived(model, &start, outcome)
     })
 }

@@ -1,4 +1,4 @@
-//! Recurrence: completion, without integration, of a run whose motion has come back to an earlier state.
+//! Recurrence: completion, without integration, of a run whose motion has returned to an earlier state.
 //!
 //! A mass released from rest under a drive that repeats starts from a state that can be identified without
 //! comparing computed numbers: it is on the stop, has no speed, and the phase of the drive is that of the
@@ -7,15 +7,15 @@
 //! same arithmetic some cycles of the clock later. (If curve, stops and drive are symmetric, a release from
 //! the other stop half a period later is followed by the mirror image, to rounding.)
 //!
-//! From the first labelled release on, every recorder call is kept in a log. When a label comes back, the
-//! calls of that lap are replayed, lap by lap. So the same code produces samples, events, stroboscopic states
-//! and sums, also if a window opens or closes within a lap. Laps that lie wholly inside or wholly outside the
-//! settled window are added to sums and counts by multiplication, and replayed only if something in them is
-//! listed. The last, incomplete lap is replayed up to its last step, which is integrated.
+//! From the first labelled release on, every recorder call is kept in a log. When a label occurs again, the
+//! calls of that lap are replayed, lap by lap. The same code then produces samples, events, stroboscopic
+//! states and sums, even if a window opens or closes within a lap. Laps that lie entirely inside or entirely
+//! outside the settled window are added to sums and counts by multiplication, and replayed only if something
+//! in them is listed. The last, incomplete lap is replayed up to its last step, which is integrated.
 //!
 //! These have no label: a release immediately after an incomplete chatter or a plastic impact, one at the
-//! start or at a jump of the drive, and one under a ramp, chirp, noise or record (which have no common
-//! period, or not yet). On compliant stops there is no rest and so no release.
+//! start or at a jump of the drive, and one under a ramp, chirp, noise or record (without a common period, or
+//! none so far). On compliant stops there is no rest and so no release.
 
 use crate::dynamics::clock::Instant;
 use crate::dynamics::drive::Drive;
@@ -27,11 +27,11 @@ use crate::dynamics::state::Label;
 use crate::dynamics::step::work::REPLAYED;
 use crate::numeric::Scalar;
 
-/// Common periods of the drive after which a motion that has not come back is no longer logged: most cycles
+/// Common periods of the drive after which a motion that has not repeated is no longer logged: most cycles
 /// take one or two, and a motion that never rests again would be logged to its end.
 const MAX_LOGGED_PERIODS: i64 = 8;
 
-/// Totals before and after a lap that lies wholly inside or wholly outside the settled window.
+/// Totals before and after a lap that lies entirely inside or entirely outside the settled window.
 #[derive(Debug, Clone, Copy)]
 struct LapTotals<T> {
     inside: bool,
@@ -66,14 +66,14 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
             let cycles = self.state.at.cycle - log.at(first).cycle;
             let lap_totals = self.lap_totals(first, &log, before);
             self.complete(&log, Lap { first, cycles, lap_totals });
-            self.record.judge.end_tape();
+            self.record.classifier.end_observations();
         } else if let Some((first, before)) = log.find(|known| known.end == label.end.other())
             && self.stepper.drive.is_odd()
             && self.symmetric
             && let Some(cycles) = self.record.odd_half_cycles(&log.at(first), &self.state.at)
         {
             self.complete_mirrored(log, first, cycles, before);
-            self.record.judge.end_tape();
+            self.record.classifier.end_observations();
         } else {
             self.log_release(log, label);
         }
@@ -81,7 +81,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
 
     fn log_release(&mut self, mut log: Box<Log<T>>, label: Label<T>) {
         if log.marks() == 0 {
-            self.record.judge.begin_tape();
+            self.record.classifier.begin_observations();
         }
         log.label(label, self.record.totals());
         self.log = Some(log);
@@ -96,7 +96,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
             if let Some(log) = &mut self.log {
                 if log.cycles_until(&point.state.at) > max_cycles || !log.has_room() {
                     self.log = None; // the next release begins another
-                    self.record.judge.end_tape();
+                    self.record.classifier.end_observations();
                 } else {
                     log.mark(point);
                 }
@@ -104,7 +104,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         }
     }
 
-    /// The totals of the lap since mark `first`, if it lay wholly inside or outside the settled window.
+    /// The totals of the lap since mark `first`, if it lies entirely inside or outside the settled window.
     fn lap_totals(&self, first: usize, log: &Log<T>, before: Totals<T>) -> Option<LapTotals<T>> {
         let inside = self.record.lies_inside(&log.at(first), &self.state.at)?;
         Some(LapTotals { inside, before, after: self.record.totals() })
@@ -125,7 +125,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
         self.complete(&log, Lap { first, cycles, lap_totals });
     }
 
-    /// Completes the run from here, at the end of a lap.
+    /// Completes the run from the end of a lap.
     fn complete(&mut self, log: &Log<T>, mut lap: Lap<T>) {
         self.recurs = false;
         let mut later = 0;
@@ -141,7 +141,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
                 let (at, end) = (&self.state.at, &self.stepper.end);
                 let ahead = self.record.laps_on_this_side(at, end, lap.cycles, lap_totals.inside);
                 if ahead > 0 {
-                    let laps = self.list(log, &lap, later, ahead);
+                    let laps = self.replay_listed(log, &lap, later, ahead);
                     self.record.repeat(&lap_totals.before, &lap_totals.after, laps, lap.cycles);
                     later += laps * lap.cycles;
                     self.state.at.cycle += laps * lap.cycles;
@@ -163,10 +163,10 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
     }
 
     /// Replays those of the next `laps` in which something is listed. The sums are restored afterwards, so
-    /// that they do not depend on what is listed. Replays count as work: returns the number of laps that it
-    /// allows.
-    fn list(&mut self, log: &Log<T>, lap: &Lap<T>, later: i64, laps: i64) -> i64 {
-        let (sums, judge) = (self.record.totals(), self.record.judge.clone());
+    /// that they do not depend on what is listed. Replays count as work; returns the number of laps that the
+    /// budget allows.
+    fn replay_listed(&mut self, log: &Log<T>, lap: &Lap<T>, later: i64, laps: i64) -> i64 {
+        let (sums, classifier) = (self.record.totals(), self.record.classifier.clone());
         // The stroboscopic states of these laps are added by multiplication.
         self.record.next_strobe = None;
         let listings = std::mem::take(&mut self.record.listings);
@@ -176,7 +176,7 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
             |lap_before: i64| Instant { cycle: start.cycle + lap_before * lap.cycles, phase: start.phase };
         let (mut done, mut covered) = (0, laps);
         while let Some(next) = self.record.next_listed(&begin(done)) {
-            // (by rounding it may lie in the previous lap)
+            // by rounding it may lie in the previous lap
             let between = (self.stepper.clock.between(&start, &next) / length).floor().to_f64() as i64 - 1;
             let number = between.max(done) + 1;
             if number > laps {
@@ -193,14 +193,14 @@ impl<T: Scalar, D: Drive<T>> Motion<'_, T, D> {
             done = number;
         }
         self.record.restore(&sums);
-        (self.record.judge, self.record.listings) = (judge, listings);
+        (self.record.classifier, self.record.listings) = (classifier, listings);
         covered
     }
 
     /// Replays a part of the log. Returns the number of impacts in it.
     fn replay(&mut self, log: &Log<T>, marks: (usize, Option<usize>), later: CycleShift) -> u64 {
         let recorded = (&mut self.record, &mut self.stepper.series);
-        let (calls, impacts) = log.play(recorded, marks, later, self.state.segment);
+        let (calls, impacts) = log.replay(recorded, marks, later, self.state.segment);
         self.stepper.work.add(REPLAYED * calls as u64);
         impacts
     }

@@ -112,7 +112,7 @@ impl<T: Number> ForceSeries<T> {
     /// Sums coefficient `n` of the brackets of these depths, four side by side.
     #[inline(always)]
     fn sum(&mut self, y: &[T; ROOM], n: usize, mut depths: std::ops::Range<usize>) {
-        // (Named variables: from an array the compiler would gather the same lane of all.)
+        // Named variables: from an array the compiler would gather the same lane of each sum.
         macro_rules! side_by_side {
             ($first:expr, $($at:literal $sum:ident)*) => {{
                 let (above, current) = self.rows.split_at_mut(n * self.stride);
@@ -120,7 +120,7 @@ impl<T: Number> ForceSeries<T> {
                 let mut rows = above.chunks_exact(self.stride).rev().zip(&y[1..=n]);
                 if let Some((row, y)) = rows.next() {
                     let row = &row[first + 1..first + 1 + BLOCK];
-                    // (no sum begins with 0: the next addition would wait for it)
+                    // no sum begins with 0: the next addition would wait for it
                     $(let mut $sum = *y * row[$at];)*
                     for (row, y) in rows {
                         let row = &row[first + 1..first + 1 + BLOCK];
@@ -220,7 +220,7 @@ fn inner_convolve<T: Number>(a: &[T; ROOM], b: &[T; ROOM], k: usize) -> T {
     if k == 2 {
         return middle;
     }
-    // (no sum begins with 0: the next addition would wait for it)
+    // no sum begins with 0: the next addition would wait for it
     let (mut low, mut high) = match k.is_multiple_of(2) {
         true => (middle + a[half - 1] * b[half + 1], a[half + 1] * b[half - 1]),
         false => (middle, a[half] * b[k - half]),
@@ -279,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn of_every_degree_it_is_the_series_of_the_polynomial() {
+    fn forces_of_every_degree_have_the_series_of_the_polynomial() {
         for degree in 0..=13 {
             let exact = by_horner(degree);
             let largest = exact[..18].iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));

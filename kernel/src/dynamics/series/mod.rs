@@ -1,9 +1,10 @@
 //! Taylor series of the motion in time.
 //!
-//! Taylor coefficients of x'' = -g x' - f(x) - a(t) by recurrence, one order at a time and only as many as
-//! are needed: a flight of a microsecond between two small impacts needs four, a motion across the barrier
-//! sixteen. f is the polynomial of the current piece. (Moore 1966, "Interval Analysis", ch. 11; Jorba and Zou
-//! 2005, "A software package for the numerical integration of ODEs by means of high-order Taylor methods".)
+//! Taylor coefficients of x'' = -g x' - f(x) - a(t) follow by recurrence, one order at a time and only as
+//! many as are needed: a flight of a microsecond between two small impacts needs four, a motion across the
+//! barrier sixteen. f is the polynomial of the current piece. (Moore 1966, "Interval Analysis", ch. 11; Jorba
+//! and Zou 2005, "A software package for the numerical integration of ODEs by means of high-order Taylor
+//! methods".)
 
 mod force;
 mod order;
@@ -112,8 +113,8 @@ impl<T: Number> Series<T> {
     ) {
         let mut last = self.known - 1;
         let Self { y, a, forces, inverse, .. } = self;
-        let known = self.known - 2..order.min(MAX_ORDER) - 1; // the bound spares a look at each index
-        // The shape of the force is decided once.
+        let known = self.known - 2..order.min(MAX_ORDER) - 1; // the bound removes the check of each index
+        // The degree of the force is matched once.
         macro_rules! recur {
             ($unrolled:expr, $force:expr) => {
                 recur::<T, D, { $unrolled }>(
@@ -167,8 +168,8 @@ impl<T: Number> Series<T> {
     pub fn state(&self, t: T) -> Endpoint<T> {
         let zero = T::zero();
         let (mut y, mut v, mut acceleration, mut bound) = (zero, self.y[1], zero, zero);
-        // Powers and sums of terms: Horner's rule waits for a product and a sum at each order, this for one
-        // of them.
+        // Powers are accumulated and terms are summed: each order waits for one product or one sum of the
+        // previous order, where Horner's rule waits for both.
         let (mut before, mut power) = (T::of(1.0), t);
         each_order::<T, true, 2>(
             2..self.known,
@@ -200,7 +201,7 @@ impl<T: Number> Series<T> {
 }
 
 impl<T: Scalar> Series<T> {
-    /// As [`Self::extend_to`], but compiled only once, since it is large.
+    /// As [`Self::extend_to`], but not inlined, since it is large.
     #[inline(never)]
     pub fn extend<D: Tail<T>>(
         &mut self,

@@ -1,4 +1,4 @@
-//! Orders of the series, room for their coefficients, and the trait by which a drive continues its series.
+//! Orders of the series, room for their coefficients, and the trait of a drive that is continued as a series.
 
 use crate::numeric::Number;
 

@@ -14,8 +14,8 @@ use crate::numeric::{Scalar, fast_log2};
 const LOW_ORDER: usize = 8;
 
 impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
-    /// Extends the series as far as the step needs, unless it is already `extended` for a `flight`. Returns
-    /// `None` if the coefficients are not finite.
+    /// Extends the series as far as the step needs it, unless it is already `extended` for a `flight`.
+    /// Returns `None` if the coefficients are not finite.
     ///
     /// Several consecutive coefficients may vanish although the next one does not (a high power near its flat
     /// middle, tones that cancel); the last coefficients then suggest too long a step. So each step is
@@ -83,7 +83,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
 
     /// Extends the series, just begun, until two consecutive terms are negligible over `flight` relative to
     /// the speed of the rebound. Returns false if the full order is not enough for that.
-    #[inline(never)] // it is large
+    #[inline(never)] // large
     pub fn expand_for(&mut self, state: &MotionState<T>, flight: T) -> bool {
         let negligible = state.v.abs() * T::of(self.settings.tolerance * 0.1);
         let mode = self.mode(state);
@@ -91,7 +91,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let Self { series, drive, cursor, .. } = self;
         let about = state.touch.map_or(&[][..], |touch| mode.about(touch.end, state.x));
         let (mut power, mut small) = (flight, 0);
-        // (A force of high degree is prepared for a longer series only if it is needed.)
+        // A force of high degree is prepared for a longer series only if that is needed.
         for order in [order.min(LOW_ORDER), order] {
             series.extend_while(
                 order,
@@ -168,7 +168,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     pub fn circuit_step(&self) -> Option<f64> {
         let (circuit, state) = (self.drive.circuit()?, self.circuit_series()?);
         let (s, order) = (&self.settings, self.series.known - 1);
-        // (as for the velocity, whose coefficient k - 1 is k times that of the displacement)
+        // as for the velocity, whose coefficient k - 1 is k times coefficient k of the displacement
         let coefficient = |k: usize| [state[k - 1].magnitude() / k as f64];
         let scale = fast_log2(circuit.scale.to_f64());
         let [step] = natural_steps(order, coefficient, &[scale], s.tolerance_log2, &[s.longest]);

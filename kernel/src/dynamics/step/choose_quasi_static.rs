@@ -45,15 +45,15 @@ pub(crate) struct QuasiStaticStep<T> {
     pub bound: T,
 }
 
-/// A mass on a stop that does not ring as far as the first term of its quasi-static motion shows.
+/// A mass on a stop that does not ring, according to the first term of its quasi-static motion.
 struct Calm<'a, T> {
     stop: Compliant<T>,
     mode: &'a Mode<T>,
     /// Displacement of the surface of the stop from the origin of the mode.
     surface: T,
-    /// Circular frequency of the ringing, and the speed of it that may be neglected.
-    ringing: T,
-    ring: T,
+    /// Angular frequency of the ringing, and the speed of ringing that may be neglected.
+    ring_frequency: T,
+    max_ring_speed: T,
     /// Speed and tolerance of a step of contact.
     scale: T,
     tolerance: f64,
@@ -74,14 +74,14 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
         self.fit_quasi_static(state, (end, left), &calm, order, path)
     }
 
-    /// Whether the mass rings: the first term of its quasi-static motion shows whether the series is worth
-    /// it. `None` if it does.
+    /// `None` if the mass rings: the first term of its quasi-static motion shows whether the series is worth
+    /// computing.
     fn calm(&mut self, state: &MotionState<T>, end: End, path: &mut QuasiStatic<T>) -> Option<Calm<'a, T>> {
         let (root, sign) = (state.depth.root, end.sign::<T>());
         let (speed, damping, mode) = (sign * state.v, self.equation.damping, self.mode(state));
         let stop = self.equation.compliant?;
         let (scale, tolerance) = self.contact_tolerance(state)?;
-        let ring = T::of(MAX_RINGING * self.settings.tolerance) * scale;
+        let max_ring_speed = T::of(MAX_RINGING * self.settings.tolerance) * scale;
         let compressing = matches!(state.contact, Contact::Compressing(_)) && root > T::zero();
         if !compressing || self.settings.tolerance < MIN_TOLERANCE {
             return None;
@@ -90,27 +90,29 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
         self.drive.seed(&state.at, state.segment, a, &mut self.cursor);
         let (jerk, snap) = (-(sign * a[1]), a[2].abs() * T::of(2.0));
         let stiffness = T::of(1.5) * stop.stiffness * root;
-        if !((speed * stiffness - jerk).abs() <= ring * stiffness + jerk.abs() * T::of(FIRST_TERM_ROUGH)) {
+        if !((speed * stiffness - jerk).abs()
+            <= max_ring_speed * stiffness + jerk.abs() * T::of(FIRST_TERM_ROUGH))
+        {
             return None;
         }
         let surface = self.equation.surface(end)? - mode.origin;
         let (force, slope, _) = mode.force.value(surface + sign * (root * root));
-        let square_of_ringing = stiffness + slope;
-        if !(square_of_ringing > T::zero()) {
+        let ring_frequency_squared = stiffness + slope;
+        if !(ring_frequency_squared > T::zero()) {
             return None;
         }
-        let ringing = square_of_ringing.sqrt();
-        let first = jerk / square_of_ringing;
-        if !((speed - first).abs() <= ring + first.abs() * T::of(FIRST_TERM)) {
+        let ring_frequency = ring_frequency_squared.sqrt();
+        let first = jerk / ring_frequency_squared;
+        if !((speed - first).abs() <= max_ring_speed + first.abs() * T::of(FIRST_TERM)) {
             return None;
         }
         let acceleration = -(sign * (force + a[0])) - damping * speed - stop.force(root, speed);
-        let slow = snap / square_of_ringing + first * first / (root * root);
-        if !(acceleration.abs() <= ringing * ring + slow + slow) {
+        let slow = snap / ring_frequency_squared + first * first / (root * root);
+        if !(acceleration.abs() <= ring_frequency * max_ring_speed + slow + slow) {
             return None;
         }
         (path.stop, path.sign) = (stop, sign);
-        Some(Calm { stop, mode, surface, ringing, ring, scale, tolerance })
+        Some(Calm { stop, mode, surface, ring_frequency, max_ring_speed, scale, tolerance })
     }
 
     /// Solves for the series of the quasi-static motion and returns its order; `None` if the mass does not
@@ -121,7 +123,7 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
         calm: &Calm<T>,
         path: &mut QuasiStatic<T>,
     ) -> Option<usize> {
-        let &Calm { mode, surface, ringing, ring, .. } = calm;
+        let &Calm { mode, surface, ring_frequency, max_ring_speed, .. } = calm;
         let (root, speed, damping) = (state.depth.root, path.sign * state.v, self.equation.damping);
         let sweeps = if self.settings.tolerance > COARSE { FEW_SWEEPS } else { MORE_SWEEPS };
         let order = (self.settings.order + 1).min(MAX_ORDER - 2 * sweeps);
@@ -133,8 +135,8 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
         }
         path.solve(root, (1, sweeps), surface, damping);
         let (start, start_speed) = (path.depth[0], path.depth[1]);
-        let off = (speed - start_speed).abs().larger(ringing * (root * root - start).abs());
-        if !(off <= ring) {
+        let off = (speed - start_speed).abs().larger(ring_frequency * (root * root - start).abs());
+        if !(off <= max_ring_speed) {
             return None;
         }
         for k in few + 1..=order + 2 * sweeps {
@@ -146,7 +148,7 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
         Some(order)
     }
 
-    /// The longest step for which the series is good enough, by halving; `None` if none of use is.
+    /// The longest step for which the series is accurate enough, by halving; `None` if no useful step is.
     fn fit_quasi_static(
         &self,
         state: &MotionState<T>,
@@ -155,7 +157,7 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
         order: usize,
         path: &QuasiStatic<T>,
     ) -> Option<QuasiStaticStep<T>> {
-        let &Calm { stop, mode, surface, ringing, scale, tolerance, .. } = calm;
+        let &Calm { stop, mode, surface, ring_frequency, scale, tolerance, .. } = calm;
         let [natural] = natural_steps(
             order,
             |k| [path.depth[k].magnitude()],
@@ -166,7 +168,7 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
         let mut length = T::of(natural);
         for _ in 0..MAX_HALVINGS {
             let arrival = self.arrival(state, left, &mut length);
-            if !(length * ringing > T::of(MIN_RADIANS)) {
+            if !(length * ring_frequency > T::of(MIN_RADIANS)) {
                 return None;
             }
             let (mut bound, mut fastest, mut power) = (T::zero(), T::zero(), T::of(1.0));

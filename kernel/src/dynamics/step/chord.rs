@@ -88,7 +88,8 @@ impl<T: Scalar> Chord<T> {
         self.bends_one_way() & keeps_sign((from, T::zero() - to), T::zero())
     }
 
-    /// The extremes with the ends of the step, and whether a turning point inside it may lie beyond them.
+    /// The extremes including the ends of the step, and whether a turning point inside it may lie beyond
+    /// them.
     #[inline(always)]
     pub fn extremes(&self, (low, high): (T, T)) -> (T, T, bool) {
         let start = self.start.larger(self.limits.0).smaller(self.limits.1);

@@ -15,13 +15,13 @@ use crate::numeric::{Collocation, PolynomialRoots, Scalar, fast_log2};
 
 /// Minimum of the speed to which the tolerance in contact is relative, as a share of the scene's speed. The
 /// tolerance is relative to the speed that corresponds to the energy in the contact, up to the scene's speed:
-/// a mass that oscillates on its stop moves at some thousandth of that, and errors relative to the scene's
-/// speed would hide this motion. Motions far below are not visible.
+/// a mass that oscillates on its stop moves at about a thousandth of the scene's speed, and errors relative
+/// to that would hide its motion. Much slower motions are not visible.
 const MIN_SPEED_SHARE: f64 = 1e-4;
 
 /// Tolerance of a step in contact relative to that of free flight. A contact takes a dozen steps whose errors
 /// have one sign, and an elastic mass makes thousands of contacts; with this share its energy drifts by
-/// thousandths of the tolerance in each. It costs one step in ten.
+/// thousandths of the tolerance in each contact. The share adds one step in ten.
 const CONTACT_SHARE: f64 = 0.03;
 
 /// Orders by which the series of a contact exceeds that of free flight, because of this tolerance.
@@ -29,8 +29,8 @@ const CONTACT_ORDERS: usize = 2;
 
 /// Tolerance above which few terms of force and drive are tried first.
 const COARSE: f64 = 1e-9;
-/// Share of the scene's speed above which they are: slower motions take longer steps, in which the drive
-/// changes more.
+/// Share of the scene's speed above which few terms are tried first: slower motions take longer steps, in
+/// which the drive changes more.
 const SLOW_SHARE: f64 = 0.01;
 
 /// Tolerance of a step below which rounding dominates a whole impact.
@@ -150,8 +150,8 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
     pub(super) fn contact_tolerance(&self, state: &MotionState<T>) -> Option<(T, f64)> {
         let stored = self.equation.compliant?.stored(state.depth.root);
         let energetic = (state.v * state.v + stored + stored).sqrt();
-        let least = self.settings.speed * T::of(MIN_SPEED_SHARE);
-        let speed = self.settings.speed.smaller(energetic.larger(least));
+        let min_speed = self.settings.speed * T::of(MIN_SPEED_SHARE);
+        let speed = self.settings.speed.smaller(energetic.larger(min_speed));
         Some((speed, self.settings.tolerance * CONTACT_SHARE))
     }
 
@@ -176,7 +176,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         for at in [End::Low, End::High] {
             let (level, kind) = mode.end(at);
             let touch = state.touch.filter(|touch| touch.end == at);
-            if kind == EndKind::Compliant || touch.is_some_and(|touch| touch.opening == Opening::Held) {
+            if kind == EndKind::Compliant || touch.is_some_and(|touch| touch.opening == Opening::Ignored) {
                 continue;
             }
             let gap = at.sign::<T>() * (level - state.x);

@@ -41,7 +41,7 @@ impl<T: Scalar> Penetration<T> {
     /// The fraction of a step of length `h` at which the mass separates from the stop.
     pub fn separation(&self, h: T, changes: &Changes<T>) -> Option<T> {
         let rise = self.root[1] * h;
-        // (at touch the root is 0 and rises)
+        // at touch the root is 0 and rises
         if self.root[0] > changes.root || self.root[0] == T::zero() && rise + rise > changes.root {
             return None;
         }
@@ -52,8 +52,8 @@ impl<T: Scalar> Penetration<T> {
         if g[from] > T::zero() { PolynomialRoots::new(&g[from..n]).first() } else { Some(T::zero()) }
     }
 
-    /// The fraction of a step of length `h` at which the contact becomes clipped or ceases to be: 1 + a w
-    /// changes its sign. `passed`: it is 0 by definition at the start of the step.
+    /// The fraction of a step of length `h` at which clipping begins or ends: 1 + a w changes its sign.
+    /// `passed`: it is 0 by definition at the start of the step.
     pub fn clip_change(&self, h: T, passed: bool, changes: &Changes<T>) -> Option<T> {
         let start = T::of(1.0) + self.stop.loss * self.speed[0];
         if !(self.stop.loss > T::zero()) || start.abs() > self.stop.loss * changes.speed {
@@ -103,7 +103,7 @@ impl<T: Scalar> Penetration<T> {
         self.surface + self.sign * (at.root * at.root)
     }
 
-    /// Forces over mass in a state: the given one of the mechanism, the base's by its series, the stop's.
+    /// Forces over mass in a state: of the mechanism (as given), of the base (by its series) and of the stop.
     fn forces(&self, at: &ContactState<T>, force: T) -> (T, T, T) {
         let levels = self.known_drive.min(self.terms.of_drive());
         let base = polynomial::value(&self.inner.a[..levels], at.time);
@@ -113,7 +113,7 @@ impl<T: Scalar> Penetration<T> {
 }
 
 impl<T: Scalar> InStop<T> for Penetration<T> {
-    /// By the loss of the stop or, if the contact is clipped, the energy that it had stored.
+    /// The loss of the stop or, while the contact is clipped, the stored energy that is not returned.
     fn loss(&self, rule: &GaussLegendre<T>, from: T, to: T) -> T {
         if self.clipped {
             return self.stop.stored(self.root_at(from)) - self.stop.stored(self.root_at(to));
@@ -181,8 +181,8 @@ impl<T: Scalar> Path<T> for Penetration<T> {
     fn time(&self, parameter: T) -> T {
         self.at(&self.time, parameter)
     }
-    /// Time increases along a step of contact, but its slope is 0 at touch and separation, where it can be
-    /// inverted to half the digits only; the mass moves correspondingly little there.
+    /// Time increases along a step of contact, but its slope is 0 at touch and separation, so it can be
+    /// inverted there only to half the digits; the mass moves correspondingly little.
     fn parameter(&self, time: T, length: T) -> T {
         if !(time > T::zero()) {
             return T::zero();

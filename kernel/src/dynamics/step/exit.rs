@@ -34,7 +34,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let (v, last, to) = (state.v * h, end.v * h, to - level);
         let mut g = polynomial::scaled(y, h);
         let (g, ends) = if returns {
-            // (the gap divided by the time since the start)
+            // the gap divided by the time since the start
             (&g[1..=y.len()], ((v, g[2]), (to, last - to)))
         } else {
             g[0] = from;
@@ -112,7 +112,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         let (zero, sign, n) = (T::zero(), end.sign::<T>(), self.series.known);
         let gap = sign * (self.mode(state).end(end).0 - state.x);
         let touch = state.touch.filter(|t| t.end == end);
-        if touch.map_or(gap > bound, |touch| touch.opening == Opening::Held) {
+        if touch.map_or(gap > bound, |touch| touch.opening == Opening::Ignored) {
             return None;
         }
         let mut g = polynomial::scaled(self.series.coefficients(), h);
@@ -120,7 +120,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             g[1..n].iter_mut().for_each(|c| *c = -*c);
         }
         g[0] = gap;
-        // The mass lies beyond a surface that the last step ignored, by rounding alone, and does not move
+        // The mass lies beyond a surface that the last step ignored, but only by rounding, and does not move
         // outward: it touches the surface.
         let returns = touch.is_none() && gap < zero && sign * state.v <= zero;
         let opening = if returns { Some(Opening::Speed) } else { touch.map(|touch| touch.opening) };

@@ -42,7 +42,7 @@ use std::cell::OnceCell;
 use crate::dynamics::equation::Compliant;
 use crate::dynamics::series::Series;
 use crate::numeric::{
-    Collocation, GROUP, Lanes, MOST_GROUPS, Number, Scalar, Values, fast_exp2, fast_log2, widest,
+    Collocation, GROUP, Lanes, MAX_GROUPS, Number, Scalar, Values, fast_exp2, fast_log2, widest,
 };
 
 /// w/q as a series in p = a q: G(w) = q^2/2 is p^2/2 = z - ln(1 + z) for z = a w.
@@ -99,7 +99,6 @@ pub(crate) struct Impact<T: Copy> {
     pub rule: &'static Collocation,
     /// Inward acceleration by everything but the stop at touch, A0.
     pub pressing: T,
-    /// Speed at touch.
     pub touch_speed: T,
     /// m at touch.
     pub first: T,
@@ -142,7 +141,7 @@ pub(crate) struct Separation<T> {
 
 impl<T: Scalar> Impact<T> {
     pub fn new(stop: Compliant<T>) -> Self {
-        let zeros = [Lanes::zero(); MOST_GROUPS];
+        let zeros = [Lanes::zero(); MAX_GROUPS];
         Self {
             series: Series::new(0),
             about: Vec::new(),
@@ -192,7 +191,7 @@ impl<T: Scalar> Impact<T> {
         }
         let end = self.motion(|value| value, T::sqrt, [amplitude, time, T::of(1.0)]).speed;
         let groups = self.amplitude[..self.rule.groups()].iter();
-        // (between the points too)
+        // also between the points
         self.max_root = groups.flat_map(|group| group.0).fold(self.first, T::larger) * T::of(1.001);
         (end < T::zero() && -end <= speed * T::of(MAX_GAIN)).then_some(Separation { time, speed: end })
     }
@@ -269,7 +268,7 @@ impl<T: Scalar> Impact<T> {
             let change = self.rule.total(&self.change);
             if sweep > 0 {
                 rate = rate.larger(change / last);
-                // (the first change is relative to slopes of 0 and does not measure the rate)
+                // the first change is relative to slopes of 0 and does not measure the rate
                 if sweep > 1 && change * rate <= tolerance {
                     return Some((m, t));
                 }
@@ -288,7 +287,7 @@ impl<T: Scalar> Impact<T> {
     fn sweep(&mut self, (m, t): (T, T)) {
         let all = Lanes::<GROUP, T>::all;
         let (inverse_time, inverse_amplitude) = (all(T::of(1.0) / t), all(T::of(3.0) / m));
-        let none: Values<T> = [Lanes::zero(); MOST_GROUPS];
+        let none: Values<T> = [Lanes::zero(); MAX_GROUPS];
         let (mut passing, mut gains) = (none, none);
         for group in 0..self.rule.groups() {
             let (m, t, y) = (self.amplitude[group], self.time[group], self.rule.places(group));

@@ -4,7 +4,7 @@ use super::impact::{DRIVE_TERMS, Impact, Place};
 use super::path::{InStop, Path};
 use crate::dynamics::result::Phase;
 use crate::dynamics::series::ROOM;
-use crate::numeric::{GROUP, GaussLegendre, Lanes, MOST_GROUPS, Number, Scalar, Values, bisect};
+use crate::numeric::{GROUP, GaussLegendre, Lanes, MAX_GROUPS, Number, Scalar, Values, bisect};
 
 /// Numbers at the points of a group.
 type Group<T> = Lanes<GROUP, T>;
@@ -35,11 +35,12 @@ impl<T: Scalar> Impact<T> {
         (self.motion(|value| value, T::sqrt, [m, t, y]), t)
     }
 
-    /// The same, as accurate as at the ends: the interpolated slopes are less accurate than their integrals.
+    /// The same, as accurate as at the ends, by integrals of the slopes up to `y`: the interpolated slopes
+    /// are less accurate than their integrals.
     fn exactly_at(&self, y: T) -> (Place<T>, T) {
         let start = T::of(-1.0);
         let (mut m, mut t): (Values<T>, Values<T>) =
-            ([Lanes::zero(); MOST_GROUPS], [Lanes::zero(); MOST_GROUPS]);
+            ([Lanes::zero(); MAX_GROUPS], [Lanes::zero(); MAX_GROUPS]);
         for group in 0..self.rule.groups() {
             let point = self.between((start, y), group).0;
             (m[group], t[group]) = (point.amplitude_slope, point.time_slope);
@@ -86,7 +87,7 @@ impl<T: Scalar> Impact<T> {
     fn integral(&self, (from, to): (T, T), of: impl Fn(Group<T>, Group<T>, Group<T>) -> Group<T>) -> T {
         let (one, whole) = (T::of(1.0), from == T::zero() && to == T::of(2.0));
         let half = if whole { one } else { (to - from) * T::of(0.5) };
-        let mut values: Values<T> = [Lanes::zero(); MOST_GROUPS];
+        let mut values: Values<T> = [Lanes::zero(); MAX_GROUPS];
         for (group, value) in values[..self.rule.groups()].iter_mut().enumerate() {
             let (t, u, w, slope) = if whole {
                 (self.time[group], self.root[group], self.speed[group], self.time_slope[group])
@@ -124,7 +125,7 @@ impl<T: Scalar> Path<T> for Impact<T> {
     }
     fn position(&self, parameter: T) -> T {
         let y = parameter - T::of(1.0);
-        // (the position at the turn is needed for nearly every impact)
+        // the position at the turn is needed for nearly every impact
         let root = if y == T::zero() { self.turn() } else { self.exactly_at(y).0.root };
         self.surface + self.sign * (root * root)
     }
@@ -165,7 +166,7 @@ impl<T: Scalar> InStop<T> for Impact<T> {
         self.stop.stiffness * self.stop.loss * self.integral((from, to), |_, u, w| u * u * u * (w * w))
     }
 
-    /// (The force is largest on the way in, when the loss adds to it.)
+    /// The force is largest while the depth increases, when the loss adds to it.
     fn peak(&self, _: T, _: T, known: T) -> T {
         if !(self.stop.force(self.max_root, self.touch_speed) > known) {
             return known;

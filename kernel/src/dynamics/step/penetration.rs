@@ -66,7 +66,7 @@ pub(crate) struct Penetration<T: Copy> {
 /// Number of terms of the drive over time and of the force over depth that are used in a contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Terms {
-    /// Three of either.
+    /// Three of each.
     Few,
     /// Four of the drive, five of the force.
     More,
@@ -92,12 +92,12 @@ struct Constants<T> {
 }
 
 impl<T: Scalar> Penetration<T> {
-    /// With room for forces that take up to `products` products of series beyond the first.
-    pub fn new(stop: Compliant<T>, products: usize) -> Self {
+    /// With room for forces of up to this degree.
+    pub fn new(stop: Compliant<T>, degree: usize) -> Self {
         let zeros = [T::zero(); ROOM];
         let inverse = std::array::from_fn(|k| T::of(1.0) / T::of((k.max(1)) as f64));
         Self {
-            inner: Series::new(products),
+            inner: Series::new(degree),
             root: zeros,
             speed: zeros,
             time: zeros,
@@ -157,7 +157,7 @@ impl<T: Scalar> Penetration<T> {
         let sign = self.sign;
         let stiffness = if self.clipped { T::zero() } else { self.stop.stiffness };
         let constants = Constants {
-            // As forces outward of the stop over depth; the odd ones keep their sign.
+            // As outward forces over depth; the odd coefficients keep their sign.
             force: [sign * f0, f1, sign * f2, f3, sign * f4],
             stiffness,
             loss: stiffness * self.stop.loss,
@@ -288,13 +288,7 @@ impl<T: Scalar> Penetration<T> {
 
     /// The coefficients of `c`, each times its power of `h`.
     pub(super) fn powers(&self, c: &[T; ROOM], h: T) -> [T; ROOM] {
-        let mut scaled = [T::zero(); ROOM];
-        let mut power = T::of(1.0);
-        for (slot, c) in scaled.iter_mut().zip(&c[..=self.order]) {
-            *slot = *c * power;
-            power = power * h;
-        }
-        scaled
+        polynomial::scaled(&c[..=self.order], h)
     }
 }
 

@@ -131,7 +131,7 @@ impl<T: Scalar> InStop<T> for QuasiStatic<T> {
         self.stop.stiffness * self.stop.loss * lost
     }
 
-    /// (From the extremes of the depth: the speed there is 0, and it is nearly 0 where the force is largest.)
+    /// From the extremes of the depth: the speed there is 0, and it is nearly 0 where the force is largest.
     fn peak(&self, h: T, _: T, known: T) -> T {
         let coefficients = &self.depth[..=self.order()];
         let force = |t: T| {

@@ -16,7 +16,8 @@ use crate::numeric::Scalar;
 const MAX_STEPS: usize = 12;
 
 impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
-    /// Whether the next step has the full order and starts from no surface or leaves one by its speed.
+    /// Whether the next step has the full order, and either touches no surface at its start or leaves one
+    /// with speed.
     pub fn flies_freely(&mut self, state: &MotionState<T>) -> bool {
         match state.touch {
             None => true,
@@ -58,9 +59,9 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
         (self.equation.compliant.is_some() || change < acceleration * T::of(1.5)).then_some(flight)
     }
 
-    /// The flight of a rebound back to its stop: the stop, the length, and the state at its end; `None` if it
-    /// may be longer than `flight`, or differs too much from a parabola for its end to be found without a
-    /// search. Expects the series to be extended far enough.
+    /// The flight of a rebound back to its stop: the stop, the length, and the state at the end; `None` if
+    /// the flight may be longer than `flight`, or differs too much from a parabola for its end to be found
+    /// without a search. Expects the series to be extended far enough.
     #[inline(always)]
     pub fn rebound(&mut self, state: &MotionState<T>, flight: T, left: T) -> Option<(End, T, Endpoint<T>)> {
         let Some(Touch { end, opening: Opening::Speed }) = state.touch else { return None };
@@ -72,7 +73,7 @@ impl<T: Scalar, D: Drive<T>> Stepper<'_, T, D> {
             return None;
         }
         let (sign, y) = (end.sign(), &self.series.coefficients()[1..]);
-        // (for a constant number of coefficients the loops over them are unrolled)
+        // for a constant number of coefficients the loops over them are unrolled
         let length = match y {
             [a, b, c, d] => parabola_like(&[*a, *b, *c, *d], sign, flight),
             [a, b, c, d, e] => parabola_like(&[*a, *b, *c, *d, *e], sign, flight),

@@ -1,5 +1,5 @@
-//! Stepper: equation, drive and clock, settings that follow from the tolerance, and the present step's
-//! series.
+//! Stepper: equation, drive and clock, settings that follow from the tolerance, and the series of the present
+//! step.
 
 use super::impact::Impact;
 use super::path::StepData;
@@ -17,8 +17,9 @@ use crate::numeric::{Scalar, fast_log2};
 /// Maximum number of halvings of a step before it is given up.
 pub(super) const MAX_HALVINGS: u32 = 200;
 
-/// Tolerance of a step relative to that of the scene: the errors of some hundred steps add up, and even the
-/// energy of an undamped run of some hundred periods stays within the tolerance. A fifth costs a tenth more.
+/// Tolerance of a step relative to that of the scene. The errors of some hundred steps add up; with this
+/// share even the energy of an undamped run of some hundred periods stays within the tolerance. A share five
+/// times smaller takes a tenth more time.
 const LOCAL_SHARE: f64 = 0.02;
 
 /// Largest permitted ratio of the residual at the end of a step to the neglected term for which the step was
@@ -28,7 +29,7 @@ pub(crate) const RESIDUAL: f64 = 20.0;
 /// Number of roundings of the terms that add up in a residual.
 pub(crate) const ROUNDINGS: f64 = 32.0;
 
-/// Order, that of a tolerance of 1e-12, from which on the errors of a step are near rounding.
+/// Order from which the errors of a step are near rounding: that of a tolerance of 1e-12.
 const HIGH_ORDER: usize = 20;
 
 pub(crate) struct Settings<T> {
@@ -194,7 +195,7 @@ impl<'a, T: Scalar, D: Drive<T>> Stepper<'a, T, D> {
         self.seeded_contact_acceleration(end)
     }
 
-    /// The same if the drive has already been seeded.
+    /// The same, if the drive is already seeded.
     #[inline]
     pub fn seeded_contact_acceleration(&self, end: End) -> [T; 3] {
         let (a, sign) = (&self.series.a, end.sign::<T>());

@@ -4,8 +4,7 @@
 //! with the order of its series, the degree of the force and each part of the drive; those of a step of
 //! contact with a compliant stop, a search for a release and the replay of a lap were measured. Laps that are
 //! added by multiplication cost nothing, so a run that recurs is completed however long it is. Samples,
-//! events and ledger are not counted: what is recorded does not affect how a run ends, unless laps are
-//! replayed.
+//! events and the ledger are not counted: a request does not affect how a run ends, unless laps are replayed.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -127,21 +126,21 @@ impl<'a> Work<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::drive::Still;
+    use crate::dynamics::drive::Constant;
     use crate::dynamics::drive::general::General;
     use crate::dynamics::drive::tone::{Tone, TurnsPerCycle};
 
     #[test]
     fn a_simple_scene_may_take_twenty_million_steps_at_any_tolerance() {
         for order in 8..=23 {
-            let costs = Costs::new::<f64, _>(order, 3, &Still { acceleration: 0.0 });
+            let costs = Costs::new::<f64, _>(order, 3, &Constant { acceleration: 0.0 });
             assert!(WORK_BUDGET / costs.step >= 20_000_000, "{order} {costs:?}");
         }
         const { assert!(IMPACT_BUDGET >= 2_000_000) };
     }
 
     #[test]
-    fn checks_are_equally_far_apart_whatever_a_piece_costs() {
+    fn checks_are_equally_far_apart_for_any_cost_of_a_piece() {
         let cancel = AtomicBool::new(true);
         for cost in [1, 30, 9_999, 10_000, 3_000_000] {
             let mut work = Work::new(Some(&cancel));

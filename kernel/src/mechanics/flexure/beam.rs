@@ -27,7 +27,6 @@ use super::basis::Basis;
 pub(super) struct Beam {
     /// Number of equal flexures.
     pub count: f64,
-    /// Length.
     pub length: f64,
     /// EI.
     pub bending: f64,

@@ -151,7 +151,7 @@ fn beyond_well(solver: &mut Solver, segment: &mut Segment) -> Result<Option<f64>
     if BEYOND_WELL * high <= segment.to {
         return Ok(None);
     }
-    // close enough to the end that the position of the well matters
+    // so close to the end that the position of the well matters
     while high - low > 1e-3 * high {
         let middle = segment.at(solver, 0.5 * (low + high))?;
         if middle.force < 0.0 { low = middle.x } else { high = middle.x }
@@ -249,7 +249,7 @@ fn bowed_start(solver: &mut Solver, straight: &Point) -> Result<Point, Failure> 
         solver.set_bow(whole);
         match solved {
             Ok(point) if share == 1.0 => {
-                // A bow takes up preload, so that the other group may no longer buckle.
+                // A bow takes up preload, so the other group may no longer buckle.
                 let changed = changed(solver, &point);
                 if changed == [false, false] {
                     return Ok(point);

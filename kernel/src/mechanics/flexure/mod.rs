@@ -38,7 +38,7 @@ const SHEAR_FACTOR: f64 = 5.0 / 6.0;
 /// hundredth of the tolerance to the error of the force.
 const TAIL: f64 = 0.3;
 
-/// Neglected coefficients of the rotation at single states, which are solved more accurately than a curve.
+/// The same for single states, which are solved more accurately than a curve.
 const FINE_TAIL: f64 = 1e-6;
 
 /// Equal flexures in parallel.
@@ -95,7 +95,7 @@ pub enum FlexureError {
     },
     /// The solver stopped after too much work, or was cancelled.
     #[error(
-        "the flexures take more work than can be meant, at x = {} mm: {}",
+        "solving the flexures takes too much work at x = {} mm: {}",
         crate::numeric::short(x * 1e3),
         remedy(*is_preloaded)
     )]
@@ -197,11 +197,11 @@ impl Flexures {
     ///
     /// A smaller `tolerance` takes longer; 1e-8 takes milliseconds.
     pub fn solve(geometry: &Geometry, tolerance: f64) -> Result<(ForceCurve, Self), FlexureError> {
-        Self::solve_unless(geometry, tolerance, None)
+        Self::solve_cancellable(geometry, tolerance, None)
     }
 
-    /// Like [`solve`](Self::solve), but fails with an arbitrary error soon after `cancel` is set.
-    pub fn solve_unless(
+    /// Like [`solve`](Self::solve), but fails, with any error, soon after `cancel` is set.
+    pub fn solve_cancellable(
         geometry: &Geometry,
         tolerance: f64,
         cancel: Option<&AtomicBool>,

@@ -77,7 +77,8 @@ pub(super) struct Scale {
     pub force: f64,
     /// The magnitude of the slope at x = 0.
     pub stiffness: f64,
-    /// The end of the inside: the last kink, or the outermost equilibrium without kinks; 0 for a single well.
+    /// Position up to which a state is inside: the last kink, or the outermost equilibrium without kinks; 0
+    /// for a single well.
     pub inside: f64,
 }
 
@@ -136,7 +137,7 @@ pub(super) fn fit(
                 let point = point?;
                 error = error.max(scale.error(&scaled_piece.piece, &point, tolerance));
                 scaled_piece.checks.push(point);
-                // the piece is rejected in any case
+                // the piece is rejected whatever the other checks give
                 if error > 1e3 {
                     break;
                 }

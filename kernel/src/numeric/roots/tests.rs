@@ -47,7 +47,7 @@ fn every_root_inside_is_found_once_and_in_order() {
 }
 
 #[test]
-fn a_pair_that_the_ends_do_not_show() {
+fn a_pair_of_roots_is_found_although_the_ends_have_equal_signs() {
     let g = from_roots(&[0.5, 0.500_001], 1.0);
     let found = all(&g);
     assert_eq!(found.len(), 2);
@@ -144,7 +144,7 @@ fn a_root_at_1_and_at_the_ends_of_halves_is_found_from_either_side() {
 }
 
 #[test]
-fn where_the_end_of_a_half_is_a_root_to_rounding_it_is_that_root() {
+fn a_root_at_the_end_of_a_half_to_rounding_is_found_once() {
     // Two ways to evaluate the polynomial at 1/2 give opposite signs.
     for k in (0..4000).map(f64::from) {
         let (near, other) = (0.5 + 0.3 * (0.7 * k).sin().abs(), 1.5 + 1e-3 * k);
@@ -158,7 +158,7 @@ fn where_the_end_of_a_half_is_a_root_to_rounding_it_is_that_root() {
 }
 
 #[test]
-fn a_change_inside_is_found_where_the_end_is_a_root_to_rounding() {
+fn a_change_inside_is_found_although_the_end_is_a_root_to_rounding() {
     for k in (1..2000).map(|k| f64::from(k) / 2000.0) {
         for other in [-0.39, -2.0, 1.7] {
             for scale in [0.5, -0.5] {

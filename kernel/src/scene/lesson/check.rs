@@ -29,7 +29,7 @@ const MAX_TITLE_LENGTH: usize = 60;
 /// Largest number of minutes of a lesson.
 const MAX_MINUTES: u32 = 90;
 
-pub(super) const OF_WALK: [&str; 3] = ["walk.up_crosses_from", "walk.down_crosses_to", "walk.gap"];
+pub(super) const WALK_FIELDS: [&str; 3] = ["walk.up_crosses_from", "walk.down_crosses_to", "walk.gap"];
 
 struct Known {
     name: String,
@@ -48,8 +48,8 @@ pub(super) fn faults(lesson: &Lesson, stages: &[Stage], results: &[ResultField])
     if lesson.format != LESSON_FORMAT {
         found.add("format", lesson.format.to_string(), format!("this program reads format {LESSON_FORMAT}"));
     }
-    found.length("title", &lesson.title, MAX_TITLE_LENGTH);
-    found.length("goal", &lesson.goal, MAX_STEP_LENGTH);
+    found.check_length("title", &lesson.title, MAX_TITLE_LENGTH);
+    found.check_length("goal", &lesson.goal, MAX_STEP_LENGTH);
     if !(1..=MAX_MINUTES).contains(&lesson.minutes) {
         found.add("minutes", lesson.minutes.to_string(), format!("must be 1 to {MAX_MINUTES}"));
     }
@@ -74,7 +74,7 @@ pub(super) fn faults(lesson: &Lesson, stages: &[Stage], results: &[ResultField])
     let known = known(lesson, &scenes, results);
     for (index, (step, stage)) in lesson.steps.iter().zip(stages).enumerate() {
         let at = |part: &str| format!("steps.{index}{part}");
-        found.length(&at(""), step.text(), MAX_STEP_LENGTH);
+        found.check_length(&at(""), step.text(), MAX_STEP_LENGTH);
         match step {
             Step::Say(_) | Step::Explain(_) => {}
             Step::Predict { options, .. } => {
@@ -83,13 +83,13 @@ pub(super) fn faults(lesson: &Lesson, stages: &[Stage], results: &[ResultField])
                 }
                 for (number, option) in options.iter().enumerate() {
                     let at = |part: &str| format!("steps.{index}.options.{number}.{part}");
-                    found.length(&at("text"), &option.text, MAX_OPTION_LENGTH);
+                    found.check_length(&at("text"), &option.text, MAX_OPTION_LENGTH);
                     condition(&option.holds, &at("holds"), &known, &stage.end.scene, false, &mut found);
                 }
             }
             Step::Do { goal, hint, .. } => {
                 if let Some(hint) = hint {
-                    found.length(&at(".hint"), hint, MAX_STEP_LENGTH);
+                    found.check_length(&at(".hint"), hint, MAX_STEP_LENGTH);
                 }
                 condition(goal, &at(".goal"), &known, &stage.end.scene, false, &mut found);
             }
@@ -149,12 +149,12 @@ fn known(lesson: &Lesson, scenes: &[&Scene], results: &[ResultField]) -> Vec<Kno
     if lesson.walk.is_some() {
         add("up", false);
         add("down", false);
-        known.extend(OF_WALK.map(|name| Known { name: name.to_owned(), kind: Kind::Number }));
+        known.extend(WALK_FIELDS.map(|name| Known { name: name.to_owned(), kind: Kind::Number }));
     }
     known
 }
 
-/// Checks a condition. `inside` tells whether it is inside a condition over several starts.
+/// Checks a condition. `inside`: whether it is inside a condition over several starts.
 fn condition(checked: &Condition, at: &str, known: &[Known], scene: &Scene, inside: bool, found: &mut Found) {
     let inner = inside || !checked.starts().is_empty();
     checked.parts().iter().for_each(|part| condition(part, at, known, scene, inner, found));
@@ -246,7 +246,7 @@ impl Found {
     }
 
     /// Adds a fault if a text is missing or too long.
-    fn length(&mut self, field: &str, text: &str, longest: usize) {
+    fn check_length(&mut self, field: &str, text: &str, longest: usize) {
         let length = text.replace("**", "").chars().count();
         if length == 0 {
             self.add(field, "", "must have a text");

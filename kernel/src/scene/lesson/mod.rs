@@ -2,8 +2,8 @@
 //!
 //! A lesson names a scene and changes it by the same dotted paths as `--set`. Its steps show a text, ask for
 //! a prediction, set a task, or explain. Predictions and tasks are judged by conditions on the summary of a
-//! run, so that the simulation is the answer key. [`LessonDocument::load`] reads a lesson and reports all
-//! faults at once; `study::check_lesson` runs it.
+//! run, so that the simulation decides which answer is right. [`LessonDocument::load`] reads a lesson and
+//! reports all faults at once; `study::check_lesson` runs it.
 
 mod check;
 mod condition;
@@ -161,7 +161,7 @@ impl Step {
         }
     }
 
-    /// All of its visible texts.
+    /// All texts that it shows.
     fn texts_mut(&mut self) -> Vec<&mut String> {
         match self {
             Self::Say(text) | Self::Explain(text) => vec![text],

@@ -16,7 +16,7 @@ fn full(runs: usize) -> UnderWay {
 fn results_come_in_order_and_none_is_begun_too_far_ahead() {
     for threads in [1, 2, 5] {
         let pool = Pool::new(threads).unwrap();
-        let (begun, left) = (Mutex::new(0), Mutex::new(Vec::new()));
+        let (begun, received) = (Mutex::new(0), Mutex::new(Vec::new()));
         let work = |next: &dyn Fn(UnderWay) -> Option<usize>, done: &dyn Fn(usize, usize)| {
             while let Some(first) = next(not_full(0)) {
                 // two at a time if there are two, the later one first
@@ -27,21 +27,21 @@ fn results_come_in_order_and_none_is_begun_too_far_ahead() {
                 }
             }
         };
-        let leave = |results: Vec<usize>| {
-            let mut left = left.lock().unwrap();
-            assert!(*begun.lock().unwrap() <= left.len() + results.len() + 7);
-            left.extend(results);
+        let receive = |results: Vec<usize>| {
+            let mut received = received.lock().unwrap();
+            assert!(*begun.lock().unwrap() <= received.len() + results.len() + 7);
+            received.extend(results);
             true
         };
-        pool.in_order(500, 1, 7, work, leave);
-        assert_eq!(left.into_inner().unwrap(), (0..500).map(|i| i * i).collect::<Vec<_>>());
+        pool.in_order(500, 1, 7, work, receive);
+        assert_eq!(received.into_inner().unwrap(), (0..500).map(|i| i * i).collect::<Vec<_>>());
 
         let mut few = Vec::new();
-        let leave = |results: Vec<usize>| {
+        let receive = |results: Vec<usize>| {
             few.extend(results);
             few.len() < 3
         };
-        pool.in_order(1_000_000_000, 1, 4, work, leave);
+        pool.in_order(1_000_000_000, 1, 4, work, receive);
         assert_eq!(few[..3], [0, 1, 4]);
         pool.in_order(0, 1, 4, work, |_| unreachable!());
     }
@@ -55,9 +55,9 @@ fn ends<R: Send + 'static>(work: impl FnOnce() -> R + Send + 'static) -> R {
 }
 
 #[test]
-fn one_that_gives_up_while_the_others_wait_ends_all() {
+fn a_thread_that_gives_up_while_others_wait_ends_all() {
     for (threads, after) in (1..=8).flat_map(|threads| [0, 1, 3, 40].map(|after| (threads, after))) {
-        let left = ends(move || {
+        let received = ends(move || {
             let work = |next: &dyn Fn(UnderWay) -> Option<usize>, done: &dyn Fn(usize, usize)| {
                 while let Some(number) = next(not_full(0)) {
                     if number == after {
@@ -66,33 +66,34 @@ fn one_that_gives_up_while_the_others_wait_ends_all() {
                     done(number, number);
                 }
             };
-            let mut left = Vec::new();
+            let mut received = Vec::new();
             Pool::new(threads).unwrap().in_order(1_000_000_000, 1, 5, work, |results| {
-                left.extend(results);
+                received.extend(results);
                 true
             });
-            left
+            received
         });
-        assert_eq!(left, (0..after).collect::<Vec<_>>());
+        assert_eq!(received, (0..after).collect::<Vec<_>>());
     }
 }
 
 #[test]
-fn a_panic_where_they_leave_ends_all() {
+fn a_panic_of_the_receiver_ends_all() {
     for threads in 1..=8 {
         assert!(ends(move || {
             let work = |next: &dyn Fn(UnderWay) -> Option<usize>, done: &dyn Fn(usize, usize)| {
                 std::iter::from_fn(|| next(not_full(0))).for_each(|number| done(number, number));
             };
-            let leave = |results: Vec<usize>| results.iter().all(|number| *number < 9 || panic!("the ninth"));
-            let run = || Pool::new(threads).unwrap().in_order(usize::MAX, 1, 3, work, leave);
+            let receive =
+                |results: Vec<usize>| results.iter().all(|number| *number < 9 || panic!("the ninth"));
+            let run = || Pool::new(threads).unwrap().in_order(usize::MAX, 1, 3, work, receive);
             std::panic::catch_unwind(std::panic::AssertUnwindSafe(run)).is_err()
         }));
     }
 }
 
 #[test]
-fn results_of_a_number_leave_together_or_up_to_its_end() {
+fn results_of_a_task_are_received_together_unless_they_are_too_many() {
     for (threads, each) in (1..=8).flat_map(|threads| [1, 7, 255, 256, 257, 300, 700].map(|n| (threads, n))) {
         let all = 2000 / each + 3;
         let work = |next: &dyn Fn(UnderWay) -> Option<usize>, done: &dyn Fn(usize, usize)| {
@@ -103,16 +104,16 @@ fn results_of_a_number_leave_together_or_up_to_its_end() {
                 }
             }
         };
-        let mut left = Vec::new();
+        let mut received = Vec::new();
         Pool::new(threads).unwrap().in_order(all, each, 4, work, |results| {
             assert!(results.len() <= MAX_BATCH);
             let (first, last) = (results[0], results[results.len() - 1]);
             let together = first % each == 0 && (last + 1) % each == 0;
             assert!(if each <= MAX_BATCH { together } else { first / each == last / each });
-            left.extend(results);
+            received.extend(results);
             true
         });
-        assert_eq!(left, (0..all * each).collect::<Vec<_>>());
+        assert_eq!(received, (0..all * each).collect::<Vec<_>>());
     }
 }
 
@@ -128,14 +129,14 @@ fn shared_results_come_in_order_and_an_error_is_returned() {
 }
 
 #[test]
-fn no_thread_holds_more_than_its_share() {
+fn no_thread_takes_more_than_its_share() {
     let queue = Queue::new(5, 2);
     assert_eq!([0, 1, 2].map(|runs| queue.take(not_full(runs))), [Some(0), Some(1), Some(2)]);
     assert_eq!([3, 0, 2, 1, 0].map(|runs| queue.take(not_full(runs))), [None, Some(3), Some(4), None, None]);
 }
 
 #[test]
-fn a_thread_with_enough_gets_some_of_the_last() {
+fn a_thread_with_full_lanes_gets_some_of_the_last_tasks() {
     let queue = Queue::new(40, 2);
     assert_eq!([not_full(16), full(16)].map(|under_way| queue.take(under_way)), [Some(0), None]);
     (1..8).for_each(|next| assert_eq!(queue.take(not_full(0)), Some(next)));

@@ -85,7 +85,7 @@ impl Attachments {
     pub fn of(model: &Model) -> Self {
         let mut parts = Self { stiffness: 0.0, magnets: None, pairs: 0, transducer: model.transducer() };
         let stiff = |(strength, gap): (f64, f64)| strength.abs() / gap.powi(5);
-        for element in model.mechanism().side_by_side().iter().filter_map(|part| part.element) {
+        for element in model.mechanism().parts_or_self().iter().filter_map(|part| part.element) {
             match element {
                 Element::Spring { stiffness } => parts.stiffness += stiffness,
                 Element::Magnets { strength, gap } if strength != 0.0 => {

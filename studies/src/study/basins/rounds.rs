@@ -60,13 +60,13 @@ impl Item {
         whole.since(self.after.map_or(Way::default(), |(_, before)| before))
     }
 
-    /// The item as a pursuit of at most `most_work` units.
+    /// The item as a pursuit of at most `max_work` units.
     pub fn pursuit<'a>(
         &self,
         starts: &Starts,
         known: &'a [Capture],
         regions: &'a [Region],
-        most_work: u64,
+        max_work: u64,
     ) -> Pursuit<'a> {
         let (x_mm, v) = starts.at(self.row);
         Pursuit {
@@ -74,9 +74,9 @@ impl Item {
             known,
             regions,
             repeats_from: self.repeats_from,
-            most_periods: PATIENCE,
+            max_periods: PATIENCE,
             releases: self.releases,
-            most_work,
+            max_work,
         }
     }
 }
@@ -370,8 +370,8 @@ fn round(
     task: &Task,
 ) -> Result<Vec<Item>, Cancelled> {
     let (known, regions) = (rounds.captures.clone(), rounds.regions.clone());
-    let most_work = scope.effort.of_one(rounds.remaining);
-    let pursuit = |item: &Item| item.pursuit(starts, &known, &regions, most_work);
+    let max_work = scope.effort.of_one(rounds.remaining);
+    let pursuit = |item: &Item| item.pursuit(starts, &known, &regions, max_work);
     let pursuits: Vec<Pursuit> = items.iter().map(pursuit).collect();
     let tick = |pursuit: &Pursuit| {
         if pursuit.repeats_from == 0 && pursuit.releases == 0 {

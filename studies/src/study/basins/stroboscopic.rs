@@ -61,9 +61,9 @@ impl Stroboscope<'_> {
                 known: &[],
                 regions: &[],
                 repeats_from: Pursuit::NEVER,
-                most_periods: starts[*place].1.into(),
+                max_periods: starts[*place].1.into(),
                 releases: 0,
-                most_work: u64::MAX,
+                max_work: u64::MAX,
             })
             .collect();
         for (place, pursued) in valid.into_iter().zip(self.pursue(&pursuits, &|_| ())?) {
@@ -182,7 +182,7 @@ impl Effort {
             Arrival::Unsettled(summary) => summary.outcome.ended_at().map(|at| (at / period) as u64),
             _ => None,
         };
-        let periods = pursued.arrival.periods().or_else(ended).unwrap_or(pursuit.most_periods);
+        let periods = pursued.arrival.periods().or_else(ended).unwrap_or(pursuit.max_periods);
         self.done.fetch_add(pursued.work, Ordering::Relaxed);
         self.periods.fetch_add(periods, Ordering::Relaxed);
     }
@@ -217,9 +217,9 @@ mod tests {
             known: &[],
             regions: &[],
             repeats_from: 0,
-            most_periods: 1000,
+            max_periods: 1000,
             releases: 0,
-            most_work: u64::MAX,
+            max_work: u64::MAX,
         };
         let arrival = Arrival::Captured { which: 0, periods: 1000 };
         let pursued = |work| Pursued { arrival: arrival.clone(), crossings: 0, work };

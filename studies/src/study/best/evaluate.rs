@@ -60,7 +60,7 @@ impl<'a> Evaluator<'a> {
             let built = match (0..i).find(same) {
                 Some(other) => mechanisms[other].clone(),
                 None => {
-                    let built = Mechanism::build_unless(&base.scene.mechanism, &base.files, task.cancel);
+                    let built = Mechanism::build_cancellable(&base.scene.mechanism, &base.files, task.cancel);
                     built.ok_or(NoBest::Cancelled)?.ok().map(Arc::new)
                 }
             };
@@ -124,7 +124,7 @@ impl<'a> Evaluator<'a> {
         }
         let mechanism = match &self.mechanisms[environment] {
             Some(mechanism) if scene.mechanism == base.scene.mechanism => Arc::clone(mechanism),
-            _ => match Mechanism::build_unless(&scene.mechanism, &base.files, self.task.cancel) {
+            _ => match Mechanism::build_cancellable(&scene.mechanism, &base.files, self.task.cancel) {
                 Some(Ok(mechanism)) => Arc::new(mechanism),
                 Some(Err(BuildError::Wrong(fault))) => return Err(vec![fault]),
                 Some(Err(BuildError::Unsolved(_))) | None => return Err(Vec::new()),

@@ -6,7 +6,7 @@ use super::clipped::{Clipped, clipped};
 use super::peaks::{Peak, peaks};
 use super::{Identified, Identity, Unidentified, noise, reach, turns, with_interval};
 use crate::numeric::regression::{least_squares, student};
-use crate::numeric::{Envelope, FEWEST_TURNS, TurningPoint, short};
+use crate::numeric::{Envelope, MIN_TURNS, TurningPoint, short};
 use crate::scene::Channel;
 use crate::study::Table;
 
@@ -54,7 +54,7 @@ pub fn damping(times: &[f64], channel: &Channel) -> Result<Identified, Unidentif
     // a swing near the reach of the noise may be missed, and would be counted as half of a long one
     let clear = (largest..swings).take_while(|k| swing(*k) > CLEAR * back).count();
     let turns = &all[largest.min(all.len())..(largest + clear + 1).min(all.len())];
-    if turns.len() < FEWEST_TURNS {
+    if turns.len() < MIN_TURNS {
         return Err(few(turns.len()));
     }
     let (peaks, sparse) = peaks(times, values, turns, noise).map_err(|problem| match problem {

@@ -12,7 +12,7 @@ pub use force::{FORCE_POINTS, force};
 pub use restitution::{restitution, restitution_of_times};
 
 use super::{Table, label_and_unit};
-use crate::numeric::{FEWEST_TURNS, extent, short};
+use crate::numeric::{MIN_TURNS, extent, short};
 pub(super) use crate::numeric::{Turn, turns};
 use peaks::FEWEST_SAMPLES;
 use restitution::ENOUGH;
@@ -75,7 +75,7 @@ pub enum Unidentified {
     /// Too few swings stand out from the noise.
     #[error(
         "{found} turning points stand out from the noise (of standard deviation {noise}); the damping ratio \
-         needs {FEWEST_TURNS} of a free decay: record longer, pluck harder, or widen --from and --to"
+         needs {MIN_TURNS} of a free decay: record longer, pluck harder, or widen --from and --to"
     )]
     FewSwings {
         /// How many were found.
@@ -104,7 +104,7 @@ pub enum Unidentified {
     /// Too few swings are left beside those with flat tops.
     #[error(
         "{tops} swings have flat tops, at the limit {limit} of the sensor or its converter, and after them \
-         {found} turning points stand out from the noise; the damping ratio needs {FEWEST_TURNS}: pluck \
+         {found} turning points stand out from the noise; the damping ratio needs {MIN_TURNS}: pluck \
          less, widen the range, or record longer"
     )]
     Clipped {

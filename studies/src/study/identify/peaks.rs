@@ -7,7 +7,7 @@ use nalgebra::SVector;
 
 use super::{Turn, Unidentified, median};
 use crate::numeric::regression::{Fit, least_squares};
-use crate::numeric::{Envelope, FEWEST_TURNS, TurningPoint, short};
+use crate::numeric::{Envelope, MIN_TURNS, TurningPoint, short};
 
 /// The part of a period on either side of a turning point over which it is fitted.
 const REACH: f64 = 0.125;
@@ -122,7 +122,7 @@ pub fn peaks(
             }
         }
         peaks = kept;
-        if peaks.len() < FEWEST_TURNS {
+        if peaks.len() < MIN_TURNS {
             let few = Unidentified::FewSwings { found: peaks.len(), noise: short(noise) };
             let too_few = |(at, samples)| Unidentified::Sparse(short(at), samples);
             return Err(sparse.map_or(few, too_few));

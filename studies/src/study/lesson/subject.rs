@@ -250,7 +250,7 @@ mod tests {
         let document = Document::load("paper-table").unwrap();
         let of = |text: &str| {
             let mut files = document.files.clone();
-            files.held.insert("force.csv".to_owned(), text.to_owned());
+            files.cached.insert("force.csv".to_owned(), text.to_owned());
             files
         };
         let files = of("x_m,force_n\n0,0\n1,1\n");

@@ -65,7 +65,7 @@ impl<const W: usize> Columns<W> {
         let (v, last, past) = (self.v * whole, to.v * whole, to.x - level);
         let mut g = polynomial::scaled(y, whole);
         let second = g[2];
-        // (if it returns to the break: the gap divided by the time since the start)
+        // a lane that returns to the break: the gap divided by the time since the start
         g[0] = from;
         for k in 0..y.len() {
             g[k] = choose(&returns, g[k], g[k + 1]);
@@ -96,8 +96,8 @@ impl<const W: usize> Columns<W> {
         landed
     }
 
-    /// Evaluates steps at four times in their interior. Marks the lanes that are `clear` of the low and of
-    /// the high end of the mode after all, and unmarks those that are not `turning` beyond the extremes.
+    /// Evaluates steps at four times in their interior. Sets `clear` for lanes that stay clear of the low and
+    /// of the high end of the mode, and resets `turning` for lanes that do not turn beyond the extremes.
     #[inline(always)]
     pub(super) fn look_closer(
         &self,
@@ -124,7 +124,7 @@ impl<const W: usize> Columns<W> {
         }
     }
 
-    /// Includes the turning points of lanes that are `turning` and turn once in the extremes. Returns these
+    /// Includes in the extremes the turning points of those `turning` lanes that turn once. Returns these
     /// lanes.
     #[inline(always)]
     pub(super) fn turn(
@@ -187,7 +187,7 @@ fn roots<const W: usize>(
         let pair = |(value, slope): (Lanes<W>, Lanes<W>)| (value.0[lane], slope.0[lane]);
         share.0[lane] = single_root::guess(pair(first), pair(last));
     }
-    for _ in 0..single_root::MOST_STEPS {
+    for _ in 0..single_root::MAX_STEPS {
         let (value, slope, half_curvature) = single_root::expansion(g, share);
         let mut missing = false;
         for lane in 0..W {

@@ -54,7 +54,7 @@ pub(crate) struct Columns<const W: usize> {
     /// Whether the time up to `border` lies in the settled window.
     pub inside: [bool; W],
     // what changes with each step
-    /// -1 or 1 if the mass leaves the low or high end of the mode by its speed; else 0.
+    /// -1 or 1 if the mass is leaving the low or the high end of the mode with speed; else 0.
     touch: Lanes<W>,
     x: Lanes<W>,
     v: Lanes<W>,
@@ -115,7 +115,7 @@ impl<const W: usize> Columns<W> {
         }
     }
 
-    pub fn takes(&self, force: &PieceForce<f64>) -> bool {
+    pub fn accepts(&self, force: &PieceForce<f64>) -> bool {
         self.force.degree() == force.degree()
     }
 
@@ -183,7 +183,7 @@ impl<const W: usize> Columns<W> {
             End::Low => self.mode[lane] - 1,
             End::High => self.mode[lane] + 1,
         };
-        if !self.takes(&modes[index].force) {
+        if !self.accepts(&modes[index].force) {
             return false;
         }
         self.load_mode(lane, index, &modes[index]);

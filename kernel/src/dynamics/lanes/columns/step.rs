@@ -14,7 +14,8 @@ use crate::dynamics::step::chord::{CLEARANCE, Chord};
 use crate::numeric::{GaussLegendre, Lanes, Number};
 
 impl<const W: usize> Columns<W> {
-    /// Computes one step in all lanes and takes it where it is event-free, up to a break if it meets one.
+    /// Computes one step in all lanes, and takes it in the lanes where it is event-free, up to a break if it
+    /// meets one.
     #[inline(always)]
     pub fn step(
         &mut self,
@@ -79,7 +80,7 @@ impl<const W: usize> Columns<W> {
             let (clear_low, clear_high) = chord.is_clear();
             let clear_low = clear_low | (self.x.0[lane] - limits.0 > bound);
             let clear_high = clear_high | (limits.1 - self.x.0[lane] > bound);
-            // leaving a surface: its speed leads further away than all the other terms can lead back
+            // leaving a surface: the speed leads further away than all other terms can lead back
             let leaves = 2.0 * self.v.0[lane].abs() * to.length.0[lane] > bound * CLEARANCE;
             let clear_low = clear_low | (leaves & (touch < 0.0));
             let clear_high = clear_high | (leaves & (touch > 0.0));

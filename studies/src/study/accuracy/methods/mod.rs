@@ -243,7 +243,7 @@ impl<'a> Tally<'a> {
 
     /// Records an impact on the stop of `side`.
     pub fn impact(&mut self, t: f64, side: Side, v_in: f64, v_out: f64) {
-        self.run.statistics.impacts += u64::from(v_in.abs() > self.problem.model.least_impact_speed());
+        self.run.statistics.impacts += u64::from(v_in.abs() > self.problem.model.min_impact_speed());
         if self.request.events {
             self.run.impacts.push(Event { t, kind: EventKind::Impact, side, v_in, v_out });
         }

@@ -113,7 +113,7 @@ fn impact(motion: &Motion, turn: Turn, within: Range<usize>) -> Option<Impact> {
         let found = sides.meet(motion, TERMS, motion.times[turn.at], turn.maximum);
         let turns_back = |found: &Meeting| found.towards > 0.0 && found.away > 0.0 && inside(found.t);
         if let (Some(found), Some((two, _))) = (found.filter(turns_back), sides.rest(TERMS)) {
-            let one = motion.fit_both(before, after).square(2 * TERMS).unwrap_or(0.0);
+            let one = motion.fit_both(before, after).squared_residuals(2 * TERMS).unwrap_or(0.0);
             let better = one - two > CLEAR.powi(2) * variance && two < 0.25 * one.max(100.0 * variance);
             let fits = two < 4.0 * variance * samples as f64 || two < 0.1 * one;
             if better && fits {

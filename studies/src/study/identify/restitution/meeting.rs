@@ -35,7 +35,7 @@ impl Sides {
     /// x_s are unknown: it has as many unknowns as the two polynomials, and where these meet displacement is
     /// continuous. Errors are carried from the samples to first order, that of t_0 included.
     pub fn meet(&self, motion: &Motion, terms: usize, near: f64, right: bool) -> Option<Meeting> {
-        self.before.square(terms).and(self.after.square(terms))?;
+        self.before.squared_residuals(terms).and(self.after.squared_residuals(terms))?;
         let sign = if right { 1.0 } else { -1.0 };
         let mut t = near;
         for _ in 0..MOST_STEPS {
@@ -59,17 +59,22 @@ impl Sides {
             x: l * one.value + r * other.value,
             towards: sign * one.slope,
             away: -sign * other.slope,
-            of_t: (one.of_value + other.of_value) / jump.powi(2),
-            of_x: l * l * one.of_value + r * r * other.of_value,
-            of_towards: one.of_slope - 2.0 * a * one.of_both + a * a * (one.of_value + other.of_value),
-            of_away: other.of_slope + 2.0 * b * other.of_both + b * b * (one.of_value + other.of_value),
-            of_speeds: b * one.of_both - a * other.of_both - a * b * (one.of_value + other.of_value),
+            of_t: (one.value_variance + other.value_variance) / jump.powi(2),
+            of_x: l * l * one.value_variance + r * r * other.value_variance,
+            of_towards: one.slope_variance - 2.0 * a * one.covariance
+                + a * a * (one.value_variance + other.value_variance),
+            of_away: other.slope_variance
+                + 2.0 * b * other.covariance
+                + b * b * (one.value_variance + other.value_variance),
+            of_speeds: b * one.covariance
+                - a * other.covariance
+                - a * b * (one.value_variance + other.value_variance),
         })
     }
 
     /// The sum of the squared residuals of both, and the samples less the coefficients.
     pub fn rest(&self, terms: usize) -> Option<(f64, usize)> {
-        let square = self.before.square(terms)? + self.after.square(terms)?;
+        let square = self.before.squared_residuals(terms)? + self.after.squared_residuals(terms)?;
         Some((square, self.before.samples() + self.after.samples() - 2 * terms))
     }
 }

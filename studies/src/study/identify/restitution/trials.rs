@@ -8,11 +8,11 @@ use std::ops::RangeInclusive;
 use super::contacts::{Contact, Impact, limit};
 use super::meeting::{Meeting, Sides};
 use super::{Motion, median};
-use crate::numeric::orthogonal::MOST_TERMS;
+use crate::numeric::orthogonal::MAX_TERMS;
 use crate::numeric::regression::student;
 
 /// Coefficients of the polynomials on either side.
-const TERMS: RangeInclusive<usize> = 3..=MOST_TERMS;
+const TERMS: RangeInclusive<usize> = 3..=MAX_TERMS;
 
 /// Coefficients of the fits from which the instants are taken.
 const FIRST_TERMS: usize = 4;
