@@ -282,8 +282,8 @@ class Run:
     def energy(self) -> Array:
         """Kinetic and potential energy relative to the base in J, shape (n,)."""
         potential = self._scene.curve(self.x)["potential_j"]
-        kinetic: Array = 0.5 * self._mass_kg * self.v**2
-        return kinetic + potential
+        energy: Array = 0.5 * self._mass_kg * self.v**2 + potential
+        return energy
 
     @property
     def summary(self) -> dict[str, Any]:

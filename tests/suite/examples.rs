@@ -19,6 +19,7 @@ mod threshold;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use interwell::dynamics::Request;
+use interwell::scene::Damping;
 use interwell::{Error, Progress, Simulation};
 
 use crate::cli::stdout;
@@ -56,7 +57,13 @@ fn a_force_of_its_own_moves_the_mass() {
     });
     let list: Vec<String> = terms.map(|c| format!("0, {c:?}")).collect();
     let text = format!("Polynomial(coefficients_si: [{}])", list.join(", "));
-    let simulation = Simulation::preset("nominal-cubic").unwrap().with("mechanism", text).unwrap();
+    // the stiffness of the wells, to which the damping ratio refers; the polynomial has further ones far out
+    let simulation = Simulation::preset("nominal-cubic").unwrap();
+    let Damping::Ratio(ratio) = simulation.scene().damping else { panic!("no ratio") };
+    let stiffness = 0.25e-3 * (std::f64::consts::PI / 7e-3).powi(2);
+    let damping = 2.0 * ratio * (stiffness * 1e-3 * simulation.scene().mass_g).sqrt();
+    let damping = format!("Coefficient(c_n_s_per_m: {damping:?})");
+    let simulation = simulation.with("mechanism", text).unwrap().with("damping", damping).unwrap();
     near(simulation.run(&Request::default()).summary.rms_velocity.unwrap(), speed, 1e-5);
 }
 
