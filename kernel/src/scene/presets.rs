@@ -29,7 +29,7 @@ macro_rules! presets {
         pub static PRESETS: &[Preset] = &[$(Preset {
             name: $name,
             summary: $summary,
-            text: include_str!(concat!("../../../presets/", $name, ".ron")),
+            text: include_str!(concat!("../../presets/", $name, ".ron")),
         }),*];
     };
 }
@@ -59,8 +59,8 @@ presets! {
 
 /// The embedded tables and records.
 pub static TABLES: &[EmbeddedTable] = &[
-    EmbeddedTable { name: "force_dl2.7.csv", text: include_str!("../../../assets/force_dl2.7.csv") },
-    EmbeddedTable { name: "walking.csv", text: include_str!("../../../assets/walking.csv") },
+    EmbeddedTable { name: "force_dl2.7.csv", text: include_str!("../../assets/force_dl2.7.csv") },
+    EmbeddedTable { name: "walking.csv", text: include_str!("../../assets/walking.csv") },
 ];
 
 pub(super) fn names() -> String {

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use eframe::egui::{self, Color32, FontData, FontDefinitions, FontFamily, FontId, Stroke, TextStyle};
 
 use crate::app::words::kind::Kind;
-use crate::output::{Ink, Role, Theme};
+use crate::output::{INTER, Ink, Role, Theme};
 
 /// Zoom of the projector in a window of 1280x720, which has room for this many points.
 pub const PROJECTOR_ZOOM: f32 = 1.5;
@@ -319,8 +319,7 @@ const fn rgb(red: u8, green: u8, blue: u8) -> Color32 {
 /// Installs fonts, text sizes and spacing of the window; to be called once.
 pub fn install(ctx: &egui::Context) {
     let mut fonts = FontDefinitions::default();
-    let inter = FontData::from_static(include_bytes!("../../../assets/fonts/Inter-Regular.ttf"));
-    let strong = FontData::from_static(include_bytes!("../../../assets/fonts/Inter-SemiBold.ttf"));
+    let [inter, strong] = INTER.map(FontData::from_static);
     fonts.font_data.insert("inter".into(), Arc::new(inter));
     fonts.font_data.insert("inter-strong".into(), Arc::new(strong));
     let proportional = fonts.families.entry(FontFamily::Proportional).or_default();

@@ -187,7 +187,7 @@ macro_rules! lessons {
         /// The built-in lessons, in the order of a course.
         pub static LESSONS: &[BuiltInLesson] = &[$(BuiltInLesson {
             name: $name,
-            text: include_str!(concat!("../../../../lessons/", $name, ".ron")),
+            text: include_str!(concat!("../../../lessons/", $name, ".ron")),
         }),*];
     };
 }
@@ -206,7 +206,7 @@ lessons! {
 }
 
 /// Template for a new lesson.
-pub static TEMPLATE: &str = include_str!("../../../../lessons/template.ron");
+pub static TEMPLATE: &str = include_str!("../../../lessons/template.ron");
 
 impl BuiltInLesson {
     /// The lesson of that name, which may also be its number or its words alone.

@@ -42,15 +42,17 @@ pub struct Letter {
     pub width: f64,
 }
 
+/// The font files of pictures and of the window: the regular and the heavier weight.
+pub static INTER: [&[u8]; 2] = [
+    include_bytes!("../../../assets/fonts/Inter-Regular.ttf"),
+    include_bytes!("../../../assets/fonts/Inter-SemiBold.ttf"),
+];
+
 impl Face {
     /// The regular or the heavier weight.
     pub fn of(bold: bool) -> &'static Self {
-        static FACES: LazyLock<[Face; 2]> = LazyLock::new(|| {
-            [
-                Face::new("Inter-Regular", include_bytes!("../../../../assets/fonts/Inter-Regular.ttf")),
-                Face::new("Inter-SemiBold", include_bytes!("../../../../assets/fonts/Inter-SemiBold.ttf")),
-            ]
-        });
+        static FACES: LazyLock<[Face; 2]> =
+            LazyLock::new(|| [Face::new("Inter-Regular", INTER[0]), Face::new("Inter-SemiBold", INTER[1])]);
         &FACES[usize::from(bold)]
     }
 
