@@ -231,6 +231,7 @@ impl Window {
         self.memory.asked_stops = [left.map(|mm| -mm), right];
     }
 
+        self.memory.starts = lesson.map(OpenLesson::starts).unwrap_or_default();
     pub(super) fn act_in_lesson(&mut self, act: LessonAction) {
         let Some(lesson) = &mut self.lessons.open else { return };
         // the strip, which a view over the whole window hides, says what follows
