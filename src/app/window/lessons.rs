@@ -8,7 +8,6 @@ use eframe::egui::{self, Id, Key, LayerId, Modifiers, Order, Panel, Rect, Stroke
 use crate::app::panels::controls;
 use crate::app::panels::hint::Hint;
 use crate::app::panels::lesson::{LessonAction, lesson_ui};
-use crate::app::panels::notes::lecturer_ui;
 use crate::app::session::editor::Editor;
 use crate::app::session::explore::WalkQuantity;
 use crate::app::session::lesson::{OpenLesson, Records, Turn, answers_text};
@@ -26,6 +25,7 @@ use crate::system::files;
 
 use super::Window;
 use super::layouts::{Arrangement, Tiling};
+use super::lecturer::Notes;
 
 pub(super) const CANNOT_OPEN_LESSON: &str = "This lesson cannot be opened";
 
@@ -37,7 +37,7 @@ pub(super) struct Lessons {
     pub open: Option<OpenLesson>,
     suspended: Option<Suspended>,
     pub records: Records,
-    pub notes: bool,
+    pub notes: Notes,
     /// The lesson that was finished, until its last words are closed.
     finished: Option<Finished>,
     /// Whether the button that goes on is to have the keyboard focus.
@@ -155,7 +155,7 @@ impl Window {
     pub fn leave_lesson(&mut self) {
         self.keep_progress();
         let (lesson, suspended) = (self.lessons.open.take(), self.lessons.suspended.take());
-        self.lessons.notes = false;
+        self.lessons.notes.is_open = false;
         if let (Some(_), Some(before)) = (lesson, suspended) {
             let room = self.tiling.room();
             self.session = before.session;
@@ -415,13 +415,6 @@ impl Window {
                 painter.rect_stroke(rect, 4.0, stroke, StrokeKind::Inside);
             }
         }
-    }
-
-    pub(super) fn lecturer_ui(&mut self, ctx: &egui::Context) {
-        let Some(lesson) = self.lessons.open.as_ref().filter(|_| self.lessons.notes) else { return };
-        let (action, closed) = lecturer_ui(ctx, lesson);
-        self.lessons.notes &= !closed;
-        action.into_iter().for_each(|action| self.act_in_lesson(action));
     }
 
     pub(super) fn copy_answers(&mut self, ctx: &egui::Context) {

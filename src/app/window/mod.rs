@@ -41,6 +41,7 @@ pub mod leave;
 mod lessons;
 mod measured_dialog;
 mod menu;
+mod lecturer;
 mod messages;
 mod pace;
 mod perform;
@@ -53,6 +54,7 @@ pub use figure::Figures;
 pub use measured_dialog::MeasuredDialog;
 pub use state::Window;
 pub use wanted::Wanted;
+pub use lecturer::Place;
 
 impl Window {
     /// Updates the state before a frame is drawn: settings, input, results of the background, the motion.
