@@ -322,11 +322,29 @@ fn the_tools_of_a_map_are_whole_and_its_quantities_are_in_groups() {
             card.contains(text.center()) && own.2.intersects(text) && !own.2.expand(0.5).contains_rect(text)
         });
         assert_eq!(cut.map(|own| own.0).collect::<Vec<_>>(), [""; 0], "{size:?}");
-        let names = ["From above", "Surface", "Cuts", "Range", "Trail", "Recompute"];
-        let places = names.map(|name| harness.get_by_role_and_label(Role::Button, name).rect());
-        for (i, (name, place)) in names.iter().zip(places).enumerate() {
-            assert!(card.contains_rect(place), "{size:?}: {name} {place:?} in {card:?}");
-            assert!(places[i + 1..].iter().all(|other| !other.shrink(1.0).intersects(place)), "{name}");
+        let has_rows = harness.query_by_label("Options").is_none();
+        assert_eq!(has_rows, size == WIDE);
+        let names = match has_rows {
+            true => &["From above", "Surface", "Cuts", "Range", "Trail", "Recompute"][..],
+            false => &["map of RMS velocity", "Options"],
+        };
+        let role = |name: &str| if name.starts_with("map") { Role::ComboBox } else { Role::Button };
+        let names: Vec<(&str, Role)> = names.iter().map(|name| (*name, role(name))).collect();
+        let places = names.iter().map(|own| harness.get_by_role_and_label(own.1, own.0).rect());
+        let places: Vec<Rect> = places.collect();
+        for (i, (name, place)) in names.iter().zip(&places).enumerate() {
+            assert!(card.contains_rect(*place), "{size:?}: {name:?} {place:?} in {card:?}");
+            assert!(places[i + 1..].iter().all(|other| !other.shrink(1.0).intersects(*place)), "{name:?}");
+        }
+        if !has_rows {
+            click_on(&mut harness, "Options");
+            let inside = harness.ctx.content_rect();
+            for name in ["From above", "Surface", "Cuts", "Show where the scene has been", "Recompute"] {
+                let place = harness.get_by_label(name).rect();
+                assert!(inside.contains_rect(place), "{size:?}: {name} {place:?}");
+            }
+            harness.get_by_role_and_label(Role::SpinButton, "up, step");
+            press(&mut harness, Key::Escape);
         }
         click_on(&mut harness, "map of RMS velocity");
         let groups = ["Motion", "Events", "First", "Power", "Energy", "Contact", "Run"];

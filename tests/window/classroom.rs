@@ -1,6 +1,7 @@
 //! Lessons in a classroom: a strip that stays as high, what is lacking, hints, the end, notes, votes.
 
-use eframe::egui::{Key, Modifiers};
+use eframe::egui::accesskit::Role;
+use eframe::egui::{Key, Modifiers, Shape};
 use egui_kittest::kittest::Queryable as _;
 use interwell::app::ui::settings::Settings;
 use interwell::app::views::View;
@@ -10,7 +11,7 @@ use interwell::scene::lesson::{LESSONS, Step};
 
 use crate::lessons::{OWN, Shown, go_on, go_to, is_anywhere, number, opened, own, until, written};
 use crate::support::{
-    PROJECTED, WIDE, click_on, command, is_painted, painted, press, press_with_ctrl, window_with,
+    LONG, PROJECTED, WIDE, click_on, command, is_painted, painted, press, press_with_ctrl, window_with,
 };
 
 /// The upper edge of the views, below the strip and the controls.
@@ -124,6 +125,57 @@ fn a_lesson_that_was_begun_before_asks_where_to_begin() {
         click_on(&mut harness, answer);
         assert!(number(&harness) == step && !is_anywhere(&harness, "begun before"), "{answer}");
     }
+}
+
+/// Height in pixels of what is above and below the views, and of their places, in a window of 1280x720.
+fn heights(harness: &Shown) -> (f32, f32) {
+    let pixels = 1280.0 / PROJECTED[0];
+    let places: Vec<_> =
+        View::ALL.into_iter().filter_map(|own| harness.state().tiling.place_of(own)).collect();
+    let bottom = places.iter().map(|place| place.bottom()).fold(0.0, f32::max);
+    let whole = harness.ctx.content_rect().height();
+    (pixels * (edge(harness) + whole - bottom), pixels * (bottom - edge(harness)))
+}
+
+#[test]
+fn a_projector_leaves_the_height_to_the_views() {
+    let mut harness = window_with("paper", PROJECTED, Settings::default());
+    assert!(heights(&harness).0 <= 200.0, "{:?}", heights(&harness));
+    press_with_ctrl(&mut harness, Key::Num3);
+    harness.state_mut().session.wait_for_map(LONG);
+    harness.run_steps(3);
+    let map = harness.get_by_role_and_label(Role::Image, "map").rect();
+    let height = map.height() * 1280.0 / PROJECTED[0];
+    assert!(height >= 350.0 && heights(&harness).0 <= 200.0, "{height} {:?}", heights(&harness));
+    // below the text of a lesson half is left, or nearly
+    for own in LESSONS {
+        let harness = opened(own.name, PROJECTED);
+        assert!(heights(&harness).1 >= 350.0, "{}: {:?}", own.name, heights(&harness));
+        let line = harness.get_by_label("Next").rect();
+        assert!(line.bottom() < edge(&harness) && line.right() <= PROJECTED[0], "{line:?}");
+    }
+}
+
+#[test]
+fn the_starts_of_a_question_are_seen_in_the_phase_portrait() {
+    let mut harness = opened("07-a-coin-toss", WIDE);
+    let dots = |harness: &Shown| {
+        let place = harness.state().tiling.place_of(View::PhasePortrait).unwrap();
+        let is_dot = |own: &&eframe::egui::epaint::ClippedShape| match &own.shape {
+            Shape::Circle(circle) => circle.radius == 2.0 && place.contains(circle.center),
+            _ => false,
+        };
+        harness.output().shapes.iter().filter(is_dot).count()
+    };
+    assert_eq!(dots(&harness), 0);
+    assert!(go_to(&mut harness, |step| matches!(step, Step::Predict { .. })));
+    press(&mut harness, Key::A);
+    harness.run_steps(2);
+    assert_eq!(dots(&harness), 31);
+    assert!(harness.state().lesson().unwrap().starts().contains(&(0.0, -0.3)));
+    // those of a task take their place
+    assert!(go_to(&mut harness, |step| matches!(step, Step::Do { .. })));
+    assert_eq!(dots(&harness), 2);
 }
 
 #[test]

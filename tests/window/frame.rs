@@ -1,16 +1,19 @@
 //! The frame of the window: covers, keys, tabs, notes, ways through time, the size on the screen.
 
+use std::cell::{Cell, RefCell};
+use std::rc::Rc;
+
 use eframe::egui::{self, Key, Rect, ViewportCommand, accesskit::Role, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use interwell::app::ui::settings::Settings;
 use interwell::app::views::View;
 use interwell::app::window::Command;
-use interwell::app::window::Window;
+use interwell::app::window::{Place, Window};
 use interwell::dynamics::EventKind;
 use interwell::scene::{PRESETS, Stops};
 
-use crate::support::{PROJECTED, WIDE, command, press, press_with_ctrl, window};
+use crate::support::{LONG, PROJECTED, WIDE, command, press, press_with_ctrl, window};
 
 /// Lets frames pass until the motion has come to where it was sent.
 fn arrive(harness: &mut Harness<'_, Window>) {
@@ -377,6 +380,75 @@ fn the_window_fits_the_screen_and_keeps_its_size() {
     window.carry_out(&ctx, Command::Fill);
     frames(&mut window, WIDE, WIDE);
     assert_eq!(ctx.zoom_factor(), 1.875);
+}
+
+#[test]
+fn the_lecturers_notes_open_beside_the_window_and_where_they_were_left() {
+    let ctx = egui::Context::default();
+    interwell::app::window::prepare(&ctx);
+    ctx.set_embed_viewports(false);
+    // the screen: what the notes were asked to be, and where they are
+    let asked: Rc<RefCell<Vec<(Option<egui::Pos2>, egui::Vec2)>>> = Rc::default();
+    let shown = Rc::new(Cell::new(Rect::NOTHING));
+    let (told, place) = (Rc::clone(&asked), Rc::clone(&shown));
+    egui::Context::set_immediate_viewport_renderer(move |ctx, mut notes| {
+        told.borrow_mut().push((notes.builder.position, notes.builder.inner_size.unwrap()));
+        let mut input = egui::RawInput { viewport_id: notes.ids.this, ..egui::RawInput::default() };
+        let view = input.viewports.entry(notes.ids.this).or_default();
+        if place.get().is_positive() {
+            (view.outer_rect, view.inner_rect) = (Some(place.get()), Some(place.get()));
+        }
+        ctx.run_ui(input, |ui| (notes.viewport_ui_cb)(ui)).textures_delta.clear();
+    });
+    let frames = |window: &mut Window| {
+        (0..3).for_each(|_| _ = asked_of_the_screen(window, &ctx, [800.0, 600.0], [800.0, 600.0]));
+        let last = asked.borrow().last().copied();
+        last.map(|(at, size)| (at, [size.x, size.y]))
+    };
+    let open = || {
+        let lesson = interwell::scene::lesson::LESSONS[0].name;
+        Window::open(Some(lesson), Settings::default(), std::sync::Arc::new(|| ())).unwrap()
+    };
+    let mut window = open();
+    assert_eq!(frames(&mut window), None);
+    window.carry_out(&ctx, Command::LecturerNotes);
+    // at the right of the window, as wide as the screen of 1280 points leaves room
+    let beside = Some((Some(pos2(808.0, 0.0)), [472.0, 420.0]));
+    assert_eq!(frames(&mut window), beside);
+    // moved by hand, they are left alone
+    shown.set(Rect::from_min_size(pos2(100.0, 50.0), vec2(400.0, 300.0)));
+    assert_eq!(frames(&mut window), beside);
+    window.carry_out(&ctx, Command::LecturerNotes);
+    frames(&mut window);
+    window.carry_out(&ctx, Command::LecturerNotes);
+    assert_eq!(frames(&mut window), Some((Some(pos2(100.0, 50.0)), [400.0, 300.0])));
+    // at another start as well, unless that is on a screen that is gone
+    let kept = window.notes_place();
+    for (at, expected) in [([100.0, 50.0], pos2(100.0, 50.0)), ([2000.0, 50.0], pos2(808.0, 0.0))] {
+        let mut window = open();
+        window.restore_notes_place(kept.map(|place| Place { at, ..place }));
+        window.carry_out(&ctx, Command::LecturerNotes);
+        assert_eq!(frames(&mut window), Some((Some(expected), [400.0, 300.0])));
+    }
+}
+
+#[test]
+fn the_time_until_the_motion_has_settled_can_be_skipped() {
+    for size in [WIDE, PROJECTED] {
+        let mut harness = window("first-look", size);
+        harness.run_steps(10);
+        harness.state_mut().session.switch_stops(true);
+        harness.state_mut().session.wait_settled(LONG);
+        harness.run_steps(3);
+        assert!(harness.state().session.sentence().text.contains("will cross twice a period"));
+        harness.get_by_label_contains("to go, skip").click();
+        arrive(&mut harness);
+        let session = &harness.state().session;
+        assert!(session.settling().is_none() && session.player.is_playing() && session.player.time() < 3.0);
+        assert!(session.sentence().text.contains("crosses twice a period"), "{}", session.sentence().text);
+        assert!(harness.query_by_label_contains("to go, skip").is_none());
+        assert_eq!(harness.state().notice(), None);
+    }
 }
 
 #[test]

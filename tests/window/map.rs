@@ -7,7 +7,9 @@ use interwell::app::window::Window;
 use interwell::scene::{Layout, Start, Stops, SweepAxis};
 
 use crate::shared::axis;
-use crate::support::{LONG, WIDE, press, press_with_ctrl, session, wait_for_threads, wait_until, window};
+use crate::support::{
+    LONG, WIDE, open_options, press, press_with_ctrl, session, wait_for_threads, wait_until, window,
+};
 use crate::written::arguments;
 
 /// A small map, so that a test takes no longer than it must.
@@ -170,7 +172,8 @@ fn it_fits() {
         let place = harness.get_by_role_and_label(Role::Image, "map").rect();
         assert!(place.right() <= size[0] && place.bottom() <= size[1], "{place}");
         assert!(place.width() > 0.3 * size[0] && place.height() > 0.35 * size[1], "{size:?}: {place}");
-        for label in ["from rest", "Recompute"] {
+        open_options(&mut harness);
+        for label in ["From above", "Recompute"] {
             let rect = harness.get_by_label(label).rect();
             assert!(rect.right() <= size[0] && rect.left() >= 0.0, "{label}: {rect}");
         }

@@ -13,7 +13,8 @@ use interwell::study::{Cell, RMS_VELOCITY, STANDARD_COLUMNS, SummaryField};
 
 use crate::shared::axis;
 use crate::support::{
-    LONG, PROJECTED, WIDE, click_on, command, is_painted, painted, press, session, sliced, window,
+    LONG, PROJECTED, WIDE, click_on, command, is_painted, open_options, painted, press, session, sliced,
+    window,
 };
 
 /// A small map, so that a test takes no longer than it must.
@@ -300,7 +301,11 @@ fn nothing_is_cut_in_any_look() {
     for size in [WIDE, [1920.0, 1080.0], PROJECTED] {
         let mut harness = open(size, (0.25, 0.25));
         for label in ["Cuts", "Surface", "From above"] {
+            open_options(&mut harness);
             click_on(&mut harness, label);
+            if harness.query_by_label("Options").is_some() {
+                press(&mut harness, Key::Escape);
+            }
             assert_eq!(sliced(&harness), Vec::<String>::new(), "{size:?} {label}");
             if label != "Surface" {
                 let place = harness.get_by_role_and_label(Role::Image, "cut across").rect();

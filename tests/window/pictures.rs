@@ -1,6 +1,6 @@
 //! What pictures over the displacement show: axes that fit, labels clear of lines, contact without overlap.
 
-use eframe::egui::{Color32, Pos2, Rect, Shape, Stroke, epaint::ColorMode};
+use eframe::egui::{Color32, Pos2, Rect, Shape, Stroke, epaint::ColorMode, vec2};
 use egui_kittest::Harness;
 use interwell::app::views::View;
 use interwell::app::window::{Command, Window};
@@ -261,6 +261,91 @@ fn names_of_parts_keep_clear_of_what_is_drawn() {
 /// The line of a flexure.
 fn style(harness: &Harness<'static, Window>) -> Stroke {
     interwell::app::ui::style::Style::of(&harness.ctx, false).flexure_stroke()
+}
+
+#[test]
+fn a_legend_is_whole_in_a_narrow_card() {
+    let names = [
+        (View::Well, &["potential with the push", "the mechanism's own", "beyond the stops"][..]),
+        (View::Displacement, &["at rest on a stop", "stop", "impact"]),
+        (View::PhasePortrait, &["separatrix", "once a period", "impact", "at rest", "unstable equilibrium"]),
+    ];
+    let mut count = 0;
+    for size in [[1024.0, 700.0], [640.0, 480.0], PROJECTED, WIDE] {
+        for (view, names) in names {
+            let mut harness = showing("paper", size, &[view, View::Mechanism]);
+            harness.state_mut().session.player.set_playing(true);
+            harness.state_mut().session.player.speed = 1.0;
+            harness.run_steps(20);
+            let Some(place) = harness.state().tiling.place_of(view) else { continue };
+            let all = painted(&harness);
+            count += 1;
+            for name in names {
+                let is_whole = |own: &&(String, Rect, Rect)| {
+                    own.0 == *name && place.contains_rect(own.1) && own.2.contains_rect(own.1)
+                };
+                assert!(all.iter().any(|own| is_whole(&own)), "{view:?} {size:?}: {name} {place:?}");
+            }
+        }
+    }
+    assert!(count >= 9, "{count}");
+}
+
+/// Every circle of this radius whose middle is seen.
+fn circles(harness: &Harness<'static, Window>, radius: f32) -> Vec<(Rect, Rect)> {
+    let all = harness.output().shapes.iter().filter_map(|own| match &own.shape {
+        Shape::Circle(circle) if circle.radius == radius && own.clip_rect.contains(circle.center) => {
+            Some((Rect::from_center_size(circle.center, vec2(2.0 * radius, 2.0 * radius)), own.clip_rect))
+        }
+        _ => None,
+    });
+    all.collect()
+}
+
+#[test]
+fn the_mass_is_whole_at_the_ends_of_the_axes() {
+    for (view, radius) in [(View::ForceCurve, 7.0), (View::Well, 13.5)] {
+        let mut harness = showing("paper-unconstrained", WIDE, &[view]);
+        let mut seen = 0;
+        for i in 0..80 {
+            harness.state_mut().session.player.hold((6.0 + 0.025 * f64::from(i)) * 1e-3);
+            harness.run_steps(1);
+            let all = circles(&harness, radius);
+            let frame = harness.state().tiling.place_of(view).unwrap();
+            for (circle, clip) in all.into_iter().filter(|own| frame.contains_rect(own.0)) {
+                // one that is drawn beyond the axis is not seen
+                let is_inside = clip.shrink(radius + 1.0).contains(circle.center());
+                assert!(!is_inside || clip.contains_rect(circle), "{view:?} {circle:?} {clip:?}");
+                seen += usize::from(is_inside);
+            }
+        }
+        assert!(seen > 10, "{view:?}: {seen}");
+    }
+}
+
+#[test]
+fn a_coil_lies_clear_of_the_stops() {
+    for size in [WIDE, PROJECTED, [1920.0, 1080.0]] {
+        let harness = showing("harvester", size, &[View::Mechanism]);
+        let style = interwell::app::ui::style::Style::of(&harness.ctx, false);
+        let rects = |fill: eframe::egui::Color32| -> Vec<Rect> {
+            let of_shape = |shape: &Shape| match shape {
+                Shape::Rect(rect) if rect.fill == fill => Some(rect.rect),
+                _ => None,
+            };
+            let parts = |own: &eframe::egui::epaint::ClippedShape| match &own.shape {
+                Shape::Vec(all) => all.iter().filter_map(of_shape).collect(),
+                shape => of_shape(shape).into_iter().collect::<Vec<Rect>>(),
+            };
+            harness.output().shapes.iter().flat_map(parts).collect()
+        };
+        let (walls, coil) = (rects(style.stop()), rects(style.frame_colour()));
+        let coil: Vec<Rect> = coil.into_iter().filter(|rect| (6.0..8.0).contains(&rect.height())).collect();
+        assert!(walls.len() >= 2 && coil.len() >= 2, "{size:?} {walls:?} {coil:?}");
+        for wall in walls {
+            assert!(coil.iter().all(|row| !row.intersects(wall)), "{size:?} {wall:?} {coil:?}");
+        }
+    }
 }
 
 #[test]

@@ -72,6 +72,13 @@ pub fn click_on(harness: &mut Harness<'_, Window>, label: &str) {
     harness.run_steps(3);
 }
 
+/// Opens the menu with the choices of a map, where these have no rows of their own.
+pub fn open_options(harness: &mut Harness<'_, Window>) {
+    if harness.query_by_label("Options").is_some() && harness.query_by_label("From above").is_none() {
+        click_on(harness, "Options");
+    }
+}
+
 /// Presses a key, and lets some frames pass.
 pub fn press(harness: &mut Harness<'_, Window>, key: Key) {
     harness.key_press(key);

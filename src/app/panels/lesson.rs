@@ -45,23 +45,25 @@ pub enum LessonAction {
     NextLesson(&'static str),
 }
 
-/// Draws the strip, as high in every step of the lesson. `urged` moves the keyboard focus to the button that
-/// goes on. Returns the action that was chosen.
+/// Draws the strip, as high in every step of the lesson, with the dots of the steps and the buttons unless
+/// `urged` is `None`; else it moves the keyboard focus to the button that goes on. Returns the action that was
+/// chosen.
 pub fn lesson_ui(
     ui: &mut Ui,
     lesson: &mut OpenLesson,
     session: &Session,
     style: &Style,
-    urged: bool,
+    urged: Option<bool>,
 ) -> Option<LessonAction> {
-    let size = BODY;
+    let (size, buttons) = (BODY, Layout::right_to_left(Align::Center));
     let mut action = None;
     ui.spacing_mut().item_spacing.y = SPACE;
     let text = spoken(lesson, session);
     spoken_ui(ui, Id::unique(("step of a lesson", lesson.number(), &text)), &text);
-    let width = (ui.available_width() - NAVIGATION - 16.0).max(120.0);
+    let beside = urged.map_or((0.0, 0.0), |_| (NAVIGATION + 16.0, LEAST));
+    let width = (ui.available_width() - beside.0).max(120.0);
     let steps = lesson.lesson().steps.iter();
-    let height = steps.map(|step| height_of(ui, style, step, size, width)).fold(0.0, f32::max);
+    let height = steps.map(|step| height_of(ui, style, step, size, (width, beside.1))).fold(0.0, f32::max);
     ui.set_min_height(height);
     ui.horizontal_top(|ui| {
         ui.allocate_ui_with_layout(vec2(width, 0.0), Layout::top_down(Align::Min), |ui| {
@@ -70,10 +72,14 @@ pub fn lesson_ui(
             text_ui(ui, style, heading(step), step.text(), size);
             action = below_ui(ui, lesson, session, style, size);
         });
-        ui.allocate_ui_with_layout(vec2(NAVIGATION, 0.0), Layout::top_down(Align::Max), |ui| {
-            dots_ui(ui, lesson, style);
-            action = action.or(navigation_ui(ui, lesson, urged));
-        });
+        if let Some(urged) = urged {
+            ui.allocate_ui_with_layout(vec2(NAVIGATION, 0.0), Layout::top_down(Align::Max), |ui| {
+                dots_ui(ui, lesson, style);
+                ui.allocate_ui_with_layout(vec2(NAVIGATION, CONTROL), buttons, |ui| {
+                    action = action.or(buttons_ui(ui, lesson, urged));
+                });
+            });
+        }
     });
     if lesson.is_covering() {
         action = action.or(options_ui(ui, lesson, size));
@@ -94,8 +100,9 @@ pub fn votes_ui(ui: &mut Ui, lesson: &OpenLesson) -> Option<LessonAction> {
     action
 }
 
-/// Height in points of the strip in a step, with all that can come below its text.
-fn height_of(ui: &Ui, style: &Style, step: &Step, size: f32, width: f32) -> f32 {
+/// Height in points of the strip in a step, with all that can come below its text, which is this wide and over
+/// options has this least height.
+fn height_of(ui: &Ui, style: &Style, step: &Step, size: f32, (width, least): (f32, f32)) -> f32 {
     let of = |heading: &str, text: &str| {
         let mut job = job(style, heading, text, size);
         job.wrap.max_width = width;
@@ -107,7 +114,7 @@ fn height_of(ui: &Ui, style: &Style, step: &Step, size: f32, width: f32) -> f32 
         Step::Predict { options, .. } => {
             let longest = options.iter().map(|option| option.text.as_str()).max_by_key(|text| text.len());
             let verdict = expected(longest, longest.map(|text| format!("{text} ")).as_deref());
-            let covered = text.max(LEAST) + SPACE + options_height(ui, options, size);
+            let covered = text.max(least) + SPACE + options_height(ui, options, size);
             covered.max(text + of(&verdict, "") + row + 2.0 * SPACE)
         }
         Step::Do { hint, .. } => {
@@ -300,45 +307,49 @@ fn dots_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style) {
     response.on_hover_text(name);
 }
 
-fn navigation_ui(ui: &mut Ui, lesson: &OpenLesson, urged: bool) -> Option<LessonAction> {
+/// The buttons and, left of them, the dots of the steps; in a layout from right to left.
+pub fn navigation_ui(ui: &mut Ui, lesson: &OpenLesson, style: &Style, urged: bool) -> Option<LessonAction> {
+    let action = buttons_ui(ui, lesson, urged);
+    dots_ui(ui, lesson, style);
+    action
+}
+
+/// The buttons, the last one first.
+fn buttons_ui(ui: &mut Ui, lesson: &OpenLesson, urged: bool) -> Option<LessonAction> {
     let mut action = None;
-    let row = vec2(NAVIGATION, CONTROL);
-    ui.allocate_ui_with_layout(row, Layout::right_to_left(Align::Center), |ui| {
-        let following = lesson.following().filter(|_| lesson.is_last() && lesson.may_go_on());
-        if let Some(name) = following {
-            let next =
-                ui.add(primary(ui, &numbered(name))).on_hover_text("The lesson that comes after this one");
-            urge(&next, urged);
-            if next.clicked() {
-                action = Some(LessonAction::NextLesson(name));
-            }
+    let following = lesson.following().filter(|_| lesson.is_last() && lesson.may_go_on());
+    if let Some(name) = following {
+        let next = ui.add(primary(ui, &numbered(name))).on_hover_text("The lesson that comes after this one");
+        urge(&next, urged);
+        if next.clicked() {
+            action = Some(LessonAction::NextLesson(name));
         }
-        let (name, chosen) = match lesson.is_last() {
-            true => ("Finish", LessonAction::Finish),
-            false => ("Next", LessonAction::Next),
-        };
-        let condition = match lesson.step() {
-            Step::Predict { .. } => "First choose what you expect, or Reveal.",
-            _ => "First the task. A lecturer goes on with PageDown.",
-        };
-        let button = if following.is_none() { primary(ui, name) } else { Button::new(name) };
-        let next = ui.add_enabled(lesson.may_go_on(), button).on_disabled_hover_text(condition);
-        urge(&next, urged && lesson.is_last() && following.is_none());
-        if next.on_hover_text("The next step (PageDown)").clicked() {
-            action = Some(chosen);
+    }
+    let (name, chosen) = match lesson.is_last() {
+        true => ("Finish", LessonAction::Finish),
+        false => ("Next", LessonAction::Next),
+    };
+    let condition = match lesson.step() {
+        Step::Predict { .. } => "First choose what you expect, or Reveal.",
+        _ => "First the task. A lecturer goes on with PageDown.",
+    };
+    let button = if following.is_none() { primary(ui, name) } else { Button::new(name) };
+    let next = ui.add_enabled(lesson.may_go_on(), button).on_disabled_hover_text(condition);
+    urge(&next, urged && lesson.is_last() && following.is_none());
+    if next.on_hover_text("The next step (PageDown)").clicked() {
+        action = Some(chosen);
+    }
+    if lesson.is_covering() {
+        let reveal = ui.button("Reveal").on_hover_text("Shows what it does, without a choice");
+        urge(&reveal, urged);
+        if reveal.clicked() {
+            action = Some(LessonAction::Reveal);
         }
-        if lesson.is_covering() {
-            let reveal = ui.button("Reveal").on_hover_text("Shows what it does, without a choice");
-            urge(&reveal, urged);
-            if reveal.clicked() {
-                action = Some(LessonAction::Reveal);
-            }
-        }
-        let back = ui.add_enabled(lesson.number() > 0, Button::new("Back"));
-        if back.on_hover_text("The step before (PageUp)").clicked() {
-            action = Some(LessonAction::Back);
-        }
-    });
+    }
+    let back = ui.add_enabled(lesson.number() > 0, Button::new("Back"));
+    if back.on_hover_text("The step before (PageUp)").clicked() {
+        action = Some(LessonAction::Back);
+    }
     action
 }
 

@@ -1,7 +1,7 @@
 //! Texts to read: notes of the scene below the controls, the glossary, the lecturer's notes of a lesson.
 
 use eframe::egui::{
-    self, Align, CentralPanel, Color32, Frame, Key, Label, Layout, Modifiers, RichText, ScrollArea, Ui,
+    self, Align, CentralPanel, Color32, Frame, Key, Label, Layout, Modifiers, Rect, RichText, ScrollArea, Ui,
     ViewportBuilder, ViewportClass, ViewportId, vec2,
 };
 
@@ -80,30 +80,43 @@ pub fn glossary_ui(ui: &Ui) -> bool {
     !(answer.inner || answer.should_close() || toggled)
 }
 
-/// Shows the lecturer's notes in a separate window. Returns the chosen action, and whether to close them.
-pub fn lecturer_ui(ctx: &egui::Context, lesson: &OpenLesson) -> (Option<LessonAction>, bool) {
-    let builder =
-        ViewportBuilder::default().with_title("Lecturer's notes - interwell").with_inner_size([520.0, 420.0]);
-    let (mut action, mut closed) = (None, false);
+/// What was done in the lecturer's notes.
+#[derive(Debug, Default)]
+pub struct Lectured {
+    pub action: Option<LessonAction>,
+    /// Whether to close them.
+    pub is_closed: bool,
+    /// Where their window is on the screen, in points: its upper left corner, and the size within its frame.
+    /// `None` where that is not known.
+    pub place: Option<Rect>,
+}
+
+/// Shows the lecturer's notes in a separate window, made as `builder` says.
+pub fn lecturer_ui(ctx: &egui::Context, lesson: &OpenLesson, builder: ViewportBuilder) -> Lectured {
+    let mut done = Lectured::default();
     ctx.show_viewport_immediate(ViewportId::from_hash_of("lecturer"), builder, |ui, class| {
         let is_separate = class != ViewportClass::EmbeddedWindow;
         if is_separate {
-            CentralPanel::default_margins().show(ui, |ui| action = lecturer_notes_ui(ui, lesson));
+            CentralPanel::default_margins().show(ui, |ui| done.action = lecturer_notes_ui(ui, lesson));
         } else {
-            action = lecturer_notes_ui(ui, lesson);
-            closed |= ui.button("Close").clicked();
+            done.action = lecturer_notes_ui(ui, lesson);
+            done.is_closed |= ui.button("Close").clicked();
+            return;
         }
-        closed |= ui.input(|input| input.viewport().close_requested()) && is_separate;
         ui.input_mut(|input| {
+            let view = input.viewport();
+            done.is_closed |= view.close_requested();
+            let place = view.outer_rect.zip(view.inner_rect);
+            done.place = place.map(|(outer, inner)| Rect::from_min_size(outer.min, inner.size()));
             for (key, chosen) in [(Key::PageDown, LessonAction::Next), (Key::PageUp, LessonAction::Back)] {
-                if is_separate && input.consume_key(Modifiers::NONE, key) {
-                    action = Some(chosen);
+                if input.consume_key(Modifiers::NONE, key) {
+                    done.action = Some(chosen);
                 }
             }
-            closed |= is_separate && input.consume_key(Modifiers::COMMAND, Key::L);
+            done.is_closed |= input.consume_key(Modifiers::COMMAND, Key::L);
         });
     });
-    (action, closed)
+    done
 }
 
 fn lecturer_notes_ui(ui: &mut Ui, open: &OpenLesson) -> Option<LessonAction> {

@@ -1,4 +1,4 @@
-//! Status line under the menu: what the mass does, with accuracy and settling beside it; its announcements.
+//! Status line under the menu: what the mass does, with its accuracy beside it; its announcements.
 
 use eframe::egui::{self, Id, RichText, Role, Sense, Ui, Vec2, accesskit::Live};
 
@@ -29,16 +29,19 @@ const MOST_ROWS: f32 = 5.0;
 
 /// Height in points of the line, which no sentence changes: two rows, or more where the window is narrow.
 pub fn height(ui: &Ui) -> f32 {
-    let beside = if is_narrow(ui) { 60.0 } else { BESIDE + 76.0 };
+    let beside = if has_column(ui) { BESIDE + 76.0 } else { 60.0 };
     let rows = (LONG / (ui.available_width() - beside).max(1.0)).ceil().clamp(2.0, MOST_ROWS);
     rows * ROW + MARGIN
 }
 
-fn is_narrow(ui: &Ui) -> bool {
-    ui.ctx().content_rect().width() < NARROW
+/// Whether the window is wide enough for a column beside the sentence.
+pub fn has_column(ui: &Ui) -> bool {
+    ui.ctx().content_rect().width() >= NARROW
 }
 
-pub fn status_ui(ui: &mut Ui, session: &mut Session, announcer: &mut Announcer, style: &Style) {
+/// Draws the line; without a column beside the sentence, hover text has what that would say.
+pub fn status_ui(ui: &mut Ui, session: &mut Session, announcer: &mut Announcer, style: &Style, column: bool) {
+    let has_column = column && has_column(ui);
     let sentence = session.sentence();
     announcer.say(ui, &sentence);
     let size = STATUS;
@@ -46,14 +49,10 @@ pub fn status_ui(ui: &mut Ui, session: &mut Session, announcer: &mut Announcer, 
         let (rect, _) = ui.allocate_exact_size(Vec2::splat(size + 6.0), Sense::hover());
         let (kind, color) = (sentence.kind, style.kind(sentence.kind));
         ui.painter().extend(kind_shapes(kind, rect.center(), size * 0.42, color));
-        let settling = match session.was_set_on_stop() {
-            true => Some("The mass was set on the stop".to_owned()),
-            false => session.settling().map(|(gone, total)| format!("settling: {:.1} s to go", total - gone)),
-        };
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             stop_ui(ui, session);
-            if !is_narrow(ui) {
-                beside_ui(ui, session, style, settling);
+            if has_column {
+                beside_ui(ui, session, style);
             }
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 let text = sentence.whole();
@@ -65,7 +64,7 @@ pub fn status_ui(ui: &mut Ui, session: &mut Session, announcer: &mut Announcer, 
                 let label = parts_ui(ui, &parts, size);
                 if label.hovered() {
                     let kind = meaning(&sentence.text).map_or_else(String::new, |text| format!("{text}\n\n"));
-                    let trust = session.trust().filter(|_| is_narrow(ui));
+                    let trust = session.trust().filter(|_| !has_column);
                     let trust = trust.map_or_else(String::new, |(short, _)| format!("\n\n{short}"));
                     let spare = if sentence.remedy.contains("to spare") { SPARE } else { "" };
                     label.on_hover_text(format!("{kind}{}{spare}{trust}", session.ways()));
@@ -91,27 +90,27 @@ fn stop_ui(ui: &mut Ui, session: &mut Session) {
     }
 }
 
-/// The column beside the sentence: how accurate the motion is and, below, how far it has settled.
-fn beside_ui(ui: &mut Ui, session: &Session, style: &Style, settling: Option<String>) {
+/// The column beside the sentence: how accurate the motion is and, below, whether the mass was moved.
+fn beside_ui(ui: &mut Ui, session: &Session, style: &Style) {
     let trust = session.trust();
-    if trust.is_none() && settling.is_none() {
+    let moved = session.was_set_on_stop().then_some("The mass was set on the stop");
+    if trust.is_none() && moved.is_none() {
         return;
     }
-    let lines = usize::from(trust.is_some()) + usize::from(settling.is_some());
+    let lines = usize::from(trust.is_some()) + usize::from(moved.is_some());
     let height = lines as f32 * LINE;
     ui.allocate_ui_with_layout(Vec2::new(BESIDE, height), egui::Layout::top_down(egui::Align::Max), |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        let mut line = |text: String, hover: &str| {
-            let hover =
-                meaning(&text).map_or_else(|| hover.to_owned(), |meaning| format!("{meaning}\n\n{hover}"));
-            let text = RichText::new(text).size(SMALL).color(style.faint());
-            ui.add(egui::Label::new(text).extend()).on_hover_text(hover);
+        let mut line = |text: &str| {
+            ui.add(egui::Label::new(RichText::new(text).size(SMALL).color(style.faint())).extend())
         };
         if let Some((short, long)) = trust {
-            line(short, &long);
+            let words =
+                meaning(&short).map_or_else(|| long.clone(), |meaning| format!("{meaning}\n\n{long}"));
+            line(&short).on_hover_text(words);
         }
-        if let Some(settling) = settling {
-            line(settling, "What is left of it since your last change.");
+        if let Some(moved) = moved {
+            line(moved).on_hover_text("A stop that was moved or switched on would have gone through it.");
         }
     });
 }

@@ -28,6 +28,14 @@ const SIGNS: f32 = 32.0;
 /// Height in points of the row below the bar, and of the note below the time.
 const BELOW: f32 = 16.0;
 
+/// Length in s from which on a run is long: its bar ends earlier while little of it has been seen.
+const LONG: f64 = 200.0;
+/// The share of a long run's bar, and the time in s, that are to have been seen; where less has been, the bar
+/// is shorter by the last number.
+const SEEN: (f64, f64, f64) = (0.1, 5.0, 4.0);
+/// Width in points of the dots behind a bar that ends before the run does.
+const DOTS: f32 = 18.0;
+
 /// Share of the bar by which an arrow key moves; with Shift, ten times as much.
 const KEY_SHARE: f64 = 0.002;
 
@@ -71,25 +79,34 @@ pub fn transport_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: 
             ui.allocate_ui_with_layout(vec2(TIME.0, SIGNS), left, |ui| clock_ui(ui, session));
             scrub_ui(ui, session, style, covered, Some(&note));
         } else {
-            let place = vec2(TIME.1, ui.available_height());
-            ui.allocate_ui_with_layout(place, egui::Layout::top_down(egui::Align::Min), |ui| {
-                ui.set_width(TIME.1);
-                ui.spacing_mut().item_spacing.y = 0.0;
-                ui.add_space((0.5 * (ui.available_height() - ONE_LINE - BELOW)).max(0.0));
-                ui.spacing_mut().interact_size.y = ONE_LINE;
-                ui.allocate_ui_with_layout(vec2(TIME.1, ONE_LINE), left, |ui| {
-                    clock_ui(ui, session);
-                    to_present_ui(ui, session, "to now");
-                });
-                note_ui(ui, style, &note);
-            });
+            // not so high as to make the bar higher
+            let (place, _) = ui.allocate_exact_size(vec2(TIME.1, ui.available_height()), Sense::hover());
+            let lines = egui::Layout::top_down(egui::Align::Min);
+            let mut beside = ui.new_child(UiBuilder::new().max_rect(place).layout(lines));
+            two_lines_ui(&mut beside, session, style, (&note, covered));
             scrub_ui(ui, session, style, covered, None);
         }
     });
 }
 
 /// Height in points of the time above a note.
-const ONE_LINE: f32 = 18.0;
+const ONE_LINE: f32 = 17.0;
+
+/// The time and, below it, the note.
+fn two_lines_ui(ui: &mut Ui, session: &mut Session, style: &Style, (note, covered): (&str, bool)) {
+    ui.set_width(TIME.1);
+    ui.spacing_mut().item_spacing.y = 0.0;
+    ui.add_space((0.5 * (ui.available_height() - ONE_LINE - BELOW)).max(0.0));
+    ui.spacing_mut().interact_size.y = ONE_LINE;
+    let left = egui::Layout::left_to_right(egui::Align::Center);
+    ui.allocate_ui_with_layout(vec2(TIME.1, ONE_LINE), left, |ui| {
+        clock_ui(ui, session);
+        to_present_ui(ui, session, "to now");
+    });
+    if !(note.is_empty() && skip_ui(ui, session, covered)) {
+        note_ui(ui, style, note);
+    }
+}
 
 /// The time that is shown.
 fn clock_ui(ui: &mut Ui, session: &Session) {
@@ -159,6 +176,17 @@ fn legend(painter: &Painter, style: &Style, row: Rect, present: [bool; 3]) {
     }
 }
 
+/// The length of the bar, of a run of this length in s of which so much has been seen: the whole run, or while
+/// little of a long one has been seen, a part of it, so that what has been is more than a sliver.
+fn length_of_bar(run: f64, seen: f64) -> f64 {
+    let (share, least, factor) = SEEN;
+    let mut length = run;
+    while run > LONG && share * length > seen.max(least) {
+        length /= factor;
+    }
+    length.max(seen)
+}
+
 /// The run as a bar, as far as it has been seen with signs of its events, and its length. Dragging, or the
 /// arrow keys while the bar has the focus, shows an earlier time. With a `note` there is a row below the bar:
 /// the meanings of the signs, and the note.
@@ -172,9 +200,13 @@ fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool, no
     let watch = session.player.watch();
     let (begin, seen) = (watch.begin(), watch.time());
     let end = session.end_of_run().max(seen);
-    let span = (end - begin).max(1e-9);
-    let bar =
+    let span = length_of_bar(end - begin, seen - begin).max(1e-9);
+    let is_whole = begin + span >= end;
+    let mut bar =
         Rect::from_center_size(pos2(rect.center().x, rect.bottom() - BAR), vec2(rect.width() - 12.0, 4.0));
+    if !is_whole {
+        bar.max.x -= DOTS;
+    }
     let screen_from_time = |t: f64| bar.left() + ((t - begin) / span) as f32 * bar.width();
     let painter = ui.painter();
     painter.rect_filled(bar, 2.0, style.track());
@@ -188,7 +220,12 @@ fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool, no
         }
     }
     let length = if end < 10.0 { format!("{end:.1} s") } else { format!("{end:.0} s") };
-    let at = pos2(bar.right() + 12.0, bar.center().y);
+    let mut at = pos2(bar.right() + 12.0, bar.center().y);
+    if !is_whole {
+        let dots = [5.0, 10.0, 15.0].map(|x| bar.right_center() + vec2(x, 0.0));
+        dots.into_iter().for_each(|dot| _ = painter.circle_filled(dot, 1.5, style.edge()));
+        at.x += DOTS;
+    }
     painter.text(at, Align2::LEFT_CENTER, length, style.small(), style.faint());
     let now = pos2(screen_from_time(session.player.time()), bar.center().y);
     painter.circle(now, 7.0, style.mass(), Stroke::new(1.5, style.mass_edge()));
@@ -210,7 +247,9 @@ fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool, no
     ui.scope_builder(UiBuilder::new().max_rect(below).layout(layout), |ui| {
         ui.spacing_mut().interact_size.y = BELOW;
         to_present_ui(ui, session, "past: go to now");
-        note_ui(ui, style, if note.is_empty() { hint } else { note });
+        if !(note.is_empty() && skip_ui(ui, session, covered)) {
+            note_ui(ui, style, if note.is_empty() { hint } else { note });
+        }
     });
 }
 
@@ -218,7 +257,7 @@ fn scrub_ui(ui: &mut Ui, session: &mut Session, style: &Style, covered: bool, no
 fn note(session: &Session, covered: bool) -> String {
     let player = &session.player;
     match player.goal() {
-        Some(Goal::Time(_)) => "going on; any key stops".to_owned(),
+        Some(Goal::Time(_) | Goal::Settled(_)) => "going on; any key stops".to_owned(),
         Some(Goal::First(kind, _)) => format!("looking for a {}; any key stops", kind.name()),
         None if covered => String::new(),
         None => player.event().map_or_else(String::new, event_words),
@@ -241,6 +280,20 @@ fn to_present_ui(ui: &mut Ui, session: &mut Session, text: &str) {
     }
 }
 
+/// A link to the time from which on the motion has settled, while it settles. Returns whether there is one.
+fn skip_ui(ui: &mut Ui, session: &mut Session, covered: bool) -> bool {
+    let settling = session.settling().filter(|_| !covered && !session.player.is_past());
+    let Some((gone, whole)) = settling else { return false };
+    let hover = "What is left until the motion has settled after your last change. A click goes on to there \
+                 at once.";
+    let text = RichText::new(format!("settling: {:.1} s to go, skip", whole - gone)).small();
+    if ui.link(text).on_hover_text(hover).clicked() {
+        let until = session.player.watch().time() + whole - gone;
+        session.player.go_to(Goal::Settled(until));
+    }
+    true
+}
+
 fn event_words(event: &Event) -> String {
     let side = event.side.name();
     let speed = |v: f64| speed(v.abs());
@@ -261,6 +314,25 @@ mod tests {
 
     fn event(t: f64, kind: EventKind) -> Event {
         Event { t, kind, side: Side::Left, v_in: 0.0, v_out: 0.0 }
+    }
+
+    #[test]
+    fn of_a_long_run_more_than_a_sliver_is_seen() {
+        // a short one is whole
+        assert_eq!(
+            [(20.0, 0.0), (120.0, 1.0), (120.0, 150.0)].map(|run| length_of_bar(run.0, run.1)),
+            [20.0, 120.0, 150.0]
+        );
+        let run = 5236.0;
+        assert_eq!(length_of_bar(run, run), run);
+        let lengths: Vec<f64> = (1..5236).map(|seen| length_of_bar(run, f64::from(seen))).collect();
+        for (i, length) in lengths.iter().enumerate() {
+            let seen = (i + 1) as f64;
+            assert!(seen <= *length && (seen < 5.0 || seen >= 0.1 * length), "{seen} of {length}");
+        }
+        // it grows at times, and is never shorter again
+        assert!(lengths.is_sorted());
+        assert_eq!(lengths.windows(2).filter(|pair| pair[0] != pair[1]).count(), 4);
     }
 
     #[test]

@@ -52,13 +52,15 @@ const CHECK_INTERVAL: f64 = 2.0;
 pub enum Goal {
     /// To this time in s.
     Time(f64),
+    /// To this time in s, from which on the motion has settled; it then goes on at its own speed.
+    Settled(f64),
     /// To the first event of this kind, if it comes before this time in s.
     First(EventKind, f64),
 }
 
 impl Goal {
     fn until(self) -> f64 {
-        let (Self::Time(until) | Self::First(_, until)) = self;
+        let (Self::Time(until) | Self::Settled(until) | Self::First(_, until)) = self;
         until
     }
 }
@@ -310,6 +312,7 @@ impl Player {
             if self.watch.time() >= until || arrived && self.watch.time() <= before {
                 let reached = match goal {
                     Goal::Time(_) => Reached::Time,
+                    Goal::Settled(_) => return self.set_playing(true),
                     Goal::First(kind, _) => Reached::Nothing(kind),
                 };
                 return self.arrive(reached);

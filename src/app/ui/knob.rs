@@ -182,7 +182,8 @@ impl Knob<'_> {
 
     fn parsed(&self, text: &str, present: f64) -> Result<f64, String> {
         let unit = self.suffix();
-        let number = text.strip_suffix(self.unit).unwrap_or(text).trim().replace('−', "-");
+        let number =
+            text.strip_suffix(self.unit).unwrap_or(text).trim().replace('−', "-").replace('∞', "inf");
         let stays = format!("{} stays {}{unit}.", self.name, shown(present, 0));
         if number.is_empty() {
             return Err(format!("No number was typed: {stays}"));

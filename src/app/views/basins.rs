@@ -9,6 +9,7 @@ use crate::output::{Cell, Chart, Panel, PlotAxis, Role};
 use super::hand::axes_input;
 use super::labels::{plated, pointer_rests};
 use super::pane::{Pane, kept_pane_ui};
+use super::phase::starts;
 use super::stops::stops_ui;
 use super::view::Axis;
 use super::{View, ViewContext, empty_ui, too_small_ui};
@@ -49,6 +50,7 @@ pub fn basins_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     }
     stops_ui(ui, context, frame, (frame.top(), frame.bottom()), 0.0);
     if let Some(Ok(level)) = &level {
+        starts(&ui.painter().with_clip_rect(frame), context, &pane, level.per_speed);
         pointer_ui(ui, context, &pane, level, is_whole);
     }
 }

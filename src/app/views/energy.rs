@@ -7,6 +7,7 @@ use eframe::egui::{self, Align, Align2, Color32, Layout, Rect, RichText, Sense, 
 
 use crate::app::ui::style::Style;
 use crate::dynamics::LiveLedger;
+use crate::numeric;
 
 use super::ghosts::dashed;
 use super::ranges::{axis_end, bottom};
@@ -15,7 +16,9 @@ use super::{ViewContext, too_small_ui};
 /// Width in points of the names.
 const NAMES: f32 = 64.0;
 /// Width in points of the numbers.
-const NUMBERS: f32 = 62.0;
+const NUMBERS: f32 = 68.0;
+/// Width in points of a share of the work, and of a column from which on there is room for one.
+const SHARE: (f32, f32) = (44.0, 190.0);
 
 /// Gap in points between a number and the bars beside it.
 const GAP: f32 = 10.0;
@@ -37,6 +40,9 @@ const UNITS: [(f64, &str); 5] = [(1.0, "J"), (1e-3, "mJ"), (1e-6, "µJ"), (1e-9,
 
 /// A row of the ledger: name, explanation, signed value, colour.
 type Row = (&'static str, &'static str, fn(&LiveLedger) -> f64, fn(&Style) -> Color32);
+
+const STORED: &str = "stored";
+const OF_WORK: &str = "The share of the work of the base that is taken so.";
 
 /// The row that only a scene with a transducer has.
 const TRANSDUCER: &str = "transducer";
@@ -63,7 +69,7 @@ const LEDGER: [Row; 6] = [
         |ledger| -(ledger.harvested_j + ledger.coil_j),
         Style::ink,
     ),
-    ("stored", "What that leaves in the mass and its mechanism.", |ledger| ledger.stored_j, Style::ink),
+    (STORED, "What that leaves in the mass and its mechanism.", |ledger| ledger.stored_j, Style::ink),
 ];
 
 /// The largest unit not above `energy`, which callers take from the speed scale so that the unit stays.
@@ -71,10 +77,22 @@ pub fn unit_of(energy: f64) -> (f64, &'static str) {
     UNITS.into_iter().find(|unit| energy >= unit.0).unwrap_or(UNITS[4])
 }
 
-/// Decimals of all numbers of a ledger: three, or one if any number has three digits before the point.
+/// Decimals of all numbers of a ledger: three, or one if any number has three digits before the point, or
+/// where all are small as many as give the largest three digits, but no more than five.
 pub fn decimals(ledger: &LiveLedger, unit: f64) -> usize {
-    let largest = LEDGER.iter().map(|row| row.2(ledger).abs()).fold(0.0, f64::max);
-    if largest / unit >= 100.0 { 1 } else { 3 }
+    let largest = LEDGER.iter().map(|row| row.2(ledger).abs()).fold(0.0, f64::max) / unit;
+    match largest {
+        largest if largest >= 100.0 => 1,
+        largest if largest > 0.0 => numeric::decimals(largest, 3).clamp(3, 5),
+        _ => 3,
+    }
+}
+
+/// What was taken as a share of the work of the base, in whole percent; `None` for what was put in, and where
+/// there is no work or the value rounds to nothing.
+fn share_of_work(joule: f64, ledger: &LiveLedger, is_nothing: bool) -> Option<String> {
+    let share = -100.0 * joule / ledger.work_j;
+    (ledger.work_j > 0.0 && joule < 0.0 && !is_nothing).then(|| format!("{share:.0} %"))
 }
 
 /// Whether a value of the ledger rounds to nothing.
@@ -92,7 +110,7 @@ pub fn written(joule: f64, unit: f64, decimals: usize) -> String {
     let value = joule / unit;
     match is_nothing(joule, unit, decimals) {
         true => format!("{:.decimals$}", 0.0),
-        false => format!("{value:+.decimals$}"),
+        false => format!("{value:+.decimals$}").replace('-', "\u{2212}"),
     }
 }
 
@@ -173,17 +191,9 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             };
             // the columns are drawn in reverse order of `heads`
             let column = heads.len() - 1 - i;
-            let ghosts = pins.iter().filter_map(|pin| Some((pin.0, pin.1[column].as_ref()?)));
-            let bars =
-                Rect::from_min_max(rect.min + vec2(GAP, 0.0), pos2(numbers.left() - 4.0, rect.bottom()));
-            let decimals = decimals(ledger, unit);
-            let share = |joule: f64| share(joule, unit, decimals, largest);
-            bar(ui, &style, bars, share(value(ledger)), color(&style));
-            for (place, ghost) in ghosts {
-                ghost_bar(ui, &style, bars, share(value(ghost)), place);
-            }
-            let number = written(value(ledger), unit, decimals);
-            put_ui(ui, numbers, RichText::new(number), Align::Max, hover);
+            let ghosts = pins.iter().filter_map(|pin| Some((pin.0, value(pin.1[column].as_ref()?))));
+            let entry = Entry { name, hover, joule: value(ledger), color: color(&style), unit, largest };
+            entry.ui(ui, &style, (rect, numbers), ledger, ghosts);
         }
         y += row;
     }
@@ -201,6 +211,47 @@ pub fn energy_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     y += 1.3 * row;
     let rest = Rect::from_min_max(pos2(area.left(), y), area.max);
     present_ui(ui, context, rest, (unit, name));
+}
+
+/// A value of a ledger, with the unit in J in which it is written and the largest one, whose bar is longest.
+struct Entry {
+    name: &'static str,
+    hover: &'static str,
+    joule: f64,
+    color: Color32,
+    unit: f64,
+    largest: f64,
+}
+
+impl Entry {
+    /// Draws its bar with those of the pinned motions, its share of the work where that has room, and its
+    /// number.
+    fn ui(
+        &self,
+        ui: &mut Ui,
+        style: &Style,
+        (rect, numbers): (Rect, Rect),
+        ledger: &LiveLedger,
+        ghosts: impl Iterator<Item = (usize, f64)>,
+    ) {
+        let Self { name, hover, joule, color, unit, largest } = *self;
+        let decimals = decimals(ledger, unit);
+        let shares = if rect.width() >= SHARE.1 { SHARE.0 } else { 0.0 };
+        let right = numbers.left() - shares;
+        let bars = Rect::from_min_max(rect.min + vec2(GAP, 0.0), pos2(right - 4.0, rect.bottom()));
+        let share = |joule: f64| share(joule, unit, decimals, largest);
+        bar(ui, style, bars, share(joule), color);
+        for (place, ghost) in ghosts {
+            ghost_bar(ui, style, bars, share(ghost), place);
+        }
+        // what the mass has gained or lost is no share
+        let taken = share_of_work(joule, ledger, is_nothing(joule, unit, decimals));
+        if let Some(text) = taken.filter(|_| shares > 0.0 && name != STORED) {
+            let place = numbers.with_min_x(right).with_max_x(numbers.left());
+            put_ui(ui, place, RichText::new(text).color(style.faint()), Align::Max, OF_WORK);
+        }
+        put_ui(ui, numbers, RichText::new(written(joule, unit, decimals)), Align::Max, hover);
+    }
 }
 
 fn cell(x: f32, y: f32, width: f32, height: f32) -> Rect {
@@ -317,13 +368,17 @@ mod tests {
         assert_eq!(unit_of(6.9e-3), (1e-3, "mJ"));
         assert_eq!(unit_of(0.0), (1e-12, "pJ"));
         assert_eq!(written(1.2345e-3, 1e-3, 3), "+1.234");
-        assert_eq!(written(-0.25, 1e-3, 1), "-250.0");
+        assert_eq!(written(-0.25, 1e-3, 1), "\u{2212}250.0");
         assert_eq!(written(-1e-9, 1e-3, 3), "0.000");
         assert_eq!(share(4e-7, 1e-3, 3, 1e-6), 0.0);
         assert_eq!((share(6e-7, 1e-3, 3, 1e-6), share(0.0, 1e-3, 3, 0.0)), (0.6, 0.0));
         // one large number sets the decimals of all
         let ledger = LiveLedger { work_j: 0.3, damping_j: 1e-3, ..LiveLedger::default() };
         assert_eq!((decimals(&ledger, 1e-3), decimals(&LiveLedger::default(), 1e-3)), (1, 3));
+        let small = LiveLedger { work_j: 3.12e-6, impact_j: 2.91e-6, ..LiveLedger::default() };
+        assert_eq!((decimals(&small, 1e-3), written(small.work_j, 1e-3, 5)), (5, "+0.00312".to_owned()));
+        assert_eq!(share_of_work(-small.impact_j, &small, false).as_deref(), Some("93 %"));
+        assert_eq!(share_of_work(small.work_j, &small, false), None);
         assert_eq!([0.0, 1e-9, 3e-4, 2.0].map(accounted), ["100", "100", "99.97", "0.00"]);
         assert_eq!((short(1.2), short(1000.0), short(0.0)), ("1.2".into(), "1000".into(), "0".into()));
     }

@@ -52,8 +52,8 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let ends = context.memory.frozen.force.keep((-end, end), context.session.editor.in_gesture());
     let (low, high) = context.memory.axes.ends(Axis::Up(View::ForceCurve), ends);
     let (span, model) = (context.span, Arc::clone(context.session.shown()));
-    let over = context.session.measured.over.clone();
-    let key = (Identity(Arc::clone(&model)), over, [span.low, span.high, low, high], style);
+    let measured = context.session.measured.over.clone();
+    let key = (Identity(Arc::clone(&model)), measured, [span.low, span.high, low, high], style);
     let pane = kept_pane_ui(ui, &style, Place::in_line(ui, area, Sense::DRAG, (0.0, 0.0)), key, || {
         let axis = |low: f64, high: f64, name: &str| PlotAxis::between(low, high, name);
         let axes = (
@@ -82,13 +82,15 @@ pub fn force_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     }
     releases(&painter, context, &pane, frame);
     let at = |x: f64, force: f64| pane.place(0, (x * 1e3, force)).unwrap_or(frame.min);
+    // whole at an end of an axis
+    let over = ui.painter().with_clip_rect(frame.expand(BALL + 1.0).intersect(area));
     for ghost in ghosts(context) {
         let curve = &ghost.model.mechanism().curve;
         ghost.stops(&painter, context, frame, 0.0);
-        ghost.ball(&painter, &style, at(ghost.state.x, curve.force(ghost.state.x)), BALL);
+        ghost.ball(&over, &style, at(ghost.state.x, curve.force(ghost.state.x)), BALL);
     }
     let mass = at(state.x, curve.force(state.x));
-    painter.circle(mass, BALL, style.mass(), Stroke::new(1.5, style.mass_edge()));
+    over.circle(mass, BALL, style.mass(), Stroke::new(1.5, style.mass_edge()));
     let pointer = pane.response.hover_pos().filter(|at| frame.contains(*at));
     if let Some((mm, _)) = pointer.and_then(|at| pane.values_at(0, at)) {
         let force = curve.force(mm * 1e-3);

@@ -33,6 +33,8 @@ pub struct Memory {
     pub question: Option<String>,
     /// Displacements in mm of the stops about which a lesson asks, left and right.
     pub asked_stops: [Option<f64>; 2],
+    /// Starts of which a lesson speaks: displacement in m and velocity in m/s.
+    pub starts: Vec<(f64, f64)>,
     pub timeline: Timeline,
     pub cursors: Cursors,
     /// Ends of axes chosen by hand.

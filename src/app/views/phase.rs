@@ -7,7 +7,7 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use eframe::egui::{self, Sense, Stroke, Ui};
+use eframe::egui::{self, Color32, Sense, Stroke, Ui};
 
 use crate::app::task::Identity;
 use crate::app::ui::widgets::kind_shapes;
@@ -46,6 +46,8 @@ const MAX_STROBES: f64 = 300.0;
 
 /// Radius in points of the mark of the present state.
 const STATE: f32 = 6.0;
+/// Radius in points of the dot of a start.
+const START: f32 = 2.0;
 /// Width in points of the button beside the legend.
 const BUTTON: f32 = 88.0;
 
@@ -109,6 +111,7 @@ fn states_ui(ui: &mut Ui, context: &mut ViewContext<'_>, is_section: bool) {
         ghost.stops(&painter, context, frame, 0.0);
         ghost.ball(&painter, &style, at(ghost.state), STATE);
     }
+    starts(&painter, context, &pane, 1e3);
     let present = context.session.player.state();
     if present.phase == Phase::Free {
         painter.circle(at(present), STATE, style.mass(), Stroke::new(1.5, style.mass_edge()));
@@ -139,6 +142,15 @@ fn still(model: &Model, axes: (PlotAxis, PlotAxis), points_only: bool) -> Chart 
     }
     let panel = portrait_panel((model.mechanism(), model.mass()), axes, 1e3, (f64::NAN, f64::NAN), named);
     Chart::stack(vec![panel], "", Table::new())
+}
+
+/// Dots at the starts of which a lesson speaks; the axis upward has a velocity in m/s times `per_speed`.
+pub(super) fn starts(painter: &egui::Painter, context: &ViewContext<'_>, pane: &Pane, per_speed: f64) {
+    for (x, v) in &context.memory.starts {
+        let Some(at) = pane.place(0, (x * 1e3, v * per_speed)) else { continue };
+        // seen on the colour of any basin
+        painter.circle(at, START, Color32::WHITE, Stroke::new(1.0, Color32::BLACK));
+    }
 }
 
 /// Button in the row of the legend that hides the path.

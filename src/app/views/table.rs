@@ -7,7 +7,7 @@ use crate::app::ui::style::{SMALL, strong_family};
 use crate::app::ui::widgets::kind_shapes;
 use crate::app::words::fields::{mechanism_name, name_and_unit};
 use crate::app::words::meanings::{explained, meaning};
-use crate::app::words::numbers::{decimals_for, exact, power_unit, shown, three};
+use crate::app::words::numbers::{decimals_for, exact, length_unit, power_unit, shown, three};
 use crate::app::words::status::{Kind, mm_beside, seconds, speed, threshold};
 use crate::dynamics::{Outcome, Summary};
 use crate::scene::{Damping, Excitation, FieldPath, Scene, Start, Transducer, numeric_fields};
@@ -269,12 +269,22 @@ fn number_rows(columns: &[Column], now: usize, with_threshold: bool) -> Vec<Row>
     let tenths = |below: f64| move |size: f64| usize::from(size < below);
     let velocity = |run: &Summary| run.rms_velocity;
     let in_mm = |run: &Summary| velocity(run).map(|v| v * 1e3);
-    let reach_mm = |run: &Summary| run.max_abs_x.map(|x| x * 1e3);
+    let reaches = columns.iter().filter_map(|column| column.card.as_ref()?.settled?.max_abs_x);
+    let (per_metre, length) = length_unit(reaches.fold(0.0, f64::max));
+    let reach_in = |run: &Summary| run.max_abs_x.map(|x| x * per_metre);
+    let reach = |card: &Card, run: &Summary| match length {
+        "m" => reach_in(run).map(three),
+        _ => reach_mm(card, run),
+    };
+    let of_reach = |size: f64| match length {
+        "m" => decimals_for(size),
+        _ => 1 + usize::from(size < 0.95) - usize::from(size >= 99.95),
+    };
     let share = |run: &Summary| run.impact_share.map(|share| share * 100.0);
     let whole = |run: &Summary| share(run).map(|share| format!("{share:.0}"));
     let mut rows = vec![
         row(RMS, "mm/s", &|_, run| velocity(run).map(speed), &in_mm, &tenths(9.95)),
-        row("reach", "mm", &reach, &reach_mm, &|size| 1 + usize::from(size < 0.95)),
+        row("reach", length, &reach, &reach_in, &of_reach),
     ];
     rows.extend(Some(row("impacts take", "%", &|_, run| whole(run), &share, &|_| 0)).filter(Row::differs));
     let has_load =
@@ -301,13 +311,14 @@ fn number_rows(columns: &[Column], now: usize, with_threshold: bool) -> Vec<Row>
 /// A value less the present one, as text.
 fn difference(value: f64, present: f64, decimals: &dyn Fn(f64) -> usize) -> String {
     let decimals = decimals(value.abs().max(present.abs()));
-    let text = format!("{:+.decimals$}", value - present);
+    let text = format!("{:+.decimals$}", value - present).replace('-', "\u{2212}");
     // a difference that rounds to zero has no sign
-    let is_zero = text.trim_start_matches(['+', '-', '0', '.']).is_empty();
+    let is_zero = text.trim_start_matches(['+', '\u{2212}', '0', '.']).is_empty();
     if is_zero { "same".to_owned() } else { text }
 }
 
-fn reach(card: &Card, run: &Summary) -> Option<String> {
+/// The reach in mm, on its side of the stops.
+fn reach_mm(card: &Card, run: &Summary) -> Option<String> {
     let [left, right] = card.scene.stops.limits_mm();
     let stops = (left.map(|mm| -mm * 1e-3), right.map(|mm| mm * 1e-3));
     run.max_abs_x.map(|reach| mm_beside(reach, stops))
@@ -355,7 +366,7 @@ pub(super) fn stops(scene: &Scene) -> String {
         (Some(limit), _) if stops.restitutions() == [None; 2] => format!("±{}, compliant", mm(limit)),
         (Some(limit), _) => format!("±{}", mm(limit)),
         (None, [None, None]) => "none".to_owned(),
-        (None, [left, right]) => format!("{}, {}", side(left, "-"), side(right, "+")),
+        (None, [left, right]) => format!("{}, {}", side(left, "\u{2212}"), side(right, "+")),
     }
 }
 
@@ -372,7 +383,9 @@ fn damping(scene: &Scene) -> String {
 fn start(scene: &Scene) -> String {
     match scene.start {
         Start::Rest => "at rest".to_owned(),
-        Start::At { x_mm, v_m_per_s, .. } => format!("{} mm, {} m/s", shown(x_mm, 1), shown(v_m_per_s, 0)),
+        Start::At { x_mm, v_m_per_s, .. } => {
+            format!("{} mm, {} m/s", shown(x_mm, 1), shown(v_m_per_s, 0)).replace('-', "\u{2212}")
+        }
     }
 }
 

@@ -126,9 +126,10 @@ pub fn well_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let at = on_curve(state.x, &tipped);
     stops_ui(ui, context, frame, (frame.top() + 4.0, frame.bottom()), BALL);
     mass_ui(ui, context, at, frame);
-    // drawn after the stops, since their letters may overlap one
-    balls.iter().for_each(|(at, ghost)| ghost.ball(&painter, &style, *at, BALL));
-    painter.circle(at, BALL, style.mass(), Stroke::new(1.5, style.mass_edge()));
+    // drawn after the stops, since their letters may overlap one; whole at an end of an axis
+    let over = ui.painter().with_clip_rect(frame.expand(BALL + 1.0).intersect(area));
+    balls.iter().for_each(|(at, ghost)| ghost.ball(&over, &style, *at, BALL));
+    over.circle(at, BALL, style.mass(), Stroke::new(1.5, style.mass_edge()));
     if let Some(ago) = ago(context.session) {
         pane.reading(ui, &style, 0.0, &ago);
     }

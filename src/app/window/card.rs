@@ -17,6 +17,10 @@ const MARGIN: f32 = 8.0;
 const TOOL: f32 = 24.0;
 /// Width in points that a legend needs beside the titles; it has a row below where there is less.
 const LEGEND_ROOM: f32 = 220.0;
+/// Width in points that the choices of a map need there, and that of a card below which they would have more
+/// than two rows of their own.
+const CHOICES_ROOM: f32 = 300.0;
+const FEW_ROWS: f32 = 520.0;
 /// Distance in points of a view from the edge of its card, so that the corners of the card stay round.
 const INSET: f32 = 2.0;
 
@@ -51,7 +55,13 @@ pub fn card_ui(
     let font = title_font(ui, titles, row.width() - tools - MARGIN);
     let width: f32 = titles.iter().map(|title| width_of(ui, title, &font)).sum();
     let free = LegendRow { left: row.left() + MARGIN + width, right: row.right() - tools };
-    let shares = view.has_legend() && free.right - free.left >= LEGEND_ROOM;
+    let is_compact = ui.ctx().content_rect().width() < COMPACT_BELOW;
+    let needed = match view {
+        View::Map if is_compact || rect.width() < FEW_ROWS => CHOICES_ROOM,
+        _ if view.has_legend() => LEGEND_ROOM,
+        _ => f32::INFINITY,
+    };
+    let shares = free.right - free.left >= needed;
     let top = if shares { rect.top() + 0.5 * (ROW - LegendRow::HEIGHT) } else { row.bottom() };
     let inner = Rect::from_min_max(pos2(rect.left() + INSET, top), rect.max - vec2(INSET, INSET + 2.0));
     let mut info = egui::UiStackInfo::default();

@@ -16,6 +16,8 @@ const RECENT: &str = "recent";
 const SIZE: &str = "size";
 const CUSTOM: &str = "arrangement";
 const LESSONS: &str = "lessons";
+/// Key of the place of the lecturer's notes in points at zoom 1.
+const NOTES: &str = "notes";
 
 impl Window {
     /// Restores the saved state except the settings.
@@ -24,6 +26,7 @@ impl Window {
         self.restore_size(get_value(storage, SIZE));
         self.custom = get_value(storage, CUSTOM);
         self.set_records(get_value(storage, LESSONS).unwrap_or_default());
+        self.restore_notes_place(get_value(storage, NOTES));
     }
 
     pub(super) fn save_state(&self, storage: &mut dyn Storage) {
@@ -32,6 +35,9 @@ impl Window {
         set_value(storage, LESSONS, &self.records());
         if let Some(size) = self.size() {
             set_value(storage, SIZE, &size);
+        }
+        if let Some(place) = self.notes_place() {
+            set_value(storage, NOTES, &place);
         }
         if let Some(tree) = &self.custom {
             set_value(storage, CUSTOM, tree);

@@ -7,8 +7,7 @@ use eframe::egui::{self, Id, Key, LayerId, Modifiers, Order, Panel, Rect, Stroke
 
 use crate::app::panels::controls;
 use crate::app::panels::hint::Hint;
-use crate::app::panels::lesson::{LessonAction, lesson_ui};
-use crate::app::panels::notes::lecturer_ui;
+use crate::app::panels::lesson::{LessonAction, lesson_ui, navigation_ui};
 use crate::app::session::editor::Editor;
 use crate::app::session::explore::WalkQuantity;
 use crate::app::session::lesson::{OpenLesson, Records, Turn, answers_text};
@@ -26,6 +25,7 @@ use crate::system::files;
 
 use super::Window;
 use super::layouts::{Arrangement, Tiling};
+use super::lecturer::Notes;
 
 pub(super) const CANNOT_OPEN_LESSON: &str = "This lesson cannot be opened";
 
@@ -37,11 +37,13 @@ pub(super) struct Lessons {
     pub open: Option<OpenLesson>,
     suspended: Option<Suspended>,
     pub records: Records,
-    pub notes: bool,
+    pub notes: Notes,
     /// The lesson that was finished, until its last words are closed.
     finished: Option<Finished>,
     /// Whether the button that goes on is to have the keyboard focus.
     urged: bool,
+    /// What the buttons beside the status line ask for in this frame.
+    chosen: Option<LessonAction>,
     /// Rectangles of the controls in this frame.
     controls: Vec<(String, Rect)>,
 }
@@ -155,7 +157,7 @@ impl Window {
     pub fn leave_lesson(&mut self) {
         self.keep_progress();
         let (lesson, suspended) = (self.lessons.open.take(), self.lessons.suspended.take());
-        self.lessons.notes = false;
+        self.lessons.notes.is_open = false;
         if let (Some(_), Some(before)) = (lesson, suspended) {
             let room = self.tiling.room();
             self.session = before.session;
@@ -229,6 +231,7 @@ impl Window {
         let asked = lesson.and_then(OpenLesson::asked).map(|scene| scene.stops.limits_mm());
         let [left, right] = asked.filter(|asked| *asked != present).unwrap_or_default();
         self.memory.asked_stops = [left.map(|mm| -mm), right];
+        self.memory.starts = lesson.map(OpenLesson::starts).unwrap_or_default();
     }
 
     pub(super) fn act_in_lesson(&mut self, act: LessonAction) {
@@ -372,26 +375,35 @@ impl Window {
         self.session.keeps_remedy = !lesson.tells_remedy();
     }
 
-    /// The strip of the open lesson, and its controls; they are disabled while the motion is covered.
-    pub(super) fn lesson_panels_ui(&mut self, ui: &mut Ui, style: &Style) {
+    /// The dots of the steps and the buttons of the open lesson.
+    pub(super) fn lesson_navigation_ui(&mut self, ui: &mut Ui, style: &Style) {
         let urged = std::mem::take(&mut self.lessons.urged);
+        self.lessons.chosen =
+            self.lessons.open.as_ref().and_then(|open| navigation_ui(ui, open, style, urged));
+    }
+
+    /// The strip of the open lesson, which in a `compact` window has no buttons, and its controls; they are
+    /// disabled while the motion is covered.
+    pub(super) fn lesson_panels_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) {
+        let urged = (!compact).then(|| std::mem::take(&mut self.lessons.urged));
         let Some(lesson) = &mut self.lessons.open else { return };
+        let around = if compact { 2 } else { 4 };
         // not a panel, whose height would follow its contents one frame late
         let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
-        let strip = panel_frame(ui, 12, 6).show(ui, |ui| {
+        let strip = panel_frame(ui, 12, around + 2).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = spacing;
             ui.set_min_width(ui.available_width());
             lesson_ui(ui, lesson, &self.session, style, urged)
         });
         ui.spacing_mut().item_spacing.y = spacing;
-        if let Some(action) = strip.inner {
+        if let Some(action) = strip.inner.or(self.lessons.chosen.take()) {
             self.act_in_lesson(action);
         }
         let Some(lesson) = self.lessons.open.as_ref().filter(|open| !open.lesson().controls.is_empty())
         else {
             return;
         };
-        let row = Panel::top("controls of the lesson").frame(panel_frame(ui, 12, 4));
+        let row = Panel::top("controls of the lesson").frame(panel_frame(ui, 12, around));
         row.show_separator_line(false).show(ui, |ui| {
             if lesson.is_covering() {
                 ui.disable();
@@ -414,13 +426,6 @@ impl Window {
                 painter.rect_stroke(rect, 4.0, stroke, StrokeKind::Inside);
             }
         }
-    }
-
-    pub(super) fn lecturer_ui(&mut self, ctx: &egui::Context) {
-        let Some(lesson) = self.lessons.open.as_ref().filter(|_| self.lessons.notes) else { return };
-        let (action, closed) = lecturer_ui(ctx, lesson);
-        self.lessons.notes &= !closed;
-        action.into_iter().for_each(|action| self.act_in_lesson(action));
     }
 
     pub(super) fn copy_answers(&mut self, ctx: &egui::Context) {

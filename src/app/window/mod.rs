@@ -5,7 +5,7 @@
 use eframe::egui::{self, CentralPanel, Panel, RichText, Ui};
 
 use crate::app::panels::hint::guide_ui;
-use crate::app::panels::status_line::{self, covered_ui, status_ui};
+use crate::app::panels::status_line::{self, covered_ui, has_column, status_ui};
 use crate::app::panels::{controls, notes, transport};
 use crate::app::session::lesson::Records;
 use crate::app::ui::settings::Settings;
@@ -21,9 +21,12 @@ use layouts::{Arrangement, Room};
 /// Width in points of the column of controls that opens beside the views.
 const MORE: f32 = 276.0;
 
-const MENU: f32 = 28.0;
+/// Height in points of the menu bar, and in a compact window.
+const MENU: (f32, f32) = (28.0, 26.0);
 /// Height in points of the bar with the time, and in a compact window.
-const TRANSPORT: (f32, f32) = (56.0, 46.0);
+const TRANSPORT: (f32, f32) = (56.0, 36.0);
+/// Space in points above and below the bars with the time and the controls, and in a compact window.
+const AROUND_BAR: (i8, i8) = (4, 2);
 /// Space around the cards: the bars above and below and the controls have their own.
 const MARGIN: egui::Margin = egui::Margin { left: GAP as i8, right: GAP as i8, top: 0, bottom: 0 };
 /// Height in points of the guide line, whatever it says.
@@ -38,6 +41,7 @@ mod kept;
 mod keys;
 pub mod layouts;
 pub mod leave;
+mod lecturer;
 mod lessons;
 mod measured_dialog;
 mod menu;
@@ -50,6 +54,7 @@ mod writing;
 
 pub use command::Command;
 pub use figure::Figures;
+pub use lecturer::Place;
 pub use measured_dialog::MeasuredDialog;
 pub use state::Window;
 pub use wanted::Wanted;
@@ -112,7 +117,7 @@ impl Window {
         if self.filled.is_some() {
             // the view has the whole window
         } else if self.lessons.open.is_some() {
-            self.lesson_panels_ui(ui, &style);
+            self.lesson_panels_ui(ui, &style, compact && has_column(ui));
         } else {
             commands.extend(self.controls_ui(ui, compact));
             self.session.follow_best();
@@ -161,9 +166,10 @@ impl Window {
     /// Menu bar, status line and transport bar; a view over the window leaves the last. Returns the commands
     /// that were chosen.
     fn bars_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) -> Vec<Command> {
-        let (line, covered) = (panel_frame(ui, 12, 4), self.motion_is_covered());
+        let around = if compact { AROUND_BAR.1 } else { AROUND_BAR.0 };
+        let (line, covered) = (panel_frame(ui, 12, around), self.motion_is_covered());
         let chosen = match self.filled {
-            None => self.head_ui(ui, style),
+            None => self.head_ui(ui, style, compact),
             Some(_) if covered => Vec::new(),
             Some(_) => {
                 self.announcer.say(ui, &self.session.sentence());
@@ -182,17 +188,27 @@ impl Window {
         chosen
     }
 
-    /// Menu bar and status line. Returns the commands that were chosen.
-    fn head_ui(&mut self, ui: &mut Ui, style: &Style) -> Vec<Command> {
-        let bar = Panel::top("menu").frame(panel_frame(ui, 8, 2)).exact_size(MENU);
+    /// Menu bar and status line, beside which a compact window has the buttons of an open lesson. Returns the
+    /// commands that were chosen.
+    fn head_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) -> Vec<Command> {
+        let (height, around) = if compact { (MENU.1, 1) } else { (MENU.0, 2) };
+        let bar = Panel::top("menu").frame(panel_frame(ui, 8, around)).exact_size(height);
         let bar = bar
             .show_separator_line(false)
             .show(ui, |ui| menu::Menus { window: self, chosen: Vec::new() }.ui(ui));
         let covered = self.motion_is_covered();
         let status = Panel::top("status").frame(panel_frame(ui, 12, 2)).exact_size(status_line::height(ui));
-        status.show_separator_line(false).show(ui, |ui| match covered {
-            true => covered_ui(ui, !self.covered),
-            false => status_ui(ui, &mut self.session, &mut self.announcer, style),
+        let leads = compact && has_column(ui) && self.lessons.open.is_some();
+        status.show_separator_line(false).show(ui, |ui| {
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                if leads {
+                    self.lesson_navigation_ui(ui, style);
+                }
+                ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| match covered {
+                    true => covered_ui(ui, !self.covered),
+                    false => status_ui(ui, &mut self.session, &mut self.announcer, style, !leads),
+                });
+            });
         });
         bar.inner
     }
@@ -200,7 +216,7 @@ impl Window {
     /// The controls: in a compact window a row, else a column with the notes. Returns the chosen command.
     fn controls_ui(&mut self, ui: &mut Ui, compact: bool) -> Option<Command> {
         if compact {
-            let line = panel_frame(ui, 12, 4);
+            let line = panel_frame(ui, 12, AROUND_BAR.1);
             Panel::top("controls row").frame(line).show_separator_line(false).show(ui, |ui| {
                 ui.set_height(CONTROL);
                 controls::row_ui(ui, &mut self.session, &mut self.more);

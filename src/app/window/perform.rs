@@ -150,7 +150,7 @@ impl Window {
             Command::LeaveLesson => self.leave_lesson(),
             Command::LessonAnew => self.begin_lesson_anew(),
             Command::CopyAnswers => self.copy_answers(ctx),
-            Command::LecturerNotes => self.lessons.notes = !self.lessons.notes,
+            Command::LecturerNotes => self.lessons.notes.is_open = !self.lessons.notes.is_open,
             Command::Glossary => self.glossary = true,
             Command::Notes => self.show_notes(),
             Command::Shortcuts => self.shortcuts = Some(ctx.input(|input| input.time)),

@@ -104,6 +104,17 @@ fn lacking(asked: &Condition, found: &Value, on_stops: bool) -> String {
     }
 }
 
+fn bounds(condition: &Condition) -> Vec<f64> {
+    match condition {
+        Condition::AtLeast(_, bound)
+        | Condition::AtMost(_, bound)
+        | Condition::Above(_, bound)
+        | Condition::Below(_, bound) => vec![*bound],
+        Condition::Between(_, low, high) => vec![*low, *high],
+        _ => Vec::new(),
+    }
+}
+
 /// Why a condition on one field does not hold.
 fn lacking_field(asked: &Condition, found: &Value, on_stops: bool) -> String {
     let field = asked.field().unwrap_or_default();
@@ -125,7 +136,12 @@ fn lacking_field(asked: &Condition, found: &Value, on_stops: bool) -> String {
                 _ if field.ends_with("_share") => (100.0 * number, "%".to_owned()),
                 _ => (*number, unit.to_owned()),
             };
-            let value = if scaled.fract() == 0.0 { scaled.to_string() } else { three(scaled) };
+            // a share as the sentence and the table have it, unless that is a bound
+            let is_bound = |whole: f64| bounds(condition).iter().any(|bound| whole == 100.0 * bound);
+            let value = match scaled.round() {
+                whole if scaled == whole || unit == "%" && !is_bound(whole) => whole.to_string(),
+                _ => three(scaled),
+            };
             let value = format!("{value} {unit}");
             let too = match condition {
                 Condition::AtLeast(..) | Condition::Above(..) => "too small".to_owned(),
@@ -288,7 +304,10 @@ mod tests {
         let speed = Condition::AtLeast(name("result.rms_velocity_m_per_s"), 0.05);
         assert_eq!(text(speed, Value::Number(0.0421)), "Not yet: the RMS velocity is 42.1 mm/s, too small.");
         let share = Condition::Below(name("result.impact_share"), 0.8);
-        assert!(text(share, Value::Number(0.93)).ends_with(" is 93 %, too large."));
+        for (found, words) in [(0.93, "93"), (0.928, "93"), (0.803, "80.3")] {
+            let text = text(share.clone(), Value::Number(found));
+            assert!(text.ends_with(&format!(" is {words} %, too large.")), "{text}");
+        }
         let count = |wanted: &str| Condition::Is(name("result.crossings"), wanted.to_owned());
         assert_eq!(text(count("3"), Value::Number(1.0)), "Not yet: it crosses once, not 3 times.");
         let least = Condition::AtLeast(name("result.crossings"), 1.0);

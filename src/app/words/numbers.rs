@@ -41,6 +41,9 @@ pub fn shown(value: f64, least: usize) -> String {
 
 /// The same, with all digits of the number.
 pub fn exact(value: f64, least: usize) -> String {
+    if value.is_infinite() {
+        return if value > 0.0 { "\u{221e}" } else { "\u{2212}\u{221e}" }.to_owned();
+    }
     if value != 0.0 && !(1e-6..1e9).contains(&value.abs()) {
         return format!("{value:e}");
     }
@@ -142,8 +145,11 @@ pub fn speed(m_per_s: f64) -> String {
     if mm < 9.95 { format!("{mm:.1}") } else { format!("{mm:.0}") }
 }
 
-/// Length in mm: one decimal, two below 1 mm.
+/// Length in mm: one decimal, two below 1 mm, none from 100 mm on.
 pub fn mm(m: f64) -> String {
+    if m.abs() >= 0.09995 {
+        return format!("{:.0}", m * 1e3);
+    }
     // the sum with 0.0 turns -0.0 into 0.0
     let tenths = (m * 1e4).round() / 10.0 + 0.0;
     if tenths == 0.0 || m.abs() >= 0.95e-3 { format!("{tenths:.1}") } else { format!("{:.2}", m * 1e3) }
@@ -158,11 +164,15 @@ pub fn limit_mm(mm: f64) -> String {
     }
 }
 
-/// Energy in mJ with two decimals, or with three significant digits, below 1 µJ in a unit that suits it.
+/// Energy in mJ with two decimals, fewer where three digits stand before them, or with three significant
+/// digits: from 1 J on in J, and below 1 µJ in a unit that suits it.
 pub fn energy(j: f64) -> String {
     let mj = j.max(0.0) * 1e3;
+    if mj >= 999.5 {
+        return format!("{} J", three(j));
+    }
     if mj == 0.0 || mj >= 0.1 {
-        return format!("{mj:.2} mJ");
+        return format!("{mj:.0$} mJ", decimals_for(mj).min(2));
     }
     if mj >= 1e-3 {
         return format!("{} mJ", significant(mj, 3));
@@ -185,10 +195,28 @@ pub fn mm_beside(m: f64, stops: (Option<f64>, Option<f64>)) -> String {
     std::iter::once(mm(m)).chain(longer).find(|text| keeps_side(text)).unwrap_or_else(|| mm(m))
 }
 
+/// Length in m from which on lengths are given in m.
+const METRE: f64 = 0.9995;
+
+/// A displacement in m near stops in m, with its unit: as `mm_beside` has it, or in m.
+pub fn length_beside(m: f64, stops: (Option<f64>, Option<f64>)) -> String {
+    if m.abs() >= METRE { format!("{} m", three(m)) } else { format!("{} mm", mm_beside(m, stops)) }
+}
+
+/// The factor from m to the unit in which a row of lengths up to `largest` in m is given, and that unit.
+pub fn length_unit(largest: f64) -> (f64, &'static str) {
+    if largest >= METRE { (1.0, "m") } else { (1e3, "mm") }
+}
+
 /// A range in m near stops in m as text, `between 5.6 and 7.3 mm`; its decimals distinguish the ends.
 pub fn between(low: f64, high: f64, stops: (Option<f64>, Option<f64>)) -> String {
-    let text = |m: f64, decimals: usize| format!("{:.decimals$}", m * 1e3 + 0.0);
+    let (factor, unit) = length_unit(low.abs().max(high.abs()));
+    let text = |m: f64, decimals: usize| format!("{:.decimals$}", m * factor + 0.0);
     let apart = |decimals: &usize| text(low, *decimals) != text(high, *decimals);
+    if unit == "m" {
+        let decimals = (2..=6).find(apart).unwrap_or(2);
+        return format!("between {} and {} m", text(low, decimals), text(high, decimals));
+    }
     match (1..=6).find(apart) {
         Some(1) => format!("between {} and {} mm", mm_beside(low, stops), mm_beside(high, stops)),
         Some(decimals) => format!("between {} and {} mm", text(low, decimals), text(high, decimals)),
@@ -260,8 +288,11 @@ mod tests {
 
     #[test]
     fn an_energy_has_the_unit_that_suits_it() {
-        let texts = [9.2e-4, 1.2, 7.87e-5, 5.12e-12, 4.56e-8, 0.0, -1.0].map(energy);
-        assert_eq!(texts, ["0.92 mJ", "1200.00 mJ", "0.0787 mJ", "5.12 pJ", "45.6 nJ", "0.00 mJ", "0.00 mJ"]);
+        let texts = [9.2e-4, 1.2, 0.25, 7.87e-5, 5.12e-12, 4.56e-8, 0.0, -1.0].map(energy);
+        assert_eq!(
+            texts,
+            ["0.92 mJ", "1.20 J", "250 mJ", "0.0787 mJ", "5.12 pJ", "45.6 nJ", "0.00 mJ", "0.00 mJ"]
+        );
     }
 
     #[test]
@@ -269,7 +300,8 @@ mod tests {
         let open = (None, None);
         assert_eq!(between(5.61e-3, 7.29e-3, open), "between 5.6 and 7.3 mm");
         assert_eq!(between(6.0012e-3, 6.0037e-3, open), "between 6.001 and 6.004 mm");
-        assert_eq!(between(-1.000_01, -1.0, open), "between -1000.01 and -1000.00 mm");
+        assert_eq!(between(-1.0001, -1.0, open), "between -1.0001 and -1.0000 m");
+        assert_eq!(between(-1.5363, 1.5, open), "between -1.54 and 1.50 m");
         assert_eq!(between(2e-3, 2e-3, open), "at 2.0 mm");
     }
 
@@ -282,6 +314,8 @@ mod tests {
         // beyond a compliant stop
         assert_eq!(mm_beside(1.52e-3, stops(1.5)), "1.52");
         assert_eq!(mm_beside(7.9e-3, (None, None)), "7.9");
+        let lengths = [1.4435, 1.5363, 0.2345, 0.0999, 7.9e-3].map(|m| length_beside(m, (None, None)));
+        assert_eq!(lengths, ["1.44 m", "1.54 m", "234 mm", "99.9 mm", "7.9 mm"]);
         assert_eq!(between(-2.25e-3, 1.11e-3, stops(2.25)), "between -2.25 and 1.1 mm");
     }
 }

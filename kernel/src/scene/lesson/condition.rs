@@ -81,6 +81,11 @@ impl Condition {
         }
     }
 
+    /// The starts of this condition and of all its parts.
+    pub fn all_starts(&self) -> Vec<&Start> {
+        self.starts().iter().chain(self.parts().iter().flat_map(Self::all_starts)).collect()
+    }
+
     /// Calls `each` with every bound and its field, including those of all parts.
     pub fn for_each_bound(&mut self, each: &mut impl FnMut(&str, &mut f64)) {
         match self {

@@ -161,6 +161,15 @@ impl Step {
         }
     }
 
+    /// The conditions of its options, or its goal.
+    pub fn conditions(&self) -> Vec<&Condition> {
+        match self {
+            Self::Say(_) | Self::Explain(_) => Vec::new(),
+            Self::Predict { options, .. } => options.iter().map(|option| &option.holds).collect(),
+            Self::Do { goal, .. } => vec![goal],
+        }
+    }
+
     /// All texts that it shows.
     fn texts_mut(&mut self) -> Vec<&mut String> {
         match self {

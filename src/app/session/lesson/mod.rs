@@ -12,8 +12,8 @@ use std::time::Duration;
 
 use crate::app::task::{Background, Wake};
 use crate::app::words::lesson::bold_words;
-use crate::scene::lesson::{Choice, LESSONS, Lesson, LessonDocument, Step};
-use crate::scene::{Document, Scene, Source, arguments};
+use crate::scene::lesson::{Choice, Condition, LESSONS, Lesson, LessonDocument, Step};
+use crate::scene::{Document, Scene, Source, Start, arguments};
 use crate::study::{Lack, Subject, Task, Unjudged, goal_lack, options_that_hold};
 
 use super::Session;
@@ -163,6 +163,24 @@ impl OpenLesson {
     /// The scene of the answer to a prediction, while it is covered.
     pub fn asked(&self) -> Option<&Scene> {
         self.is_covering().then(|| &self.document.end(self.progress.step).scene)
+    }
+
+    /// The starts that the conditions of the present step name, or else those of the last step before it that
+    /// names some: displacement in m and velocity in m/s, each once.
+    pub fn starts(&self) -> Vec<(f64, f64)> {
+        let steps = &self.lesson().steps[..=self.progress.step];
+        let of_step = |step: &Step| {
+            let mut starts = Vec::new();
+            for start in step.conditions().into_iter().flat_map(Condition::all_starts) {
+                if let Start::At { x_mm, v_m_per_s, .. } = start
+                    && !starts.contains(&(x_mm * 1e-3, *v_m_per_s))
+                {
+                    starts.push((x_mm * 1e-3, *v_m_per_s));
+                }
+            }
+            starts
+        };
+        steps.iter().rev().map(of_step).find(|starts| !starts.is_empty()).unwrap_or_default()
     }
 
     /// Whether a view is covered until the first prediction has been shown: one that tells the answer, unless

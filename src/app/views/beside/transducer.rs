@@ -11,6 +11,8 @@ use super::{MIN_POLE, POLE, Pen, Places};
 const WINDING: (f32, f32) = (72.0, 0.1);
 /// Thickness in points of the wires on each side of a coil.
 const WOUND: f32 = 7.0;
+/// Distance in points of a coil from the body, clear of the feet of the stops.
+const CLEAR: f32 = 6.0;
 /// Number of wires in a row of a coil.
 const TURNS: usize = 18;
 /// Width in points of a piezoelectric layer.
@@ -83,10 +85,10 @@ impl Pen<'_> {
         let Places { bottom, body, zero, rect, .. } = *self.places;
         let length = 2.0 * WINDING.0.min(WINDING.1 * rect.width());
         let row = |top: f32| Rect::from_center_size(pos2(zero, top + 0.5 * WOUND), vec2(length, WOUND));
-        let pole = POLE.min(0.5 * (bottom - body.bottom() - 2.0 * WOUND) - 3.0);
+        let pole = POLE.min(0.5 * (bottom - body.bottom() - CLEAR - 2.0 * WOUND) - 2.5);
         let hangs = pole >= MIN_POLE && !self.has_magnets;
         let rows = match hangs {
-            true => [body.bottom() + 1.0, body.bottom() + WOUND + 2.0 * pole + 4.0],
+            true => [body.bottom() + CLEAR, body.bottom() + CLEAR + WOUND + 2.0 * pole + 3.0],
             false => [bottom - 2.0 * WOUND - 1.0, bottom - WOUND - 1.0],
         };
         for half in rows.map(row) {
@@ -98,7 +100,7 @@ impl Pen<'_> {
             }));
         }
         if hangs {
-            let middle = pos2(body.center().x, body.bottom() + WOUND + pole + 2.5);
+            let middle = pos2(body.center().x, body.bottom() + CLEAR + WOUND + pole + 1.5);
             let stem = [body.center_bottom(), middle - vec2(0.0, pole)];
             self.painter.line_segment(stem, Stroke::new(3.0, self.style.ink()));
             self.magnet(middle, pole, true);

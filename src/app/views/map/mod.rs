@@ -18,7 +18,7 @@ use crate::output::{Cell as DrawnCell, Chart, Marks, PlotAxis, RMS, View as MapS
 use crate::study::{SummaryField, label_and_unit};
 
 use super::pane::{Pane, kept_pane_ui};
-use super::{ViewContext, too_small_ui};
+use super::{LegendRow, ViewContext, too_small_ui};
 
 use pointer::Targets;
 
@@ -57,8 +57,19 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         (false, true) => MapShape::Cuts(map.cuts(context.session.scene())),
         (false, false) => MapShape::Cuts(Vec::new()),
     };
-    let key = (context.session.map.version(), quantity.name, look, style, shape.clone());
-    let pane = kept_pane_ui(ui, &style, area, key, || chart(map, quantity, &shape, look.surface));
+    // where height is short, what is above the map is its legend alone
+    let is_short = LegendRow::given(ui).is_some();
+    let key = (context.session.map.version(), quantity.name, look, style, shape.clone(), is_short);
+    let pane = kept_pane_ui(ui, &style, area, key, || {
+        let mut chart = map_chart(map, quantity, &shape);
+        if look.surface && quantity.shown_words().is_some() {
+            let rest = if is_short { String::new() } else { format!("; {}", chart.subtitle) };
+            chart.subtitle = format!("words have no height: seen from above{rest}");
+        } else if is_short {
+            chart.subtitle.clear();
+        }
+        chart
+    });
     let painter = ui.painter().with_clip_rect(area);
     let rect = pane.surface().or(pane.frame(MAP)).unwrap_or(area);
     let names = match pane.surface() {
@@ -100,13 +111,9 @@ pub fn map_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
 }
 
 /// The picture of the map; one that cannot be a surface is seen from above.
-fn chart(map: &Map, quantity: &SummaryField, shape: &MapShape, wants_surface: bool) -> Chart {
+fn map_chart(map: &Map, quantity: &SummaryField, shape: &MapShape) -> Chart {
     let above = || map.chart(quantity, &MapShape::Cuts(Vec::new()));
-    let mut chart = map.chart(quantity, shape).or_else(|_| above()).unwrap_or_default();
-    if wants_surface && quantity.shown_words().is_some() {
-        chart.subtitle.insert_str(0, "words have no height: seen from above; ");
-    }
-    chart
+    map.chart(quantity, shape).or_else(|_| above()).unwrap_or_default()
 }
 
 /// The drawn cell of a surface or a map.

@@ -1,7 +1,7 @@
 //! Controls over the map, its progress and its legend.
 
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
-use eframe::egui::{self, ComboBox, PopupCloseBehavior, RichText, Ui};
+use eframe::egui::{self, ComboBox, PopupCloseBehavior, Rect, RichText, Ui, UiBuilder};
 
 use crate::app::panels::controls;
 use crate::app::session::map::Mapping;
@@ -10,9 +10,9 @@ use crate::app::words::columns::{COLUMNS, ShownColumn};
 use crate::scene::SweepAxis;
 use crate::study::SummaryField;
 
-use super::super::ViewContext;
 use super::super::axes::{field_ui, range_id, range_row_ui};
 use super::super::memory::MapLook;
+use super::super::{LegendRow, ViewContext};
 
 /// Width in points of the title: a long one is cut, and whole in the list and beside the colours.
 const TITLE: f32 = 150.0;
@@ -20,11 +20,23 @@ const TITLE: f32 = 150.0;
 /// Width in points below which the choices take two rows.
 const NARROW: f32 = 1080.0;
 
+/// Width in points that the choice of the axes needs in the row of the card, with all that follows it.
+const AXES: f32 = 430.0;
+
 /// Height in points from which on the rows have space between them.
 const LOW: f32 = 320.0;
 
-/// Title, choices, progress.
+/// Title, choices, progress; in the row of the card where that has room for them.
 pub fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
+    if let Some(row) = LegendRow::given(ui) {
+        let area = ui.available_rect_before_wrap();
+        let place =
+            Rect::from_x_y_ranges(row.left + 4.0..=row.right, area.top()..=area.top() + LegendRow::HEIGHT);
+        let middle = egui::Layout::left_to_right(egui::Align::Center);
+        ui.scope_builder(UiBuilder::new().max_rect(place).layout(middle), |ui| row_ui(ui, context));
+        ui.advance_cursor_after_rect(place);
+        return;
+    }
     // less spacing for a low map
     ui.spacing_mut().item_spacing.y = if ui.available_height() > LOW { 4.0 } else { 0.0 };
     let narrow = ui.available_width() < NARROW;
@@ -43,6 +55,37 @@ pub fn tools_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
             ui.horizontal_wrapped(|ui| axes_ui(ui, context));
         }
     });
+}
+
+/// The quantity, the axes where they have room, a menu of all other choices, and the progress.
+fn row_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
+    (ui.spacing_mut().interact_size.y, ui.spacing_mut().button_padding.y) = (LegendRow::HEIGHT, 0.0);
+    quantity_ui(ui, &mut context.session.map);
+    let has_axes = ui.available_width() >= AXES;
+    if has_axes {
+        fields_ui(ui, context);
+    }
+    let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    MenuButton::new("Options").config(config).ui(ui, |ui| {
+        // a menu style would hide that the numbers can be typed
+        *ui.style_mut() = (*ui.ctx().global_style()).clone();
+        ui.label("Every cell is a run of its own from rest.");
+        ui.horizontal(|ui| look_ui(ui, &mut context.memory.map_look, context.session.map.quantity()));
+        trail_items_ui(ui, context);
+        ui.separator();
+        if !has_axes {
+            ui.horizontal(|ui| fields_ui(ui, context));
+        }
+        if let Some(axes) = context.session.map_axes() {
+            ranges_items_ui(ui, context, &axes);
+        }
+        ui.separator();
+        ui.horizontal(|ui| progress_ui(ui, context));
+    });
+    let mapping = &context.session.map;
+    if let Some(map) = mapping.map().filter(|_| mapping.is_running()) {
+        bar_ui(ui, (map.known(), map.len()), 24.0);
+    }
 }
 
 /// Choice of the quantity, by groups of columns.
@@ -87,6 +130,15 @@ fn look_ui(ui: &mut Ui, look: &mut MapLook, quantity: &SummaryField) {
 }
 
 fn axes_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
+    fields_ui(ui, context);
+    let Some(axes) = context.session.map_axes() else { return };
+    ranges_ui(ui, context, &axes);
+    trail_ui(ui, context);
+    controls::best_stops_ui(ui, context.session, "Best stops");
+}
+
+/// Choice of the fields of both axes.
+fn fields_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let Some(axes) = context.session.map_axes() else { return };
     let known = context.session.map_fields();
     let mut wanted: Option<(usize, String)> = None;
@@ -96,9 +148,6 @@ fn axes_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         let role = if i == 0 { "across" } else { "up" };
         wanted = field_ui(ui, axis, role, &choices).map(|path| (i, path)).or(wanted);
     }
-    ranges_ui(ui, context, &axes);
-    trail_ui(ui, context);
-    controls::best_stops_ui(ui, context.session, "Best stops");
     if let Some((i, path)) = wanted {
         let mut chosen = axes;
         chosen[i] = context.session.map_axis(&path);
@@ -111,14 +160,18 @@ fn trail_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     let (button, _) = MenuButton::new("Trail").config(config).ui(ui, |ui| {
         *ui.style_mut() = (*ui.ctx().global_style()).clone();
-        ui.checkbox(&mut context.memory.map_look.trail, "Show where the scene has been");
-        let trail = &mut context.session.map.trail;
-        if ui.add_enabled(!trail.is_clear(), egui::Button::new("Clear the trail")).clicked() {
-            trail.clear();
-            ui.close();
-        }
+        trail_items_ui(ui, context);
     });
     button.on_hover_text("Where the live motion has been since the scene was opened, as a line that fades.");
+}
+
+fn trail_items_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
+    ui.checkbox(&mut context.memory.map_look.trail, "Show where the scene has been");
+    let trail = &mut context.session.map.trail;
+    if ui.add_enabled(!trail.is_clear(), egui::Button::new("Clear the trail")).clicked() {
+        trail.clear();
+        ui.close();
+    }
 }
 
 /// Menu with the ends and steps of both axes.
@@ -128,28 +181,32 @@ fn ranges_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axes: &[SweepAxis; 2]) 
     let (button, _) = menu.ui(ui, |ui| {
         // a menu style would hide that the numbers can be typed
         *ui.style_mut() = (*ui.ctx().global_style()).clone();
-        let mut wanted = axes.clone();
-        egui::Grid::new("ranges").num_columns(7).show(ui, |ui| {
-            for (axis, role) in wanted.iter_mut().zip(["across", "up"]) {
-                range_row_ui(ui, axis, role);
-            }
-        });
-        if wanted != *axes {
-            match context.session.map_problem(&wanted) {
-                None => context.session.map.choose(Some(wanted)),
-                Some((i, part, why)) => {
-                    refuse(ui, range_id(["across", "up"][i], part), why);
-                }
-            }
-        }
-        if ui.button("As the scene has it").on_hover_text("The ranges that the map began with.").clicked() {
-            context.session.map.choose(None);
-        }
+        ranges_items_ui(ui, context, axes);
     });
     button.on_hover_text(
         "Ends and steps of both axes. A box drawn over the map enlarges it as well; on the cross-hair the \
          keys + and - do.",
     );
+}
+
+fn ranges_items_ui(ui: &mut Ui, context: &mut ViewContext<'_>, axes: &[SweepAxis; 2]) {
+    let mut wanted = axes.clone();
+    egui::Grid::new("ranges").num_columns(7).show(ui, |ui| {
+        for (axis, role) in wanted.iter_mut().zip(["across", "up"]) {
+            range_row_ui(ui, axis, role);
+        }
+    });
+    if wanted != *axes {
+        match context.session.map_problem(&wanted) {
+            None => context.session.map.choose(Some(wanted)),
+            Some((i, part, why)) => {
+                refuse(ui, range_id(["across", "up"][i], part), why);
+            }
+        }
+    }
+    if ui.button("As the scene has it").on_hover_text("The ranges that the map began with.").clicked() {
+        context.session.map.choose(None);
+    }
 }
 
 fn progress_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
@@ -166,10 +223,7 @@ fn progress_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
         if ui.button("Stop").on_hover_text("Leave the map as it is now.").clicked() {
             mapping.stop();
         }
-        let share = known as f32 / all as f32;
-        let bar = egui::ProgressBar::new(share).desired_width(50.0).desired_height(12.0);
-        ui.add(bar).on_hover_text(format!("{known} of {all} runs"));
-        return;
+        return bar_ui(ui, (known, all), 50.0);
     }
     let (text, hover) = if known == all {
         let coarse = map.coarse_after.unwrap_or(map.took).as_secs_f64();
@@ -181,4 +235,10 @@ fn progress_ui(ui: &mut Ui, context: &mut ViewContext<'_>) {
     if ui.button(text).on_hover_text(hover).clicked() {
         mapping.go_on();
     }
+}
+
+/// How many of all runs are done.
+fn bar_ui(ui: &mut Ui, (known, all): (usize, usize), width: f32) {
+    let bar = egui::ProgressBar::new(known as f32 / all as f32).desired_width(width).desired_height(12.0);
+    ui.add(bar).on_hover_text(format!("{known} of {all} runs"));
 }

@@ -4,7 +4,7 @@ use crate::dynamics::{First, Firsts, Model, Outcome, Place, Regime, STANDARD_GRA
 use crate::scene::{Excitation, Scene, Stops};
 use crate::study::Thresholds;
 
-use super::super::numbers::{between, grams, limit_mm, mm_beside, power, seconds, speed, times};
+use super::super::numbers::{between, grams, length_beside, limit_mm, power, seconds, speed, times};
 use super::super::wells::wells_between;
 use super::remedy::{amplitude, remedy};
 use super::{Kind, Sentence, ended};
@@ -131,7 +131,7 @@ pub fn driven(facts: &DrivenMotion) -> Sentence {
         }
         Regime::OneWell => {
             let symmetric = (low + high).abs() < 0.02 * reach;
-            let swing = if symmetric { format!("±{} mm", mm_beside(reach, stops)) } else { range };
+            let swing = if symmetric { format!("±{}", length_beside(reach, stops)) } else { range };
             format!("No barrier: one well, so nothing to cross; {swings} {swing}, {rms}.")
         }
         Regime::Rest if scene.stops == Stops::None => format!("Resting: {stays} where it is{from}."),
@@ -164,11 +164,10 @@ pub fn driven(facts: &DrivenMotion) -> Sentence {
             format!("Irregular: {crosses} in every period, never twice alike; {rms}.")
         }
         Regime::Irregular => format!(
-            "Irregular: {crosses} in {}{} of {periods:.0} periods, without a rhythm; {rms}, reach about {} \
-             mm.",
+            "Irregular: {crosses} in {}{} of {periods:.0} periods, without a rhythm; {rms}, reach about {}.",
             facts.about(facts.origin + summary.window.1),
             summary.crossing_periods,
-            mm_beside(reach, stops)
+            length_beside(reach, stops)
         ),
         Regime::Interwell | Regime::Crossing => interwell(facts, crosses, &rms, &range),
     };
@@ -206,7 +205,7 @@ fn interwell(facts: &DrivenMotion, crosses: &str, rms: &str, range: &str) -> Str
         (Some((_, limit)), Some(_)) => format!("from stop to stop at ±{} mm", limit_mm(limit * 1e3)),
         (None, Some(_)) => range.to_owned(),
         (_, None) => {
-            format!("reaching {} mm", mm_beside(summary.max_abs_x.unwrap_or(0.0), (left, right)))
+            format!("reaching {}", length_beside(summary.max_abs_x.unwrap_or(0.0), (left, right)))
         }
     };
     let impacts = share.map_or_else(String::new, |share| format!(", impacts take {share:.0} % of the work"));

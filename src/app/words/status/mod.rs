@@ -11,7 +11,7 @@ use crate::dynamics::{Model, Outcome, Phase, Sample};
 use crate::study::{Standing, ended_remedy, standing};
 
 pub use super::kind::Kind;
-use super::numbers::{energy, mm, newtons};
+use super::numbers::{energy, length_beside, newtons};
 pub use super::numbers::{grams, mm_beside, seconds, speed};
 use super::wells::well_name;
 pub use driven::{DrivenMotion, driven};
@@ -65,12 +65,12 @@ pub fn held(model: &Model, state: &Sample) -> Sentence {
     let outward = (state.x - middle) * force < 0.0;
     let largest =
         model.mechanism().landscape.extrema.iter().map(|extremum| extremum.force.abs()).fold(0.0, f64::max);
-    let (place, size) = (mm(state.x), force.abs());
+    let (place, size) = (length_beside(state.x, model.stop_positions()), force.abs());
     let text = if size <= NO_PULL * largest || size == 0.0 {
-        format!("Held at {place} mm: nothing pulls.")
+        format!("Held at {place}: nothing pulls.")
     } else {
         let way = if outward { "outwards" } else { "inwards" };
-        format!("Held at {place} mm: it pulls {way} with {}.", newtons(size))
+        format!("Held at {place}: it pulls {way} with {}.", newtons(size))
     };
     Sentence::new(Kind::Other, text)
 }
@@ -78,15 +78,15 @@ pub fn held(model: &Model, state: &Sample) -> Sentence {
 pub fn ended(model: &Model, outcome: Outcome) -> Sentence {
     let at = outcome.ended_at().unwrap_or(0.0);
     let (low, high) = model.mechanism().curve.domain();
-    let end = mm(low.abs().min(high));
+    let end = length_beside(low.abs().min(high), (None, None));
     let remedy = ended_remedy(model, outcome).unwrap_or_default();
     let why = match outcome {
         Outcome::LeftTable { .. } if model.mechanism().flexures.is_some() => format!(
-            "the mass went further than the flexures were computed, {end} mm. Set stops inside that, or \
+            "the mass went further than the flexures were computed, {end}. Set stops inside that, or \
              shake less."
         ),
         Outcome::LeftTable { .. } => format!(
-            "the mass left the force table, which ends at {end} mm. Set stops inside it or extend the table."
+            "the mass left the force table, which ends at {end}. Set stops inside it or extend the table."
         ),
         Outcome::ImpactBudget { count, .. } => {
             format!("{count} impacts are more than it may make. Lower the restitution.")

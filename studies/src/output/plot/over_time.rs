@@ -42,7 +42,8 @@ impl RunPanel {
         }
     }
 
-    /// Its panel with these lines over this axis.
+    /// Its panel with these lines over this axis. The stops, the wells and the impacts on the stops stand in
+    /// the panel of the displacement alone.
     pub fn over_time(self, up: PlotAxis, lines: Vec<Layer>, beside: &OverTime) -> Panel {
         let mut panel = Panel::new(beside.time.clone(), up);
         panel.rests(beside);
@@ -56,7 +57,8 @@ impl RunPanel {
             panel.draw(Role::Reference, Marks::Horizontals(vec![0.0]));
         }
         panel.layers.extend(lines);
-        for (times, side) in beside.impacts.iter().zip([Side::Bottom, Side::Top]) {
+        let impacts = beside.impacts.iter().filter(|_| self == Self::Displacement);
+        for (times, side) in impacts.zip([Side::Bottom, Side::Top]) {
             let at: Vec<f64> = times.iter().copied().filter(|t| beside.time.contains(*t)).collect();
             if !at.is_empty() {
                 panel.layer(Role::Impact, "impact", Marks::Ticks(at, side));

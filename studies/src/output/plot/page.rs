@@ -101,9 +101,10 @@ pub struct Room {
     pub between: f64,
 }
 
-/// Height of a legend over that of such a place, at most, and the height below which its horizontal axis has
-/// no name.
-const LEGEND_SHARE: f64 = 1.0 / 6.0;
+/// Height of a legend over that of such a place, at most; one that needs more has its rows closer together, by
+/// the second number, and may have the last share.
+const LEGEND_SHARE: (f64, f64, f64) = (1.0 / 6.0, 0.82, 0.3);
+/// The height of such a place below which its horizontal axis has no name.
 pub(super) const NAMELESS: f64 = 340.0;
 
 /// An entry of a legend, placed from the legend's upper left corner on.
@@ -170,7 +171,7 @@ impl Chart {
         let beside = room.map_or(0.0, |room| room.beside);
         let mut legend = Legend::new(&named, width - left - margin, beside);
         if room.is_some() {
-            legend.keep((LEGEND_SHARE * height / ROW).max(1.0) as usize);
+            legend = legend.within(height);
         }
         let is_low = height < LOW_PANE;
         let has_subtitle = !is_low && !self.subtitle.is_empty();
@@ -237,6 +238,8 @@ impl Chart {
 /// A legend in rows, with its height.
 struct Legend<'a> {
     entries: Vec<Entry<'a>>,
+    /// From one row to the next after the first one.
+    step: f64,
     height: f64,
 }
 
@@ -256,20 +259,27 @@ impl<'a> Legend<'a> {
             left += width + BETWEEN_ENTRIES;
         }
         let height = if entries.is_empty() { 0.0 } else { ROW * (row as f64 + 1.0) + 10.0 };
-        Self { entries, height }
+        Self { entries, step: ROW, height }
     }
 
-    /// Keeps so many rows, and the height of one where it is empty.
-    fn keep(&mut self, rows: usize) {
-        self.entries.retain(|entry| entry.row < rows);
-        let last = self.entries.last().map_or(0, |entry| entry.row);
-        self.height = ROW * (last as f64 + 1.0) + 10.0;
+    /// The same within this height, in which it has that of a row where it is empty.
+    fn within(mut self, height: f64) -> Self {
+        let (share, closer, most) = LEGEND_SHARE;
+        let bottom =
+            |step: f64, entry: Option<&Entry>| ROW + step * entry.map_or(0, |entry| entry.row) as f64;
+        if bottom(ROW, self.entries.last()) > (share * height).max(ROW) {
+            let step = closer * ROW;
+            self.step = step;
+            self.entries.retain(|entry| entry.row == 0 || bottom(step, Some(entry)) <= most * height);
+        }
+        self.height = bottom(self.step, self.entries.last()) + 10.0;
+        self
     }
 
     /// Draws it with its upper left corner at a place.
     fn draw(&self, figure: &mut Figure, (left, top): (f64, f64), theme: &Theme) {
         for Entry { sample, words, size, left: from, row } in &self.entries {
-            let (x, middle) = (left + from, top + ROW * (*row as f64 + 0.5));
+            let (x, middle) = (left + from, top + (0.5 * ROW + self.step * *row as f64));
             entry(figure, theme, *sample, Area::new(x, middle - 12.0, x + SAMPLE, middle + 12.0));
             let at = (x + SAMPLE + GAP, middle + 0.5 * size * font::CAPITAL);
             figure.text(Text::new(*words, at, *size, theme.ink));

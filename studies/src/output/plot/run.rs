@@ -200,10 +200,14 @@ impl Seen<'_> {
         let column = |name: &str| trace.rests.numbers(name).unwrap_or_default();
         let spans = column("from_s").iter().copied().zip(column("to_s").iter().copied());
         let seen = spans.filter(|(from, to)| *to >= trace.shown_from && *from <= trace.shown_to);
+        let times = trace.impacts.numbers("t_s").unwrap_or_default();
+        let impacts = times.iter().zip(trace.impacts.words("side"));
+        let on =
+            |side: &str| impacts.clone().filter(|impact| *impact.1 == side).map(|impact| *impact.0).collect();
         OverTime {
             time: PlotAxis::between(trace.shown_from, trace.shown_to, "time (s)"),
             rests: (seen.collect(), self.rests),
-            impacts: Default::default(),
+            impacts: [on("left"), on("right")],
             stops: self.stops_mm(),
             wells: self.wells.iter().map(|well| well * 1e3).collect(),
         }
@@ -215,15 +219,7 @@ impl Seen<'_> {
         let pairs = self.rows(trace.shown_from).map(|i| (self.t[i], values[i] * scale));
         let marks = Marks::Trace(pairs.filter(|pair| pair.1.is_finite()).collect());
         let line = Layer::new(kind.role(trace.has_load), "", marks);
-        let mut beside = self.beside();
-        if kind == RunPanel::Displacement {
-            let times = trace.impacts.numbers("t_s").unwrap_or_default();
-            let impacts = times.iter().zip(trace.impacts.words("side"));
-            beside.impacts = ["left", "right"].map(|side| {
-                impacts.clone().filter(|impact| *impact.1 == side).map(|impact| *impact.0).collect()
-            });
-        }
-        Panel { height, ..kind.over_time(up, vec![line], &beside) }
+        Panel { height, ..kind.over_time(up, vec![line], &self.beside()) }
     }
 
     /// Potential energy in J, counted from the bottom of the deeper well or, without wells, from its least
