@@ -52,7 +52,9 @@ pub fn run(spec: Option<&str>, refused: impl FnOnce(CannotRun)) -> Result<(), Ap
         .with_app_id("interwell")
         .with_inner_size([1280.0, 720.0])
         .with_min_inner_size([640.0, 400.0]);
-    let options = eframe::NativeOptions { viewport, ..eframe::NativeOptions::default() };
+    // no gradients are drawn that would need it, and it costs a processor that paints much of its time
+    let dithering = false;
+    let options = eframe::NativeOptions { viewport, dithering, ..eframe::NativeOptions::default() };
     let spec = spec.map(str::to_owned);
     let start = move |creation: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
         window::prepare(&creation.egui_ctx);

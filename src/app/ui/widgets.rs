@@ -15,9 +15,10 @@ pub fn dialog(ctx: &egui::Context, id: &str) -> egui::Modal {
     egui::Modal::new(egui::Id::unique(id)).frame(frame)
 }
 
-/// The frame of a panel, with margins in points.
-pub fn panel_frame(ui: &Ui, x: i8, y: i8) -> egui::Frame {
-    egui::Frame::new().fill(ui.visuals().panel_fill).inner_margin(egui::Margin::symmetric(x, y))
+/// The frame of a panel, with margins in points. It has no fill: the window is cleared to that colour, and a
+/// processor that paints would fill every pixel twice.
+pub fn panel_frame(x: i8, y: i8) -> egui::Frame {
+    egui::Frame::new().inner_margin(egui::Margin::symmetric(x, y))
 }
 
 /// A text for a label: code between backticks has letters of one width, and lines are not broken between a

@@ -390,7 +390,7 @@ impl Window {
         let around = if compact { 2 } else { 4 };
         // not a panel, whose height would follow its contents one frame late
         let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
-        let strip = panel_frame(ui, 12, around + 2).show(ui, |ui| {
+        let strip = panel_frame(12, around + 2).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = spacing;
             ui.set_min_width(ui.available_width());
             lesson_ui(ui, lesson, &self.session, style, urged)
@@ -403,7 +403,7 @@ impl Window {
         else {
             return;
         };
-        let row = Panel::top("controls of the lesson").frame(panel_frame(ui, 12, around));
+        let row = Panel::top("controls of the lesson").frame(panel_frame(12, around));
         row.show_separator_line(false).show(ui, |ui| {
             if lesson.is_covering() {
                 ui.disable();

@@ -123,18 +123,19 @@ impl Window {
             self.session.follow_best();
             is_over_views = compact && !self.hint.has_line;
             if !is_over_views {
-                let panel = Panel::top("guide").frame(panel_frame(ui, 12, 0)).exact_size(GUIDE);
+                let panel = Panel::top("guide").frame(panel_frame(12, 0)).exact_size(GUIDE);
                 let line = panel.show_separator_line(false).show(ui, |ui| self.guide_line_ui(ui, &style));
                 commands.extend(line.inner);
             }
         }
         let views = ui.available_rect_before_wrap();
-        let cards = egui::Frame::new().fill(style.panel()).inner_margin(MARGIN);
+        let cards = egui::Frame::new().inner_margin(MARGIN);
         CentralPanel::no_frame().frame(cards).show(ui, |ui| self.views_ui(ui, style));
         if is_over_views && (self.ways || self.session.best.is_shown()) && !self.covered {
             let line = egui::UiBuilder::new().max_rect(views.with_min_y(views.bottom() - GUIDE));
             ui.scope_builder(line, |ui| {
-                panel_frame(ui, 12, 0).show(ui, |ui| self.guide_line_ui(ui, &style));
+                let line = panel_frame(12, 0).fill(style.panel());
+                line.show(ui, |ui| self.guide_line_ui(ui, &style));
             });
         }
         self.pointing_ui(&ctx, &style);
@@ -167,7 +168,7 @@ impl Window {
     /// that were chosen.
     fn bars_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) -> Vec<Command> {
         let around = if compact { AROUND_BAR.1 } else { AROUND_BAR.0 };
-        let (line, covered) = (panel_frame(ui, 12, around), self.motion_is_covered());
+        let (line, covered) = (panel_frame(12, around), self.motion_is_covered());
         let chosen = match self.filled {
             None => self.head_ui(ui, style, compact),
             Some(_) if covered => Vec::new(),
@@ -192,12 +193,12 @@ impl Window {
     /// commands that were chosen.
     fn head_ui(&mut self, ui: &mut Ui, style: &Style, compact: bool) -> Vec<Command> {
         let (height, around) = if compact { (MENU.1, 1) } else { (MENU.0, 2) };
-        let bar = Panel::top("menu").frame(panel_frame(ui, 8, around)).exact_size(height);
+        let bar = Panel::top("menu").frame(panel_frame(8, around)).exact_size(height);
         let bar = bar
             .show_separator_line(false)
             .show(ui, |ui| menu::Menus { window: self, chosen: Vec::new() }.ui(ui));
         let covered = self.motion_is_covered();
-        let status = Panel::top("status").frame(panel_frame(ui, 12, 2)).exact_size(status_line::height(ui));
+        let status = Panel::top("status").frame(panel_frame(12, 2)).exact_size(status_line::height(ui));
         let leads = compact && has_column(ui) && self.lessons.open.is_some();
         status.show_separator_line(false).show(ui, |ui| {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -216,7 +217,7 @@ impl Window {
     /// The controls: in a compact window a row, else a column with the notes. Returns the chosen command.
     fn controls_ui(&mut self, ui: &mut Ui, compact: bool) -> Option<Command> {
         if compact {
-            let line = panel_frame(ui, 12, AROUND_BAR.1);
+            let line = panel_frame(12, AROUND_BAR.1);
             Panel::top("controls row").frame(line).show_separator_line(false).show(ui, |ui| {
                 ui.set_height(CONTROL);
                 controls::row_ui(ui, &mut self.session, &mut self.more);
@@ -231,8 +232,7 @@ impl Window {
             return None;
         }
         let width = if ui.ctx().content_rect().width() > 1600.0 { 300.0 } else { 250.0 };
-        let column =
-            Panel::left("controls").frame(panel_frame(ui, 12, 10)).resizable(false).exact_size(width);
+        let column = Panel::left("controls").frame(panel_frame(12, 10)).resizable(false).exact_size(width);
         let column = column.show_separator_line(false).show(ui, |ui| {
             let bottom = ui.max_rect().bottom();
             let contents = egui::ScrollArea::vertical().show(ui, |ui| {
@@ -349,6 +349,10 @@ impl eframe::App for Window {
 
     fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
         Self::ui(self, ui);
+    }
+
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        visuals.panel_fill.to_normalized_gamma_f32()
     }
 
     fn raw_input_hook(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
