@@ -273,7 +273,7 @@ fn wheel_keys_box_and_drag_choose_both_axes() {
     assert!(after[0].unwrap().0 < before[0].unwrap().0 && after[1].unwrap().0 > before[1].unwrap().0);
     assert!((length(after[0]) / length(before[0]) - 1.0).abs() < 1e-9);
     // a box
-    drag(&mut harness, at, at + vec2(60.0, 50.0), (PointerButton::Secondary, Modifiers::NONE));
+    drag(&mut harness, at, at + vec2(60.0, 30.0), (PointerButton::Secondary, Modifiers::NONE));
     let boxed = ends(&harness);
     let share = length(boxed[0]) / length(after[0]);
     // of the picture, which the column of the vertical axis is no part of

@@ -388,11 +388,11 @@ fn the_lecturers_notes_open_beside_the_window_and_where_they_were_left() {
     interwell::app::window::prepare(&ctx);
     ctx.set_embed_viewports(false);
     // the screen: what the notes were asked to be, and where they are
-    let asked: Rc<RefCell<Vec<(Option<egui::Pos2>, egui::Vec2)>>> = Rc::default();
+    let asked: Rc<RefCell<Option<egui::ViewportBuilder>>> = Rc::default();
     let shown = Rc::new(Cell::new(Rect::NOTHING));
     let (told, place) = (Rc::clone(&asked), Rc::clone(&shown));
     egui::Context::set_immediate_viewport_renderer(move |ctx, mut notes| {
-        told.borrow_mut().push((notes.builder.position, notes.builder.inner_size.unwrap()));
+        told.replace(Some(notes.builder.clone()));
         let mut input = egui::RawInput { viewport_id: notes.ids.this, ..egui::RawInput::default() };
         let view = input.viewports.entry(notes.ids.this).or_default();
         if place.get().is_positive() {
@@ -400,10 +400,9 @@ fn the_lecturers_notes_open_beside_the_window_and_where_they_were_left() {
         }
         ctx.run_ui(input, |ui| (notes.viewport_ui_cb)(ui)).textures_delta.clear();
     });
-    let frames = |window: &mut Window| {
+    let frames = |window: &mut Window| -> Option<(Option<egui::Pos2>, [f32; 2])> {
         (0..3).for_each(|_| _ = asked_of_the_screen(window, &ctx, [800.0, 600.0], [800.0, 600.0]));
-        let last = asked.borrow().last().copied();
-        last.map(|(at, size)| (at, [size.x, size.y]))
+        asked.borrow().as_ref().map(|own| (own.position, own.inner_size.unwrap().into()))
     };
     let open = || {
         let lesson = interwell::scene::lesson::LESSONS[0].name;

@@ -46,8 +46,8 @@ pub enum LessonAction {
 }
 
 /// Draws the strip, as high in every step of the lesson, with the dots of the steps and the buttons unless
-/// `urged` is `None`; else it moves the keyboard focus to the button that goes on. Returns the action that was
-/// chosen.
+/// `urged` is `None`; else it moves the keyboard focus to the button that goes on. Returns the action that
+/// was chosen.
 pub fn lesson_ui(
     ui: &mut Ui,
     lesson: &mut OpenLesson,
@@ -100,8 +100,8 @@ pub fn votes_ui(ui: &mut Ui, lesson: &OpenLesson) -> Option<LessonAction> {
     action
 }
 
-/// Height in points of the strip in a step, with all that can come below its text, which is this wide and over
-/// options has this least height.
+/// Height in points of the strip in a step, with all that can come below its text, which is this wide and
+/// over options has this least height.
 fn height_of(ui: &Ui, style: &Style, step: &Step, size: f32, (width, least): (f32, f32)) -> f32 {
     let of = |heading: &str, text: &str| {
         let mut job = job(style, heading, text, size);

@@ -176,8 +176,8 @@ fn legend(painter: &Painter, style: &Style, row: Rect, present: [bool; 3]) {
     }
 }
 
-/// The length of the bar, of a run of this length in s of which so much has been seen: the whole run, or while
-/// little of a long one has been seen, a part of it, so that what has been is more than a sliver.
+/// The length in s of the bar of a run of this length, of which so much has been seen: the whole run, or
+/// while little of a long one has been seen a part of it, so that what has been seen is more than a sliver.
 fn length_of_bar(run: f64, seen: f64) -> f64 {
     let (share, least, factor) = SEEN;
     let mut length = run;

@@ -28,6 +28,9 @@ pub const GUTTER: f32 = 62.0;
 /// Height in points of the row of a legend.
 pub const LEGEND: f32 = LegendRow::HEIGHT;
 
+/// Width in points to the left of a legend below the titles of its card.
+const LEGEND_LEFT: f32 = 8.0;
+
 /// Least radius in points of a dot that can be seen.
 const LEAST_DOT: f32 = 1.5;
 
@@ -53,9 +56,12 @@ impl Place {
     pub fn in_line(ui: &Ui, area: Rect, sense: Sense, (beside, between): (f32, f32)) -> Self {
         let unit = |points: f32| f64::from(points / UNIT);
         let row = LegendRow::of(ui, area);
+        // in line with the frame where it shares the row of the card, else in rows as long as there are
+        let shares = LegendRow::given(ui).is_some();
+        let legend = if shares { (row.left - area.left()).max(GUTTER) } else { LEGEND_LEFT };
         let room = Room {
             left: unit(GUTTER),
-            legend: unit((row.left - area.left()).max(GUTTER)),
+            legend: unit(legend),
             beside: unit(beside + area.right() - row.right),
             between: unit(between),
         };

@@ -101,8 +101,8 @@ pub struct Room {
     pub between: f64,
 }
 
-/// Height of a legend over that of such a place, at most; one that needs more has its rows closer together, by
-/// the second number, and may have the last share.
+/// Height of a legend over that of such a place, at most; one that needs more has its rows closer together,
+/// by the second number, and may have the last share.
 const LEGEND_SHARE: (f64, f64, f64) = (1.0 / 6.0, 0.82, 0.3);
 /// The height of such a place below which its horizontal axis has no name.
 pub(super) const NAMELESS: f64 = 340.0;
