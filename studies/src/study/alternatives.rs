@@ -110,7 +110,7 @@ pub fn alternatives(
             Some((field, by)) => rating.changed(&scenes[*scene], field, *by).map(|found| (None, found)),
         };
         (task.tick)();
-        task.go_on().and(done)
+        task.check_cancelled().and(done)
     };
     let done = pool.map(parts.len(), || (), work).ok()?;
     let mut rated: Vec<Rated> = Vec::new();

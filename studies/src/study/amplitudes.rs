@@ -41,7 +41,7 @@ const GROWTH: f64 = 1.02;
 const TOGETHER: usize = 32;
 
 /// The search ends at this many times the push that holds the mass.
-const MOST_PUSHES: f64 = 30.0;
+const MAX_PUSHES: f64 = 30.0;
 
 /// Steps above the least amplitude that crosses in which changes are searched.
 const GAP_STEPS: u32 = 50;
@@ -76,7 +76,7 @@ pub(super) fn crossing(
     let Some(push) = holding_push(scene, mechanism) else { return Ok(None) };
     let step = push / f64::from(FINE_STEPS);
     let mut values: Vec<f64> = (1..=2 * FINE_STEPS).map(|i| step * f64::from(i)).collect();
-    while let Some(last) = values.last().filter(|last| **last < MOST_PUSHES * push) {
+    while let Some(last) = values.last().filter(|last| **last < MAX_PUSHES * push) {
         values.push(last * GROWTH);
     }
     // rounded as reported, so that the reported value has been run
@@ -91,7 +91,7 @@ pub(super) fn crossing(
     for part in values.chunks(TOGETHER) {
         resolution = third_digit(answers.scan.last().map_or(part[0], |last| last.0));
         search.scan(&mut answers, part, resolution)?;
-        if let Some(first) = answers.first_that_does() {
+        if let Some(first) = answers.first_with_motion() {
             // the number of values run beyond it depends on where a part ends
             answers.scan.truncate(first + 1);
             break;
@@ -139,7 +139,7 @@ pub(super) fn frees_at(scene: &Scene, mechanism: &Mechanism) -> Option<f64> {
 }
 
 /// Least number of steps from the well to the middle in the search for stops; at most 2.5 times as many.
-const FEWEST_STOPS: f64 = 50.0;
+const MIN_STEPS: f64 = 50.0;
 
 /// The largest travel limit in mm inside the wells, the same on both sides, whose motion from rest is
 /// known to be interwell under the scene's excitation; `None` if there is none.
@@ -157,7 +157,7 @@ pub fn stops_that_cross(
         return Ok(None);
     };
     let well_mm = well.x.abs() * 1e3;
-    let step = round_down(well_mm / FEWEST_STOPS, &ONE_TWO_FIVE);
+    let step = round_down(well_mm / MIN_STEPS, &ONE_TWO_FIVE);
     let mut trial = Scene { start: Start::Rest, ..scene.clone() };
     for i in (1..=(well_mm / step).floor() as u32).rev() {
         let travel_limit_mm = multiple(f64::from(i) * step, step);
@@ -166,7 +166,7 @@ pub fn stops_that_cross(
         let (model, request) = followed(model, None);
         let run = model.run(&Request { cancel: Some(task.cancel), ..request });
         (task.tick)();
-        task.go_on()?;
+        task.check_cancelled()?;
         if Onset::Interwell.verdict(&run.summary) == (Verdict { does: true, known: true }) {
             return Ok(Some(travel_limit_mm));
         }

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use crate::dynamics::Model;
 
 /// How many models of the past are remembered.
-const MOST_MODELS: usize = 200;
+const MAX_MODELS: usize = 200;
 
 /// A stretch of time in s in which one model held, and that model.
 pub type Held<'a> = (f64, f64, &'a Arc<Model>);
@@ -35,7 +35,7 @@ impl Models {
             return;
         }
         self.before.push_back(std::mem::replace(&mut self.now, (t, model)));
-        if self.before.len() > MOST_MODELS {
+        if self.before.len() > MAX_MODELS {
             let ends = self.before.iter().skip(1).chain([&self.now]);
             let lengths = self.before.iter().zip(ends).map(|(entry, next)| next.0 - entry.0);
             let shortest = lengths.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |found| found.0);
@@ -126,12 +126,12 @@ mod tests {
         let (long, brief, last) = (of(1.0), of(2.0), of(3.0));
         let mut models = Models::new(Arc::clone(&long));
         let mut t = 10.0;
-        for _ in 0..3 * MOST_MODELS {
+        for _ in 0..3 * MAX_MODELS {
             t += 0.2;
             models.change(t, Arc::clone(&brief), 0.1);
         }
         models.change(t + 5.0, last, 0.1);
-        assert_eq!(models.before.len(), MOST_MODELS);
+        assert_eq!(models.before.len(), MAX_MODELS);
         assert_eq!((mass(&models, 4.0), mass(&models, t + 4.0), mass(&models, t + 5.0)), (1.0, 2.0, 3.0));
     }
 }

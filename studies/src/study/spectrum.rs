@@ -90,7 +90,7 @@ impl Spectrum {
 /// Why there is no spectrum.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum NoSpectrum {
-    /// It was told to stop.
+    /// It was cancelled.
     #[error("interrupted")]
     Cancelled,
     /// The run ended at this time in s, before the settled window did, with an outcome of this name.

@@ -61,7 +61,7 @@ pub struct CellFaults {
 /// How a sweep ended short of its last cell; `E` is the writer's error.
 #[derive(Debug)]
 pub enum SweepEnd<E> {
-    /// It was told to stop.
+    /// It was cancelled.
     Cancelled,
     /// The rows could not be written.
     Write(E),

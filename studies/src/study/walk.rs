@@ -149,7 +149,7 @@ pub(super) fn excitation_fault(scene: &Scene, problem: String) -> Fault {
 }
 
 /// The most stroboscopic states that are kept of one run.
-const MOST_STROBES: usize = 60;
+const MAX_STROBES: usize = 60;
 
 /// A run of a walk.
 #[derive(Debug, Clone, PartialEq)]
@@ -182,7 +182,7 @@ pub fn up_and_down(
             values.reverse();
         }
         walk_over(family, &values, &request, |value, run| {
-            let skipped = run.section.len().saturating_sub(MOST_STROBES);
+            let skipped = run.section.len().saturating_sub(MAX_STROBES);
             let strobes = run.section[skipped..].iter().map(|point| point.x).collect();
             if !task.is_cancelled() {
                 each(Visit { direction, value, summary: run.summary, strobes });

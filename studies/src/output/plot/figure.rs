@@ -127,7 +127,7 @@ pub enum Align {
 }
 
 /// The most dashes of a line.
-const MOST_DASHES: f64 = 400.0;
+const MAX_DASHES: f64 = 400.0;
 
 /// A line of text.
 #[derive(Debug, Clone, PartialEq)]
@@ -282,7 +282,7 @@ impl Figure {
         for part in within.parts(points) {
             let length: f64 =
                 part.windows(2).map(|pair| (pair[1].0 - pair[0].0).hypot(pair[1].1 - pair[0].1)).sum();
-            let longer = (length / (MOST_DASHES * (on + off))).max(1.0);
+            let longer = (length / (MAX_DASHES * (on + off))).max(1.0);
             for piece in dashes(&part, (on * longer, off * longer)) {
                 self.shapes.push(Shape::Line(piece, width, ink));
             }

@@ -21,7 +21,7 @@ const TICK: f64 = 20.0;
 const APART: f64 = 4.5;
 
 /// Numbers of a scale upward stand this far apart at least.
-const LEAST_APART: f64 = 24.0;
+const MIN_DISTANCE: f64 = 24.0;
 
 /// So many times its half height apart, markers on a line are told from each other.
 const MARKER_ROOM: f64 = 5.0;
@@ -109,7 +109,7 @@ impl Frame {
         let places: Vec<f64> = self.y.ticks.iter().map(|tick| self.down(tick.0)).collect();
         let apart = places.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(f64::INFINITY, f64::min);
         // in a low frame some have no number
-        let least = if self.y.is_scale() { LEAST_APART } else { 0.0 };
+        let least = if self.y.is_scale() { MIN_DISTANCE } else { 0.0 };
         let every = (least / apart).ceil().clamp(1.0, 50.0) as usize;
         let zero = self.y.ticks.iter().position(|tick| tick.0 == 0.0).unwrap_or(0);
         let apart = apart * every as f64;

@@ -30,10 +30,10 @@ const BAR: (f64, f64) = (22.0, 30.0);
 const BETWEEN: f64 = 22.0;
 const BETWEEN_COLUMNS: f64 = 26.0;
 /// The least width of a frame, and a usual size of one.
-const LEAST_WIDTH: f64 = 60.0;
+const MIN_WIDTH: f64 = 60.0;
 const USUAL: f64 = 230.0;
 /// The share of the canvas that numbers or names upward may take; longer ones are made smaller.
-const MOST_NUMBERS: f64 = 0.3;
+const MAX_NUMBERS_SHARE: f64 = 0.3;
 /// Room for a tick on an axis upward and on one to the right.
 const A_TICK: (f64, f64) = (75.0, 130.0);
 
@@ -140,7 +140,7 @@ impl<'a> Grid<'a> {
         // The ticks depend on the size of the frames, and that on the room for the ticks.
         for _ in 0..3 {
             let last = self.stacks.len().saturating_sub(1);
-            let most = MOST_NUMBERS * (right - left);
+            let most = MAX_NUMBERS_SHARE * (right - left);
             for (i, stack) in self.stacks.iter_mut().enumerate() {
                 stack.measure(most, (if i == 0 { left } else { 0.0 }, if i == last { left } else { 0.0 }));
                 if let Some(room) = room {
@@ -149,7 +149,7 @@ impl<'a> Grid<'a> {
             }
             let beside: f64 = self.stacks.iter().map(|stack| stack.left + stack.right).sum();
             let frames = right - left - beside - BETWEEN_COLUMNS * last as f64;
-            self.stacks.iter_mut().for_each(|stack| stack.width = (frames * stack.share).max(LEAST_WIDTH));
+            self.stacks.iter_mut().for_each(|stack| stack.width = (frames * stack.share).max(MIN_WIDTH));
             let rows: Vec<Vec<Row>> = (0..self.stacks.len()).map(|column| self.rows(column)).collect();
             let fixed = |rows: &[Row]| rows.iter().map(|row| row.over + row.under).sum::<f64>();
             let weights = |rows: &[Row]| rows.iter().map(|row| row.height).sum::<f64>();

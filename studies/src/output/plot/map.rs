@@ -12,7 +12,7 @@ use crate::numeric::short;
 use crate::study::{Table, first_crossing_edge, label_and_unit, line_meets};
 
 /// The most columns or rows of a map whose cells have a dot each.
-const MOST_DOTS: usize = 110;
+const MAX_DOTS: usize = 110;
 
 /// Height of a cut to the right, and width of one upward, over those of the map.
 const CUT: f64 = 0.5;
@@ -93,7 +93,7 @@ fn transients(rows: &Table, (x, y): (&str, &str), cells: &Cells) -> Vec<Point> {
     let names = [x, y].map(|name| rows.numbers(name).unwrap_or_default());
     let words = ["settled", "steady", "regime"].map(|name| rows.words(name));
     let lengths = [cells.across.values.len(), cells.up.values.len()];
-    if words.iter().any(|words| words.is_empty()) || lengths.iter().any(|length| *length > MOST_DOTS) {
+    if words.iter().any(|words| words.is_empty()) || lengths.iter().any(|length| *length > MAX_DOTS) {
         return Vec::new();
     }
     let [settled, steady, regime] = words;

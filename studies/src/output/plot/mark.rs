@@ -136,7 +136,7 @@ pub struct Caption {
 }
 
 /// The most lines of a footer, about.
-const MOST_FOOTER_LINES: usize = 8;
+const MAX_FOOTER_LINES: usize = 8;
 
 /// What stands between the parts of a footer.
 const PART: &str = " \u{b7} ";
@@ -176,8 +176,8 @@ impl Caption {
                 _ => lines.push(part.to_owned()),
             }
         }
-        let most = MOST_FOOTER_LINES.saturating_sub(lines.len() - 1).max(1);
-        lines.truncate(MOST_FOOTER_LINES);
+        let most = MAX_FOOTER_LINES.saturating_sub(lines.len() - 1).max(1);
+        lines.truncate(MAX_FOOTER_LINES);
         lines.iter().flat_map(|line| wrapped_to(line, style::FOOTER, false, room, most)).collect()
     }
 }

@@ -71,7 +71,7 @@ pub fn wrapped_to(words: &str, size: f64, bold: bool, room: f64, most: usize) ->
 }
 
 /// The most lines of a title or a subtitle.
-const MOST_LINES: usize = 3;
+const MAX_LINES: usize = 3;
 
 /// Lines of text of one size.
 struct Lines {
@@ -84,7 +84,7 @@ impl Lines {
     fn new(words: &str, size: f64, bold: bool, room: f64, on_paper: bool) -> Self {
         let share = if on_paper { (room / font::width(words, size, bold)).clamp(0.7, 1.0) } else { 1.0 };
         let size = share * size;
-        Self { lines: wrapped_to(words, size, bold, room, MOST_LINES), size }
+        Self { lines: wrapped_to(words, size, bold, room, MAX_LINES), size }
     }
 }
 
@@ -175,7 +175,7 @@ impl Chart {
         let is_low = height < LOW_PANE;
         let has_subtitle = !is_low && !self.subtitle.is_empty();
         let subtitle = if has_subtitle { &self.subtitle } else { "" };
-        let subtitle = wrapped_to(subtitle, style::TICK, false, width - 2.0 * PANE, MOST_LINES);
+        let subtitle = wrapped_to(subtitle, style::TICK, false, width - 2.0 * PANE, MAX_LINES);
         let edge = if is_low || room.is_some() { 0.0 } else { 0.5 * PANE };
         let above = edge + if has_subtitle { SUBTITLE_LINE * subtitle.len() as f64 } else { 0.0 };
         let below = above + legend.height + room.map_or(0.0, |room| room.between);

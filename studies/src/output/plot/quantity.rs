@@ -28,7 +28,7 @@ pub fn words_of(name: &str) -> Option<&'static [&'static str]> {
 }
 
 /// Counts with more values than this are numbers on a scale.
-const MOST_COUNTS: usize = 8;
+const MAX_COUNTS: usize = 8;
 
 /// A column to show.
 #[derive(Debug, Clone, PartialEq)]
@@ -172,13 +172,13 @@ fn counted(values: &mut [f64]) -> Vec<(Role, String)> {
     let mut all: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
     all.sort_by(f64::total_cmp);
     all.dedup();
-    let rest = all.len() > MOST_COUNTS;
-    all.truncate(MOST_COUNTS);
+    let rest = all.len() > MAX_COUNTS;
+    all.truncate(MAX_COUNTS);
     for value in values.iter_mut().filter(|value| value.is_finite()) {
         *value = all.partition_point(|known| known <= value).saturating_sub(1) as f64;
     }
     let name = |(i, value): (usize, &f64)| {
-        let least = if rest && i + 1 == MOST_COUNTS { "\u{2265} " } else { "" };
+        let least = if rest && i + 1 == MAX_COUNTS { "\u{2265} " } else { "" };
         (Role::Kind(i), format!("period {least}{value}"))
     };
     all.iter().enumerate().map(name).collect()

@@ -98,7 +98,7 @@ impl Sheet {
     pub const MOST_PIXELS: f64 = 6000.0;
 
     /// The least width, in times the size of the text, on which the pictures can be laid out.
-    const LEAST_EMS: f64 = 24.0;
+    const MIN_EMS: f64 = 24.0;
 
     /// The length in mm of a unit of the canvas.
     pub fn unit_mm(&self) -> f64 {
@@ -107,7 +107,7 @@ impl Sheet {
 
     /// The largest text in points that `width_mm` has room for.
     pub fn largest_font_pt(width_mm: f64) -> f64 {
-        width_mm / (Self::LEAST_EMS * MM_A_POINT)
+        width_mm / (Self::MIN_EMS * MM_A_POINT)
     }
 
     /// A length in mm in pixels.

@@ -99,7 +99,7 @@ const FEW: usize = 6;
 const MANY: usize = 3;
 
 /// The most values without a quantity that have a line each; of more each has a tick at the lower edge.
-const MOST_LINES: usize = 20;
+const MAX_LINES: usize = 20;
 
 /// The distance between two lines as a share of the axis upward from which on they are seen apart.
 const VISIBLE: f64 = 2e-3;
@@ -200,7 +200,7 @@ fn lines(picture: &SweepPicture, x: &str, series: Option<&str>) -> Chart {
     }
     if !missing.is_empty() {
         // Many lines from edge to edge would be all that is seen.
-        let marks = match missing.len() <= MOST_LINES {
+        let marks = match missing.len() <= MAX_LINES {
             true => Marks::Verticals(missing),
             false => Marks::Ticks(missing, Side::Bottom),
         };

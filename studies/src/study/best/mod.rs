@@ -147,7 +147,7 @@ pub struct BestDesign {
 /// Why there is no best design.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NoBest {
-    /// It was told to stop.
+    /// It was cancelled.
     Cancelled,
     /// No design of the scan makes a valid scene; what is wrong with the first.
     Invalid(Vec<Fault>),

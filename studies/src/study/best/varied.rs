@@ -17,7 +17,7 @@ const QUANTILE: f64 = 0.05;
 const PLACES: usize = 16;
 
 /// Least reach of the search inward, in steps of the scan, such as when the first field does not vary.
-const LEAST_BACK: f64 = 16.0;
+const MIN_REACH: f64 = 16.0;
 
 /// The spread at the optimum, and the place with the largest worst case of those inward of it along the first
 /// field, away from the nearer cliff; `None` if the optimum is that place, or nothing varies.
@@ -39,7 +39,7 @@ pub(super) fn robust(
         if variation.field == range.field { variation.by * size } else { 0.0 }
     };
     let shifts: f64 = evaluator.question.vary.iter().map(shift).sum();
-    let reach = (3.0 * shifts).max(LEAST_BACK * range.step());
+    let reach = (3.0 * shifts).max(MIN_REACH * range.step());
     let mut places: Vec<Vec<f64>> = Vec::new();
     for i in 0..=PLACES {
         // closer together near the optimum

@@ -243,7 +243,7 @@ pub enum NoExponents {
     /// Its transducer has a state of its own.
     #[error("{}", crate::study::ELECTRICAL_STATE)]
     ElectricalState,
-    /// It was told to stop.
+    /// It was cancelled.
     #[error("interrupted")]
     Cancelled,
     /// The motion ended.

@@ -14,7 +14,7 @@ pub use restitution::{restitution, restitution_of_times};
 use super::{Table, label_and_unit};
 use crate::numeric::{MIN_TURNS, extent, short};
 pub(super) use crate::numeric::{Turn, turns};
-use peaks::FEWEST_SAMPLES;
+use peaks::MIN_SAMPLES;
 use restitution::ENOUGH;
 
 /// A number with its interval.
@@ -85,7 +85,7 @@ pub enum Unidentified {
     },
     /// The swing at this time in s has too few samples.
     #[error(
-        "the swing at {0} s has {1} samples near its turning point; {FEWEST_SAMPLES} are needed: \
+        "the swing at {0} s has {1} samples near its turning point; {MIN_SAMPLES} are needed: \
          sample faster"
     )]
     Sparse(String, usize),

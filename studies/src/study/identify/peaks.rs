@@ -38,9 +38,9 @@ const EVEN: std::ops::RangeInclusive<f64> = 0.6..=1.6;
 const MOVED: f64 = 0.25;
 
 /// The fewest samples of a fit.
-pub const FEWEST_SAMPLES: usize = 5;
+pub const MIN_SAMPLES: usize = 5;
 /// The fewest samples of a fit with the second harmonic.
-const FEWEST_OF_HARMONICS: usize = 9;
+const MIN_SAMPLES_OF_HARMONICS: usize = 9;
 
 /// Number of passes: the times and the decay follow from the fits of the pass before.
 const PASSES: usize = 4;
@@ -213,10 +213,10 @@ fn local(times: &[f64], values: &[f64], peak: &Peak, rate: f64) -> Result<Option
         let range = within(times, centre - reach, centre + reach);
         samples = range.len();
         let near = times[range.clone()].iter().map(|t| t - centre).zip(values[range].iter().copied());
-        if samples >= FEWEST_OF_HARMONICS {
+        if samples >= MIN_SAMPLES_OF_HARMONICS {
             return Ok(swing::<5>(near, frequency, rate));
         }
-        if samples >= FEWEST_SAMPLES {
+        if samples >= MIN_SAMPLES {
             return Ok(swing::<3>(near, frequency, rate));
         }
     }

@@ -49,7 +49,7 @@ pub struct Comparison {
 /// Why there is nothing to compare.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum NoComparison {
-    /// It was told to stop.
+    /// It was cancelled.
     #[error("interrupted")]
     Cancelled,
     /// The record and the run have no time in common.

@@ -6,7 +6,7 @@ use super::{Orbit, allowed, map_of};
 use crate::dynamics::{Event, EventKind, Jacobian, Outcome, Passage, Side, StroboscopicMap};
 use crate::study::{Family, State};
 
-const MOST_STEPS: usize = 24;
+const MAX_STEPS: usize = 24;
 
 /// Half the distance over which the map is differenced by the field, as a share of its range: the error of
 /// the quotient grows with the square of the distance, that of the map's rounding with its inverse. It is
@@ -89,7 +89,7 @@ pub(super) fn newton<T>(
 ) -> Option<(T, Vector3<f64>, f64)> {
     let mut at = guess;
     let mut best = f64::INFINITY;
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         let equations = look(&at)?;
         at = equations.at;
         let off = equations.off;

@@ -21,7 +21,7 @@ use crate::study::State;
 const SMALL_GAP: f64 = 0.1;
 
 /// The most turns and impacts of a motion that are looked at, the smallest gaps and speeds first.
-const MOST_LOOKED_AT: usize = 4;
+const MAX_CANDIDATES: usize = 4;
 
 /// Half the distance over which a flight is differenced, in the units; few digits are needed.
 const DIFFERENCE: f64 = 1e-7;
@@ -102,7 +102,7 @@ pub(super) fn grazings<'a>(corrector: &'a Corrector<'a>, near: &Point) -> Vec<(G
     // of a motion that is its own mirror image the first half has all
     turns.retain(|turn| turn.0 < flight);
     turns.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
-    turns.truncate(MOST_LOOKED_AT);
+    turns.truncate(MAX_CANDIDATES);
     let apart = |a: f64, b: f64| {
         let far = (a - b).rem_euclid(flight);
         far.min(flight - far)

@@ -26,7 +26,7 @@ pub use events::BranchEvent;
 use walk::Walk;
 
 /// The most steps of Newton's method.
-const MOST_STEPS: usize = 40;
+const MAX_STEPS: usize = 40;
 
 /// The longest step, as a share of the scales: the method is for a guess near the motion.
 const LONGEST_STEP: f64 = 0.2;
@@ -159,7 +159,7 @@ pub fn orbit_near(map: &StroboscopicMap, guess: (f64, f64), periods: u32) -> Res
     let size = |change: State| (change.0 / scales.length).abs().max((change.1 / scales.speed).abs());
     let mut state = allowed(map.model(), guess);
     let mut best = f64::INFINITY;
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         let (passage, jacobian) = map.pass_with_jacobian(state, periods);
         if passage.outcome != Outcome::Done {
             return Err(NoOrbit::Ended(passage.outcome));

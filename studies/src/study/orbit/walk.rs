@@ -103,7 +103,7 @@ impl<'a> Walk<'a> {
     pub fn run_out(&mut self, task: &Task) -> Result<BranchEnd, NoOrbit> {
         let mut step = FIRST;
         while self.branch.values.len() < MOST_POINTS {
-            task.go_on().map_err(|_| NoOrbit::Cancelled)?;
+            task.check_cancelled().map_err(|_| NoOrbit::Cancelled)?;
             (task.tick)();
             self.keep_clear(&[]);
             let (found, beyond) = self.predicted(step);

@@ -26,7 +26,7 @@ pub struct Meeting {
 }
 
 /// Steps of Newton's method; two parabolas need some five.
-const MOST_STEPS: usize = 10;
+const MAX_STEPS: usize = 10;
 
 impl Sides {
     /// Where the polynomials with `terms` coefficients meet, next to a time; `right`: the stop is above.
@@ -38,7 +38,7 @@ impl Sides {
         self.before.squared_residuals(terms).and(self.after.squared_residuals(terms))?;
         let sign = if right { 1.0 } else { -1.0 };
         let mut t = near;
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MAX_STEPS {
             let (one, other) = (motion.at(&self.before, t, terms), motion.at(&self.after, t, terms));
             let step = (other.value - one.value) / (one.slope - other.slope);
             if !step.is_finite() {
