@@ -355,7 +355,7 @@ impl<Q: Question> GridStudy<Q> {
             let (number, begun) = kept.or_else(|| take(under_way).map(|number| (number, walk(number))))?;
             let answer = match (self.cells.model(begun.cell(), &mut scene, task), request) {
                 (Some(Ok(model)), Some(request)) => {
-                    let model = begun.carried.on(self.question.model(model));
+                    let model = begun.carried.continued(self.question.model(model));
                     let carry = begun.direction.is_some();
                     walking.borrow_mut().insert(number, begun);
                     return Some((number, model, Request { carry, cancel: Some(task.cancel), ..request }));
