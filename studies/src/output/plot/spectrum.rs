@@ -17,13 +17,13 @@ pub enum SpectrumQuantity {
     Density,
 }
 
-/// The share of the power up to the right edge, where no range was asked for.
+/// Share of the power below the right edge of the default range.
 const POWER: f64 = 0.9999;
 
-/// Decades of amplitude below the greatest line, where no range was asked for.
+/// Decades of amplitude below the largest line in the default range.
 const DECADES: f64 = 7.0;
 
-/// The most forcing frequencies that are marked and named.
+/// Largest number of forcing frequencies that are marked and named.
 const MAX_MARKED: usize = 4;
 
 /// The picture of a spectrum. `ranges` are those of the frequency in Hz and of the quantity.
