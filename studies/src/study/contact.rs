@@ -67,7 +67,7 @@ pub fn yield_warning(model: &Model, summary: &Summary) -> Option<String> {
 pub struct Strikes {
     /// Median speed in m/s of the first impacts.
     pub speed: f64,
-    /// How many first impacts there are.
+    /// Number of first impacts.
     pub count: usize,
     /// Whether they are those of the settled window; of the whole run, where it has none.
     pub settled: bool,

@@ -149,7 +149,7 @@ pub const STRIDES: [usize; 4] = [8, 4, 2, 1];
 pub struct Levels {
     /// Every cell once, those of a coarser level before those that a finer one adds.
     pub order: Vec<u64>,
-    /// How many cells of the order make up each level.
+    /// Number of cells of the order that make up each level.
     pub ends: [usize; STRIDES.len()],
     lengths: Vec<usize>,
 }

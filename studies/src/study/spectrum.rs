@@ -49,7 +49,7 @@ pub struct SpectrumOptions {
 /// A spectrum, and what it was made from. SI.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spectrum {
-    /// `frequency_hz,amplitude,psd`, one-sided: from 0 to half the rate, a row a line.
+    /// `frequency_hz,amplitude,psd`, one-sided, from 0 to half the rate, with one row per line.
     pub table: Table,
     /// The signal.
     pub signal: Signal,

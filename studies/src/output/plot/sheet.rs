@@ -97,7 +97,7 @@ impl Sheet {
     /// Largest number of pixels of width and height.
     pub const MOST_PIXELS: f64 = 6000.0;
 
-    /// The least width, in times the size of the text, on which the pictures can be laid out.
+    /// Smallest width for the layout of pictures, in multiples of the size of the text.
     const MIN_EMS: f64 = 24.0;
 
     /// The length in mm of a unit of the canvas.

@@ -225,7 +225,8 @@ impl<'a> Walk<'a> {
         far.fold(0.0, f64::max) <= CHANGE * self.room
     }
 
-    /// Whether a motion touches the stops otherwise than the last one; between rests this is no bifurcation.
+    /// Whether an orbit has different contacts with the stops from the last one; between orbits with rests
+    /// this is not a bifurcation.
     fn touches_otherwise(&self, next: &Point) -> bool {
         let point = &self.at.0;
         differ(point, next) && !(point.forgets() && next.forgets())

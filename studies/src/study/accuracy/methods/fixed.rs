@@ -6,7 +6,7 @@ use crate::dynamics::{Model, Phase, Request, Side};
 /// Steps between checks of the cancel flag.
 const CANCEL_STRIDE: u64 = 1 << 14;
 
-/// The most steps of one run: some seconds.
+/// Largest number of steps of a run: some seconds.
 const MAX_STEPS: f64 = 1e8;
 
 /// Runs `model` by `scheme` in even steps of at most `step` in s; the last one ends at the duration.

@@ -16,7 +16,7 @@ const DRAWN_PERIODS: f64 = 3.0;
 /// Most points of a drawn path; if there are more steps, evenly spaced points take their place.
 const MOST_POINTS: usize = 4_000;
 
-/// The most steps of a run, a few seconds of one core.
+/// Largest number of steps of a run: a few seconds on one core.
 const MAX_STEPS: f64 = 2e7;
 /// Number of sines in the drive whose evaluation takes as long as the rest of a step.
 const SINES: f64 = 16.0;
